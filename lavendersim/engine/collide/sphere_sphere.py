@@ -1,0 +1,35 @@
+"""Two spheres enter; at most one point leaves. n points from the centre of A to that of B.
+
+    phi = |x_b - x_a| - r_a - r_b
+
+Coincident centres have no direction of their own: n is then the world's z.
+"""
+
+from __future__ import annotations
+
+from math import sqrt
+
+from ..compile import kernel
+from .point import place
+
+
+def make(spec):
+    """Return `kernel(a, b, points, normal, scratch) -> count`."""
+
+    def sphere_sphere(a, b, points, normal, scratch):
+        dx, dy, dz = b.x - a.x, b.y - a.y, b.z - a.z
+        reach = a.hx + b.hx
+        squared = dx * dx + dy * dy + dz * dz
+        if squared > reach * reach:
+            return 0
+        distance = sqrt(squared)
+        nx, ny, nz = 0.0, 0.0, 1.0
+        if distance > 0.0:
+            nx, ny, nz = dx / distance, dy / distance, dz / distance
+        phi = distance - reach
+        normal[0], normal[1], normal[2] = nx, ny, nz
+        middle = a.hx + 0.5 * phi
+        place(points[0], a.x + nx * middle, a.y + ny * middle, a.z + nz * middle, phi, 0)
+        return 1
+
+    return kernel(sphere_sphere, spec)

@@ -1,0 +1,48 @@
+"""Python functions enter, numba kernels leave. The one place that knows numba's options.
+
+Kernels are closures over the flags of a `Spec`. Numba removes the branches that a flag makes dead
+before it types them, so a pruned kernel is as small as one that never had the effect.
+
+Hazard: numba's symbol names carry a counter of the process, and objects cached by different
+processes can collide (numba issue 10486). Each kernel's qualified name therefore carries the digest
+of the spec it was made for.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numba
+
+from .spec import Spec
+
+# No fastmath and no contraction: results must not depend on the optimiser's mood.
+# error_model numpy: a division by zero gives inf, which the runner reports, and never raises.
+OPTIONS: dict[str, Any] = {"error_model": "numpy", "fastmath": False, "nogil": True, "_nrt": False}
+
+
+def kernel(function: Callable[..., Any], spec: Spec) -> Any:
+    """Compile `function`, made for `spec`, for use inside other kernels."""
+    function.__qualname__ = f"{function.__qualname__}_{spec.digest()}"
+    return numba.njit(**OPTIONS)(function)
+
+
+def chain(kernels: Sequence[Any], spec: Spec) -> Any:
+    """One kernel that calls `kernels` in order with the same three arguments."""
+    if not kernels:
+
+        def nothing(first, second, third):
+            pass
+
+        return kernel(nothing, spec)
+    head = kernels[0]
+    if len(kernels) == 1:
+        return head
+    tail = chain(kernels[1:], spec)
+
+    def both(first, second, third):
+        head(first, second, third)
+        tail(first, second, third)
+
+    return kernel(both, spec)

@@ -1,0 +1,30 @@
+"""Compliance: gamma = c/dt^2 softens a row, so that a load N rests at a penetration of its own.
+
+c is the sum over the two surfaces (in series) [m/N]; divided by dt^2, not dt: the row is in
+velocities and its unknown an impulse, F = lambda/dt and d = c F.
+"""
+
+from ..compile import kernel
+from .decision import Decision, Facts
+
+NAME = "compliance"
+STAGE = "capture"
+PAIR_FIELDS = [("compliance", "f8")]  # c of the pair [m/N]
+CONTACT_FIELDS = [("gamma", "f8")]  # [1/kg]
+
+
+def wanted(facts: Facts) -> Decision:
+    """On when a pair that may touch is compliant."""
+    for pair in facts.pairs:
+        if pair.compliance > 0.0:
+            return Decision(True, f"{pair.a} and {pair.b}: compliance {pair.compliance:g} m/N")
+    return Decision(False, "every pair that may touch has compliance 0")
+
+
+def make(spec):
+    """Return `kernel(contact, pair, params)`."""
+
+    def compliance(contact, pair, params):
+        contact.gamma = pair.compliance / (params.dt * params.dt)
+
+    return kernel(compliance, spec)

@@ -1,0 +1,65 @@
+"""Positional projection: a pass of its own that moves bodies apart and adds no velocity.
+
+Pseudo-velocities u (metres and radians per step, zero at the start) are solved for by projected
+Gauss-Seidel on the rows of the step:
+    n . u  >=  projection * max(d_1 - slop, 0),   d_1 = -(phi + v_n dt)
+d_1 is the penetration after the velocity step, to first order. u is added to the poses and dropped.
+With every target at zero the solution is u = 0, and the pass ends before it begins.
+"""
+
+from ..compile import kernel
+from ..contact import make_apply_impulse, make_normal_velocity
+from .decision import Decision, Facts
+
+NAME = "projection"
+STAGE = "project"
+CONTACT_FIELDS = [
+    ("correction", "f8"),  # asked change of separation in this step [m]
+    ("push", "f8"),  # accumulated pseudo-impulse [kg m]
+    ("inv_k_n", "f8"),  # 1/k_n, without compliance [kg]
+]
+
+
+def wanted(facts: Facts) -> Decision:
+    """On when a share of the penetration is to be projected out."""
+    if facts.projection > 0.0 and facts.pairs:
+        return Decision(True, f"projection is {facts.projection:g} per step")
+    return Decision(False, "nothing can touch" if facts.projection > 0.0 else "projection is 0")
+
+
+def make(spec):
+    """Return `kernel(contacts, order, count, velocities, pseudo, params) -> moved`."""
+    normal_velocity = make_normal_velocity(spec)
+    apply_impulse = make_apply_impulse(spec)
+    torque = spec.has("contact_torque")
+
+    def project_positions(contacts, order, count, velocities, pseudo, params):
+        asked = False
+        for c in range(count):
+            contact = contacts[c]
+            v_n = normal_velocity(contact, velocities[contact.a], velocities[contact.b])
+            excess = -(contact.phi + v_n * params.dt) - params.slop
+            contact.correction = params.projection * max(excess, 0.0)
+            contact.push = 0.0
+            contact.inv_k_n = 1.0 / contact.k_n
+            if excess > 0.0:
+                asked = True
+        if not asked:
+            return False
+        for i in range(pseudo.shape[0]):
+            u = pseudo[i]
+            u.vx, u.vy, u.vz = 0.0, 0.0, 0.0
+            if torque:
+                u.wx, u.wy, u.wz = 0.0, 0.0, 0.0
+        for _ in range(params.projection_sweeps):
+            for c in range(count):
+                contact = contacts[order[c]]
+                ua, ub = pseudo[contact.a], pseudo[contact.b]
+                lack = contact.correction - normal_velocity(contact, ua, ub)
+                push = max(contact.push + lack * contact.inv_k_n, 0.0)
+                change = push - contact.push
+                contact.push = push
+                apply_impulse(contact, ua, ub, change)
+        return True
+
+    return kernel(project_positions, spec)

@@ -1,0 +1,36 @@
+"""Rotation: orientations change, because something turns at the start or a contact exerts a torque."""
+
+from ..compile import kernel
+from ..records import ANGULAR_VELOCITY, ORIENTED_BODY
+from ..rotation import turn
+from .decision import Decision, Facts, named
+
+NAME = "rotation"
+STAGE = "integrate"
+BODY_FIELDS = [*ORIENTED_BODY, ("inv_ix", "f8"), ("inv_iy", "f8"), ("inv_iz", "f8")]
+VELOCITY_FIELDS = ANGULAR_VELOCITY
+
+
+def wanted(facts: Facts) -> Decision:
+    """On when a movable body spins at the start or has a shape that normal forces can turn."""
+    spinning = [body.name for body in facts.bodies if body.movable and body.spins]
+    if spinning:
+        return Decision(True, f"{named(spinning)}: initial angular velocity")
+    levered = [body.name for body in facts.bodies if body.movable and body.shape == "box"]
+    if levered and facts.pairs:
+        return Decision(True, f"{named(levered)}: a contact off the centre of mass exerts a torque")
+    movable = [body.name for body in facts.bodies if body.movable]
+    return Decision(
+        False,
+        f"{named(movable)}: nothing turns at the start and no frictionless contact of it can exert "
+        "a torque",
+    )
+
+
+def make(spec):
+    """Return `kernel(body, velocity, dt)`: turn by omega dt; without torque omega stays."""
+
+    def integrate_rotation(body, velocity, dt):
+        turn(body, velocity.wx * dt, velocity.wy * dt, velocity.wz * dt)
+
+    return kernel(integrate_rotation, spec)

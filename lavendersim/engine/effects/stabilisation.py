@@ -1,0 +1,26 @@
+"""Stabilisation: bias velocity b = -(beta/dt) max(d - slop, 0) that separates what penetrates."""
+
+from ..compile import kernel
+from .decision import Decision, Facts
+
+NAME = "stabilisation"
+STAGE = "capture"
+
+
+def wanted(facts: Facts) -> Decision:
+    """On when the gain is positive."""
+    gain = facts.stabilisation_gain
+    if gain > 0.0 and facts.pairs:
+        return Decision(True, f"stabilisation_gain is {gain:g}")
+    return Decision(False, "stabilisation_gain is 0" if gain == 0.0 else "nothing can touch")
+
+
+def make(spec):
+    """Return `kernel(contact, pair, params)`."""
+
+    def stabilisation(contact, pair, params):
+        excess = -contact.phi - params.slop
+        if excess > 0.0:
+            contact.target -= params.stabilisation_gain / params.dt * excess
+
+    return kernel(stabilisation, spec)

@@ -1,0 +1,195 @@
+"""Arrays enter, arrays leave: the engine of one scene, its memory and its kernel.
+
+    engine = Engine(spec, bodies, velocities, pairs, parameters)
+    status = engine.advance(steps)
+    block = engine.take_rows()
+
+The caller fills `bodies`, `velocities` and `pairs` once (see `allocate_*`) and may change masses
+and parameters between calls. Rows are written into columns allocated here; contact rows grow when
+a step needs more.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from .collide.box_box import allocate_scratch
+from .effects import EFFECTS
+from .ordering import BUCKETS
+from .records import (
+    BODY,
+    CONTACT,
+    CONTACT_ROW,
+    CONTACTS_FULL,
+    COUNTERS,
+    PAIR,
+    PARAMETERS,
+    POINT,
+    RESIDUAL_ROW,
+    RUNNING,
+    STEP_ROW,
+    VELOCITY,
+    dtype,
+)
+from .spec import Spec
+from .step import advance_for
+
+# Points of one manifold before reduction: two polygons of at most eight vertices each.
+MANIFOLD_POINTS = 16
+# Steps whose rows are held before they must be handed on; several hundred amortise a kernel call.
+BLOCK_STEPS = 512
+
+
+class Rows(NamedTuple):
+    """Trace rows of some steps: structured arrays, and poses of shape (steps, bodies, 7)."""
+
+    step: np.ndarray
+    pose: np.ndarray
+    contact: np.ndarray
+    residual: np.ndarray
+
+
+def _dtype(base: list[Any], spec: Spec, group: str) -> np.dtype:
+    extra = [getattr(e, group, []) for e in EFFECTS if spec.has(e.NAME)]
+    return dtype(base, *extra)
+
+
+def allocate_bodies(spec: Spec, count: int) -> np.ndarray:
+    """Return zeroed body records with the columns that `spec` has."""
+    oriented = any(name in ("box_plane", "sphere_box", "box_box") for name in spec.shape_pairs)
+    from .records import ORIENTED_BODY
+
+    base = [*BODY, *(ORIENTED_BODY if oriented else [])]
+    return np.zeros(count, _dtype(base, spec, "BODY_FIELDS"))
+
+
+def allocate_velocities(spec: Spec, count: int) -> np.ndarray:
+    """Return zeroed velocity records."""
+    return np.zeros(count, _dtype(VELOCITY, spec, "VELOCITY_FIELDS"))
+
+
+def allocate_pairs(spec: Spec, count: int) -> np.ndarray:
+    """Return zeroed pair records."""
+    return np.zeros(count, _dtype(PAIR, spec, "PAIR_FIELDS"))
+
+
+def allocate_parameters() -> np.ndarray:
+    """Return one zeroed parameter record, shape (1,)."""
+    return np.zeros(1, dtype(PARAMETERS))
+
+
+class Engine:
+    """One scene in motion. Not thread-safe; kernels release the interpreter lock."""
+
+    def __init__(
+        self,
+        spec: Spec,
+        bodies: np.ndarray,
+        velocities: np.ndarray,
+        pairs: np.ndarray,
+        parameters: np.ndarray,
+        poses: np.ndarray,
+        block_steps: int = BLOCK_STEPS,
+    ) -> None:
+        self.spec = spec
+        self.bodies, self.velocities = bodies, velocities
+        self.pairs, self.parameters = pairs, parameters
+        self.block_steps = block_steps if spec.record else 0
+        self.counters = np.zeros(1, dtype(COUNTERS))
+        self.counters["residual_contact"] = -1
+        self.pseudo = np.zeros(len(bodies) if spec.has("projection") else 0, velocities.dtype)
+        self._bits = (bodies.view(np.uint64), velocities.view(np.uint64))
+        self._initial_pose = poses
+        self._kernel = advance_for(spec)
+        self._grow_contacts(max(4, min(4 * len(pairs), 1024)))
+
+    def _grow_contacts(self, capacity: int) -> None:
+        self.contacts = np.zeros(capacity, _dtype(CONTACT, self.spec, "CONTACT_FIELDS"))
+        self._work = (
+            np.zeros(MANIFOLD_POINTS, dtype(POINT)),
+            np.zeros(3),
+            allocate_scratch(),
+            np.zeros(len(self.bodies), np.int64),
+            np.zeros(BUCKETS + 1, np.int64),
+            np.zeros(capacity, np.int64),
+            np.zeros(capacity, np.int64),
+        )
+        held = getattr(self, "cache", None)
+        warm = self.spec.has("warm_start")
+        self.cache = np.zeros(capacity if warm else 0, _dtype([("pair", "i8")], self.spec, "CACHE_FIELDS"))
+        if held is not None and warm:
+            self.cache[: len(held)] = held
+        self._allocate_rows(capacity)
+
+    def _allocate_rows(self, capacity: int) -> None:
+        steps = self.block_steps
+        # A quarter of the worst case: full columns end a block early, they lose nothing.
+        contact_rows = max(capacity, steps * capacity // 4) if steps else 0
+        self._rows = (
+            np.zeros(steps, dtype(STEP_ROW)),
+            np.repeat(self._initial_pose[None], steps, axis=0),
+            np.zeros(contact_rows, dtype(CONTACT_ROW)),
+        )
+        sweeps = int(self.parameters["sweeps"][0]) + 1
+        residual_rows = max(steps, 1) * sweeps if self.spec.record_residuals else 0
+        self._residual_rows = np.zeros(residual_rows, dtype(RESIDUAL_ROW))
+
+    def advance(self, steps: int) -> int:
+        """Do up to `steps` steps; return RUNNING, ROWS_FULL (take rows, call again) or DIVERGED."""
+        target = int(self.counters["step"][0]) + steps
+        while True:
+            status = self._kernel(
+                self.bodies,
+                self.velocities,
+                self.pseudo,
+                self._bits,
+                self.contacts,
+                self.cache,
+                self.pairs,
+                self._work,
+                self.parameters,
+                self.counters,
+                self._rows,
+                self._residual_rows,
+                target - int(self.counters["step"][0]),
+            )
+            if status != CONTACTS_FULL:
+                return int(status)
+            if self.counters["step_rows"][0]:
+                return 1  # rows first: enlarging the columns would drop them
+            self._grow_contacts(2 * len(self.contacts))
+
+    def take_rows(self) -> Rows:
+        """Return copies of the rows written since the last call and empty the columns."""
+        count = self.counters[0]
+        steps, contacts, residuals = (
+            int(count["step_rows"]),
+            int(count["contact_rows"]),
+            int(count["residual_rows"]),
+        )
+        rows = Rows(
+            self._rows[0][:steps].copy(),
+            self._rows[1][:steps].copy(),
+            self._rows[2][:contacts].copy(),
+            self._residual_rows[:residuals].copy(),
+        )
+        for name in ("step_rows", "contact_rows", "residual_rows"):
+            self.counters[name] = 0
+        return rows
+
+    def forget_contacts(self, body: int | None = None) -> None:
+        """Drop cached impulses, of every contact or of those of one body (it was changed)."""
+        cached = int(self.counters["cached"][0])
+        if body is None or not cached:
+            self.counters["cached"] = 0
+            return
+        rows = self.cache[:cached]
+        pairs = self.pairs[rows["pair"]]
+        kept = rows[(pairs["a"] != body) & (pairs["b"] != body)]
+        self.cache[: len(kept)] = kept
+        self.counters["cached"] = len(kept)
+
+
+__all__ = ["RUNNING", "Engine", "Rows"]

@@ -1,0 +1,103 @@
+"""State and contacts of one step enter, trace rows leave. Everything logged is computed here, once."""
+
+from __future__ import annotations
+
+from .compile import kernel
+from .contact import make_normal_velocity
+from .residual import make_row_residual
+from .rotation import inertia_times
+from .spec import Spec
+
+
+def make(spec: Spec):
+    """Return `kernel(bodies, velocities, bits, contacts, count, params, counters, rows)`.
+
+    bits: (body bytes, velocity bytes) as uint64 views of the same memory, for the state hash.
+    rows: (step rows, pose rows (n, bodies, 7), contact rows); the caller guarantees room.
+    """
+    rotation = spec.has("rotation")
+    normal_velocity = make_normal_velocity(spec)
+    row_residual = make_row_residual(spec)
+
+    def hash_into(state_hash, bits):
+        # FNV-1a over 64-bit words; -0.0 counts as 0.0, because no result may depend on it.
+        for i in range(bits.shape[0]):
+            word = bits[i]
+            if word == 0x8000000000000000:
+                word = word ^ word
+            state_hash = (state_hash ^ word) * 0x100000001B3
+        return state_hash
+
+    hash_into = kernel(hash_into, spec)
+
+    def record_bodies(bodies, velocities, row, pose, params):
+        kinetic, potential = 0.0, 0.0
+        px, py, pz = 0.0, 0.0, 0.0
+        ax, ay, az = 0.0, 0.0, 0.0
+        for i in range(bodies.shape[0]):
+            body, v = bodies[i], velocities[i]
+            pose[i, 0], pose[i, 1], pose[i, 2] = body.x, body.y, body.z
+            if rotation:
+                pose[i, 3], pose[i, 4] = body.qw, body.qx
+                pose[i, 5], pose[i, 6] = body.qy, body.qz
+            if body.inv_m > 0.0:
+                m = 1.0 / body.inv_m
+                kinetic += 0.5 * m * (v.vx * v.vx + v.vy * v.vy + v.vz * v.vz)
+                potential -= m * (params.gx * body.x + params.gy * body.y + params.gz * body.z)
+                mx, my, mz = m * v.vx, m * v.vy, m * v.vz
+                px, py, pz = px + mx, py + my, pz + mz
+                ax += body.y * mz - body.z * my
+                ay += body.z * mx - body.x * mz
+                az += body.x * my - body.y * mx
+                if rotation:
+                    lx, ly, lz = inertia_times(body, v.wx, v.wy, v.wz)
+                    kinetic += 0.5 * (lx * v.wx + ly * v.wy + lz * v.wz)
+                    ax, ay, az = ax + lx, ay + ly, az + lz
+        row.kinetic_energy, row.potential_energy = kinetic, potential
+        row.momentum_x, row.momentum_y, row.momentum_z = px, py, pz
+        row.angular_momentum_x, row.angular_momentum_y, row.angular_momentum_z = ax, ay, az
+
+    record_bodies = kernel(record_bodies, spec)
+
+    def record_contacts(contacts, count, velocities, row, rows, first, params):
+        force, deepest = 0.0, 0.0
+        for c in range(count):
+            contact, out = contacts[c], rows[first + c]
+            v_n = normal_velocity(contact, velocities[contact.a], velocities[contact.b])
+            out.step = row.step
+            out.body_a, out.body_b, out.feature = contact.a, contact.b, contact.feature
+            out.x, out.y, out.z = contact.x, contact.y, contact.z
+            out.nx, out.ny, out.nz = contact.nx, contact.ny, contact.nz
+            out.separation = contact.phi
+            out.penetration = max(-contact.phi, 0.0)
+            out.approach_velocity = contact.v_n_pre
+            out.normal_velocity = v_n
+            out.impulse_n = contact.lambda_n
+            out.force_n = contact.lambda_n / params.dt
+            out.inverse_effective_mass = contact.k_n
+            out.residual = row_residual(contact, v_n)
+            force += out.force_n
+            deepest = max(deepest, out.penetration)
+        row.total_normal_force = force
+        row.max_penetration = deepest
+
+    record_contacts = kernel(record_contacts, spec)
+
+    def record(bodies, velocities, bits, contacts, count, params, counters, rows):
+        steps, poses, contact_rows = rows
+        row = steps[counters.step_rows]
+        row.step = counters.step
+        row.contact_count = count
+        row.sweeps = counters.sweeps
+        row.residual_contact = counters.residual_contact
+        row.residual = counters.residual
+        record_contacts(
+            contacts, count, velocities, row, contact_rows, counters.contact_rows, params
+        )
+        record_bodies(bodies, velocities, row, poses[counters.step_rows], params)
+        state_hash = hash_into(0xCBF29CE484222325 ^ row.step, bits[0])
+        row.state_hash = hash_into(state_hash, bits[1])
+        counters.step_rows += 1
+        counters.contact_rows += count
+
+    return kernel(record, spec)

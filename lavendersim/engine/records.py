@@ -1,0 +1,174 @@
+"""Every record the kernels work on: field, unit, meaning. Scalar float64 or int64 fields only.
+
+A record's dtype is composed from the base fields below and the fields that the effects of a `Spec`
+bring (`BODY_FIELDS`, `CONTACT_FIELDS` of an effect's module), so an absent effect has no column.
+World frame, SI units, unless a comment says otherwise.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Final
+
+import numpy as np
+
+F8: Final = "f8"
+I8: Final = "i8"
+Field = tuple[str, str]
+
+# Shape kinds, as stored in BODY.shape.
+PLANE: Final = 0
+SPHERE: Final = 1
+BOX: Final = 2
+
+# Why `advance` returned.
+RUNNING: Final = 0
+ROWS_FULL: Final = 1  # trace columns are full: hand them on and call again
+CONTACTS_FULL: Final = 2  # contact rows are full: enlarge them and call again; the state is intact
+DIVERGED: Final = 3  # a body's state is no longer finite; `counters.body` says which
+
+BODY: Final[list[Field]] = [
+    ("x", F8),  # centre of mass [m]
+    ("y", F8),
+    ("z", F8),
+    ("inv_m", F8),  # 1/mass [1/kg], 0 for fixed bodies
+    ("shape", I8),  # PLANE, SPHERE or BOX
+    ("hx", F8),  # sphere: radius; box: half edge lengths; plane: unit normal [-] [m]
+    ("hy", F8),
+    ("hz", F8),
+    ("offset", F8),  # plane: n . x of its points [m]
+    ("bound", F8),  # radius of the bounding sphere about the centre of mass [m]; plane: unused
+]
+
+# Orientation of boxes and of everything that turns.
+ORIENTED_BODY: Final[list[Field]] = [
+    ("qw", F8),  # quaternion, body to world
+    ("qx", F8),
+    ("qy", F8),
+    ("qz", F8),
+    *[(f"r{row}{column}", F8) for row in range(3) for column in range(3)],  # the same as a matrix
+]
+
+VELOCITY: Final[list[Field]] = [("vx", F8), ("vy", F8), ("vz", F8)]  # of the centre of mass [m/s]
+ANGULAR_VELOCITY: Final[list[Field]] = [("wx", F8), ("wy", F8), ("wz", F8)]  # [rad/s]
+
+# A pair of bodies that may touch, ordered as the kernel of its shape pair takes them.
+PAIR: Final[list[Field]] = [("a", I8), ("b", I8), ("kind", I8)]
+
+CONTACT: Final[list[Field]] = [
+    ("pair", I8),  # row of the pair table
+    ("a", I8),
+    ("b", I8),
+    ("feature", I8),  # which vertices, edges, faces made the point; equal while they do
+    ("x", F8),  # contact point, half way between the surfaces [m]
+    ("y", F8),
+    ("z", F8),
+    ("nx", F8),  # unit normal from A to B
+    ("ny", F8),
+    ("nz", F8),
+    ("phi", F8),  # signed separation, negative inside [m]
+    ("inv_m_a", F8),
+    ("inv_m_b", F8),
+    ("k_n", F8),  # inverse effective mass along n [1/kg]
+    ("v_n_pre", F8),  # normal velocity of B relative to A before the solve [m/s]
+    ("target", F8),  # b + b_rest: the row asks v_n + target + gamma lambda >= 0 [m/s]
+    ("inv_k", F8),  # 1/(k_n + gamma) [kg]
+    ("lambda_n", F8),  # accumulated impulse on B along n, A gets the opposite [N s]
+]
+
+# Angular parts of a row: the lever r x n of each body and what a unit impulse does to its omega.
+LEVER: Final[list[Field]] = [
+    *[(f"lever_{body}{axis}", F8) for body in "ab" for axis in "xyz"],  # r x n [m]
+    *[(f"turn_{body}{axis}", F8) for body in "ab" for axis in "xyz"],  # I^-1 (r x n) [1/(kg m)]
+]
+
+# One candidate point of a manifold, before it becomes a contact.
+POINT: Final[list[Field]] = [
+    ("x", F8),
+    ("y", F8),
+    ("z", F8),
+    ("phi", F8),
+    ("feature", I8),
+    ("in_line", I8),  # polygon clipping: the lines that meet in this vertex
+    ("out_line", I8),
+]
+
+PARAMETERS: Final[list[Field]] = [
+    ("dt", F8),  # timestep [s]
+    ("gx", F8),  # gravity [m/s^2]
+    ("gy", F8),
+    ("gz", F8),
+    ("stabilisation_gain", F8),  # beta [-]
+    ("slop", F8),  # penetration left alone [m]
+    ("projection", F8),  # share of (d - slop) removed per step [-]
+    ("restitution_speed", F8),  # approach speed above which restitution applies [m/s]
+    ("tolerance", F8),  # residual at which sweeping stops [m/s]
+    ("cache_distance", F8),  # farthest a contact point may have moved to keep its impulse [m]
+    ("cache_normal_cosine", F8),  # least cosine between old and new normal [-]
+    ("residuals_from", I8),  # first and last step whose sweeps are written
+    ("residuals_to", I8),
+    ("sweeps", I8),
+    ("projection_sweeps", I8),
+]
+
+COUNTERS: Final[list[Field]] = [
+    ("step", I8),  # steps done since the start
+    ("contacts", I8),  # rows in use, this step
+    ("cached", I8),  # rows in use in the cache
+    ("cached_dt", F8),  # timestep the cached impulses belong to [s]
+    ("sweeps", I8),  # sweeps spent in the last step
+    ("residual_contact", I8),  # contact with the largest residual, -1 without contacts
+    ("residual", F8),  # of the last step [m/s]
+    ("status", I8),
+    ("body", I8),  # body that diverged
+    ("step_rows", I8),  # trace rows written since the caller emptied the columns
+    ("contact_rows", I8),
+    ("residual_rows", I8),
+]
+
+# Trace rows. Names are those of the log; `time_ns` is added by the caller, who knows the exact ratio.
+STEP_ROW: Final[list[Field]] = [
+    ("step", I8),
+    ("contact_count", I8),
+    ("sweeps", I8),
+    ("residual_contact", I8),
+    ("total_normal_force", F8),  # sum over contacts [N]
+    ("max_penetration", F8),  # [m]
+    ("residual", F8),  # [m/s]
+    ("kinetic_energy", F8),  # [J]
+    ("potential_energy", F8),  # -m g . x, zero at the origin [J]
+    ("momentum_x", F8),  # [kg m/s]
+    ("momentum_y", F8),
+    ("momentum_z", F8),
+    ("angular_momentum_x", F8),  # about the origin [kg m^2/s]
+    ("angular_momentum_y", F8),
+    ("angular_momentum_z", F8),
+    ("state_hash", "u8"),  # of every body's pose and velocity
+]
+
+CONTACT_ROW: Final[list[Field]] = [
+    ("step", I8),
+    ("body_a", I8),
+    ("body_b", I8),
+    ("feature", I8),
+    *[(name, F8) for name in ("x", "y", "z", "nx", "ny", "nz")],
+    ("separation", F8),  # phi [m]
+    ("penetration", F8),  # max(-phi, 0) [m]
+    ("approach_velocity", F8),  # v_n before the solve, negative when approaching [m/s]
+    ("normal_velocity", F8),  # v_n after the solve [m/s]
+    ("impulse_n", F8),  # [N s]
+    ("force_n", F8),  # impulse / dt [N]
+    ("inverse_effective_mass", F8),  # k_n [1/kg]
+    ("residual", F8),  # of the row [m/s]
+]
+
+RESIDUAL_ROW: Final[list[Field]] = [("step", I8), ("sweep", I8), ("residual", F8)]
+
+
+def dtype(*groups: Iterable[Field]) -> np.dtype:
+    """Join field groups into one aligned record type; a field named twice is taken once."""
+    fields: dict[str, str] = {}
+    for group in groups:
+        for name, kind in group:
+            fields.setdefault(name, kind)
+    return np.dtype(list(fields.items()), align=True)

@@ -1,0 +1,79 @@
+"""Orientation kernels: quaternion to matrix, world inverse inertia, and a turn without trigonometry.
+
+The turn is the Cayley map, dq = (1, omega dt / 2) normalised: a rotation about omega by
+2 atan(|omega| dt / 2). It is second order in dt and uses only sqrt, whose bits agree on every CPU.
+"""
+
+from __future__ import annotations
+
+from math import sqrt
+
+import numba
+
+from .compile import OPTIONS
+
+
+@numba.njit(**OPTIONS)
+def orient(body):
+    """Refresh the matrix of `body` from its unit quaternion."""
+    w, x, y, z = body.qw, body.qx, body.qy, body.qz
+    body.r00 = 1.0 - 2.0 * (y * y + z * z)
+    body.r01 = 2.0 * (x * y - w * z)
+    body.r02 = 2.0 * (x * z + w * y)
+    body.r10 = 2.0 * (x * y + w * z)
+    body.r11 = 1.0 - 2.0 * (x * x + z * z)
+    body.r12 = 2.0 * (y * z - w * x)
+    body.r20 = 2.0 * (x * z - w * y)
+    body.r21 = 2.0 * (y * z + w * x)
+    body.r22 = 1.0 - 2.0 * (x * x + y * y)
+
+
+@numba.njit(**OPTIONS)
+def to_world(body, x, y, z):
+    """Rotate a vector from the body's frame to the world's."""
+    return (
+        body.r00 * x + body.r01 * y + body.r02 * z,
+        body.r10 * x + body.r11 * y + body.r12 * z,
+        body.r20 * x + body.r21 * y + body.r22 * z,
+    )
+
+
+@numba.njit(**OPTIONS)
+def to_body(body, x, y, z):
+    """Rotate a vector from the world's frame to the body's."""
+    return (
+        body.r00 * x + body.r10 * y + body.r20 * z,
+        body.r01 * x + body.r11 * y + body.r21 * z,
+        body.r02 * x + body.r12 * y + body.r22 * z,
+    )
+
+
+@numba.njit(**OPTIONS)
+def inverse_inertia_times(body, x, y, z):
+    """I^-1 applied to a world vector, by way of the principal axes."""
+    bx, by, bz = to_body(body, x, y, z)
+    return to_world(body, body.inv_ix * bx, body.inv_iy * by, body.inv_iz * bz)
+
+
+@numba.njit(**OPTIONS)
+def inertia_times(body, x, y, z):
+    """I applied to a world vector; a fixed body (inverse inertia 0) gives zero."""
+    bx, by, bz = to_body(body, x, y, z)
+    if body.inv_ix == 0.0:
+        return 0.0, 0.0, 0.0
+    return to_world(body, bx / body.inv_ix, by / body.inv_iy, bz / body.inv_iz)
+
+
+@numba.njit(**OPTIONS)
+def turn(body, angle_x, angle_y, angle_z):
+    """Turn `body` by a small world rotation vector [rad] and refresh its matrix."""
+    hx, hy, hz = 0.5 * angle_x, 0.5 * angle_y, 0.5 * angle_z
+    w, x, y, z = body.qw, body.qx, body.qy, body.qz
+    # dq * q with dq = (1, h): a world rotation multiplies from the left.
+    nw = w - hx * x - hy * y - hz * z
+    nx = x + hx * w + hy * z - hz * y
+    ny = y + hy * w + hz * x - hx * z
+    nz = z + hz * w + hx * y - hy * x
+    scale = 1.0 / sqrt(nw * nw + nx * nx + ny * ny + nz * nz)
+    body.qw, body.qx, body.qy, body.qz = nw * scale, nx * scale, ny * scale, nz * scale
+    orient(body)

@@ -1,0 +1,76 @@
+"""Projected Gauss-Seidel: visit rows in order, correct each impulse, keep it pushing.
+
+    dlambda = -(v_n + b + b_rest + gamma lambda) / (k_n + gamma),   lambda <- max(0, lambda + dlambda)
+
+One sweep costs one visit per row; information travels one contact per visit, so tall stacks need
+many sweeps. The velocities always carry the impulses they have been given.
+"""
+
+from __future__ import annotations
+
+from ..compile import kernel
+from ..contact import make_apply_impulse, make_normal_velocity
+from ..residual import make_residual
+from ..spec import Spec
+
+
+def make_solve_contact_velocity(spec: Spec):
+    """Return `kernel(contact, va, vb)`: one projected, compliant update of one row."""
+    compliant = spec.has("compliance")
+    normal_velocity = make_normal_velocity(spec)
+    apply_impulse = make_apply_impulse(spec)
+
+    def solve_contact_velocity(contact, va, vb):
+        w = normal_velocity(contact, va, vb) + contact.target
+        lambda_old = contact.lambda_n
+        if compliant:
+            w += contact.gamma * lambda_old
+        lambda_new = max(0.0, lambda_old - w * contact.inv_k)
+        contact.lambda_n = lambda_new
+        apply_impulse(contact, va, vb, lambda_new - lambda_old)
+
+    return kernel(solve_contact_velocity, spec)
+
+
+def make(spec: Spec):
+    """Return `kernel(contacts, order, count, velocities, params, counters, residual_rows)`.
+
+    Writes counters.sweeps, .residual [m/s] and .residual_contact of this step.
+    """
+    solve_contact_velocity = make_solve_contact_velocity(spec)
+    residual = make_residual(spec)
+    every_sweep = spec.record_residuals or spec.tolerance
+    record_residuals = spec.record_residuals
+    stop_early = spec.tolerance
+
+    def projected_gauss_seidel(contacts, order, count, velocities, params, counters, residual_rows):
+        step = counters.step + 1
+        wanted = params.residuals_from <= step <= params.residuals_to
+        largest, worst = 0.0, -1
+        sweeps = 0
+        if every_sweep:
+            largest, worst = residual(contacts, count, velocities)
+        for sweep in range(params.sweeps + 1):
+            if record_residuals:
+                if wanted:
+                    row = residual_rows[counters.residual_rows]
+                    row.step, row.sweep, row.residual = step, sweep, largest
+                    counters.residual_rows += 1
+            if sweep == params.sweeps:
+                break
+            if stop_early:
+                if largest <= params.tolerance:
+                    break
+            for c in range(count):
+                contact = contacts[order[c]]
+                solve_contact_velocity(contact, velocities[contact.a], velocities[contact.b])
+            sweeps += 1
+            if every_sweep:
+                largest, worst = residual(contacts, count, velocities)
+        if not every_sweep:
+            largest, worst = residual(contacts, count, velocities)
+        counters.sweeps = sweeps
+        counters.residual = largest
+        counters.residual_contact = worst
+
+    return kernel(projected_gauss_seidel, spec)

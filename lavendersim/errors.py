@@ -1,0 +1,58 @@
+"""One base class for everything a user can cause or must be told; each kind knows its exit code."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+
+class Defect(NamedTuple):
+    """One thing wrong with a config file: where it stands and a sentence that says what to do."""
+
+    file: str
+    line: int
+    column: int
+    message: str
+
+    def __str__(self) -> str:
+        return f"{self.file}:{self.line}:{self.column}: {self.message}"
+
+
+class LavenderError(Exception):
+    """Base of all errors shown to a person as one sentence, without a traceback."""
+
+    exit_code = 4
+
+
+class UsageError(LavenderError):
+    """The command line asks for something that does not exist or cannot be."""
+
+    exit_code = 2
+
+
+class ConfigError(LavenderError):
+    """A config file is wrong; carries every defect found in it, in the order of the file."""
+
+    exit_code = 2
+
+    def __init__(self, defects: Sequence[Defect]) -> None:
+        self.defects = tuple(defects)
+        super().__init__("\n".join(str(defect) for defect in self.defects))
+
+
+class MissingDriverError(LavenderError):
+    """Something outside Python (a graphics driver, a viewer) is not installed."""
+
+    exit_code = 2
+
+
+class CheckFailed(LavenderError):
+    """An expectation was not met, or a cell diverged."""
+
+    exit_code = 1
+
+
+class TraceError(LavenderError):
+    """A log is damaged or unfinished; what could be read is said in the message."""
+
+    exit_code = 3

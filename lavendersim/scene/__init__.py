@@ -1,0 +1,1 @@
+"""A resolved config enters; mass properties, engine arrays and the plan leave."""

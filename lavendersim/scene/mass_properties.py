@@ -1,0 +1,48 @@
+"""A shape and its mass or density enter; mass and principal moments of inertia leave. SI units."""
+
+from __future__ import annotations
+
+from math import pi, sqrt
+from typing import Any, NamedTuple
+
+
+class MassProperties(NamedTuple):
+    """Mass [kg] and principal moments about the centre of mass, body axes [kg m^2]."""
+
+    mass: float
+    inertia: tuple[float, float, float]
+
+
+def volume(shape: dict[str, Any]) -> float:
+    """Return the volume of a sphere or box [m^3]."""
+    if shape["kind"] == "sphere":
+        return 4.0 / 3.0 * pi * float(shape["radius"]) ** 3
+    sx, sy, sz = shape["size"]
+    return float(sx * sy * sz)
+
+
+def mass_properties(shape: dict[str, Any], mass: float | None, density: float | None) -> MassProperties:
+    """Return the properties of a homogeneous solid; exactly one of mass and density is given."""
+    m = float(mass) if mass is not None else float(density or 0.0) * volume(shape)
+    if shape["kind"] == "sphere":
+        i = 0.4 * m * float(shape["radius"]) ** 2
+        return MassProperties(m, (i, i, i))
+    sx, sy, sz = (float(edge) for edge in shape["size"])
+    return MassProperties(
+        m,
+        (
+            m / 12.0 * (sy * sy + sz * sz),
+            m / 12.0 * (sx * sx + sz * sz),
+            m / 12.0 * (sx * sx + sy * sy),
+        ),
+    )
+
+
+def bounding_radius(shape: dict[str, Any]) -> float:
+    """Return the radius of the sphere about the centre that holds the shape [m]; planes: inf."""
+    if shape["kind"] == "plane":
+        return float("inf")
+    if shape["kind"] == "sphere":
+        return float(shape["radius"])
+    sx, sy, sz = shape["size"]
+    return 0.5 * sqrt(sx * sx + sy * sy + sz * sz)
