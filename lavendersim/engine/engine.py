@@ -24,11 +24,12 @@ from .records import (
     CONTACT_ROW,
     CONTACTS_FULL,
     COUNTERS,
+    ORIENTED_BODY,
     PAIR,
     PARAMETERS,
     POINT,
     RESIDUAL_ROW,
-    RUNNING,
+    ROWS_FULL,
     STEP_ROW,
     VELOCITY,
     dtype,
@@ -59,8 +60,6 @@ def _dtype(base: list[Any], spec: Spec, group: str) -> np.dtype:
 def allocate_bodies(spec: Spec, count: int) -> np.ndarray:
     """Return zeroed body records with the columns that `spec` has."""
     oriented = any(name in ("box_plane", "sphere_box", "box_box") for name in spec.shape_pairs)
-    from .records import ORIENTED_BODY
-
     base = [*BODY, *(ORIENTED_BODY if oriented else [])]
     return np.zeros(count, _dtype(base, spec, "BODY_FIELDS"))
 
@@ -158,7 +157,7 @@ class Engine:
             if status != CONTACTS_FULL:
                 return int(status)
             if self.counters["step_rows"][0]:
-                return 1  # rows first: enlarging the columns would drop them
+                return ROWS_FULL  # rows first: enlarging the columns would drop them
             self._grow_contacts(2 * len(self.contacts))
 
     def take_rows(self) -> Rows:
@@ -191,5 +190,3 @@ class Engine:
         self.cache[: len(kept)] = kept
         self.counters["cached"] = len(kept)
 
-
-__all__ = ["RUNNING", "Engine", "Rows"]

@@ -82,8 +82,12 @@ class KernelCache:
         return hashlib.sha256(repr(parts).encode()).hexdigest()
 
     def path(self, key: str) -> Path:
-        """Return the file of `key`."""
-        return self.cache_path / f"{key[:32]}.kernel"
+        """Return the file of `key`; its name begins with the digest of the spec."""
+        return self.cache_path / f"{self.spec.digest()}-{source_hash()[:8]}-{key[:24]}.kernel"
+
+    def holds(self) -> bool:
+        """Whether some compiled code of this spec and these sources is on disk."""
+        return any(self.cache_path.glob(f"{self.spec.digest()}-{source_hash()[:8]}-*.kernel"))
 
     def load_overload(self, signature: Any, target_context: Any) -> Any:
         """Return the compiled kernel for `signature`, or None; a damaged file counts as absent."""

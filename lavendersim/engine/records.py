@@ -21,6 +21,11 @@ PLANE: Final = 0
 SPHERE: Final = 1
 BOX: Final = 2
 
+# Surfaces closer than this touch [m]. Bodies placed face to face leave gaps of round-off size
+# (1e-16 at 1 m, 1e-11 at 100 km); without it one corner of a box rests while another falls a step.
+# Far above: bodies would hover visibly before they touch.
+TOUCHING: Final = 1e-9
+
 # Why `advance` returned.
 RUNNING: Final = 0
 ROWS_FULL: Final = 1  # trace columns are full: hand them on and call again
@@ -112,6 +117,7 @@ PARAMETERS: Final[list[Field]] = [
 ]
 
 COUNTERS: Final[list[Field]] = [
+    ("started", I8),  # 1 once the initial state is recorded
     ("step", I8),  # steps done since the start
     ("contacts", I8),  # rows in use, this step
     ("cached", I8),  # rows in use in the cache

@@ -88,6 +88,10 @@ def make_advance(spec: Spec) -> Any:
     ):  # fmt: skip
         points, normal, scratch, taken, buckets, keys, order = work
         params, counters = parameters[0], counter[0]
+        if records:
+            if counters.started == 0:
+                record(bodies, velocities, bits, contacts, 0, params, counters, rows)
+        counters.started = 1
         for _ in range(steps):
             if records:
                 if counters.step_rows == rows[0].shape[0]:
@@ -139,3 +143,9 @@ def make_advance(spec: Spec) -> Any:
 def advance_for(spec: Spec) -> Any:
     """Return the kernel of `spec`, from this process, from disk, or composed anew."""
     return cached(make_advance, spec)
+
+
+def is_compiled(spec: Spec) -> bool:
+    """Whether the kernel of `spec` is compiled already, in this process or on disk."""
+    dispatcher = advance_for(spec)
+    return bool(dispatcher.overloads) or dispatcher._cache.holds()

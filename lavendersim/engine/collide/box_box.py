@@ -24,6 +24,7 @@ import numba
 import numpy as np
 
 from ..compile import OPTIONS, kernel
+from ..records import TOUCHING
 from ..rotation import to_world
 from .clip import clip_incident_face
 from .point import keep_four, place
@@ -163,7 +164,7 @@ def make(spec):
         fa, fb, C = scratch.frame_a, scratch.frame_b, scratch.cosines
         ha, hb, t, t_b = scratch.half_a, scratch.half_b, scratch.offset_a, scratch.offset_b
         dx, dy, dz = b.x - a.x, b.y - a.y, b.z - a.z
-        reach = a.bound + b.bound
+        reach = a.bound + b.bound + TOUCHING
         if dx * dx + dy * dy + dz * dz > reach * reach:
             return 0
         half_edges(a, ha)
@@ -176,13 +177,13 @@ def make(spec):
             for j in range(3):
                 C[i, j] = fa[i, 0] * fb[j, 0] + fa[i, 1] * fb[j, 1] + fa[i, 2] * fb[j, 2]
         s_a, axis_a = deepest_face(t, ha, hb, C, False)
-        if s_a > 0.0:
+        if s_a > TOUCHING:
             return 0
         s_b, axis_b = deepest_face(t_b, hb, ha, C, True)
-        if s_b > 0.0:
+        if s_b > TOUCHING:
             return 0
         s_e, edges = deepest_edges(t, ha, hb, C)
-        if s_e > 0.0:
+        if s_e > TOUCHING:
             return 0
         size = min(min(ha[0], min(ha[1], ha[2])), min(hb[0], min(hb[1], hb[2])))
         s_face = max(s_a, s_b)

@@ -6,6 +6,7 @@ The feature of a point is its corner, bit 0, 1, 2 set where the corner lies at +
 from __future__ import annotations
 
 from ..compile import kernel
+from ..records import TOUCHING
 from ..rotation import to_body, to_world
 from .point import keep_four, place
 
@@ -17,7 +18,7 @@ def make(spec):
         nx, ny, nz = plane.hx, plane.hy, plane.hz
         height = nx * box.x + ny * box.y + nz * box.z - plane.offset
         bx, by, bz = to_body(box, nx, ny, nz)
-        if height > abs(bx) * box.hx + abs(by) * box.hy + abs(bz) * box.hz:
+        if height > abs(bx) * box.hx + abs(by) * box.hy + abs(bz) * box.hz + TOUCHING:
             return 0
         normal[0], normal[1], normal[2] = nx, ny, nz
         count = 0
@@ -26,7 +27,7 @@ def make(spec):
             cy = box.hy if corner & 2 else -box.hy
             cz = box.hz if corner & 4 else -box.hz
             phi = height + bx * cx + by * cy + bz * cz
-            if phi <= 0.0:
+            if phi <= TOUCHING:
                 wx, wy, wz = to_world(box, cx, cy, cz)
                 place(
                     points[count],

@@ -16,6 +16,7 @@ from __future__ import annotations
 import numba
 
 from ..compile import OPTIONS
+from ..records import TOUCHING
 from .point import copy_point, place
 
 
@@ -110,7 +111,7 @@ def clip_incident_face(ref, inc, fr, fi, hr, hi, axis, side, base, points, norma
     kept = 0
     for k in range(count):
         p = points[k]
-        if p.z <= 0.0:
+        if p.z <= TOUCHING:
             u, v, phi = p.x, p.y, p.z
             in_line, out_line = p.in_line, p.out_line
             half = 0.5 * phi

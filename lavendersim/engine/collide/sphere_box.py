@@ -9,6 +9,7 @@ from __future__ import annotations
 from math import sqrt
 
 from ..compile import kernel
+from ..records import TOUCHING
 from ..rotation import to_body, to_world
 from .point import place
 
@@ -24,7 +25,7 @@ def make(spec):
         dx, dy, dz = cx - px, cy - py, cz - pz
         squared = dx * dx + dy * dy + dz * dz
         r = sphere.hx
-        if squared > r * r:
+        if squared > (r + TOUCHING) * (r + TOUCHING):
             return 0
         distance = sqrt(squared)
         if distance > 0.0:

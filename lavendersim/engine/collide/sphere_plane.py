@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 from ..compile import kernel
+from ..records import TOUCHING
 from .point import place
 
 
@@ -16,7 +17,7 @@ def make(spec):
         nx, ny, nz = plane.hx, plane.hy, plane.hz
         r = sphere.hx
         phi = nx * sphere.x + ny * sphere.y + nz * sphere.z - plane.offset - r
-        if phi > 0.0:
+        if phi > TOUCHING:
             return 0
         normal[0], normal[1], normal[2] = nx, ny, nz
         reach = r + 0.5 * phi

@@ -10,6 +10,7 @@ from __future__ import annotations
 from math import sqrt
 
 from ..compile import kernel
+from ..records import TOUCHING
 from .point import place
 
 
@@ -18,7 +19,7 @@ def make(spec):
 
     def sphere_sphere(a, b, points, normal, scratch):
         dx, dy, dz = b.x - a.x, b.y - a.y, b.z - a.z
-        reach = a.hx + b.hx
+        reach = a.hx + b.hx + TOUCHING
         squared = dx * dx + dy * dy + dz * dz
         if squared > reach * reach:
             return 0
@@ -26,7 +27,7 @@ def make(spec):
         nx, ny, nz = 0.0, 0.0, 1.0
         if distance > 0.0:
             nx, ny, nz = dx / distance, dy / distance, dz / distance
-        phi = distance - reach
+        phi = distance - a.hx - b.hx
         normal[0], normal[1], normal[2] = nx, ny, nz
         middle = a.hx + 0.5 * phi
         place(points[0], a.x + nx * middle, a.y + ny * middle, a.z + nz * middle, phi, 0)

@@ -1,0 +1,57 @@
+"""`lavender replay`: a run and a cell in; rerun's viewer, an .rrd file or a picture of it out."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+def replay(
+    run: Annotated[
+        Path | None,
+        typer.Argument(metavar="[RUN]", help="Run directory; the latest finished run by default."),
+    ] = None,
+    cell: Annotated[
+        int | None,
+        typer.Option("--cell", metavar="K", help="Which cell of the sweep, counted from 0."),
+    ] = None,
+    save_to: Annotated[
+        Path | None,
+        typer.Option("--save", metavar="FILE.rrd", help="Write a rerun recording; open nothing."),
+    ] = None,
+    screenshot_to: Annotated[
+        Path | None,
+        typer.Option(
+            "--screenshot",
+            metavar="FILE.png",
+            help="Write a picture of the viewer at the last contact; needs no display.",
+        ),
+    ] = None,
+) -> None:
+    """Replay a run in rerun: bodies, contact forces and their plots over simulated time."""
+    from lavendersim import replay as room
+    from lavendersim.errors import UsageError
+    from lavendersim.runner import open_run
+
+    opened = open_run(run)
+    cells = opened.cells
+    if not 0 <= (cell or 0) < len(cells):
+        raise UsageError(f"{opened.path} has cells 0 to {len(cells) - 1}; there is no cell {cell}")
+    chosen = cells[cell or 0]
+    if cell is None and len(cells) > 1:
+        others = f"0 to {len(cells) - 1}"
+        typer.echo(f"replaying cell 0 ({chosen.label}); --cell K shows another, {others}", err=True)
+
+    trace = chosen.trace()
+    title = " ".join(filter(None, [opened.path.name, chosen.label]))
+    if save_to is not None:
+        room.save(trace, save_to, title)
+        typer.echo(save_to)
+    if screenshot_to is not None:
+        for complaint in room.screenshot(trace, screenshot_to, title):
+            typer.echo(f"rerun's viewer: {complaint}", err=True)
+        typer.echo(screenshot_to)
+    if save_to is None and screenshot_to is None:
+        room.open_viewer(trace, title)

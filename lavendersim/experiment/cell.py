@@ -1,0 +1,99 @@
+"""The tree of one cell in; its validated, resolved config out, or the defects at their places."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+from pydantic import ValidationError
+
+from lavendersim.errors import ConfigError
+from lavendersim.experiment.messages import report_errors
+from lavendersim.experiment.models import CellSource
+from lavendersim.experiment.node import Node
+from lavendersim.experiment.placement import PlacementError
+from lavendersim.experiment.references import check_names
+from lavendersim.experiment.report import Report
+from lavendersim.experiment.resolved import CellConfig, resolve_cell
+from lavendersim.experiment.run_checks import check_run
+from lavendersim.experiment.scene_checks import check_scene
+from lavendersim.experiment.sweep import Point
+
+
+def check_cell(tree: Node, point: Point, report: Report) -> None:
+    """Note what is wrong between the values of one cell, beyond the types of its values."""
+    check_scene(tree, report)
+    check_run(tree, report)
+    if any(node.text is not None for _, node in point.choices):  # a swept text may be a name
+        check_names(tree, CellSource, frozenset(), report)
+
+
+def resolve_tree(tree: Node, source: CellSource, report: Report) -> CellConfig | None:
+    """Return the resolved config of a checked cell; notes a release that has no place."""
+    try:
+        return resolve_cell(source)
+    except PlacementError as error:
+        release = tree.get("scene", "bodies", error.body, "release")
+        place = (release.get(error.key) or release) if release is not None else tree
+        report.add(place.mark, str(error))
+        return None
+
+
+def build_cell(root: Node, point: Point, report: Report) -> CellConfig | None:
+    """Return the resolved config of one cell of the sweep, or None when something is wrong."""
+    tree = point.tree(root)
+    try:
+        source = CellSource.model_validate(_own(tree))
+    except ValidationError as error:
+        report_errors(error, CellSource, tree, report)
+        source = None
+    check_cell(tree, point, report)
+    if report.close_round() or source is None:
+        return None
+    config = resolve_tree(tree, source, report)
+    return None if report.close_round() else config
+
+
+def _own(tree: Node) -> dict[str, Any]:
+    """Return the data of the sections that make a cell."""
+    return {key: node.data for key, node in tree.entries.items() if key in CellSource.model_fields}
+
+
+@dataclass(frozen=True)
+class Cell:
+    """One cell of an experiment's sweep; its config is built when it is first asked for."""
+
+    index: int
+    coordinates: dict[str, Any]  # axis -> swept value (ratios as Fractions)
+    label: str  # "e=0.8, timestep=1/480"; "" without a sweep
+    _root: Node = field(repr=False, compare=False)
+    _point: Point = field(repr=False, compare=False)
+    _name: str = field(repr=False, compare=False)  # of the file, for messages
+
+    @cached_property
+    def config(self) -> CellConfig:
+        """The complete config of this cell; raises ConfigError where its values do not fit."""
+        report = Report(self._name)
+        config = build_cell(self._root, self._point, report)
+        if config is None:
+            raise ConfigError(report.defects)
+        return config
+
+    @cached_property
+    def resolved(self) -> dict[str, Any]:
+        """The config as plain JSON-able data; ratios as `1/480`."""
+        return self.config.as_dict()
+
+    @cached_property
+    def digest(self) -> str:
+        """sha256 (hex) of the resolved config; equal for equal simulations.
+
+        Keys are not sorted: the order of bodies decides the order of contacts in the solver.
+        """
+        canonical = json.dumps(
+            self.resolved, separators=(",", ":"), ensure_ascii=False, allow_nan=False
+        )
+        return hashlib.sha256(canonical.encode()).hexdigest()

@@ -1,0 +1,64 @@
+"""What the rest of lavender gets from a config file: one frozen Experiment and its cells."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from lavendersim.experiment.cell import Cell
+from lavendersim.experiment.expect_specs import ExpectSpec
+from lavendersim.experiment.figure_specs import FigureSpec
+from lavendersim.experiment.measure_specs import MeasureSpec
+from lavendersim.experiment.models import ExperimentConfig
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """One validated config file."""
+
+    name: str  # the file's stem
+    path: Path
+    text: str  # as written
+    config: ExperimentConfig  # as written, with the first value of every axis
+    axes: dict[str, tuple[Any, ...]]  # axis -> its values, over all products of the sweep
+    _cells: tuple[Cell, ...] = field(repr=False)
+
+    @property
+    def question(self) -> str:
+        """What the experiment asks, in words."""
+        return self.config.question
+
+    @property
+    def expected(self) -> str:
+        """The expected result, in words."""
+        return self.config.expected
+
+    @property
+    def measures(self) -> dict[str, MeasureSpec]:
+        """What is taken from each log, by name."""
+        return self.config.measure
+
+    @property
+    def expectations(self) -> tuple[ExpectSpec, ...]:
+        """The claims that are checked, in the order of the file."""
+        return self.config.expect
+
+    @property
+    def figure(self) -> FigureSpec | None:
+        """What is drawn, if anything."""
+        return self.config.figure
+
+    def cells(self) -> tuple[Cell, ...]:
+        """All cells of the sweep, the first axis slowest; one cell without a sweep."""
+        return self._cells
+
+
+def resolved_yaml(cell: Cell) -> str:
+    """Return a cell's resolved config as YAML text, in the order of the file format."""
+    text: str = yaml.safe_dump(
+        cell.resolved, sort_keys=False, allow_unicode=True, default_flow_style=None
+    )
+    return text

@@ -1,0 +1,62 @@
+"""A value from a config in; the few words that name it in a message out, and the nearest name."""
+
+from __future__ import annotations
+
+import difflib
+import itertools
+from collections.abc import Iterable
+
+from lavendersim.experiment.scalars import Ratio
+
+LONGEST_QUOTE = 40
+MOST_NAMES = 24
+MOST_COMPARED = 500  # comparing one misspelt name with more would take noticeable time
+
+
+def found(value: object) -> str:
+    """Return what was found in words a person recognises in the file."""
+    if value is None:
+        return "nothing"
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        return f"the text {quoted(value)}"
+    if isinstance(value, list | tuple):
+        return f"a list of {len(value)}" if value else "an empty list"
+    if isinstance(value, dict):
+        return "a mapping"
+    if isinstance(value, Ratio):
+        return repr(value)
+    return f"{value!r}"
+
+
+def quoted(text: object) -> str:
+    """Return the text in double quotes, on one line and cut at a readable length."""
+    line = " ".join(str(text).split())
+    if len(line) > LONGEST_QUOTE:
+        line = line[: LONGEST_QUOTE - 3] + "..."
+    return f'"{line}"'
+
+
+def near(name: object, names: Iterable[str]) -> str | None:
+    """Return the valid name that was probably meant, or None when none is near."""
+    by_folded: dict[str, str] = {}
+    for candidate in itertools.islice(names, MOST_COMPARED):
+        by_folded.setdefault(candidate.casefold(), candidate)
+    folded = str(name).casefold()[:100]
+    close = difflib.get_close_matches(folded, by_folded, n=1, cutoff=0.6)
+    if not close and len(folded) > 2:
+        # people leave words out: "gain" for "stabilisation_gain"
+        close = [whole for whole in by_folded if folded in whole]
+    return by_folded[close[0]] if close else None
+
+
+def nearest(name: object, names: Iterable[str]) -> str:
+    """Return `; did you mean "x"?`, or the list of valid names when none is near."""
+    valid = list(dict.fromkeys(names))
+    if not valid:
+        return ""
+    if close := near(name, valid):
+        return f'; did you mean "{close}"?'
+    listed = ", ".join(valid[:MOST_NAMES]) + (", ..." if len(valid) > MOST_NAMES else "")
+    return f"; valid here: {listed}"

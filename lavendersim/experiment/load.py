@@ -1,0 +1,123 @@
+"""A config file in; an Experiment out, or a ConfigError with every defect of the file.
+
+The outline: text -> tree -> axes -> every cell's tree -> models and checks. Checks work on trees,
+so that a defect in one section hides none in another.
+"""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+from pydantic import ValidationError
+
+from lavendersim.errors import ConfigError, UsageError
+from lavendersim.experiment import sweep
+from lavendersim.experiment.cell import Cell, build_cell, check_cell, resolve_tree
+from lavendersim.experiment.experiment import Experiment
+from lavendersim.experiment.found import found
+from lavendersim.experiment.messages import report_errors
+from lavendersim.experiment.models import ExperimentConfig
+from lavendersim.experiment.node import Node, key_mark
+from lavendersim.experiment.parse import LARGEST_FILE, decode, parse
+from lavendersim.experiment.references import check_references, swept_values
+from lavendersim.experiment.report import Report
+
+# Checking a cell takes 0.3 ms. Of larger sweeps every axis is checked value by value up to as many
+# cells; what is left is checked when its cell is built.
+MOST_CELLS_CHECKED = 1000
+
+
+def load_experiment(path: str | os.PathLike[str]) -> Experiment:
+    """Read and validate one config file.
+
+    Raises ConfigError with all defects of the file, UsageError when it cannot be read.
+    """
+    file = Path(path)
+    try:
+        with file.open("rb") as stream:
+            raw = stream.read(LARGEST_FILE + 1)
+            size = os.fstat(stream.fileno()).st_size
+    except OSError as error:
+        raise UsageError(f"{file}: {(error.strerror or str(error)).lower()}") from None
+    return _load(raw, file, str(file), max(size, len(raw)))
+
+
+def load_experiment_text(text: str | bytes, name: str) -> Experiment:
+    """Validate a config given as text; `name` stands for the file in messages."""
+    raw = text.encode("utf-8", "surrogatepass") if isinstance(text, str) else text
+    return _load(raw, Path(name), name, len(raw))
+
+
+def _load(raw: bytes, path: Path, name: str, size: int) -> Experiment:
+    root, defects = parse(raw, name, size)
+    report = Report(name, defects)
+    if root is None:
+        raise ConfigError(report.defects)
+    if not isinstance(root.content, dict):
+        report.add(root.mark, f"expected a mapping with scene and duration, {_found(root)}")
+        raise ConfigError(report.defects)
+    axes = sweep.axes_of(root, report)
+    config = _check_first(root, axes, report)
+    cells = sweep.count(axes)
+    if cells > sweep.MOST_CELLS:
+        sentence = f"sweep: {cells} cells, expected at most {sweep.MOST_CELLS}"
+        report.add(key_mark(root, "sweep"), sentence)
+        raise ConfigError(report.defects)
+    sweep.check_distinct(axes, report)
+    made = _check_others(root, axes, cells, report, name)
+    if report.defects or config is None:
+        raise ConfigError(report.defects)
+    values = {
+        axis: tuple(dict.fromkeys(sweep.swept_value(node.data) for node in nodes))
+        for axis, nodes in swept_values(root).items()
+    }
+    return Experiment(path.stem, path, decode(raw), config, values, made)
+
+
+def _check_first(
+    root: Node, axes: tuple[tuple[sweep.Axis, ...], ...], report: Report
+) -> ExperimentConfig | None:
+    """Check the whole file, with the first value of every axis in its place."""
+    point = next(sweep.points(axes), sweep.Point(()))
+    tree = point.tree(root)
+    config: ExperimentConfig | None = None
+    try:
+        config = ExperimentConfig.model_validate(tree.data)
+    except ValidationError as error:
+        report_errors(error, ExperimentConfig, tree, report)
+    check_references(tree, ExperimentConfig, swept_values(root), report)
+    check_cell(tree, point, report)
+    if not report.close_round() and config is not None and not report.defects:
+        resolve_tree(tree, config, report)
+    return config
+
+
+def _check_others(
+    root: Node,
+    axes: tuple[tuple[sweep.Axis, ...], ...],
+    count: int,
+    report: Report,
+    name: str,
+) -> tuple[Cell, ...]:
+    """Check the cells one by one and return them all; those that were built keep their config."""
+    if report.defects or count > MOST_CELLS_CHECKED:
+        for number, point in enumerate(sweep.telling_points(axes)):
+            if number >= MOST_CELLS_CHECKED:
+                break
+            build_cell(root, point, report)
+    cells: list[Cell] = []
+    if report.defects:
+        return ()
+    for index, point in enumerate(sweep.points(axes)):
+        cell = Cell(index, point.coordinates, point.label, root, point, name)
+        if count <= MOST_CELLS_CHECKED:
+            config = build_cell(root, point, report)
+            if config is not None:
+                cell.__dict__["config"] = config  # fills the cached property
+        cells.append(cell)
+    return tuple(cells)
+
+
+def _found(node: Node) -> str:
+    return f"found {found(node.data)}"

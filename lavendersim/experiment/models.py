@@ -1,0 +1,168 @@
+"""The whole config as written: scene, events, numerics, duration, sweep, record and the claims."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Annotated, Any, Literal
+
+from pydantic import Field, Tag
+
+from lavendersim.experiment.base import ConfigModel
+from lavendersim.experiment.expect_specs import ExpectSpec
+from lavendersim.experiment.figure_specs import FigureSpec
+from lavendersim.experiment.measure_specs import MeasureSpec
+from lavendersim.experiment.names import BodyName, NewName
+from lavendersim.experiment.quantities import Position, Quantity, either
+from lavendersim.experiment.scene_models import Scene
+
+
+class Event(ConfigModel):
+    """A change to one body during the run, applied before the first step that starts at `at`."""
+
+    at: Annotated[float, Quantity("s", minimum=0)] = Field(description="[s] simulated time")
+    body: BodyName = Field(description="name of a movable body")
+    scale_mass: Annotated[float, Quantity(above=0)] | None = Field(
+        default=None, description="factor on mass and inertia"
+    )
+    teleport: Position | None = Field(
+        default=None, description="[m] new centre of mass; clears the body's cached contacts"
+    )
+    contact_cache: Literal["keep", "clear"] | None = Field(
+        default=None,
+        description="clear: every cached impulse is dropped, the next solve starts cold; "
+        "not stated: keep"
+    )
+
+
+Count = Annotated[int, Quantity(whole=True, minimum=1, maximum=1_000_000)]
+CountOrNone = Annotated[int, Quantity(whole=True, minimum=0, maximum=1_000_000)]
+
+
+class NumericsChange(ConfigModel):
+    """A preset and the values that differ from it; what is not stated comes from the preset."""
+
+    preset: Literal["chapter", "default"] = Field(
+        default="default", description="where the rest is from"
+    )
+    timestep: Annotated[Fraction, Quantity("s", above=0, exact=True)] | None = Field(
+        default=None, description="[s] a ratio such as 1/480 is kept exactly"
+    )
+    solver: Literal["projected_gauss_seidel"] | None = Field(
+        default=None, description="the solver of the contact problem"
+    )
+    sweeps: Count | None = Field(default=None, description="most velocity sweeps per step")
+    tolerance: Annotated[float, Quantity("m/s", above=0)] | None = Field(
+        default=None, description="[m/s] residual at which sweeping stops early; null: never"
+    )
+    warm_start: bool | None = Field(
+        default=None, description="start a solve from the cached impulses"
+    )
+    stabilisation_gain: Annotated[float, Quantity(minimum=0)] | None = Field(
+        default=None,
+        description="beta: share of (penetration - slop) per step that becomes bias velocity",
+    )
+    slop: Annotated[float, Quantity("m", minimum=0)] | None = Field(
+        default=None, description="[m] penetration that is left alone"
+    )
+    projection: Annotated[float, Quantity(minimum=0, maximum=1)] | None = Field(
+        default=None, description="share of (penetration - slop) moved out per step; 0: off"
+    )
+    projection_sweeps: CountOrNone | None = Field(
+        default=None, description="sweeps of the positional projection per step"
+    )
+    restitution_threshold: Annotated[float, Quantity("g dt", minimum=0)] | None = Field(
+        default=None, description="[g dt] approach speed above which restitution acts"
+    )
+    cache_distance: Annotated[float, Quantity("m", minimum=0)] | None = Field(
+        default=None, description="[m] largest distance between a contact and its cached match"
+    )
+    cache_normal_cosine: Annotated[float, Quantity(minimum=-1, maximum=1)] | None = Field(
+        default=None,
+        description="smallest cosine between a contact's normal and its cached match's",
+    )
+
+
+def _numerics_form(value: Any) -> str | None:
+    forms: dict[type, str] = {str: "preset", dict: "values"}
+    return forms.get(type(value))
+
+
+NumericsOf = Annotated[
+    Annotated[Literal["chapter", "default"], Tag("preset")]
+    | Annotated[NumericsChange, Tag("values")],
+    either("the name of a preset (chapter, default) or a mapping of values", _numerics_form),
+]
+
+
+class Window(ConfigModel):
+    """A stretch of simulated time."""
+
+    begin: Annotated[float, Quantity("s", minimum=0)] = Field(alias="from", description="[s]")
+    end: Annotated[float, Quantity("s", minimum=0)] = Field(alias="to", description="[s]")
+
+
+def _residuals_form(value: Any) -> str | None:
+    forms: dict[type, str] = {str: "switch", dict: "window"}
+    return forms.get(type(value))
+
+
+Residuals = Annotated[
+    Annotated[Literal["none", "all"], Tag("switch")] | Annotated[Window, Tag("window")],
+    either("none, all or {from: seconds, to: seconds}", _residuals_form),
+]
+
+
+class Record(ConfigModel):
+    """What is logged beyond every step's state and contacts."""
+
+    residuals: Residuals = Field(default="none", description="[m/s] residual of every sweep")
+
+
+class Axis(ConfigModel):
+    """One quantity that is varied: the path of a value in this file and the values it takes."""
+
+    path: str = Field(description="such as scene.bodies.ball.mass or numerics.timestep")
+    values: tuple[Any, ...] = Field(
+        min_length=1, description="one cell per value; ratios are kept exactly"
+    )
+
+
+def _sweep_form(value: Any) -> str | None:
+    forms: dict[type, str] = {dict: "product", tuple: "union", list: "union"}
+    return forms.get(type(value))
+
+
+Product = dict[NewName, Axis]
+SweepOf = Annotated[
+    Annotated[Product, Tag("product")] | Annotated[tuple[Product, ...], Tag("union")],
+    either("a mapping of axes, or a list of such mappings", _sweep_form),
+]
+
+
+class CellSource(ConfigModel):
+    """The part of a config that a sweep can reach and that decides what is simulated."""
+
+    scene: Scene = Field(description="gravity, surfaces and bodies")
+    events: tuple[Event, ...] = Field(default=(), description="changes during the run")
+    numerics: NumericsOf = Field(
+        default="default", description="name of a preset, or a mapping of values that may name one"
+    )
+    duration: Annotated[float, Quantity("s", above=0)] = Field(
+        description="[s] simulated time of a run"
+    )
+    record: Record = Field(default=Record(), description="what is logged beyond every step")
+
+
+class ExperimentConfig(CellSource):
+    """One experiment: a question, a scene, what is varied, measured, expected and drawn."""
+
+    question: str = Field(default="", description="what the experiment asks, in words")
+    expected: str = Field(default="", description="the expected result and why, in words")
+    sweep: SweepOf = Field(
+        default={},
+        description="axis name: path and values; cells are the product, the first axis slowest; "
+        "a list of such mappings is the union of their products, in order",
+    )
+    measure: dict[NewName, MeasureSpec] = Field(default={}, description="name: what each log gives")
+    expect: tuple[ExpectSpec, ...] = Field(default=(), description="the claims that pytest checks")
+    figure: FigureSpec | None = Field(default=None, description="what `lavender plot` draws")

@@ -1,0 +1,102 @@
+"""A parsed YAML value that remembers where it stands; every message points at one of these."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+from lavendersim.experiment.scalars import Value
+
+
+class Mark(NamedTuple):
+    """A place in the text; both counted from 1, columns in characters."""
+
+    line: int
+    column: int
+
+
+class Broken:
+    """Stands in the data for a value that was already refused, so that it is reported once."""
+
+    def __repr__(self) -> str:
+        return "<refused>"
+
+
+BROKEN = Broken()
+Path = tuple[str | int, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Node:
+    """`content` is a scalar, a tuple of nodes, a dict of nodes by key, or BROKEN."""
+
+    content: Value | tuple[Node, ...] | dict[str, Node] | Broken
+    mark: Mark
+    keys: Mapping[str, Mark] = field(default_factory=dict)  # of a mapping: where each key stands
+
+    def get(self, *path: str | int) -> Node | None:
+        """Return the node at the path below this one, or None where there is none."""
+        node: Node | None = self
+        for step in path:
+            node = node._child(step) if node is not None else None
+        return node
+
+    def _child(self, step: str | int) -> Node | None:
+        if isinstance(self.content, dict) and isinstance(step, str):
+            return self.content.get(step)
+        if isinstance(self.content, tuple) and isinstance(step, int):
+            return self.content[step] if 0 <= step < len(self.content) else None
+        return None
+
+    @property
+    def entries(self) -> dict[str, Node]:
+        """The entries of a mapping; nothing for any other node."""
+        return self.content if isinstance(self.content, dict) else {}
+
+    @property
+    def items(self) -> tuple[Node, ...]:
+        """The items of a list; nothing for any other node."""
+        return self.content if isinstance(self.content, tuple) else ()
+
+    @property
+    def text(self) -> str | None:
+        """The text of a text scalar; None for any other node."""
+        return self.content if isinstance(self.content, str) else None
+
+    @property
+    def number(self) -> float | None:
+        """The number of a number scalar; None for any other node."""
+        content = self.content
+        if isinstance(content, bool) or not isinstance(content, int | float):
+            return None
+        return content
+
+    @property
+    def data(self) -> Any:
+        """The plain value: scalars, tuples and dicts."""
+        if isinstance(self.content, tuple):
+            return tuple(item.data for item in self.content)
+        if isinstance(self.content, dict):
+            return {key: node.data for key, node in self.content.items()}
+        return self.content
+
+
+def key_mark(parent: Node, key: str) -> Mark:
+    """Return where a key of the mapping stands."""
+    return parent.keys.get(key, parent.mark)
+
+
+def graft(root: Node, path: Path, value: Node) -> Node:
+    """Return the tree with `value` at `path`; mappings missing on the way are made."""
+    if not path:
+        return value
+    step, rest = path[0], path[1:]
+    if isinstance(step, int):
+        items = list(root.items)
+        items[step] = graft(items[step], rest, value)
+        return Node(tuple(items), root.mark)
+    entries = dict(root.entries)
+    below = entries.get(step, Node({}, value.mark))
+    entries[step] = graft(below, rest, value)
+    return Node(entries, root.mark, {step: value.mark, **root.keys})

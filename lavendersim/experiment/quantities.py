@@ -1,0 +1,169 @@
+"""Field types for numbers with a unit and bounds, and for vectors of them.
+
+A field is declared as `Annotated[float, Quantity("kg", above=0)]`. The type refuses text, bools and
+numbers out of bounds with a sentence of its own, and describes itself to JSON Schema.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Annotated, Any
+
+from pydantic import Discriminator, GetCoreSchemaHandler, GetJsonSchemaHandler
+from pydantic_core import CoreSchema, PydanticCustomError, core_schema
+
+from lavendersim.experiment.found import found
+from lavendersim.experiment.scalars import exact, written
+from lavendersim.experiment.units import advice
+
+RATIO_PATTERN = r"^[-+]?[0-9]+/[0-9]+$"
+
+
+def refusal(expected: str, value: object, hint: str = "") -> PydanticCustomError:
+    """Return the error that reads `expected ..., found ...`, with a hint behind it."""
+    sentence = f"expected {expected}, found {found(value)}"
+    return PydanticCustomError("lavender", "{sentence}", {"sentence": sentence + hint})
+
+
+def either(expected: str, form: Callable[[Any], str | None]) -> Discriminator:
+    """Return the discriminator of a field that has several forms; `form` names the tag of one."""
+    return Discriminator(
+        form,
+        custom_error_type="form",
+        custom_error_message=expected,
+        custom_error_context={"expected": expected},
+    )
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """One finite number [unit]; `above`, `below` are open bounds, `minimum`, `maximum` closed."""
+
+    unit: str = ""
+    above: float | None = None
+    below: float | None = None
+    minimum: float | None = None
+    maximum: float | None = None
+    whole: bool = False
+    exact: bool = False  # keep the number as a Fraction
+    hint: str = ""  # said when the number is out of bounds
+
+    @property
+    def expected(self) -> str:
+        """The bounds in words, for messages and for the JSON Schema."""
+        words = "a whole number" if self.whole else "a number"
+        if self.minimum is not None and self.maximum is not None:
+            words += f" from {self.minimum:g} to {self.maximum:g}"
+        elif self.minimum is not None:
+            words += f" of {self.minimum:g} or more"
+        elif self.maximum is not None:
+            words += f" of {self.maximum:g} or less"
+        if self.above is not None:
+            words += f" above {self.above:g}"
+        if self.below is not None:
+            words += f" {'and ' if self.above is not None else ''}below {self.below:g}"
+        return words + (f" [{self.unit}]" if self.unit else "")
+
+    def check(self, value: object) -> Any:
+        """Return the number as float, int (whole) or Fraction (exact), or raise the refusal."""
+        if isinstance(value, bool) or not isinstance(value, int | float | Fraction):
+            raise refusal(self.expected, value, advice(value, self.unit))
+        if self.whole and not (isinstance(value, int) or float(value).is_integer()):
+            raise refusal(self.expected, value)
+        if not self._inside(value):
+            raise refusal(self.expected, value, f"; {self.hint}" if self.hint else "")
+        if self.whole:
+            return int(value)
+        if self.exact:
+            return value if isinstance(value, Fraction) else exact(value)
+        try:
+            return float(value)
+        except OverflowError:
+            raise refusal(self.expected, value) from None
+
+    def _inside(self, value: float | Fraction) -> bool:
+        return not (
+            (self.above is not None and value <= self.above)
+            or (self.below is not None and value >= self.below)
+            or (self.minimum is not None and value < self.minimum)
+            or (self.maximum is not None and value > self.maximum)
+        )
+
+    def __get_pydantic_core_schema__(
+        self, source: Any, handler: GetCoreSchemaHandler
+    ) -> CoreSchema:
+        """Validate with `check`; write Fractions as `1/480`."""
+        writer = core_schema.plain_serializer_function_ser_schema(written, when_used="json")
+        return core_schema.no_info_plain_validator_function(
+            self.check, serialization=writer if self.exact else None
+        )
+
+    def __get_pydantic_json_schema__(
+        self, schema: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        """Describe the number, and the ratio of two whole numbers as its other spelling."""
+        number: dict[str, Any] = {"type": "integer" if self.whole else "number"}
+        bounds = {
+            "minimum": self.minimum,
+            "maximum": self.maximum,
+            "exclusiveMinimum": self.above,
+            "exclusiveMaximum": self.below,
+        }
+        number |= {name: bound for name, bound in bounds.items() if bound is not None}
+        if self.whole:
+            return number
+        return {"anyOf": [number, {"type": "string", "pattern": RATIO_PATTERN}]}
+
+
+@dataclass(frozen=True)
+class Vector:
+    """A list of `length` numbers, each a `Quantity`; `nonzero` refuses the zero vector."""
+
+    length: int
+    item: Quantity
+    nonzero: bool = False
+
+    @property
+    def expected(self) -> str:
+        """The shape in words."""
+        return f"a list of {self.length} numbers" + (
+            f" [{self.item.unit}]" if self.item.unit else ""
+        )
+
+    def __get_pydantic_core_schema__(
+        self, source: Any, handler: GetCoreSchemaHandler
+    ) -> CoreSchema:
+        """Validate item by item, so that a wrong item is reported at its own place."""
+        item = core_schema.no_info_plain_validator_function(self.item.check)
+        items = core_schema.tuple_schema([item] * self.length)
+        return core_schema.no_info_wrap_validator_function(self._wrap, items)
+
+    def _wrap(self, value: object, items: Any) -> Any:
+        if not isinstance(value, list | tuple) or len(value) != self.length:
+            raise refusal(self.expected, value, advice(value, self.item.unit))
+        numbers = items(tuple(value))
+        if self.nonzero and not any(numbers):
+            raise refusal(f"{self.expected}, not all zero", value)
+        return numbers
+
+    def __get_pydantic_json_schema__(
+        self, schema: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        """Describe the list with its length."""
+        item = self.item.__get_pydantic_json_schema__(schema, handler)
+        return {
+            "type": "array",
+            "items": item,
+            "minItems": self.length,
+            "maxItems": self.length,
+        }
+
+
+Vector3 = tuple[float, float, float]
+Position = Annotated[Vector3, Vector(3, Quantity("m"))]
+Velocity = Annotated[Vector3, Vector(3, Quantity("m/s"))]
+AngularVelocity = Annotated[Vector3, Vector(3, Quantity("rad/s"))]
+Direction = Annotated[Vector3, Vector(3, Quantity(), nonzero=True)]
+BoxSize = Annotated[Vector3, Vector(3, Quantity("m", above=0))]

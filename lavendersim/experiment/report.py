@@ -1,0 +1,48 @@
+"""What checks find in; the defects of one file out, each place told once, in the file's order."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from lavendersim.errors import Defect
+from lavendersim.experiment.node import Mark
+
+MOST_DEFECTS = 200  # nobody reads further, and printing more takes longer than finding them
+
+
+class Report:
+    """Collects defects in rounds; a place that an earlier round refused is not refused again.
+
+    One round is the file as written, or one cell of its sweep: cells share most of their nodes, so
+    the same mistake is found in each of them.
+    """
+
+    def __init__(self, name: str, defects: Iterable[Defect] = ()) -> None:
+        self.name = name
+        self._defects = list(dict.fromkeys(defects))
+        self._told = {(defect.line, defect.column) for defect in self._defects}
+        self._round: dict[tuple[Mark, str], None] = {}
+
+    def add(self, mark: Mark, message: str) -> None:
+        """Note a defect of the current round."""
+        if mark not in self._told:
+            self._round[mark, message] = None
+
+    def close_round(self) -> bool:
+        """End the round; tells whether it found anything new."""
+        new = [Defect(self.name, mark.line, mark.column, said) for mark, said in self._round]
+        self._defects += new
+        self._told |= {mark for mark, _ in self._round}
+        self._round.clear()
+        return bool(new)
+
+    @property
+    def defects(self) -> tuple[Defect, ...]:
+        """All defects in the order of the file; a very long list ends with how many are left."""
+        self.close_round()
+        ordered = sorted(self._defects, key=lambda defect: (defect.line, defect.column))
+        if len(ordered) <= MOST_DEFECTS:
+            return tuple(ordered)
+        last = ordered[MOST_DEFECTS - 1]
+        more = f"... and {len(ordered) - MOST_DEFECTS + 1} more defects from here on"
+        return (*ordered[: MOST_DEFECTS - 1], last._replace(message=more))

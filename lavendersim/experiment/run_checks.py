@@ -1,0 +1,101 @@
+"""Checks of events, the run's length and its record, against the scene and the numerics.
+
+Works on the tree, and says nothing about values of a wrong type: those are refused elsewhere.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+from lavendersim.experiment.messages import place_of
+from lavendersim.experiment.node import Node
+from lavendersim.experiment.presets import PRESETS
+from lavendersim.experiment.report import Report
+from lavendersim.experiment.scalars import exact
+from lavendersim.experiment.scene_checks import is_static, kind_of
+
+MOST_STEPS = 100_000_000  # 1e8 steps of a small scene take minutes and log tens of gigabytes
+
+
+def check_run(root: Node, report: Report) -> None:
+    """Note what is wrong between duration, timestep, events and record."""
+    duration = root.get("duration")
+    length = duration.number if duration is not None else None
+    if duration is not None and length is not None and length > 0:
+        _check_steps(duration, exact(length), timestep_of(root), report)
+    events = root.get("events")
+    for index, event in enumerate(events.items if events is not None else ()):
+        if event.entries:
+            _check_event(event, index, root, length, report)
+    window = root.get("record", "residuals")
+    if window is not None and window.entries:
+        _check_window(window, length, report)
+
+
+def timestep_of(root: Node) -> Fraction | None:
+    """Return the timestep [s] that holds for this tree, None where it is no positive number."""
+    numerics = root.get("numerics")
+    preset = numerics if numerics is None or numerics.text else numerics.get("preset")
+    name = preset.text if preset is not None and preset.text else "default"
+    stated = numerics.get("timestep") if numerics is not None else None
+    if stated is not None and stated.content is not None:
+        number = stated.number
+        return exact(number) if number is not None and number > 0 else None
+    timestep = PRESETS.get(name, PRESETS["default"])["timestep"]
+    return timestep if isinstance(timestep, Fraction) else None
+
+
+def whole_steps(duration: float, timestep: Fraction) -> int:
+    """Return the whole number of steps nearest to a duration [s]."""
+    return round(exact(duration) / timestep)
+
+
+def _check_steps(node: Node, length: Fraction, timestep: Fraction | None, report: Report) -> None:
+    if timestep is None:
+        return
+    steps = length / timestep
+    if steps > MOST_STEPS:
+        counted = f"{_short(length)} s in steps of {timestep} s are {_short(steps)} steps"
+        report.add(node.mark, f"duration: {counted}, expected at most {MOST_STEPS:.0e}")
+    elif round(steps) < 1:
+        sentence = f"duration: {_short(length)} s is less than one step of {timestep} s"
+        report.add(node.mark, sentence)
+
+
+def _short(number: Fraction) -> str:
+    try:
+        return f"{float(number):g}"
+    except OverflowError:
+        return "more than 1e308"
+
+
+def _check_event(event: Node, index: int, root: Node, length: float | None, report: Report) -> None:
+    at, body = event.get("at"), event.get("body")
+    if at is not None and at.number is not None and length is not None and at.number > length > 0:
+        sentence = f"at: {at.number:g} s is after the end of the run, duration {length:g} s"
+        report.add(at.mark, sentence)
+    if body is not None and body.text is not None:
+        target = root.get("scene", "bodies", body.text)
+        if target is not None and is_static(target):
+            what = "a plane" if kind_of(target) == "plane" else "fixed"
+            report.add(body.mark, f'body: "{body.text}" is {what}; expected a movable body')
+    stated = [key for key in ("scale_mass", "teleport", "contact_cache") if event.get(key)]
+    if not stated:
+        sentence = f"{place_of(('events', index))} changes nothing; expected scale_mass, teleport"
+        report.add(event.mark, f"{sentence} or contact_cache")
+    cache = event.get("contact_cache")
+    if cache is not None and cache.text == "keep" and "teleport" in stated:
+        sentence = "contact_cache: a teleport always clears the body's cached contacts"
+        report.add(cache.mark, sentence)
+
+
+def _check_window(window: Node, length: float | None, report: Report) -> None:
+    begin, end = window.get("from"), window.get("to")
+    if begin is None or end is None or begin.number is None or end.number is None:
+        return
+    if begin.number >= end.number:
+        sentence = f"to: expected a time after from ({begin.number:g} s), found {end.number:g}"
+        report.add(end.mark, sentence)
+    elif length is not None and begin.number > length:
+        sentence = f"from: {begin.number:g} s is after the end of the run, duration {length:g} s"
+        report.add(begin.mark, sentence)

@@ -1,0 +1,51 @@
+"""Swept values as an expectation or a figure names them: which cells of a sweep are meant.
+
+`at: {e: 0.8, timestep: 1/480}` selects the cells with these coordinates, a list means "one of
+these", and `any` selects every cell that has the axis at all (a sweep may be several products,
+each with axes of its own).
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
+from pydantic_core import CoreSchema, core_schema
+
+from lavendersim.experiment.names import AxisName
+from lavendersim.experiment.quantities import refusal
+
+ANY = "any"
+
+
+class _Coordinate:
+    """One swept value or a list of them, kept as read (a ratio stays a ratio)."""
+
+    def check(self, value: object) -> object:
+        """Return a scalar as it is and a list as a tuple of scalars, or raise the refusal."""
+        if _is_scalar(value):
+            return value
+        if isinstance(value, list | tuple) and value and all(map(_is_scalar, value)):
+            return tuple(value)
+        raise refusal("a swept value, a list of swept values, or `any`", value)
+
+    def __get_pydantic_core_schema__(
+        self, source: Any, handler: GetCoreSchemaHandler
+    ) -> CoreSchema:
+        """Validate with `check`."""
+        return core_schema.no_info_plain_validator_function(self.check)
+
+    def __get_pydantic_json_schema__(
+        self, schema: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        """Describe a scalar or a list of scalars."""
+        scalar = {"type": ["boolean", "number", "string"]}
+        return {"anyOf": [scalar, {"type": "array", "items": scalar, "minItems": 1}]}
+
+
+def _is_scalar(value: object) -> bool:
+    return isinstance(value, bool | int | float | str)
+
+
+Coordinate = Annotated[Any, _Coordinate()]
+Selection = dict[AxisName, Coordinate]

@@ -1,0 +1,58 @@
+"""PyYAML's complaint about a text in; our sentences with their places out.
+
+libyaml and PyYAML word the same problem differently and point at where they noticed it, which is
+often a line below the mistake: sentences and places are chosen here by the kind of problem.
+"""
+
+from __future__ import annotations
+
+import re
+
+import yaml
+
+from lavendersim.errors import Defect
+
+_TAB = re.compile(r"^ *\t[ \t]*(?=[^\s#])", re.MULTILINE)
+MOST_TABS = 50
+
+# (words in the problem, words in its context, sentence, points at the start of the construct)
+_KINDS: tuple[tuple[str, str, str, bool], ...] = (
+    ("mapping values are not allowed", "", 'a ":" too many; put text that contains ": " in quotes',
+     False),
+    ("unexpected end of stream", "quoted scalar", "a quote that is not closed", True),
+    ("document indicator", "quoted scalar", "a quote that is not closed", True),
+    ("", "flow sequence", 'a "[" that is not closed, or a "," that is missing after it', True),
+    ("", "flow mapping", 'a "{" that is not closed, or a "," that is missing after it', True),
+    ("", "block mapping", "expected a key of the mapping here; is the indentation right?", False),
+    ("", "block collection", 'expected a "-" of the list here; is the indentation right?', False),
+    ("block sequence entries are not allowed", "", 'a "-" where no list can start', False),
+    ("expected ':'", "simple key", 'a line without ":"; expected "key: value"', True),
+    ("cannot start any token", "", "this character cannot start a value; put it in quotes", False),
+    ("escape", "quoted scalar", "an unknown escape; use single quotes for text with backslashes",
+     False),
+)  # fmt: skip
+
+
+def describe(error: yaml.MarkedYAMLError, text: str, name: str) -> list[Defect]:
+    """Return the defects behind one syntax error; lines indented with tabs are all named."""
+    if tabs := list(_TAB.finditer(text)):
+        return [
+            Defect(
+                name,
+                text.count("\n", 0, tab.start()) + 1,
+                tab[0].index("\t") + 1,
+                "indented with a tab; YAML is indented with spaces",
+            )
+            for tab in tabs[:MOST_TABS]
+        ]
+    problem, context = error.problem or "", error.context or ""
+    for words, context_words, sentence, at_start in _KINDS:
+        if words in problem and context_words in context:
+            mark = error.context_mark if at_start else error.problem_mark
+            return [_defect(name, mark or error.problem_mark, sentence)]
+    return [_defect(name, error.problem_mark, f"not YAML: {problem or context}")]
+
+
+def _defect(name: str, mark: object, sentence: str) -> Defect:
+    line, column = getattr(mark, "line", 0), getattr(mark, "column", 0)
+    return Defect(name, line + 1, column + 1, sentence)

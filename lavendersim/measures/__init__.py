@@ -1,0 +1,7 @@
+"""Logs in; numbers, and verdicts on what was expected of them, out."""
+
+from lavendersim.measures.judge import judge, judge_nodes
+from lavendersim.measures.registry import applies, evaluate
+from lavendersim.measures.verdict import Verdict
+
+__all__ = ["Verdict", "applies", "evaluate", "judge", "judge_nodes"]

@@ -1,0 +1,121 @@
+"""A measure's value in one cell and an expectation in; the Outcome out.
+
+A row of numbers is held number by number. NaN fails every judgement: all comparisons are written
+so that only a true `<=` passes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Final
+
+import numpy as np
+
+from lavendersim.experiment.expect_specs import Equals, ExpectSpec
+from lavendersim.measures.closed_forms import evaluate_form
+from lavendersim.measures.verdict import Outcome
+from lavendersim.measures.views import Floats, Trace, Value
+
+NO_TOLERANCE = "none"
+
+
+def judge_cell(expectation: ExpectSpec, value: Value, trace: Trace) -> Outcome:
+    """Return the outcome of a per-cell expectation on the measure's value."""
+    numbers = np.atleast_1d(np.asarray(value, dtype=float))
+    return JUDGES[expectation.judgement](expectation, numbers, trace)
+
+
+def _worst(numbers: Floats, excess: Floats, expected: str, tolerance: str) -> Outcome:
+    """Pass when no excess is above 0; show the number with the largest excess, NaN first."""
+    ranked = np.where(np.isnan(excess), np.inf, excess)
+    index = int(np.argmax(ranked))
+    passed = bool(np.all(excess <= 0.0))
+    where = f"number {index} of the row" if len(numbers) > 1 and not passed else ""
+    return Outcome(passed, float(numbers[index]), expected, tolerance, where)
+
+
+def _between(expectation: ExpectSpec, numbers: Floats, trace: Trace) -> Outcome:
+    assert expectation.between is not None
+    low, high = expectation.between
+    excess = np.maximum(low - numbers, numbers - high)
+    return _worst(numbers, excess, f"between {low!r} and {high!r}", NO_TOLERANCE)
+
+
+def _at_most(expectation: ExpectSpec, numbers: Floats, trace: Trace) -> Outcome:
+    assert expectation.at_most is not None
+    return _worst(
+        numbers,
+        numbers - expectation.at_most,
+        f"at most {expectation.at_most!r}",
+        NO_TOLERANCE,
+    )
+
+
+def _at_least(expectation: ExpectSpec, numbers: Floats, trace: Trace) -> Outcome:
+    assert expectation.at_least is not None
+    return _worst(
+        numbers,
+        expectation.at_least - numbers,
+        f"at least {expectation.at_least!r}",
+        NO_TOLERANCE,
+    )
+
+
+def _exactly(expectation: ExpectSpec, numbers: Floats, trace: Trace) -> Outcome:
+    assert expectation.exactly is not None
+    return _worst(
+        numbers,
+        np.abs(numbers - expectation.exactly),
+        f"exactly {expectation.exactly!r}",
+        "0",
+    )
+
+
+def _equals(expectation: ExpectSpec, numbers: Floats, trace: Trace) -> Outcome:
+    assert expectation.equals is not None
+    spec = expectation.equals
+    if spec.closed_form is not None:
+        target = evaluate_form(spec.closed_form, trace.resolved)
+        expected = f"{target!r} ({spec.closed_form.form})"
+    else:
+        assert spec.value is not None
+        target = spec.value
+        expected = repr(target)
+    allowed = max(spec.absolute, spec.relative * abs(target))
+    excess = np.abs(numbers - target) - allowed
+    return _worst(numbers, excess, expected, _tolerance_text(spec))
+
+
+def _tolerance_text(spec: Equals) -> str:
+    parts = []
+    if spec.relative:
+        parts.append(f"{spec.relative:g} relative")
+    if spec.absolute:
+        parts.append(f"{spec.absolute:g} absolute")
+    return " or ".join(parts)
+
+
+def _row(expectation: ExpectSpec, numbers: Floats, trace: Trace) -> Outcome:
+    direction = expectation.row
+    assert direction is not None
+    expected = f"a strictly {direction} row"
+    if len(numbers) < 2:
+        only = float(numbers[0]) if len(numbers) else float("nan")
+        return Outcome(False, only, expected, NO_TOLERANCE, "the row has fewer than 2 numbers")
+    rises = np.diff(numbers) * (1.0 if direction == "increasing" else -1.0)
+    wrong = np.flatnonzero(~(rises > 0.0))
+    if len(wrong) == 0:
+        return Outcome(True, float(numbers[-1]), expected, NO_TOLERANCE)
+    index = int(wrong[0]) + 1
+    reason = f"number {index} is {numbers[index]!r} after {numbers[index - 1]!r}"
+    return Outcome(False, float(numbers[index]), expected, NO_TOLERANCE, reason)
+
+
+JUDGES: Final[dict[str, Callable[[ExpectSpec, Floats, Trace], Outcome]]] = {
+    "between": _between,
+    "at_most": _at_most,
+    "at_least": _at_least,
+    "exactly": _exactly,
+    "equals": _equals,
+    "row": _row,
+}

@@ -1,0 +1,80 @@
+"""A log in; columns that several measures and figures share out, one number per logged step."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from lavendersim.measures import cell_config
+from lavendersim.measures.views import Floats, Rows, Trace
+
+
+def contacts_of(trace: Trace, body: str, other: str | None = None) -> Rows:
+    """Return the contact rows of a body (with one other body, if named), in rising step."""
+    index = list(trace.bodies).index(body)
+    rows = trace.contact
+    touches = (rows["body_a"] == index) | (rows["body_b"] == index)
+    if other is not None:
+        partner = list(trace.bodies).index(other)
+        touches &= (rows["body_a"] == partner) | (rows["body_b"] == partner)
+    chosen: Rows = rows[touches]
+    return chosen
+
+
+def summed_by_step(trace: Trace, rows: Rows, field: str) -> Floats:
+    """Return the sum of a contact field in every logged step; 0 where there is no contact."""
+    positions = np.searchsorted(trace.step["step"], rows["step"])
+    sums = np.zeros(len(trace.step))
+    np.add.at(sums, positions, rows[field])
+    return sums
+
+
+def deepest_by_step(trace: Trace, rows: Rows) -> Floats:
+    """Return the deepest penetration [m] in every logged step; 0 where there is no contact."""
+    deepest = np.zeros(len(trace.step))
+    np.maximum.at(deepest, np.searchsorted(trace.step["step"], rows["step"]), rows["penetration"])
+    return deepest
+
+
+def clearance_by_step(trace: Trace, body: str, plane: str) -> Floats:
+    """Return the gap [m] between a body's surface and a plane in every logged state."""
+    moving = cell_config.body(trace.resolved, body)
+    ground = cell_config.body(trace.resolved, plane)
+    poses = trace.pose[:, list(trace.bodies).index(body), :]
+    heights: Floats = poses[:, :3] @ ground.normal - ground.offset
+    if moving.shape["kind"] == "sphere":
+        return np.asarray(heights - moving.extent(ground.normal), dtype=np.float64)
+    turns = [cell_config.rotation_matrix(pose[3:]) for pose in poses]
+    gaps: Floats = heights - np.array([moving.extent(ground.normal, turn) for turn in turns])
+    return gaps
+
+
+def runs_of(flags: np.ndarray) -> list[tuple[int, int]]:
+    """Return [first, last] of every unbroken run of true flags."""
+    edges = np.flatnonzero(np.diff(np.concatenate(([False], flags, [False])).astype(np.int8)))
+    return [(int(first), int(end) - 1) for first, end in zip(edges[::2], edges[1::2], strict=True)]
+
+
+def pushing_runs(trace: Trace, rows: Rows) -> list[tuple[int, int]]:
+    """Return [first, last] row of every unbroken run of steps with a positive normal impulse."""
+    return runs_of(summed_by_step(trace, rows, "impulse_n") > 0.0)
+
+
+def last_window(trace: Trace, seconds: float) -> np.ndarray:
+    """Return which steps lie in the last seconds of a run; none when the run is shorter."""
+    time = trace.step["time"]
+    if seconds > time[-1] - time[0]:
+        return np.zeros(len(time), dtype=bool)
+    window: np.ndarray = time > time[-1] - seconds * (1.0 - 1e-12)
+    return window
+
+
+def row_after(trace: Trace, seconds: float) -> int | None:
+    """Return the first logged step that ends after a time, None when there is none."""
+    later = np.flatnonzero(trace.step["time"] > seconds)
+    return int(later[0]) if len(later) else None
+
+
+def mechanical_energy(trace: Trace) -> Floats:
+    """Return kinetic plus potential energy [J] in every logged state."""
+    energy: Floats = trace.step["kinetic_energy"] + trace.step["potential_energy"]
+    return energy

@@ -1,0 +1,155 @@
+"""The log of a drop or a collision in; rebound, impulses, forces and velocities of the impact out.
+
+NaN means "this log cannot answer": nothing touched, or the run ended too early.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from lavendersim.experiment import measure_specs as specs
+from lavendersim.measures import cell_config
+from lavendersim.measures.columns import (
+    clearance_by_step,
+    contacts_of,
+    pushing_runs,
+    runs_of,
+    summed_by_step,
+)
+from lavendersim.measures.views import Floats, Rows, Trace
+
+NAN = float("nan")
+
+
+def parabola_vertex(before: float, at: float, after: float) -> float:
+    """Return the height of the vertex of the parabola through three equally spaced samples."""
+    curvature = before - 2.0 * at + after
+    if curvature == 0.0:
+        return at
+    return at - (before - after) ** 2 / (8.0 * curvature)
+
+
+def first_apex(spec: specs.FirstApex, trace: Trace) -> float:
+    """Return the clearance [m] at the first apex after the first contact.
+
+    The apex is the vertex of the parabola through the highest sample and its neighbours: free
+    flight with a constant step is exactly such a parabola, so the apex does not depend on where
+    the samples fall. A body that stays on the surface rebounds 0 m; NaN if it never touches, or
+    is still rising at the end.
+    """
+    runs = pushing_runs(trace, contacts_of(trace, spec.body, spec.above))
+    if not runs:
+        return NAN
+    heights = clearance_by_step(trace, spec.body, spec.above)[runs[0][0] :]
+    inner = heights[1:-1]
+    peaks = np.flatnonzero((inner > 0.0) & (inner >= heights[:-2]) & (inner > heights[2:]))
+    if len(peaks):
+        return parabola_vertex(*(float(height) for height in heights[peaks[0] : peaks[0] + 3]))
+    return 0.0 if heights[-1] <= 0.0 else NAN
+
+
+def impact_impulse(spec: specs.ImpactImpulse, trace: Trace) -> float:
+    """Return the impulse [N s] of the first run of pushing steps; 0 if the contact never pushes."""
+    rows = contacts_of(trace, spec.body, spec.other)
+    if len(rows) == 0:
+        return NAN
+    runs = pushing_runs(trace, rows)
+    if not runs:
+        return float(np.sum(rows["impulse_n"]))
+    first, last = runs[0]
+    return float(summed_by_step(trace, rows, "impulse_n")[first : last + 1].sum())
+
+
+def step_impulse(spec: specs.StepImpulse, trace: Trace) -> float:
+    """Return the impulse [N s] of one step; NaN if the step was not logged."""
+    positions = np.flatnonzero(trace.step["step"] == spec.step)
+    if len(positions) == 0:
+        return NAN
+    rows = contacts_of(trace, spec.body, spec.other)
+    return float(summed_by_step(trace, rows, "impulse_n")[positions[0]])
+
+
+def _of_first_contact(rows: Rows, field: str) -> float:
+    return float(rows[field][0]) if len(rows) else NAN
+
+
+def approach_velocity(spec: specs.ApproachVelocity, trace: Trace) -> float:
+    """Return v_n [m/s] of the first contact before the solve."""
+    return _of_first_contact(contacts_of(trace, spec.body, spec.other), "approach_velocity")
+
+
+def separation_velocity(spec: specs.SeparationVelocity, trace: Trace) -> float:
+    """Return v_n [m/s] of the first contact after the solve."""
+    return _of_first_contact(contacts_of(trace, spec.body, spec.other), "normal_velocity")
+
+
+def inverse_effective_mass(spec: specs.InverseEffectiveMass, trace: Trace) -> float:
+    """Return k_n [1/kg] of the first contact."""
+    return _of_first_contact(contacts_of(trace, spec.body, spec.other), "inverse_effective_mass")
+
+
+def peak_force(spec: specs.PeakForce, trace: Trace) -> float:
+    """Return the largest normal force [N] on the body; NaN if nothing ever touches it."""
+    rows = contacts_of(trace, spec.body, spec.other)
+    return float(summed_by_step(trace, rows, "force_n").max()) if len(rows) else NAN
+
+
+def steps_above_force(spec: specs.StepsAboveForce, trace: Trace) -> float:
+    """Return how many steps have more normal force on the body than the threshold."""
+    rows = contacts_of(trace, spec.body, spec.other)
+    if len(rows) == 0:
+        return NAN
+    return float(np.count_nonzero(summed_by_step(trace, rows, "force_n") > spec.threshold))
+
+
+def impulse_balance(spec: specs.ImpulseBalance, trace: Trace) -> float:
+    """Return |J + M g T - (p1 - p0)| / |J| over a window of steps.
+
+    J is the vector sum of the impulses between movable and fixed bodies (impulses between two
+    movable bodies cancel), M the movable mass, p the logged momentum. NaN without any impulse,
+    and where an event changes a mass.
+    """
+    if any(event.get("scale_mass") is not None for event in trace.resolved.get("events") or ()):
+        return NAN
+    configs = {one.name: one for one in cell_config.bodies(trace.resolved)}
+    movable = np.array([configs[name].movable for name in trace.bodies])
+    rows = trace.contact
+    outer = rows[movable[rows["body_a"]] != movable[rows["body_b"]]]
+    first, last = 1, len(trace.step) - 1
+    if spec.window == "first_impact":
+        pushes = runs_of(summed_by_step(trace, outer, "impulse_n") > 0.0)
+        if not pushes:
+            return NAN
+        first, last = pushes[0]
+    impulse = _vector_impulse(trace, outer, movable, first, last)
+    size = math.sqrt(float(impulse @ impulse))
+    if size == 0.0:
+        return NAN
+    mass = sum(one.mass for one in configs.values())
+    momentum = _momentum(trace)
+    time = float(trace.step["time"][last] - trace.step["time"][first - 1])
+    gained = momentum[last] - momentum[first - 1]
+    gap = impulse + mass * time * cell_config.gravity(trace.resolved) - gained
+    return math.sqrt(float(gap @ gap)) / size
+
+
+def momentum_drift(spec: specs.MomentumDrift, trace: Trace) -> float:
+    """Return the largest |p - p0| over the largest |p| of the run; NaN if nothing ever moves."""
+    momentum = _momentum(trace)
+    largest = float(np.sqrt((momentum**2).sum(axis=1)).max())
+    change = momentum - momentum[0]
+    return float(np.sqrt((change**2).sum(axis=1)).max()) / largest if largest > 0.0 else NAN
+
+
+def _momentum(trace: Trace) -> Floats:
+    return np.column_stack([trace.step[f"momentum_{axis}"] for axis in "xyz"])
+
+
+def _vector_impulse(trace: Trace, rows: Rows, movable: np.ndarray, first: int, last: int) -> Floats:
+    """Sum of the impulses on the movable side; impulse_n acts along n on B, against n on A."""
+    steps = trace.step["step"]
+    inside = rows[(rows["step"] >= steps[first]) & (rows["step"] <= steps[last])]
+    signed = np.where(movable[inside["body_b"]], 1.0, -1.0) * inside["impulse_n"]
+    return np.array([float((signed * inside[field]).sum()) for field in ("nx", "ny", "nz")])

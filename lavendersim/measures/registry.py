@@ -1,0 +1,57 @@
+"""A measure's spec and a log in; its number, or row of numbers, out."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any, Final
+
+import numpy as np
+
+from lavendersim.experiment.measure_specs import MeasureSpec
+from lavendersim.measures import convergence, energy, impact, steady
+from lavendersim.measures.closed_forms import evaluate_form
+from lavendersim.measures.selection import selects
+from lavendersim.measures.views import Trace, Value
+
+MEASURES: Final[dict[str, Callable[[Any, Trace], Value]]] = {
+    "first_apex": impact.first_apex,
+    "impact_impulse": impact.impact_impulse,
+    "step_impulse": impact.step_impulse,
+    "approach_velocity": impact.approach_velocity,
+    "separation_velocity": impact.separation_velocity,
+    "inverse_effective_mass": impact.inverse_effective_mass,
+    "peak_force": impact.peak_force,
+    "steps_above_force": impact.steps_above_force,
+    "impulse_balance": impact.impulse_balance,
+    "momentum_drift": impact.momentum_drift,
+    "steady_force": steady.steady_force,
+    "steady_penetration": steady.steady_penetration,
+    "max_penetration": steady.max_penetration,
+    "settling_time": steady.settling_time,
+    "simulated_duration": steady.simulated_duration,
+    "residual_by_sweep": convergence.residual_by_sweep,
+    "final_residual": convergence.final_residual,
+    "energy_by_bounce": energy.energy_by_bounce,
+    "energy_after_bounces": energy.energy_after_bounces,
+}
+
+
+def evaluate(spec: MeasureSpec, trace: Trace) -> Value:
+    """Return the measure of one log: a float, or a 1-D array for kinds that give a row.
+
+    NaN where the log cannot answer, or a closed form to divide by is 0.
+    """
+    value = MEASURES[spec.kind](spec, trace)
+    form = spec.over or spec.against
+    if form is None:
+        return value
+    ideal = evaluate_form(form, trace.resolved)
+    if ideal == 0.0:
+        return float("nan")
+    fraction: Value = value / ideal
+    return fraction if spec.over else np.abs(fraction - 1.0)
+
+
+def applies(spec: MeasureSpec, coordinates: Mapping[str, Any]) -> bool:
+    """Tell whether the measure is taken in the cell with these coordinates (its `at`)."""
+    return selects(spec.at, coordinates)

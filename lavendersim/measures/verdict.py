@@ -1,0 +1,33 @@
+"""What a judgement says: passed or not, with everything a person needs to see why."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+
+class Outcome(NamedTuple):
+    """The verdict on numbers alone, before it knows its name and its log."""
+
+    passed: bool
+    measured: float  # the decisive number: of a row, or of several cells, the worst
+    expected: str
+    tolerance: str
+    reason: str = ""  # where it failed, when the numbers do not say it
+
+
+class Verdict(NamedTuple):
+    """One judged expectation, in one cell or across cells."""
+
+    name: str
+    node: str  # `rebound at e=0.8, timestep=1/480`
+    passed: bool
+    measured: float  # the decisive number: of a row, or of several cells, the worst
+    expected: str
+    tolerance: str
+    message: str
+    path: str  # of the log, or of the logs' directory when several are compared
+
+
+def failure(expected: str, reason: str) -> Outcome:
+    """Return the outcome of an expectation for which there is nothing to measure."""
+    return Outcome(False, float("nan"), expected, "none", reason)

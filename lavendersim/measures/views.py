@@ -1,0 +1,70 @@
+"""What a measure, a judgement or a figure may ask of a log and of a sweep's cell; types alone."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+from pathlib import Path
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Rows = NDArray[np.void]  # structured array, one row per step or contact
+Value = float | Floats
+
+
+class Trace(Protocol):
+    """The log of one cell, column by column (see lavendersim/trace)."""
+
+    @property
+    def step(self) -> Any:
+        """Structured rows, one per logged step; row 0 is the initial state."""
+
+    @property
+    def contact(self) -> Any:
+        """Structured rows, one per contact, grouped by rising step."""
+
+    @property
+    def pose(self) -> Any:
+        """Rows, bodies, 7: x y z [m] and quaternion w x y z."""
+
+    @property
+    def residual(self) -> Any:
+        """Structured rows: step, sweep, residual [m/s]."""
+
+    @property
+    def bodies(self) -> Sequence[str]:
+        """Names of the bodies in the order of their indices."""
+
+    @property
+    def resolved(self) -> Mapping[str, Any]:
+        """The cell's config with every default filled in."""
+
+    @property
+    def timestep(self) -> Fraction:
+        """Length of a step [s]."""
+
+    @property
+    def status(self) -> str:
+        """`complete`, or why the run stopped."""
+
+
+class Cell(Protocol):
+    """One cell of a sweep that has been run."""
+
+    @property
+    def label(self) -> str:
+        """Its coordinates in words."""
+
+    @property
+    def coordinates(self) -> Mapping[str, Any]:
+        """Axis name: swept value."""
+
+    @property
+    def path(self) -> Path:
+        """The file of its log."""
+
+    def trace(self) -> Trace:
+        """Open its log."""

@@ -1,0 +1,45 @@
+"""A trace enters; a rerun viewer, an .rrd file or a picture of the viewer leaves.
+
+The only room that knows rerun. Rerun takes 0.4 s to import, so it is imported when something is
+shown, not when this room is. Nothing is computed here that the log does not hold: replay scales,
+colours and places what was recorded.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from lavendersim.trace import Trace
+
+__all__ = ["open_viewer", "save", "screenshot"]
+
+
+def open_viewer(trace: Trace, title: str | None = None) -> None:
+    """Show `trace` in a rerun window, which stays open after this process ends.
+
+    A viewer that is already open is used. `title` names the recording; by default the log's name.
+    Raises MissingDriverError where there is no display to open a window on.
+    """
+    from lavendersim.replay.viewer import show_in_window
+
+    show_in_window(trace, title or Path(trace.path).stem)
+
+
+def save(trace: Trace, path: str | Path, title: str | None = None) -> None:
+    """Write `trace` with its blueprint to `path` (.rrd), whole or not at all."""
+    from lavendersim.replay.recording import write_rrd
+
+    write_rrd(trace, Path(path), title or Path(trace.path).stem)
+
+
+def screenshot(trace: Trace, path: str | Path, title: str | None = None) -> list[str]:
+    """Write a picture (.png) of the viewer at the trace's last loaded contact; needs no display.
+
+    Returns what the viewer complained about, one sentence each; empty when all is well.
+    Raises MissingDriverError where no Vulkan driver is installed.
+    """
+    from lavendersim.replay.headless import take_screenshot
+
+    return take_screenshot(trace, Path(path), title or Path(trace.path).stem)

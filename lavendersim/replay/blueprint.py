@@ -1,0 +1,110 @@
+"""A trace, its shapes and their extent enter; the layout of the viewer leaves.
+
++----------------------+-------------+
+|                      | force [N]   |
+|  bodies, contacts,   +-------------+
+|  force arrows        | depth [mm]  |
+|                      +-------------+
+|                      | residual    |
++----------------------+-------------+
+|  sim_time                          |
++------------------------------------+
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+import rerun as rr
+import rerun.blueprint as rrb
+
+from lavendersim.replay.columns import (
+    TIMELINE,
+    Plot,
+    plots_of,
+    time_in_nanoseconds,
+    values_of,
+)
+from lavendersim.replay.force_scale import ForceScale
+from lavendersim.replay.scene import WORLD, Extent, Shape, Vector, grid_spacing
+
+if TYPE_CHECKING:
+    from lavendersim.trace import Trace
+
+BACKGROUND = (24, 26, 30)
+MARGIN = 0.06  # of a plot's range, on every side
+
+# From the front right and a little above: floors are seen from above, stacks from the side.
+VIEW_DIRECTION = np.array([0.5, -1.0, 0.35])
+VIEW_DISTANCE = 1.15  # diagonals: the whole extent within rerun's vertical field of view
+
+SHOWN_SECONDS = 8.0  # contacts are short: play slowly enough to be seen, never faster than life
+
+
+def blueprint(
+    trace: Trace, bodies: Sequence[Shape], room: Extent, scale: ForceScale
+) -> rrb.Blueprint:
+    """Lay out the 3D view and the plots of a recording."""
+    times = time_in_nanoseconds(trace)
+    seconds = float(times[-1] - times[0]) * 1e-9 if len(times) else 0.0
+    grounded = any(shape.kind == "plane" for shape in bodies)
+    scene = rrb.Spatial3DView(
+        origin="/",
+        contents=["/bodies/**", "/paths/**", "/grid/**", "/contacts/**"],
+        name=f"{scale.label}; grid {grid_spacing(room):g} m" if grounded else scale.label,
+        background=rrb.Background(color=BACKGROUND),
+        eye_controls=rrb.EyeControls3D(
+            kind=rrb.Eye3DKind.Orbital,
+            position=eye_position(bodies, room),
+            look_target=room.centre,
+            eye_up=(0, 0, 1),
+        ),
+        line_grid=rrb.LineGrid3D(visible=False),
+        spatial_information=rrb.SpatialInformation(target_frame=WORLD),
+    )
+    curves = [_curve(trace, plot, seconds) for plot in plots_of(trace)]
+    return rrb.Blueprint(
+        rrb.Horizontal(scene, rrb.Vertical(*curves), column_shares=[3, 2]),
+        rrb.TopPanel(state="collapsed"),
+        rrb.BlueprintPanel(state="collapsed"),
+        rrb.SelectionPanel(state="collapsed"),
+        rrb.TimePanel(
+            state="collapsed",
+            timeline=TIMELINE,
+            playback_speed=float(np.clip(seconds / SHOWN_SECONDS, 0.05, 1.0)),
+            play_state="playing",
+            loop_mode="all",
+        ),
+        auto_layout=False,
+        auto_views=False,
+    )
+
+
+def eye_position(bodies: Sequence[Shape], room: Extent) -> Vector:
+    """Where the camera stands [m]: far enough to see everything, on the open side of each plane."""
+    direction = VIEW_DIRECTION / np.linalg.norm(VIEW_DIRECTION)
+    for plane in (shape for shape in bodies if shape.kind == "plane"):
+        direction = direction + max(0.0, 0.3 - float(direction @ plane.normal)) * plane.normal
+    direction = direction / np.linalg.norm(direction)
+    return np.asarray(room.centre + VIEW_DISTANCE * room.diagonal * direction)
+
+
+def _curve(trace: Trace, plot: Plot, seconds: float) -> rrb.TimeSeriesView:
+    """One plot, the whole recording in view: first and last step must not lie on the frame."""
+    values = values_of(trace, plot)
+    values = values[np.isfinite(values)]
+    low, high = (float(values.min()), float(values.max())) if len(values) else (0.0, 1.0)
+    margin = MARGIN * (high - low) or 1.0
+    shown = rr.TimeRange(
+        start=rrb.TimeRangeBoundary.absolute(seconds=-MARGIN * seconds),
+        end=rrb.TimeRangeBoundary.absolute(seconds=(1 + MARGIN) * seconds),
+    )
+    return rrb.TimeSeriesView(
+        origin=plot.entity,
+        name=plot.title,
+        axis_x=rrb.TimeAxis(view_range=shown),
+        axis_y=rrb.ScalarAxis(range=(low - margin, high + margin)),
+        plot_legend=rrb.PlotLegend(visible=False),
+    )

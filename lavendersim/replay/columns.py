@@ -1,0 +1,183 @@
+"""A trace enters; poses, contacts, forces and plots leave as rerun columns on `sim_time`.
+
+Columns are sent in blocks of many steps: a call per step costs rerun some 20 us and a chunk of its
+own, a block costs the same once. A step without contacts sends an empty list, which clears the
+arrows of the step before.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+import rerun as rr
+
+from lavendersim.replay.force_scale import CONTACT_KEY, ForceScale
+from lavendersim.replay.scene import WORLD, Extent, entity
+
+if TYPE_CHECKING:
+    from lavendersim.trace import Trace
+
+TIMELINE = "sim_time"
+CONTACT_POINTS = "contacts/points"
+CONTACT_FORCES = "contacts/forces"
+
+# Small enough for the viewer to fetch what it shows, large enough to make the calls' cost vanish.
+STEPS_PER_BLOCK = 200
+
+# What is read of a contact, whatever else its log holds.
+CONTACT_FIELDS = ("step", *CONTACT_KEY, "x", "y", "z", "nx", "ny", "nz", "force_n")
+
+FORCE_COLOUR = 0xF0E442FF  # yellow
+CUT_FORCE_COLOUR = 0xD55E00FF  # vermillion: this arrow would be longer
+POINT_COLOUR = (255, 255, 255)
+
+
+class Plot(NamedTuple):
+    """One curve: which field of the log, under which name with unit, and how it is shown.
+
+    `dots`: drawn as points, because its values stand alone where contacts last one step.
+    """
+
+    entity: str
+    field: str
+    title: str
+    colour: tuple[int, int, int]
+    shown: Callable[[npt.NDArray[np.float64]], npt.NDArray[np.float64]]
+    dots: bool = False
+
+
+def _millimetres(metres: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    return metres * 1e3
+
+
+def _log10(residual: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    """Base-10 logarithm; NaN (a gap in the curve) where the residual is exactly zero."""
+    logarithm = np.full(len(residual), np.nan)
+    np.log10(residual, out=logarithm, where=residual > 0)
+    return logarithm
+
+
+PLOTS = (
+    Plot("plot/force", "total_normal_force", "total normal force [N]", (240, 228, 66), np.asarray),
+    Plot("plot/depth", "max_penetration", "max penetration [mm]", (86, 180, 233), _millimetres),
+    Plot("plot/residual", "residual", "log10 residual [m/s]", (204, 121, 167), _log10, True),
+)
+
+
+def values_of(trace: Trace, plot: Plot) -> npt.NDArray[np.float64]:
+    """The plotted values of every row; not finite where there is nothing to plot."""
+    return plot.shown(np.asarray(trace.step[plot.field], dtype=np.float64))
+
+
+def contacts_of(trace: Trace) -> npt.NDArray[Any]:
+    """The trace's contacts; the log of a run without any does not even name their fields."""
+    contact = trace.contact
+    return contact if len(contact) else np.zeros(0, [(name, "f8") for name in CONTACT_FIELDS])
+
+
+def plots_of(trace: Trace) -> list[Plot]:
+    """The plots whose fields the log has; which fields it has follows the experiment's plan."""
+    return [plot for plot in PLOTS if plot.field in (trace.step.dtype.names or ())]
+
+
+def blocks(rows: int) -> Iterator[slice]:
+    """Cut `rows` into slices of STEPS_PER_BLOCK; the last may be shorter."""
+    for start in range(0, rows, STEPS_PER_BLOCK):
+        yield slice(start, min(start + STEPS_PER_BLOCK, rows))
+
+
+def time_in_nanoseconds(trace: Trace) -> npt.NDArray[np.int64]:
+    """Simulated time of every row [ns], from the log's integers."""
+    return np.asarray(trace.step["time_ns"], dtype=np.int64)
+
+
+def send(stream: rr.RecordingStream, trace: Trace, room: Extent, scale: ForceScale) -> None:
+    """Send everything that changes from step to step."""
+    times = time_in_nanoseconds(trace).astype("timedelta64[ns]")
+    _send_poses(stream, trace, times)
+    _send_contacts(stream, trace, times, room, scale)
+    _send_plots(stream, trace, times)
+
+
+def _send_poses(stream: rr.RecordingStream, trace: Trace, times: npt.NDArray[Any]) -> None:
+    given = trace.resolved["scene"]["bodies"]
+    pose = trace.pose
+    for body, name in enumerate(trace.bodies):
+        if given[name]["shape"]["kind"] == "plane":
+            continue  # drawn in the world's frame
+        # A diverged run's last rows may hold NaN, which no viewer can place.
+        rows = np.flatnonzero(np.isfinite(pose[:, body]).all(axis=1))
+        if len(rows) and (pose[rows, body] == pose[rows[0], body]).all():
+            rows = rows[:1]  # it never moves: one row says it
+        for block in blocks(len(rows)):
+            here = rows[block]
+            columns = rr.Transform3D.columns(
+                translation=pose[here, body, :3],
+                quaternion=pose[here, body][:, [4, 5, 6, 3]],  # ours is w x y z, rerun's x y z w
+                child_frame=[name] * len(here),
+                parent_frame=[WORLD] * len(here),
+            )
+            _send(stream, entity(name), times[here], columns)
+
+
+def _send_contacts(
+    stream: rr.RecordingStream,
+    trace: Trace,
+    times: npt.NDArray[Any],
+    room: Extent,
+    scale: ForceScale,
+) -> None:
+    thickness = 0.006 * room.diagonal
+    points = rr.Points3D.from_fields(colors=[POINT_COLOUR], radii=[1.5 * thickness])
+    stream.log(CONTACT_POINTS, rr.CoordinateFrame(WORLD), points, static=True)
+    arrows = rr.Arrows3D.from_fields(radii=[thickness])
+    stream.log(CONTACT_FORCES, rr.CoordinateFrame(WORLD), arrows, static=True)
+
+    contact = contacts_of(trace)
+    first = np.searchsorted(contact["step"], trace.step["step"], side="left")
+    end = np.searchsorted(contact["step"], trace.step["step"], side="right")
+    for block in blocks(len(times)):
+        lengths = (end - first)[block]
+        rows = contact[first[block][0] : end[block][-1]]
+        origins = _vectors(rows, "x", "y", "z")
+        vectors, cut = scale.arrows(_vectors(rows, "nx", "ny", "nz"), rows["force_n"])
+        colours = np.where(cut, CUT_FORCE_COLOUR, FORCE_COLOUR).astype(np.uint32)
+        forces = rr.Arrows3D.columns(origins=origins, vectors=vectors, colors=colours)
+        _send(stream, CONTACT_FORCES, times[block], forces.partition(lengths))
+        spots = rr.Points3D.columns(positions=origins)
+        _send(stream, CONTACT_POINTS, times[block], spots.partition(lengths))
+
+
+def _vectors(rows: npt.NDArray[Any], x: str, y: str, z: str) -> npt.NDArray[np.float64]:
+    return np.stack([rows[x], rows[y], rows[z]], axis=-1).reshape(-1, 3)
+
+
+def _send_plots(stream: rr.RecordingStream, trace: Trace, times: npt.NDArray[Any]) -> None:
+    for plot in plots_of(trace):
+        look: dict[str, Any] = {"colors": [plot.colour], "names": [plot.title]}
+        style = (
+            rr.SeriesPoints(markers="circle", marker_sizes=[1.5], **look)
+            if plot.dots
+            # Impacts last one step: an average over a pixel's steps would hide them.
+            else rr.SeriesLines(widths=[1.5], aggregation_policy="MinMax", **look)
+        )
+        stream.log(plot.entity, style, static=True)
+        values = values_of(trace, plot)
+        for block in blocks(len(times)):
+            known = np.isfinite(values[block])
+            curve = rr.Scalars.columns(scalars=values[block][known])
+            _send(stream, plot.entity, times[block], curve.partition(known.astype(np.int64)))
+
+
+def _send(
+    stream: rr.RecordingStream,
+    path: str,
+    times: npt.NDArray[Any],
+    columns: rr.ComponentColumnList,
+) -> None:
+    # strict: rerun otherwise turns a mistake of ours into a warning and drops the data
+    index = rr.TimeColumn(TIMELINE, duration=times)
+    stream.send_columns(path, indexes=[index], columns=columns, strict=True)

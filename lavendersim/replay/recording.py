@@ -1,0 +1,63 @@
+"""A trace enters; a rerun recording with its blueprint leaves, to a stream or a file."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+import rerun as rr
+
+from lavendersim.replay import columns, scene
+from lavendersim.replay.blueprint import blueprint
+from lavendersim.replay.force_scale import force_scale
+
+if TYPE_CHECKING:
+    from lavendersim.trace import Trace
+
+
+def new_stream(title: str) -> rr.RecordingStream:
+    """A recording stream that goes nowhere yet.
+
+    The viewer keeps one blueprint per application, so each title is an application of its own:
+    a second replay in an open viewer leaves the first one's camera alone.
+    """
+    return rr.RecordingStream(f"lavender {title}")
+
+
+def record(trace: Trace, stream: rr.RecordingStream, title: str) -> None:
+    """Send the whole trace and the layout of the viewer to `stream`."""
+    bodies = scene.shapes(trace.resolved)
+    room = scene.extent(trace, bodies)
+    scale = force_scale(columns.contacts_of(trace), room.diagonal)
+
+    stream.send_recording_name(title)
+    stream.send_blueprint(blueprint(trace, bodies, room, scale))
+    scene.draw(stream, trace, bodies, room)
+    columns.send(stream, trace, room, scale)
+
+
+def write_rrd(trace: Trace, path: Path, title: str) -> None:
+    """Write the recording beside `path` and move it there when it is whole."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    unfinished = path.with_name(f".{path.name}.{os.getpid()}.unfinished")
+    stream = new_stream(title)
+    try:
+        stream.save(unfinished)
+        record(trace, stream, title)
+        stream.flush()
+        stream.disconnect()  # writes the footer that readers look for
+        os.replace(unfinished, path)
+    finally:
+        stream.disconnect()
+        unfinished.unlink(missing_ok=True)
+
+
+def moment_to_show(trace: Trace) -> np.timedelta64:
+    """The last step that carries a contact force, else the middle: a still picture needs one."""
+    times = columns.time_in_nanoseconds(trace)
+    contact = columns.contacts_of(trace)
+    loaded = contact["step"][np.isfinite(contact["force_n"]) & (contact["force_n"] > 0)]
+    row = np.searchsorted(trace.step["step"], loaded[-1]) if len(loaded) else len(times) // 2
+    return np.timedelta64(int(times[row]), "ns")

@@ -1,0 +1,198 @@
+"""A resolved config and its poses enter; shapes, their extent and rerun's static geometry leave.
+
+Entities are `bodies/<name>`. Each body is a coordinate frame of the same name below the world's, so
+that its pose (see columns.py) moves whatever is drawn in it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+import rerun as rr
+
+if TYPE_CHECKING:
+    from lavendersim.trace import Trace
+
+Vector = npt.NDArray[np.float64]
+
+WORLD = "tf#/"  # rerun's name of the root frame, which no body can have
+UP = np.array([0.0, 0.0, 1.0])
+
+# Okabe and Ito's palette, which stays distinct for all common kinds of colour blindness. Yellow
+# and vermillion are kept for forces (columns.py).
+MOVABLE_COLOURS = ((86, 180, 233), (204, 121, 167), (0, 158, 115), (0, 114, 178), (230, 159, 0))
+FIXED_COLOUR = (150, 150, 150)
+GROUND_COLOUR = (74, 78, 86)
+GRID_COLOUR = (112, 118, 128)
+
+PATH_POINTS = 2000  # more than a screen has pixels along a path
+LABELLED_BODIES = 8  # more names than this cover what they name
+
+
+class Shape(NamedTuple):
+    """One body's geometry: `size` is a box's edges or a sphere's diameters [m]."""
+
+    name: str
+    kind: Literal["plane", "sphere", "box"]
+    fixed: bool
+    size: Vector
+    normal: Vector
+    offset: float
+
+    @property
+    def reach(self) -> float:
+        """Largest distance [m] of the body's surface from its centre."""
+        radius = self.size[0] / 2 if self.kind == "sphere" else np.linalg.norm(self.size) / 2
+        return float(radius)
+
+
+class Extent(NamedTuple):
+    """The box [m] that holds everything the movable bodies do, and its diagonal."""
+
+    low: Vector
+    high: Vector
+
+    @property
+    def centre(self) -> Vector:
+        """Middle of the box [m]."""
+        return (self.low + self.high) / 2
+
+    @property
+    def diagonal(self) -> float:
+        """Length of the box's diagonal [m]; never zero."""
+        return float(np.linalg.norm(self.high - self.low)) or 1.0
+
+
+def entity(name: str) -> str:
+    """Entity path of a body; its last part is the body's name, escaped as rerun asks."""
+    return rr.new_entity_path(["bodies", name])
+
+
+def shapes(resolved: Mapping[str, Any]) -> list[Shape]:
+    """Geometry of every body of a resolved config, in its order."""
+    return [_shape(name, body) for name, body in resolved["scene"]["bodies"].items()]
+
+
+def _shape(name: str, body: Mapping[str, Any]) -> Shape:
+    given = body["shape"]
+    kind = given["kind"]
+    size, normal, offset = np.zeros(3), UP, 0.0
+    if kind == "sphere":
+        size = np.full(3, 2.0 * float(given["radius"]))
+    elif kind == "box":
+        size = np.array(given["size"], dtype=np.float64)
+    else:
+        direction = np.array(given["normal"], dtype=np.float64)
+        normal = direction / np.linalg.norm(direction)
+        offset = float(given["offset"])
+    fixed = kind == "plane" or bool(body.get("fixed", False))
+    return Shape(name, kind, fixed, size, normal, offset)
+
+
+def extent(trace: Trace, bodies: Iterable[Shape]) -> Extent:
+    """The room that the bodies take over the whole trace, planes left out."""
+    row_of = {name: row for row, name in enumerate(trace.bodies)}
+    lows, highs = [], []
+    for shape in bodies:
+        if shape.kind == "plane":
+            continue
+        positions = trace.pose[:, row_of[shape.name], :3]
+        positions = positions[np.isfinite(positions).all(axis=1)]
+        if len(positions):
+            lows.append(positions.min(axis=0) - shape.reach)
+            highs.append(positions.max(axis=0) + shape.reach)
+    if not lows:
+        return Extent(np.full(3, -0.5), np.full(3, 0.5))
+    return Extent(np.min(lows, axis=0), np.max(highs, axis=0))
+
+
+def draw(stream: rr.RecordingStream, trace: Trace, bodies: Sequence[Shape], room: Extent) -> None:
+    """Log every body's geometry, and the path its centre takes, once, as static data."""
+    stream.log("/", rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
+    movable = sum(not shape.fixed for shape in bodies)
+    colours = iter(MOVABLE_COLOURS * (movable // len(MOVABLE_COLOURS) + 1))
+    for shape in bodies:
+        if shape.kind == "plane":
+            _draw_plane(stream, shape, room)
+            continue
+        colour = FIXED_COLOUR if shape.fixed else next(colours)
+        _draw_path(stream, trace, shape, colour)
+        look: dict[str, Any] = {
+            "colors": [colour],
+            # Forces act at surfaces and point into bodies: solid bodies would hide them.
+            "fill_mode": "Solid" if shape.fixed else "TransparentFillMajorWireframe",
+            "labels": [shape.name],
+            "show_labels": len(bodies) <= LABELLED_BODIES,
+        }
+        form = rr.Ellipsoids3D if shape.kind == "sphere" else rr.Boxes3D
+        geometry = form(half_sizes=[shape.size / 2], **look)
+        stream.log(entity(shape.name), rr.CoordinateFrame(shape.name), geometry, static=True)
+
+
+def _draw_path(
+    stream: rr.RecordingStream, trace: Trace, shape: Shape, colour: tuple[int, int, int]
+) -> None:
+    """A thin line through the body's recorded positions: a still picture then tells its story."""
+    path = trace.pose[:, trace.bodies.index(shape.name), :3]
+    path = path[np.isfinite(path).all(axis=1)]
+    if len(path) and np.ptp(path, axis=0).max() > 0:
+        path = path[:: 1 + len(path) // PATH_POINTS]
+        line = rr.LineStrips3D([path], colors=[(*colour, 120)], radii=rr.Radius.ui_points(1.0))
+        place = rr.new_entity_path(["paths", shape.name])
+        stream.log(place, rr.CoordinateFrame(WORLD), line, static=True)
+
+
+def _draw_plane(stream: rr.RecordingStream, plane: Shape, room: Extent) -> None:
+    """A thin box whose upper face lies in the plane, below (or beside) the scene, with a grid.
+
+    The viewer's own grid is endless and flickers where it coincides with a face.
+    """
+    thickness = 0.01 * room.diagonal
+    spacing = grid_spacing(room)
+    cells = math.ceil(0.7 * room.diagonal / spacing)
+    across = cells * spacing
+    foot = room.centre - (plane.normal @ room.centre - plane.offset) * plane.normal
+    turn = turn_up_to(plane.normal)
+    slab = rr.Boxes3D(
+        half_sizes=[[across, across, thickness / 2]],
+        centers=[foot - plane.normal * thickness / 2],
+        quaternions=[rr.Quaternion(xyzw=turn)],
+        colors=[GROUND_COLOUR],
+        fill_mode="Solid",
+    )
+    stream.log(entity(plane.name), rr.CoordinateFrame(WORLD), slab, static=True)
+
+    ticks = np.linspace(-across, across, 2 * cells + 1)
+    ends = np.array([-across, across])
+    lift = 0.1 * thickness  # or the slab's face hides the lines
+    along = [[(tick, end, lift) for end in ends] for tick in ticks]
+    corners = np.array(along + [[(y, x, z) for x, y, z in line] for line in along])
+    lines = foot + _rotate(turn, corners)
+    radius = rr.Radius.ui_points(0.5)
+    grid = rr.LineStrips3D(list(lines), colors=[GRID_COLOUR], radii=radius)
+    place = rr.new_entity_path(["grid", plane.name])
+    stream.log(place, rr.CoordinateFrame(WORLD), grid, static=True)
+
+
+def grid_spacing(room: Extent) -> float:
+    """A power of ten [m] that gives a plane's grid some 10 to 100 lines."""
+    return float(10.0 ** math.floor(math.log10(room.diagonal / 2)))
+
+
+def _rotate(xyzw: Vector, vectors: Vector) -> Vector:
+    """Rotate vectors (..., 3) by a unit quaternion."""
+    turn = np.cross(xyzw[:3], vectors) * 2
+    return np.asarray(vectors + xyzw[3] * turn + np.cross(xyzw[:3], turn))
+
+
+def turn_up_to(normal: Vector) -> Vector:
+    """The shortest rotation (x, y, z, w) that turns the z axis to the unit vector `normal`."""
+    cosine = float(UP @ normal)
+    if cosine < -1 + 1e-12:  # straight down: any horizontal axis does
+        return np.array([1.0, 0.0, 0.0, 0.0])
+    turn = np.append(np.cross(UP, normal), 1 + cosine)
+    return np.asarray(turn / np.linalg.norm(turn))

@@ -1,0 +1,16 @@
+"""The whole line, left to right: config, scene, engine, trace, measures. Runs cells and keeps runs."""
+
+from .experiment_run import Finished, Progress, find_configs, run
+from .run_directory import RUNS, Run, RunCell, list_runs, open_run
+
+__all__ = [
+    "RUNS",
+    "Finished",
+    "Progress",
+    "Run",
+    "RunCell",
+    "find_configs",
+    "list_runs",
+    "open_run",
+    "run",
+]

@@ -1,0 +1,137 @@
+"""One resolved cell and a plan enter; its log on disk and what it cost leave."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from math import ceil
+from pathlib import Path
+from time import perf_counter_ns
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.lib.recfunctions as recfunctions
+
+from lavendersim.engine.engine import Engine, Rows
+from lavendersim.engine.kernel_cache import source_hash
+from lavendersim.engine.records import DIVERGED, RUNNING
+from lavendersim.scene.build import Scene, build
+from lavendersim.scene.events import apply_event
+from lavendersim.scene.plan import Plan
+from lavendersim.trace import Block, TraceWriter
+
+NANOSECONDS = 10**9
+
+
+class CellJob(NamedTuple):
+    """Everything a worker needs to run one cell; plain data, so that it can cross processes."""
+
+    index: int
+    resolved: dict[str, Any]
+    steps: int
+    as_written: str
+    path: Path
+    plan: Plan
+
+
+class CellOutcome(NamedTuple):
+    """How a cell ended and what it cost. Times never enter the log."""
+
+    index: int
+    status: str  # `complete` or `diverged: ...`
+    steps: int
+    compile_ns: int  # composing, compiling or loading the kernel
+    physics_ns: int  # inside the kernel
+    logging_ns: int  # encoding and writing
+
+
+def time_ns(steps: np.ndarray, timestep: Fraction) -> np.ndarray:
+    """Return the simulated time of `steps` in whole nanoseconds, rounded down, without drift."""
+    numerator, denominator = timestep.numerator * NANOSECONDS, timestep.denominator
+    whole, rest = np.divmod(steps, denominator)
+    if denominator * numerator < 2**62:
+        return np.asarray(whole * numerator + rest * numerator // denominator, np.int64)
+    # Timesteps such as 0.0041666666 have denominators beyond 64-bit products.
+    exact = [int(step) * numerator // denominator for step in steps]
+    return np.array(exact, np.int64)
+
+
+def block_of(rows: Rows, timestep: Fraction) -> Block:
+    """Return the rows of some steps as the log takes them, with their time."""
+    times = time_ns(rows.step["step"], timestep)
+    step = recfunctions.append_fields(rows.step, "time_ns", times, usemask=False)
+    return Block(step=step, contact=rows.contact, pose=rows.pose, residual=rows.residual)
+
+
+def metadata_of(plan: Plan) -> dict[str, dict[str, str]]:
+    """Return what the log says about the engine that made it."""
+    from lavendersim import __version__
+
+    return {
+        "engine": {
+            "lavender": __version__,
+            "numpy": np.__version__,
+            "source": source_hash(),
+            "plan": plan.spec.digest(),
+            "solver": plan.spec.solver,
+        },
+        "plan": {
+            name: f"{'on' if decision.on else 'off'}: {decision.reason}"
+            for name, decision in plan.decisions.items()
+        },
+    }
+
+
+def divergence(scene: Scene, engine: Engine) -> str:
+    """Return one sentence naming the body, the step and the time at which the run left the finite."""
+    counters = engine.counters[0]
+    step = int(counters["step"])
+    name = scene.names[int(counters["body"])]
+    return (
+        f"diverged: body {name} is no longer finite after step {step} "
+        f"(t = {float(step * scene.timestep):.9g} s)"
+    )
+
+
+def run_cell(job: CellJob) -> CellOutcome:
+    """Simulate one cell and write its log."""
+    compile_ns = physics_ns = logging_ns = 0
+    scene = build(job.resolved, job.plan.spec)
+    start = perf_counter_ns()
+    engine = scene.engine(job.plan.spec)
+    engine.advance(0)  # compiles or loads the kernel, and records the initial state
+    compile_ns = perf_counter_ns() - start
+    writer = TraceWriter(
+        job.path,
+        scene.names,
+        job.resolved,
+        job.as_written,
+        scene.timestep,
+        metadata_of(job.plan),
+    )
+    events = sorted(job.resolved["events"], key=lambda event: event["at"])
+    stops = [ceil(Fraction(repr(event["at"])) / scene.timestep) for event in events]
+    status = "complete"
+    done = 0
+    while True:
+        while stops and stops[0] <= done:
+            apply_event(engine, scene, events.pop(0))
+            stops.pop(0)
+        start = perf_counter_ns()
+        outcome = RUNNING
+        if done < job.steps:
+            outcome = engine.advance(min([*stops, job.steps]) - done)
+        physics_ns += perf_counter_ns() - start
+        done = int(engine.counters["step"][0])
+        if outcome == DIVERGED:
+            status = divergence(scene, engine)
+        start = perf_counter_ns()
+        rows = engine.take_rows()
+        if len(rows.step):
+            writer.append(block_of(rows, scene.timestep))
+        logging_ns += perf_counter_ns() - start
+        if outcome == DIVERGED or (outcome == RUNNING and done >= job.steps):
+            break
+    start = perf_counter_ns()
+    writer.close(status)
+    logging_ns += perf_counter_ns() - start
+    return CellOutcome(job.index, status, done, compile_ns, physics_ns, logging_ns)

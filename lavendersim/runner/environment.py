@@ -1,0 +1,43 @@
+"""The machine and the versions of a run leave, as plain data, for `env.json`. Not for the log."""
+
+from __future__ import annotations
+
+import os
+import platform
+from datetime import UTC, datetime
+from importlib.metadata import version
+from typing import Any
+
+PACKAGES = ("numpy", "numba", "llvmlite", "mcap", "pydantic", "zstandard", "protobuf")
+
+
+def processor() -> str:
+    """Return the processor's name as the system gives it."""
+    try:
+        with open("/proc/cpuinfo") as lines:
+            for line in lines:
+                if line.startswith("model name"):
+                    return line.split(":", 1)[1].strip()
+    except OSError:
+        pass
+    return platform.processor() or platform.machine()
+
+
+def environment(spec: Any) -> dict[str, Any]:
+    """Return what a reader needs to judge the timings of a run and to repeat it."""
+    from lavendersim import __version__
+    from lavendersim.engine.kernel_cache import directory, source_hash
+
+    return {
+        "date": datetime.now(UTC).isoformat(timespec="seconds"),
+        "lavender": __version__,
+        "python": platform.python_version(),
+        "packages": {name: version(name) for name in PACKAGES},
+        "system": f"{platform.system()} {platform.release()}",
+        "processor": processor(),
+        "cores": os.cpu_count(),
+        "engine_source": source_hash(),
+        "plan": spec.digest(),
+        "spec": spec._asdict(),
+        "kernel_cache": str(directory()[0]),
+    }

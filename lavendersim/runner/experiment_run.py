@@ -1,0 +1,178 @@
+"""Experiments enter; run directories with logs, results and verdicts leave.
+
+    load -> plan -> run every cell -> measure and judge -> results -> DONE -> latest
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Callable, Iterator
+from concurrent.futures import ProcessPoolExecutor
+from datetime import UTC, datetime
+from multiprocessing import get_context
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from lavendersim.errors import UsageError
+from lavendersim.experiment import Experiment, load_experiment, resolved_yaml
+from lavendersim.measures import Verdict, judge
+
+from .environment import environment
+from .results import write_results
+from .run_directory import (
+    CELLS,
+    CONFIG,
+    DONE,
+    ENVIRONMENT,
+    RESOLVED,
+    RUNS,
+    Run,
+    point_latest,
+)
+
+
+class Finished(NamedTuple):
+    """A run that came to its end: where it is, how its cells ended, what was judged."""
+
+    run: Run
+    outcomes: list[Any]  # CellOutcome, in the order of the cells
+    verdicts: list[Verdict]
+
+    @property
+    def good(self) -> bool:
+        """Whether every cell completed and every expectation was met."""
+        complete = all(outcome.status == "complete" for outcome in self.outcomes)
+        return complete and all(verdict.passed for verdict in self.verdicts)
+
+
+class Progress(NamedTuple):
+    """What a caller may want to show while a sweep runs; every hook may be left as it is."""
+
+    compiling: Callable[[Any], None] = lambda plan: None
+    cell_done: Callable[[int, int], None] = lambda done, total: None
+
+
+def find_configs(paths: list[Path]) -> list[Path]:
+    """Return the config files among `paths`; a folder stands for its *.yaml files, in order.
+
+    Raises UsageError when a path does not exist or a folder holds none.
+    """
+    found: list[Path] = []
+    for path in paths:
+        if path.is_dir():
+            inside = sorted([*path.rglob("*.yaml"), *path.rglob("*.yml")])
+            if not inside:
+                raise UsageError(f"{path}: no *.yaml file in this folder")
+            found += inside
+        elif path.exists():
+            found.append(path)
+        else:
+            raise UsageError(f"{path}: no such file or folder")
+    return list(dict.fromkeys(found))
+
+
+def make_directory(experiment: Experiment, root: Path) -> Path:
+    """Make a new directory for a run; never an existing one."""
+    now = datetime.now(UTC).strftime("%Y%m%dT%H%M%SZ")
+    digest = hashlib.sha256(experiment.text.encode()).hexdigest()[:8]
+    root.mkdir(parents=True, exist_ok=True)
+    # A name that sorts by age even when several runs start within one second.
+    for attempt in range(1000):
+        stamp = now if attempt == 0 else f"{now[:-1]}.{attempt:03d}Z"
+        path = root / f"{stamp}-{experiment.name}-{digest}"
+        try:
+            path.mkdir()
+        except FileExistsError:
+            continue
+        return path
+    raise UsageError(f"{root}: a thousand runs started within one second")
+
+
+def _file_of(cell: Any, source: str) -> str:
+    return hashlib.sha256(f"{cell.digest} {source}".encode()).hexdigest()[:16] + ".mcap"
+
+
+def _outcomes(jobs: list[Any], workers: int) -> Iterator[Any]:
+    """Yield the outcome of each job, in order, from this process or from a pool."""
+    from .cell import run_cell
+
+    if workers <= 1 or len(jobs) == 1:
+        yield from map(run_cell, jobs)
+        return
+    # Spawned, never forked: numba's threads do not survive a fork.
+    with ProcessPoolExecutor(min(workers, len(jobs)), get_context("spawn")) as pool:
+        chunk = max(1, len(jobs) // (4 * workers))
+        yield from pool.map(run_cell, jobs, chunksize=chunk)
+
+
+def run(
+    experiment: Experiment | Path | str,
+    root: Path = RUNS,
+    jobs: int = 1,
+    progress: Progress = Progress(),  # noqa: B008 - immutable
+) -> Finished:
+    """Run every cell of an experiment and judge its expectations.
+
+    root: where run directories are made. jobs: processes; the logs are the same for any number.
+    A cell that diverges ends there, with a readable log; the others go on.
+    """
+    from lavendersim.engine.kernel_cache import source_hash
+    from lavendersim.engine.step import advance_for, is_compiled
+    from lavendersim.scene.plan import plan_of, union
+
+    from .cell import CellJob, run_cell
+
+    if not isinstance(experiment, Experiment):
+        experiment = load_experiment(experiment)
+    cells = experiment.cells()
+    plan = union(plan_of(cell.resolved) for cell in cells)
+    advance_for(plan.spec)
+    if not is_compiled(plan.spec):
+        progress.compiling(plan)
+    directory = make_directory(experiment, root)
+    (directory / "cells").mkdir()
+    (directory / CONFIG).write_bytes(experiment.text.encode())
+    (directory / RESOLVED).write_text(
+        "---\n".join(f"# {cell.label}\n{resolved_yaml(cell)}" for cell in cells)
+    )
+    pending = [
+        CellJob(
+            cell.index,
+            cell.resolved,
+            cell.config.steps,
+            experiment.text,
+            directory / "cells" / _file_of(cell, source_hash()),
+            plan,
+        )
+        for cell in cells
+    ]
+    outcomes = []
+    # The first cell runs here: it leaves the compiled kernel where the others find it.
+    for outcomes_of in ([run_cell(pending[0])], _outcomes(pending[1:], jobs) if pending[1:] else []):
+        for outcome in outcomes_of:
+            outcomes.append(outcome)
+            progress.cell_done(len(outcomes), len(pending))
+    index = [
+        {
+            "index": cell.index,
+            "label": cell.label,
+            "coordinates": {axis: _plain(value) for axis, value in cell.coordinates.items()},
+            "file": f"cells/{job.path.name}",
+            "status": outcome.status,
+        }
+        for cell, job, outcome in zip(cells, pending, outcomes, strict=True)
+    ]
+    table = {"experiment": experiment.name, "plan": plan.spec.digest(), "cells": index}
+    (directory / CELLS).write_text(json.dumps(table, indent=1) + "\n")
+    finished = Run(directory)
+    verdicts = judge(experiment.measures, experiment.expectations, finished.cells)
+    write_results(finished, experiment, outcomes, verdicts)
+    (directory / ENVIRONMENT).write_text(json.dumps(environment(plan.spec), indent=1) + "\n")
+    (directory / DONE).write_text("")
+    point_latest(directory, root)
+    return Finished(finished, outcomes, verdicts)
+
+
+def _plain(value: Any) -> Any:
+    return value if isinstance(value, str | int | float | bool | list | tuple) else str(value)

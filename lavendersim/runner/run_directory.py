@@ -1,0 +1,124 @@
+"""A run's directory enters, a `Run` leaves: its experiment, its cells, their logs. No numba here."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+from lavendersim.errors import UsageError
+from lavendersim.experiment import Experiment, load_experiment_text
+from lavendersim.trace import Trace, open_trace
+
+CONFIG, RESOLVED = "config.yaml", "resolved.yaml"
+CELLS, RESULTS, TABLE = "cells.json", "results.json", "results.csv"
+ENVIRONMENT, DONE, LATEST = "env.json", "DONE", "latest"
+RUNS = Path("runs")
+
+
+@dataclass(frozen=True)
+class RunCell:
+    """One cell that was run, and its log."""
+
+    index: int
+    label: str
+    coordinates: Mapping[str, Any]
+    path: Path
+    status: str
+    _held: list[Trace] = field(default_factory=list, repr=False, compare=False)
+
+    def trace(self) -> Trace:
+        """Open the cell's log; its columns are read when they are first asked for."""
+        if not self._held:
+            self._held.append(open_trace(self.path, allow_incomplete=True))
+        return self._held[0]
+
+    def release(self) -> None:
+        """Forget the columns read so far (a large sweep does not fit into memory at once)."""
+        self._held.clear()
+
+
+@dataclass(frozen=True)
+class Run:
+    """A run on disk."""
+
+    path: Path
+
+    @cached_property
+    def experiment(self) -> Experiment:
+        """The experiment as it was run."""
+        text = (self.path / CONFIG).read_bytes()
+        return load_experiment_text(text, str(self.path / CONFIG))
+
+    @cached_property
+    def name(self) -> str:
+        """Name of the experiment: the stem of the file it was read from."""
+        return str(self._index["experiment"])
+
+    @cached_property
+    def _index(self) -> dict[str, Any]:
+        index: dict[str, Any] = json.loads((self.path / CELLS).read_text())
+        return index
+
+    @cached_property
+    def cells(self) -> tuple[RunCell, ...]:
+        """The cells that were run, in the order of the sweep."""
+        coordinates = {cell.index: cell.coordinates for cell in self.experiment.cells()}
+        return tuple(
+            RunCell(
+                row["index"],
+                row["label"],
+                coordinates[row["index"]],
+                self.path / row["file"],
+                row["status"],
+            )
+            for row in self._index["cells"]
+        )
+
+    @property
+    def finished(self) -> bool:
+        """Whether the run came to its end."""
+        return (self.path / DONE).exists()
+
+    def results(self) -> dict[str, Any]:
+        """Return the table of results as it was written."""
+        table: dict[str, Any] = json.loads((self.path / RESULTS).read_text())
+        return table
+
+
+def list_runs(root: Path = RUNS) -> list[Run]:
+    """Return the runs below `root`, oldest first."""
+    if not root.is_dir():
+        return []
+    found = [Run(path.parent) for path in root.glob(f"*/{CELLS}") if not path.parent.is_symlink()]
+    return sorted(found, key=lambda run: run.path.name)
+
+
+def open_run(path: Path | str | None = None, root: Path = RUNS) -> Run:
+    """Open a run by its directory or name; without one, the latest finished run.
+
+    Raises UsageError when there is none.
+    """
+    if path is None:
+        latest = root / LATEST
+        if not latest.exists():
+            raise UsageError(f"{root} has no finished run: start one with `lavender run CONFIG`")
+        return Run(Path(os.path.normpath(root / os.readlink(latest))))
+    for candidate in (Path(path), root / path):
+        if (candidate / CELLS).exists():
+            return Run(candidate)
+    raise UsageError(f"{path}: not the directory of a run (it has no {CELLS})")
+
+
+def point_latest(directory: Path, root: Path) -> None:
+    """Move the `latest` link to a finished run in one step."""
+    temporary = root / f".{LATEST}-{os.getpid()}"
+    with contextlib.suppress(FileNotFoundError):
+        temporary.unlink()
+    temporary.symlink_to(directory.name, target_is_directory=True)
+    os.replace(temporary, root / LATEST)

@@ -1,0 +1,12 @@
+"""The log of a run: blocks of steps enter an MCAP file, columns leave it. The only room with mcap.
+
+What stands in the file: `schema`. Written by `TraceWriter`, read by `open_trace`, and `recover`
+makes a readable file of what a killed run left.
+"""
+
+from lavendersim.trace.encode import Block
+from lavendersim.trace.reader import Trace, open_trace
+from lavendersim.trace.recover import RecoveryReport, recover
+from lavendersim.trace.writer import TraceWriter
+
+__all__ = ["Block", "RecoveryReport", "Trace", "TraceWriter", "open_trace", "recover"]

@@ -1,0 +1,225 @@
+"""Chunk payloads enter, an MCAP file leaves: records, indexes and checksums, written as they come.
+
+    magic Header Attachment.. Metadata.. (Chunk MessageIndex..).. Metadata DataEnd  summary  Footer
+
+Every chunk is flushed, so a killed run leaves whole chunks behind. All bytes up to DataEnd, every
+attachment, every chunk and the summary carry a CRC; metadata records, which MCAP leaves bare until
+DataEnd, carry their own under the key `crc32`.
+"""
+
+from __future__ import annotations
+
+import struct
+import zlib
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import zstandard
+from mcap.data_stream import RecordBuilder
+from mcap.opcode import Opcode
+from mcap.records import (
+    Attachment,
+    AttachmentIndex,
+    Channel,
+    Chunk,
+    ChunkIndex,
+    DataEnd,
+    Footer,
+    Header,
+    McapRecord,
+    Metadata,
+    MetadataIndex,
+    Schema,
+    Statistics,
+    SummaryOffset,
+)
+from numpy.typing import NDArray
+
+MAGIC = b"\x89MCAP0\r\n"
+LIBRARY = "lavender"
+CRC_KEY = "crc32"
+COMPRESSION_LEVEL = 1
+
+# one entry of a MessageIndex
+INDEX_ENTRY = np.dtype([("time", "<u8"), ("offset", "<u8")])
+
+
+class Messages(NamedTuple):
+    """The messages of one channel in a chunk: INDEX_ENTRY rows, in order."""
+
+    channel: int
+    entries: NDArray[Any]
+
+
+@dataclass
+class FileIndex:
+    """What a summary says about the file; enough to read it, or to go on writing it."""
+
+    schemas: dict[int, Schema] = field(default_factory=dict)
+    channels: dict[int, Channel] = field(default_factory=dict)
+    chunks: list[ChunkIndex] = field(default_factory=list)
+    attachments: list[AttachmentIndex] = field(default_factory=list)
+    metadata: list[MetadataIndex] = field(default_factory=list)
+    counts: dict[int, int] = field(default_factory=dict)
+
+    def statistics(self) -> Statistics:
+        """Return the Statistics record."""
+        return Statistics(
+            attachment_count=len(self.attachments),
+            channel_count=len(self.channels),
+            channel_message_counts=dict(sorted(self.counts.items())),
+            chunk_count=len(self.chunks),
+            message_count=sum(self.counts.values()),
+            message_end_time=max((c.message_end_time for c in self.chunks), default=0),
+            message_start_time=min((c.message_start_time for c in self.chunks), default=0),
+            metadata_count=len(self.metadata),
+            schema_count=len(self.schemas),
+        )
+
+
+def to_bytes(*records: McapRecord) -> bytes:
+    """Return records as bytes."""
+    builder = RecordBuilder()
+    for record in records:
+        record.write(builder)
+    data: bytes = builder.end()  # type: ignore[no-untyped-call]
+    return data
+
+
+def metadata_crc(name: str, values: Mapping[str, str]) -> str:
+    """Return the checksum that a metadata record carries of its name and its other entries."""
+    entries = {key: value for key, value in values.items() if key != CRC_KEY}
+    return f"{zlib.crc32(to_bytes(Metadata(name, entries))):08x}"
+
+
+def message_index(messages: Messages) -> bytes:
+    """Return a MessageIndex record; mcap's own writes entry by entry."""
+    entries = messages.entries.astype(INDEX_ENTRY).tobytes()
+    body = struct.pack("<HI", messages.channel, len(entries)) + entries
+    return struct.pack("<BQ", Opcode.MESSAGE_INDEX, len(body)) + body
+
+
+class Container:
+    """An MCAP file being written."""
+
+    def __init__(self, path: Path) -> None:
+        self.index = FileIndex()
+        self._stream = path.open("wb")
+        self._crc = 0
+        self._offset = 0
+        self._compressor = zstandard.ZstdCompressor(level=COMPRESSION_LEVEL)
+        self._write(MAGIC + to_bytes(Header(profile="", library=LIBRARY)))
+
+    @classmethod
+    def resume(cls, path: Path, data: bytes, index: FileIndex) -> Container:
+        """Return a container that holds `data`, a prefix of another file that `index` describes."""
+        container = cls(path)
+        container._stream.seek(0)
+        container._stream.truncate()
+        container._crc = container._offset = 0
+        container._write(data)
+        container.index = index
+        return container
+
+    def attach(self, name: str, media_type: str, data: bytes) -> None:
+        """Write an attachment; its times are 0, for no wall clock enters the file."""
+        record = to_bytes(Attachment(0, 0, name, media_type, data))
+        entry = AttachmentIndex(self._offset, len(record), 0, 0, len(data), name, media_type)
+        self.index.attachments.append(entry)
+        self._write(record)
+
+    def describe(self, name: str, values: Mapping[str, str]) -> None:
+        """Write a metadata record with its checksum. ValueError when `values` has that key."""
+        if CRC_KEY in values:
+            raise ValueError(f"metadata {name!r} may not use the key {CRC_KEY!r}")
+        record = to_bytes(Metadata(name, {**values, CRC_KEY: metadata_crc(name, values)}))
+        self.index.metadata.append(MetadataIndex(self._offset, len(record), name))
+        self._write(record)
+
+    def register(self, schemas: Iterable[Schema], channels: Iterable[Channel]) -> bytes:
+        """Note schemas and channels; return their records, to open the chunk that needs them."""
+        schemas, channels = list(schemas), list(channels)
+        self.index.schemas.update({schema.id: schema for schema in schemas})
+        self.index.channels.update({channel.id: channel for channel in channels})
+        return to_bytes(*schemas, *channels)
+
+    def write_chunk(self, payload: bytes, messages: Iterable[Messages]) -> None:
+        """Compress and write a chunk with its message indexes, and flush."""
+        messages = [group for group in messages if len(group.entries)]
+        times = np.concatenate([group.entries["time"] for group in messages])
+        chunk = Chunk(
+            compression="zstd",
+            data=self._compressor.compress(payload),
+            message_start_time=int(times.min()),
+            message_end_time=int(times.max()),
+            uncompressed_crc=zlib.crc32(payload),
+            uncompressed_size=len(payload),
+        )
+        record = to_bytes(chunk)
+        indexes = [message_index(group) for group in messages]
+        position = self._offset + len(record)
+        offsets = {}
+        for group, index in zip(messages, indexes, strict=True):
+            offsets[group.channel] = position
+            position += len(index)
+            count = self.index.counts.get(group.channel, 0) + len(group.entries)
+            self.index.counts[group.channel] = count
+        entry = index_of(chunk, self._offset, len(record))
+        entry.message_index_offsets = offsets
+        entry.message_index_length = position - self._offset - len(record)
+        self.index.chunks.append(entry)
+        self._write(b"".join([record, *indexes]))
+
+    def finish(self) -> None:
+        """Write DataEnd, the summary and the footer, and close the file."""
+        self._write(to_bytes(DataEnd(self._crc)))
+        start = self._offset
+        index = self.index
+        groups: list[tuple[Opcode, Iterable[McapRecord]]] = [
+            (Opcode.SCHEMA, index.schemas.values()),
+            (Opcode.CHANNEL, index.channels.values()),
+            (Opcode.STATISTICS, [index.statistics()]),
+            (Opcode.CHUNK_INDEX, index.chunks),
+            (Opcode.ATTACHMENT_INDEX, index.attachments),
+            (Opcode.METADATA_INDEX, index.metadata),
+        ]
+        summary = b""
+        offsets = []
+        for opcode, records in groups:
+            data = to_bytes(*records)
+            offsets.append(SummaryOffset(opcode, start + len(summary), len(data)))
+            summary += data
+        offset_start = start + len(summary)
+        summary += to_bytes(*(offset for offset in offsets if offset.group_length))
+        footer = to_bytes(Footer(start, offset_start, 0))
+        crc = zlib.crc32(summary + footer[:-4])
+        self._write(summary + to_bytes(Footer(start, offset_start, crc)) + MAGIC)
+        self.abandon()
+
+    def abandon(self) -> None:
+        """Close the file as it stands: without `finish` it is a killed run."""
+        self._stream.close()
+
+    def _write(self, data: bytes) -> None:
+        self._crc = zlib.crc32(data, self._crc)
+        self._offset += len(data)
+        self._stream.write(data)
+        self._stream.flush()
+
+
+def index_of(chunk: Chunk, offset: int, length: int) -> ChunkIndex:
+    """Return the index entry of a chunk record at `offset`; its message indexes still unknown."""
+    return ChunkIndex(
+        chunk_start_offset=offset,
+        chunk_length=length,
+        compression=chunk.compression,
+        compressed_size=len(chunk.data),
+        message_start_time=chunk.message_start_time,
+        message_end_time=chunk.message_end_time,
+        message_index_length=0,
+        message_index_offsets={},
+        uncompressed_size=chunk.uncompressed_size,
+    )

@@ -1,0 +1,183 @@
+"""Checked chunks enter, columns leave: the mirror of `encode`, by the same layouts.
+
+Columns are those the file names: the fields of its lavender.Step and lavender.Residuals
+descriptors, and the `fields` of its PointCloud messages. A file whose messages have those columns
+in another layout than lavender writes is refused, not misread.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+import numpy as np
+from google.protobuf import descriptor_pb2, descriptor_pool, message_factory
+from mcap.records import Schema
+from numpy.typing import NDArray
+
+from lavendersim.trace import layout
+from lavendersim.trace.index import ChunkContent
+from lavendersim.trace.layout import PackedField
+from lavendersim.trace.schema import HIGH_WORD, KINDS, NUMERIC_TYPES, Column
+from lavendersim.trace.wire import NANOSECONDS, Bytes, Rows, Template, gather, padded_varints
+
+Table = NDArray[Any]
+
+
+def columns_in(schema: Schema, message: str) -> tuple[Column, ...]:
+    """Return the columns a descriptor names. ValueError for a type that is no column's."""
+    files = descriptor_pb2.FileDescriptorSet.FromString(schema.data).file
+    (found,) = (m for file in files for m in file.message_type if m.name == message)
+    for field in found.field:
+        if field.type not in KINDS:
+            raise ValueError(f"field {field.name!r} of {message} has another type than lavender's")
+    return tuple(Column(f.name, KINDS[f.type], f.number, "") for f in found.field)
+
+
+def _table(columns: Sequence[tuple[str, str]], count: int) -> Table:
+    return np.empty(count, [(name, "=" + kind) for name, kind in columns])
+
+
+def join(parts: Iterable[Table], columns: Sequence[tuple[str, str]]) -> Table:
+    """Return the parts of a table as one."""
+    return np.concatenate([_table(columns, 0), *parts])
+
+
+def _matching(template: Template, data: Bytes, offsets: Rows) -> Bytes:
+    """Return the rows at those offsets. ValueError when they are not of that layout."""
+    rows = gather(data, offsets.astype(np.int64), len(template))
+    if not template.matches(rows):
+        raise ValueError("messages have another layout than lavender's")
+    return rows
+
+
+def seconds(time_ns: Rows) -> NDArray[np.float64]:
+    """Return times [s]."""
+    times: NDArray[np.float64] = time_ns.astype(np.float64) / NANOSECONDS
+    return times
+
+
+def step_columns(columns: Sequence[Column]) -> list[tuple[str, str]]:
+    """Return the names and kinds of the step table: the file's, and `time` [s]."""
+    return [*((c.name, c.kind) for c in columns), ("time", "f8")]
+
+
+def decode_steps(chunk: ChunkContent, columns: Sequence[Column]) -> Table:
+    """Return the step table of a light chunk."""
+    entries = chunk.messages[layout.CHANNELS["/step"]]
+    template = layout.step_layout(columns)
+    words = template.take(_matching(template, chunk.data, entries["offset"]), "step")
+    table = _table(step_columns(columns), len(entries))
+    for index, column in enumerate(columns):
+        table[column.name] = _column(words, index, column.kind)
+    table["time"] = seconds(entries["time"])
+    return table
+
+
+def _column(words: Rows, index: int, kind: str) -> Rows:
+    return np.ascontiguousarray(words[:, index]).view("<" + kind)
+
+
+def residual_columns(columns: Sequence[Column]) -> list[tuple[str, str]]:
+    """Return the names and kinds of the residual table."""
+    return [("step", "i8"), *((c.name, c.kind) for c in columns)]
+
+
+def decode_residuals(chunk: ChunkContent, columns: Sequence[Column]) -> Table:
+    """Return the residual table of a light chunk."""
+    offsets = chunk.messages[layout.CHANNELS["/residuals"]]["offset"].astype(np.int64)
+    head, tail = layout.residual_layout(), layout.residual_row_layout(columns)
+    rows = _matching(head, chunk.data, offsets)
+    counts = _counts(head, rows, len(tail))
+    sweeps = _matching(tail, chunk.data, _tails(offsets + len(head), counts, len(tail)))
+    words = tail.take(sweeps, "sweep")
+    table = _table(residual_columns(columns), len(sweeps))
+    table["step"] = np.repeat(_column(head.take(rows, "step"), 0, "i8"), counts)
+    for index, column in enumerate(columns):
+        table[column.name] = _column(words, index, column.kind)
+    return table
+
+
+def decode_poses(chunk: ChunkContent, bodies: Sequence[str]) -> tuple[Rows, NDArray[np.float64]]:
+    """Return steps (n,) and poses (n, bodies, 7) of a bulk chunk."""
+    entries = chunk.messages[layout.CHANNELS["/tf"]]
+    template = layout.transforms_layout(bodies)
+    rows = _matching(template, chunk.data, entries["offset"])
+    shape = (len(rows), len(bodies), layout.POSE)
+    if not bodies:
+        return _sequence(template, rows), np.empty(shape)
+    words = np.ascontiguousarray(template.take(rows, "pose")).view("<f8").reshape(shape)
+    return _sequence(template, rows), words[:, :, [0, 1, 2, 6, 3, 4, 5]].astype(np.float64)
+
+
+def packed_fields(schema: Schema, chunk: ChunkContent) -> tuple[tuple[PackedField, ...], int]:
+    """Return the fields and the stride [B] that the first PointCloud of a chunk states."""
+    pool = descriptor_pool.DescriptorPool()
+    for file in descriptor_pb2.FileDescriptorSet.FromString(schema.data).file:
+        pool.Add(file)
+    cloud: Any = message_factory.GetMessageClass(pool.FindMessageTypeByName(schema.name))()
+    offset = int(chunk.messages[layout.CHANNELS["/contacts"]]["offset"][0])
+    length = int(gather(chunk.data, np.array([offset + 1]), 8).view("<u8")[0, 0])
+    begin = offset + layout.RECORD_HEADER + layout.MESSAGE_HEADER
+    cloud.ParseFromString(chunk.data[begin : offset + layout.RECORD_HEADER + length].tobytes())
+    fields = tuple(PackedField(f.name, f.offset, f.type) for f in cloud.fields)
+    return fields, cloud.point_stride
+
+
+def contact_columns(fields: Sequence[PackedField]) -> list[tuple[str, str]]:
+    """Return the names and kinds of the contact table; bytes are colours, for viewers only."""
+    names = {field.name for field in fields}
+    columns = [("step", "i8")]
+    for field in fields:
+        if field.type == NUMERIC_TYPES["f8"]:
+            columns.append((field.name, "f8"))
+        elif field.type == NUMERIC_TYPES["u4"] and field.name + HIGH_WORD in names:
+            columns.append((field.name, "i8"))
+    return [*columns, ("time", "f8")]
+
+
+def decode_contacts(
+    chunk: ChunkContent, fields: Sequence[PackedField], stride: int, frame: str
+) -> Table:
+    """Return the contact table of a bulk chunk."""
+    entries = chunk.messages[layout.CHANNELS["/contacts"]]
+    head = layout.contact_layout(fields, stride, frame)
+    offsets = entries["offset"].astype(np.int64)
+    rows = _matching(head, chunk.data, offsets)
+    counts = _counts(head, rows, stride)
+    stated = np.ascontiguousarray(head.take(rows, "data_length")[:, 0]).view(np.uint8)
+    if not np.array_equal(stated.reshape(len(rows), -1), padded_varints(counts * stride)):
+        raise ValueError("a point cloud contradicts its length")
+    points = gather(chunk.data, _tails(offsets + len(head), counts, stride), stride)
+    packed = points.view(layout.packed_dtype(fields, stride))[:, 0]
+    columns = contact_columns(fields)
+    table = _table(columns, len(packed))
+    for name, kind in columns[1:-1]:
+        if kind == "i8":
+            high = packed[name + HIGH_WORD].astype(np.int64)
+            table[name] = high << 32 | packed[name].astype(np.int64)
+        else:
+            table[name] = packed[name]
+    table["step"] = np.repeat(_sequence(head, rows), counts)
+    table["time"] = np.repeat(seconds(entries["time"]), counts)
+    return table
+
+
+def _sequence(template: Template, rows: Bytes) -> Rows:
+    return _column(template.take(rows, "sequence"), 0, "u4").astype(np.int64)
+
+
+def _counts(head: Template, rows: Bytes, size: int) -> Rows:
+    """Return how many rows follow each head. ValueError when they do not fill the record."""
+    length = _column(head.take(rows, "length"), 0, "u8").astype(np.int64)
+    tail = length + layout.RECORD_HEADER - len(head)
+    if np.any(tail < 0) or np.any(tail % size):
+        raise ValueError("messages have another layout than lavender's")
+    return tail // size
+
+
+def _tails(starts: Rows, counts: Rows, size: int) -> Rows:
+    """Return the byte offset of every row that follows the heads."""
+    before = np.cumsum(counts) - counts
+    offsets: Rows = np.repeat(starts - before * size, counts) + np.arange(counts.sum()) * size
+    return offsets

@@ -1,0 +1,175 @@
+"""Columns and body names enter, the byte layout of each message leaves; writer and reader share it.
+
+Every layout is a whole MCAP Message record (opcode, length, channel, sequence, log and publish
+time, data), so a chunk is filled by copying rows. Slots: `sequence`, `clock` (log and publish
+time), `timestamp` (protobuf), and the columns under the names given below.
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from mcap.opcode import Opcode
+
+from lavendersim.trace.schema import COLOURS, HIGH_WORD, NUMERIC_TYPES, Column
+from lavendersim.trace.wire import FIXED64, LENGTH, VARINT, VARINT_WIDTH, Template, tag, varint
+
+RECORD_HEADER = 9  # opcode and length
+MESSAGE_HEADER = 22  # channel, sequence, log time, publish time
+FIXED32 = 5  # protobuf wire type
+POSE = 7  # x y z qw qx qy qz
+
+# channel of every topic; fixed, so that chunks of equal runs are equal
+CHANNELS = {
+    "/robot_description": 1,
+    "/tf": 2,
+    "/contacts": 3,
+    "/step": 4,
+    "/residuals": 5,
+    "/plot/force": 6,
+    "/plot/penetration": 7,
+    "/plot/log10_residual": 8,
+}
+
+
+class PackedField(NamedTuple):
+    """One field of a packed point: as foxglove.PackedElementField."""
+
+    name: str
+    offset: int
+    type: int
+
+
+def root_frame(bodies: Sequence[str]) -> str:
+    """Return the name of the world frame: `world`, unless a body is called so."""
+    name = "world"
+    while name in bodies:
+        name = "_" + name
+    return name
+
+
+def record(topic: str, body: Template, open_ended: bool = False) -> Template:
+    """Return the Message record around `body`; open-ended bodies have a `length` slot."""
+    layout = Template().constant(bytes([Opcode.MESSAGE]))
+    if open_ended:
+        layout.slot("length", 8)
+    else:
+        layout.constant(struct.pack("<Q", MESSAGE_HEADER + len(body)))
+    layout.constant(struct.pack("<H", CHANNELS[topic]))
+    layout.slot("sequence", 4).slot("clock", 8).slot("clock", 8)
+    return layout.embed(body)
+
+
+def step_layout(columns: Sequence[Column]) -> Template:
+    """Return the layout of /step; slot `step` holds the columns in their order."""
+    body = Template()
+    for column in columns:
+        body.word(column.number, "step")
+    return record("/step", body)
+
+
+def plot_layout(topic: str) -> Template:
+    """Return the layout of a /plot topic: a Float64MultiArray of one value, slot `plot`.
+
+    CDR, little endian; after its four bytes: no dimensions, no offset, one value, padding to 8.
+    """
+    head = bytes([0, 1, 0, 0]) + struct.pack("<IIII", 0, 0, 1, 0)
+    return record(topic, Template().constant(head).slot("plot", 8))
+
+
+def _doubles(names: int, slot: str) -> Template:
+    body = Template()
+    for number in range(1, names + 1):
+        body.word(number, slot)
+    return body
+
+
+def transforms_layout(bodies: Sequence[str]) -> Template:
+    """Return the layout of /tf; slot `pose` holds x y z qx qy qz qw of each body in turn."""
+    body = Template()
+    for name in bodies:
+        one = Template().timestamp(1).string(2, root_frame(bodies)).string(3, name)
+        one.message(4, _doubles(3, "pose")).message(5, _doubles(4, "pose"))
+        body.message(1, one)
+    return record("/tf", body)
+
+
+def residual_row_layout(columns: Sequence[Column]) -> Template:
+    """Return the layout of one sweep in /residuals; slot `sweep` holds the columns."""
+    row = Template()
+    for column in columns:
+        row.word(column.number, "sweep")
+    return Template().message(2, row)
+
+
+def residual_layout() -> Template:
+    """Return the layout of /residuals before its sweeps; slot `step`."""
+    return record("/residuals", Template().word(1, "step"), open_ended=True)
+
+
+def contact_fields(dtype: np.dtype[Any]) -> tuple[PackedField, ...]:
+    """Return the packed fields for the contact columns of a block: x y z first, colours last."""
+    names = [name for name in dtype.names or () if name != "step"]
+    missing = [axis for axis in "xyz" if axis not in names]
+    if missing:
+        raise TypeError(f"contacts lack the columns {missing}")
+    fields: list[PackedField] = []
+    offset = 0
+    for name in ["x", "y", "z", *(name for name in names if name not in "xyz")]:
+        kind = dtype[name].str[1:]
+        if kind == "f8":
+            parts = [(name, "f8")]
+        elif kind == "i8":
+            parts = [(name, "u4"), (name + HIGH_WORD, "i4")]
+        else:
+            raise TypeError(f"contact column {name!r} is {dtype[name]}; float64 or int64 needed")
+        for part, code in parts:
+            fields.append(PackedField(part, offset, NUMERIC_TYPES[code]))
+            offset += int(code[1])
+    fields += [PackedField(c, offset + i, NUMERIC_TYPES["u1"]) for i, c in enumerate(COLOURS)]
+    return tuple(fields)
+
+
+def packed_dtype(fields: Sequence[PackedField], stride: int) -> np.dtype[Any]:
+    """Return the numpy dtype of one packed point. ValueError when the fields do not fit."""
+    codes = {number: code for code, number in NUMERIC_TYPES.items()}
+    return np.dtype(
+        {
+            "names": [field.name for field in fields],
+            "formats": ["<" + codes[field.type] for field in fields],
+            "offsets": [field.offset for field in fields],
+            "itemsize": stride,
+        }
+    )
+
+
+def point_stride(fields: Sequence[PackedField]) -> int:
+    """Return the bytes of one packed point [B]."""
+    codes = {number: int(code[1]) for code, number in NUMERIC_TYPES.items()}
+    return max(field.offset + codes[field.type] for field in fields)
+
+
+def contact_layout(fields: Sequence[PackedField], stride: int, frame: str) -> Template:
+    """Return the layout of /contacts before its points; slots `length`, `data_length`."""
+    identity = Template().message(1, _zeros(3))
+    one = _zeros(3).constant(tag(4, FIXED64) + struct.pack("<d", 1.0))
+    cloud = Template().timestamp(1).string(2, frame).message(3, identity.message(2, one))
+    cloud.constant(tag(4, FIXED32) + struct.pack("<I", stride))
+    for field in fields:
+        entry = Template().string(1, field.name)
+        entry.constant(tag(2, FIXED32) + struct.pack("<I", field.offset))
+        entry.constant(tag(3, VARINT) + varint(field.type))
+        cloud.message(5, entry)
+    cloud.constant(tag(6, LENGTH)).slot("data_length", VARINT_WIDTH)
+    return record("/contacts", cloud, open_ended=True)
+
+
+def _zeros(count: int) -> Template:
+    """Return explicit zero doubles: rerun takes an absent coordinate for an absent pose."""
+    body = Template()
+    for number in range(1, count + 1):
+        body.constant(tag(number, FIXED64) + bytes(8))
+    return body

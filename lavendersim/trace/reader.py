@@ -1,0 +1,161 @@
+"""A log file enters, columns leave, each loaded when it is first asked for.
+
+Reading `step` or `residual` touches the light chunks only; `contact` and `pose` the bulk ones.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from fractions import Fraction
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import yaml
+from mcap.records import Attachment, Schema
+from numpy.typing import NDArray
+
+from lavendersim.errors import TraceError
+from lavendersim.trace import decode, layout
+from lavendersim.trace.container import CRC_KEY, FileIndex
+from lavendersim.trace.index import (
+    ChunkContent,
+    damage,
+    parse,
+    parse_metadata,
+    read_at,
+    read_chunk,
+    read_summary,
+)
+from lavendersim.trace.scan import scan
+from lavendersim.trace.schema import FORMAT, RESIDUAL_COLUMNS, STEP_COLUMNS, Column
+from lavendersim.trace.writer import AS_WRITTEN, DESCRIPTION, ENDING, RESOLVED
+
+COMPLETE = "complete"
+INCOMPLETE = "incomplete"
+
+
+class Trace:
+    """One run's log. The columns and their units stand in `schema`."""
+
+    def __init__(self, path: Path, index: FileIndex, finished: bool) -> None:
+        self.path = path
+        self._index = index
+        with damage(path, "the metadata"):
+            self.metadata = self._read_metadata()
+            description = self.metadata[DESCRIPTION]
+            if description["format"] != FORMAT:
+                raise TraceError(
+                    f"{path}: log format {description['format']}, this version reads {FORMAT}"
+                )
+            self.bodies: list[str] = json.loads(description["bodies"])
+            self.timestep = Fraction(description["timestep"])
+            self.status = self.metadata[ENDING]["status"] if finished else INCOMPLETE
+        self.complete = self.status == COMPLETE
+
+    @cached_property
+    def step(self) -> NDArray[Any]:
+        """One row per logged step: the file's columns, and `time` [s]."""
+        with damage(self.path, "/step"):
+            columns = self._columns("/step", "Step", STEP_COLUMNS)
+            parts = [decode.decode_steps(c, columns) for c in self._chunks("/step")]
+            return decode.join(parts, decode.step_columns(columns))
+
+    @cached_property
+    def residual(self) -> NDArray[Any]:
+        """One row per sweep of the steps that were asked for: step, sweep, residual [m/s]."""
+        with damage(self.path, "/residuals"):
+            columns = self._columns("/residuals", "Sweep", RESIDUAL_COLUMNS)
+            parts = [decode.decode_residuals(c, columns) for c in self._chunks("/residuals")]
+            return decode.join(parts, decode.residual_columns(columns))
+
+    @cached_property
+    def pose(self) -> NDArray[np.float64]:
+        """Poses (rows, bodies, 7): x y z [m], qw qx qy qz; the same rows as `step`."""
+        with damage(self.path, "/tf"):
+            parts = [decode.decode_poses(c, self.bodies) for c in self._chunks("/tf")]
+            steps = np.concatenate([np.empty(0, np.int64), *(steps for steps, _ in parts)])
+            if not np.array_equal(steps, self.step["step"]):
+                raise ValueError("it has other steps than /step")
+            empty = np.empty((0, len(self.bodies), layout.POSE))
+            return np.concatenate([empty, *(poses for _, poses in parts)])
+
+    @cached_property
+    def contact(self) -> NDArray[Any]:
+        """One row per contact and step: `step`, the file's columns, and `time` [s]."""
+        with damage(self.path, "/contacts"):
+            frame = layout.root_frame(self.bodies)
+            parts, columns = [], [("step", "i8"), ("time", "f8")]
+            fields: tuple[layout.PackedField, ...] | None = None
+            stride = 0
+            for chunk in self._chunks("/contacts"):
+                if fields is None:
+                    fields, stride = decode.packed_fields(self._schema("/contacts"), chunk)
+                    columns = decode.contact_columns(fields)
+                parts.append(decode.decode_contacts(chunk, fields, stride, frame))
+            return decode.join(parts, columns)
+
+    @cached_property
+    def as_written(self) -> str:
+        """The config file as its author wrote it."""
+        return self._attachment(AS_WRITTEN).decode()
+
+    @cached_property
+    def resolved(self) -> dict[str, Any]:
+        """The config of this cell with every default filled in."""
+        with damage(self.path, RESOLVED):
+            loaded: dict[str, Any] = yaml.safe_load(self._attachment(RESOLVED).decode())
+            return loaded
+
+    def _read_metadata(self) -> dict[str, dict[str, str]]:
+        found = {}
+        with self.path.open("rb") as stream:
+            for entry in self._index.metadata:
+                record = parse_metadata(read_at(stream, entry.offset, entry.length))
+                found[record.name] = {k: v for k, v in record.metadata.items() if k != CRC_KEY}
+        return found
+
+    def _attachment(self, name: str) -> bytes:
+        with damage(self.path, f"attachment {name}"), self.path.open("rb") as stream:
+            (entry,) = (entry for entry in self._index.attachments if entry.name == name)
+            record: Attachment = parse(read_at(stream, entry.offset, entry.length), Attachment)
+            if record.name != name:
+                raise ValueError("another one stands in its place")
+            return record.data
+
+    def _schema(self, topic: str) -> Schema:
+        return self._index.schemas[self._index.channels[layout.CHANNELS[topic]].schema_id]
+
+    def _columns(self, topic: str, message: str, default: tuple[Column, ...]) -> tuple[Column, ...]:
+        """Return the columns of a topic; a run that ended before its first step has `default`."""
+        if layout.CHANNELS[topic] not in self._index.channels:
+            return default
+        return decode.columns_in(self._schema(topic), message)
+
+    def _chunks(self, topic: str) -> Iterator[ChunkContent]:
+        """Yield the chunks that hold messages of a topic."""
+        channel = layout.CHANNELS[topic]
+        with self.path.open("rb") as stream:
+            for entry in self._index.chunks:
+                if channel in entry.message_index_offsets:
+                    yield read_chunk(stream, entry)
+
+
+def open_trace(path: str | Path, allow_incomplete: bool = False) -> Trace:
+    """Return the log at `path`, its columns not yet read.
+
+    TraceError when the file is missing, damaged, or unfinished. With `allow_incomplete` a killed
+    run is read up to its last whole group of steps; its status is `incomplete`.
+    """
+    path = Path(path)
+    if not path.is_file():
+        raise TraceError(f"{path}: no such log")
+    try:
+        return Trace(path, read_summary(path), finished=True)
+    except TraceError:
+        if not allow_incomplete:
+            raise
+    with damage(path, "the log"):
+        return Trace(path, scan(path).entries, finished=False)

@@ -1,0 +1,174 @@
+"""What a saved .rrd holds, read back with rerun's own reader: the trace, and nothing else."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+
+import numpy as np
+import pyarrow as pa
+import pytest
+from rerun.chunk import RrdReader
+
+from lavendersim import replay
+
+# Rerun stores positions, vectors and quaternions as float32.
+FLOAT32 = 2 * np.finfo(np.float32).eps
+
+
+def read(path):
+    """Time-varying columns by entity: the chunks in order of time, and the static ones."""
+    moving, static = defaultdict(list), defaultdict(list)
+    for chunk in RrdReader(path).stream():
+        batch = chunk.to_record_batch()
+        (static if chunk.is_static else moving)[chunk.entity_path].append(batch)
+    for batches in moving.values():
+        batches.sort(key=lambda batch: batch.column(times_column(batch))[0].value)
+    return moving, static
+
+
+def times_column(batch):
+    return batch.schema.get_field_index("sim_time")
+
+
+def column(batches, name):
+    return [
+        row
+        for batch in batches
+        for row in batch.column(batch.schema.get_field_index(name)).to_pylist()
+    ]
+
+
+def times(batches):
+    chunks = [batch.column(times_column(batch)).cast(pa.int64()).to_numpy() for batch in batches]
+    return np.concatenate(chunks)
+
+
+@pytest.fixture
+def saved(two_bodies, tmp_path):
+    replay.save(two_bodies, tmp_path / "out" / "trace.rrd")
+    return read(tmp_path / "out" / "trace.rrd")
+
+
+def test_every_body_is_an_entity_of_its_name(saved):
+    moving, static = saved
+    assert {"/bodies/ball", "/bodies/box", "/bodies/floor"} <= set(static)
+    assert "/bodies/ball" in moving
+    assert column(static["/bodies/ball"], "CoordinateFrame:frame") == [["ball"]]
+
+
+def test_only_timeline_is_sim_time_in_the_logs_own_nanoseconds(saved, two_bodies):
+    moving, _ = saved
+    for batches in moving.values():
+        indexes = [f.name for f in batches[0].schema if f.metadata[b"rerun:kind"] == b"index"]
+        assert indexes == ["sim_time"]
+    assert np.array_equal(times(moving["/bodies/ball"]), two_bodies.step["time_ns"])
+
+
+def test_poses_equal_the_traces_at_every_step(saved, two_bodies):
+    moving, _ = saved
+    for body, name in ((1, "ball"), (2, "box")):
+        batches = moving[f"/bodies/{name}"]
+        rows = np.searchsorted(two_bodies.step["time_ns"], times(batches))
+        pose = two_bodies.pose[rows, body]
+        translation = np.array(column(batches, "Transform3D:translation"))[:, 0]
+        np.testing.assert_allclose(translation, pose[:, :3], rtol=FLOAT32, atol=0)
+        xyzw = np.array(column(batches, "Transform3D:quaternion"))[:, 0]
+        np.testing.assert_allclose(xyzw, pose[:, [4, 5, 6, 3]], rtol=FLOAT32, atol=0)
+
+
+def test_body_that_never_moves_is_sent_once(saved):
+    moving, _ = saved
+    assert len(times(moving["/bodies/box"])) == 1
+
+
+def test_body_that_never_moves_keeps_its_pose_from_the_first_step(saved):
+    moving, _ = saved
+    assert times(moving["/bodies/box"])[0] == 0
+
+
+def test_arrows_start_at_the_contacts_and_are_proportional_to_the_force(saved, two_bodies):
+    moving, _ = saved
+    batches = moving["/contacts/forces"]
+    vectors, origins = column(batches, "Arrows3D:vectors"), column(batches, "Arrows3D:origins")
+    colours = column(batches, "Arrows3D:colors")
+    row = 3
+    own = two_bodies.contact[two_bodies.contact["step"] == row]
+    points = np.stack([own["x"], own["y"], own["z"]], axis=1)
+    np.testing.assert_allclose(np.array(origins[row]), points, rtol=FLOAT32, atol=0)
+    # four equal shares of the box's weight, straight up, none cut
+    lengths = np.array(vectors[row])
+    assert (lengths[:, :2] == 0).all()
+    assert (lengths[:, 2] > 0.05).all()
+    assert np.ptp(lengths[:, 2]) == 0
+    assert len(set(colours[row])) == 1
+    impact = int(np.argmax(two_bodies.step["total_normal_force"]))
+    assert len(set(colours[impact])) == 2  # the impact's arrow is cut and says so
+
+
+def test_step_without_contacts_clears_the_arrows_and_points(one_ball, tmp_path):
+    replay.save(one_ball, tmp_path / "trace.rrd")
+    moving, _ = read(tmp_path / "trace.rrd")
+    counts = one_ball.step["contact_count"]
+    assert (counts == 0).any()
+    assert (counts > 0).any()
+    arrows = column(moving["/contacts/forces"], "Arrows3D:vectors")
+    points = column(moving["/contacts/points"], "Points3D:positions")
+    # an empty list, not a missing row: rerun keeps the last value where nothing is sent
+    assert [len(row) for row in arrows] == counts.tolist()
+    assert [len(row) for row in points] == counts.tolist()
+
+
+def test_plots_carry_the_recorded_numbers_in_their_units(saved, two_bodies):
+    moving, _ = saved
+    force = np.array(column(moving["/plot/force"], "Scalars:scalars"))[:, 0]
+    assert np.array_equal(force, two_bodies.step["total_normal_force"])
+    depth = np.array(column(moving["/plot/depth"], "Scalars:scalars"))[:, 0]
+    assert np.array_equal(depth, two_bodies.step["max_penetration"] * 1e3)
+
+
+def test_exactly_zero_residual_is_a_gap_and_not_minus_infinity(saved, two_bodies):
+    moving, _ = saved
+    shown = column(moving["/plot/residual"], "Scalars:scalars")
+    for row, residual in zip(shown, two_bodies.step["residual"], strict=True):
+        assert row == ([] if residual == 0 else [np.log10(residual)])
+
+
+def test_absent_field_of_the_log_is_an_absent_plot(two_bodies, tmp_path):
+    names = [name for name in two_bodies.step.dtype.names if name != "residual"]
+    two_bodies.step = two_bodies.step[names]
+    replay.save(two_bodies, tmp_path / "trace.rrd")
+    moving, _ = read(tmp_path / "trace.rrd")
+    assert {path for path in moving if path.startswith("/plot")} == {"/plot/force", "/plot/depth"}
+
+
+def test_rows_that_are_not_finite_end_the_motion(one_ball, tmp_path):
+    one_ball.pose[-1, 1, :3] = np.nan
+    replay.save(one_ball, tmp_path / "trace.rrd")
+    moving, _ = read(tmp_path / "trace.rrd")
+    assert len(times(moving["/bodies/ball"])) == len(one_ball.step) - 1
+
+
+def test_trace_without_any_contact_is_saved(one_ball, tmp_path):
+    one_ball.contact = np.zeros(0, [("step", "i8"), ("time", "f8")])  # as its log is read
+    replay.save(one_ball, tmp_path / "trace.rrd")
+    moving, _ = read(tmp_path / "trace.rrd")
+    assert all(row == [] for row in column(moving["/contacts/forces"], "Arrows3D:vectors"))
+
+
+def test_the_file_brings_its_blueprint(two_bodies, tmp_path):
+    replay.save(two_bodies, tmp_path / "trace.rrd")
+    assert len(RrdReader(tmp_path / "trace.rrd").blueprints()) == 1
+
+
+def test_failed_save_leaves_the_old_file_and_nothing_beside_it(two_bodies, tmp_path, monkeypatch):
+    path = tmp_path / "trace.rrd"
+    path.write_bytes(b"yesterday's")
+
+    def fail(*_):
+        raise OSError("disk full")
+
+    monkeypatch.setattr("lavendersim.replay.columns.send", fail)
+    with pytest.raises(OSError, match="disk full"):
+        replay.save(two_bodies, path)
+    assert path.read_bytes() == b"yesterday's"
+    assert list(tmp_path.iterdir()) == [path]

@@ -1,0 +1,48 @@
+"""Where things are drawn: planes by their upper face, the camera on the open side of each."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from lavendersim.replay import scene
+from lavendersim.replay.blueprint import eye_position
+
+ROOM = scene.Extent(np.array([-1.0, -1.0, 0.0]), np.array([1.0, 1.0, 1.0]))
+SLOPE = [-0.5, 0.0, np.sqrt(0.75)]
+
+
+def plane(normal, offset=0.0):
+    body = {"shape": {"kind": "plane", "normal": normal, "offset": offset}}
+    return scene.shapes({"scene": {"bodies": {"plane": body}}})[0]
+
+
+@pytest.mark.parametrize("normal", [[0, 0, 1], [0, 0, -1], [1, 0, 0], [0, -1, 0], SLOPE])
+def test_up_is_turned_to_the_normal(normal):
+    x, y, z, w = scene.turn_up_to(np.array(normal, dtype=float))
+    # third column of the rotation matrix of a unit quaternion
+    turned = [2 * (x * z + y * w), 2 * (y * z - x * w), 1 - 2 * (x * x + y * y)]
+    # the half-angle formula loses 1 + cos to cancellation: 1e-12 there is 1e-6 at worst
+    np.testing.assert_allclose(turned, normal, atol=1e-14)
+
+
+@pytest.mark.parametrize("normal", [[0, 0, 1], [0, 1, 0], [-1, 0, 0], SLOPE])
+def test_camera_stands_on_the_open_side_of_every_plane(normal):
+    wall = plane(normal)
+    eye = eye_position([wall], ROOM)
+    assert (eye - ROOM.centre) @ wall.normal > 0.2 * ROOM.diagonal
+
+
+def test_normal_is_normalised():
+    assert np.linalg.norm(plane([0, 3, 4]).normal) == pytest.approx(1.0, rel=1e-15)
+
+
+def test_extent_holds_every_sphere_over_the_whole_trace(one_ball):
+    room = scene.extent(one_ball, scene.shapes(one_ball.resolved))
+    height = one_ball.pose[:, 1, 2]
+    assert room.low.tolist() == [-0.1, -0.1, height.min() - 0.1]
+    assert room.high.tolist() == [0.1, 0.1, height.max() + 0.1]
+
+
+def test_scene_of_planes_alone_has_an_extent(one_ball):
+    assert scene.extent(one_ball, [plane([0, 0, 1])]).diagonal > 0

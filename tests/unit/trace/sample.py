@@ -1,0 +1,91 @@
+"""A made-up run enters no engine: blocks of random but fixed numbers for the tests of the log."""
+
+from __future__ import annotations
+
+import itertools
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from lavendersim.trace import Block, TraceWriter
+from lavendersim.trace.schema import CONTACT_COLUMNS, STEP_COLUMNS
+
+BODIES = ["floor", "ball", "crate"]
+TIMESTEP = Fraction(1, 240)
+AS_WRITTEN = "question: does it bounce? # é\n"
+RESOLVED = {
+    "scene": {
+        "gravity": [0.0, 0.0, -9.81],
+        "bodies": {
+            "floor": {"shape": {"kind": "plane", "normal": [0.0, 0.0, 1.0], "offset": 0.0}},
+            "ball": {"shape": {"kind": "sphere", "radius": 0.1}, "mass": 1.0, "fixed": False},
+            "crate": {"shape": {"kind": "box", "size": [0.2, 0.3, 0.4]}, "mass": 2e-07},
+        },
+    },
+    "numerics": {"timestep": "1/240", "tolerance": None, "gain": 1e-09},
+}
+METADATA = {"versions": {"numpy": "2", "engine": "abc"}, "plan": {"digest": "77"}}
+INTEGERS = ("step", "body_a", "body_b", "feature")
+
+
+def run(steps: int, seed: int = 0, extra: tuple[str, ...] = (), contacts: int = 4) -> Block:
+    """Return a whole run as one block: 0..contacts contacts a step, residuals on some."""
+    random = np.random.default_rng(seed)
+    step = np.zeros(steps, [(c.name, c.kind) for c in STEP_COLUMNS])
+    for column in STEP_COLUMNS:
+        step[column.name] = _noise(random, steps, column.kind)
+    step["step"] = np.arange(steps)
+    step["time_ns"] = np.arange(steps) * 10**9 // 240
+    step["residual"] = np.abs(step["residual"])
+    counts = random.integers(0, contacts + 1, steps)
+    counts[0] = 0
+    names = ["step", "body_a", "body_b", "feature", *CONTACT_COLUMNS, *extra]
+    fields = [(n, "i8" if n in INTEGERS else "f8") for n in dict.fromkeys(names)]
+    contact = np.zeros(counts.sum(), fields)
+    for name, kind in fields:
+        contact[name] = _noise(random, len(contact), kind)
+    contact["step"] = np.repeat(step["step"], counts)
+    asked = np.flatnonzero(random.random(steps) < 0.3)
+    residual = np.zeros(len(asked) * 5, [("step", "i8"), ("sweep", "i8"), ("residual", "f8")])
+    residual["step"] = np.repeat(asked, 5)
+    residual["sweep"] = np.tile(np.arange(5), len(asked))
+    residual["residual"] = _noise(random, len(residual), "f8")
+    pose = _noise(random, steps * len(BODIES) * 7, "f8").reshape(steps, len(BODIES), 7)
+    pose[0] = [0.0, 0.0, 0.5, 1.0, 0.0, 0.0, 0.0]  # a scene is built from finite poses
+    return Block(step, contact, pose, residual)
+
+
+def _noise(random: np.random.Generator, count: int, kind: str) -> Any:
+    """Return any bit pattern for integers; for floats also zero, the infinities and subnormals."""
+    if kind != "f8":
+        return random.integers(-(2**63), 2**63 - 1, count, np.int64).view(kind)
+    special = np.array([0.0, -0.0, np.inf, 5e-324, 1.0, np.nan])
+    return np.where(
+        random.random(count) < 0.1, random.choice(special, count), random.normal(size=count)
+    )
+
+
+def split(block: Block, sizes: list[int]) -> list[Block]:
+    """Return the same run in blocks of the given sizes; the last takes the rest."""
+    cuts = [0, *np.cumsum(sizes).tolist(), len(block.step)]
+    blocks = []
+    for low, high in itertools.pairwise(cuts):
+        steps = block.step[low:high]
+        inside = [np.isin(rows["step"], steps["step"]) for rows in (block.contact, block.residual)]
+        parts = (block.contact[inside[0]], block.pose[low:high], block.residual[inside[1]])
+        blocks.append(Block(steps, *parts))
+    return blocks
+
+
+def write(path: Path, blocks: list[Block], status: str | None = "complete") -> Path:
+    """Write blocks as a log; status None leaves it as a killed run would."""
+    writer = TraceWriter(path, BODIES, RESOLVED, AS_WRITTEN, TIMESTEP, METADATA)
+    for block in blocks:
+        writer.append(block)
+    if status is None:
+        writer.abandon()
+    else:
+        writer.close(status)
+    return path

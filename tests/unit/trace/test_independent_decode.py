@@ -1,0 +1,154 @@
+"""The log as others read it: the mcap package and google.protobuf, message by message."""
+
+from __future__ import annotations
+
+import struct
+import xml.etree.ElementTree as ET
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from google.protobuf import descriptor_pb2, descriptor_pool, message_factory
+from mcap.reader import NonSeekingReader, make_reader
+from sample import BODIES, run, write
+
+from lavendersim.trace import Block
+
+STEPS = 400
+KINDS = {5: "<u4", 6: "<i4", 8: "<f8", 1: "u1"}
+
+
+@pytest.fixture(scope="module")
+def block() -> Block:
+    return run(STEPS)
+
+
+@pytest.fixture(scope="module")
+def path(block: Block, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return write(tmp_path_factory.mktemp("log") / "run.mcap", [block])
+
+
+def messages(path: Path, topic: str) -> Iterator[tuple[Any, Any]]:
+    """Yield each message of a topic with its protobuf, by the schema in the file."""
+    classes: dict[int, Any] = {}
+    with path.open("rb") as stream:
+        reader = make_reader(stream, validate_crcs=True)
+        for schema, _, message in reader.iter_messages(topics=[topic]):
+            assert schema is not None
+            if schema.id not in classes:
+                pool = descriptor_pool.DescriptorPool()
+                for file in descriptor_pb2.FileDescriptorSet.FromString(schema.data).file:
+                    pool.Add(file)
+                found = pool.FindMessageTypeByName(schema.name)
+                classes[schema.id] = message_factory.GetMessageClass(found)
+            yield message, classes[schema.id].FromString(message.data)
+
+
+def same(a: float, b: float) -> bool:
+    return struct.pack("<d", a) == struct.pack("<d", b)
+
+
+def test_steps(path: Path, block: Block) -> None:
+    found = list(messages(path, "/step"))
+    assert len(found) == STEPS
+    for row, (message, step) in zip(block.step, found, strict=True):
+        assert (message.sequence, message.log_time) == (row["step"], row["time_ns"])
+        assert message.publish_time == message.log_time
+        for name in block.step.dtype.names or ():
+            value = getattr(step, name)
+            assert same(value, row[name]) if isinstance(value, float) else value == row[name]
+
+
+def test_transforms(path: Path, block: Block) -> None:
+    found = list(messages(path, "/tf"))
+    assert len(found) == STEPS
+    for row, poses, (_, message) in zip(block.step, block.pose, found, strict=True):
+        assert [t.child_frame_id for t in message.transforms] == BODIES
+        for pose, transform in zip(poses, message.transforms, strict=True):
+            p, q = transform.translation, transform.rotation
+            values = (p.x, p.y, p.z, q.w, q.x, q.y, q.z)
+            assert all(same(a, b) for a, b in zip(values, pose, strict=True))
+            assert transform.timestamp.ToNanoseconds() == row["time_ns"]
+            assert transform.parent_frame_id == "world"
+
+
+def test_contacts(path: Path, block: Block) -> None:
+    found = list(messages(path, "/contacts"))
+    assert len(found) == STEPS  # also where there are none, so that viewers clear
+    for row, (_, cloud) in zip(block.step, found, strict=True):
+        rows = block.contact[block.contact["step"] == row["step"]]
+        assert cloud.timestamp.ToNanoseconds() == row["time_ns"]
+        assert (cloud.frame_id, cloud.pose.orientation.w) == ("world", 1.0)
+        assert [field.name for field in cloud.fields][:3] == ["x", "y", "z"]
+        assert len(cloud.data) == len(rows) * cloud.point_stride
+        for field in cloud.fields:
+            dtype = np.dtype(
+                {
+                    "names": ["v"],
+                    "formats": [KINDS[field.type]],
+                    "offsets": [field.offset],
+                    "itemsize": cloud.point_stride,
+                }
+            )
+            values = np.frombuffer(cloud.data, dtype)["v"]
+            if field.type == 8:
+                assert values.tobytes() == rows[field.name].tobytes()
+            elif field.name in (block.contact.dtype.names or ()):
+                assert np.array_equal(values, rows[field.name] & 0xFFFFFFFF)
+
+
+def test_residuals(path: Path, block: Block) -> None:
+    rows = iter(block.residual)
+    for message, residuals in messages(path, "/residuals"):
+        assert residuals.step == message.sequence
+        for sweep in residuals.sweeps:
+            row = next(rows)
+            assert (residuals.step, sweep.sweep) == (row["step"], row["sweep"])
+            assert same(sweep.residual, row["residual"])
+    assert next(rows, None) is None
+
+
+def test_plots_are_cdr_and_log10_of_zero_is_the_floor(path: Path, block: Block) -> None:
+    values = {}
+    with path.open("rb") as stream:
+        for _, channel, message in make_reader(stream, validate_crcs=True).iter_messages():
+            if channel.topic.startswith("/plot/"):
+                head = (b"\0\1\0\0", 0, 0, 1, 0)  # little endian; no dimensions; one value
+                assert struct.unpack("<4sIIII", message.data[:20]) == head
+                values.setdefault(channel.topic, []).append(*struct.unpack("<d", message.data[20:]))
+    assert np.array_equal(values["/plot/force"], block.step["total_normal_force"], equal_nan=True)
+    drawn = np.array(values["/plot/log10_residual"])
+    assert np.all(drawn[block.step["residual"] == 0.0] == -18.0)
+    usual = block.step["residual"] > 1e-15
+    assert np.array_equal(drawn[usual], np.log10(block.step["residual"][usual]))
+
+
+def test_the_geometry_has_a_link_for_every_body(path: Path) -> None:
+    with path.open("rb") as stream:
+        ((_, _, message),) = make_reader(stream).iter_messages(topics=["/robot_description"])
+    (length,) = struct.unpack_from("<I", message.data, 4)
+    assert len(message.data) == 8 + length
+    robot = ET.fromstring(message.data[8:-1])
+    assert [
+        link.get("name") for link in robot.iter("link") if link.find("visual") is not None
+    ] == BODIES
+
+
+def test_a_reader_that_cannot_seek_sees_the_same_messages(path: Path) -> None:
+    with path.open("rb") as stream:
+        seeking = [m for _, _, m in make_reader(stream, validate_crcs=True).iter_messages()]
+    with path.open("rb") as stream:
+        other = [m for _, _, m in NonSeekingReader(stream, validate_crcs=True).iter_messages()]
+    key = lambda m: (m.log_time, m.channel_id)  # noqa: E731
+    assert sorted(seeking, key=key) == sorted(other, key=key)
+
+
+def test_messages_of_a_chunk_stand_in_order_of_time(path: Path) -> None:
+    with path.open("rb") as stream:
+        last: dict[bool, int] = {}
+        for _, channel, message in NonSeekingReader(stream).iter_messages(log_time_order=False):
+            bulk = channel.topic in ("/tf", "/contacts")
+            assert message.log_time >= last.get(bulk, 0)
+            last[bulk] = message.log_time
