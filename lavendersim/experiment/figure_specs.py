@@ -17,7 +17,7 @@ from lavendersim.experiment.names import AxisName, BodyName, MeasureName, PlaneN
 from lavendersim.experiment.quantities import Quantity
 from lavendersim.experiment.selection import Selection
 
-Scale = Literal["linear", "log", "symlog"]
+Scale = Literal["linear", "log"]
 Number = Annotated[float, Quantity()]
 Column = Literal["penetration", "normal_force", "clearance", "energy", "residual"]
 
@@ -48,8 +48,8 @@ class _Panel(ConfigModel):
     title: str = Field(default="", description="one idea, above the panel")
     x_label: str = Field(min_length=1, description="x axis, with its unit in brackets")
     y_label: str = Field(min_length=1, description="y axis, with its unit in brackets")
-    x_scale: Scale = Field(default="linear", description="linear, log or symlog")
-    y_scale: Scale = Field(default="linear", description="linear, log or symlog")
+    x_scale: Scale = Field(default="linear", description="linear or log")
+    y_scale: Scale = Field(default="linear", description="linear or log")
     at: Selection = Field(default_factory=dict, description="the cells shown; all when absent")
     series: AxisName | None = Field(
         default=None, description="one colour and marker per value of this axis"

@@ -125,8 +125,8 @@ def _sentence(
         return node.mark, missing_key(str(step), path, description)
     if step == "[key]":
         parent = root.get(*path[:-1]) or root
-        rule = 'a name is letters, digits, "_" and "-", starts with a letter, and has at most 64'
-        return key_mark(parent, str(path[-1])), f"{quoted(path[-1])} is no name; {rule}"
+        rule = 'use up to 64 letters, digits, "_" and "-", starting with a letter'
+        return key_mark(parent, str(path[-1])), f"{quoted(path[-1])} cannot be a name; {rule}"
     if kind == "union_tag_not_found":
         return node.mark, missing_key("kind", path, f"one of {_tags(context)}")
     if kind == "union_tag_invalid":

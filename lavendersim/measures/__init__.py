@@ -2,6 +2,7 @@
 
 from lavendersim.measures.judge import judge, judge_nodes
 from lavendersim.measures.registry import applies, evaluate
+from lavendersim.measures.values import Values
 from lavendersim.measures.verdict import Verdict
 
-__all__ = ["Verdict", "applies", "evaluate", "judge", "judge_nodes"]
+__all__ = ["Values", "Verdict", "applies", "evaluate", "judge", "judge_nodes"]

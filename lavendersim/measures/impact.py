@@ -129,7 +129,8 @@ def impulse_balance(spec: specs.ImpulseBalance, trace: Trace) -> float:
         return NAN
     mass = sum(one.mass for one in configs.values())
     momentum = _momentum(trace)
-    time = float(trace.step["time"][last] - trace.step["time"][first - 1])
+    # counted in steps: logged times are whole nanoseconds, 1e-7 of a step
+    time = float(int(trace.step["step"][last] - trace.step["step"][first - 1]) * trace.timestep)
     gained = momentum[last] - momentum[first - 1]
     gap = impulse + mass * time * cell_config.gravity(trace.resolved) - gained
     return math.sqrt(float(gap @ gap)) / size

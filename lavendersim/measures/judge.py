@@ -9,17 +9,15 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Protocol
 
-import numpy as np
-
 from lavendersim.errors import LavenderError
 from lavendersim.experiment.expect_specs import ExpectSpec
 from lavendersim.experiment.measure_specs import MeasureSpec
 from lavendersim.measures.cell_judgements import judge_cell
-from lavendersim.measures.registry import evaluate
 from lavendersim.measures.selection import coordinates_text, select, telling_axes
 from lavendersim.measures.sweep_judgements import judge_sweep
+from lavendersim.measures.values import Values
 from lavendersim.measures.verdict import Outcome, Verdict, failure
-from lavendersim.measures.views import Cell, Floats
+from lavendersim.measures.views import Cell
 
 Measures = Mapping[str, MeasureSpec]
 
@@ -44,10 +42,10 @@ def judge(
     measures: Measures, expectations: Sequence[ExpectSpec], cells: Sequence[Cell]
 ) -> list[Verdict]:
     """Return one verdict per claim, in the order of the expectations and of the cells."""
-    bench = _Bench(measures)
+    values = Values(measures)
     verdicts = []
     for expectation, node, chosen in _claims(measures, expectations, cells):
-        outcome = bench.outcome(expectation, chosen)
+        outcome = _outcome(expectation, chosen, values)
         verdicts.append(_verdict(expectation, node, outcome, _path(chosen)))
     return verdicts
 
@@ -72,33 +70,19 @@ def _claims(
             )
 
 
-class _Bench:
-    """Takes each measure of each cell once, however many expectations ask for it."""
-
-    def __init__(self, measures: Measures) -> None:
-        self._measures = measures
-        self._values: dict[tuple[str, int], Floats] = {}
-
-    def outcome(self, expectation: ExpectSpec, cells: Sequence[Cell]) -> Outcome:
-        if not cells:
-            return failure(expectation.judgement, "the expectation selects no cell of the sweep")
-        try:
-            for cell in cells:
-                if (status := cell.trace().status) != "complete":
-                    return failure("a complete run", f"{cell.label or 'the cell'}: {status}")
-            values = {id(cell): self._value(expectation.measure, cell) for cell in cells}
-            if expectation.per_cell:
-                return judge_cell(expectation, values[id(cells[0])], cells[0].trace())
-            return judge_sweep(expectation, cells, values)
-        except LavenderError as error:  # a log that is missing or damaged fails its claims alone
-            return failure("a readable log", str(error))
-
-    def _value(self, measure: str, cell: Cell) -> Floats:
-        key = (measure, id(cell))
-        if key not in self._values:
-            value = evaluate(self._measures[measure], cell.trace())
-            self._values[key] = np.atleast_1d(np.asarray(value, dtype=float))
-        return self._values[key]
+def _outcome(expectation: ExpectSpec, cells: Sequence[Cell], values: Values) -> Outcome:
+    if not cells:
+        return failure(expectation.judgement, "the expectation selects no cell of the sweep")
+    try:
+        for cell in cells:
+            if (status := cell.trace().status) != "complete":
+                return failure("a complete run", f"{cell.label or 'the cell'}: {status}")
+        if expectation.per_cell:
+            row = values.row(expectation.measure, cells[0])
+            return judge_cell(expectation, row, cells[0].trace())
+        return judge_sweep(expectation, cells, values.of(expectation.measure))
+    except LavenderError as error:  # a log that is missing or damaged fails its claims alone
+        return failure("a readable log", str(error))
 
 
 def _path(cells: Sequence[Cell]) -> str:

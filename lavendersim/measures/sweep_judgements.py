@@ -20,21 +20,21 @@ REDUCTIONS: Final[Mapping[str, Callable[..., Floats]]] = {
     "min": np.min,
     "mean": np.mean,
 }
-Values = Mapping[int, Floats]  # by id() of the cell
+RowOf = Callable[[Cell], Floats]  # the measure of a cell as a row of numbers
 
 
-def judge_sweep(expectation: ExpectSpec, cells: Sequence[Cell], values: Values) -> Outcome:
-    """Return the outcome of an expectation across the cells it selects; `values` by id(cell)."""
+def judge_sweep(expectation: ExpectSpec, cells: Sequence[Cell], row_of: RowOf) -> Outcome:
+    """Return the outcome of an expectation across the cells it selects."""
     if expectation.ratio is not None:
-        return _ratio(expectation.ratio, cells, values)
+        return _ratio(expectation.ratio, cells, row_of)
     if expectation.crosses is not None:
-        return _crosses(expectation.crosses, cells, values)
-    return _trend(expectation, cells, values)
+        return _crosses(expectation.crosses, cells, row_of)
+    return _trend(expectation, cells, row_of)
 
 
-def reduced(cells: Sequence[Cell], values: Values, how: str) -> Floats:
+def reduced(cells: Sequence[Cell], row_of: RowOf, how: str) -> Floats:
     """Return one row for several cells, number by number; rows must be equally long."""
-    rows = [values[id(cell)] for cell in cells]
+    rows = [row_of(cell) for cell in cells]
     if len({len(row) for row in rows}) != 1:
         return np.array([np.nan])
     return np.atleast_1d(REDUCTIONS[how](np.stack(rows), axis=0))
@@ -51,7 +51,7 @@ def first_rise(places: Sequence[float], heights: Sequence[float], level: float) 
 
 
 def along_axis(
-    cells: Sequence[Cell], values: Values, axis: str, how: str
+    cells: Sequence[Cell], row_of: RowOf, axis: str, how: str
 ) -> tuple[list[float], list[float]]:
     """Return the values of an axis in rising order and the reduced measure at each."""
     stations: dict[float, list[Cell]] = {}
@@ -59,10 +59,10 @@ def along_axis(
         if axis in cell.coordinates:
             stations.setdefault(float(cell.coordinates[axis]), []).append(cell)
     places = sorted(stations)
-    return places, [float(reduced(stations[place], values, how)[0]) for place in places]
+    return places, [float(reduced(stations[place], row_of, how)[0]) for place in places]
 
 
-def _trend(expectation: ExpectSpec, cells: Sequence[Cell], values: Values) -> Outcome:
+def _trend(expectation: ExpectSpec, cells: Sequence[Cell], row_of: RowOf) -> Outcome:
     trend = expectation.increasing or expectation.decreasing
     assert trend is not None
     axis, sign = trend.along, 1.0 if expectation.increasing else -1.0
@@ -76,7 +76,7 @@ def _trend(expectation: ExpectSpec, cells: Sequence[Cell], values: Values) -> Ou
         if len(members) < 2:
             return failure(expected, f"only one value of {axis} at {group}")
         for before, after in pairwise(members):
-            low, high = values[id(before)], values[id(after)]
+            low, high = row_of(before), row_of(after)
             if len(low) != len(high):
                 return failure(expected, "the rows are not equally long")
             rise = float(np.min(sign * (high - low)))
@@ -96,7 +96,7 @@ def _numbers(row: Floats) -> str:
     return repr(float(row[0])) if len(row) == 1 else str(row.tolist())
 
 
-def _ratio(spec: Ratio, cells: Sequence[Cell], values: Values) -> Outcome:
+def _ratio(spec: Ratio, cells: Sequence[Cell], row_of: RowOf) -> Outcome:
     bounds = [f"at most {spec.at_most!r}"] if spec.at_most is not None else []
     bounds += [f"at least {spec.at_least!r}"] if spec.at_least is not None else []
     expected = f"{spec.reduce} ratio {' and '.join(bounds)}"
@@ -107,8 +107,8 @@ def _ratio(spec: Ratio, cells: Sequence[Cell], values: Values) -> Outcome:
         return failure(expected, "`of` and `to` do not select the same groups of cells")
     worst, worst_margin, reason = float("nan"), float("inf"), ""
     for group in tops:
-        top = reduced(tops[group], values, spec.reduce)
-        bottom = reduced(bottoms[group], values, spec.reduce)
+        top = reduced(tops[group], row_of, spec.reduce)
+        bottom = reduced(bottoms[group], row_of, spec.reduce)
         if len(top) != len(bottom) or np.isnan(top).any() or np.isnan(bottom).any():
             return failure(expected, f"not a number, or rows of unequal length {group}".strip())
         counted = np.flatnonzero((np.abs(top) > spec.floor) | (np.abs(bottom) > spec.floor))
@@ -134,10 +134,10 @@ def _margin(spec: Ratio, ratio: float) -> float:
     return min(margins)
 
 
-def _crosses(spec: Crosses, cells: Sequence[Cell], values: Values) -> Outcome:
+def _crosses(spec: Crosses, cells: Sequence[Cell], row_of: RowOf) -> Outcome:
     low, high = spec.between
     expected = f"rises through {spec.level!r} at {spec.along} between {low!r} and {high!r}"
-    places, heights = along_axis(cells, values, spec.along, spec.reduce)
+    places, heights = along_axis(cells, row_of, spec.along, spec.reduce)
     place = first_rise(places, heights, spec.level)
     passed = bool(np.all(np.isfinite(heights))) and low <= place <= high
     reason = "" if place == place else f"it runs from {heights[:1]} to {heights[-1:]}"

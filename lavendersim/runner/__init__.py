@@ -1,6 +1,6 @@
 """The whole line, left to right: config, scene, engine, trace, measures. Runs cells and keeps runs."""
 
-from .experiment_run import Finished, Progress, find_configs, run
+from .experiment_run import Finished, Progress, find_configs, load_all, run
 from .run_directory import RUNS, Run, RunCell, list_runs, open_run
 
 __all__ = [
@@ -11,6 +11,7 @@ __all__ = [
     "RunCell",
     "find_configs",
     "list_runs",
+    "load_all",
     "open_run",
     "run",
 ]

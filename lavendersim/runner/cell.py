@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from math import ceil
 from pathlib import Path
 from time import perf_counter_ns
 from typing import Any, NamedTuple
@@ -15,7 +14,7 @@ from lavendersim.engine.engine import Engine, Rows
 from lavendersim.engine.kernel_cache import source_hash
 from lavendersim.engine.records import DIVERGED, RUNNING
 from lavendersim.scene.build import Scene, build
-from lavendersim.scene.events import apply_event
+from lavendersim.scene.events import EventQueue
 from lavendersim.scene.plan import Plan
 from lavendersim.trace import Block, TraceWriter
 
@@ -108,18 +107,15 @@ def run_cell(job: CellJob) -> CellOutcome:
         scene.timestep,
         metadata_of(job.plan),
     )
-    events = sorted(job.resolved["events"], key=lambda event: event["at"])
-    stops = [ceil(Fraction(repr(event["at"])) / scene.timestep) for event in events]
+    events = EventQueue(engine, scene, job.resolved["events"])
     status = "complete"
     done = 0
     while True:
-        while stops and stops[0] <= done:
-            apply_event(engine, scene, events.pop(0))
-            stops.pop(0)
+        events.apply_due(done)
         start = perf_counter_ns()
         outcome = RUNNING
         if done < job.steps:
-            outcome = engine.advance(min([*stops, job.steps]) - done)
+            outcome = engine.advance(events.next_stop(job.steps) - done)
         physics_ns += perf_counter_ns() - start
         done = int(engine.counters["step"][0])
         if outcome == DIVERGED:

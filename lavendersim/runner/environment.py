@@ -6,6 +6,7 @@ import os
 import platform
 from datetime import UTC, datetime
 from importlib.metadata import version
+from pathlib import Path
 from typing import Any
 
 PACKAGES = ("numpy", "numba", "llvmlite", "mcap", "pydantic", "zstandard", "protobuf")
@@ -23,21 +24,39 @@ def processor() -> str:
     return platform.processor() or platform.machine()
 
 
-def environment(spec: Any) -> dict[str, Any]:
-    """Return what a reader needs to judge the timings of a run and to repeat it."""
+def machine() -> dict[str, Any]:
+    """Return versions, processor and where kernels are kept."""
     from lavendersim import __version__
-    from lavendersim.engine.kernel_cache import directory, source_hash
+    from lavendersim.engine.kernel_cache import directory
 
+    kept, note = directory()
     return {
-        "date": datetime.now(UTC).isoformat(timespec="seconds"),
         "lavender": __version__,
         "python": platform.python_version(),
-        "packages": {name: version(name) for name in PACKAGES},
+        **{name: version(name) for name in PACKAGES},
         "system": f"{platform.system()} {platform.release()}",
         "processor": processor(),
         "cores": os.cpu_count(),
-        "engine_source": source_hash(),
+        "kernel cache": note or str(kept),
+    }
+
+
+def kernel_files() -> list[Path]:
+    """Return the compiled kernels on disk."""
+    from lavendersim.engine.kernel_cache import directory
+
+    kept = directory()[0]
+    return sorted(kept.glob("*.kernel")) if kept.name else []
+
+
+def environment(spec: Any) -> dict[str, Any]:
+    """Return what a reader needs to judge the timings of a run and to repeat it."""
+    from lavendersim.engine.kernel_cache import source_hash
+
+    return {
+        "date": datetime.now(UTC).isoformat(timespec="seconds"),
+        **machine(),
+        "engine source": source_hash(),
         "plan": spec.digest(),
         "spec": spec._asdict(),
-        "kernel_cache": str(directory()[0]),
     }

@@ -14,7 +14,7 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from lavendersim.errors import UsageError
+from lavendersim.errors import ConfigError, UsageError
 from lavendersim.experiment import Experiment, load_experiment, resolved_yaml
 from lavendersim.measures import Verdict, judge
 
@@ -70,6 +70,19 @@ def find_configs(paths: list[Path]) -> list[Path]:
         else:
             raise UsageError(f"{path}: no such file or folder")
     return list(dict.fromkeys(found))
+
+
+def load_all(paths: list[Path]) -> list[Experiment]:
+    """Load every config among `paths`; raises ConfigError with the defects of all files together."""
+    experiments, defects = [], []
+    for path in find_configs(paths):
+        try:
+            experiments.append(load_experiment(path))
+        except ConfigError as error:
+            defects += error.defects
+    if defects:
+        raise ConfigError(defects)
+    return experiments
 
 
 def make_directory(experiment: Experiment, root: Path) -> Path:

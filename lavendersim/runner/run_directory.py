@@ -6,7 +6,7 @@ import contextlib
 import json
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -53,7 +53,7 @@ class Run:
     def experiment(self) -> Experiment:
         """The experiment as it was run."""
         text = (self.path / CONFIG).read_bytes()
-        return load_experiment_text(text, str(self.path / CONFIG))
+        return replace(load_experiment_text(text, str(self.path / CONFIG)), name=self.name)
 
     @cached_property
     def name(self) -> str:

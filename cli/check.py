@@ -1,0 +1,47 @@
+"""`lavender check`: configs in, one line per judged expectation and cell out."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from lavender_cli import printing
+from lavender_cli.run import Configs, Jobs, Runs
+
+
+def check(
+    configs: Configs,
+    jobs: Jobs = 1,
+    runs: Runs = Path("runs"),
+    as_json: Annotated[bool, typer.Option("--json", help="Print the verdicts as JSON.")] = False,
+) -> None:
+    """Run experiments and print every verdict, cell by cell. Exits 1 when one fails."""
+    from lavendersim.runner import load_all, run
+
+    experiments = load_all(configs)
+    good, verdicts, total = True, [], 0
+    for experiment in experiments:
+        with printing.reporting(experiment.name) as progress:
+            finished = run(experiment, runs, jobs, progress)
+        good = good and finished.good
+        total += len(finished.verdicts)
+        verdicts += [
+            {"experiment": experiment.name, **verdict._asdict()} for verdict in finished.verdicts
+        ]
+        if as_json:
+            continue
+        for verdict in finished.verdicts:
+            typer.echo(
+                f"{printing.mark(verdict.passed)}  {experiment.name}: {verdict.node}: "
+                f"{printing.digits(verdict.measured)}, expected {verdict.expected}"
+            )
+        printing.print_failures(finished)
+    if as_json:
+        printing.as_json(verdicts)
+    else:
+        passed = sum(bool(verdict["passed"]) for verdict in verdicts)
+        typer.echo(f"{passed} of {total} expectations met in {len(experiments)} experiments")
+    if not good:
+        raise typer.Exit(1)

@@ -1,0 +1,31 @@
+"""`lavender plot`: a run in, its figures out, from its logs alone."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+def plot(
+    runs: Annotated[
+        list[Path] | None,
+        typer.Argument(metavar="[RUN]...", help="Run directories; the latest by default."),
+    ] = None,
+    output: Annotated[
+        Path | None,
+        typer.Option("--output", "-o", metavar="DIR", help="Instead of the run's own figures/."),
+    ] = None,
+) -> None:
+    """Draw the figure of each run as PNG and SVG."""
+    from lavendersim.errors import UsageError
+    from lavendersim.figures import draw
+    from lavendersim.runner import open_run
+
+    for path in runs or [None]:
+        run = open_run(path)
+        if run.experiment.figure is None:
+            raise UsageError(f"{run.path}: its config has no figure section")
+        for figure in draw(run, output or run.path / "figures"):
+            typer.echo(figure)

@@ -1,0 +1,103 @@
+"""Runs and verdicts enter, lines for people or JSON for scripts leave. Results go to stdout."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import typer
+
+FAILURES_SHOWN = 10
+
+
+def digits(value: float) -> str:
+    """Return a number with the digits a person can use."""
+    return f"{value:.6g}"
+
+
+def summarise(verdicts: list[Any]) -> list[tuple[str, bool, str]]:
+    """Return (name, passed, text) per expectation, its cells counted together."""
+    groups: dict[str, list[Any]] = {}
+    for verdict in verdicts:
+        groups.setdefault(verdict.name, []).append(verdict)
+    lines = []
+    for name, group in groups.items():
+        passed = sum(verdict.passed for verdict in group)
+        values = [verdict.measured for verdict in group]
+        low, high = min(values), max(values)
+        shown = digits(low) if low == high else f"{digits(low)} to {digits(high)}"
+        count = f" in {passed} of {len(group)} cells" if len(group) > 1 else ""
+        text = f"{name}: {shown}, expected {group[0].expected}{count}"
+        lines.append((name, passed == len(group), text))
+    return lines
+
+
+def mark(passed: bool) -> str:
+    """Return a coloured word; typer drops the colour where it is not wanted."""
+    if passed:
+        return typer.style("pass", fg=typer.colors.GREEN)
+    return typer.style("FAIL", fg=typer.colors.RED, bold=True)
+
+
+def print_summary(finished: Any) -> None:
+    """Print what became of a run: one line per expectation, failures in full."""
+    cells = len(finished.outcomes)
+    steps = sum(outcome.steps for outcome in finished.outcomes)
+    physics = sum(outcome.physics_ns for outcome in finished.outcomes)
+    logging = sum(outcome.logging_ns for outcome in finished.outcomes)
+    typer.echo(
+        f"{typer.style(finished.run.name, bold=True)}: {cells} cells, {steps} steps; "
+        f"physics {physics / max(steps, 1) / 1000:.2f} us/step, "
+        f"logging {logging / max(steps, 1) / 1000:.2f} us/step"
+    )
+    for _, passed, text in summarise(finished.verdicts):
+        typer.echo(f"  {mark(passed)}  {text}")
+    print_failures(finished)
+    typer.echo(f"  logs  {finished.run.path}")
+
+
+def print_failures(finished: Any) -> None:
+    """Print cells that ended early and the failed verdicts, the first few in full."""
+    for cell, outcome in zip(finished.run.cells, finished.outcomes, strict=True):
+        if outcome.status != "complete":
+            typer.echo(f"  {mark(False)}  {cell.label or 'the cell'}: {outcome.status}")
+    failed = [verdict for verdict in finished.verdicts if not verdict.passed]
+    for verdict in failed[:FAILURES_SHOWN]:
+        typer.echo("\n".join(f"  {line}" for line in verdict.message.splitlines()))
+    if len(failed) > FAILURES_SHOWN:
+        typer.echo(f"  and {len(failed) - FAILURES_SHOWN} more failed, see results.json")
+
+
+def as_json(data: Any) -> None:
+    """Print one JSON document."""
+    typer.echo(json.dumps(data, indent=1, default=str))
+
+
+@contextmanager
+def reporting(name: str) -> Iterator[Any]:
+    """Give a runner.Progress that shows compilation always, and a bar on a terminal only."""
+    from lavendersim.runner import Progress
+
+    def compiling(plan: Any) -> None:
+        effects = ", ".join(plan.spec.effects) or "no effects"
+        pairs = ", ".join(plan.spec.shape_pairs) or "no pairs"
+        typer.echo(f"{name}: compiling kernels, once, for {effects}; {pairs}", err=True)
+
+    if not sys.stderr.isatty():
+        yield Progress(compiling=compiling)
+        return
+    from rich.console import Console
+    from rich.progress import MofNCompleteColumn, TimeRemainingColumn
+    from rich.progress import Progress as Bar
+
+    columns = (*Bar.get_default_columns()[:2], MofNCompleteColumn(), TimeRemainingColumn())
+    with Bar(*columns, console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task(name, total=None)
+
+        def cell_done(done: int, total: int) -> None:
+            bar.update(task, completed=done, total=total)
+
+        yield Progress(compiling=compiling, cell_done=cell_done)

@@ -1,0 +1,52 @@
+"""`lavender run`: configs in; logs, results and, where asked, figures out."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from lavender_cli import printing
+
+Configs = Annotated[
+    list[Path], typer.Argument(metavar="CONFIG...", help="Config files, or folders of them.")
+]
+Jobs = Annotated[
+    int, typer.Option("--jobs", "-j", min=1, help="Processes; logs are the same for any number.")
+]
+Runs = Annotated[Path, typer.Option("--runs", metavar="DIR", help="Where runs are kept.")]
+
+
+def run(
+    configs: Configs,
+    plot: Annotated[bool, typer.Option("--plot", help="Draw the figures afterwards.")] = False,
+    jobs: Jobs = 1,
+    runs: Runs = Path("runs"),
+    as_json: Annotated[bool, typer.Option("--json", help="Print the results as JSON.")] = False,
+) -> None:
+    """Run experiments, log every step, judge what was expected. Exits 1 when a check fails."""
+    from lavendersim.runner import load_all, run
+
+    # Every file is read before the first run, so a defect anywhere leaves nothing half done.
+    experiments = load_all(configs)
+    good, tables = True, []
+    for experiment in experiments:
+        with printing.reporting(experiment.name) as progress:
+            finished = run(experiment, runs, jobs, progress)
+        good = good and finished.good
+        figures = []
+        if plot and experiment.figure is not None:
+            from lavendersim.figures import draw
+
+            figures = draw(finished.run, finished.run.path / "figures")
+        if as_json:
+            tables.append({**finished.run.results(), "run": finished.run.path, "figures": figures})
+            continue
+        printing.print_summary(finished)
+        for figure in figures:
+            typer.echo(f"  figure {figure}")
+    if as_json:
+        printing.as_json(tables)
+    if not good:
+        raise typer.Exit(1)

@@ -1,0 +1,57 @@
+"""The models of a config in; the JSON Schema (draft 7) that editors complete and check with out.
+
+pydantic writes draft 2020-12; what differs is rewritten here. The schema knows types, bounds and
+names of keys. What lies between values (a mass or a density, names that must exist) is checked by
+the loader alone.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from lavendersim.experiment.models import ExperimentConfig
+
+DRAFT_7 = "http://json-schema.org/draft-07/schema#"
+_NAMED_SCHEMAS = ("properties", "patternProperties", "definitions")
+_SCHEMA_LISTS = ("anyOf", "oneOf", "allOf")
+
+
+def json_schema() -> dict[str, Any]:
+    """Return the schema of a config file as plain data."""
+    written = ExperimentConfig.model_json_schema(by_alias=True, mode="validation")
+    described = {key: value for key, value in written.items() if key not in ("$defs", "title")}
+    schema: dict[str, Any] = {"$schema": DRAFT_7, "title": "lavender experiment"}
+    schema |= _draft_7(described)
+    definitions = written.get("$defs", {})
+    schema["definitions"] = {name: _draft_7(definitions[name]) for name in sorted(definitions)}
+    return schema
+
+
+def _draft_7(schema: Any) -> Any:
+    """Return one schema, and all schemas inside it, in the words of draft 7."""
+    if not isinstance(schema, dict):
+        return schema  # `additionalProperties: false`
+    converted: dict[str, Any] = {}
+    for key, value in schema.items():
+        if key in _NAMED_SCHEMAS:
+            converted[key] = {name: _draft_7(inner) for name, inner in value.items()}
+        elif key in _SCHEMA_LISTS:
+            converted[key] = [_draft_7(inner) for inner in value]
+        elif key in ("items", "additionalProperties", "propertyNames", "not"):
+            converted[key] = _draft_7(value)
+        elif key == "prefixItems":  # an array of fixed length
+            converted["items"] = [_draft_7(inner) for inner in value]
+            converted["additionalItems"] = False
+        elif key == "$ref":
+            converted[key] = value.replace("#/$defs/", "#/definitions/")
+        elif key not in ("title", "discriminator"):  # generated titles repeat the key
+            converted[key] = value
+    if "patternProperties" in converted:
+        converted.setdefault("additionalProperties", False)
+    kind = converted.get("properties", {}).get("kind")
+    if kind is not None and "description" in converted:  # what is chosen by this `kind`
+        kind.setdefault("description", converted["description"])
+    if "$ref" in converted and len(converted) > 1:  # draft 7 ignores what stands beside a $ref
+        reference = {"$ref": converted.pop("$ref")}
+        converted = {"allOf": [reference], **converted}
+    return converted

@@ -1,0 +1,80 @@
+"""Axes and a panel's spec in; labels, scales, levels, bands and legend on the axes out."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from matplotlib.ticker import FixedLocator, NullFormatter, NullLocator
+
+from lavendersim.figures.series import Band
+from lavendersim.figures.style import DARK, GREY, Look
+
+FEW_TICKS = 8
+TWO_DECADES = 100.0
+
+
+def dress(axes: Any, panel: Any) -> None:
+    """Set title, labels, scales, limits and the constants to compare with."""
+    axes.set_title(panel.title, loc="left")
+    axes.set_xlabel(panel.x_label)
+    axes.set_ylabel(panel.y_label)
+    axes.set_xscale(panel.x_scale)
+    axes.set_yscale(panel.y_scale)
+    for index, level in enumerate(panel.levels):
+        dashes = ((0, (5, 3)), (0, (1, 2)), (0, (5, 2, 1, 2)))[index % 3]
+        axes.axhline(level.value, color=GREY, linewidth=1.1, linestyle=dashes, label=level.label)
+
+
+def limit(axes: Any, panel: Any) -> None:
+    """Apply the panel's own limits; called last, since drawing rescales."""
+    if panel.x_limits is not None:
+        axes.set_xlim(*panel.x_limits)
+    if panel.y_limits is not None:
+        axes.set_ylim(*panel.y_limits)
+
+
+def draw_band(axes: Any, band: Band, look: Look, label: str, *, joined: bool = False) -> None:
+    """Draw means as markers and the spread as a band; `joined` adds a pale line for the eye."""
+    if band.spread:
+        axes.fill_between(
+            band.places, band.low, band.high, color=look.colour, alpha=0.22, linewidth=0
+        )
+    axes.plot(
+        band.places,
+        band.mean,
+        linestyle="-" if joined else "none",
+        linewidth=0.9,
+        color=look.colour,
+        marker=look.marker,
+        markersize=6,
+        markeredgecolor="white",
+        markeredgewidth=0.6,
+        label=label,
+        zorder=3,
+    )
+
+
+def draw_ideal(axes: Any, places: Any, values: Any, label: str | None) -> None:
+    """Draw the ideal as a thin dark line."""
+    axes.plot(places, values, color=DARK, linewidth=1.1, label=label, zorder=2)
+
+
+def ticks_at_values(axes: Any, values: Any) -> None:
+    """On a logarithmic x axis that spans little, put the ticks on the swept values themselves."""
+    unique = np.unique(values)
+    if axes.get_xscale() != "log" or len(unique) > FEW_TICKS:
+        return
+    if unique[0] <= 0 or unique[-1] / unique[0] >= TWO_DECADES * 4:
+        return
+    axes.xaxis.set_major_locator(FixedLocator(list(unique)))
+    axes.xaxis.set_major_formatter(lambda value, _: f"{value:.3g}")
+    axes.xaxis.set_minor_locator(NullLocator())
+    axes.xaxis.set_minor_formatter(NullFormatter())
+
+
+def legend(axes: Any) -> None:
+    """Draw a legend if anything has a label."""
+    handles, _ = axes.get_legend_handles_labels()
+    if handles:
+        axes.legend(loc="best")

@@ -1,0 +1,101 @@
+"""A finished run in; one page of panels with question and caption, as PNG and SVG, out.
+
+No pyplot: a page is a Figure with its own canvas, so drawing needs no display, keeps no global
+state and starts faster. Equal logs give equal bytes: no date, fixed ids, a font of our own.
+"""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any, Final
+
+from matplotlib import style
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+from lavendersim.errors import TraceError
+from lavendersim.experiment.figure_specs import FigureSpec
+from lavendersim.figures import against_axis, row_against_index, time_series
+from lavendersim.figures.drawing import dress, legend, limit
+from lavendersim.figures.style import DPI, LINE_HEIGHT, PANEL_HEIGHT, PANEL_WIDTH, STYLE
+from lavendersim.measures.selection import select
+from lavendersim.measures.values import Values
+from lavendersim.measures.views import Cell
+
+PANELS: Final[dict[str, Callable[..., None]]] = {
+    "measure_against_axis": against_axis.draw_panel,
+    "row_against_index": row_against_index.draw_panel,
+    "time_series": time_series.draw_panel,
+}
+CHARACTERS_PER_INCH: Final = 12.2  # of the caption's font, so that lines end inside the page
+MARGIN: Final = 0.12  # [inch]
+NARROWEST: Final = 6.2  # [inch] a single panel is wider, for its caption
+
+
+def draw(run: Any, directory: Path) -> list[Path]:
+    """Write `<experiment>.png` and `.svg` into the directory; returns them, none without a figure.
+
+    `run` has `.experiment`, `.cells` and, if it differs from the file, `.name`. Cells without a readable log are left out and counted in
+    the caption.
+    """
+    experiment = run.experiment
+    if experiment.figure is None:
+        return []
+    directory = Path(directory)
+    directory.mkdir(parents=True, exist_ok=True)
+    name = getattr(run, "name", experiment.name)  # a run kept its file as config.yaml
+    paths = [directory / f"{name}.{suffix}" for suffix in ("png", "svg")]
+    with style.context(STYLE, after_reset=True):
+        figure = compose(experiment, list(run.cells))
+        figure.savefig(paths[0], dpi=DPI, metadata={"Software": None})
+        figure.savefig(paths[1], metadata={"Date": None, "Creator": "lavender"})
+    return paths
+
+
+def compose(experiment: Any, cells: Sequence[Cell]) -> Figure:
+    """Return the page as a matplotlib Figure."""
+    spec: FigureSpec = experiment.figure
+    readable = [cell for cell in cells if _is_readable(cell)]
+    missing = len(cells) - len(readable)
+    note = f" Left out: {missing} of {len(cells)} cells have no readable log." if missing else ""
+    width = max(NARROWEST, PANEL_WIDTH * len(spec.panels))
+    caption = _wrapped(spec.caption + note, width)
+    question = _wrapped(experiment.question, width)
+    below = LINE_HEIGHT * (caption.count("\n") + 1) + 2 * MARGIN
+    above = LINE_HEIGHT * (question.count("\n") + 1) + 2 * MARGIN if question else MARGIN
+    height = PANEL_HEIGHT + below + above
+    figure = Figure(figsize=(width, height))
+    FigureCanvasAgg(figure)
+    figure.set_layout_engine(
+        "constrained", rect=(0.0, below / height, 1.0, PANEL_HEIGHT / height), w_pad=0.12
+    )
+    left = MARGIN / width
+    figure.text(left, 1.0 - MARGIN / height, question, va="top", weight="bold")
+    figure.text(left, MARGIN / height, caption, va="bottom", linespacing=1.25)
+    _draw_panels(figure, experiment, readable)
+    return figure
+
+
+def _draw_panels(figure: Figure, experiment: Any, cells: Sequence[Cell]) -> None:
+    values = Values(experiment.measures)
+    panels = experiment.figure.panels
+    for axes, panel in zip(figure.subplots(1, len(panels), squeeze=False)[0], panels, strict=True):
+        dress(axes, panel)
+        measure = experiment.measures.get(getattr(panel, "measure", ""))
+        shown = select(cells, panel.at, measure.at if measure is not None else {})
+        PANELS[panel.kind](axes, panel, shown, values, experiment)
+        limit(axes, panel)
+        legend(axes)
+
+
+def _is_readable(cell: Cell) -> bool:
+    try:
+        return len(cell.trace().step) > 0
+    except (TraceError, OSError):
+        return False
+
+
+def _wrapped(text: str, width: float) -> str:
+    return textwrap.fill(" ".join(text.split()), int((width - 2 * MARGIN) * CHARACTERS_PER_INCH))

@@ -1,0 +1,36 @@
+"""A measure that is a row of numbers (sweeps, bounces) against its index, one series per value."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.ticker import MaxNLocator
+
+from lavendersim.experiment.figure_specs import RowAgainstIndex
+from lavendersim.figures.drawing import draw_band
+from lavendersim.figures.series import band_of_rows, series_of
+from lavendersim.figures.style import look
+from lavendersim.measures.values import Values
+from lavendersim.measures.views import Cell, Floats
+
+
+def draw_panel(
+    axes: Any, panel: RowAgainstIndex, cells: Sequence[Cell], values: Values, experiment: Any
+) -> None:
+    """Draw one panel onto the axes."""
+    for index, series in enumerate(series_of(cells, panel.series)):
+        rows = [_shown(values.row(panel.measure, cell), panel) for cell in series.cells]
+        band = band_of_rows(rows, panel.first_index, panel.factor)
+        draw_band(axes, band, look(index), series.label, joined=True)
+    axes.xaxis.set_major_locator(MaxNLocator(integer=True))
+
+
+def _shown(row: Floats, panel: RowAgainstIndex) -> Floats:
+    """Lift round-off to the floor; a logarithmic axis leaves out what is not positive."""
+    if panel.floor is not None:
+        row = np.maximum(row, panel.floor)
+    if panel.y_scale == "log":
+        row = np.where(row > 0.0, row, np.nan)
+    return row

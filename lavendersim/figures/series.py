@@ -1,0 +1,74 @@
+"""The cells of a panel in; its series, their labels and their mean, lowest and highest out."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from lavendersim.experiment.scalars import written
+from lavendersim.measures.views import Cell, Floats
+
+
+class Series(NamedTuple):
+    """Cells that are drawn alike."""
+
+    label: str
+    cells: list[Cell]
+
+
+class Band(NamedTuple):
+    """One point per place: the mean of several cells, and how far they spread."""
+
+    places: Floats
+    mean: Floats
+    low: Floats
+    high: Floats
+
+    @property
+    def spread(self) -> bool:
+        """True when the cells at some place differ visibly (more than round-off)."""
+        return bool(np.any(self.high - self.low > 1e-9 * np.maximum(1e-300, np.abs(self.high))))
+
+
+def series_of(cells: Sequence[Cell], axis: str | None) -> list[Series]:
+    """Return the cells split by an axis, in the order of the sweep; one series without an axis."""
+    if axis is None:
+        return [Series("measured", list(cells))] if cells else []
+    named = axis.replace("_", " ")
+    split: dict[str, list[Cell]] = {}
+    for cell in cells:
+        if axis in cell.coordinates:
+            split.setdefault(written(cell.coordinates[axis]), []).append(cell)
+    return [Series(f"{named} = {value}", members) for value, members in split.items()]
+
+
+def band_along(
+    cells: Sequence[Cell], axis: str, number_of: Callable[[Cell], float], factor: float = 1.0
+) -> Band:
+    """Return a number of each cell against a swept axis, in rising order of the axis."""
+    stations: dict[float, list[float]] = {}
+    for cell in cells:
+        station = stations.setdefault(float(cell.coordinates[axis]), [])
+        station.append(factor * number_of(cell))
+    places = sorted(stations)
+    columns = [[f(stations[place]) for place in places] for f in (np.mean, np.min, np.max)]
+    return Band(np.array(places), *(np.array(column, dtype=np.float64) for column in columns))
+
+
+def band_of_rows(rows: Sequence[Floats], first_index: int, factor: float = 1.0) -> Band:
+    """Return rows of numbers against their index; longer rows are cut to the shortest."""
+    length = min(len(row) for row in rows)
+    table = factor * np.stack([row[:length] for row in rows])
+    places = np.arange(first_index, first_index + length, dtype=np.float64)
+    return Band(places, table.mean(axis=0), table.min(axis=0), table.max(axis=0))
+
+
+def swept_path(experiment: Any, axis: str) -> str | None:
+    """Return the config path that an axis varies."""
+    sweep = experiment.config.sweep
+    for product in (sweep,) if isinstance(sweep, dict) else sweep:
+        if axis in product:
+            return str(product[axis].path)
+    return None

@@ -1,0 +1,89 @@
+"""A logged quantity against time, one line with markers per cell."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from lavendersim.experiment.figure_specs import TimeSeries
+from lavendersim.figures.drawing import draw_ideal
+from lavendersim.figures.series import series_of
+from lavendersim.figures.style import look
+from lavendersim.measures.closed_forms import evaluate_form
+from lavendersim.measures.columns import (
+    clearance_by_step,
+    contacts_of,
+    deepest_by_step,
+    mechanical_energy,
+    summed_by_step,
+)
+from lavendersim.measures.values import Values
+from lavendersim.measures.views import Cell, Floats, Rows, Trace
+
+MOST_MARKERS = 150  # beyond this many points markers run into a stripe; every k-th is marked
+
+
+def draw_panel(
+    axes: Any, panel: TimeSeries, cells: Sequence[Cell], values: Values, experiment: Any
+) -> None:
+    """Draw one panel onto the axes."""
+    for index, series in enumerate(series_of(cells, panel.series)):
+        for number, cell in enumerate(series.cells):
+            time, quantity = window_of(panel, cell.trace())
+            axes.plot(
+                time * panel.x_factor,
+                quantity * panel.factor,
+                # a force is the average over the step that ends at its time
+                drawstyle="steps-pre" if panel.column == "normal_force" else "default",
+                color=look(index).colour,
+                linewidth=1.0,
+                marker=look(index).marker,
+                markersize=4,
+                markevery=max(1, len(time) // MOST_MARKERS),
+                markeredgecolor="none",
+                label=series.label if number == 0 else None,
+                zorder=3,
+            )
+            if panel.ideal is not None and index == number == 0 and len(time):
+                ideal = evaluate_form(panel.ideal.closed_form, cell.trace().resolved)
+                ends = np.array([time[0], time[-1]]) * panel.x_factor
+                draw_ideal(axes, ends, [ideal * panel.factor] * 2, panel.ideal.label)
+
+
+def window_of(panel: TimeSeries, trace: Trace) -> tuple[Floats, Floats]:
+    """Return time [s] and the panel's quantity [SI] in the panel's window."""
+    time = trace.step["time"].astype(np.float64)
+    quantity = quantity_of(panel, trace)
+    if panel.start == "first_contact":
+        rows = _contacts(panel, trace)
+        if len(rows):
+            time = time - time[np.searchsorted(trace.step["step"], rows["step"][0])]
+    if panel.window is not None:
+        inside = (time >= panel.window[0]) & (time <= panel.window[1])
+        time, quantity = time[inside], quantity[inside]
+    return time, quantity
+
+
+def quantity_of(panel: TimeSeries, trace: Trace) -> Floats:
+    """Return the panel's quantity in every logged step [SI]."""
+    if panel.column == "energy":
+        return mechanical_energy(trace)
+    if panel.column == "residual":
+        return np.asarray(trace.step["residual"], dtype=np.float64)
+    if panel.column == "clearance":
+        assert panel.body is not None
+        assert panel.above is not None
+        return clearance_by_step(trace, panel.body, panel.above)
+    rows = _contacts(panel, trace)
+    if panel.column == "penetration":
+        return deepest_by_step(trace, rows)
+    return summed_by_step(trace, rows, "force_n")
+
+
+def _contacts(panel: TimeSeries, trace: Trace) -> Rows:
+    if panel.body is None:
+        rows: Rows = trace.contact
+        return rows
+    return contacts_of(trace, panel.body)

@@ -1,0 +1,32 @@
+"""The measures of an experiment in; each one's numbers in each cell out, taken once and kept."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+import numpy as np
+
+from lavendersim.experiment.measure_specs import MeasureSpec
+from lavendersim.measures.registry import evaluate
+from lavendersim.measures.views import Cell, Floats
+
+
+class Values:
+    """Rows of numbers by measure and cell, however many expectations and panels ask for them."""
+
+    def __init__(self, measures: Mapping[str, MeasureSpec]) -> None:
+        self.measures = measures
+        self._rows: dict[tuple[str, int], tuple[Cell, Floats]] = {}
+
+    def row(self, measure: str, cell: Cell) -> Floats:
+        """Return the measure of one cell; a single number is a row of one."""
+        key = (measure, id(cell))
+        if key not in self._rows:
+            value = evaluate(self.measures[measure], cell.trace())
+            # the cell is kept beside its row, so that no other cell can get its id
+            self._rows[key] = (cell, np.atleast_1d(np.asarray(value, dtype=np.float64)))
+        return self._rows[key][1]
+
+    def of(self, measure: str) -> Callable[[Cell], Floats]:
+        """Return the function from a cell to its row of one measure."""
+        return lambda cell: self.row(measure, cell)

@@ -1,0 +1,105 @@
+"""Config files enter pytest, one test item per judged expectation leaves.
+
+A YAML file is an experiment when it has a `scene:` at its top level; other YAML files are left
+alone. The experiment runs once, when its first selected item does; its logs are kept in pytest's
+temporary directory, whose path stands in every failure.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+if TYPE_CHECKING:
+    from lavendersim.runner import Finished
+
+_EXPERIMENT = re.compile(rb"^scene[ \t]*:", re.MULTILINE)
+# Experiments are small; a larger YAML file is somebody's data.
+_LARGEST_FILE = 1 << 20
+COMPLETES = "every cell completes"
+
+
+def _is_experiment(path: Path) -> bool:
+    if path.suffix not in (".yaml", ".yml") or path.stat().st_size > _LARGEST_FILE:
+        return False
+    return _EXPERIMENT.search(path.read_bytes()) is not None
+
+
+def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> pytest.Collector | None:
+    """Collect experiments."""
+    if not _is_experiment(file_path):
+        return None
+    collector: pytest.Collector = ExperimentFile.from_parent(parent, path=file_path)
+    return collector
+
+
+class ExperimentFile(pytest.File):
+    """One config file and, once an item asked for it, its run."""
+
+    _finished: Finished | None = None
+
+    def collect(self) -> Iterator[pytest.Item]:
+        """Yield one item per expectation and cell, and one for the run itself."""
+        from lavendersim.errors import LavenderError
+        from lavendersim.experiment import load_experiment
+        from lavendersim.measures import judge_nodes
+
+        try:
+            experiment = load_experiment(self.path)
+        except LavenderError as error:
+            raise self.CollectError(str(error)) from None
+        for number, node in enumerate([COMPLETES, *judge_nodes(experiment)]):
+            yield ExpectationItem.from_parent(self, name=node, number=number - 1)
+
+    def finished(self) -> Finished:
+        """Run the experiment, the first time it is asked for."""
+        if self._finished is None:
+            from lavendersim.runner import run
+
+            factory: pytest.TempPathFactory = self.config._tmp_path_factory  # type: ignore[attr-defined]
+            self._finished = run(self.path, factory.mktemp(self.path.stem))
+        return self._finished
+
+
+class Unmet(Exception):  # noqa: N818 - an expectation that was not met, not an error
+    """Carries the text a person reads."""
+
+
+class ExpectationItem(pytest.Item):
+    """One verdict; number -1 is the run as a whole."""
+
+    def __init__(self, *, number: int, **arguments: Any) -> None:
+        super().__init__(**arguments)
+        self.number = number
+
+    def runtest(self) -> None:
+        """Run the experiment if need be and look at this item's verdict."""
+        assert isinstance(self.parent, ExperimentFile)
+        finished = self.parent.finished()
+        if self.number < 0:
+            ended = [
+                f"{cell.label or 'the cell'}: {cell.status}\n  log        {cell.path}"
+                for cell in finished.run.cells
+                if cell.status != "complete"
+            ]
+            if ended:
+                raise Unmet("\n".join(ended))
+            return
+        verdict = finished.verdicts[self.number]
+        assert verdict.node == self.name
+        if not verdict.passed:
+            raise Unmet(verdict.message)
+
+    def repr_failure(self, excinfo: Any, style: Any = None) -> Any:
+        """Show what was measured and expected; a traceback only for a defect of lavender."""
+        if isinstance(excinfo.value, Unmet):
+            return str(excinfo.value)
+        return super().repr_failure(excinfo, style)
+
+    def reportinfo(self) -> tuple[Path, int | None, str]:
+        """Name the item in reports."""
+        return self.path, None, self.name

@@ -1,0 +1,177 @@
+"""A config enters; a simulation that is stepped from Python leaves, with Gymnasium's conventions.
+
+```python
+sim = Simulator("configs/chapter/impact_telemetry.yaml")
+observation, info = sim.reset(seed=0)
+observation, reward, terminated, truncated, info = sim.step()
+contacts = observation["collision"]["contacts"]
+normal_force = sim.body_contact_data()[sim.body_id("ball"), 1]
+```
+"""
+
+from __future__ import annotations
+
+import difflib
+from os import PathLike
+from typing import Any, Final
+
+import numpy as np
+
+from lavendersim.engine.engine import Engine, Rows
+from lavendersim.engine.records import DIVERGED
+from lavendersim.errors import UsageError
+from lavendersim.experiment import Experiment, load_experiment
+from lavendersim.scene.build import Scene, build
+from lavendersim.scene.events import EventQueue
+from lavendersim.scene.plan import Plan, plan_of
+
+Observation = dict[str, Any]
+
+# Columns of observation["collision"]["contacts"], float64, one row per contact of the last step.
+CONTACT_COLUMNS: Final = (
+    "body_a",
+    "body_b",
+    "x",  # contact point at the start of the step [m]
+    "y",
+    "z",
+    "nx",  # unit normal from body a to body b
+    "ny",
+    "nz",
+    "penetration",  # at the start of the step [m]
+    "impulse_n",  # normal impulse on body b [N s]
+    "force_n",  # impulse / timestep [N]
+    "approach_velocity",  # normal velocity before the solve [m/s]
+    "normal_velocity",  # and after it [m/s]
+    "residual",  # natural-map residual of the row [m/s]
+)
+# Columns of body_contact_data(), one row per body.
+BODY_CONTACT_COLUMNS: Final = (
+    "contacts",  # number of contacts of the body in the last step
+    "normal_force",  # sum of their normal forces [N]
+    "normal_impulse",  # and impulses [N s]
+    "max_penetration",  # [m]
+)
+
+
+class Simulator:
+    """One cell of an experiment, advanced a timestep per `step()`.
+
+    config: path of a YAML experiment, or an Experiment. cell: which cell of its sweep.
+    Raises ConfigError or UsageError where the config or the cell is wrong.
+    """
+
+    def __init__(self, config: str | PathLike[str] | Experiment, cell: int = 0) -> None:
+        experiment = config if isinstance(config, Experiment) else load_experiment(config)
+        cells = experiment.cells()
+        if not 0 <= cell < len(cells):
+            raise UsageError(
+                f"{experiment.name} has cells 0 to {len(cells) - 1}; there is no cell {cell}"
+            )
+        self.experiment = experiment
+        self._resolved = cells[cell].resolved
+        self._last_step = cells[cell].config.steps
+        self.plan: Plan = plan_of(self._resolved)
+        self.np_random = np.random.default_rng()
+        self.reset()
+
+    @property
+    def timestep(self) -> float:
+        """Length of a step [s]."""
+        return float(self._scene.timestep)
+
+    @property
+    def body_names(self) -> list[str]:
+        """Names of the bodies; a body's id is its place in this list."""
+        return list(self._scene.names)
+
+    def body_id(self, name: str) -> int:
+        """Return the id of a named body; raises UsageError with the nearest name."""
+        if name not in self._scene.names:
+            near = difflib.get_close_matches(name, self._scene.names, 1)
+            hint = f"; did you mean {near[0]}?" if near else f": {', '.join(self._scene.names)}"
+            raise UsageError(f"no body is called {name}{hint}")
+        return self._scene.names.index(name)
+
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[Observation, dict[str, Any]]:
+        """Return to the initial state; gives (observation, info).
+
+        seed: seeds `np_random`, for callers that draw from it; the simulation itself draws nothing.
+        options: none are known; anything but None or an empty dict raises UsageError.
+        """
+        if options:
+            raise UsageError(f"reset knows no options, found {', '.join(map(str, options))}")
+        if seed is not None:
+            self.np_random = np.random.default_rng(seed)
+        self._scene: Scene = build(self._resolved, self.plan.spec)
+        self._engine: Engine = self._scene.engine(self.plan.spec, block_steps=1)
+        self._events = EventQueue(self._engine, self._scene, self._resolved["events"])
+        self._engine.advance(0)
+        self._rows: Rows = self._engine.take_rows()
+        self._terminated = False
+        return self._observation(), self._info()
+
+    def step(self, action: None = None) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
+        """Advance one timestep: (observation, reward, terminated, truncated, info).
+
+        reward is 0. terminated: a body's state is no longer finite. truncated: the duration of the
+        config is over. Raises UsageError after termination, until `reset`.
+        """
+        if action is not None:
+            raise UsageError("this simulation takes no action: call step()")
+        if self._terminated:
+            raise UsageError("the simulation has diverged: call reset() before step()")
+        done = self.steps_done
+        self._events.apply_due(done)
+        status = self._engine.advance(1)
+        while self.steps_done == done:  # contact rows had to grow first
+            status = self._engine.advance(1)
+        self._rows = self._engine.take_rows()
+        self._terminated = status == DIVERGED
+        truncated = self.steps_done >= self._last_step
+        return self._observation(), 0.0, self._terminated, truncated, self._info()
+
+    @property
+    def steps_done(self) -> int:
+        """Steps since the last reset."""
+        return int(self._engine.counters["step"][0])
+
+    def body_contact_data(self) -> np.ndarray:
+        """Return per-body contact sums of the last step, float64 (bodies, 4): BODY_CONTACT_COLUMNS."""
+        data = np.zeros((len(self._scene.names), len(BODY_CONTACT_COLUMNS)))
+        contact = self._rows.contact
+        for side in ("body_a", "body_b"):
+            np.add.at(data[:, 0], contact[side], 1.0)
+            np.add.at(data[:, 1], contact[side], contact["force_n"])
+            np.add.at(data[:, 2], contact[side], contact["impulse_n"])
+            np.maximum.at(data[:, 3], contact[side], contact["penetration"])
+        return data
+
+    def close(self) -> None:
+        """Do nothing; present because Gymnasium's loops call it."""
+
+    def _observation(self) -> Observation:
+        contact = self._rows.contact
+        columns = [contact[name].astype(np.float64) for name in CONTACT_COLUMNS]
+        velocities = self._engine.velocities
+        turning = "wx" in (velocities.dtype.names or ())
+        count = len(velocities)
+        pose = self._rows.pose[-1]
+        return {
+            "collision": {"contacts": np.column_stack(columns)},
+            "bodies": {
+                "position": pose[:, :3].copy(),  # centre of mass [m]
+                "orientation": pose[:, 3:].copy(),  # quaternion w x y z, body to world
+                "velocity": np.column_stack([velocities[n] for n in ("vx", "vy", "vz")]),
+                "angular_velocity": np.column_stack([velocities[n] for n in ("wx", "wy", "wz")])
+                if turning
+                else np.zeros((count, 3)),
+            },
+        }
+
+    def _info(self) -> dict[str, Any]:
+        row = self._rows.step[-1]
+        info: dict[str, Any] = {name: row[name].item() for name in row.dtype.names}
+        info["time"] = float(self.steps_done * self._scene.timestep)
+        return info
