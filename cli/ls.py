@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-
 from lavender_cli import printing
 from lavender_cli.run import Runs
 

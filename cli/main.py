@@ -7,7 +7,6 @@ import traceback
 from typing import Annotated
 
 import typer
-
 from lavender_cli import check, doctor, ls, plan, plot, recover, replay, run, schema, show
 
 app = typer.Typer(

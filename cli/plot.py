@@ -23,8 +23,8 @@ def plot(
     from lavendersim.figures import draw
     from lavendersim.runner import open_run
 
-    for path in runs or [None]:
-        run = open_run(path)
+    chosen = [open_run(path) for path in runs] if runs else [open_run()]
+    for run in chosen:
         if run.experiment.figure is None:
             raise UsageError(f"{run.path}: its config has no figure section")
         for figure in draw(run, output or run.path / "figures"):

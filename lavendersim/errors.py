@@ -46,12 +46,6 @@ class MissingDriverError(LavenderError):
     exit_code = 2
 
 
-class CheckFailed(LavenderError):
-    """An expectation was not met, or a cell diverged."""
-
-    exit_code = 1
-
-
 class TraceError(LavenderError):
     """A log is damaged or unfinished; what could be read is said in the message."""
 

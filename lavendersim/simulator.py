@@ -138,7 +138,7 @@ class Simulator:
         return int(self._engine.counters["step"][0])
 
     def body_contact_data(self) -> np.ndarray:
-        """Return per-body contact sums of the last step, float64 (bodies, 4): BODY_CONTACT_COLUMNS."""
+        """Return contact sums of the last step, float64 (bodies, 4), see BODY_CONTACT_COLUMNS."""
         data = np.zeros((len(self._scene.names), len(BODY_CONTACT_COLUMNS)))
         contact = self._rows.contact
         for side in ("body_a", "body_b"):

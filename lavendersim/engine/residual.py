@@ -21,7 +21,8 @@ def make_row_residual(spec: Spec):
         w = v_n + contact.target
         if compliant:
             w += contact.gamma * contact.lambda_n
-        return abs(min(contact.lambda_n / contact.inv_k, w))
+        # A NaN in the first place of min stays, in the second it is dropped.
+        return abs(min(w, contact.lambda_n / contact.inv_k))
 
     return kernel(row_residual, spec)
 

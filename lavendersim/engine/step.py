@@ -50,10 +50,11 @@ def make_integrate(spec: Spec) -> Any:
                         body.z += u.vz
                         if torque:
                             turn(body, u.wx, u.wy, u.wz)
-                # x - x is 0 for finite numbers only; one sum tests them all.
-                total = body.x + body.y + body.z + v.vx + v.vy + v.vz
+                # x - x is 0 for finite numbers only; one sum tests them all. Speeds enter squared:
+                # one whose square overflows has no energy, and would turn a quaternion into zero.
+                total = body.x + body.y + body.z + v.vx * v.vx + v.vy * v.vy + v.vz * v.vz
                 if turns:
-                    total += body.qw + v.wx + v.wy + v.wz
+                    total += body.qw + v.wx * v.wx + v.wy * v.wy + v.wz * v.wz
                 if total - total != 0.0:
                     return i
         return -1

@@ -8,6 +8,4 @@ from pydantic import BaseModel, ConfigDict
 class ConfigModel(BaseModel):
     """Sequences arrive as tuples, mappings as dicts, ratios as `scalars.Ratio` (a float)."""
 
-    model_config = ConfigDict(
-        frozen=True, extra="forbid", strict=True, validate_by_alias=True, validate_by_name=False
-    )
+    model_config = ConfigDict(frozen=True, extra="forbid", strict=True)

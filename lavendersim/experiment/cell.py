@@ -23,23 +23,11 @@ from lavendersim.experiment.scene_checks import check_scene
 from lavendersim.experiment.sweep import Point
 
 
-def check_cell(tree: Node, point: Point, report: Report) -> None:
+def check_cell(tree: Node, report: Report) -> None:
     """Note what is wrong between the values of one cell, beyond the types of its values."""
     check_scene(tree, report)
     check_run(tree, report)
-    if any(node.text is not None for _, node in point.choices):  # a swept text may be a name
-        check_names(tree, CellSource, frozenset(), report)
-
-
-def resolve_tree(tree: Node, source: CellSource, report: Report) -> CellConfig | None:
-    """Return the resolved config of a checked cell; notes a release that has no place."""
-    try:
-        return resolve_cell(source)
-    except PlacementError as error:
-        release = tree.get("scene", "bodies", error.body, "release")
-        place = (release.get(error.key) or release) if release is not None else tree
-        report.add(place.mark, str(error))
-        return None
+    check_names(tree, CellSource, frozenset(), report)
 
 
 def build_cell(root: Node, point: Point, report: Report) -> CellConfig | None:
@@ -50,11 +38,17 @@ def build_cell(root: Node, point: Point, report: Report) -> CellConfig | None:
     except ValidationError as error:
         report_errors(error, CellSource, tree, report)
         source = None
-    check_cell(tree, point, report)
-    if report.close_round() or source is None:
+    check_cell(tree, report)
+    if not report.close_round() or source is None:
         return None
-    config = resolve_tree(tree, source, report)
-    return None if report.close_round() else config
+    try:
+        return resolve_cell(source)
+    except PlacementError as error:
+        release = tree.get("scene", "bodies", error.body, "release")
+        place = (release.get(error.key) or release) if release is not None else tree
+        report.add(place.mark, str(error))
+        report.close_round()
+        return None
 
 
 def _own(tree: Node) -> dict[str, Any]:

@@ -37,7 +37,7 @@ class Level(ConfigModel):
 
 
 class Onset(ConfigModel):
-    """A vertical mark where the measure, reduced over the cells at a place, rises through a level."""
+    """A vertical mark where the measure, several cells reduced to one, rises through a level."""
 
     level: Number = Field(description="the level, in the unit of the y axis")
     reduce: Reduction = Field(default="mean", description="how several cells become one number")
@@ -53,6 +53,9 @@ class _Panel(ConfigModel):
     at: Selection = Field(default_factory=dict, description="the cells shown; all when absent")
     series: AxisName | None = Field(
         default=None, description="one colour and marker per value of this axis"
+    )
+    series_label: str = Field(
+        default="", description="legend entry, {} stands for the value: `timestep {} s`"
     )
     levels: tuple[Level, ...] = Field(default=(), description="constants to compare with")
     x_limits: tuple[Number, Number] | None = Field(

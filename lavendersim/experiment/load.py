@@ -6,6 +6,7 @@ so that a defect in one section hides none in another.
 
 from __future__ import annotations
 
+import itertools
 import os
 from pathlib import Path
 
@@ -13,7 +14,7 @@ from pydantic import ValidationError
 
 from lavendersim.errors import ConfigError, UsageError
 from lavendersim.experiment import sweep
-from lavendersim.experiment.cell import Cell, build_cell, check_cell, resolve_tree
+from lavendersim.experiment.cell import Cell, build_cell, check_cell
 from lavendersim.experiment.experiment import Experiment
 from lavendersim.experiment.found import found
 from lavendersim.experiment.messages import report_errors
@@ -79,17 +80,15 @@ def _check_first(
     root: Node, axes: tuple[tuple[sweep.Axis, ...], ...], report: Report
 ) -> ExperimentConfig | None:
     """Check the whole file, with the first value of every axis in its place."""
-    point = next(sweep.points(axes), sweep.Point(()))
-    tree = point.tree(root)
+    tree = next(sweep.points(axes), sweep.Point(())).tree(root)
     config: ExperimentConfig | None = None
     try:
         config = ExperimentConfig.model_validate(tree.data)
     except ValidationError as error:
         report_errors(error, ExperimentConfig, tree, report)
     check_references(tree, ExperimentConfig, swept_values(root), report)
-    check_cell(tree, point, report)
-    if not report.close_round() and config is not None and not report.defects:
-        resolve_tree(tree, config, report)
+    check_cell(tree, report)
+    report.close_round()
     return config
 
 
@@ -102,9 +101,7 @@ def _check_others(
 ) -> tuple[Cell, ...]:
     """Check the cells one by one and return them all; those that were built keep their config."""
     if report.defects or count > MOST_CELLS_CHECKED:
-        for number, point in enumerate(sweep.telling_points(axes)):
-            if number >= MOST_CELLS_CHECKED:
-                break
+        for point in itertools.islice(sweep.telling_points(axes), MOST_CELLS_CHECKED):
             build_cell(root, point, report)
     cells: list[Cell] = []
     if report.defects:

@@ -11,12 +11,13 @@ from collections.abc import Mapping
 from typing import Any
 
 from pydantic import ValidationError
+from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails
 
 from lavendersim.experiment.found import found, near, nearest, quoted
 from lavendersim.experiment.node import BROKEN, Broken, Mark, Node, Path, key_mark
 from lavendersim.experiment.report import Report
-from lavendersim.experiment.walk import Model, fields, places
+from lavendersim.experiment.walk import Model, Place, fields, places
 
 _TYPES = {
     "string_type": "text",
@@ -42,9 +43,9 @@ _SWITCHES = {"yes": "true", "on": "true", "no": "false", "off": "false"}
 
 def report_errors(error: ValidationError, model: Model, root: Node, report: Report) -> None:
     """Note every error of a validation of `root` against `model`."""
-    models = {place.path: place.model for place in places(model, root) if place.model is not None}
+    described = {place.path: place for place in places(model, root) if not place.refers}
     errors = error.errors(include_url=False)
-    replaced = _replaced_keys(errors, root, models)
+    replaced = _replaced_keys(errors, root, described)
     judged: set[Path] = set()  # a value that fits no form of a union has one error per form
     for item in errors:
         path, node = locate(root, item["loc"])
@@ -54,9 +55,11 @@ def report_errors(error: ValidationError, model: Model, root: Node, report: Repo
             judged.add(path)
         if isinstance(node.content, Broken) or item.get("input") is BROKEN:
             continue
-        if item["type"] == "missing" and (path, item["loc"][-1]) in replaced:
+        if item["type"] == "missing" and (node.torn or (path, item["loc"][-1]) in replaced):
             continue
-        mark, sentence = _sentence(item, path, node, root, models)
+        if item["type"] == "too_short" and len(node.items) >= item["ctx"]["min_length"]:
+            continue  # pydantic does not count the items that it refused
+        mark, sentence = _sentence(item, path, node, root, described)
         report.add(mark, sentence)
 
 
@@ -95,40 +98,39 @@ def missing_key(key: str, path: Path, meaning: str | None) -> str:
 
 
 def _replaced_keys(
-    errors: list[ErrorDetails], root: Node, models: Mapping[Path, Model]
+    errors: list[ErrorDetails], root: Node, described: Mapping[Path, Place]
 ) -> set[tuple[Path, str | int]]:
     """Return the missing keys that are there, but misspelt: the unknown key says it all."""
     replaced: set[tuple[Path, str | int]] = set()
     for item in errors:
         if item["type"] == "extra_forbidden":
             path = locate(root, item["loc"])[0][:-1]
-            if (model := models.get(path)) is not None:
-                replaced.add((path, near(item["loc"][-1], fields(model)) or ""))
+            replaced.add((path, near(item["loc"][-1], _keys_at(described, path)) or ""))
     return replaced
 
 
 def _sentence(
-    item: ErrorDetails, path: Path, node: Node, root: Node, models: Mapping[Path, Model]
+    item: ErrorDetails, path: Path, node: Node, root: Node, described: Mapping[Path, Place]
 ) -> tuple[Mark, str]:
     kind, context, value = item["type"], item.get("ctx", {}), item["input"]
     name, step = name_of(path), item["loc"][-1]
     if kind == "extra_forbidden":
         parent = root.get(*path[:-1]) or root
-        valid = fields(models[path[:-1]]) if path[:-1] in models else {}
-        sentence = f"unknown key {quoted(step)} in {place_of(path[:-1])}{nearest(step, valid)}"
+        hint = nearest(step, _keys_at(described, path[:-1]))
+        sentence = f"unknown key {quoted(step)} in {place_of(path[:-1])}{hint}"
         return key_mark(parent, str(path[-1])), sentence
     if kind == "missing":
         if isinstance(step, int):
             return node.mark, f"{name}: expected at least {step + 1} items, {_count(node)}"
-        model = models.get(path)
-        description = fields(model)[step].description if model else None
-        return node.mark, missing_key(str(step), path, description)
+        info = _keys_at(described, path).get(step)
+        return node.mark, missing_key(str(step), path, info.description if info else None)
     if step == "[key]":
         parent = root.get(*path[:-1]) or root
         rule = 'use up to 64 letters, digits, "_" and "-", starting with a letter'
         return key_mark(parent, str(path[-1])), f"{quoted(path[-1])} cannot be a name; {rule}"
     if kind == "union_tag_not_found":
-        return node.mark, missing_key("kind", path, f"one of {_tags(context)}")
+        kinds = described[path].kinds if path in described else ()
+        return node.mark, missing_key("kind", path, f"one of {', '.join(kinds)}")
     if kind == "union_tag_invalid":
         tag = node.get("kind") or node
         if tag.text is None:
@@ -167,6 +169,11 @@ def _value_sentence(kind: str, context: Mapping[str, Any], value: Any, name: str
     if kind == "value_error":
         return f"{name}: {context['error']}"
     return f"{name}: {kind.replace('_', ' ')}, found {found(value)}"
+
+
+def _keys_at(described: Mapping[Path, Place], path: Path) -> dict[str, FieldInfo]:
+    model = described[path].model if path in described else None
+    return fields(model) if model is not None else {}
 
 
 def _tags(context: Mapping[str, Any]) -> str:

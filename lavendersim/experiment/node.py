@@ -34,6 +34,7 @@ class Node:
     content: Value | tuple[Node, ...] | dict[str, Node] | Broken
     mark: Mark
     keys: Mapping[str, Mark] = field(default_factory=dict)  # of a mapping: where each key stands
+    torn: bool = False  # one of its keys was refused, so that what it lacks is not known
 
     def get(self, *path: str | int) -> Node | None:
         """Return the node at the path below this one, or None where there is none."""
@@ -99,4 +100,4 @@ def graft(root: Node, path: Path, value: Node) -> Node:
     entries = dict(root.entries)
     below = entries.get(step, Node({}, value.mark))
     entries[step] = graft(below, rest, value)
-    return Node(entries, root.mark, {step: value.mark, **root.keys})
+    return Node(entries, root.mark, {step: value.mark, **root.keys}, root.torn)

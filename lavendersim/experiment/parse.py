@@ -7,6 +7,7 @@ tags, anchors or aliases in a config, so nothing is constructed and nothing can 
 
 from __future__ import annotations
 
+import codecs
 import re
 from collections.abc import Iterator
 from typing import Any
@@ -44,6 +45,7 @@ class _Open:
         self.keys: dict[str, Mark] = {}
         self.key: str | None = None  # read, and waiting for its value
         self.drops_value = False  # the key was refused
+        self.torn = False
 
 
 def parse(raw: bytes, name: str, size: int | None = None) -> tuple[Node | None, list[Defect]]:
@@ -61,7 +63,7 @@ def parse(raw: bytes, name: str, size: int | None = None) -> tuple[Node | None, 
 
 def decode(raw: bytes) -> str:
     """Return the text of a file that `parse` found readable, without its byte order mark."""
-    return raw.decode("utf-8-sig")
+    return raw.removeprefix(codecs.BOM_UTF8).decode("utf-8")
 
 
 class _Reading:
@@ -88,8 +90,9 @@ class _Reading:
         try:
             text = decode(raw)
         except UnicodeDecodeError as error:
-            before = raw[: error.start].decode("utf-8-sig", "replace")
-            message = f"byte 0x{raw[error.start]:02x} is not UTF-8; save the file as UTF-8"
+            refused: bytes = error.object  # without the byte order mark
+            before = refused[: error.start].decode("utf-8")
+            message = f"byte 0x{refused[error.start]:02x} is not UTF-8; save the file as UTF-8"
             raise self.stop(_mark_after(before), message) from None
         if match := _UNPRINTABLE.search(text):
             message = f"control character U+{ord(match[0]):04X}; remove it"
@@ -119,7 +122,7 @@ class _Reading:
             elif isinstance(event, yaml.CollectionEndEvent):
                 done = self.stack.pop()
                 content = done.entries if done.is_mapping else tuple(done.items)
-                self._place(Node(content, done.mark, done.keys), done.mark)
+                self._place(Node(content, done.mark, done.keys, done.torn), done.mark)
 
     def _node(self, event: Any, mark: Mark) -> None:
         self.values += 1
@@ -179,7 +182,7 @@ class _Reading:
         into.drops_value = False
         if text is None:
             self.refuse(mark, "a key is a list, a mapping or an alias; a key is a name")
-            into.drops_value = True
+            into.drops_value = into.torn = True
         elif text in into.keys:
             first = into.keys[text].line
             self.refuse(mark, f"key {quoted(text)} stands twice, first in line {first}")

@@ -75,7 +75,7 @@ def released_position(
     if release.phase:
         pull = -_dot(gravity, normal)  # [m/s^2] towards the plane
         if pull <= 0.0:
-            sentence = "gravity does not pull towards the plane, so that there is no impact"
+            sentence = f"gravity does not pull towards {release.above}, so that there is no impact"
             raise PlacementError(name, "phase", f"phase: {sentence} to shift; leave it out")
         gap += float(release.phase * timestep) * math.sqrt(2.0 * pull * release.clearance)
     distance = plane.offset + reach(shape, orientation, normal) + gap

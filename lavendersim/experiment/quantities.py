@@ -23,8 +23,12 @@ RATIO_PATTERN = r"^[-+]?[0-9]+/[0-9]+$"
 
 def refusal(expected: str, value: object, hint: str = "") -> PydanticCustomError:
     """Return the error that reads `expected ..., found ...`, with a hint behind it."""
-    sentence = f"expected {expected}, found {found(value)}"
-    return PydanticCustomError("lavender", "{sentence}", {"sentence": sentence + hint})
+    return sentence_error(f"expected {expected}, found {found(value)}{hint}")
+
+
+def sentence_error(sentence: str) -> PydanticCustomError:
+    """Return the error that reads as this sentence, behind the name of the field."""
+    return PydanticCustomError("lavender", "{sentence}", {"sentence": sentence})
 
 
 def either(expected: str, form: Callable[[Any], str | None]) -> Discriminator:
@@ -55,7 +59,7 @@ class Quantity:
         """The bounds in words, for messages and for the JSON Schema."""
         words = "a whole number" if self.whole else "a number"
         if self.minimum is not None and self.maximum is not None:
-            words += f" from {self.minimum:g} to {self.maximum:g}"
+            words += f" from {_plain(self.minimum)} to {_plain(self.maximum)}"
         elif self.minimum is not None:
             words += f" of {self.minimum:g} or more"
         elif self.maximum is not None:
@@ -117,6 +121,10 @@ class Quantity:
         return {"anyOf": [number, {"type": "string", "pattern": RATIO_PATTERN}]}
 
 
+def _plain(bound: float) -> str:
+    return f"{int(bound)}" if float(bound).is_integer() else f"{bound:g}"
+
+
 @dataclass(frozen=True)
 class Vector:
     """A list of `length` numbers, each a `Quantity`; `nonzero` refuses the zero vector."""
@@ -145,7 +153,7 @@ class Vector:
             raise refusal(self.expected, value, advice(value, self.item.unit))
         numbers = items(tuple(value))
         if self.nonzero and not any(numbers):
-            raise refusal(f"{self.expected}, not all zero", value)
+            raise sentence_error(f"expected {self.expected}, not all zero, found only zeros")
         return numbers
 
     def __get_pydantic_json_schema__(

@@ -16,6 +16,7 @@ from lavendersim.experiment.scalars import exact, written
 from lavendersim.experiment.walk import Model, Place, places
 
 ANY_VALUE = "any"
+SOLIDS = ("sphere", "box")
 
 
 def check_references(root: Node, model: Model, axes: Collection[str], report: Report) -> None:
@@ -78,23 +79,20 @@ def _check_name(
     called = name_of(place.path[:-1]) if place.path[-1] == name else name_of(place.path)
     if name not in valid:
         names = _planes(bodies) if kind == "plane" else valid
-        hint = nearest(name, names) or f"; there is no {_described(kind)} in this file"
+        hint = nearest(name, names) or "; this file has none"
         report.add(place.mark, f"{called}: no {kind} is called {quoted(name)}{hint}")
     elif kind == "plane" and bodies is not None:
         shape = bodies.get(name, "shape", "kind")
-        if shape is not None and shape.text not in (None, "plane"):
+        if shape is not None and shape.text in SOLIDS:
             sentence = f"{called}: {quoted(name)} is a {shape.text}, expected the name of a plane"
             report.add(place.mark, sentence)
 
 
-def _described(kind: NamedKind) -> str:
-    return {"axis": "sweep", "surface": "named surface"}.get(kind, kind)
-
-
 def _planes(bodies: Node | None) -> list[str]:
+    """Return the bodies that are planes, or may have been meant as one."""
     entries = bodies.entries if bodies is not None else {}
     kinds = {name: body.get("shape", "kind") for name, body in entries.items()}
-    return [name for name, kind in kinds.items() if kind is not None and kind.text == "plane"]
+    return [name for name, kind in kinds.items() if kind is None or kind.text not in SOLIDS]
 
 
 def _check_value(place: Place, values: Iterable[Node], report: Report) -> None:

@@ -22,19 +22,25 @@ class Report:
         self._defects = list(dict.fromkeys(defects))
         self._told = {(defect.line, defect.column) for defect in self._defects}
         self._round: dict[tuple[Mark, str], None] = {}
+        self._sound = True  # nothing found in this round, new or told before
 
     def add(self, mark: Mark, message: str) -> None:
         """Note a defect of the current round."""
+        self._sound = False
         if mark not in self._told:
             self._round[mark, message] = None
 
+    def doubt(self) -> None:
+        """Note that something is wrong that was told already, perhaps at another place."""
+        self._sound = False
+
     def close_round(self) -> bool:
-        """End the round; tells whether it found anything new."""
-        new = [Defect(self.name, mark.line, mark.column, said) for mark, said in self._round]
-        self._defects += new
+        """End the round; tells whether nothing was found in it, be it new or told before."""
+        self._defects += [Defect(self.name, mark.line, mark.column, said) for mark, said in self._round]
         self._told |= {mark for mark, _ in self._round}
         self._round.clear()
-        return bool(new)
+        sound, self._sound = self._sound, True
+        return sound
 
     @property
     def defects(self) -> tuple[Defect, ...]:

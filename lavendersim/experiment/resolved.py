@@ -8,14 +8,14 @@ from __future__ import annotations
 
 import math
 from fractions import Fraction
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, field_serializer
+from pydantic import BaseModel, ConfigDict, Field
 
 from lavendersim.experiment.models import CellSource, Event, NumericsChange, Window
 from lavendersim.experiment.placement import released_position, rotation_quaternion, unit
 from lavendersim.experiment.presets import PRESETS, PresetValue
-from lavendersim.experiment.quantities import Vector3
+from lavendersim.experiment.quantities import Quantity, Vector3
 from lavendersim.experiment.run_checks import whole_steps
 from lavendersim.experiment.scene_models import (
     AxisAngle,
@@ -68,7 +68,7 @@ class CellEvent(_Resolved):
 class Numerics(_Resolved):
     """Every number of the numerics; see `docs/config.md` for their meaning."""
 
-    timestep: Fraction  # [s]
+    timestep: Annotated[Fraction, Quantity("s", above=0, exact=True)]  # [s]
     solver: str
     sweeps: int
     tolerance: float | None  # [m/s]
@@ -80,10 +80,6 @@ class Numerics(_Resolved):
     restitution_threshold: float  # [g dt]
     cache_distance: float  # [m]
     cache_normal_cosine: float
-
-    @field_serializer("timestep", when_used="json")
-    def _as_ratio(self, timestep: Fraction) -> str:
-        return str(timestep)
 
 
 class ResidualWindow(_Resolved):

@@ -22,7 +22,7 @@ def check_run(root: Node, report: Report) -> None:
     duration = root.get("duration")
     length = duration.number if duration is not None else None
     if duration is not None and length is not None and length > 0:
-        _check_steps(duration, exact(length), timestep_of(root), report)
+        _check_steps(root, duration, exact(length), report)
     events = root.get("events")
     for index, event in enumerate(events.items if events is not None else ()):
         if event.entries:
@@ -50,21 +50,24 @@ def whole_steps(duration: float, timestep: Fraction) -> int:
     return round(exact(duration) / timestep)
 
 
-def _check_steps(node: Node, length: Fraction, timestep: Fraction | None, report: Report) -> None:
+def _check_steps(root: Node, duration: Node, length: Fraction, report: Report) -> None:
+    timestep = timestep_of(root)
     if timestep is None:
         return
+    stated = root.get("numerics", "timestep") or duration
+    mark = max(duration.mark, stated.mark)  # swept values stand below what they replace
     steps = length / timestep
+    step = str(timestep) if timestep.denominator < 10_000 else _short(timestep)
     if steps > MOST_STEPS:
-        counted = f"{_short(length)} s in steps of {timestep} s are {_short(steps)} steps"
-        report.add(node.mark, f"duration: {counted}, expected at most {MOST_STEPS:.0e}")
+        counted = f"{_short(length)} s in steps of {step} s are {_short(steps)} steps"
+        report.add(mark, f"{counted}, expected at most {_short(Fraction(MOST_STEPS))}")
     elif round(steps) < 1:
-        sentence = f"duration: {_short(length)} s is less than one step of {timestep} s"
-        report.add(node.mark, sentence)
+        report.add(mark, f"a duration of {_short(length)} s is less than one step of {step} s")
 
 
 def _short(number: Fraction) -> str:
     try:
-        return f"{float(number):g}"
+        return f"{float(number):g}".replace("e+0", "e").replace("e+", "e")
     except OverflowError:
         return "more than 1e308"
 

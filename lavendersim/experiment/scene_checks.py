@@ -8,6 +8,7 @@ from __future__ import annotations
 from lavendersim.experiment.found import near
 from lavendersim.experiment.messages import missing_key, place_of
 from lavendersim.experiment.node import Mark, Node, Path, key_mark
+from lavendersim.experiment.references import SOLIDS
 from lavendersim.experiment.report import Report
 from lavendersim.experiment.scene_models import Body
 
@@ -57,7 +58,11 @@ def _check_body(body: Node, path: Path, report: Report) -> None:
     kind = kind_of(body)
     if kind == "plane":
         _check_plane(body, path, report)
-        return
+    elif kind in SOLIDS:
+        _check_solid(body, path, report)
+
+
+def _check_solid(body: Node, path: Path, report: Report) -> None:
     _exactly_one_start(body, path, report)
     if is_static(body):
         for key in _OF_MOVABLE:
@@ -71,9 +76,9 @@ def _check_body(body: Node, path: Path, report: Report) -> None:
     mass, density = _stated(body, "mass"), _stated(body, "density")
     if mass and density:
         report.add(max(mass, density), f"{place_of(path)} states both mass and density; keep one")
-    elif not mass and not density and not _misspelt(body, "mass", "density"):
+    elif not mass and not density:
         meaning = "[kg], or a density [kg/m^3], or fixed: true"
-        report.add(body.mark, missing_key("mass", path, meaning))
+        _missing(body, ("mass", "density"), path, meaning, report)
 
 
 def _check_plane(body: Node, path: Path, report: Report) -> None:
@@ -96,15 +101,20 @@ def _exactly_one_start(body: Node, path: Path, report: Report) -> None:
     if position and release:
         later = max(position, release)
         report.add(later, f"{place_of(path)} states both position and release; keep one")
-    elif not position and not release and not _misspelt(body, "position", "release"):
+    elif not position and not release:
         meaning = "[m], or a release above a plane"
-        report.add(body.mark, missing_key("position", path, meaning))
+        _missing(body, ("position", "release"), path, meaning, report)
 
 
-def _misspelt(body: Node, *keys: str) -> bool:
-    """Tell whether an unknown key was probably meant to be one of these; it is refused itself."""
+def _missing(
+    body: Node, keys: tuple[str, ...], path: Path, meaning: str, report: Report
+) -> None:
+    """Note that a body has none of the keys, unless a refused key may have been one of them."""
     unknown = [key for key in body.entries if key not in Body.model_fields]
-    return any(near(key, Body.model_fields) in keys for key in unknown)
+    if body.torn or any(near(key, Body.model_fields) in keys for key in unknown):
+        report.doubt()
+    else:
+        report.add(body.mark, missing_key(keys[0], path, meaning))
 
 
 def _words(key: str) -> str:

@@ -22,6 +22,7 @@ from lavendersim.experiment.quantities import (
 )
 
 GRAVITY = 9.81  # [m/s^2]
+STATIC_HINT = "a body that never moves has fixed: true"
 
 
 class Surface(ConfigModel):
@@ -135,7 +136,7 @@ class Body(ConfigModel):
     """One rigid body. Planes are static; a movable body has exactly one of mass and density."""
 
     shape: Shape = Field(description="plane, sphere or box")
-    mass: Annotated[float, Quantity("kg", above=0)] | None = Field(default=None, description="[kg]")
+    mass: Annotated[float, Quantity("kg", above=0, hint=STATIC_HINT)] | None = Field(default=None, description="[kg]")
     density: Annotated[float, Quantity("kg/m^3", above=0)] | None = Field(
         default=None, description="[kg/m^3]"
     )

@@ -14,9 +14,9 @@ from typing import Any
 
 from lavendersim.experiment.found import found, quoted
 from lavendersim.experiment.node import Node, Path, graft, key_mark
-from lavendersim.experiment.references import products, same_value
+from lavendersim.experiment.references import products
 from lavendersim.experiment.report import Report
-from lavendersim.experiment.scalars import Ratio, written
+from lavendersim.experiment.scalars import Ratio, exact, written
 from lavendersim.experiment.sweep_paths import find_path
 
 MOST_CELLS = 100_000
@@ -110,7 +110,9 @@ def count(axes: tuple[tuple[Axis, ...], ...]) -> int:
 
 def telling_points(axes: tuple[tuple[Axis, ...], ...]) -> Iterator[Point]:
     """Yield a few cells in which every value of every axis stands once, for large sweeps."""
-    for product in axes:
+    for product in axes or ((),):
+        if not product:
+            yield Point(())
         first = [(axis, axis.values[0]) for axis in product]
         for index, axis in enumerate(product):
             for node in axis.values:
@@ -140,19 +142,24 @@ def _axis(name: str, node: Node, root: Node, report: Report) -> Axis | None:
 
 
 def _usable(name: str, values: Node, report: Report) -> tuple[Node, ...]:
-    usable: dict[str, Node] = {}
+    usable: dict[object, Node] = {}
+    labels: set[str] = set()
     for value in values.items:
         if value.content is None or isinstance(value.content, dict):
             sentence = f"{name}: expected a number, a text, true, false or a list"
             report.add(value.mark, f"{sentence}, found {found(value.data)}")
             continue
         label = written(value.data)
-        if label not in usable:
-            usable[label] = value
-        elif same_value(usable[label], value):
+        number = value.number
+        key = (type(value.content), label) if number is None else exact(number)
+        if key in usable:
             report.add(value.mark, f"{name}: value {label} stands twice")
+        elif label in labels:
+            sentence = f"{name}: another value reads {label} too; labels show six digits"
+            report.add(value.mark, sentence)
         else:
-            report.add(value.mark, f"{name}: two values print as {label}; they need 6 digits")
+            usable[key] = value
+            labels.add(label)
     return tuple(usable.values())
 
 

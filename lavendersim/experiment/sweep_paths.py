@@ -37,8 +37,8 @@ def find_path(path: Node, root: Node, report: Report) -> Path | None:
 def _resolve(path: str, root: Node) -> Path:
     steps = path.split(".")
     if steps[0] not in SWEPT_SECTIONS:
-        hint = nearest(steps[0], SWEPT_SECTIONS)
-        raise _NoPath(f"a sweep cannot reach {quoted(steps[0])}{hint}")
+        reached = ", ".join(SWEPT_SECTIONS)
+        raise _NoPath(f"a sweep cannot reach {quoted(steps[0])}; it reaches {reached}")
     annotation: Any = CellSource
     node: Node | None = root
     found: list[str | int] = []

@@ -14,6 +14,7 @@ from lavendersim.errors import Defect
 
 _TAB = re.compile(r"^ *\t[ \t]*(?=[^\s#])", re.MULTILINE)
 MOST_TABS = 50
+_LINE_BREAK = re.compile("\r\n|[\n\r\x85\u2028\u2029]")  # what YAML 1.1 parsers count as one
 
 # (words in the problem, words in its context, sentence, points at the start of the construct)
 _KINDS: tuple[tuple[str, str, str, bool], ...] = (
@@ -49,10 +50,15 @@ def describe(error: yaml.MarkedYAMLError, text: str, name: str) -> list[Defect]:
     for words, context_words, sentence, at_start in _KINDS:
         if words in problem and context_words in context:
             mark = error.context_mark if at_start else error.problem_mark
-            return [_defect(name, mark or error.problem_mark, sentence)]
-    return [_defect(name, error.problem_mark, f"not YAML: {problem or context}")]
+            return [_defect(name, text, mark or error.problem_mark, sentence)]
+    return [_defect(name, text, error.problem_mark, f"not YAML: {problem or context}")]
 
 
-def _defect(name: str, mark: object, sentence: str) -> Defect:
+def _defect(name: str, text: str, mark: object, sentence: str) -> Defect:
+    """Return the defect, moved to the end of the text where the parsers point behind it."""
+    lines = _LINE_BREAK.split(text)
     line, column = getattr(mark, "line", 0), getattr(mark, "column", 0)
-    return Defect(name, line + 1, column + 1, sentence)
+    if line >= len(lines):
+        line, column = len(lines) - 1, len(lines[-1])
+        sentence = "the text ends too early; is a bracket or a quote not closed?"
+    return Defect(name, line + 1, min(column, len(lines[line])) + 1, sentence)

@@ -54,6 +54,19 @@ FACTORS: dict[str, dict[str, Fraction | float]] = {
     "degree": {"deg": 1.0, "°": 1.0, "degree": 1.0, "degrees": 1.0, "rad": 1 / _DEGREE},
 }
 
+QUANTITIES = {
+    "s": "time",
+    "m": "length",
+    "kg": "mass",
+    "N": "force",
+    "m/s": "speed",
+    "m/s^2": "acceleration",
+    "rad/s": "angular velocity",
+    "m/N": "compliance",
+    "kg/m^3": "density",
+    "degree": "angle",
+}
+
 _WITH_UNIT = re.compile(
     r"([-+]?[0-9.]{1,30}(?:[eE][-+]?[0-9]{1,2}|/[0-9]{1,30})?)\s*([a-zA-Zµ°%][a-zA-Z0-9µ°/^*%]*)\Z"
 )
@@ -102,8 +115,9 @@ def _convert(digits: str, written_unit: str, unit: str) -> str:
         return f"; a frequency is written as its period, {1 / (number * _hertz(written_unit))}"
     factors = FACTORS.get(unit, {})
     if written_unit not in factors:
-        of_what = f", and {written_unit} is no unit of it" if written_unit in ALL_UNITS else ""
-        return f"; numbers are written without a unit{of_what}"
+        if unit in QUANTITIES and written_unit in ALL_UNITS:
+            return f"; {written_unit} is no unit of {QUANTITIES[unit]}"
+        return "; numbers are written without a unit"
     factor = factors[written_unit]
     converted = number * factor if isinstance(factor, Fraction) else float(number) * factor
     return f"; units are SI and not written, write {float(converted):.15g}"

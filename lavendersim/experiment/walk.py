@@ -30,6 +30,7 @@ class Place:
     model: Model | None = None  # the node is a mapping with the fields of this model
     refers: Refers | None = None  # its text is the name of such a thing
     axis: str | None = None  # it is one value, of this axis of the sweep
+    kinds: tuple[str, ...] = ()  # its `kind` is none of these
 
 
 def field_name(model: Model, name: str) -> str:
@@ -107,6 +108,9 @@ def places(annotation: Any, node: Node, path: Path = ()) -> Iterator[Place]:
                 if (child := node.get(key)) is not None:
                     yield from places(annotation_of(info), child, (*path, key))
         else:
+            models = [member for member, _ in alternatives(annotation) if is_model(member)]
+            if valid := tuple(kind for one in models for kind in kinds(one)):
+                yield Place(path, node, node.mark, kinds=valid)
             yield from _entries(annotation, node, path)
 
 

@@ -21,7 +21,7 @@ def draw_panel(
     """Draw one panel onto the axes."""
     shown = [cell for cell in cells if panel.axis in cell.coordinates]
     drawn: set[tuple[float, ...]] = set()
-    for index, series in enumerate(series_of(shown, panel.series)):
+    for index, series in enumerate(series_of(shown, panel.series, panel.series_label)):
         band = band_along(
             series.cells, panel.axis, lambda cell: float(values.row(panel.measure, cell)[0])
         )
@@ -40,7 +40,7 @@ def draw_panel(
                 label = panel.ideal.label if not drawn else None
                 draw_ideal(axes, places * panel.x_factor, ideal * panel.factor, label)
                 drawn.add(key)
-        draw_band(axes, band, look(index), series.label)
+        draw_band(axes, band, look(index), series.label, size=7.5 - 0.7 * index)
         ticks_at_values(axes, band.places)
     for index, onset in enumerate(panel.onsets):
         stations = along_axis(shown, values.of(panel.measure), panel.axis, onset.reduce)

@@ -34,8 +34,10 @@ def limit(axes: Any, panel: Any) -> None:
         axes.set_ylim(*panel.y_limits)
 
 
-def draw_band(axes: Any, band: Band, look: Look, label: str, *, joined: bool = False) -> None:
-    """Draw means as markers and the spread as a band; `joined` adds a pale line for the eye."""
+def draw_band(
+    axes: Any, band: Band, look: Look, label: str, *, joined: bool = False, size: float = 6.0
+) -> None:
+    """Draw means as markers and the spread as a band; `joined` adds a thin line for the eye."""
     if band.spread:
         axes.fill_between(
             band.places, band.low, band.high, color=look.colour, alpha=0.22, linewidth=0
@@ -47,7 +49,7 @@ def draw_band(axes: Any, band: Band, look: Look, label: str, *, joined: bool = F
         linewidth=0.9,
         color=look.colour,
         marker=look.marker,
-        markersize=6,
+        markersize=size,
         markeredgecolor="white",
         markeredgewidth=0.6,
         label=label,
@@ -55,9 +57,11 @@ def draw_band(axes: Any, band: Band, look: Look, label: str, *, joined: bool = F
     )
 
 
-def draw_ideal(axes: Any, places: Any, values: Any, label: str | None) -> None:
-    """Draw the ideal as a thin dark line."""
-    axes.plot(places, values, color=DARK, linewidth=1.1, label=label, zorder=2)
+def draw_ideal(
+    axes: Any, places: Any, values: Any, label: str | None, *, order: float = 2.0
+) -> None:
+    """Draw the ideal as a thin dark line; lines of higher order lie above."""
+    axes.plot(places, values, color=DARK, linewidth=1.1, label=label, zorder=order)
 
 
 def ticks_at_values(axes: Any, values: Any) -> None:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import copy
 import math
 from collections.abc import Mapping, Sequence
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -17,6 +18,7 @@ import numpy as np
 from lavendersim.experiment.measure_specs import ClosedForm
 from lavendersim.figures.series import band_along
 from lavendersim.measures.closed_forms import evaluate_form
+from lavendersim.measures.selection import group_by
 from lavendersim.measures.views import Cell, Floats
 
 POINTS = 24  # per interval between two swept values
@@ -27,24 +29,40 @@ def ideal_line(
 ) -> tuple[Floats, Floats]:
     """Return places on the axis and the closed form there, averaged over the other axes."""
     coarse = band_along(cells, axis, lambda cell: evaluate_form(form, cell.trace().resolved))
-    if path is None or coarse.spread or len(coarse.places) < 2:
+    lines = (
+        []
+        if path is None
+        else [
+            _fine_line(form, group, axis, path, log_x)
+            for group in group_by(cells, without=axis).values()
+            if len(group) == len(coarse.places)  # others would bend the mean where they end
+        ]
+    )
+    fine = [line for line in lines if line is not None]
+    if not fine or len(fine) < len(lines):
         return coarse.places, coarse.mean
+    return fine[0][0], np.mean([values for _, values in fine], axis=0)
+
+
+def _fine_line(
+    form: ClosedForm, cells: Sequence[Cell], axis: str, path: str, log_x: bool
+) -> tuple[Floats, Floats] | None:
+    """Return the line through cells that differ in this axis alone; None if it misses one."""
     ordered = sorted(cells, key=lambda cell: float(cell.coordinates[axis]))
-    resolved = {float(cell.coordinates[axis]): cell.trace().resolved for cell in ordered}
+    between = np.geomspace if log_x else np.linspace
     places: list[float] = []
     values: list[float] = []
-    for left, right, target in zip(
-        coarse.places[:-1], coarse.places[1:], coarse.mean[1:], strict=True
-    ):
-        config = resolved[float(left)]
-        reached = _patched(form, config, path, float(right))
-        if reached is None or not math.isclose(reached, target, rel_tol=1e-9, abs_tol=1e-12):
-            return coarse.places, coarse.mean
-        between = np.geomspace if log_x else np.linspace
-        for place in between(left, right, POINTS):
-            places.append(float(place))
-            values.append(_patched(form, config, path, float(place)) or 0.0)
-    return np.array(places), np.array(values)
+    for left, right in pairwise(ordered):
+        ends = (float(left.coordinates[axis]), float(right.coordinates[axis]))
+        inside = [float(place) for place in between(*ends, POINTS)]
+        found = [_patched(form, left.trace().resolved, path, place) for place in inside]
+        known = [value for value in found if value is not None]
+        target = evaluate_form(form, right.trace().resolved)
+        if len(known) < POINTS or not math.isclose(known[-1], target, rel_tol=1e-9, abs_tol=1e-12):
+            return None
+        places += inside
+        values += known
+    return (np.array(places), np.array(values)) if places else None
 
 
 def _patched(

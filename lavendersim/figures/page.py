@@ -6,7 +6,6 @@ state and starts faster. Equal logs give equal bytes: no date, fixed ids, a font
 
 from __future__ import annotations
 
-import textwrap
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, Final
@@ -14,6 +13,8 @@ from typing import Any, Final
 from matplotlib import style
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.font_manager import FontProperties
+from matplotlib.textpath import TextPath
 
 from lavendersim.errors import TraceError
 from lavendersim.experiment.figure_specs import FigureSpec
@@ -29,16 +30,17 @@ PANELS: Final[dict[str, Callable[..., None]]] = {
     "row_against_index": row_against_index.draw_panel,
     "time_series": time_series.draw_panel,
 }
-CHARACTERS_PER_INCH: Final = 12.2  # of the caption's font, so that lines end inside the page
+POINTS_PER_INCH: Final = 72.0
+HINTING: Final = 0.93  # letters placed on whole pixels run wider than their outlines
 MARGIN: Final = 0.12  # [inch]
-NARROWEST: Final = 6.2  # [inch] a single panel is wider, for its caption
+NARROWEST: Final = 6.8  # [inch] a single panel is wider, for its caption
 
 
 def draw(run: Any, directory: Path) -> list[Path]:
     """Write `<experiment>.png` and `.svg` into the directory; returns them, none without a figure.
 
-    `run` has `.experiment`, `.cells` and, if it differs from the file, `.name`. Cells without a readable log are left out and counted in
-    the caption.
+    `run` has `.experiment`, `.cells` and, where it differs from the file's, a `.name`. Cells
+    without a readable log are left out and counted in the caption.
     """
     experiment = run.experiment
     if experiment.figure is None:
@@ -62,7 +64,7 @@ def compose(experiment: Any, cells: Sequence[Cell]) -> Figure:
     note = f" Left out: {missing} of {len(cells)} cells have no readable log." if missing else ""
     width = max(NARROWEST, PANEL_WIDTH * len(spec.panels))
     caption = _wrapped(spec.caption + note, width)
-    question = _wrapped(experiment.question, width)
+    question = _wrapped(experiment.question, width, weight="bold")
     below = LINE_HEIGHT * (caption.count("\n") + 1) + 2 * MARGIN
     above = LINE_HEIGHT * (question.count("\n") + 1) + 2 * MARGIN if question else MARGIN
     height = PANEL_HEIGHT + below + above
@@ -97,5 +99,21 @@ def _is_readable(cell: Cell) -> bool:
         return False
 
 
-def _wrapped(text: str, width: float) -> str:
-    return textwrap.fill(" ".join(text.split()), int((width - 2 * MARGIN) * CHARACTERS_PER_INCH))
+def _wrapped(text: str, width: float, weight: str = "normal") -> str:
+    """Break a text into lines that end inside the page, by the true widths of its letters."""
+    font = FontProperties(weight=weight, size=STYLE["font.size"], family=STYLE["font.family"])
+    left = most = HINTING * (width - 2 * MARGIN) * POINTS_PER_INCH
+    space = _text_width("n n", font) - _text_width("nn", font)
+    lines: list[list[str]] = [[]]
+    for word in text.split():
+        needed = _text_width(word, font) + space
+        if lines[-1] and needed > left:
+            lines.append([])
+            left = most
+        lines[-1].append(word)
+        left -= needed
+    return "\n".join(" ".join(line) for line in lines)
+
+
+def _text_width(text: str, font: FontProperties) -> float:
+    return float(TextPath((0, 0), text, prop=font).get_extents().width)

@@ -20,7 +20,7 @@ def draw_panel(
     axes: Any, panel: RowAgainstIndex, cells: Sequence[Cell], values: Values, experiment: Any
 ) -> None:
     """Draw one panel onto the axes."""
-    for index, series in enumerate(series_of(cells, panel.series)):
+    for index, series in enumerate(series_of(cells, panel.series, panel.series_label)):
         rows = [_shown(values.row(panel.measure, cell), panel) for cell in series.cells]
         band = band_of_rows(rows, panel.first_index, panel.factor)
         draw_band(axes, band, look(index), series.label, joined=True)

@@ -32,16 +32,19 @@ class Band(NamedTuple):
         return bool(np.any(self.high - self.low > 1e-9 * np.maximum(1e-300, np.abs(self.high))))
 
 
-def series_of(cells: Sequence[Cell], axis: str | None) -> list[Series]:
-    """Return the cells split by an axis, in the order of the sweep; one series without an axis."""
+def series_of(cells: Sequence[Cell], axis: str | None, label: str = "") -> list[Series]:
+    """Return the cells split by an axis, in the order of the sweep; one series without an axis.
+
+    label: the legend entry with {} for the value; `axis = value` when empty.
+    """
     if axis is None:
         return [Series("measured", list(cells))] if cells else []
-    named = axis.replace("_", " ")
+    template = label or axis.replace("_", " ") + " = {}"
     split: dict[str, list[Cell]] = {}
     for cell in cells:
         if axis in cell.coordinates:
             split.setdefault(written(cell.coordinates[axis]), []).append(cell)
-    return [Series(f"{named} = {value}", members) for value, members in split.items()]
+    return [Series(template.replace("{}", value), members) for value, members in split.items()]
 
 
 def band_along(

@@ -22,14 +22,14 @@ from lavendersim.measures.columns import (
 from lavendersim.measures.values import Values
 from lavendersim.measures.views import Cell, Floats, Rows, Trace
 
-MOST_MARKERS = 150  # beyond this many points markers run into a stripe; every k-th is marked
+MOST_MARKERS = 130  # beyond this many points markers run into a stripe; every k-th is marked
 
 
 def draw_panel(
     axes: Any, panel: TimeSeries, cells: Sequence[Cell], values: Values, experiment: Any
 ) -> None:
     """Draw one panel onto the axes."""
-    for index, series in enumerate(series_of(cells, panel.series)):
+    for index, series in enumerate(series_of(cells, panel.series, panel.series_label)):
         for number, cell in enumerate(series.cells):
             time, quantity = window_of(panel, cell.trace())
             axes.plot(
@@ -40,7 +40,7 @@ def draw_panel(
                 color=look(index).colour,
                 linewidth=1.0,
                 marker=look(index).marker,
-                markersize=4,
+                markersize=3.5,
                 markevery=max(1, len(time) // MOST_MARKERS),
                 markeredgecolor="none",
                 label=series.label if number == 0 else None,
@@ -49,7 +49,8 @@ def draw_panel(
             if panel.ideal is not None and index == number == 0 and len(time):
                 ideal = evaluate_form(panel.ideal.closed_form, cell.trace().resolved)
                 ends = np.array([time[0], time[-1]]) * panel.x_factor
-                draw_ideal(axes, ends, [ideal * panel.factor] * 2, panel.ideal.label)
+                level = [ideal * panel.factor] * 2
+                draw_ideal(axes, ends, level, panel.ideal.label, order=4.0)
 
 
 def window_of(panel: TimeSeries, trace: Trace) -> tuple[Floats, Floats]:

@@ -89,7 +89,8 @@ def _trend(expectation: ExpectSpec, cells: Sequence[Cell], row_of: RowOf) -> Out
                 closest = rise
             elif not reason:
                 closest = min(closest, rise)
-    return Outcome(not reason, sign * closest, expected, "every step > 0", reason)
+    tolerance = "the least move from one value to the next, above 0 in the claimed direction"
+    return Outcome(not reason, closest, expected, tolerance, reason)
 
 
 def _numbers(row: Floats) -> str:

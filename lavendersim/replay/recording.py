@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -21,9 +22,11 @@ def new_stream(title: str) -> rr.RecordingStream:
     """A recording stream that goes nowhere yet.
 
     The viewer keeps one blueprint per application, so each title is an application of its own:
-    a second replay in an open viewer leaves the first one's camera alone.
+    a second replay in an open viewer leaves the first one's camera alone. The viewer takes names
+    of letters, digits, hyphens and underscores; it renames and warns about all others.
     """
-    return rr.RecordingStream(f"lavender {title}")
+    name = re.sub(r"[^A-Za-z0-9_-]+", "-", f"lavender-{title}")
+    return rr.RecordingStream(name)
 
 
 def record(trace: Trace, stream: rr.RecordingStream, title: str) -> None:

@@ -24,7 +24,7 @@ NANOSECONDS = 10**9
 class CellJob(NamedTuple):
     """Everything a worker needs to run one cell; plain data, so that it can cross processes."""
 
-    index: int
+    cell: int  # index in the sweep
     resolved: dict[str, Any]
     steps: int
     as_written: str
@@ -35,7 +35,7 @@ class CellJob(NamedTuple):
 class CellOutcome(NamedTuple):
     """How a cell ended and what it cost. Times never enter the log."""
 
-    index: int
+    cell: int  # index in the sweep
     status: str  # `complete` or `diverged: ...`
     steps: int
     compile_ns: int  # composing, compiling or loading the kernel
@@ -81,7 +81,7 @@ def metadata_of(plan: Plan) -> dict[str, dict[str, str]]:
 
 
 def divergence(scene: Scene, engine: Engine) -> str:
-    """Return one sentence naming the body, the step and the time at which the run left the finite."""
+    """Return one sentence naming the body, the step and the time of the divergence."""
     counters = engine.counters[0]
     step = int(counters["step"])
     name = scene.names[int(counters["body"])]
@@ -130,4 +130,4 @@ def run_cell(job: CellJob) -> CellOutcome:
     start = perf_counter_ns()
     writer.close(status)
     logging_ns += perf_counter_ns() - start
-    return CellOutcome(job.index, status, done, compile_ns, physics_ns, logging_ns)
+    return CellOutcome(job.cell, status, done, compile_ns, physics_ns, logging_ns)

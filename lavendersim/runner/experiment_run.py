@@ -1,6 +1,6 @@
 """Experiments enter; run directories with logs, results and verdicts leave.
 
-    load -> plan -> run every cell -> measure and judge -> results -> DONE -> latest
+load -> plan -> run every cell -> measure and judge -> results -> DONE -> latest
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from lavendersim.errors import ConfigError, UsageError
+from lavendersim.errors import ConfigError, Defect, UsageError
 from lavendersim.experiment import Experiment, load_experiment, resolved_yaml
 from lavendersim.measures import Verdict, judge
 
@@ -73,8 +73,9 @@ def find_configs(paths: list[Path]) -> list[Path]:
 
 
 def load_all(paths: list[Path]) -> list[Experiment]:
-    """Load every config among `paths`; raises ConfigError with the defects of all files together."""
-    experiments, defects = [], []
+    """Load every config among `paths`; raises ConfigError with the defects of all files."""
+    experiments: list[Experiment] = []
+    defects: list[Defect] = []
     for path in find_configs(paths):
         try:
             experiments.append(load_experiment(path))
@@ -162,7 +163,10 @@ def run(
     ]
     outcomes = []
     # The first cell runs here: it leaves the compiled kernel where the others find it.
-    for outcomes_of in ([run_cell(pending[0])], _outcomes(pending[1:], jobs) if pending[1:] else []):
+    for outcomes_of in (
+        [run_cell(pending[0])],
+        _outcomes(pending[1:], jobs) if pending[1:] else [],
+    ):
         for outcome in outcomes_of:
             outcomes.append(outcome)
             progress.cell_done(len(outcomes), len(pending))

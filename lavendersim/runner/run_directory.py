@@ -1,4 +1,4 @@
-"""A run's directory enters, a `Run` leaves: its experiment, its cells, their logs. No numba here."""
+"""A run's directory enters, a `Run` leaves: experiment, cells and their logs. No numba here."""
 
 from __future__ import annotations
 

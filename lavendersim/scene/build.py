@@ -1,4 +1,4 @@
-"""A resolved config and a spec enter; the engine's arrays leave, checked and filled at this one door."""
+"""A resolved config and a spec enter; the engine's arrays leave, filled at this one door."""
 
 from __future__ import annotations
 
@@ -95,7 +95,13 @@ def _parameters(resolved: dict[str, Any], timestep: Fraction) -> np.ndarray:
     p["dt"] = dt
     gravity = [float(g) for g in resolved["scene"]["gravity"]]
     p["gx"], p["gy"], p["gz"] = gravity
-    for name in ("stabilisation_gain", "slop", "projection", "cache_distance", "cache_normal_cosine"):
+    for name in (
+        "stabilisation_gain",
+        "slop",
+        "projection",
+        "cache_distance",
+        "cache_normal_cosine",
+    ):
         p[name] = float(numerics[name])
     magnitude = sqrt(sum(g * g for g in gravity))
     p["restitution_speed"] = float(numerics["restitution_threshold"]) * magnitude * dt
@@ -114,11 +120,13 @@ def residual_window(resolved: dict[str, Any], timestep: Fraction) -> tuple[int, 
         return _NO_STEPS
     if asked == "all":
         return 1, np.iinfo(np.int64).max
-    return max(1, ceil(Fraction(asked["from"]) / timestep)), int(Fraction(asked["to"]) / timestep)
+    # By the number as written: 0.1 is the time of a step of 1/10 s, its binary value lies beside it.
+    begin, end = (Fraction(repr(float(asked[side]))) for side in ("from", "to"))
+    return max(1, ceil(begin / timestep)), int(end / timestep)
 
 
 def build(resolved: dict[str, Any], spec: Spec) -> Scene:
-    """Fill the engine's arrays for one cell. `spec` may have more effects than the cell calls for."""
+    """Fill the engine's arrays for one cell; `spec` may have effects the cell does not call for."""
     config = resolved["scene"]["bodies"]
     names, described = list(config), list(config.values())
     turns = spec.has("rotation")
@@ -153,6 +161,4 @@ def build(resolved: dict[str, Any], spec: Spec) -> Scene:
             if spec.has(surface_property):
                 row[surface_property] = getattr(pair, surface_property)
     timestep = Fraction(resolved["numerics"]["timestep"])
-    return Scene(
-        names, bodies, velocities, pairs, _parameters(resolved, timestep), poses, timestep
-    )
+    return Scene(names, bodies, velocities, pairs, _parameters(resolved, timestep), poses, timestep)

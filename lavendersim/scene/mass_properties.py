@@ -21,7 +21,9 @@ def volume(shape: dict[str, Any]) -> float:
     return float(sx * sy * sz)
 
 
-def mass_properties(shape: dict[str, Any], mass: float | None, density: float | None) -> MassProperties:
+def mass_properties(
+    shape: dict[str, Any], mass: float | None, density: float | None
+) -> MassProperties:
     """Return the properties of a homogeneous solid; exactly one of mass and density is given."""
     m = float(mass) if mass is not None else float(density or 0.0) * volume(shape)
     if shape["kind"] == "sphere":

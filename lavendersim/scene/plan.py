@@ -69,9 +69,7 @@ def _body_facts(name: str, body: dict[str, Any]) -> BodyFacts:
     if movable:
         inertia = mass_properties(body["shape"], body["mass"], body["density"]).inertia
         uniform = inertia[0] == inertia[1] == inertia[2]
-    return BodyFacts(
-        name, body["shape"]["kind"], movable, any(body["angular_velocity"]), uniform
-    )
+    return BodyFacts(name, body["shape"]["kind"], movable, any(body["angular_velocity"]), uniform)
 
 
 def facts_of(resolved: dict[str, Any]) -> Facts:
@@ -112,7 +110,7 @@ def plan_of(resolved: dict[str, Any], record: bool = True) -> Plan:
 
 
 def union(plans: Iterable[Plan]) -> Plan:
-    """Return the plan that serves every cell of a sweep: an effect is on where any cell wants it."""
+    """Return the plan for every cell of a sweep: an effect is on where any cell wants it."""
     plans = list(plans)
     first = plans[0]
     decisions = dict(first.decisions)

@@ -100,11 +100,13 @@ def clip_incident_face(ref, inc, fr, fi, hr, hi, axis, side, base, points, norma
             0,
         )
         vertex.in_line, vertex.out_line = (k + 3) % 4, k
+    # A vertex on a side but for round-off is inside, or aligned boxes would rename their points.
+    limit_u, limit_v = hr[iu] + TOUCHING, hr[iv] + TOUCHING
     # Four cuts swing the polygon between rows 0.. and 8..; it gains at most one vertex a cut.
-    count = cut(points, 0, 4, 8, 0, -1.0, hr[iu], 4)
-    count = cut(points, 8, count, 0, 0, 1.0, hr[iu], 5)
-    count = cut(points, 0, count, 8, 1, -1.0, hr[iv], 6)
-    count = cut(points, 8, count, 0, 1, 1.0, hr[iv], 7)
+    count = cut(points, 0, 4, 8, 0, -1.0, limit_u, 4)
+    count = cut(points, 8, count, 0, 0, 1.0, limit_u, 5)
+    count = cut(points, 0, count, 8, 1, -1.0, limit_v, 6)
+    count = cut(points, 8, count, 0, 1, 1.0, limit_v, 7)
     face = 2 * axis + (1 if side > 0.0 else 0)
     inc_face = 2 * inc_axis + (1 if inc_side > 0.0 else 0)
     first = base + face * 3 * 64 + (inc_face // 2) * 64

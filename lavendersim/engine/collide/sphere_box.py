@@ -12,6 +12,7 @@ from ..compile import kernel
 from ..records import TOUCHING
 from ..rotation import to_body, to_world
 from .point import place
+from .sphere_sphere import NO_DIRECTION
 
 
 def make(spec):
@@ -28,7 +29,7 @@ def make(spec):
         if squared > (r + TOUCHING) * (r + TOUCHING):
             return 0
         distance = sqrt(squared)
-        if distance > 0.0:
+        if distance > NO_DIRECTION:
             mx, my, mz = dx / distance, dy / distance, dz / distance
             phi = distance - r
         else:

@@ -13,6 +13,9 @@ from ..compile import kernel
 from ..records import TOUCHING
 from .point import place
 
+# Centres closer than this count as coincident: their squared distance has lost its digits [m].
+NO_DIRECTION = 1e-150
+
 
 def make(spec):
     """Return `kernel(a, b, points, normal, scratch) -> count`."""
@@ -25,7 +28,7 @@ def make(spec):
             return 0
         distance = sqrt(squared)
         nx, ny, nz = 0.0, 0.0, 1.0
-        if distance > 0.0:
+        if distance > NO_DIRECTION:
             nx, ny, nz = dx / distance, dy / distance, dz / distance
         phi = distance - a.hx - b.hx
         normal[0], normal[1], normal[2] = nx, ny, nz

@@ -42,7 +42,7 @@ def make(spec):
             contact.correction = params.projection * max(excess, 0.0)
             contact.push = 0.0
             contact.inv_k_n = 1.0 / contact.k_n
-            if excess > 0.0:
+            if contact.correction > 0.0:
                 asked = True
         if not asked:
             return False

@@ -10,6 +10,7 @@ from .decision import Decision, Facts
 
 NAME = "warm_start"
 STAGE = "match"
+CONTACT_FIELDS = [("matched", "i8")]  # 1 once it has taken a cached impulse
 CACHE_FIELDS = [
     ("pair", "i8"),
     ("feature", "i8"),
@@ -39,31 +40,38 @@ def make(spec):
             return
         scale = params.dt / counters.cached_dt
         nearest_allowed = params.cache_distance * params.cache_distance
-        first = 0
+        left = count
         for c in range(count):
-            contact = contacts[c]
-            while first < counters.cached and cache[first].pair < contact.pair:
-                first += 1
-            body = bodies[contact.a]
-            rx, ry, rz = contact.x - body.x, contact.y - body.y, contact.z - body.z
-            best, chosen = nearest_allowed, -1
-            k = first
-            while k < counters.cached and cache[k].pair == contact.pair:
-                old = cache[k]
-                if old.claimed == 0:
-                    cosine = old.nx * contact.nx + old.ny * contact.ny + old.nz * contact.nz
-                    dx, dy, dz = old.rx - rx, old.ry - ry, old.rz - rz
-                    distance = dx * dx + dy * dy + dz * dz
-                    if cosine >= params.cache_normal_cosine and distance <= nearest_allowed:
-                        if old.feature == contact.feature:
-                            chosen = k
-                            break
-                        if distance <= best:
+            contacts[c].matched = 0
+        # Features first, for all: a new point must not take the impulse of one that persists.
+        for by_feature in (True, False):
+            if left == 0:
+                return
+            first = 0
+            for c in range(count):
+                contact = contacts[c]
+                if contact.matched == 1:
+                    continue
+                while first < counters.cached and cache[first].pair < contact.pair:
+                    first += 1
+                body = bodies[contact.a]
+                rx, ry, rz = contact.x - body.x, contact.y - body.y, contact.z - body.z
+                best, chosen = nearest_allowed, -1
+                k = first
+                while k < counters.cached and cache[k].pair == contact.pair:
+                    old = cache[k]
+                    if old.claimed == 0 and (not by_feature or old.feature == contact.feature):
+                        cosine = old.nx * contact.nx + old.ny * contact.ny + old.nz * contact.nz
+                        dx, dy, dz = old.rx - rx, old.ry - ry, old.rz - rz
+                        distance = dx * dx + dy * dy + dz * dz
+                        if cosine >= params.cache_normal_cosine and distance <= best:
                             best, chosen = distance, k
-                k += 1
-            if chosen >= 0:
-                cache[chosen].claimed = 1
-                contact.lambda_n = cache[chosen].lambda_n * scale
+                    k += 1
+                if chosen >= 0:
+                    cache[chosen].claimed = 1
+                    contact.matched = 1
+                    contact.lambda_n = cache[chosen].lambda_n * scale
+                    left -= 1
 
     return kernel(match_contacts, spec)
 

@@ -25,7 +25,8 @@ def make_solve_contact_velocity(spec: Spec):
         lambda_old = contact.lambda_n
         if compliant:
             w += contact.gamma * lambda_old
-        lambda_new = max(0.0, lambda_old - w * contact.inv_k)
+        # In this order a NaN stays and is reported; max(0.0, NaN) would be 0.
+        lambda_new = max(lambda_old - w * contact.inv_k, 0.0)
         contact.lambda_n = lambda_new
         apply_impulse(contact, va, vb, lambda_new - lambda_old)
 

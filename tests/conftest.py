@@ -1,0 +1,36 @@
+"""Shared by all tests: pytest's own test harness, and the smallest experiment there is."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+pytest_plugins = ["pytester"]
+
+DROP = """\
+question: How high?
+expected: e^2 h.
+scene:
+  bodies:
+    floor: {shape: {kind: plane}}
+    ball:
+      shape: {kind: sphere, radius: 0.1}
+      mass: 1.0
+      surface: {restitution: 0.5}
+      release: {above: floor, clearance: 0.1}
+numerics: chapter
+duration: 0.5
+measure:
+  rebound: {kind: first_apex, body: ball, above: floor}
+expect:
+  - {name: rebound, measure: rebound, between: [0.02, 0.03]}
+"""
+
+
+@pytest.fixture
+def drop(tmp_path: Path) -> Path:
+    """A ball from 0.1 m at e = 0.5: the ideal apex is 0.025 m."""
+    path = tmp_path / "drop.yaml"
+    path.write_text(DROP)
+    return path

@@ -1,0 +1,116 @@
+"""Scenes in a few words enter, engines at their initial state leave; shared by the engine's tests.
+
+Every engine of a test session is built from a few specs, because each spec costs a compilation.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from lavendersim.engine.effects import EFFECTS
+from lavendersim.engine.engine import Engine, Rows
+from lavendersim.engine.records import ROWS_FULL
+from lavendersim.engine.spec import Spec
+from lavendersim.scene.build import Scene, build
+from lavendersim.scene.plan import plan_of
+
+# Every effect but the implicit rotation, every shape pair: one compilation serves most tests.
+EVERYTHING = Spec(
+    effects=tuple(sorted(effect.NAME for effect in EFFECTS)),
+    shape_pairs=("box_box", "box_plane", "sphere_box", "sphere_plane", "sphere_sphere"),
+    record=True,
+    record_residuals=True,
+    tolerance=True,
+)
+
+NUMERICS: dict[str, Any] = {
+    "timestep": "1/240",
+    "solver": "projected_gauss_seidel",
+    "sweeps": 22,
+    "tolerance": None,
+    "warm_start": True,
+    "stabilisation_gain": 0.0,
+    "slop": 0.0,
+    "projection": 0.0,
+    "projection_sweeps": 22,
+    "restitution_threshold": 2.0,
+    "cache_distance": 0.02,
+    "cache_normal_cosine": 0.95,
+}
+
+
+def body(shape: dict[str, Any], position=(0.0, 0.0, 0.0), **stated: Any) -> dict[str, Any]:
+    """Return one resolved body; mass 1 kg unless stated."""
+    surface = {name: stated.pop(name, 0.0) for name in ("restitution", "compliance")}
+    fixed = stated.pop("fixed", shape["kind"] == "plane")
+    return {
+        "shape": shape,
+        "fixed": fixed,
+        "mass": None if fixed else stated.pop("mass", 1.0),
+        "density": None,
+        "surface": surface,
+        "position": list(position),
+        "release": None,
+        "orientation": list(stated.pop("orientation", (1.0, 0.0, 0.0, 0.0))),
+        "velocity": list(stated.pop("velocity", (0.0, 0.0, 0.0))),
+        "angular_velocity": list(stated.pop("angular_velocity", (0.0, 0.0, 0.0))),
+    }
+
+
+def sphere(radius: float, position, **stated: Any) -> dict[str, Any]:
+    """Return a sphere."""
+    return body({"kind": "sphere", "radius": radius}, position, **stated)
+
+
+def box(size, position, **stated: Any) -> dict[str, Any]:
+    """Return a box of full edge lengths `size`."""
+    return body({"kind": "box", "size": list(size)}, position, **stated)
+
+
+def plane(normal=(0.0, 0.0, 1.0), offset: float = 0.0, **stated: Any) -> dict[str, Any]:
+    """Return a half space."""
+    return body({"kind": "plane", "normal": list(normal), "offset": offset}, **stated)
+
+
+def resolved(bodies: dict[str, Any], gravity=(0.0, 0.0, 0.0), **numerics: Any) -> dict[str, Any]:
+    """Return a resolved cell as the experiment room hands it on."""
+    return {
+        "scene": {"gravity": list(gravity), "bodies": bodies},
+        "events": [],
+        "numerics": {**NUMERICS, **numerics},
+        "record": {"residuals": "all"},
+    }
+
+
+class Bench:
+    """A scene and its engine; `run` gathers every row it writes."""
+
+    def __init__(self, cell: dict[str, Any], spec: Spec | None = EVERYTHING, block_steps: int = 512):
+        self.spec = spec or plan_of(cell).spec
+        self.cell = cell
+        self.scene: Scene = build(cell, self.spec)
+        self.engine: Engine = self.scene.engine(self.spec, block_steps)
+        self.status = 0
+
+    @property
+    def velocity(self) -> np.ndarray:
+        """Linear velocities, shape (bodies, 3)."""
+        return np.array([list(row)[:3] for row in self.engine.velocities])
+
+    @property
+    def spin(self) -> np.ndarray:
+        """Angular velocities, shape (bodies, 3)."""
+        return np.array([list(row)[3:6] for row in self.engine.velocities])
+
+    def run(self, steps: int) -> Rows:
+        """Advance by `steps`, or until divergence, and return all rows."""
+        target = int(self.engine.counters["step"][0]) + steps
+        blocks = []
+        while True:
+            self.status = self.engine.advance(target - int(self.engine.counters["step"][0]))
+            blocks.append(self.engine.take_rows())
+            if self.status != ROWS_FULL:
+                break
+        return Rows(*(np.concatenate(columns) for columns in zip(*blocks, strict=True)))

@@ -1,0 +1,69 @@
+"""The text of a config enters; the recorded rows of each of its cells leave, without a file."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from lavendersim.engine.records import DIVERGED, RUNNING
+from lavendersim.experiment import load_experiment_text
+from lavendersim.scene.build import build
+from lavendersim.scene.plan import plan_of, union
+
+GRAVITY = 9.81  # [m/s^2], what a config has that states none
+
+
+class Course(NamedTuple):
+    """One cell that was run: what the engine recorded, row by row."""
+
+    coordinates: dict[str, Any]
+    names: list[str]
+    dt: float  # [s]
+    step: np.ndarray
+    pose: np.ndarray
+    contact: np.ndarray
+
+    def height(self, body: str) -> np.ndarray:
+        """Return the height of the body's centre at every step [m]."""
+        return self.pose[:, self.names.index(body), 2]
+
+    def contacts_of(self, body: str, other: str) -> np.ndarray:
+        """Return the contact rows between two bodies."""
+        pair = {self.names.index(body), self.names.index(other)}
+        rows = self.contact
+        return rows[[{a, b} == pair for a, b in zip(rows["body_a"], rows["body_b"], strict=True)]]
+
+
+def run_config(text: str) -> list[Course]:
+    """Run every cell of a config as a run does: one plan for all, each from its own start."""
+    cells = load_experiment_text(text, "test.yaml").cells()
+    spec = union(plan_of(cell.resolved) for cell in cells).spec
+    courses = []
+    for cell in cells:
+        scene = build(cell.resolved, spec)
+        engine = scene.engine(spec)
+        blocks = []
+        while True:
+            status = engine.advance(cell.config.steps - int(engine.counters["step"][0]))
+            blocks.append(engine.take_rows())
+            assert status != DIVERGED, f"{cell.label}: body {engine.counters['body'][0]} diverged"
+            if status == RUNNING:
+                break
+        step, pose, contact, _ = (np.concatenate(rows) for rows in zip(*blocks, strict=True))
+        dt = float(Fraction(cell.resolved["numerics"]["timestep"]))
+        courses.append(Course(cell.coordinates, scene.names, dt, step, pose, contact))
+    return courses
+
+
+def first_apex(course: Course, body: str, radius: float) -> float:
+    """Return the clearance of a ball above z = 0 at its first apex after it touched [m].
+
+    The highest sample: at most g dt^2 / 8 below the vertex of the parabola through it.
+    """
+    gap = course.height(body) - radius
+    touched = int(np.argmax(course.step["contact_count"] > 0))
+    rising = gap[touched:]
+    end = int(np.argmax(np.diff(rising) < 0))
+    return float(rising[end])

@@ -1,0 +1,77 @@
+"""pytest on config files: node ids, failure text, what is collected and what is left alone."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.conftest import DROP
+
+SWEPT = DROP.replace(
+    "measure:\n",
+    """sweep:
+  e: {path: scene.bodies.ball.surface.restitution, values: [0.5, 0.9]}
+measure:
+""",
+)
+
+
+def run(pytester: pytest.Pytester, *arguments: str) -> pytest.RunResult:
+    """Run pytest on a folder of somebody's own, outside any project."""
+    return pytester.runpytest_subprocess("-p", "no:cacheprovider", *arguments)
+
+
+def test_each_expectation_and_cell_is_an_item(pytester: pytest.Pytester) -> None:
+    pytester.makefile(".yaml", drop=SWEPT)
+    result = run(pytester, "--collect-only", "-q")
+    result.stdout.fnmatch_lines(
+        [
+            "drop.yaml::every cell completes",
+            "drop.yaml::rebound at e=0.5",
+            "drop.yaml::rebound at e=0.9",
+        ]
+    )
+
+
+def test_a_failure_shows_measured_expected_tolerance_and_log(pytester: pytest.Pytester) -> None:
+    pytester.makefile(".yaml", drop=SWEPT)
+    result = run(pytester)
+    result.assert_outcomes(passed=2, failed=1)
+    result.stdout.fnmatch_lines(
+        [
+            "*rebound at e=0.9: FAILED*",
+            "*measured   0.0*",
+            "*expected   between 0.02 and 0.03*",
+            "*tolerance *",
+            "*log        *.mcap*",
+        ]
+    )
+    result.stdout.no_fnmatch_line("*Traceback*")
+
+
+def test_one_item_can_be_selected_by_its_id(pytester: pytest.Pytester) -> None:
+    pytester.makefile(".yaml", drop=SWEPT)
+    run(pytester, "drop.yaml::rebound at e=0.5").assert_outcomes(passed=1)
+
+
+def test_a_defective_config_is_a_collection_error_with_its_place(
+    pytester: pytest.Pytester,
+) -> None:
+    pytester.makefile(".yaml", drop=DROP.replace("mass: 1.0", "mass: -1.0"))
+    result = run(pytester)
+    result.assert_outcomes(errors=1)
+    result.stdout.fnmatch_lines(["*drop.yaml:8:*mass*"])
+
+
+def test_other_yaml_files_are_left_alone(pytester: pytest.Pytester) -> None:
+    pytester.makefile(".yaml", compose="services:\n  scene: {image: x}\n")
+    assert run(pytester).ret == pytest.ExitCode.NO_TESTS_COLLECTED
+
+
+def test_a_diverged_cell_fails_even_where_nothing_is_expected(pytester: pytest.Pytester) -> None:
+    text = DROP[: DROP.index("measure:\n")].replace(
+        "mass: 1.0", "mass: 1.0\n      velocity: [1.0e+308, 0, 0]"
+    )
+    pytester.makefile(".yaml", drop=text.replace("duration: 0.5", "duration: 10"))
+    result = run(pytester)
+    result.assert_outcomes(failed=1)
+    result.stdout.fnmatch_lines(["*diverged: body ball is no longer finite after step *"])

@@ -1,0 +1,123 @@
+"""A good config with tokens lost, doubled or replaced is an Experiment or told what is wrong.
+
+Whatever a text is, the loader neither crashes nor points outside of it.
+"""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+
+from lavendersim.errors import ConfigError
+from lavendersim.experiment import Experiment, load_experiment_text
+
+CONFIGS = Path(__file__).parents[3] / "configs"
+GOOD = [path.read_text(encoding="utf-8") for path in sorted(CONFIGS.glob("*/*.yaml"))]
+EVERYTHING = """\
+question: What if?
+expected: Nothing breaks.
+scene:
+  gravity: [0, 0, -9.81]
+  surfaces: {rubber: {restitution: 0.8, compliance: 1e-6}}
+  bodies:
+    floor: {shape: {kind: plane, normal: [0, 0, 1], offset: 0.0}}
+    ball:
+      shape: {kind: sphere, radius: 0.1}
+      mass: 1.0
+      surface: rubber
+      release: {above: floor, clearance: 1.0, phase: 3/16, at: [0, 0]}
+      orientation: {axis: [0, 0, 1], degrees: 30}
+    block: {shape: {kind: box, size: [1, 1, 1]}, density: 10, position: [5, 0, 2]}
+    wall: {shape: {kind: box, size: [1, 1, 1]}, fixed: true, position: [-5, 0, 0]}
+events:
+  - {at: 1.0, body: ball, scale_mass: 1.05, contact_cache: keep}
+numerics: {preset: chapter, timestep: 1/480}
+duration: 2.0
+sweep:
+  e: {path: scene.surfaces.rubber.restitution, values: [0, 0.5]}
+  phase: {path: scene.bodies.ball.release.phase, values: [0, 1/16]}
+record: {residuals: {from: 0.5, to: 1}}
+measure:
+  rebound: {kind: first_apex, body: ball, above: floor}
+expect:
+  - {name: rebound, measure: rebound, at: {e: 0.5}, between: [0.2, 0.3]}
+"""
+TOKEN = re.compile(r"[A-Za-z_]\w*|[-+]?\d[\d./e+-]*|\n *|\s+|.")
+STRANGE = [
+    *"[]{}:,-?&*!|>'\"%@`#~\t\n\x85\u2028\ufeff\x00é😀",
+    *("null", "true", "yes", ".nan", "-1", "1e400", "1/0", "0", "''", "- ", ": ", "\n  ", "\n"),
+    *("ball", "floor", "kind", "plane", "box", "scene", "numerics", "path", "values", "9" * 70),
+    *("scene.bodies", "events.0", "events.9", "numerics.timestep", "5 ms", "!!python/none", "*a"),
+    *("<<", "...", "---", "{}", "[]", "[[0, 1], {a: b}]", "at", "any", "index", "1e-9", "1e9"),
+]
+LINE_BREAK = re.compile("\r\n|[\n\r\x85\u2028\u2029]")  # of YAML 1.1, as libyaml counts
+
+mutation = st.tuples(
+    st.integers(0, 10**6), st.sampled_from(["drop", "double", "replace", "swap", "cut"]),
+    st.sampled_from(STRANGE),
+)  # fmt: skip
+
+
+def mutated(text: str, mutations: list[tuple[int, str, str]]) -> str:
+    tokens = TOKEN.findall(text)
+    for number, kind, strange in mutations:
+        if not tokens:
+            return strange
+        at = number % len(tokens)
+        if kind == "drop":
+            del tokens[at]
+        elif kind == "double":
+            tokens.insert(at, tokens[at])
+        elif kind == "replace":
+            tokens[at] = strange
+        elif kind == "swap":
+            other = (number // 7) % len(tokens)
+            tokens[at], tokens[other] = tokens[other], tokens[at]
+        else:
+            del tokens[at + 50 :]
+    return "".join(tokens)
+
+
+def check(text: str) -> None:
+    lines = LINE_BREAK.split(text.removeprefix("\ufeff"))
+    try:
+        experiment = load_experiment_text(text, "mutated.yaml")
+    except ConfigError as error:
+        places = [(defect.line, defect.column) for defect in error.defects]
+        assert places
+        assert places == sorted(places)
+        assert len(set(error.defects)) == len(error.defects)
+        for defect in error.defects:
+            assert 1 <= defect.line <= len(lines)
+            assert 1 <= defect.column <= len(lines[defect.line - 1]) + 1
+            assert "\n" not in defect.message
+    else:
+        assert isinstance(experiment, Experiment)
+        for cell in experiment.cells()[:3]:
+            assert len(cell.digest) == 64
+
+
+@pytest.mark.parametrize("text", [EVERYTHING, *GOOD])
+def test_unchanged_config_loads(text: str) -> None:
+    assert load_experiment_text(text, "good.yaml").cells()
+
+
+@settings(max_examples=400, deadline=None)
+@given(text=st.sampled_from([EVERYTHING, *GOOD]), mutations=st.lists(mutation, max_size=6))
+def test_mutated_config_is_read_or_refused(
+    text: str, mutations: list[tuple[int, str, str]]
+) -> None:
+    check(mutated(text, mutations))
+
+
+@settings(max_examples=200, deadline=None)
+@given(text=st.text(st.sampled_from("abk:,-[]{}?!&*'\"|>%@# \n\t019./\x85é"), max_size=60))
+@example(text="? [a]\n: b")
+@example(text="a: |\n")
+@example(text="\ufeff")
+def test_any_text_is_refused_within_itself(text: str) -> None:
+    check(text)

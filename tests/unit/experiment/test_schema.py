@@ -1,0 +1,108 @@
+"""The schema for editors is sound draft 7, takes every good config and refuses bad ones."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from jsonschema import Draft7Validator
+
+from lavendersim.experiment import load_experiment
+from lavendersim.experiment.parse import parse
+from lavendersim.experiment.scalars import Ratio
+from lavendersim.experiment.schema import json_schema
+
+ROOT = Path(__file__).parents[3]
+GOOD = sorted(ROOT.glob("configs/*/*.yaml"))
+BAD = ROOT / "tests" / "configs" / "bad"
+
+SCHEMA = json_schema()
+VALIDATOR = Draft7Validator(SCHEMA)
+WORDS_OF_2020 = {"$defs", "prefixItems", "discriminator", "dependentRequired"}
+
+
+def plain(value: Any) -> Any:
+    """Return what an editor's YAML 1.2 reader gives: ratios are texts, sequences lists."""
+    if isinstance(value, Ratio):
+        return repr(value)
+    if isinstance(value, tuple):
+        return [plain(item) for item in value]
+    if isinstance(value, dict):
+        return {key: plain(item) for key, item in value.items()}
+    return value
+
+
+def read(path: Path) -> Any:
+    root, defects = parse(path.read_bytes(), path.name)
+    assert root is not None
+    assert not defects
+    return plain(root.data)
+
+
+def schemas(schema: Any) -> Iterator[dict[str, Any]]:
+    """Yield every mapping in the schema."""
+    if isinstance(schema, dict):
+        yield schema
+        for value in schema.values():
+            yield from schemas(value)
+    elif isinstance(schema, list):
+        for value in schema:
+            yield from schemas(value)
+
+
+def test_schema_is_sound_draft_7() -> None:
+    Draft7Validator.check_schema(SCHEMA)
+    assert json.loads(json.dumps(SCHEMA)) == SCHEMA
+    for schema in schemas(SCHEMA):
+        assert not WORDS_OF_2020 & set(schema)
+        if "$ref" in schema:
+            assert set(schema) == {"$ref"}, "draft 7 ignores what stands beside a $ref"
+            assert schema["$ref"].rpartition("/")[2] in SCHEMA["definitions"]
+
+
+def test_every_key_is_described() -> None:
+    for name, definition in {**SCHEMA["definitions"], "": SCHEMA}.items():
+        for key, schema in definition.get("properties", {}).items():
+            assert schema.get("description"), f"{name}.{key} has no description"
+
+
+def test_there_are_good_configs() -> None:
+    assert len(GOOD) >= 12
+
+
+@pytest.mark.parametrize("path", GOOD, ids=lambda path: path.stem)
+def test_good_config_loads_and_fits_the_schema(path: Path) -> None:
+    assert load_experiment(path).cells()
+    assert [error.message for error in VALIDATOR.iter_errors(read(path))] == []
+
+
+@pytest.mark.parametrize(
+    "case",
+    [
+        "unknown_key",
+        "unknown_key_at_the_top",
+        "misspelt_required_key",
+        "missing_duration",
+        "missing_kind",
+        "unknown_shape",
+        "unusable_body_name",
+        "wrong_type",
+        "text_for_a_number",
+        "vector_too_short",
+        "negative_mass",
+        "restitution_above_one",
+        "timestep_zero",
+        "unit_milliseconds",
+        "unknown_preset",
+        "sweep_without_values",
+        "unknown_measure_kind",
+        "many_defects",
+    ],
+)
+def test_bad_config_does_not_fit_the_schema(case: str) -> None:
+    root, _ = parse((BAD / f"{case}.yaml").read_bytes(), case)
+    assert root is not None
+    assert not VALIDATOR.is_valid(plain(root.data))

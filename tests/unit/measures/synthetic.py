@@ -1,0 +1,151 @@
+"""Logs made by hand, with known answers: a stand-in for an opened trace, and for a sweep's cell."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+STEP = [
+    ("step", "i8"),
+    ("time", "f8"),
+    ("residual", "f8"),
+    ("kinetic_energy", "f8"),
+    ("potential_energy", "f8"),
+    ("momentum_x", "f8"),
+    ("momentum_y", "f8"),
+    ("momentum_z", "f8"),
+]
+CONTACT = [
+    ("step", "i8"),
+    ("body_a", "i8"),
+    ("body_b", "i8"),
+    ("nx", "f8"),
+    ("ny", "f8"),
+    ("nz", "f8"),
+    ("penetration", "f8"),
+    ("approach_velocity", "f8"),
+    ("normal_velocity", "f8"),
+    ("impulse_n", "f8"),
+    ("force_n", "f8"),
+    ("inverse_effective_mass", "f8"),
+]
+RESIDUAL = [("step", "i8"), ("sweep", "i8"), ("residual", "f8")]
+GRAVITY = 9.81
+RADIUS = 0.1
+MASS = 2.0
+
+
+def ball_and_floor(**changes: Any) -> dict[str, Any]:
+    """A resolved config: a ball of 2 kg, released 1 m above a floor, e = 0.5."""
+    ball = {
+        "shape": {"kind": "sphere", "radius": RADIUS},
+        "mass": MASS,
+        "surface": {"restitution": 0.5, "compliance": 1e-5},
+        "position": [0.0, 0.0, 1.0 + RADIUS],
+        "orientation": [1.0, 0.0, 0.0, 0.0],
+        "velocity": [0.0, 0.0, 0.0],
+        "angular_velocity": [0.0, 0.0, 0.0],
+    }
+    floor = {
+        "shape": {"kind": "plane", "normal": [0.0, 0.0, 1.0], "offset": 0.0},
+        "fixed": True,
+        "position": [0.0, 0.0, 0.0],
+    }
+    return {
+        "scene": {
+            "gravity": [0.0, 0.0, -GRAVITY],
+            "bodies": {"floor": floor, "ball": ball | changes},
+        },
+        "events": [],
+        "numerics": {
+            "timestep": "1/100",
+            "slop": 0.001,
+            "projection": 0.2,
+            "stabilisation_gain": 0.02,
+        },
+    }
+
+
+@dataclass
+class SyntheticTrace:
+    """What a measure may ask of a log."""
+
+    step: Any
+    contact: Any
+    pose: Any
+    residual: Any = field(default_factory=lambda: np.zeros(0, RESIDUAL))
+    bodies: Sequence[str] = ("floor", "ball")
+    resolved: Mapping[str, Any] = field(default_factory=ball_and_floor)
+    timestep: Fraction = Fraction(1, 100)
+    status: str = "complete"
+
+
+@dataclass
+class SyntheticCell:
+    """A cell of a sweep with a log, or with an error in its place."""
+
+    coordinates: Mapping[str, Any]
+    log: Any
+    path: Path = Path("runs/some-run/cells/some-cell.mcap")
+
+    @property
+    def label(self) -> str:
+        return ", ".join(f"{axis}={value}" for axis, value in self.coordinates.items())
+
+    def trace(self) -> Any:
+        if isinstance(self.log, Exception):
+            raise self.log
+        return self.log
+
+
+def steps(heights: Sequence[float], speeds: Sequence[float] | None = None) -> np.ndarray:
+    """One row per state of the ball: clearances [m] and, if they matter, velocities [m/s]."""
+    rows = np.zeros(len(heights), STEP)
+    rows["step"] = np.arange(len(heights))
+    rows["time"] = rows["step"] / 100.0
+    rows["potential_energy"] = MASS * GRAVITY * (np.asarray(heights) + RADIUS)
+    if speeds is not None:
+        rows["kinetic_energy"] = 0.5 * MASS * np.square(speeds)
+        rows["momentum_z"] = MASS * np.asarray(speeds)
+    return rows
+
+
+def poses(heights: Sequence[float]) -> np.ndarray:
+    """Poses of floor and ball for the clearances [m]."""
+    table = np.zeros((len(heights), 2, 7))
+    table[:, :, 3] = 1.0
+    table[:, 1, 2] = np.asarray(heights) + RADIUS
+    return table
+
+
+def contacts(rows: Sequence[tuple[int, float, float]]) -> np.ndarray:
+    """Contacts of floor and ball from (step, impulse [N s], penetration [m])."""
+    table = np.zeros(len(rows), CONTACT)
+    for row, (step, impulse, penetration) in zip(table, rows, strict=True):
+        row["step"], row["body_a"], row["body_b"] = step, 0, 1
+        row["nz"] = 1.0
+        row["penetration"] = penetration
+        row["impulse_n"], row["force_n"] = impulse, impulse * 100.0
+        row["approach_velocity"], row["normal_velocity"] = -2.0, 1.0
+        row["inverse_effective_mass"] = 1.0 / MASS
+    return table
+
+
+def trace_of(
+    heights: Sequence[float],
+    touching: Sequence[tuple[int, float, float]] = (),
+    speeds: Sequence[float] | None = None,
+    **changes: Any,
+) -> SyntheticTrace:
+    """A log of the ball from clearances, contacts and velocities."""
+    return SyntheticTrace(
+        step=steps(heights, speeds),
+        contact=contacts(touching),
+        pose=poses(heights),
+        **changes,
+    )
