@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -30,9 +31,18 @@ def summarise(verdicts: list[Any]) -> list[tuple[str, bool, str]]:
         low, high = min(values), max(values)
         shown = digits(low) if low == high else f"{digits(low)} to {digits(high)}"
         count = f" in {passed} of {len(group)} cells" if len(group) > 1 else ""
-        text = f"{name}: {shown}, expected {group[0].expected}{count}"
+        text = f"{name}: {shown}, expected {_expected(group)}{count}"
         lines.append((name, passed == len(group), text))
     return lines
+
+
+def _expected(group: list[Any]) -> str:
+    """Return what was expected; of a closed form whose value differs by cell, its name."""
+    texts = {verdict.expected for verdict in group}
+    named = re.search(r"\((\w+)\)$", group[0].expected)
+    if len(texts) == 1 or named is None:
+        return str(group[0].expected)
+    return f"the cell's {named.group(1)}"
 
 
 def mark(passed: bool) -> str:

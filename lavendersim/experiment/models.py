@@ -30,7 +30,7 @@ class Event(ConfigModel):
     contact_cache: Literal["keep", "clear"] | None = Field(
         default=None,
         description="clear: every cached impulse is dropped, the next solve starts cold; "
-        "not stated: keep"
+        "not stated: keep",
     )
 
 

@@ -36,7 +36,9 @@ class Report:
 
     def close_round(self) -> bool:
         """End the round; tells whether nothing was found in it, be it new or told before."""
-        self._defects += [Defect(self.name, mark.line, mark.column, said) for mark, said in self._round]
+        self._defects += [
+            Defect(self.name, mark.line, mark.column, said) for mark, said in self._round
+        ]
         self._told |= {mark for mark, _ in self._round}
         self._round.clear()
         sound, self._sound = self._sound, True

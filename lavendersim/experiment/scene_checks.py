@@ -106,9 +106,7 @@ def _exactly_one_start(body: Node, path: Path, report: Report) -> None:
         _missing(body, ("position", "release"), path, meaning, report)
 
 
-def _missing(
-    body: Node, keys: tuple[str, ...], path: Path, meaning: str, report: Report
-) -> None:
+def _missing(body: Node, keys: tuple[str, ...], path: Path, meaning: str, report: Report) -> None:
     """Note that a body has none of the keys, unless a refused key may have been one of them."""
     unknown = [key for key in body.entries if key not in Body.model_fields]
     if body.torn or any(near(key, Body.model_fields) in keys for key in unknown):

@@ -136,7 +136,9 @@ class Body(ConfigModel):
     """One rigid body. Planes are static; a movable body has exactly one of mass and density."""
 
     shape: Shape = Field(description="plane, sphere or box")
-    mass: Annotated[float, Quantity("kg", above=0, hint=STATIC_HINT)] | None = Field(default=None, description="[kg]")
+    mass: Annotated[float, Quantity("kg", above=0, hint=STATIC_HINT)] | None = Field(
+        default=None, description="[kg]"
+    )
     density: Annotated[float, Quantity("kg/m^3", above=0)] | None = Field(
         default=None, description="[kg/m^3]"
     )

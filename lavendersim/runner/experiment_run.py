@@ -93,7 +93,7 @@ def make_directory(experiment: Experiment, root: Path) -> Path:
     root.mkdir(parents=True, exist_ok=True)
     # A name that sorts by age even when several runs start within one second.
     for attempt in range(1000):
-        stamp = now if attempt == 0 else f"{now[:-1]}.{attempt:03d}Z"
+        stamp = now if attempt == 0 else f"{now}.{attempt:03d}"
         path = root / f"{stamp}-{experiment.name}-{digest}"
         try:
             path.mkdir()

@@ -114,7 +114,9 @@ def clip_incident_face(ref, inc, fr, fi, hr, hi, axis, side, base, points, norma
     for k in range(count):
         p = points[k]
         if p.z <= TOUCHING:
-            u, v, phi = p.x, p.y, p.z
+            u = min(max(p.x, -hr[iu]), hr[iu])
+            v = min(max(p.y, -hr[iv]), hr[iv])
+            phi = p.z
             in_line, out_line = p.in_line, p.out_line
             half = 0.5 * phi
             place(

@@ -13,10 +13,15 @@ import convex
 import numpy as np
 import poses
 
+from lavendersim.engine.records import TOUCHING
+
 ALL = ("sphere_plane", "box_plane", "sphere_sphere", "sphere_box", "box_box")
 POSES = 2000
 # A few hundred operations on lengths of some metres, each rounded to 1.1e-16.
 ROUND_OFF = 1e-13
+# Faces are cut one TOUCHING outside their edges, which keeps names of vertices, and the points moved
+# back to the face: one may be as much too deep, and off the incident face, as the cut reaches out.
+CUT = 1.5 * TOUCHING
 
 
 class Poses(NamedTuple):

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from shape_pairs import ALL, ROUND_OFF, random_poses
+from shape_pairs import ALL, CUT, ROUND_OFF, random_poses
 
 from lavendersim.engine.records import TOUCHING
 
@@ -18,9 +18,8 @@ def test_both_surfaces_are_half_a_separation_away_along_the_normal(pair):
     for manifold, off_a, off_b in zip(seen.found, seen.off_first, seen.off_second, strict=True):
         for point, phi in zip(manifold.points, manifold.phi, strict=True):
             on_a, on_b = point - 0.5 * phi * manifold.normal, point + 0.5 * phi * manifold.normal
-            # Faces are cut one TOUCHING outside their edges, which keeps names of vertices.
-            assert off_a(on_a) <= 2.0 * TOUCHING + ROUND_OFF
-            assert off_b(on_b) <= 2.0 * TOUCHING + ROUND_OFF
+            assert off_a(on_a) <= CUT + ROUND_OFF
+            assert off_b(on_b) <= CUT + ROUND_OFF
 
 
 @pytest.mark.parametrize("pair", ALL)

@@ -114,8 +114,10 @@ def test_resolved_leaves_nothing_open() -> None:
 
 def test_equal_simulations_have_equal_digests_however_they_are_written() -> None:
     other_words = DROP.replace("surface: rubber", "surface: {compliance: 1e-6, restitution: 4/5}")
-    other_words = "# a comment\n" + other_words.replace("numerics: chapter\n", "") + (
-        "numerics: {preset: chapter, slop: 1e-3}\nmeasure: {n: {kind: simulated_duration}}\n"
+    other_words = (
+        "# a comment\n"
+        + other_words.replace("numerics: chapter\n", "")
+        + ("numerics: {preset: chapter, slop: 1e-3}\nmeasure: {n: {kind: simulated_duration}}\n")
     )
     assert load(other_words).cells()[0].digest == load(DROP).cells()[0].digest
 

@@ -1,0 +1,91 @@
+"""Configs small enough to run in a test, and a Python of its own to run them in."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+DROPS = """\
+question: How high does a small ball rebound?
+expected: e^2 h
+scene:
+  bodies:
+    floor: {shape: {kind: plane}}
+    ball:
+      shape: {kind: sphere, radius: 0.1}
+      mass: 1.0
+      surface: {restitution: 0.5}
+      release: {above: floor, clearance: 0.05}
+numerics: chapter
+duration: 0.5
+sweep:
+  e: {path: scene.bodies.ball.surface.restitution, values: [0.2, 0.5, 0.8]}
+measure:
+  rebound: {kind: first_apex, body: ball, above: floor}
+expect:
+  - {name: rebound, measure: rebound, increasing: {along: e}}
+figure:
+  caption: Rebound by restitution.
+  panels:
+    - kind: measure_against_axis
+      measure: rebound
+      axis: e
+      title: rebound
+      x_label: restitution e [-]
+      y_label: rebound height [m]
+"""
+
+# Prints, as the last line, what a fresh process makes of a config: argv is config, root.
+RUN = """
+import json, sys, warnings
+from hashlib import sha256
+from pathlib import Path
+warnings.simplefilter("error", UserWarning)
+import lavendersim
+from lavendersim.engine.kernel_cache import directory, source_hash
+finished = lavendersim.run(Path(sys.argv[1]), root=Path(sys.argv[2]))
+print(json.dumps({
+    "package": lavendersim.__file__,
+    "run": str(finished.run.path),
+    "statuses": [outcome.status for outcome in finished.outcomes],
+    "logs": [sha256(cell.path.read_bytes()).hexdigest() for cell in finished.run.cells],
+    "hashes": [int(cell.trace().step["state_hash"][-1]) for cell in finished.run.cells],
+    "heights": [float(cell.trace().pose[-1, 1, 2]) for cell in finished.run.cells],
+    "cache": [str(directory()[0]), directory()[1]],
+    "source": source_hash(),
+}))
+"""
+
+
+def write(folder: Path, text: str = DROPS, name: str = "drops.yaml") -> Path:
+    """Write a config into a folder and return its path."""
+    path = folder / name
+    path.write_text(text)
+    return path
+
+
+def python(code: str, *arguments: Any, **environment: str) -> str:
+    """Run code in a new Python process and return its last line of output.
+
+    Without the working directory on its path, so that PYTHONPATH says which package is run.
+    """
+    done = subprocess.run(
+        [sys.executable, "-P", "-c", code, *map(str, arguments)],
+        env=os.environ | environment,
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout.strip().splitlines()[-1]
+
+
+def run_in_new_process(config: Path, root: Path, **environment: str) -> dict[str, Any]:
+    """Run a config in a new Python process and return what `RUN` prints of it."""
+    found: dict[str, Any] = json.loads(python(RUN, config, root, **environment))
+    return found

@@ -1,0 +1,178 @@
+"""The kernel cache saves time and changes nothing: not damaged, not stale, not unwritable."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+from typing import Any
+
+import pytest
+from numba.core.registry import cpu_target
+from small_configs import DROPS, run_in_new_process, write
+
+import lavendersim
+from lavendersim.engine import compile as engine_compile
+from lavendersim.engine.kernel_cache import KernelCache
+from lavendersim.engine.spec import Spec
+from lavendersim.engine.step import advance_for, make_advance
+from lavendersim.experiment import load_experiment_text
+from lavendersim.scene.build import build
+from lavendersim.scene.plan import plan_of
+
+PACKAGE = Path(lavendersim.__file__).parent
+
+
+@pytest.fixture(scope="module")
+def kept(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path, dict[str, Any]]:
+    """A config, a cache that holds its kernel, and what the run that filled it gave."""
+    folder = tmp_path_factory.mktemp("kept")
+    config, kernels = write(folder), folder / "kernels"
+    first = run_in_new_process(config, folder / "runs", LAVENDER_CACHE_DIR=str(kernels))
+    return config, kernels, first
+
+
+def test_a_compiled_and_a_loaded_kernel_give_the_same_bytes(
+    kept: tuple[Path, Path, dict[str, Any]], tmp_path: Path
+) -> None:
+    config, kernels, compiled = kept
+    written = {path: path.stat().st_mtime_ns for path in kernels.glob("*.kernel")}
+    assert len(written) == 1, "the first run was to keep its kernel"
+    loaded = run_in_new_process(config, tmp_path / "runs", LAVENDER_CACHE_DIR=str(kernels))
+    assert {path: path.stat().st_mtime_ns for path in kernels.glob("*.kernel")} == written
+    assert loaded["logs"] == compiled["logs"]
+
+
+def test_a_kernel_with_one_flipped_bit_is_ignored_and_written_anew(
+    kept: tuple[Path, Path, dict[str, Any]], tmp_path: Path
+) -> None:
+    config, kernels, first = kept
+    (file,) = kernels.glob("*.kernel")
+    copy = tmp_path / "kernels" / file.name
+    copy.parent.mkdir()
+    damaged = bytearray(file.read_bytes())
+    damaged[len(damaged) // 2] ^= 1
+    copy.write_bytes(damaged)
+    again = run_in_new_process(config, tmp_path / "runs", LAVENDER_CACHE_DIR=str(copy.parent))
+    assert again["logs"] == first["logs"]
+    assert copy.read_bytes() != damaged
+
+
+@pytest.mark.parametrize("length", [0, 16, 32, 1000], ids="first {} bytes".format)
+def test_a_truncated_kernel_counts_as_absent(
+    kept: tuple[Path, Path, dict[str, Any]], tmp_path: Path, length: int
+) -> None:
+    (file,) = kept[1].glob("*.kernel")
+    cache = KernelCache(Spec())
+    cache.cache_path = tmp_path
+    context = cpu_target.target_context
+    stored = cache.path(cache.key("signature", context.codegen()))
+    stored.write_bytes(file.read_bytes()[:length])
+    assert cache.load_overload("signature", context) is None
+    assert (cache.hits, cache.misses) == (0, 1)
+
+
+def test_an_edited_engine_source_is_compiled_anew(
+    kept: tuple[Path, Path, dict[str, Any]], tmp_path: Path
+) -> None:
+    config, kernels, first = kept
+    shutil.copytree(PACKAGE, tmp_path / "lavendersim", ignore=shutil.ignore_patterns("__pycache__"))
+    source = tmp_path / "lavendersim/engine/effects/gravity.py"
+    upwards = source.read_text().replace("velocity.vz += params.gz", "velocity.vz -= params.gz")
+    assert upwards != source.read_text()
+    source.write_text(upwards)
+    edited = run_in_new_process(
+        config, tmp_path / "runs", LAVENDER_CACHE_DIR=str(kernels), PYTHONPATH=str(tmp_path)
+    )
+    assert Path(edited["package"]).is_relative_to(tmp_path)
+    assert edited["source"] != first["source"]
+    # Falling upwards for 0.5 s from 0.15 m: the kernel that ran is the edited one.
+    assert min(edited["heights"]) > 1.0 > max(first["heights"])
+    assert edited["statuses"] == first["statuses"] == ["complete"] * 3
+
+
+@pytest.mark.parametrize("change", ["comment", "new file", "moved line"])
+def test_every_change_of_any_engine_source_changes_the_source_hash(
+    tmp_path: Path, change: str
+) -> None:
+    from lavendersim.engine import kernel_cache
+
+    def hash_of(engine: Path) -> str:
+        namespace = {"__file__": str(engine / "kernel_cache.py"), "__name__": "copied"}
+        function = kernel_cache.source_hash.__wrapped__
+        copied = type(function)(function.__code__, function.__globals__ | namespace)
+        return str(copied())
+
+    engine = tmp_path / "engine"
+    shutil.copytree(PACKAGE / "engine", engine, ignore=shutil.ignore_patterns("__pycache__"))
+    assert hash_of(engine) == kernel_cache.source_hash()
+    if change == "comment":
+        deepest = engine / "collide/box_box.py"
+        deepest.write_text(deepest.read_text() + "# a word\n")
+    elif change == "new file":
+        (engine / "effects/friction.py").write_text("")
+    else:
+        shutil.move(engine / "rotation.py", engine / "turning.py")
+    assert hash_of(engine) != kernel_cache.source_hash()
+
+
+# A path below a file cannot be made, not even by root, for whom no directory is read-only.
+def test_an_unusable_cache_directory_falls_back_and_says_where(
+    kept: tuple[Path, Path, dict[str, Any]], tmp_path: Path
+) -> None:
+    config, _, first = kept
+    blocked = write(tmp_path, "a file", "blocked")
+    fallback = tmp_path / "temporary"
+    fallback.mkdir()
+    there = run_in_new_process(
+        config,
+        tmp_path / "runs",
+        LAVENDER_CACHE_DIR="",
+        XDG_CACHE_HOME=str(blocked / "below"),
+        TMPDIR=str(fallback),
+    )
+    where, note = there["cache"]
+    assert Path(where).parent == fallback
+    assert where in note
+    assert list(Path(where).glob("*.kernel"))
+    assert there["logs"] == first["logs"]
+
+
+def test_without_any_cache_directory_a_run_compiles_and_says_so(
+    kept: tuple[Path, Path, dict[str, Any]], tmp_path: Path
+) -> None:
+    config, _, first = kept
+    blocked = write(tmp_path, "a file", "blocked")
+    alone = run_in_new_process(config, tmp_path / "runs", LAVENDER_CACHE_DIR=str(blocked / "below"))
+    assert "compiled anew" in alone["cache"][1]
+    assert alone["logs"] == first["logs"]
+
+
+def rows_of_a_drop(spec: Spec, resolved: dict[str, Any], kernel: Any) -> list[bytes]:
+    """Return the recorded rows of 120 steps of a drop under a kernel."""
+    engine = build(resolved, spec).engine(spec)
+    engine._kernel = kernel
+    engine.advance(120)
+    return [rows.tobytes() for rows in engine.take_rows()]
+
+
+def test_kernels_without_reference_counting_give_the_same_bits(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    assert "_nrt" in engine_compile.OPTIONS, "this numba was to know the option"
+    cell = load_experiment_text(DROPS, "drops.yaml").cells()[2]
+    spec = plan_of(cell.resolved).spec
+    without = rows_of_a_drop(spec, cell.resolved, advance_for(spec))
+    monkeypatch.delitem(engine_compile.OPTIONS, "_nrt")
+    counting = make_advance(spec)  # composed here and kept nowhere
+    assert counting.targetoptions.get("_nrt", True)
+    assert rows_of_a_drop(spec, cell.resolved, counting) == without
+    assert len(without[0]) > 120 * 100
+
+
+def test_a_numba_that_does_not_know_the_option_gets_the_others() -> None:
+    class OlderTargetOptions:
+        """What a numba without the undocumented option offers."""
+
+    options = {"fastmath": False, "nogil": True, "_nrt": False}
+    assert engine_compile.known(options) == options
+    assert engine_compile.known(options, OlderTargetOptions) == {"fastmath": False, "nogil": True}

@@ -1,0 +1,42 @@
+"""Every run has a directory of its own, and a config that is wrong leaves none."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from small_configs import DROPS, write
+
+import lavendersim
+from lavendersim.errors import ConfigError
+
+
+def test_runs_within_one_second_do_not_share_a_directory(tmp_path: Path) -> None:
+    config, root = write(tmp_path), tmp_path / "runs"
+    paths = [lavendersim.run(config, root=root).run.path for _ in range(3)]
+    assert len(set(paths)) == 3
+    assert paths == sorted(paths), "names sort by age"
+    assert (root / "latest").resolve() == paths[-1].resolve()
+    for path in paths:
+        files = [cell["file"] for cell in json.loads((path / "cells.json").read_text())["cells"]]
+        assert len(set(files)) == 3
+        assert all((path / file).stat().st_size for file in files)
+        assert (path / "DONE").exists()
+        assert (path / "config.yaml").read_text() == DROPS
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong"),
+    [
+        ("mass: 1.0", "mass: -1.0"),
+        ("numerics: chapter", "numerics: chaptre"),
+        ("values: [0.2, 0.5, 0.8]", "values: [0.2, 0.5, 1.8]"),
+    ],
+)
+def test_a_bad_config_leaves_no_directory(tmp_path: Path, right: str, wrong: str) -> None:
+    root = tmp_path / "runs"
+    assert right in DROPS
+    with pytest.raises(ConfigError):
+        lavendersim.run(write(tmp_path, DROPS.replace(right, wrong)), root=root)
+    assert not root.exists()
