@@ -10,13 +10,21 @@ of the spec it was made for.
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Sequence
 from typing import Any
 
 import numba
 from numba.core.cpu import CPUTargetOptions
+from numba.core.errors import NumbaExperimentalFeatureWarning
 
 from .spec import Spec
+
+# A kernel compiled for a record serves records that begin with the same fields. That is what we want
+# (offsets agree), and numba says so each time it happens.
+warnings.filterwarnings(
+    "ignore", "Record.* has been considered a subtype", NumbaExperimentalFeatureWarning
+)
 
 # Kernels allocate nothing, and without reference counting a sphere's step costs a third. The option
 # is undocumented: a numba that does not know it compiles with counting, to the same bits.

@@ -1,0 +1,64 @@
+"""Files stay small, and every effect, solver and shape pair is where the engine looks for it."""
+
+from __future__ import annotations
+
+import ast
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+from sources import ROOT, files
+
+from lavendersim.engine.collide import SHAPE_PAIRS
+from lavendersim.engine.effects import EFFECTS
+from lavendersim.engine.records import F8, I8
+from lavendersim.engine.solvers import SOLVERS
+
+ENGINE = ROOT / "lavendersim/engine"
+LONGEST_FILE = 400  # lines; beyond it a file does more than one thing
+STAGES = {"accelerate", "capture", "integrate", "match", "project", "solve"}
+FIELD_GROUPS = ("BODY_FIELDS", "VELOCITY_FIELDS", "PAIR_FIELDS", "CONTACT_FIELDS", "CACHE_FIELDS")
+
+
+def test_no_file_is_longer_than_the_limit() -> None:
+    sources = [*files(), *sorted((ROOT / "tests").rglob("*.py"))]
+    lengths = {path.relative_to(ROOT): len(path.read_text().splitlines()) for path in sources}
+    assert {path: length for path, length in lengths.items() if length > LONGEST_FILE} == {}
+
+
+@pytest.mark.parametrize("file", files(), ids=lambda file: str(file.relative_to(ROOT)))
+def test_a_module_says_what_it_is_for(file: Path) -> None:
+    assert ast.get_docstring(ast.parse(file.read_text())), "no docstring"
+
+
+def test_every_module_of_effects_is_listed_once() -> None:
+    stems = {path.stem for path in (ENGINE / "effects").glob("*.py")} - {"__init__", "decision"}
+    names = [effect.NAME for effect in EFFECTS]
+    assert sorted(names) == sorted(stems)
+
+
+@pytest.mark.parametrize("effect", EFFECTS, ids=lambda effect: effect.NAME)
+def test_an_effect_has_what_the_step_asks_of_it(effect: ModuleType) -> None:
+    assert effect.__name__.endswith(f".{effect.NAME}")
+    assert effect.STAGE in STAGES
+    assert callable(effect.wanted)
+    if effect.STAGE != "solve":  # rows of the solver carry it; it has no kernel of its own
+        assert callable(effect.make)
+    for group in FIELD_GROUPS:
+        for name, kind in getattr(effect, group, []):
+            assert name.isidentifier()
+            assert kind in (F8, I8)
+
+
+@pytest.mark.parametrize(
+    ("folder", "listed", "shared"),
+    [
+        ("solvers", {module for module in SOLVERS.values()}, set()),
+        ("collide", {pair[2] for pair in SHAPE_PAIRS.values()}, {"clip", "narrow_phase", "point"}),
+    ],
+)
+def test_every_solver_and_shape_pair_is_listed(
+    folder: str, listed: set[ModuleType], shared: set[str]
+) -> None:
+    stems = {path.stem for path in (ENGINE / folder).glob("*.py")} - {"__init__"} - shared
+    assert {module.__name__.rpartition(".")[2] for module in listed} == stems

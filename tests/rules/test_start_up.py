@@ -1,0 +1,53 @@
+"""What a fresh Python has loaded: the light doors stay light, whatever stands behind them."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+
+import pytest
+from sources import files, module_of, room_of
+
+HEAVY = {"numba", "llvmlite", "matplotlib", "rerun", "numpy"}
+VERSION = """
+from lavender_cli.main import main
+sys.argv = ["lavender", "--version"]
+try:
+    main()
+except SystemExit as done:
+    assert not done.code, done.code
+"""
+
+
+def loaded_after(code: str) -> set[str]:
+    """Return every module a fresh process has loaded after running some code."""
+    report = "\nprint(json.dumps(sorted(sys.modules)))"
+    done = subprocess.run(
+        [sys.executable, "-c", f"import json, sys\n{code}{report}"],
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    return set(json.loads(done.stdout.splitlines()[-1]))
+
+
+@pytest.mark.parametrize("code", ["import lavendersim", VERSION], ids=["import", "--version"])
+def test_the_front_doors_load_nothing_heavy(code: str) -> None:
+    assert loaded_after(code) & HEAVY == set()
+
+
+def test_reading_an_experiment_loads_no_engine() -> None:
+    loaded = loaded_after("from lavendersim import load_experiment")
+    assert loaded & (HEAVY | {"mcap", "lavendersim.engine", "lavendersim.scene"}) == set()
+
+
+@pytest.mark.parametrize("room", ["trace", "measures", "figures", "replay"])
+def test_no_module_of_a_view_loads_the_engine(room: str) -> None:
+    names = [".".join(module_of(file)) for file in files() if room_of(file) == room]
+    assert names
+    loaded = loaded_after("\n".join(f"import {name.removesuffix('.__init__')}" for name in names))
+    assert f"lavendersim.{room}" in loaded
+    assert loaded & {"numba", "llvmlite", "lavendersim.engine", "lavendersim.scene"} == set()

@@ -1,0 +1,122 @@
+"""The walls between the rooms: data goes one way, and each library has one room that knows it."""
+
+from __future__ import annotations
+
+import ast
+import sys
+from graphlib import TopologicalSorter
+
+import pytest
+from sources import ROOT, Import, files, imports, module_of, modules, room_of
+
+# What each room may import of ours; itself always. `runner` alone sees the whole line.
+ROOMS = {
+    "__init__": {"experiment", "runner", "simulator", "trace"},  # public names, imported when used
+    "errors": set(),
+    "experiment": {"errors"},
+    "engine": set(),
+    "scene": {"errors", "experiment", "engine"},
+    "trace": {"errors"},
+    "measures": {"errors", "experiment", "trace"},
+    "figures": {"errors", "experiment", "trace", "measures"},
+    "replay": {"errors", "trace", "measures"},
+    "simulator": {"errors", "experiment", "scene", "engine"},
+    "runner": {"errors", "experiment", "scene", "engine", "trace", "measures"},
+    "pytest_plugin": {"errors", "experiment", "trace", "measures", "runner"},
+    "cli": {"errors", "experiment", "scene", "trace", "measures", "figures", "replay", "runner"},
+}
+# Who may import a library of others; what is not listed is imported by nobody.
+LIBRARIES = {
+    "numba": {"engine"},
+    "numpy": {"scene", "engine", "trace", "measures", "figures", "replay", "simulator", "runner"},
+    "mcap": {"trace"},
+    "google": {"trace"},  # google.protobuf
+    "zstandard": {"trace"},
+    "rerun": {"replay"},
+    "matplotlib": {"figures"},
+    "pydantic": {"experiment"},
+    "pydantic_core": {"experiment"},
+    "yaml": {"experiment", "trace"},
+    "typer": {"cli"},
+    "rich": {"cli"},
+    "pytest": {"pytest_plugin"},
+}
+IMPORTS = imports()
+
+
+def of_others(found: Import) -> bool:
+    """Whether an import is of a library that neither we nor Python bring."""
+    return found.module.split(".")[0] not in {*sys.stdlib_module_names, *("lavendersim",)} and (
+        found.target != "cli"
+    )
+
+
+def test_every_room_is_known() -> None:
+    assert {room_of(file) for file in files()} == set(ROOMS)
+
+
+@pytest.mark.parametrize("room", ROOMS)
+def test_a_room_imports_only_the_rooms_it_may(room: str) -> None:
+    allowed = {*ROOMS[room], room, "__version__"}
+    strangers = [
+        str(found)
+        for found in IMPORTS
+        if found.room == room
+        and found.module.split(".")[0] in ("lavendersim", "lavender_cli")
+        and found.target not in allowed
+    ]
+    assert strangers == []
+
+
+@pytest.mark.parametrize("library", LIBRARIES)
+def test_a_library_is_known_to_its_rooms_only(library: str) -> None:
+    strangers = [
+        str(found)
+        for found in IMPORTS
+        if found.target == library and found.room not in LIBRARIES[library]
+    ]
+    assert strangers == []
+
+
+def test_no_other_library_is_imported() -> None:
+    unknown = [str(f) for f in IMPORTS if of_others(f) and f.target not in LIBRARIES]
+    assert unknown == []
+
+
+def test_the_rooms_form_no_circle() -> None:
+    graph: dict[str, set[str]] = {room: set() for room in ROOMS if room != "__init__"}
+    for found in IMPORTS:
+        if found.room in graph and found.target in graph and found.target != found.room:
+            graph[found.room].add(found.target)
+    order = list(TopologicalSorter(graph).static_order())  # raises CycleError
+    assert order.index("experiment") < order.index("measures") < order.index("figures")
+    assert order.index("engine") < order.index("scene") < order.index("runner")
+
+
+FILE_CALLS = {"open", "read_text", "read_bytes", "write_text", "write_bytes", "mkdir", "unlink"}
+
+
+def test_the_command_line_reads_and_writes_no_files() -> None:
+    calls = []
+    for file in (ROOT / "cli").rglob("*.py"):
+        for node in ast.walk(ast.parse(file.read_text())):
+            if isinstance(node, ast.Call):
+                name = getattr(node.func, "attr", getattr(node.func, "id", ""))
+                if name in FILE_CALLS:
+                    calls.append(f"{file.name}:{node.lineno} calls {name}")
+    assert calls == []
+
+
+def test_relative_imports_are_resolved_to_full_names() -> None:
+    """The reader of imports itself, on the forms the sources use."""
+    statements = "from . import a\nfrom .b import c\nfrom ..d import e\nimport numba.core as n\n"
+    package = ["lavendersim", "engine", "effects"]
+    found = [m for node in ast.parse(statements).body for m in modules(node, package)]
+    assert found == [
+        "lavendersim.engine.effects.a",
+        "lavendersim.engine.effects.b.c",
+        "lavendersim.engine.d.e",
+        "numba.core",
+    ]
+    here = ROOT / "lavendersim/engine/step.py"
+    assert (module_of(here), room_of(here)) == (["lavendersim", "engine", "step"], "engine")
