@@ -11,7 +11,7 @@ def doctor(
     clean: Annotated[bool, typer.Option("--clean", help="Delete the compiled kernels.")] = False,
 ) -> None:
     """Show the machine, the versions and the kernel cache; clean it where asked."""
-    from lavendersim.runner.environment import kernel_files, machine
+    from lavendersim.runner.environment import delete_kernels, kernel_files, machine
 
     for name, value in machine().items():
         typer.echo(f"{name:14} {value}")
@@ -19,6 +19,4 @@ def doctor(
     size = sum(file.stat().st_size for file in files)
     typer.echo(f"{'kernels':14} {len(files)} files, {size / 1e6:.1f} MB")
     if clean:
-        for file in files:
-            file.unlink(missing_ok=True)
-        typer.echo(f"{'deleted':14} {len(files)} files")
+        typer.echo(f"{'deleted':14} {delete_kernels()} files")

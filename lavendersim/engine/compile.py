@@ -11,7 +11,8 @@ of the spec it was made for.
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from typing import Any
 
 import numba
@@ -19,12 +20,6 @@ from numba.core.cpu import CPUTargetOptions
 from numba.core.errors import NumbaExperimentalFeatureWarning
 
 from .spec import Spec
-
-# A kernel compiled for a record serves records that begin with the same fields. That is what we want
-# (offsets agree), and numba says so each time it happens.
-warnings.filterwarnings(
-    "ignore", "Record.* has been considered a subtype", NumbaExperimentalFeatureWarning
-)
 
 # Kernels allocate nothing, and without reference counting a sphere's step costs a third. The option
 # is undocumented: a numba that does not know it compiles with counting, to the same bits.
@@ -45,6 +40,18 @@ def known(options: dict[str, Any], target_options: Any = CPUTargetOptions) -> di
 OPTIONS: dict[str, Any] = known(
     {"error_model": "numpy", "fastmath": False, "nogil": True, "_nrt": False}
 )
+
+
+@contextmanager
+def compiling() -> Iterator[None]:
+    """Compile inside: numba's remark that records share their first fields is not passed on.
+
+    A kernel compiled for one record serves records that begin with the same fields, at the same
+    offsets; that is what we want, and numba calls it experimental each time.
+    """
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", NumbaExperimentalFeatureWarning)
+        yield
 
 
 def kernel(function: Callable[..., Any], spec: Spec) -> Any:

@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from .collide.box_box import allocate_scratch
+from .compile import compiling
 from .effects import EFFECTS
 from .ordering import BUCKETS
 from .records import (
@@ -139,26 +140,35 @@ class Engine:
         """Do up to `steps` steps; return RUNNING, ROWS_FULL (take rows, call again) or DIVERGED."""
         target = int(self.counters["step"][0]) + steps
         while True:
-            status = self._kernel(
-                self.bodies,
-                self.velocities,
-                self.pseudo,
-                self._bits,
-                self.contacts,
-                self.cache,
-                self.pairs,
-                self._work,
-                self.parameters,
-                self.counters,
-                self._rows,
-                self._residual_rows,
-                target - int(self.counters["step"][0]),
-            )
+            left = target - int(self.counters["step"][0])
+            if self._kernel.overloads:
+                status = self._call(left)
+            else:
+                with compiling():
+                    status = self._call(left)
             if status != CONTACTS_FULL:
                 return int(status)
             if self.counters["step_rows"][0]:
                 return ROWS_FULL  # rows first: enlarging the columns would drop them
             self._grow_contacts(2 * len(self.contacts))
+
+    def _call(self, steps: int) -> int:
+        status = self._kernel(
+            self.bodies,
+            self.velocities,
+            self.pseudo,
+            self._bits,
+            self.contacts,
+            self.cache,
+            self.pairs,
+            self._work,
+            self.parameters,
+            self.counters,
+            self._rows,
+            self._residual_rows,
+            steps,
+        )
+        return int(status)
 
     def take_rows(self) -> Rows:
         """Return copies of the rows written since the last call and empty the columns."""

@@ -65,6 +65,7 @@ class KernelCache:
     def __init__(self, spec: Spec) -> None:
         self.spec = spec
         self.cache_path = directory()[0]
+        self.used = ""  # key of the kernel that was loaded or compiled last
         self.hits = 0
         self.misses = 0
 
@@ -93,7 +94,8 @@ class KernelCache:
         """Return the compiled kernel for `signature`, or None; a damaged file counts as absent."""
         target_context.refresh()
         try:
-            stored = self.path(self.key(signature, target_context.codegen())).read_bytes()
+            self.used = self.key(signature, target_context.codegen())
+            stored = self.path(self.used).read_bytes()
         except OSError:
             self.misses += 1
             return None

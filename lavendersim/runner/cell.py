@@ -18,6 +18,8 @@ from lavendersim.scene.events import EventQueue
 from lavendersim.scene.plan import Plan
 from lavendersim.trace import Block, TraceWriter
 
+from .environment import versions
+
 NANOSECONDS = 10**9
 
 
@@ -63,15 +65,13 @@ def block_of(rows: Rows, timestep: Fraction) -> Block:
 
 def metadata_of(plan: Plan) -> dict[str, dict[str, str]]:
     """Return what the log says about the engine that made it."""
-    from lavendersim import __version__
-
     return {
+        "versions": versions(),
         "engine": {
-            "lavender": __version__,
-            "numpy": np.__version__,
             "source": source_hash(),
             "plan": plan.spec.digest(),
             "solver": plan.spec.solver,
+            "seed": "none, nothing is drawn at random",
         },
         "plan": {
             name: f"{'on' if decision.on else 'off'}: {decision.reason}"

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import platform
 from datetime import UTC, datetime
+from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -24,16 +25,22 @@ def processor() -> str:
     return platform.processor() or platform.machine()
 
 
+@cache
+def versions() -> dict[str, str]:
+    """Return the versions that the bytes of a log may depend on."""
+    from lavendersim import __version__
+
+    return {"lavender": __version__, **{name: version(name) for name in PACKAGES}}
+
+
 def machine() -> dict[str, Any]:
     """Return versions, processor and where kernels are kept."""
-    from lavendersim import __version__
     from lavendersim.engine.kernel_cache import directory
 
     kept, note = directory()
     return {
-        "lavender": __version__,
         "python": platform.python_version(),
-        **{name: version(name) for name in PACKAGES},
+        **versions(),
         "system": f"{platform.system()} {platform.release()}",
         "processor": processor(),
         "cores": os.cpu_count(),
@@ -49,14 +56,24 @@ def kernel_files() -> list[Path]:
     return sorted(kept.glob("*.kernel")) if kept.name else []
 
 
+def delete_kernels() -> int:
+    """Delete the compiled kernels; returns how many there were."""
+    files = kernel_files()
+    for file in files:
+        file.unlink(missing_ok=True)
+    return len(files)
+
+
 def environment(spec: Any) -> dict[str, Any]:
     """Return what a reader needs to judge the timings of a run and to repeat it."""
     from lavendersim.engine.kernel_cache import source_hash
+    from lavendersim.engine.step import advance_for
 
     return {
         "date": datetime.now(UTC).isoformat(timespec="seconds"),
         **machine(),
         "engine source": source_hash(),
         "plan": spec.digest(),
+        "kernel": advance_for(spec)._cache.used,
         "spec": spec._asdict(),
     }

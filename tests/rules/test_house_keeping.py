@@ -53,7 +53,7 @@ def test_an_effect_has_what_the_step_asks_of_it(effect: ModuleType) -> None:
 @pytest.mark.parametrize(
     ("folder", "listed", "shared"),
     [
-        ("solvers", {module for module in SOLVERS.values()}, set()),
+        ("solvers", set(SOLVERS.values()), set()),
         ("collide", {pair[2] for pair in SHAPE_PAIRS.values()}, {"clip", "narrow_phase", "point"}),
     ],
 )

@@ -1,0 +1,142 @@
+"""Impulses are carried over by contacts that persist, scaled by the timestep, and by nothing else.
+
+No sweeps are made (`sweeps = 0`), so a logged impulse is exactly what the cache handed on.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from laboratory import Bench, box, plane, resolved, sphere
+
+GRAVITY = (0.0, 0.0, -9.81)
+
+
+def settled(bodies, **numerics):
+    """A bench after one fully solved step, and its impulses; the next steps do no sweeps."""
+    bench = Bench(resolved(bodies, GRAVITY, sweeps=200, **numerics))
+    impulses = bench.run(1).contact["impulse_n"].copy()
+    bench.engine.parameters["sweeps"] = 0
+    for row in bench.engine.velocities:
+        row["vx"] = row["vy"] = row["vz"] = 0.0
+    return bench, impulses
+
+
+def ball(**stated):
+    return {"floor": plane(), "ball": sphere(0.1, (0.0, 0.0, 0.1), **stated)}
+
+
+def block():
+    return {"floor": plane(), "block": box((1.0, 1.0, 1.0), (0.0, 0.0, 0.5))}
+
+
+def test_a_contact_that_persists_starts_at_its_impulse():
+    bench, impulses = settled(block())
+    assert impulses.sum() == pytest.approx(9.81 / 240.0, rel=1e-12)
+    np.testing.assert_array_equal(bench.run(1).contact["impulse_n"], impulses)
+
+
+@pytest.mark.parametrize("ratio", [0.5, 2.0, 3.0])
+def test_impulses_scale_with_the_timestep(ratio):
+    bench, impulses = settled(block())
+    bench.engine.parameters["dt"] *= ratio
+    found = bench.run(1).contact["impulse_n"]
+    # dt/dt_cached is one division and one product.
+    np.testing.assert_allclose(found, impulses * ratio, rtol=3e-16)
+    # The next step's cache belongs to the new timestep: no second scaling.
+    bench.engine.velocities["vz"] = 0.0
+    np.testing.assert_array_equal(bench.run(1).contact["impulse_n"], found)
+
+
+@pytest.mark.parametrize(("share", "kept"), [(0.99, True), (1.01, False)])
+def test_a_contact_point_beyond_the_cache_distance_starts_from_zero(share, kept):
+    bench, impulses = settled(ball())
+    bench.engine.bodies["x"][1] += 0.02 * share
+    found = bench.run(1).contact["impulse_n"]
+    assert found[0] == (impulses[0] if kept else 0.0)
+
+
+@pytest.mark.parametrize(("share", "kept"), [(0.99, True), (1.01, False)])
+def test_a_normal_that_turned_beyond_the_cosine_starts_from_zero(share, kept):
+    """The sphere rolls about another's surface: n turns by the angle, the point by 2 mm at most."""
+    angle = share * np.arccos(0.95)
+    bodies = {
+        "fixed": sphere(0.004, (0.0, 0.0, 0.0), fixed=True),
+        "ball": sphere(0.006, (0.0, 0.0, 0.01)),
+    }
+    bench, impulses = settled(bodies)
+    bench.engine.bodies["x"][1] = 0.00999 * np.sin(angle)
+    bench.engine.bodies["z"][1] = 0.00999 * np.cos(angle)
+    found = bench.run(1).contact["impulse_n"]
+    assert impulses[0] > 0.0
+    assert found[0] == (impulses[0] if kept else 0.0)
+
+
+def test_a_forgotten_body_starts_from_zero_and_the_others_do_not():
+    bodies = {
+        "floor": plane(),
+        "left": sphere(0.1, (0.0, 0.0, 0.1)),
+        "right": sphere(0.1, (1.0, 0.0, 0.1), mass=2.0),
+        "top": sphere(0.1, (1.0, 0.0, 0.3)),
+    }
+    bench, impulses = settled(bodies)
+    bench.engine.forget_contacts(1)
+    found = bench.run(1).contact
+    expected = np.where(found["body_b"] == 1, 0.0, impulses)
+    np.testing.assert_array_equal(found["impulse_n"], expected)
+    assert (expected > 0.0).sum() == 2
+
+
+def test_forgetting_everything_starts_everything_from_zero():
+    bench, _ = settled(block())
+    bench.engine.forget_contacts()
+    np.testing.assert_array_equal(bench.run(1).contact["impulse_n"], 0.0)
+
+
+def test_a_contact_that_was_lost_for_a_step_injects_nothing_stale():
+    bench, _ = settled(ball())
+    bench.engine.bodies["z"][1] = 0.5
+    assert len(bench.run(1).contact) == 0
+    bench.engine.bodies["z"][1] = 0.1
+    bench.engine.velocities["vz"] = 0.0
+    assert bench.run(1).contact["impulse_n"][0] == 0.0
+
+
+def test_a_cold_start_takes_nothing_from_the_step_before():
+    bodies = ball()
+    for body in bodies.values():
+        body["position"] = list(body["position"])
+    cell = resolved(bodies, GRAVITY, warm_start=False)
+    bench = Bench(cell, spec=Bench(cell).spec)
+    bench.engine.parameters["cache_distance"] = -1.0
+    bench.run(1)
+    bench.engine.parameters["sweeps"] = 0
+    # distance^2 <= cache_distance^2 must not let a negative distance match.
+    assert bench.run(1).contact["impulse_n"][0] == 0.0
+
+
+def test_a_new_point_does_not_take_the_impulse_of_one_that_persists():
+    """Two corners of a small box share a cache distance. The cache holds corner 1 alone; corner 0,
+    visited first and within reach, is new: the impulse belongs to corner 1."""
+    bodies = {"floor": plane(), "block": box((0.01, 0.01, 0.01), (0.0, 0.0, 0.005))}
+    bench, impulses = settled(bodies)
+    cache = bench.engine.cache
+    kept = cache[cache["feature"] == 1].copy()
+    cache[:1] = kept
+    bench.engine.counters["cached"] = 1
+    found = bench.run(1).contact
+    np.testing.assert_array_equal(
+        found["impulse_n"], np.where(found["feature"] == 1, kept["lambda_n"][0], 0.0)
+    )
+    assert impulses.min() > 0.0
+
+
+def test_no_impulse_is_handed_on_twice():
+    """All features renamed: four points find the four nearest, one each."""
+    bench, impulses = settled(block())
+    bench.engine.cache["feature"] += 100
+    np.testing.assert_array_equal(bench.run(1).contact["impulse_n"], impulses)
+    one_left, _ = settled({"floor": plane(), "block": box((0.01, 0.01, 0.01), (0.0, 0.0, 0.005))})
+    one_left.engine.cache["feature"] += 100
+    one_left.engine.counters["cached"] = 1
+    assert np.count_nonzero(one_left.run(1).contact["impulse_n"]) == 1
