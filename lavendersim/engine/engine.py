@@ -96,7 +96,7 @@ class Engine:
         self.spec = spec
         self.bodies, self.velocities = bodies, velocities
         self.pairs, self.parameters = pairs, parameters
-        self.block_steps = block_steps if spec.record else 0
+        self.block_steps = max(block_steps, 1) if spec.record else 0
         self.counters = np.zeros(1, dtype(COUNTERS))
         self.counters["residual_contact"] = -1
         self.pseudo = np.zeros(len(bodies) if spec.has("projection") else 0, velocities.dtype)
@@ -118,7 +118,9 @@ class Engine:
         )
         held = getattr(self, "cache", None)
         warm = self.spec.has("warm_start")
-        self.cache = np.zeros(capacity if warm else 0, _dtype([("pair", "i8")], self.spec, "CACHE_FIELDS"))
+        self.cache = np.zeros(
+            capacity if warm else 0, _dtype([("pair", "i8")], self.spec, "CACHE_FIELDS")
+        )
         if held is not None and warm:
             self.cache[: len(held)] = held
         self._allocate_rows(capacity)
@@ -132,12 +134,19 @@ class Engine:
             np.repeat(self._initial_pose[None], steps, axis=0),
             np.zeros(contact_rows, dtype(CONTACT_ROW)),
         )
-        sweeps = int(self.parameters["sweeps"][0]) + 1
-        residual_rows = max(steps, 1) * sweeps if self.spec.record_residuals else 0
+        residual_rows = max(steps, 1) * self._sweep_rows()
         self._residual_rows = np.zeros(residual_rows, dtype(RESIDUAL_ROW))
+
+    def _sweep_rows(self) -> int:
+        """Rows that the sweeps of one step need."""
+        return int(self.parameters["sweeps"][0]) + 1 if self.spec.record_residuals else 0
 
     def advance(self, steps: int) -> int:
         """Do up to `steps` steps; return RUNNING, ROWS_FULL (take rows, call again) or DIVERGED."""
+        if len(self._residual_rows) < self._sweep_rows():  # more sweeps are asked for than before
+            if self.counters["step_rows"][0]:
+                return ROWS_FULL
+            self._allocate_rows(len(self.contacts))
         target = int(self.counters["step"][0]) + steps
         while True:
             left = target - int(self.counters["step"][0])
@@ -199,4 +208,3 @@ class Engine:
         kept = rows[(pairs["a"] != body) & (pairs["b"] != body)]
         self.cache[: len(kept)] = kept
         self.counters["cached"] = len(kept)
-

@@ -10,8 +10,11 @@ from .spec import Spec
 
 
 def make(spec: Spec):
-    """Return `kernel(bodies, velocities, bits, contacts, count, params, counters, rows)`.
+    """Return two kernels that write the row of a step, `record_contacts` first.
 
+    record_contacts(contacts, count, velocities, params, counters, rows): right after the solve, for
+    v_n and the residual belong to the velocities and levers of the solve; turning changes both.
+    record_state(bodies, velocities, bits, params, counters, rows): at the end of the step.
     bits: (body bytes, velocity bytes) as uint64 views of the same memory, for the state hash.
     rows: (step rows, pose rows (n, bodies, 7), contact rows); the caller guarantees room.
     """
@@ -59,17 +62,20 @@ def make(spec: Spec):
 
     record_bodies = kernel(record_bodies, spec)
 
-    def record_contacts(contacts, count, velocities, row, rows, first, params):
+    def record_contacts(contacts, count, velocities, params, counters, rows):
+        steps, _, contact_rows = rows
+        row = steps[counters.step_rows]
+        row.contact_count = count
         force, deepest = 0.0, 0.0
         for c in range(count):
-            contact, out = contacts[c], rows[first + c]
+            contact, out = contacts[c], contact_rows[counters.contact_rows + c]
             v_n = normal_velocity(contact, velocities[contact.a], velocities[contact.b])
-            out.step = row.step
+            out.step = counters.step + 1
             out.body_a, out.body_b, out.feature = contact.a, contact.b, contact.feature
             out.x, out.y, out.z = contact.x, contact.y, contact.z
             out.nx, out.ny, out.nz = contact.nx, contact.ny, contact.nz
             out.separation = contact.phi
-            out.penetration = max(-contact.phi, 0.0)
+            out.penetration = max(0.0 - contact.phi, 0.0)
             out.approach_velocity = contact.v_n_pre
             out.normal_velocity = v_n
             out.impulse_n = contact.lambda_n
@@ -77,27 +83,25 @@ def make(spec: Spec):
             out.inverse_effective_mass = contact.k_n
             out.residual = row_residual(contact, v_n)
             force += out.force_n
-            deepest = max(deepest, out.penetration)
+            # A NaN is deeper than anything, or it would not be seen.
+            if out.penetration > deepest or out.penetration != out.penetration:
+                deepest = out.penetration
         row.total_normal_force = force
         row.max_penetration = deepest
 
     record_contacts = kernel(record_contacts, spec)
 
-    def record(bodies, velocities, bits, contacts, count, params, counters, rows):
-        steps, poses, contact_rows = rows
+    def record_state(bodies, velocities, bits, params, counters, rows):
+        steps, poses, _ = rows
         row = steps[counters.step_rows]
         row.step = counters.step
-        row.contact_count = count
         row.sweeps = counters.sweeps
         row.residual_contact = counters.residual_contact
         row.residual = counters.residual
-        record_contacts(
-            contacts, count, velocities, row, contact_rows, counters.contact_rows, params
-        )
         record_bodies(bodies, velocities, row, poses[counters.step_rows], params)
         state_hash = hash_into(0xCBF29CE484222325 ^ row.step, bits[0])
         row.state_hash = hash_into(state_hash, bits[1])
         counters.step_rows += 1
-        counters.contact_rows += count
+        counters.contact_rows += row.contact_count
 
-    return kernel(record, spec)
+    return record_contacts, kernel(record_state, spec)

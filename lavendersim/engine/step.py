@@ -1,13 +1,13 @@
 """The step on one screen. A `Spec` enters, the kernel `advance` composed for it leaves.
 
-    collide      contacts at the pose the step begins with
-    accelerate   v += dt * forces
-    append       each contact: frame, effective mass, what is captured once
-    warm start   impulses of contacts that persist
-    solve        velocities that respect every contact
-    integrate    x += dt v
-    project      poses moved out of what still penetrates, without velocity
-    record       trace rows
+collide      contacts at the pose the step begins with
+accelerate   v += dt * forces
+append       each contact: frame, effective mass, what is captured once
+warm start   impulses of contacts that persist
+solve        velocities that respect every contact, and the trace rows of contacts
+integrate    x += dt v
+project      poses moved out of what still penetrates, without velocity
+record       the trace row of the step
 """
 
 from __future__ import annotations
@@ -30,7 +30,11 @@ from .spec import Spec
 
 def make_integrate(spec: Spec) -> Any:
     """Return `kernel(bodies, velocities, pseudo, moved, dt) -> body that diverged, or -1`."""
-    turns, torque, projects = spec.has("rotation"), spec.has("contact_torque"), spec.has("projection")
+    turns, torque, projects = (
+        spec.has("rotation"),
+        spec.has("contact_torque"),
+        spec.has("projection"),
+    )
     integrate_rotation = (gyroscopic if spec.has("gyroscopic") else rotation).make(spec)
 
     def integrate(bodies, velocities, pseudo, moved, dt):
@@ -79,8 +83,12 @@ def make_advance(spec: Spec) -> Any:
     solve = SOLVERS[spec.solver].make(spec)
     integrate = make_integrate(spec)
     project_positions = projection.make(spec)
-    record = make_record(spec)
-    accelerates, warms, projects = bool(stage["accelerate"]), spec.has("warm_start"), spec.has("projection")
+    record_contacts, record_state = make_record(spec)
+    accelerates, warms, projects = (
+        bool(stage["accelerate"]),
+        spec.has("warm_start"),
+        spec.has("projection"),
+    )
     records, record_residuals = spec.record, spec.record_residuals
 
     def advance(
@@ -91,7 +99,8 @@ def make_advance(spec: Spec) -> Any:
         params, counters = parameters[0], counter[0]
         if records:
             if counters.started == 0:
-                record(bodies, velocities, bits, contacts, 0, params, counters, rows)
+                record_contacts(contacts, 0, velocities, params, counters, rows)
+                record_state(bodies, velocities, bits, params, counters, rows)
         counters.started = 1
         for _ in range(steps):
             if records:
@@ -122,6 +131,8 @@ def make_advance(spec: Spec) -> Any:
                         apply_impulse(contact, va, vb, contact.lambda_n)
             order_contacts(bodies, contacts, count, taken, buckets, keys, order)
             solve(contacts, order, count, velocities, params, counters, residual_rows)
+            if records:
+                record_contacts(contacts, count, velocities, params, counters, rows)
             if warms:
                 store_contacts(contacts, count, bodies, cache, counters, params)
             moved = False
@@ -131,7 +142,7 @@ def make_advance(spec: Spec) -> Any:
             counters.step += 1
             counters.contacts = count
             if records:
-                record(bodies, velocities, bits, contacts, count, params, counters, rows)
+                record_state(bodies, velocities, bits, params, counters, rows)
             if diverged >= 0:
                 counters.body = diverged
                 return DIVERGED

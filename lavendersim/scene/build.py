@@ -103,6 +103,11 @@ def _parameters(resolved: dict[str, Any], timestep: Fraction) -> np.ndarray:
         "cache_normal_cosine",
     ):
         p[name] = float(numerics[name])
+    if not numerics["warm_start"]:
+        # An engine shared with warm cells: no cosine is this large, so nothing is carried over.
+        p["cache_normal_cosine"] = 2.0
+    if not numerics["projection_sweeps"]:
+        p["projection"] = 0.0
     magnitude = sqrt(sum(g * g for g in gravity))
     p["restitution_speed"] = float(numerics["restitution_threshold"]) * magnitude * dt
     # A residual is never negative, so this tolerance never stops a cell that states none.
@@ -120,7 +125,7 @@ def residual_window(resolved: dict[str, Any], timestep: Fraction) -> tuple[int, 
         return _NO_STEPS
     if asked == "all":
         return 1, np.iinfo(np.int64).max
-    # By the number as written: 0.1 is the time of a step of 1/10 s, its binary value lies beside it.
+    # By the number as written: 0.1 s is a step of 1/10 s, its binary value lies beside it.
     begin, end = (Fraction(repr(float(asked[side]))) for side in ("from", "to"))
     return max(1, ceil(begin / timestep)), int(end / timestep)
 

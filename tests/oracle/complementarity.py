@@ -13,7 +13,9 @@ from itertools import product
 import numpy as np
 
 
-def solve_by_enumeration(w_matrix: np.ndarray, q: np.ndarray, tolerance: float = 1e-10) -> np.ndarray:
+def solve_by_enumeration(
+    w_matrix: np.ndarray, q: np.ndarray, tolerance: float = 1e-10
+) -> np.ndarray:
     """Return impulses that satisfy all four conditions; at most 12 rows (4096 sets)."""
     rows = len(q)
     assert rows <= 12
@@ -43,7 +45,9 @@ def natural_map(impulse: np.ndarray, w: np.ndarray, scale: np.ndarray) -> np.nda
 class Body:
     """Mass and inertia of one body as a 6 x 6 inverse mass matrix in world axes."""
 
-    def __init__(self, inverse_mass: float, inverse_inertia: np.ndarray, matrix: np.ndarray) -> None:
+    def __init__(
+        self, inverse_mass: float, inverse_inertia: np.ndarray, matrix: np.ndarray
+    ) -> None:
         self.inverse = np.zeros((6, 6))
         self.inverse[:3, :3] = inverse_mass * np.eye(3)
         self.inverse[3:, 3:] = matrix @ np.diag(inverse_inertia) @ matrix.T

@@ -1,9 +1,9 @@
 """Two shapes enter, their signed separation leaves: slow, in numpy, and written differently.
 
 A box here is a set of eight corners. For two convex polytopes the signed separation is the largest,
-over unit directions n, of `min_B n . x - max_A n . x`; it is reached at a face normal or at the cross
-product of two edges when they overlap. When they are apart the same number bounds the distance from
-below, and a pair of points found by alternating projections bounds it from above.
+over unit directions n, of `min_B n . x - max_A n . x`; when they overlap it is reached at a face
+normal or at the cross product of two edges. When they are apart the same number bounds the distance
+from below, and a pair of points found by alternating projections bounds it from above.
 """
 
 from __future__ import annotations

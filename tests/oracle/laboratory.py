@@ -87,7 +87,9 @@ def resolved(bodies: dict[str, Any], gravity=(0.0, 0.0, 0.0), **numerics: Any) -
 class Bench:
     """A scene and its engine; `run` gathers every row it writes."""
 
-    def __init__(self, cell: dict[str, Any], spec: Spec | None = EVERYTHING, block_steps: int = 512):
+    def __init__(
+        self, cell: dict[str, Any], spec: Spec | None = EVERYTHING, block_steps: int = 512
+    ):
         self.spec = spec or plan_of(cell).spec
         self.cell = cell
         self.scene: Scene = build(cell, self.spec)

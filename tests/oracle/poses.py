@@ -48,7 +48,9 @@ def _every_pose(pair: str) -> Any:
 
         return kernel(every_pose, spec)
 
-    return cached(compose, Spec(effects=("rotation",), shape_pairs=(pair,), solver=f"poses {_TEXT}"))
+    return cached(
+        compose, Spec(effects=("rotation",), shape_pairs=(pair,), solver=f"poses {_TEXT}")
+    )
 
 
 def allocate(count: int) -> np.ndarray:

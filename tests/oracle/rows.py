@@ -34,7 +34,9 @@ class RowOracle:
         self.numerics = cell["numerics"]
         self.dt = float(Fraction(self.numerics["timestep"]))
         gravity = np.array(cell["scene"]["gravity"], float)
-        self.speed_limit = self.numerics["restitution_threshold"] * np.linalg.norm(gravity) * self.dt
+        self.speed_limit = (
+            self.numerics["restitution_threshold"] * np.linalg.norm(gravity) * self.dt
+        )
         self.pairs = {(p.a, p.b): p for p in candidate_pairs(self.described)}
         self.centres = np.array([[row[k] for k in "xyz"] for row in engine.bodies])
         self.velocity = np.concatenate([bench.velocity, bench.spin], axis=1)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
@@ -31,10 +30,9 @@ class Import(NamedTuple):
         return f"{self.file} imports {self.module}"
 
 
-def files() -> Iterator[Path]:
-    """Yield every source file of the package and the command line."""
-    for folder in PACKAGES:
-        yield from sorted((ROOT / folder).rglob("*.py"))
+def files() -> list[Path]:
+    """Return every source file of the package and the command line."""
+    return [file for folder in PACKAGES for file in sorted((ROOT / folder).rglob("*.py"))]
 
 
 def module_of(file: Path) -> list[str]:

@@ -7,7 +7,7 @@ import sys
 from graphlib import TopologicalSorter
 
 import pytest
-from sources import ROOT, Import, files, imports, module_of, modules, room_of
+from sources import PACKAGES, ROOT, Import, files, imports, module_of, modules, room_of
 
 # What each room may import of ours; itself always. `runner` alone sees the whole line.
 ROOMS = {
@@ -46,9 +46,8 @@ IMPORTS = imports()
 
 def of_others(found: Import) -> bool:
     """Whether an import is of a library that neither we nor Python bring."""
-    return found.module.split(".")[0] not in {*sys.stdlib_module_names, *("lavendersim",)} and (
-        found.target != "cli"
-    )
+    top = found.module.split(".")[0]
+    return top not in sys.stdlib_module_names and top not in PACKAGES.values()
 
 
 def test_every_room_is_known() -> None:
@@ -62,7 +61,7 @@ def test_a_room_imports_only_the_rooms_it_may(room: str) -> None:
         str(found)
         for found in IMPORTS
         if found.room == room
-        and found.module.split(".")[0] in ("lavendersim", "lavender_cli")
+        and found.module.split(".")[0] in PACKAGES.values()
         and found.target not in allowed
     ]
     assert strangers == []

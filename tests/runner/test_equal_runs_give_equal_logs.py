@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from hashlib import sha256
 from pathlib import Path
 
 import pytest
@@ -11,9 +12,11 @@ import lavendersim
 from lavendersim.runner import Finished
 
 
-def logs(finished: Finished) -> dict[str, bytes]:
-    """Return the bytes of every log of a run, by its name."""
-    return {cell.path.name: cell.path.read_bytes() for cell in finished.run.cells}
+def logs(finished: Finished) -> dict[str, str]:
+    """Return the sha256 of every log of a run, by its name."""
+    return {
+        cell.path.name: sha256(cell.path.read_bytes()).hexdigest() for cell in finished.run.cells
+    }
 
 
 @pytest.fixture(scope="module")

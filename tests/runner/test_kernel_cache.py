@@ -115,7 +115,7 @@ def test_every_change_of_an_engine_source_changes_the_source_hash(
     elif change == "new file":
         (engine / "effects/friction.py").write_text("")
     else:
-        (engine / "rotation.py").rename(engine / "turning.py")
+        (engine / "rotation.py").rename(engine / "rotations.py")
     assert source_hash() != before
 
 

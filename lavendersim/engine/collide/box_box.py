@@ -192,15 +192,11 @@ def make(spec):
         if s_b > s_a + FACE_SIZE * size:
             # B is the reference: its outward normal points back to A.
             side = 1.0 if t_b[axis_b] < 0.0 else -1.0
-            count = clip_incident_face(
-                b, a, fb, fa, hb, ha, axis_b, side, 18 * 64, points, normal
-            )
+            count = clip_incident_face(b, a, fb, fa, hb, ha, axis_b, side, 18 * 64, points, normal)
             normal[0], normal[1], normal[2] = -normal[0], -normal[1], -normal[2]
         else:
             side = 1.0 if t[axis_a] >= 0.0 else -1.0
-            count = clip_incident_face(
-                a, b, fa, fb, ha, hb, axis_a, side, 0, points, normal
-            )
+            count = clip_incident_face(a, b, fa, fb, ha, hb, axis_a, side, 0, points, normal)
         return keep_four(points, count, normal[0], normal[1], normal[2])
 
     return kernel(box_box, spec)

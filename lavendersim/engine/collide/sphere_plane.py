@@ -1,6 +1,6 @@
 """A plane A and a sphere B enter; at most one point leaves. n is the plane's normal.
 
-    phi = n . x_b - offset - r
+phi = n . x_b - offset - r
 """
 
 from __future__ import annotations

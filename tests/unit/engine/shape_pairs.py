@@ -1,6 +1,6 @@
 """A shape pair's name enters, random poses of it leave: records, signed separations, surfaces.
 
-Lengths lie between e^-2 and 1 m and the origin within a few metres, so one round-off is some 1e-15 m.
+Lengths lie between e^-2 and 1 m, the origin within a few metres: one round-off is some 1e-15 m.
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ ALL = ("sphere_plane", "box_plane", "sphere_sphere", "sphere_box", "box_box")
 POSES = 2000
 # A few hundred operations on lengths of some metres, each rounded to 1.1e-16.
 ROUND_OFF = 1e-13
-# Faces are cut one TOUCHING outside their edges, which keeps names of vertices, and the points moved
-# back to the face: one may be as much too deep, and off the incident face, as the cut reaches out.
+# Faces are cut one TOUCHING outside their edges, which keeps names of vertices, and the points are
+# moved back to the face: each may be that much too deep, and off the incident face.
 CUT = 1.5 * TOUCHING
 
 

@@ -21,6 +21,7 @@ def heap():
 def run(block_steps: int = 512, capacity: int | None = None) -> Rows:
     bench = Bench(heap(), block_steps=block_steps)
     if capacity:
+        bench.engine.cache = bench.engine.cache[:0]
         bench.engine._grow_contacts(capacity)
     rows = bench.run(STEPS)
     assert bench.status == 0

@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 from laboratory import Bench, box, plane, resolved, sphere
 
+from lavendersim.scene.plan import plan_of
+
 GRAVITY = (0.0, 0.0, -9.81)
 
 
@@ -102,16 +104,13 @@ def test_a_contact_that_was_lost_for_a_step_injects_nothing_stale():
     assert bench.run(1).contact["impulse_n"][0] == 0.0
 
 
-def test_a_cold_start_takes_nothing_from_the_step_before():
-    bodies = ball()
-    for body in bodies.values():
-        body["position"] = list(body["position"])
-    cell = resolved(bodies, GRAVITY, warm_start=False)
-    bench = Bench(cell, spec=Bench(cell).spec)
-    bench.engine.parameters["cache_distance"] = -1.0
+def test_a_cold_cell_stays_cold_in_an_engine_that_it_shares_with_warm_ones():
+    cell = resolved(ball(), GRAVITY, warm_start=False)
+    assert not plan_of(cell).spec.has("warm_start")
+    bench = Bench(cell)
+    assert bench.spec.has("warm_start")
     bench.run(1)
     bench.engine.parameters["sweeps"] = 0
-    # distance^2 <= cache_distance^2 must not let a negative distance match.
     assert bench.run(1).contact["impulse_n"][0] == 0.0
 
 

@@ -1,4 +1,4 @@
-"""A point keeps its name while the same vertices and faces make it, so that its impulse can follow."""
+"""A point keeps its name while the same vertices and faces make it; its impulse can follow."""
 
 from __future__ import annotations
 
@@ -44,6 +44,7 @@ def test_names_stay_during_a_small_tilt(pair):
 def test_round_off_does_not_rename_the_points_of_aligned_boxes(rng):
     noise = rng.normal(size=(STEPS, 7)) * 1e-16
     seen = names(
-        "box_box", lambda i: (np.array([0.0, 0.0, 0.999]) + noise[i, :3], noise[i, 3:] + [1, 0, 0, 0])
+        "box_box",
+        lambda i: (np.array([0.0, 0.0, 0.999]) + noise[i, :3], noise[i, 3:] + [1, 0, 0, 0]),
     )
     assert len(set(seen)) == 1

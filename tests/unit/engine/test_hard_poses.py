@@ -1,4 +1,4 @@
-"""Poses without a direction of their own, extreme sizes and far origins still give true manifolds."""
+"""Poses without a direction of their own, extreme sizes and far origins give true manifolds."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ def test_crossed_edges_touch_in_one_point_between_them():
 
 
 ATTACKS = {
-    # name: log10 of half edges, distance of the origin, log10 of the turn between nearly flush boxes
+    # log10 of half edges, distance of the origin, log10 of the turn between nearly flush boxes
     "sizes 1e-3 to 1e3": ((-3.0, 3.0), 0.0, None),
     "origin at 1e5": ((-1.0, 0.0), 1e5, None),
     "nearly flush": ((-1.0, 0.0), 0.0, (-16.0, -1.0)),
@@ -100,7 +100,9 @@ def test_overlap_is_always_seen_and_its_surfaces_are_true(name, rng):
         matrix = convex.random_rotation(rng)
         if turn is None:
             offset = rng.normal(size=3)
-            offset *= rng.uniform(0.0, 1.0) * np.linalg.norm(half_a + half_b) / np.linalg.norm(offset)
+            offset *= (
+                rng.uniform(0.0, 1.0) * np.linalg.norm(half_a + half_b) / np.linalg.norm(offset)
+            )
             other = convex.random_rotation(rng)
         else:
             offset = rng.uniform(-0.9, 0.9, 3) * (half_a + half_b)

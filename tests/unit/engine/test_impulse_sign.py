@@ -43,7 +43,9 @@ def test_no_row_of_a_tumbling_heap_pulls(rng):
     for i in range(6):
         quaternion = rng.normal(size=4)
         place = (*rng.uniform(-0.3, 0.3, 2), 0.6 + 0.7 * i)
-        bodies[f"box_{i}"] = box((0.6, 0.5, 0.4), place, orientation=quaternion / np.linalg.norm(quaternion))
+        bodies[f"box_{i}"] = box(
+            (0.6, 0.5, 0.4), place, orientation=quaternion / np.linalg.norm(quaternion)
+        )
     numerics = {"stabilisation_gain": 0.02, "projection": 0.2, "slop": 0.001}
     rows = Bench(resolved(bodies, (0.0, 0.0, -9.81), **numerics)).run(480).contact
     assert len(rows) > 1000

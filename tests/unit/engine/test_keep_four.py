@@ -2,8 +2,8 @@
 
 With p the deepest, q the farthest from it and r at the height h over p q that makes the largest
 triangle, every point lies within h of the line p q and within |p q| of p: no quadrilateral has more
-than 4 |p q| h. Ours has at least the triangle's |p q| h / 2, an eighth. Polygons that clipping makes
-do better: half of the best quadrilateral that contains the deepest point, measured over thousands.
+than 4 |p q| h. Ours has at least the triangle's |p q| h / 2, an eighth. Polygons that clipping
+makes do better: half of the best quadrilateral with the deepest point, measured over thousands.
 """
 
 from __future__ import annotations

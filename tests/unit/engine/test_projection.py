@@ -13,9 +13,7 @@ SCENES = {
     "sphere": {"floor": plane(), "ball": sphere(0.1, (0.0, 0.0, 0.09), velocity=(0.0, 0.3, -0.5))},
     "tilted box": {
         "floor": plane(),
-        "box": box(
-            (1.0, 0.6, 0.4), (0.0, 0.0, 0.21), orientation=(1.0, 0.05, 0.03, 0.0), mass=2.0
-        ),
+        "box": box((1.0, 0.6, 0.4), (0.0, 0.0, 0.21), orientation=(1.0, 0.05, 0.03, 0.0), mass=2.0),
     },
     "spinning box on a box": {
         "a": box((1.0, 1.0, 1.0), (0.0, 0.0, 0.0), mass=5.0),

@@ -1,4 +1,4 @@
-"""An engine without an effect equals the engine with it at coefficient zero; its columns are gone."""
+"""An engine without an effect equals one with it at coefficient zero; its columns are gone."""
 
 from __future__ import annotations
 
@@ -56,8 +56,8 @@ def test_coefficients_of_zero_change_no_bit(scene):
 
 
 def test_rotation_that_nothing_excites_is_only_round_off():
-    """A sphere's lever r x n is round-off of r ~ 0.1 m: 1e-17 m; 120 impulses of 0.04 N s turn it by
-    1e-13 rad/s at most, and its centre moves as without."""
+    """A sphere's lever r x n is round-off of r ~ 0.1 m, 1e-17 m: 120 impulses of 0.04 N s turn it
+    by 1e-13 rad/s at most, and its centre moves as without."""
     cell = spheres()
     lean = Bench(cell, spec=None)
     full = Bench(cell, spec=EVERYTHING)

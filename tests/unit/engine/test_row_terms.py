@@ -50,7 +50,7 @@ def test_restitution_and_bias_are_summed():
 
 @pytest.mark.parametrize(("share", "bounces"), [(0.999, False), (1.001, True)])
 def test_restitution_applies_above_the_threshold_and_not_below(share, bounces):
-    """v_n_pre includes this step's g dt, so the ball arrives at the share of 2 g dt less one g dt."""
+    """With this step's g dt, the ball arrives at the share of 2 g dt less one g dt."""
     threshold = 2.0 * 9.81 * DT
     speed = share * threshold - 9.81 * DT
     found = impulse(speed, restitution=0.5, gravity=9.81)
