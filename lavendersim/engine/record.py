@@ -1,4 +1,4 @@
-"""State and contacts of one step enter, trace rows leave. Everything logged is computed here, once."""
+"""State and contacts of one step enter, trace rows leave: all that is logged, computed once."""
 
 from __future__ import annotations
 

@@ -132,7 +132,7 @@ COUNTERS: Final[list[Field]] = [
     ("residual_rows", I8),
 ]
 
-# Trace rows. Names are those of the log; `time_ns` is added by the caller, who knows the exact ratio.
+# Trace rows. Names are those of the log; the caller adds `time_ns`, from the exact timestep.
 STEP_ROW: Final[list[Field]] = [
     ("step", I8),
     ("contact_count", I8),

@@ -1,4 +1,4 @@
-"""Orientation kernels: quaternion to matrix, world inverse inertia, and a turn without trigonometry.
+"""Orientation kernels: quaternion to matrix, world inertia, and a turn without trigonometry.
 
 The turn is the Cayley map, dq = (1, omega dt / 2) normalised: a rotation about omega by
 2 atan(|omega| dt / 2). It is second order in dt and uses only sqrt, whose bits agree on every CPU.

@@ -1,4 +1,4 @@
-"""What enters: names of effects, shape pairs, solver. What leaves: `Spec`, the structure of an engine.
+"""Names of effects, shape pairs and a solver enter; `Spec`, the structure of an engine, leaves.
 
 A `Spec` holds structure only. Coefficients (masses, gains, timesteps) stay run-time values, so a
 sweep over any of them uses one compiled engine.

@@ -12,14 +12,14 @@ record       the trace row of the step
 
 from __future__ import annotations
 
-from functools import lru_cache
+from functools import cache
 from typing import Any
 
+from . import ordering
 from .collide import narrow_phase
 from .compile import chain, kernel
 from .contact import make_append_contact, make_apply_impulse
 from .effects import EFFECTS, gyroscopic, projection, rotation, warm_start
-from . import ordering
 from .kernel_cache import cached
 from .record import make as make_record
 from .records import CONTACTS_FULL, DIVERGED, ROWS_FULL, RUNNING
@@ -151,7 +151,7 @@ def make_advance(spec: Spec) -> Any:
     return kernel(advance, spec)
 
 
-@lru_cache(maxsize=None)
+@cache
 def advance_for(spec: Spec) -> Any:
     """Return the kernel of `spec`, from this process, from disk, or composed anew."""
     return cached(make_advance, spec)

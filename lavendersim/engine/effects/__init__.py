@@ -3,7 +3,7 @@
 An effect's module has
     NAME, STAGE        what it is called in plans; where in the step its kernel runs
     wanted(facts)      Decision: does this scene call for it, and why, in the scene's own words
-    BODY_FIELDS, VELOCITY_FIELDS, PAIR_FIELDS, CONTACT_FIELDS   columns it brings (any may be absent)
+    BODY_FIELDS, VELOCITY_FIELDS, PAIR_FIELDS, CONTACT_FIELDS   columns it brings, if any
     make(spec)         its kernel, where the step calls one
 Stages:
     accelerate   kernel(body, velocity, params), before contacts are completed

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 
 class BodyFacts(NamedTuple):
-    """One body as the predicates see it: `shape` is its kind, `spins` an initial angular velocity."""
+    """One body as the predicates see it; `spins`: it has an initial angular velocity."""
 
     name: str
     shape: str

@@ -1,4 +1,4 @@
-"""Rotation: orientations change, because something turns at the start or a contact exerts a torque."""
+"""Rotation: orientations change; something turns at the start or a contact exerts a torque."""
 
 from ..compile import kernel
 from ..records import ANGULAR_VELOCITY, ORIENTED_BODY

@@ -1,6 +1,7 @@
 """Projected Gauss-Seidel: visit rows in order, correct each impulse, keep it pushing.
 
-    dlambda = -(v_n + b + b_rest + gamma lambda) / (k_n + gamma),   lambda <- max(0, lambda + dlambda)
+    dlambda = -(v_n + b + b_rest + gamma lambda) / (k_n + gamma)
+    lambda <- max(0, lambda + dlambda)
 
 One sweep costs one visit per row; information travels one contact per visit, so tall stacks need
 many sweeps. The velocities always carry the impulses they have been given.

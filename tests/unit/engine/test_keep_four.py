@@ -3,7 +3,7 @@
 With p the deepest, q the farthest from it and r at the height h over p q that makes the largest
 triangle, every point lies within h of the line p q and within |p q| of p: no quadrilateral has more
 than 4 |p q| h. Ours has at least the triangle's |p q| h / 2, an eighth. Polygons that clipping
-makes do better: half of the best quadrilateral with the deepest point, measured over thousands.
+makes do better: of the best quadrilateral with the deepest point the worst of 4000 kept 0.74.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ def test_the_deepest_point_stays_and_no_point_is_moved_or_doubled(rng):
             assert point["phi"] == phi[point["feature"]]
 
 
-def test_the_area_is_at_least_half_of_the_best_with_the_deepest_point(rng):
+def test_the_area_is_near_the_best_with_the_deepest_point(rng):
     for plane_points, phi in polygons(rng, 300):
         kept = reduce_to_four(plane_points, phi)
         deepest = int(np.argmin(phi))
@@ -64,7 +64,7 @@ def test_the_area_is_at_least_half_of_the_best_with_the_deepest_point(rng):
             area(plane_points[[deepest, *three]]) for three in map(list, combinations(others, 3))
         )
         ours = area(np.column_stack([kept["x"], kept["y"]]))
-        assert ours >= 0.5 * best
+        assert ours >= 0.7 * best
         anything = max(area(plane_points[list(four)]) for four in combinations(range(len(phi)), 4))
         assert ours >= anything / 8.0
 

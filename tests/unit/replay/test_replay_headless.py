@@ -21,10 +21,15 @@ needs_driver = pytest.mark.skipif(
 )
 
 
+@pytest.fixture
+def others() -> list[psutil.Process]:
+    """The processes that run already: other tests' worker pools leave some."""
+    return psutil.Process().children(recursive=True)
+
+
 @needs_driver
-def test_viewer_shows_the_trace_without_a_complaint(two_bodies, tmp_path):
+def test_viewer_shows_the_trace_without_a_complaint(two_bodies, tmp_path, others):
     picture = tmp_path / "pictures" / "trace.png"
-    others = psutil.Process().children(recursive=True)
     assert replay.screenshot(two_bodies, picture) == []
     pixels = np.asarray(Image.open(io.BytesIO(picture.read_bytes())).convert("RGB")).astype(int)
     assert pixels.shape == (1000, 1600, 3)
@@ -68,7 +73,7 @@ def test_missing_driver_is_one_sentence_that_names_the_package(two_bodies, tmp_p
 
 @pytest.mark.skipif(sys.platform != "linux", reason="only Linux finds drivers by manifests")
 def test_driver_that_does_not_load_is_told_from_the_viewers_own_failure(
-    two_bodies, tmp_path, monkeypatch
+    two_bodies, tmp_path, monkeypatch, others
 ):
     """A manifest may be there and its library not: then only the viewer finds out."""
     manifest = tmp_path / "broken_icd.json"
@@ -80,7 +85,7 @@ def test_driver_that_does_not_load_is_told_from_the_viewers_own_failure(
     assert psutil.Process().children(recursive=True) == others
 
 
-def test_viewer_that_never_answers_is_ended(two_bodies, tmp_path, monkeypatch):
+def test_viewer_that_never_answers_is_ended(two_bodies, tmp_path, monkeypatch, others):
     sleeper = tmp_path / "sleeper"
     sleeper.write_text("#!/bin/sh\nexec sleep 60\n")
     sleeper.chmod(0o755)
