@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
+
 from lavender_cli import printing
 from lavender_cli.run import Configs, Jobs, Runs
 
@@ -20,12 +21,15 @@ def check(
     from lavendersim.runner import load_all, run
 
     experiments = load_all(configs)
-    good, verdicts, total = True, [], 0
+    good, verdicts, cells = True, [], []
     for experiment in experiments:
         with printing.reporting(experiment.name) as progress:
             finished = run(experiment, runs, jobs, progress)
         good = good and finished.good
-        total += len(finished.verdicts)
+        cells += [
+            {"experiment": experiment.name, "cell": cell.label, "status": cell.status}
+            for cell in finished.run.cells
+        ]
         verdicts += [
             {"experiment": experiment.name, **verdict._asdict()} for verdict in finished.verdicts
         ]
@@ -38,9 +42,12 @@ def check(
             )
         printing.print_failures(finished)
     if as_json:
-        printing.as_json(verdicts)
+        printing.as_json({"passed": good, "cells": cells, "verdicts": verdicts})
     else:
         passed = sum(bool(verdict["passed"]) for verdict in verdicts)
-        typer.echo(f"{passed} of {total} expectations met in {len(experiments)} experiments")
+        ended = sum(cell["status"] == "complete" for cell in cells)
+        typer.echo(
+            f"{passed} of {len(verdicts)} expectations met, {ended} of {len(cells)} cells complete"
+        )
     if not good:
         raise typer.Exit(1)

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
+
 from lavender_cli import printing
 from lavender_cli.run import Runs
 
@@ -24,6 +25,8 @@ def ls(
     if as_json:
         printing.as_json(rows)
         return
+    if not rows:
+        typer.echo(f"{runs} holds no run", err=True)
     for row in rows:
         state = printing.mark(bool(row["passed"])) if row["finished"] else "----"
         typer.echo(f"{state}  {row['path']}")

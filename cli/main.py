@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import os
+import signal
 import sys
 import traceback
 from typing import Annotated
 
 import typer
+
 from lavender_cli import check, doctor, ls, plan, plot, recover, replay, run, schema, show
+
+INTERRUPTED = 130  # typer ends with it after Ctrl-C
 
 app = typer.Typer(
     name="lavender",
@@ -48,16 +52,22 @@ def main() -> None:
     """Run the command line; exit 0 good, 1 a check failed, 2 usage, 3 salvaged, 4 internal, 130."""
     from lavendersim.errors import LavenderError
 
+    if hasattr(signal, "SIGPIPE") and not sys.stdout.isatty():
+        # As other tools do: a reader that has seen enough ends the writer, without a message.
+        signal.signal(signal.SIGPIPE, signal.SIG_DFL)
     try:
         app()
     except LavenderError as error:
         typer.echo(str(error), err=True)
         sys.exit(error.exit_code)
-    except KeyboardInterrupt:
-        typer.echo("interrupted", err=True)
-        sys.exit(130)
-    except BrokenPipeError:
-        sys.exit(0)
+    except OSError as error:
+        named = f"{error.filename}: " if error.filename else ""
+        typer.echo(f"{named}{(error.strerror or str(error)).lower()}", err=True)
+        sys.exit(2)
+    except SystemExit as end:
+        if end.code == INTERRUPTED:
+            typer.echo("interrupted", err=True)
+        raise
     except Exception:
         traceback.print_exc()
         typer.echo("lavender: this is a defect of lavender, not of your input", err=True)

@@ -7,12 +7,15 @@ from typing import Annotated
 
 import typer
 
+from lavender_cli.run import Runs
+
 
 def plot(
     runs: Annotated[
         list[Path] | None,
         typer.Argument(metavar="[RUN]...", help="Run directories; the latest by default."),
     ] = None,
+    root: Runs = Path("runs"),
     output: Annotated[
         Path | None,
         typer.Option("--output", "-o", metavar="DIR", help="Instead of the run's own figures/."),
@@ -23,7 +26,7 @@ def plot(
     from lavendersim.figures import draw
     from lavendersim.runner import open_run
 
-    chosen = [open_run(path) for path in runs] if runs else [open_run()]
+    chosen = [open_run(path, root) for path in runs] if runs else [open_run(None, root)]
     for run in chosen:
         if run.experiment.figure is None:
             raise UsageError(f"{run.path}: its config has no figure section")

@@ -59,7 +59,8 @@ def print_summary(finished: Any) -> None:
     physics = sum(outcome.physics_ns for outcome in finished.outcomes)
     logging = sum(outcome.logging_ns for outcome in finished.outcomes)
     typer.echo(
-        f"{typer.style(finished.run.name, bold=True)}: {cells} cells, {steps} steps; "
+        f"{typer.style(finished.run.name, bold=True)}: "
+        f"{cells} cell{'s' if cells > 1 else ''}, {steps} steps; "
         f"physics {physics / max(steps, 1) / 1000:.2f} us/step, "
         f"logging {logging / max(steps, 1) / 1000:.2f} us/step"
     )
@@ -90,11 +91,16 @@ def as_json(data: Any) -> None:
 def reporting(name: str) -> Iterator[Any]:
     """Give a runner.Progress that shows compilation always, and a bar on a terminal only."""
     from lavendersim.runner import Progress
+    from lavendersim.runner.environment import kernel_note
 
     def compiling(plan: Any) -> None:
         effects = ", ".join(plan.spec.effects) or "no effects"
         pairs = ", ".join(plan.spec.shape_pairs) or "no pairs"
-        typer.echo(f"{name}: compiling kernels, once, for {effects}; {pairs}", err=True)
+        note = kernel_note()
+        often = "" if note else ", once,"
+        typer.echo(f"{name}: compiling kernels{often} for {effects}; {pairs}", err=True)
+        if note:
+            typer.echo(f"{name}: {note}", err=True)
 
     if not sys.stderr.isatty():
         yield Progress(compiling=compiling)

@@ -15,5 +15,9 @@ def recover(
     """Save what a killed run left in its log. Exits 3: the log was salvaged, not complete."""
     from lavendersim.trace import recover
 
-    typer.echo(recover(log, out))
+    report = recover(log, out)
+    typer.echo(
+        f"{report.out}: {report.steps} steps up to t = {report.last_time:g} s; "
+        f"{report.saved} bytes saved, {report.lost} lost"
+    )
     raise typer.Exit(3)

@@ -7,6 +7,8 @@ from typing import Annotated
 
 import typer
 
+from lavender_cli.run import Runs
+
 
 def replay(
     run: Annotated[
@@ -17,6 +19,7 @@ def replay(
         int | None,
         typer.Option("--cell", metavar="K", help="Which cell of the sweep, counted from 0."),
     ] = None,
+    runs: Runs = Path("runs"),
     save_to: Annotated[
         Path | None,
         typer.Option("--save", metavar="FILE.rrd", help="Write a rerun recording; open nothing."),
@@ -35,7 +38,10 @@ def replay(
     from lavendersim.errors import UsageError
     from lavendersim.runner import open_run
 
-    opened = open_run(run)
+    for path, suffix in ((save_to, ".rrd"), (screenshot_to, ".png")):
+        if path is not None and path.suffix != suffix:
+            raise UsageError(f"{path}: the name of this file ends in {suffix}")
+    opened = open_run(run, runs)
     cells = opened.cells
     if not 0 <= (cell or 0) < len(cells):
         raise UsageError(f"{opened.path} has cells 0 to {len(cells) - 1}; there is no cell {cell}")

@@ -26,6 +26,8 @@ COMPLETES = "every cell completes"
 def _is_experiment(path: Path) -> bool:
     if path.suffix not in (".yaml", ".yml") or path.stat().st_size > _LARGEST_FILE:
         return False
+    if (path.parent / "cells.json").exists():  # a copy in the directory of a run
+        return False
     return _EXPERIMENT.search(path.read_bytes()) is not None
 
 

@@ -122,11 +122,8 @@ class Simulator:
             raise UsageError("this simulation takes no action: call step()")
         if self._terminated:
             raise UsageError("the simulation has diverged: call reset() before step()")
-        done = self.steps_done
-        self._events.apply_due(done)
+        self._events.apply_due(self.steps_done)
         status = self._engine.advance(1)
-        while self.steps_done == done:  # contact rows had to grow first
-            status = self._engine.advance(1)
         self._rows = self._engine.take_rows()
         self._terminated = status == DIVERGED
         truncated = self.steps_done >= self._last_step

@@ -1,4 +1,4 @@
-"""Shared by all tests: pytest's own test harness, and the smallest experiment there is."""
+"""Shared by all tests: pytest's own test harness, and a small experiment."""
 
 from __future__ import annotations
 
@@ -6,26 +6,9 @@ from pathlib import Path
 
 import pytest
 
-pytest_plugins = ["pytester"]
+from tests.drop_config import DROP
 
-DROP = """\
-question: How high?
-expected: e^2 h.
-scene:
-  bodies:
-    floor: {shape: {kind: plane}}
-    ball:
-      shape: {kind: sphere, radius: 0.1}
-      mass: 1.0
-      surface: {restitution: 0.5}
-      release: {above: floor, clearance: 0.1}
-numerics: chapter
-duration: 0.5
-measure:
-  rebound: {kind: first_apex, body: ball, above: floor}
-expect:
-  - {name: rebound, measure: rebound, between: [0.02, 0.03]}
-"""
+pytest_plugins = ["pytester"]
 
 
 @pytest.fixture

@@ -42,6 +42,14 @@ def source_hash() -> str:
     return digest.hexdigest()
 
 
+def _is_private(path: Path) -> bool:
+    """Whether nobody else may write here: what is loaded from here is run."""
+    if os.name != "posix":
+        return True
+    status = path.stat()
+    return status.st_uid == os.getuid() and not status.st_mode & 0o022
+
+
 @cache
 def directory() -> tuple[Path, str]:
     """Return where kernels are kept and a sentence when that is not the usual place."""
@@ -51,12 +59,11 @@ def directory() -> tuple[Path, str]:
     for path in [Path(asked)] if asked else [usual, fallback]:
         with contextlib.suppress(OSError):
             path.mkdir(parents=True, exist_ok=True, mode=0o700)
-            # Machine code is loaded from here: never from a directory another user may write to.
-            own = os.name != "posix" or path.stat().st_uid == os.getuid()
-            if own and os.access(path, os.W_OK):
+            if _is_private(path) and os.access(path, os.W_OK):
                 note = "" if path in (usual, Path(asked or "")) else f"kernels are kept in {path}"
                 return path, note
-    return Path(), "no writable cache directory: kernels are compiled anew in every process"
+    why = "no cache directory that is writable by this user alone"
+    return Path(), f"{why}: kernels are compiled anew in every process"
 
 
 class KernelCache:
@@ -113,7 +120,7 @@ class KernelCache:
         payload = dumps(result._reduce())
         target = self.path(self.key(signature, result.codegen))
         with contextlib.suppress(OSError):  # a full or read-only disk costs time, not the run
-            handle, name = tempfile.mkstemp(dir=self.cache_path)
+            handle, name = tempfile.mkstemp(".unfinished.kernel", dir=self.cache_path)
             with os.fdopen(handle, "wb") as file:
                 file.write(hashlib.sha256(payload).digest() + payload)
             os.replace(name, target)

@@ -125,7 +125,6 @@ COUNTERS: Final[list[Field]] = [
     ("sweeps", I8),  # sweeps spent in the last step
     ("residual_contact", I8),  # contact with the largest residual, -1 without contacts
     ("residual", F8),  # of the last step [m/s]
-    ("status", I8),
     ("body", I8),  # body that diverged
     ("step_rows", I8),  # trace rows written since the caller emptied the columns
     ("contact_rows", I8),

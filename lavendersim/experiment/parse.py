@@ -135,6 +135,8 @@ class _Reading:
             return
         refused = self._refuse_properties(event, mark)
         if isinstance(event, yaml.ScalarEvent):
+            if match := _UNPRINTABLE.search(event.value):  # written as an escape such as "\\x1b"
+                self.refuse(mark, f"control character U+{ord(match[0]):04X}; remove it")
             self._place(self._scalar(event, mark, refused), mark, event.value)
             return
         if len(self.stack) >= DEEPEST:

@@ -39,10 +39,16 @@ def judge_nodes(experiment: _Planned) -> list[str]:
 
 
 def judge(
-    measures: Measures, expectations: Sequence[ExpectSpec], cells: Sequence[Cell]
+    measures: Measures,
+    expectations: Sequence[ExpectSpec],
+    cells: Sequence[Cell],
+    values: Values | None = None,
 ) -> list[Verdict]:
-    """Return one verdict per claim, in the order of the expectations and of the cells."""
-    values = Values(measures)
+    """Return one verdict per claim, in the order of the expectations and of the cells.
+
+    values: measures of these cells that were taken already.
+    """
+    values = values or Values(measures)
     verdicts = []
     for expectation, node, chosen in _claims(measures, expectations, cells):
         outcome = _outcome(expectation, chosen, values)

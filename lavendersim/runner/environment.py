@@ -48,6 +48,13 @@ def machine() -> dict[str, Any]:
     }
 
 
+def kernel_note() -> str:
+    """Return a sentence when kernels are not kept in the usual place, else nothing."""
+    from lavendersim.engine.kernel_cache import directory
+
+    return directory()[1]
+
+
 def kernel_files() -> list[Path]:
     """Return the compiled kernels on disk."""
     from lavendersim.engine.kernel_cache import directory

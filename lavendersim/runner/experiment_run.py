@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import os
 from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from datetime import UTC, datetime
@@ -16,10 +17,10 @@ from typing import Any, NamedTuple
 
 from lavendersim.errors import ConfigError, Defect, UsageError
 from lavendersim.experiment import Experiment, load_experiment, resolved_yaml
-from lavendersim.measures import Verdict, judge
+from lavendersim.measures import Values, Verdict, judge
 
 from .environment import environment
-from .results import write_results
+from .results import measure_cells, write_results
 from .run_directory import (
     CELLS,
     CONFIG,
@@ -28,6 +29,7 @@ from .run_directory import (
     RESOLVED,
     RUNS,
     Run,
+    is_run_directory,
     point_latest,
 )
 
@@ -61,7 +63,11 @@ def find_configs(paths: list[Path]) -> list[Path]:
     found: list[Path] = []
     for path in paths:
         if path.is_dir():
-            inside = sorted([*path.rglob("*.yaml"), *path.rglob("*.yml")])
+            inside = [
+                file
+                for file in sorted([*path.rglob("*.yaml"), *path.rglob("*.yml")])
+                if not is_run_directory(file.parent)
+            ]
             if not inside:
                 raise UsageError(f"{path}: no *.yaml file in this folder")
             found += inside
@@ -111,7 +117,7 @@ def _outcomes(jobs: list[Any], workers: int) -> Iterator[Any]:
     """Yield the outcome of each job, in order, from this process or from a pool."""
     from .cell import run_cell
 
-    if workers <= 1 or len(jobs) == 1:
+    if workers <= 1 or len(jobs) <= 1:
         yield from map(run_cell, jobs)
         return
     # Spawned, never forked: numba's threads do not survive a fork.
@@ -122,7 +128,7 @@ def _outcomes(jobs: list[Any], workers: int) -> Iterator[Any]:
 
 def run(
     experiment: Experiment | Path | str,
-    root: Path = RUNS,
+    root: Path | str = RUNS,
     jobs: int = 1,
     progress: Progress = Progress(),  # noqa: B008 - immutable
 ) -> Finished:
@@ -144,11 +150,13 @@ def run(
     advance_for(plan.spec)
     if not is_compiled(plan.spec):
         progress.compiling(plan)
+    root = Path(root)
     directory = make_directory(experiment, root)
     (directory / "cells").mkdir()
     (directory / CONFIG).write_bytes(experiment.text.encode())
     (directory / RESOLVED).write_text(
-        "---\n".join(f"# {cell.label}\n{resolved_yaml(cell)}" for cell in cells)
+        "---\n".join(f"# {cell.label}\n{resolved_yaml(cell)}" for cell in cells),
+        encoding="utf-8",
     )
     pending = [
         CellJob(
@@ -161,34 +169,52 @@ def run(
         )
         for cell in cells
     ]
-    outcomes = []
-    # The first cell runs here: it leaves the compiled kernel where the others find it.
-    for outcomes_of in (
-        [run_cell(pending[0])],
-        _outcomes(pending[1:], jobs) if pending[1:] else [],
-    ):
-        for outcome in outcomes_of:
+    outcomes: list[Any] = []
+    # The index stands from the start, so that an interrupted run can be listed and replayed.
+    _write_index(directory, experiment, pending, outcomes)
+    try:
+        # The first cell runs here: it leaves the compiled kernel where the others find it.
+        outcomes.append(run_cell(pending[0]))
+        progress.cell_done(1, len(pending))
+        for outcome in _outcomes(pending[1:], jobs):
             outcomes.append(outcome)
             progress.cell_done(len(outcomes), len(pending))
-    index = [
+    finally:
+        _write_index(directory, experiment, pending, outcomes)
+    finished = Run(directory)
+    values = Values(experiment.measures)
+    measured = measure_cells(finished, experiment, values)
+    verdicts = judge(experiment.measures, experiment.expectations, finished.cells, values)
+    result = Finished(finished, outcomes, verdicts)
+    write_results(result, measured)
+    _write_json(directory / ENVIRONMENT, environment(plan.spec))
+    (directory / DONE).write_text("")
+    point_latest(directory, root)
+    return result
+
+
+def _write_index(
+    directory: Path, experiment: Experiment, jobs: list[Any], ended: list[Any]
+) -> None:
+    """Write which cell is in which file and how it ended; `pending` for those that did not."""
+    rows = [
         {
             "index": cell.index,
             "label": cell.label,
             "coordinates": {axis: _plain(value) for axis, value in cell.coordinates.items()},
             "file": f"cells/{job.path.name}",
-            "status": outcome.status,
+            "status": ended[cell.index].status if cell.index < len(ended) else "pending",
         }
-        for cell, job, outcome in zip(cells, pending, outcomes, strict=True)
+        for cell, job in zip(experiment.cells(), jobs, strict=True)
     ]
-    table = {"experiment": experiment.name, "plan": plan.spec.digest(), "cells": index}
-    (directory / CELLS).write_text(json.dumps(table, indent=1) + "\n")
-    finished = Run(directory)
-    verdicts = judge(experiment.measures, experiment.expectations, finished.cells)
-    write_results(finished, experiment, outcomes, verdicts)
-    (directory / ENVIRONMENT).write_text(json.dumps(environment(plan.spec), indent=1) + "\n")
-    (directory / DONE).write_text("")
-    point_latest(directory, root)
-    return Finished(finished, outcomes, verdicts)
+    _write_json(directory / CELLS, {"experiment": experiment.name, "cells": rows})
+
+
+def _write_json(path: Path, table: dict[str, Any]) -> None:
+    """Write a table in one move: a reader sees the old or the new one, never half."""
+    unfinished = path.with_suffix(".unfinished")
+    unfinished.write_text(json.dumps(table, indent=1) + "\n", encoding="utf-8")
+    os.replace(unfinished, path)
 
 
 def _plain(value: Any) -> Any:

@@ -7,28 +7,33 @@ import json
 import math
 from typing import Any
 
-import numpy as np
-
 from lavendersim.errors import LavenderError
 from lavendersim.experiment import Experiment
-from lavendersim.measures import Verdict, applies, evaluate
+from lavendersim.measures import Values, applies
 
-from .run_directory import RESULTS, TABLE, Run, RunCell
+from .run_directory import RESULTS, TABLE, Run
 
 
-def measures_of(experiment: Experiment, cell: RunCell) -> dict[str, Any]:
-    """Return every measure that applies to a cell: a number, a list, or a text saying why not."""
-    values: dict[str, Any] = {}
-    for name, spec in experiment.measures.items():
-        if not applies(spec, cell.coordinates):
-            continue
-        try:
-            value = np.asarray(evaluate(spec, cell.trace()), dtype=float)
-        except LavenderError as error:
-            values[name] = str(error)
-            continue
-        values[name] = value.tolist()
-    return values
+def measure_cells(run: Run, experiment: Experiment, values: Values) -> list[dict[str, Any]]:
+    """Take every measure of every cell, once; its log is let go before the next is opened.
+
+    Returns per cell: measure -> number, list, or a text saying why there is none.
+    """
+    table = []
+    for cell in run.cells:
+        measured: dict[str, Any] = {}
+        for name, spec in experiment.measures.items():
+            if not applies(spec, cell.coordinates):
+                continue
+            try:
+                row = values.row(name, cell).tolist()
+            except LavenderError as error:
+                measured[name] = str(error)
+                continue
+            measured[name] = row[0] if len(row) == 1 else row
+        cell.release()
+        table.append(measured)
+    return table
 
 
 def _finite(value: Any) -> Any:
@@ -42,12 +47,11 @@ def _finite(value: Any) -> Any:
     return value
 
 
-def write_results(
-    run: Run, experiment: Experiment, outcomes: list[Any], verdicts: list[Verdict]
-) -> None:
-    """Write the tables of a run; numbers keep all their digits."""
+def write_results(finished: Any, measured: list[dict[str, Any]]) -> None:
+    """Write the tables of a finished run; numbers keep all their digits."""
+    run = finished.run
     rows = []
-    for cell, outcome in zip(run.cells, outcomes, strict=True):
+    for cell, outcome, values in zip(run.cells, finished.outcomes, measured, strict=True):
         steps = max(outcome.steps, 1)
         rows.append(
             {
@@ -55,24 +59,28 @@ def write_results(
                 "label": cell.label,
                 "status": outcome.status,
                 "steps": outcome.steps,
-                "measures": measures_of(experiment, cell),
+                "measures": values,
                 "physics_us_per_step": outcome.physics_ns / steps / 1000,
                 "logging_us_per_step": outcome.logging_ns / steps / 1000,
                 "compile_s": outcome.compile_ns / 1e9,
             }
         )
     table = {
-        "experiment": experiment.name,
+        "experiment": run.name,
         "cells": rows,
-        "checks": [verdict._asdict() for verdict in verdicts],
-        "passed": all(verdict.passed for verdict in verdicts),
+        "checks": [verdict._asdict() for verdict in finished.verdicts],
+        "passed": finished.good,
     }
-    (run.path / RESULTS).write_text(json.dumps(_finite(table), indent=1, allow_nan=False) + "\n")
-    names = list(experiment.measures)
-    with (run.path / TABLE).open("w", newline="") as file:
+    text = json.dumps(_finite(table), indent=1, allow_nan=False) + "\n"
+    (run.path / RESULTS).write_text(text, encoding="utf-8")
+    _write_csv(run, rows)
+
+
+def _write_csv(run: Run, rows: list[dict[str, Any]]) -> None:
+    names, axes = list(run.experiment.measures), list(run.experiment.axes)
+    costs = ["physics_us_per_step", "logging_us_per_step", "compile_s"]
+    with (run.path / TABLE).open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
-        axes = list(experiment.axes)
-        costs = ["physics_us_per_step", "logging_us_per_step", "compile_s"]
         writer.writerow(["cell", *axes, "status", "steps", *names, *costs])
         for cell, row in zip(run.cells, rows, strict=True):
             coordinates = [str(cell.coordinates.get(axis, "")) for axis in axes]

@@ -11,7 +11,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from lavendersim.errors import UsageError
+from lavendersim.errors import TraceError, UsageError
 from lavendersim.experiment import Experiment, load_experiment_text
 from lavendersim.trace import Trace, open_trace
 
@@ -62,8 +62,7 @@ class Run:
 
     @cached_property
     def _index(self) -> dict[str, Any]:
-        index: dict[str, Any] = json.loads((self.path / CELLS).read_text())
-        return index
+        return _read_json(self.path / CELLS)
 
     @cached_property
     def cells(self) -> tuple[RunCell, ...]:
@@ -86,9 +85,24 @@ class Run:
         return (self.path / DONE).exists()
 
     def results(self) -> dict[str, Any]:
-        """Return the table of results as it was written."""
-        table: dict[str, Any] = json.loads((self.path / RESULTS).read_text())
-        return table
+        """Return the table of results as it was written. UsageError while there is none."""
+        if not self.finished:
+            raise UsageError(f"{self.path}: this run did not finish; its logs are in cells/")
+        return _read_json(self.path / RESULTS)
+
+
+def _read_json(path: Path) -> dict[str, Any]:
+    """Return a table that lavender wrote; TraceError where the file is damaged."""
+    try:
+        table: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+    except ValueError as error:
+        raise TraceError(f"{path}: damaged: {error}") from None
+    return table
+
+
+def is_run_directory(path: Path) -> bool:
+    """Whether `path` is what a run left (its config files are copies, not experiments)."""
+    return (path / CELLS).exists()
 
 
 def list_runs(root: Path = RUNS) -> list[Run]:
@@ -105,10 +119,14 @@ def open_run(path: Path | str | None = None, root: Path = RUNS) -> Run:
     Raises UsageError when there is none.
     """
     if path is None:
-        latest = root / LATEST
-        if not latest.exists():
+        finished = [run for run in list_runs(root) if run.finished]
+        if not finished:
             raise UsageError(f"{root} has no finished run: start one with `lavender run CONFIG`")
-        return Run(Path(os.path.normpath(root / os.readlink(latest))))
+        latest = root / LATEST
+        named = latest.read_text(encoding="utf-8").strip() if latest.is_file() else ""
+        if latest.is_symlink():
+            named = os.readlink(latest)
+        return next((run for run in finished if run.path.name == named), finished[-1])
     for candidate in (Path(path), root / path):
         if (candidate / CELLS).exists():
             return Run(candidate)
@@ -120,5 +138,8 @@ def point_latest(directory: Path, root: Path) -> None:
     temporary = root / f".{LATEST}-{os.getpid()}"
     with contextlib.suppress(FileNotFoundError):
         temporary.unlink()
-    temporary.symlink_to(directory.name, target_is_directory=True)
+    try:
+        temporary.symlink_to(directory.name, target_is_directory=True)
+    except OSError:  # where links need a privilege, a file holds the name
+        temporary.write_text(directory.name + "\n", encoding="utf-8")
     os.replace(temporary, root / LATEST)

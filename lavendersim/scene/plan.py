@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 from lavendersim.engine.collide import SHAPE_PAIRS
 from lavendersim.engine.effects import EFFECTS, BodyFacts, Decision, Facts, PairFacts
 from lavendersim.engine.spec import Spec
+from lavendersim.errors import UsageError
 
 from .mass_properties import mass_properties
 
@@ -113,6 +114,8 @@ def union(plans: Iterable[Plan]) -> Plan:
     """Return the plan for every cell of a sweep: an effect is on where any cell wants it."""
     plans = list(plans)
     first = plans[0]
+    if any(plan.spec.solver != first.spec.solver for plan in plans):
+        raise UsageError("the cells of one sweep share their solver")
     decisions = dict(first.decisions)
     for plan in plans[1:]:
         for name, decision in plan.decisions.items():

@@ -81,7 +81,7 @@ def test_the_verbs_of_a_run_read_what_it_left(drop: Path, tmp_path: Path) -> Non
     assert "How high?" in shown
     assert "rotation        off: ball" in shown
     checked = lavender("check", drop, where=tmp_path)
-    assert "1 of 1 expectations met in 1 experiments" in checked.stdout
+    assert "1 of 1 expectations met, 1 of 1 cells complete" in checked.stdout
     plan = json.loads(lavender("plan", drop, "--json", where=tmp_path).stdout)
     assert plan["effects"]["rotation"]["on"] is False
     assert plan["spec"]["shape_pairs"] == ["sphere_plane"]
@@ -100,3 +100,84 @@ def test_a_cut_off_log_is_recovered_and_exits_3(drop: Path, tmp_path: Path) -> N
     from lavendersim.trace import open_trace
 
     assert open_trace(tmp_path / "whole.mcap").status.startswith("recovered")
+
+
+def test_a_folder_with_runs_in_it_is_run_and_collected_again(drop: Path, tmp_path: Path) -> None:
+    assert lavender("run", ".", where=tmp_path).returncode == 0
+    assert lavender("run", ".", where=tmp_path).returncode == 0
+    collected = subprocess.run(
+        [sys.executable, "-m", "pytest", "--collect-only", "-q", "-p", "no:cacheprovider", "."],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert collected.returncode == 0, collected.stdout
+    items = [line for line in collected.stdout.splitlines() if "::" in line]
+    assert items == ["drop.yaml::every cell completes", "drop.yaml::rebound"]
+
+
+def test_a_diverged_run_is_a_failed_one_even_where_nothing_is_expected(
+    drop: Path, tmp_path: Path
+) -> None:
+    text = drop.read_text()
+    text = text[: text.index("measure:\n")].replace("duration: 0.5", "duration: 10")
+    drop.write_text(text.replace("mass: 1.0", "mass: 1.0\n      velocity: [1.0e+308, 0, 0]"))
+    assert lavender("run", drop, where=tmp_path).returncode == 1
+    assert lavender("ls", where=tmp_path).stdout.startswith("FAIL")
+    checked = lavender("check", drop, "--json", where=tmp_path)
+    assert checked.returncode == 1
+    table = json.loads(checked.stdout)
+    assert table["passed"] is False
+    assert table["cells"][0]["status"].startswith("diverged: body ball is no longer finite")
+
+
+def test_an_interrupted_run_is_listed_and_its_finished_cells_can_be_replayed(
+    drop: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from lavendersim.experiment import load_experiment
+    from lavendersim.runner import Progress, list_runs, open_run, run
+
+    drop.write_text(
+        drop.read_text().replace(
+            "measure:\n",
+            "sweep:\n  e: {path: scene.bodies.ball.surface.restitution, values: [0.5, 0.6]}\n"
+            "measure:\n",
+        )
+    )
+
+    def interrupt(done: int, total: int) -> None:
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        run(load_experiment(drop), tmp_path / "runs", progress=Progress(cell_done=interrupt))
+    (left,) = list_runs(tmp_path / "runs")
+    assert not left.finished
+    assert [cell.status for cell in left.cells] == ["complete", "pending"]
+    assert open_run(left.path).cells[0].trace().status == "complete"
+    assert lavender("ls", where=tmp_path).stdout.startswith("----")
+    shown = lavender("show", left.path, where=tmp_path)
+    assert shown.returncode == 2
+    assert "did not finish" in shown.stderr
+
+
+def test_without_its_newest_run_the_next_one_is_the_latest(drop: Path, tmp_path: Path) -> None:
+    import shutil
+
+    from lavendersim.runner import open_run
+
+    lavender("run", drop, where=tmp_path)
+    first = open_run(None, tmp_path / "runs").path
+    lavender("run", drop, where=tmp_path)
+    second = open_run(None, tmp_path / "runs").path
+    assert second != first
+    shutil.rmtree(second)
+    assert open_run(None, tmp_path / "runs").path == first
+
+
+def test_a_path_that_cannot_be_written_is_one_sentence(drop: Path, tmp_path: Path) -> None:
+    (tmp_path / "afile").write_text("")
+    done = lavender("run", drop, "--runs", tmp_path / "afile", where=tmp_path)
+    assert done.returncode == 2
+    assert len(done.stderr.strip().splitlines()) == 1
+    assert "afile: file exists" in done.stderr

@@ -92,9 +92,9 @@ def refusal(path: Path) -> list[str]:
 
 @pytest.mark.parametrize("path", CASES, ids=lambda path: path.stem)
 def test_bad_config_is_refused_with_all_its_defects(path: Path) -> None:
-    start = time.perf_counter()
+    start = time.process_time()
     said = refusal(path)
-    assert time.perf_counter() - start < LONGEST
+    assert time.process_time() - start < LONGEST
     assert said == path.with_suffix(".expected").read_text(encoding="utf-8").splitlines()
 
 
@@ -103,9 +103,9 @@ def test_bad_bytes_are_refused_with_all_their_defects(case: str, tmp_path: Path)
     raw, expected = MADE[case]
     path = tmp_path / "made.yaml"
     path.write_bytes(raw)
-    start = time.perf_counter()
+    start = time.process_time()
     said = refusal(path)
-    assert time.perf_counter() - start < LONGEST
+    assert time.process_time() - start < LONGEST
     assert said == [f"made.yaml:{line}".replace("{hint}", TOP_KEYS) for line in expected]
 
 

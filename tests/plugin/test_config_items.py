@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.conftest import DROP
+from tests.drop_config import DROP
 
 SWEPT = DROP.replace(
     "measure:\n",

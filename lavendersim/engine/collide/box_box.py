@@ -8,9 +8,10 @@
              reference
 
 Fifteen axes: three face normals of A, three of B, nine cross products of edges. In the frame of A,
-with C = R_a^T R_b and t = R_a^T (x_b - x_a), an axis L separates by |t . L| - (r_A + r_B), where r is
-the reach of a box along L. The least negative is the axis of least penetration; a face is preferred to an edge, and A's face to B's, unless the other is clearly better, so that
-resting contact does not flicker between equivalent axes.
+with C = R_a^T R_b and t = R_a^T (x_b - x_a), an axis L separates by |t . L| - (r_A + r_B), where r
+is the reach of a box along L. The least negative is the axis of least penetration. A face is
+preferred to an edge, and A's face to B's, unless the other is clearly better, so that resting
+contact does not flicker between equivalent axes.
 """
 
 from __future__ import annotations

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 import typer
-from lavender_cli.replay import replay
 from typer.testing import CliRunner
 
+from lavender_cli.replay import replay
 from lavendersim.errors import UsageError
 
 
@@ -32,7 +32,7 @@ def calls(monkeypatch):
     """What the room was asked for, in order; the room itself stays out of it."""
     made = []
     sweep = Run((Cell("e=0.1"), Cell("e=0.8")))
-    monkeypatch.setattr("lavendersim.runner.open_run", lambda path: sweep, raising=False)
+    monkeypatch.setattr("lavendersim.runner.open_run", lambda path, root: sweep, raising=False)
     for name in ("open_viewer", "save"):
         monkeypatch.setattr(f"lavendersim.replay.{name}", lambda *a, n=name: made.append((n, *a)))
     shoot = lambda *a: made.append(("screenshot", *a)) or ["warning: too dark"]  # noqa: E731

@@ -1,0 +1,20 @@
+"""The smallest experiment there is: a ball from 0.1 m at e = 0.5, ideal apex 0.025 m."""
+
+DROP = """\
+question: How high?
+expected: e^2 h.
+scene:
+  bodies:
+    floor: {shape: {kind: plane}}
+    ball:
+      shape: {kind: sphere, radius: 0.1}
+      mass: 1.0
+      surface: {restitution: 0.5}
+      release: {above: floor, clearance: 0.1}
+numerics: chapter
+duration: 0.5
+measure:
+  rebound: {kind: first_apex, body: ball, above: floor}
+expect:
+  - {name: rebound, measure: rebound, between: [0.02, 0.03]}
+"""
