@@ -77,4 +77,5 @@ def chain(kernels: Sequence[Any], spec: Spec) -> Any:
         head(first, second, third)
         tail(first, second, third)
 
+    both.__qualname__ += f"_{len(kernels)}"  # each link of the chain has a symbol of its own
     return kernel(both, spec)

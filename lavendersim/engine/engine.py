@@ -114,7 +114,7 @@ class Engine:
             np.zeros(len(self.bodies), np.int64),
             np.zeros(BUCKETS + 1, np.int64),
             np.zeros(capacity, np.int64),
-            np.zeros(capacity, np.int64),
+            np.zeros(capacity, np.uint64),
         )
         held = getattr(self, "cache", None)
         warm = self.spec.has("warm_start")

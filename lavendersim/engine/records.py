@@ -14,6 +14,7 @@ import numpy as np
 
 F8: Final = "f8"
 I8: Final = "i8"
+U8: Final = "u8"  # body rows in hot loops: numba wraps signed indices, at a cost per visit
 Field = tuple[str, str]
 
 # Shape kinds, as stored in BODY.shape.
@@ -62,8 +63,8 @@ PAIR: Final[list[Field]] = [("a", I8), ("b", I8), ("kind", I8)]
 
 CONTACT: Final[list[Field]] = [
     ("pair", I8),  # row of the pair table
-    ("a", I8),
-    ("b", I8),
+    ("a", U8),
+    ("b", U8),
     ("feature", I8),  # which vertices, edges, faces made the point; equal while they do
     ("x", F8),  # contact point, half way between the surfaces [m]
     ("y", F8),

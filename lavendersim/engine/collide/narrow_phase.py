@@ -10,49 +10,42 @@ from ..spec import Spec
 from . import SHAPE_PAIRS
 
 
-def unused(spec: Spec):
-    """Stand in for a manifold no pair of the scene needs: never called, pruned with its branch."""
+def make_manifold(spec: Spec, names: tuple[str, ...]):
+    """Return `kernel(kind, a, b, points, normal, scratch) -> count` for these shape pairs."""
+    if not names:
 
-    def no_manifold(a, b, points, normal, scratch):
-        return 0
+        def no_manifold(kind, a, b, points, normal, scratch):
+            return 0
 
-    return kernel(no_manifold, spec)
+        return kernel(no_manifold, spec)
+    own_kind, _, module = SHAPE_PAIRS[names[0]]
+    own_manifold = module.make(spec)
+    if len(names) == 1:
+
+        def only_manifold(kind, a, b, points, normal, scratch):
+            return own_manifold(a, b, points, normal, scratch)
+
+        return kernel(only_manifold, spec)
+    others = make_manifold(spec, names[1:])
+
+    def manifold(kind, a, b, points, normal, scratch):
+        if kind == own_kind:
+            return own_manifold(a, b, points, normal, scratch)
+        return others(kind, a, b, points, normal, scratch)
+
+    manifold.__qualname__ += f"_{names[0]}"  # each link of the chain has a symbol of its own
+    return kernel(manifold, spec)
 
 
 def make(spec: Spec):
     """Return `kernel(bodies, pairs, contacts, points, normal, scratch) -> count`, -1 when full."""
-    made = {
-        name: module.make(spec) if spec.collides(name) else unused(spec)
-        for name, (_, _, module) in SHAPE_PAIRS.items()
-    }
-    sphere_plane, with_sphere_plane = made["sphere_plane"], spec.collides("sphere_plane")
-    box_plane, with_box_plane = made["box_plane"], spec.collides("box_plane")
-    sphere_sphere, with_sphere_sphere = made["sphere_sphere"], spec.collides("sphere_sphere")
-    sphere_box, with_sphere_box = made["sphere_box"], spec.collides("sphere_box")
-    box_box, with_box_box = made["box_box"], spec.collides("box_box")
+    manifold = make_manifold(spec, spec.shape_pairs)
 
     def narrow_phase(bodies, pairs, contacts, points, normal, scratch):
         total = 0
         for p in range(pairs.shape[0]):
-            kind = pairs[p].kind
             i, j = pairs[p].a, pairs[p].b
-            a, b = bodies[i], bodies[j]
-            count = 0
-            if with_sphere_plane:
-                if kind == 0:
-                    count = sphere_plane(a, b, points, normal, scratch)
-            if with_box_plane:
-                if kind == 1:
-                    count = box_plane(a, b, points, normal, scratch)
-            if with_sphere_sphere:
-                if kind == 2:
-                    count = sphere_sphere(a, b, points, normal, scratch)
-            if with_sphere_box:
-                if kind == 3:
-                    count = sphere_box(a, b, points, normal, scratch)
-            if with_box_box:
-                if kind == 4:
-                    count = box_box(a, b, points, normal, scratch)
+            count = manifold(pairs[p].kind, bodies[i], bodies[j], points, normal, scratch)
             if total + count > contacts.shape[0]:
                 return -1
             for k in range(count):

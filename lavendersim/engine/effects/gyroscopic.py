@@ -3,8 +3,8 @@
 Implicit midpoint on the body's momentum P = I omega, in body axes, and Cayley's turn with its spin:
     m = P + dt/2 m x I^-1 m,    P' = 2 m - P,    q' = q turned by I^-1 m dt
 P' is P turned back by the same Cayley map, so the world's angular momentum is kept; the midpoint
-rule keeps quadratic invariants, so the energy is kept: both to round-off, for any inertia (Austin,
-Krishnaprasad and Wang 1993). m is found by Newton's method.
+rule keeps quadratic invariants, so the energy is kept: both to round-off, for any inertia. m is
+found by Newton's method.
 """
 
 from ..compile import kernel
