@@ -31,7 +31,11 @@ TOUCHING: Final = 1e-9
 RUNNING: Final = 0
 ROWS_FULL: Final = 1  # trace columns are full: hand them on and call again
 CONTACTS_FULL: Final = 2  # contact rows are full: enlarge them and call again; the state is intact
-DIVERGED: Final = 3  # a body's state is no longer finite; `counters.body` says which
+DIVERGED: Final = 3  # the run cannot go on; `counters.body` and `.cause` say for whom and why
+
+# Why a run diverged.
+NOT_FINITE: Final = 0  # the body's state is no longer finite
+TURNS_TOO_FAST: Final = 1  # the body turns so far in a step that its rotation has no solution
 
 BODY: Final[list[Field]] = [
     ("x", F8),  # centre of mass [m]
@@ -127,6 +131,7 @@ COUNTERS: Final[list[Field]] = [
     ("residual_contact", I8),  # contact with the largest residual, -1 without contacts
     ("residual", F8),  # of the last step [m/s]
     ("body", I8),  # body that diverged
+    ("cause", I8),  # NOT_FINITE or TURNS_TOO_FAST
     ("step_rows", I8),  # trace rows written since the caller emptied the columns
     ("contact_rows", I8),
     ("residual_rows", I8),

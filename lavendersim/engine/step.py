@@ -22,14 +22,21 @@ from .contact import make_append_contact, make_apply_impulse
 from .effects import EFFECTS, gyroscopic, projection, rotation, warm_start
 from .kernel_cache import cached
 from .record import make as make_record
-from .records import CONTACTS_FULL, DIVERGED, ROWS_FULL, RUNNING
+from .records import (
+    CONTACTS_FULL,
+    DIVERGED,
+    NOT_FINITE,
+    ROWS_FULL,
+    RUNNING,
+    TURNS_TOO_FAST,
+)
 from .rotation import turn
 from .solvers import SOLVERS
 from .spec import Spec
 
 
 def make_integrate(spec: Spec) -> Any:
-    """Return `kernel(bodies, velocities, pseudo, moved, dt) -> body that diverged, or -1`."""
+    """Return `kernel(bodies, velocities, pseudo, moved, dt) -> (diverged body or -1, cause)`."""
     turns, torque, projects = (
         spec.has("rotation"),
         spec.has("contact_torque"),
@@ -44,8 +51,9 @@ def make_integrate(spec: Spec) -> Any:
                 body.x += v.vx * dt
                 body.y += v.vy * dt
                 body.z += v.vz * dt
+                solved = True
                 if turns:
-                    integrate_rotation(body, v, dt)
+                    solved = integrate_rotation(body, v, dt)
                 if projects:
                     if moved:
                         u = pseudo[i]
@@ -60,8 +68,10 @@ def make_integrate(spec: Spec) -> Any:
                 if turns:
                     total += body.qw + v.wx * v.wx + v.wy * v.wy + v.wz * v.wz
                 if total - total != 0.0:
-                    return i
-        return -1
+                    return i, NOT_FINITE
+                if not solved:
+                    return i, TURNS_TOO_FAST
+        return -1, NOT_FINITE
 
     return kernel(integrate, spec)
 
@@ -138,13 +148,13 @@ def make_advance(spec: Spec) -> Any:
             moved = False
             if projects:
                 moved = project_positions(contacts, order, count, velocities, pseudo, params)
-            diverged = integrate(bodies, velocities, pseudo, moved, params.dt)
+            diverged, cause = integrate(bodies, velocities, pseudo, moved, params.dt)
             counters.step += 1
             counters.contacts = count
             if records:
                 record_state(bodies, velocities, bits, params, counters, rows)
             if diverged >= 0:
-                counters.body = diverged
+                counters.body, counters.cause = diverged, cause
                 return DIVERGED
         return RUNNING
 

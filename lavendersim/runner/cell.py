@@ -12,7 +12,7 @@ import numpy.lib.recfunctions as recfunctions
 
 from lavendersim.engine.engine import Engine, Rows
 from lavendersim.engine.kernel_cache import source_hash
-from lavendersim.engine.records import DIVERGED, RUNNING
+from lavendersim.engine.records import DIVERGED, NOT_FINITE, RUNNING, TURNS_TOO_FAST
 from lavendersim.scene.build import Scene, build
 from lavendersim.scene.events import EventQueue
 from lavendersim.scene.plan import Plan
@@ -21,6 +21,10 @@ from lavendersim.trace import Block, TraceWriter
 from .environment import versions
 
 NANOSECONDS = 10**9
+CAUSES = {
+    NOT_FINITE: "is no longer finite",
+    TURNS_TOO_FAST: "turns too far in one timestep for its rotation to be solved",
+}
 
 
 class CellJob(NamedTuple):
@@ -85,9 +89,9 @@ def divergence(scene: Scene, engine: Engine) -> str:
     counters = engine.counters[0]
     step = int(counters["step"])
     name = scene.names[int(counters["body"])]
+    what = CAUSES[int(counters["cause"])]
     return (
-        f"diverged: body {name} is no longer finite after step {step} "
-        f"(t = {float(step * scene.timestep):.9g} s)"
+        f"diverged: body {name} {what} after step {step} (t = {float(step * scene.timestep):.9g} s)"
     )
 
 

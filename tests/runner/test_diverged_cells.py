@@ -61,3 +61,27 @@ def test_the_log_opens_and_ends_at_the_step_that_diverged(finished: Finished) ->
     assert len(trace.pose) == len(steps)
     assert np.all(trace.pose[:, trace.bodies.index("bystander"), 2] == 5.0)
     assert trace.pose[-1, trace.bodies.index("runaway"), 2] > 1e150
+
+
+def test_a_spin_that_cannot_be_solved_is_told_from_one_that_overflows(
+    tmp_path_factory: pytest.TempPathFactory,
+) -> None:
+    folder = tmp_path_factory.mktemp("spin")
+    # 2000 rad/s about an unstable axis are 8 rad in a step of 1/240 s
+    spin = """\
+scene:
+  gravity: 0
+  bodies:
+    brick:
+      shape: {kind: box, size: [1.0, 0.5, 0.2]}
+      mass: 1.0
+      position: [0, 0, 0]
+      angular_velocity: [1000, 2000, 10]
+numerics: chapter
+duration: 2.0
+"""
+    finished = lavendersim.run(write(folder, spin, "spin.yaml"), root=folder)
+    (outcome,) = finished.outcomes
+    assert outcome.status.startswith(
+        "diverged: body brick turns too far in one timestep for its rotation to be solved after "
+    )

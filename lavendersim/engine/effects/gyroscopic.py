@@ -14,7 +14,7 @@ from .decision import Decision, Facts, named
 NAME = "gyroscopic"
 STAGE = "integrate"
 # Newton doubles the digits in each pass: four serve any |omega| dt < 1. A body that has not found
-# its midpoint after these turns without the torque for one step, which keeps the energy at least.
+# its midpoint after these turns several radians a step, and the run ends: nothing here is true.
 PASSES = 20
 # Relative change of m, squared, at which its digits are found.
 FOUND = 1e-28
@@ -35,12 +35,12 @@ def wanted(facts: Facts) -> Decision:
 
 
 def make(spec):
-    """Return `kernel(body, velocity, dt)` that replaces the plain turn."""
+    """Return `kernel(body, velocity, dt) -> solved` that replaces the plain turn."""
 
     def integrate_gyroscopic(body, velocity, dt):
         wx, wy, wz = velocity.wx, velocity.wy, velocity.wz
         if wx == 0.0 and wy == 0.0 and wz == 0.0:
-            return
+            return True
         ix, iy, iz = body.inv_ix, body.inv_iy, body.inv_iz
         bx, by, bz = to_body(body, wx, wy, wz)
         px, py, pz = bx / ix, by / iy, bz / iz
@@ -72,11 +72,11 @@ def make(spec):
                 found = True
                 break
         if not found:
-            turn(body, dt * wx, dt * wy, dt * wz)
-            return
+            return False
         wx, wy, wz = to_world(body, ix * mx, iy * my, iz * mz)
         turn(body, dt * wx, dt * wy, dt * wz)
         px, py, pz = 2.0 * mx - px, 2.0 * my - py, 2.0 * mz - pz
         velocity.wx, velocity.wy, velocity.wz = to_world(body, ix * px, iy * py, iz * pz)
+        return True
 
     return kernel(integrate_gyroscopic, spec)

@@ -28,9 +28,10 @@ def wanted(facts: Facts) -> Decision:
 
 
 def make(spec):
-    """Return `kernel(body, velocity, dt)`: turn by omega dt; without torque omega stays."""
+    """Return `kernel(body, velocity, dt) -> solved`: turn by omega dt; omega stays."""
 
     def integrate_rotation(body, velocity, dt):
         turn(body, velocity.wx * dt, velocity.wy * dt, velocity.wz * dt)
+        return True
 
     return kernel(integrate_rotation, spec)

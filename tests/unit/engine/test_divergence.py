@@ -19,18 +19,16 @@ def bench_of_three():
     return Bench(resolved(bodies, (0.0, 0.0, -9.81)))
 
 
-@pytest.mark.parametrize("value", [np.inf, -np.inf, np.nan, 1e160])
+# A finite component of a quaternion, however large, is made part of a unit one.
 @pytest.mark.parametrize(
-    ("table", "field"),
+    ("table", "field", "value"),
     [
-        ("velocities", "vx"),
-        ("velocities", "wz"),
-        ("bodies", "qw"),
+        *(("velocities", "vx", value) for value in (np.inf, -np.inf, np.nan, 1e160)),
+        *(("velocities", "wz", value) for value in (np.inf, -np.inf, np.nan, 1e160)),
+        *(("bodies", "qw", value) for value in (np.inf, -np.inf, np.nan)),
     ],
 )
 def test_the_body_that_left_the_finite_is_named_in_that_step(table, field, value):
-    if np.isfinite(value) and table == "bodies":
-        pytest.skip("a quaternion of any finite size is made a unit one")
     bench = bench_of_three()
     bench.run(3)
     getattr(bench.engine, table)[field][3] = value

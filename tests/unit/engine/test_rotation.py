@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 from laboratory import Bench, box, resolved
 
+from lavendersim.engine.records import DIVERGED, TURNS_TOO_FAST
+
 SIZE = (1.0, 0.5, 0.2)
 
 
@@ -61,10 +63,17 @@ def test_orientation_error_of_a_tumbling_box_is_second_order():
     assert errors[1] < 1e-2
 
 
-def test_a_spin_too_fast_for_its_timestep_makes_no_energy():
-    """2000 rad/s at 240 Hz are 8 rad a step: no midpoint need exist; energy is kept."""
-    bodies = {"body": box(SIZE, (0.0, 0.0, 0.0), angular_velocity=(1000.0, 2000.0, 10.0))}
-    energy = Bench(resolved(bodies)).run(2400).step["kinetic_energy"]
+def test_a_spin_too_fast_for_its_timestep_ends_the_run_and_makes_no_energy():
+    """2000 rad/s at 240 Hz are 8 rad a step: no midpoint need exist, and the run says so."""
+    bodies = {
+        "slow": box(SIZE, (5.0, 0.0, 0.0), angular_velocity=(1.0, 2.0, 0.1)),
+        "body": box(SIZE, (0.0, 0.0, 0.0), angular_velocity=(1000.0, 2000.0, 10.0)),
+    }
+    bench = Bench(resolved(bodies))
+    energy = bench.run(2400).step["kinetic_energy"]
+    assert bench.status == DIVERGED
+    assert bench.engine.counters["cause"][0] == TURNS_TOO_FAST
+    assert bench.engine.counters["body"][0] == 1
     np.testing.assert_allclose(energy, energy[0], rtol=1e-12)
 
 
