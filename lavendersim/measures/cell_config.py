@@ -81,8 +81,6 @@ def body(resolved: Mapping[str, Any], name: str) -> BodyConfig:
     """Return one body of a resolved config; KeyError when there is none of that name."""
     entry = resolved["scene"]["bodies"][name]
     surface = entry.get("surface") or {}
-    if isinstance(surface, str):
-        surface = resolved["scene"]["surfaces"][surface]
     return BodyConfig(
         name=name,
         shape=entry["shape"],
@@ -102,11 +100,8 @@ def bodies(resolved: Mapping[str, Any]) -> tuple[BodyConfig, ...]:
 
 
 def gravity(resolved: Mapping[str, Any]) -> Floats:
-    """Return the gravity vector [m/s^2]; a number in the config is its magnitude along -z."""
-    value = resolved["scene"].get("gravity", GRAVITY)
-    if isinstance(value, int | float):
-        return np.array([0.0, 0.0, -float(value)])
-    return _vector(value)
+    """Return the gravity vector [m/s^2]."""
+    return _vector(resolved["scene"]["gravity"])
 
 
 def numerics(resolved: Mapping[str, Any], name: str) -> float:
@@ -115,12 +110,7 @@ def numerics(resolved: Mapping[str, Any], name: str) -> float:
 
 
 def rotation_matrix(quaternion: Any) -> Floats:
-    """Return the matrix (body to world) of a quaternion w x y z, or of {axis, degrees}."""
-    if isinstance(quaternion, Mapping):
-        axis = _vector(quaternion["axis"])
-        axis = axis / math.sqrt(float(axis @ axis))
-        half = math.radians(float(quaternion["degrees"])) / 2.0
-        quaternion = (math.cos(half), *(math.sin(half) * axis))
+    """Return the matrix (body to world) of a quaternion w x y z."""
     w, x, y, z = np.asarray(quaternion, dtype=float) / np.linalg.norm(quaternion)
     return np.array(
         [
@@ -132,14 +122,9 @@ def rotation_matrix(quaternion: Any) -> Floats:
 
 
 def _mass(entry: Mapping[str, Any]) -> float:
-    shape = entry["shape"]
-    if entry.get("fixed") or shape["kind"] == "plane":
+    if entry.get("fixed") or entry["shape"]["kind"] == "plane":
         return 0.0
-    if entry.get("mass") is not None:
-        return float(entry["mass"])
-    if shape["kind"] == "sphere":
-        return float(entry["density"]) * 4.0 / 3.0 * math.pi * float(shape["radius"]) ** 3
-    return float(entry["density"]) * math.prod(map(float, shape["size"]))
+    return float(entry["mass"])
 
 
 def _vector(value: Any) -> Floats:

@@ -80,7 +80,7 @@ def _fill_shape(row: np.void, shape: dict[str, Any]) -> None:
 def _fill_mass(row: np.void, body: dict[str, Any], turns: bool) -> None:
     if not is_movable(body):
         return
-    properties = mass_properties(body["shape"], body["mass"], body["density"])
+    properties = mass_properties(body["shape"], body["mass"])
     row["inv_m"] = 1.0 / properties.mass
     if turns:
         for axis, inertia in zip("xyz", properties.inertia, strict=True):

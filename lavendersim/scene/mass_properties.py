@@ -1,8 +1,8 @@
-"""A shape and its mass or density enter; mass and principal moments of inertia leave. SI units."""
+"""A shape and its mass enter; mass and principal moments of inertia leave. SI units."""
 
 from __future__ import annotations
 
-from math import pi, sqrt
+from math import sqrt
 from typing import Any, NamedTuple
 
 
@@ -13,19 +13,9 @@ class MassProperties(NamedTuple):
     inertia: tuple[float, float, float]
 
 
-def volume(shape: dict[str, Any]) -> float:
-    """Return the volume of a sphere or box [m^3]."""
-    if shape["kind"] == "sphere":
-        return 4.0 / 3.0 * pi * float(shape["radius"]) ** 3
-    sx, sy, sz = shape["size"]
-    return float(sx * sy * sz)
-
-
-def mass_properties(
-    shape: dict[str, Any], mass: float | None, density: float | None
-) -> MassProperties:
-    """Return the properties of a homogeneous solid; exactly one of mass and density is given."""
-    m = float(mass) if mass is not None else float(density or 0.0) * volume(shape)
+def mass_properties(shape: dict[str, Any], mass: float) -> MassProperties:
+    """Return the properties of a homogeneous solid of this mass [kg]."""
+    m = float(mass)
     if shape["kind"] == "sphere":
         i = 0.4 * m * float(shape["radius"]) ** 2
         return MassProperties(m, (i, i, i))

@@ -68,7 +68,7 @@ def _body_facts(name: str, body: dict[str, Any]) -> BodyFacts:
     movable = is_movable(body)
     uniform = True
     if movable:
-        inertia = mass_properties(body["shape"], body["mass"], body["density"]).inertia
+        inertia = mass_properties(body["shape"], body["mass"]).inertia
         uniform = inertia[0] == inertia[1] == inertia[2]
     return BodyFacts(name, body["shape"]["kind"], movable, any(body["angular_velocity"]), uniform)
 
