@@ -128,6 +128,7 @@ COUNTERS: Final[list[Field]] = [
     ("cached", I8),  # rows in use in the cache
     ("cached_dt", F8),  # timestep the cached impulses belong to [s]
     ("sweeps", I8),  # sweeps spent in the last step
+    ("projection_sweeps", I8),  # and by the positional projection, 0: nothing had to move
     ("residual_contact", I8),  # contact with the largest residual, -1 without contacts
     ("residual", F8),  # of the last step [m/s]
     ("body", I8),  # body that diverged

@@ -145,9 +145,11 @@ def make_advance(spec: Spec) -> Any:
                 record_contacts(contacts, count, velocities, params, counters, rows)
             if warms:
                 store_contacts(contacts, count, bodies, cache, counters, params)
-            moved = False
             if projects:
-                moved = project_positions(contacts, order, count, velocities, pseudo, params)
+                counters.projection_sweeps = project_positions(
+                    contacts, order, count, velocities, pseudo, params
+                )
+            moved = counters.projection_sweeps > 0
             diverged, cause = integrate(bodies, velocities, pseudo, moved, params.dt)
             counters.step += 1
             counters.contacts = count

@@ -115,12 +115,15 @@ def position_pass(timed: Case) -> dict[str, Any]:
     engine = timed.engine()
     engine.advance(SETTLE)
     corrected, pushed, contacts = [], [], []
+    velocity_sweeps, position_sweeps = [], []
     for _ in range(timed.steps - SETTLE):
         engine.advance(1)
         rows = engine.contacts[: int(engine.counters["contacts"][0])]
         contacts.append(len(rows))
         corrected.append(int(np.count_nonzero(rows["correction"] > 0.0)))
         pushed.append(float(rows["push"].sum()))
+        velocity_sweeps.append(int(engine.counters["sweeps"][0]))
+        position_sweeps.append(int(engine.counters["projection_sweeps"][0]))
     assert min(corrected) > 0, "in some step no contact asked for a correction"
     assert min(pushed) > 0.0, "in some step no contact was pushed"
     return {
@@ -128,8 +131,8 @@ def position_pass(timed: Case) -> dict[str, Any]:
         "contacts": [min(contacts), max(contacts)],
         "corrected_contacts": [min(corrected), max(corrected)],
         "smallest_sum_of_pushes_kg_m": min(pushed),
-        "velocity_sweeps": int(engine.parameters[0]["sweeps"]),
-        "position_sweeps": int(engine.parameters[0]["projection_sweeps"]),
+        "velocity_sweeps": [min(velocity_sweeps), max(velocity_sweeps)],
+        "position_sweeps": [min(position_sweeps), max(position_sweeps)],
     }
 
 
@@ -208,7 +211,9 @@ def table(found: dict[str, Any]) -> str:
     lines.append(
         f"position pass: every one of {position['steps']} steps of the stack, "
         f"{position['corrected_contacts'][0]} to {position['corrected_contacts'][1]} contacts "
-        f"corrected of {position['contacts'][0]} to {position['contacts'][1]}"
+        f"corrected of {position['contacts'][0]} to {position['contacts'][1]}; "
+        f"{position['velocity_sweeps'][0]} to {position['velocity_sweeps'][1]} velocity sweeps, "
+        f"{position['position_sweeps'][0]} to {position['position_sweeps'][1]} position sweeps"
     )
     compiled = (f"{name} {each['seconds']:.2f} s" for name, each in found["compile"].items())
     lines.append(f"compiled or loaded, apart: {', '.join(compiled)}")

@@ -28,7 +28,7 @@ def wanted(facts: Facts) -> Decision:
 
 
 def make(spec):
-    """Return `kernel(contacts, order, count, velocities, pseudo, params) -> moved`."""
+    """Return `kernel(contacts, order, count, velocities, pseudo, params) -> sweeps spent`."""
     normal_velocity = make_normal_velocity(spec)
     apply_impulse = make_apply_impulse(spec)
     torque = spec.has("contact_torque")
@@ -44,14 +44,16 @@ def make(spec):
             contact.inv_k_n = 1.0 / contact.k_n
             if contact.correction > 0.0:
                 asked = True
+        sweeps = 0
         if not asked:
-            return False
+            return sweeps
         for i in range(pseudo.shape[0]):
             u = pseudo[i]
             u.vx, u.vy, u.vz = 0.0, 0.0, 0.0
             if torque:
                 u.wx, u.wy, u.wz = 0.0, 0.0, 0.0
         for _ in range(params.projection_sweeps):
+            changed = False
             for c in range(count):
                 contact = contacts[order[c]]
                 ua, ub = pseudo[contact.a], pseudo[contact.b]
@@ -60,6 +62,11 @@ def make(spec):
                 change = push - contact.push
                 contact.push = push
                 apply_impulse(contact, ua, ub, change)
-        return True
+                if change != 0.0:
+                    changed = True
+            sweeps += 1
+            if not changed:  # nor would anything in the sweeps that are left
+                break
+        return sweeps
 
     return kernel(project_positions, spec)

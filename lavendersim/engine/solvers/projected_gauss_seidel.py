@@ -4,7 +4,8 @@
     lambda <- max(0, lambda + dlambda)
 
 One sweep costs one visit per row; information travels one contact per visit, so tall stacks need
-many sweeps. The velocities always carry the impulses they have been given.
+many sweeps. The velocities always carry the impulses they have been given. A sweep that changes no
+impulse is the last one: those left would change nothing either.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from ..spec import Spec
 
 
 def make_solve_contact_velocity(spec: Spec):
-    """Return `kernel(contact, va, vb)`: one projected, compliant update of one row."""
+    """Return `kernel(contact, va, vb) -> change of impulse`: one projected, compliant update."""
     compliant = spec.has("compliance")
     normal_velocity = make_normal_velocity(spec)
     apply_impulse = make_apply_impulse(spec)
@@ -29,7 +30,9 @@ def make_solve_contact_velocity(spec: Spec):
         # In this order a NaN stays and is reported; max(0.0, NaN) would be 0.
         lambda_new = max(lambda_old - w * contact.inv_k, 0.0)
         contact.lambda_n = lambda_new
-        apply_impulse(contact, va, vb, lambda_new - lambda_old)
+        change = lambda_new - lambda_old
+        apply_impulse(contact, va, vb, change)
+        return change
 
     return kernel(solve_contact_velocity, spec)
 
@@ -63,10 +66,17 @@ def make(spec: Spec):
             if stop_early:
                 if largest <= params.tolerance:
                     break
+            changed = False
             for c in range(count):
                 contact = contacts[order[c]]
-                solve_contact_velocity(contact, velocities[contact.a], velocities[contact.b])
+                va, vb = velocities[contact.a], velocities[contact.b]
+                if solve_contact_velocity(contact, va, vb) != 0.0:
+                    changed = True
             sweeps += 1
+            if not record_residuals:
+                # Nothing changed, so nothing would change in the sweeps that are left.
+                if not changed:
+                    break
             if every_sweep:
                 largest, worst = residual(contacts, count, velocities)
         if not every_sweep:
