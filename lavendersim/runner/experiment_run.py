@@ -117,13 +117,17 @@ def _outcomes(jobs: list[Any], workers: int) -> Iterator[Any]:
     """Yield the outcome of each job, in order, from this process or from a pool."""
     from .cell import run_cell
 
-    if workers <= 1 or len(jobs) <= 1:
+    if workers <= 1:
         yield from map(run_cell, jobs)
         return
+    # The first cell runs here: it leaves the compiled kernel where the others find it.
+    yield run_cell(jobs[0])
+    if not jobs[1:]:
+        return
     # Spawned, never forked: numba's threads do not survive a fork.
-    with ProcessPoolExecutor(min(workers, len(jobs)), get_context("spawn")) as pool:
+    with ProcessPoolExecutor(min(workers, len(jobs) - 1), get_context("spawn")) as pool:
         chunk = max(1, len(jobs) // (4 * workers))
-        yield from pool.map(run_cell, jobs, chunksize=chunk)
+        yield from pool.map(run_cell, jobs[1:], chunksize=chunk)
 
 
 def run(
@@ -141,7 +145,7 @@ def run(
     from lavendersim.engine.step import advance_for, is_compiled
     from lavendersim.scene.plan import plan_of, union
 
-    from .cell import CellJob, run_cell
+    from .cell import CellJob
 
     if not isinstance(experiment, Experiment):
         experiment = load_experiment(experiment)
@@ -169,18 +173,18 @@ def run(
         )
         for cell in cells
     ]
-    outcomes: list[Any] = []
+    # Cells of several products may be the same simulation: it has one log and is run once.
+    distinct = list({job.path: job for job in pending}.values())
+    ended: dict[Path, Any] = {}
     # The index stands from the start, so that an interrupted run can be listed and replayed.
-    _write_index(directory, experiment, pending, outcomes)
+    _write_index(directory, experiment, pending, ended)
     try:
-        # The first cell runs here: it leaves the compiled kernel where the others find it.
-        outcomes.append(run_cell(pending[0]))
-        progress.cell_done(1, len(pending))
-        for outcome in _outcomes(pending[1:], jobs):
-            outcomes.append(outcome)
-            progress.cell_done(len(outcomes), len(pending))
+        for job, outcome in zip(distinct, _outcomes(distinct, jobs), strict=True):
+            ended[job.path] = outcome
+            progress.cell_done(len(ended), len(distinct))
     finally:
-        _write_index(directory, experiment, pending, outcomes)
+        _write_index(directory, experiment, pending, ended)
+    outcomes = [ended[job.path]._replace(cell=job.cell) for job in pending]
     finished = Run(directory)
     values = Values(experiment.measures)
     measured = measure_cells(finished, experiment, values)
@@ -194,7 +198,7 @@ def run(
 
 
 def _write_index(
-    directory: Path, experiment: Experiment, jobs: list[Any], ended: list[Any]
+    directory: Path, experiment: Experiment, jobs: list[Any], ended: dict[Path, Any]
 ) -> None:
     """Write which cell is in which file and how it ended; `pending` for those that did not."""
     rows = [
@@ -203,7 +207,7 @@ def _write_index(
             "label": cell.label,
             "coordinates": {axis: _plain(value) for axis, value in cell.coordinates.items()},
             "file": f"cells/{job.path.name}",
-            "status": ended[cell.index].status if cell.index < len(ended) else "pending",
+            "status": ended[job.path].status if job.path in ended else "pending",
         }
         for cell, job in zip(experiment.cells(), jobs, strict=True)
     ]

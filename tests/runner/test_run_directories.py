@@ -40,3 +40,18 @@ def test_a_bad_config_leaves_no_directory(tmp_path: Path, right: str, wrong: str
     with pytest.raises(ConfigError):
         lavendersim.run(write(tmp_path, DROPS.replace(right, wrong)), root=root)
     assert not root.exists()
+
+
+def test_cells_that_are_the_same_simulation_share_one_log(tmp_path: Path) -> None:
+    """A union of products may reach one simulation twice; two processes must not write one file."""
+    axis = "{path: scene.bodies.ball.surface.restitution, values: [0.2, 0.5, 0.8]}"
+    again = "{path: scene.bodies.ball.surface.restitution, values: [0.5, 0.9]}"
+    text = DROPS.replace(f"sweep:\n  e: {axis}", f"sweep:\n  - e: {axis}\n  - f: {again}")
+    text = text[: text.index("measure:\n")]
+    finished = lavendersim.run(write(tmp_path, text), root=tmp_path / "runs", jobs=2)
+    paths = [cell.path for cell in finished.run.cells]
+    assert len(paths) == 5
+    assert len(set(paths)) == 4
+    assert paths[1] == paths[3]
+    assert [outcome.cell for outcome in finished.outcomes] == [0, 1, 2, 3, 4]
+    assert all(cell.trace().status == "complete" for cell in finished.run.cells)
