@@ -26,6 +26,7 @@ def check(
         with printing.reporting(experiment.name) as progress:
             finished = run(experiment, runs, jobs, progress)
         good = good and finished.good
+        printing.warn_of_unsolved(finished)
         cells += [
             {"experiment": experiment.name, "cell": cell.label, "status": cell.status}
             for cell in finished.run.cells

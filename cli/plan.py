@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
@@ -14,20 +14,31 @@ def plan(
     config: Annotated[Path, typer.Argument(help="Config file.")],
     as_json: Annotated[bool, typer.Option("--json", help="Print the plan as JSON.")] = False,
 ) -> None:
-    """Show which effects a scene calls for and why; for a sweep, the union over its cells."""
-    from lavendersim.experiment import load_experiment
-    from lavendersim.scene.plan import plan_of, union
+    """Show which effects a scene calls for and why; for a sweep, the union over its cells.
 
-    experiment = load_experiment(config)
-    whole = union(plan_of(cell.resolved) for cell in experiment.cells())
+    Cells that differ in a choice between laws, such as the solver, share no union: one plan each.
+    """
+    from lavendersim.experiment import load_experiment
+    from lavendersim.runner.plans import distinct, shared_plans
+    from lavendersim.scene.plan import CHOICES
+
+    plans = distinct(shared_plans(cell.resolved for cell in load_experiment(config).cells()))
     if as_json:
-        decisions: dict[str, Any] = {
-            name: decision._asdict() for name, decision in whole.decisions.items()
-        }
-        printing.as_json({"spec": whole.spec._asdict(), "effects": decisions})
+        tables = [
+            {
+                "spec": one.spec._asdict(),
+                "effects": {name: item._asdict() for name, item in one.decisions.items()},
+            }
+            for one in plans
+        ]
+        printing.as_json({**tables[0], "others": tables[1:]})
         return
-    for name, decision in whole.decisions.items():
-        word = typer.style("on ", fg=typer.colors.GREEN) if decision.on else "off"
-        typer.echo(f"{word}  {name:15} {decision.reason}")
-    typer.echo(f"shape pairs: {', '.join(whole.spec.shape_pairs) or 'none'}")
-    typer.echo(f"solver: {whole.spec.solver}")
+    for number, one in enumerate(plans):
+        if number:
+            typer.echo()
+        for name, decision in one.decisions.items():
+            word = typer.style("on ", fg=typer.colors.GREEN) if decision.on else "off"
+            typer.echo(f"{word}  {name:15} {decision.reason}")
+        typer.echo(f"shape pairs: {', '.join(one.spec.shape_pairs) or 'none'}")
+        for name, choice in zip(CHOICES, one.choices, strict=True):
+            typer.echo(f"{name}: {choice}")

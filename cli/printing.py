@@ -12,6 +12,7 @@ from typing import Any
 import typer
 
 FAILURES_SHOWN = 10
+CELLS_SHOWN = 12  # of a larger sweep the range is printed; results.csv and `show` have each
 
 
 def digits(value: float) -> str:
@@ -54,20 +55,40 @@ def mark(passed: bool) -> str:
 
 def print_summary(finished: Any) -> None:
     """Print what became of a run: one line per expectation, failures in full."""
-    cells = len(finished.outcomes)
-    steps = sum(outcome.steps for outcome in finished.outcomes)
-    physics = sum(outcome.physics_ns for outcome in finished.outcomes)
-    logging = sum(outcome.logging_ns for outcome in finished.outcomes)
-    typer.echo(
-        f"{typer.style(finished.run.name, bold=True)}: "
-        f"{cells} cell{'s' if cells > 1 else ''}, {steps} steps; "
-        f"physics {physics / max(steps, 1) / 1000:.2f} us/step, "
-        f"logging {logging / max(steps, 1) / 1000:.2f} us/step"
-    )
+    print_costs(finished)
     for _, passed, text in summarise(finished.verdicts):
         typer.echo(f"  {mark(passed)}  {text}")
     print_failures(finished)
     typer.echo(f"  logs  {finished.run.path}")
+
+
+def print_costs(finished: Any) -> None:
+    """Print what a run cost: physics by cell, logging and compilation once."""
+    outcomes = finished.outcomes
+    steps = sum(outcome.steps for outcome in outcomes)
+    logging = sum(outcome.logging_ns for outcome in outcomes) / max(steps, 1) / 1000
+    physics = [outcome.physics_ns / max(outcome.steps, 1) / 1000 for outcome in outcomes]
+    low, high = min(physics), max(physics)
+    listed = 1 < len(physics) <= CELLS_SHOWN
+    spread = (
+        "" if listed else f"physics {low:.2f}{f' to {high:.2f}' if high > low else ''} us/step, "
+    )
+    typer.echo(
+        f"{typer.style(finished.run.name, bold=True)}: "
+        f"{len(outcomes)} cell{'s' if len(outcomes) > 1 else ''}, {steps} steps; {spread}"
+        f"logging {logging:.2f} us/step, compile {finished.compile_s:.1f} s"
+    )
+    for cell, cost in zip(finished.run.cells, physics, strict=True) if listed else ():
+        typer.echo(f"  physics {cost:10.2f} us/step  {cell.label}")
+
+
+def warn_of_unsolved(finished: Any) -> None:
+    """Say on stderr which cells missed the accuracy asked for, the first few by name."""
+    for notice in finished.unsolved[:FAILURES_SHOWN]:
+        typer.echo(notice, err=True)
+    if len(finished.unsolved) > FAILURES_SHOWN:
+        more = len(finished.unsolved) - FAILURES_SHOWN
+        typer.echo(f"{finished.run.name}: and {more} more cells, see results.csv", err=True)
 
 
 def print_failures(finished: Any) -> None:

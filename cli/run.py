@@ -35,6 +35,7 @@ def run(
         with printing.reporting(experiment.name) as progress:
             finished = run(experiment, runs, jobs, progress)
         good = good and finished.good
+        printing.warn_of_unsolved(finished)
         figures = []
         if plot and experiment.figure is not None:
             from lavendersim.figures import draw

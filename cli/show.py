@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -34,14 +34,31 @@ def show(
     typer.echo("plan")
     for name, reason in opened.cells[0].trace().metadata.get("plan", {}).items():
         typer.echo(f"  {name:15} {reason}")
-    typer.echo("cells")
+    steps = sum(row["steps"] for row in results["cells"])
+    logging = sum(row["steps"] * row["logging_us_per_step"] for row in results["cells"])
+    compiling = f"compile {results.get('compile_s', float('nan')):.1f} s"
+    typer.echo(f"cells  logging {logging / max(steps, 1):.2f} us/step, {compiling}")
     for row in results["cells"]:
         numbers = ", ".join(
             f"{name} {printing.digits(value)}"
             for name, value in row["measures"].items()
             if isinstance(value, float | int)
         )
-        typer.echo(f"  {row['index']:4}  {row['label'] or '-'}  {row['status']}  {numbers}")
+        typer.echo(
+            f"  {row['index']:4}  {row['label'] or '-'}  {row['status']}  "
+            f"physics {row['physics_us_per_step']:.2f} us/step  {accuracy(row)}  {numbers}"
+        )
     typer.echo("checks")
     for verdict in results["checks"]:
         typer.echo(f"  {printing.mark(verdict['passed'])}  {verdict['node']}")
+
+
+def accuracy(row: dict[str, Any]) -> str:
+    """Return how far the steps of a cell were solved, in words; nothing for runs of old."""
+    if "worst_residual" not in row:
+        return ""
+    worst = f"residual <= {printing.digits(float(row['worst_residual']))} m/s"
+    if not row["unsolved_steps"]:
+        return worst
+    asked = f"tolerance {printing.digits(row['tolerance'])} m/s"
+    return f"{worst} ({row['unsolved_steps']} of {row['steps']} steps above the {asked})"

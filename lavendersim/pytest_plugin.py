@@ -21,6 +21,8 @@ _EXPERIMENT = re.compile(rb"^scene[ \t]*:", re.MULTILINE)
 # Experiments are small; a larger YAML file is somebody's data.
 _LARGEST_FILE = 1 << 20
 COMPLETES = "every cell completes"
+# Sentences about cells that missed the accuracy asked for; shown at the end, never a failure.
+_UNSOLVED = pytest.StashKey[list[str]]()
 
 
 def _is_experiment(path: Path) -> bool:
@@ -37,6 +39,15 @@ def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> pytest.Col
         return None
     collector: pytest.Collector = ExperimentFile.from_parent(parent, path=file_path)
     return collector
+
+
+def pytest_terminal_summary(terminalreporter: Any, config: pytest.Config) -> None:
+    """Say which cells missed the accuracy asked for, whatever became of their expectations."""
+    notices = config.stash.get(_UNSOLVED, [])
+    if notices:
+        terminalreporter.section("accuracy asked for, not met")
+        for notice in notices:
+            terminalreporter.write_line(notice)
 
 
 class ExperimentFile(pytest.File):
@@ -64,6 +75,7 @@ class ExperimentFile(pytest.File):
 
             factory: pytest.TempPathFactory = self.config._tmp_path_factory  # type: ignore[attr-defined]
             self._finished = run(self.path, factory.mktemp(self.path.stem))
+            self.config.stash.setdefault(_UNSOLVED, []).extend(self._finished.unsolved)
         return self._finished
 
 

@@ -151,7 +151,8 @@ class Simulator:
     def _observation(self) -> Observation:
         contact = self._rows.contact
         columns = [contact[name].astype(np.float64) for name in CONTACT_COLUMNS]
-        velocities = self._engine.velocities
+        # Behind the bodies stand the parts of compounds, which move with their bodies.
+        velocities = self._engine.velocities[: len(self._scene.names)]
         turning = "wx" in (velocities.dtype.names or ())
         count = len(velocities)
         pose = self._rows.pose[-1]

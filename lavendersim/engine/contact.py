@@ -11,14 +11,19 @@ from __future__ import annotations
 
 import numba
 
+from .block import make_apply_vector, make_complete_block, make_relative_velocity
 from .compile import OPTIONS, kernel
 from .rotation import inverse_inertia_times
 from .spec import Spec
+from .spin_block import make_apply_held, make_complete_spin, resists_turning
 
 
 @numba.njit(**OPTIONS)
-def add_levers(contact, body_a, body_b):
-    """Fill the angular parts of a row; returns what they add to k_n [1/kg]."""
+def add_levers(contact, body_a, body_b, bx, by, bz):
+    """Fill the angular parts of a row; returns what they add to k_n [1/kg].
+
+    b: where B's centre is when the surfaces meet, across n [m].
+    """
     nx, ny, nz = contact.nx, contact.ny, contact.nz
     rx, ry, rz = contact.x - body_a.x, contact.y - body_a.y, contact.z - body_a.z
     lx, ly, lz = ry * nz - rz * ny, rz * nx - rx * nz, rx * ny - ry * nx
@@ -26,7 +31,7 @@ def add_levers(contact, body_a, body_b):
     contact.lever_ax, contact.lever_ay, contact.lever_az = lx, ly, lz
     contact.turn_ax, contact.turn_ay, contact.turn_az = tx, ty, tz
     k = lx * tx + ly * ty + lz * tz
-    rx, ry, rz = contact.x - body_b.x, contact.y - body_b.y, contact.z - body_b.z
+    rx, ry, rz = contact.x - bx, contact.y - by, contact.z - bz
     lx, ly, lz = ry * nz - rz * ny, rz * nx - rx * nz, rx * ny - ry * nx
     tx, ty, tz = inverse_inertia_times(body_b, lx, ly, lz)
     contact.lever_bx, contact.lever_by, contact.lever_bz = lx, ly, lz
@@ -37,6 +42,14 @@ def add_levers(contact, body_a, body_b):
 def make_normal_velocity(spec: Spec):
     """Return `kernel(contact, va, vb) -> v_n`, the velocity of B relative to A along n [m/s]."""
     torque = spec.has("contact_torque")
+    if spec.has("friction"):
+        relative_velocity = make_relative_velocity(spec)
+
+        def block_normal_velocity(contact, va, vb):
+            x, y, z = relative_velocity(contact, va, vb)
+            return contact.nx * x + contact.ny * y + contact.nz * z
+
+        return kernel(block_normal_velocity, spec)
 
     def normal_velocity(contact, va, vb):
         v_n = (
@@ -61,6 +74,20 @@ def make_normal_velocity(spec: Spec):
 def make_apply_impulse(spec: Spec):
     """Return `kernel(contact, va, vb, impulse)`: + on B, - on A, along n [N s]."""
     torque = spec.has("contact_torque")
+    if spec.has("friction"):
+        apply_vector = make_apply_vector(spec)
+
+        def apply_block_impulse(contact, va, vb, impulse):
+            apply_vector(
+                contact,
+                va,
+                vb,
+                contact.nx * impulse,
+                contact.ny * impulse,
+                contact.nz * impulse,
+            )
+
+        return kernel(apply_block_impulse, spec)
 
     def apply_impulse(contact, va, vb, impulse):
         pa, pb = impulse * contact.inv_m_a, impulse * contact.inv_m_b
@@ -81,23 +108,75 @@ def make_apply_impulse(spec: Spec):
     return kernel(apply_impulse, spec)
 
 
-def make_append_contact(spec: Spec, capture):
-    """Return `kernel(contact, bodies, velocities, pair, params)` that completes a row.
+def make_apply_start(spec: Spec):
+    """Return `kernel(contact, va, vb)`: apply the impulses the contact starts the solve with."""
+    if not spec.has("friction"):
+        apply_impulse = make_apply_impulse(spec)
 
-    `capture` is the chain of effects that add to the row's target and compliance.
+        def apply_normal(contact, va, vb):
+            apply_impulse(contact, va, vb, contact.lambda_n)
+
+        return kernel(apply_normal, spec)
+    apply_vector = make_apply_vector(spec)
+    spins, apply_held = resists_turning(spec), make_apply_held(spec)
+
+    def apply_block(contact, va, vb):
+        n, one, two = contact.lambda_n, contact.lambda_1, contact.lambda_2
+        apply_vector(
+            contact,
+            va,
+            vb,
+            contact.nx * n + contact.t1x * one + contact.t2x * two,
+            contact.ny * n + contact.t1y * one + contact.t2y * two,
+            contact.nz * n + contact.t1z * one + contact.t2z * two,
+        )
+        if spins:
+            apply_held(contact, va, vb)
+
+    return kernel(apply_block, spec)
+
+
+def make_append_contact(spec: Spec, capture, surface_velocity):
+    """Return `kernel(contact, bodies, velocities, motion, pair, params)` that completes a row.
+
+    `capture` is the chain of effects that add to the row's target and compliance;
+    `surface_velocity` is that effect's kernel.
     """
+    friction = spec.has("friction")
     torque = spec.has("contact_torque")
-    compliant = spec.has("compliance")
+    compliant, ahead = spec.has("compliance"), spec.has("speculative")
+    at_surface = spec.has("impact_time")
+    forced = spec.has("impact_time") or spec.has("midpoint")
     normal_velocity = make_normal_velocity(spec)
+    complete_block = make_complete_block(spec, surface_velocity)
+    spins, complete_spin = resists_turning(spec), make_complete_spin(spec)
 
-    def append_contact(contact, bodies, velocities, pair, params):
+    def append_contact(contact, bodies, velocities, motion, pair, params):
         body_a, body_b = bodies[contact.a], bodies[contact.b]
+        va, vb = velocities[contact.a], velocities[contact.b]
         contact.inv_m_a, contact.inv_m_b = body_a.inv_m, body_b.inv_m
-        k_n = body_a.inv_m + body_b.inv_m
-        if torque:
-            k_n += add_levers(contact, body_a, body_b)
+        if friction:
+            k_n = complete_block(contact, body_a, body_b, va, vb, pair)
+            if spins:
+                complete_spin(contact, va, vb, pair)
+        else:
+            k_n = body_a.inv_m + body_b.inv_m
+            if torque:
+                bx, by, bz = body_b.x, body_b.y, body_b.z
+                if ahead:
+                    bx, by, bz = bx + contact.beside_x, by + contact.beside_y, bz + contact.beside_z
+                k_n += add_levers(contact, body_a, body_b, bx, by, bz)
         contact.k_n = k_n
-        contact.v_n_pre = normal_velocity(contact, velocities[contact.a], velocities[contact.b])
+        contact.v_n_pre = normal_velocity(contact, va, vb)
+        if forced:
+            ma, mb = motion[contact.a], motion[contact.b]
+            contact.dv_n = (
+                contact.nx * (mb.dvx - ma.dvx)
+                + contact.ny * (mb.dvy - ma.dvy)
+                + contact.nz * (mb.dvz - ma.dvz)
+            )
+        if at_surface:
+            contact.e = 0.0
         contact.target = 0.0
         contact.lambda_n = 0.0
         if compliant:

@@ -15,26 +15,43 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .collide.box_box import allocate_scratch
+from .collide.broad_phase import allocate_broad_phase
+from .collide.hull_geometry import HullGeometry
+from .collide.scratch import allocate_scratch
+from .collide.support import shapes_in
 from .compile import compiling
-from .effects import EFFECTS
+from .effects import EFFECTS, contact_torque, sleeping
+from .impact_energy import watches
+from .integrate import keeps_motion
 from .ordering import BUCKETS
 from .records import (
+    AWAKE_ROW,
     BODY,
     CONTACT,
     CONTACT_ROW,
     CONTACTS_FULL,
     COUNTERS,
+    FRICTION_ROW,
+    HULL_BODY,
+    MOTION,
     ORIENTED_BODY,
     PAIR,
+    PAIRS_FULL,
     PARAMETERS,
     POINT,
     RESIDUAL_ROW,
+    ROLLING_ROW,
     ROWS_FULL,
     STEP_ROW,
+    STRONGE_ROW,
+    TORSION_ROW,
+    UNSOLVED_ROW,
     VELOCITY,
+    WOKEN,
+    Field,
     dtype,
 )
+from .solvers import SOLVERS
 from .spec import Spec
 from .step import advance_for
 
@@ -53,15 +70,45 @@ class Rows(NamedTuple):
     residual: np.ndarray
 
 
-def _dtype(base: list[Any], spec: Spec, group: str) -> np.dtype:
+def _fields(base: list[Field], spec: Spec, group: str) -> list[Field]:
     extra = [getattr(e, group, []) for e in EFFECTS if spec.has(e.NAME)]
-    return dtype(base, *extra)
+    return [*base, *(field for fields in extra for field in fields)]
+
+
+def _dtype(base: list[Field], spec: Spec, group: str) -> np.dtype:
+    return dtype(_fields(base, spec, group))
+
+
+def _contact_dtype(spec: Spec) -> np.dtype:
+    """Return the contact record: what several effects share, and what the solver keeps."""
+    dependent = contact_torque.contact_fields(spec) if spec.has("contact_torque") else []
+    solver = getattr(SOLVERS[spec.solver], "CONTACT_FIELDS", [])
+    return dtype(_fields(CONTACT, spec, "CONTACT_FIELDS"), dependent, solver)
+
+
+def _step_dtype(spec: Spec) -> np.dtype:
+    return dtype(
+        STEP_ROW,
+        UNSOLVED_ROW if spec.tolerance else [],
+        STRONGE_ROW if watches(spec) else [],
+        AWAKE_ROW if spec.has("sleeping") else [],
+    )
+
+
+def _contact_row_dtype(spec: Spec) -> np.dtype:
+    return dtype(
+        CONTACT_ROW,
+        FRICTION_ROW if spec.has("friction") else [],
+        TORSION_ROW if spec.has("torsional_friction") else [],
+        ROLLING_ROW if spec.has("rolling_friction") else [],
+    )
 
 
 def allocate_bodies(spec: Spec, count: int) -> np.ndarray:
     """Return zeroed body records with the columns that `spec` has."""
-    oriented = any(name in ("box_plane", "sphere_box", "box_box") for name in spec.shape_pairs)
-    base = [*BODY, *(ORIENTED_BODY if oriented else [])]
+    shapes = shapes_in(spec)
+    oriented = not shapes <= {"plane", "sphere"}
+    base = [*BODY, *(ORIENTED_BODY if oriented else []), *(HULL_BODY if "hull" in shapes else [])]
     return np.zeros(count, _dtype(base, spec, "BODY_FIELDS"))
 
 
@@ -91,6 +138,8 @@ class Engine:
         pairs: np.ndarray,
         parameters: np.ndarray,
         poses: np.ndarray,
+        templates: np.ndarray | None = None,
+        hulls: HullGeometry | None = None,
         block_steps: int = BLOCK_STEPS,
     ) -> None:
         self.spec = spec
@@ -99,40 +148,59 @@ class Engine:
         self.block_steps = max(block_steps, 1) if spec.record else 0
         self.counters = np.zeros(1, dtype(COUNTERS))
         self.counters["residual_contact"] = -1
+        self.motion = np.zeros(len(bodies) if keeps_motion(spec) else 0, dtype(MOTION))
         self.pseudo = np.zeros(len(bodies) if spec.has("projection") else 0, velocities.dtype)
         self._bits = (bodies.view(np.uint64), velocities.view(np.uint64))
         self._initial_pose = poses
         self._kernel = advance_for(spec)
+        self._hulls = hulls
+        self._templates = templates if spec.has("broad_phase") else ()
+        self._near = self._allocate_near()
         self._grow_contacts(max(4, min(4 * len(pairs), 1024)))
 
     def _grow_contacts(self, capacity: int) -> None:
-        self.contacts = np.zeros(capacity, _dtype(CONTACT, self.spec, "CONTACT_FIELDS"))
+        self.contacts = np.zeros(capacity, _contact_dtype(self.spec))
+        allocate = getattr(SOLVERS[self.spec.solver], "allocate", None)
         self._work = (
             np.zeros(MANIFOLD_POINTS, dtype(POINT)),
             np.zeros(3),
-            allocate_scratch(),
+            allocate_scratch(self._hulls),
             np.zeros(len(self.bodies), np.int64),
             np.zeros(BUCKETS + 1, np.int64),
             np.zeros(capacity, np.int64),
             np.zeros(capacity, np.uint64),
+            allocate(len(self.bodies), capacity) if allocate else (),
+            self._templates,
+            self._near,
         )
         held = getattr(self, "cache", None)
         warm = self.spec.has("warm_start")
         self.cache = np.zeros(
-            capacity if warm else 0, _dtype([("pair", "i8")], self.spec, "CACHE_FIELDS")
+            capacity if warm else 0, _dtype([("key", "i8")], self.spec, "CACHE_FIELDS")
         )
         if held is not None and warm:
             self.cache[: len(held)] = held
         self._allocate_rows(capacity)
+
+    def _allocate_near(self) -> Any:
+        if not self.spec.has("broad_phase"):
+            return ()
+        return allocate_broad_phase(len(self.bodies), len(self.pairs))
+
+    def _grow_pairs(self) -> None:
+        needed = int(self._near.state["needed"][0])
+        self.pairs = np.zeros(needed + needed // 4, self.pairs.dtype)
+        self._near = self._allocate_near()
+        self._work = (*self._work[:-1], self._near)
 
     def _allocate_rows(self, capacity: int) -> None:
         steps = self.block_steps
         # A quarter of the worst case: full columns end a block early, they lose nothing.
         contact_rows = max(capacity, steps * capacity // 4) if steps else 0
         self._rows = (
-            np.zeros(steps, dtype(STEP_ROW)),
+            np.zeros(steps, _step_dtype(self.spec)),
             np.repeat(self._initial_pose[None], steps, axis=0),
-            np.zeros(contact_rows, dtype(CONTACT_ROW)),
+            np.zeros(contact_rows, _contact_row_dtype(self.spec)),
         )
         residual_rows = max(steps, 1) * self._sweep_rows()
         self._residual_rows = np.zeros(residual_rows, dtype(RESIDUAL_ROW))
@@ -155,6 +223,11 @@ class Engine:
             else:
                 with compiling():
                     status = self._call(left)
+            if status == PAIRS_FULL:
+                self._grow_pairs()
+                continue
+            if status == WOKEN:
+                continue
             if status != CONTACTS_FULL:
                 return int(status)
             if self.counters["step_rows"][0]:
@@ -165,6 +238,7 @@ class Engine:
         status = self._kernel(
             self.bodies,
             self.velocities,
+            self.motion,
             self.pseudo,
             self._bits,
             self.contacts,
@@ -197,6 +271,11 @@ class Engine:
             self.counters[name] = 0
         return rows
 
+    def wake(self, body: int) -> None:
+        """Wake who sleeps beside a body that is about to be changed."""
+        if self.spec.has("sleeping"):
+            sleeping.wake_around(self.bodies, body)
+
     def forget_contacts(self, body: int | None = None) -> None:
         """Drop cached impulses, of every contact or of those of one body (it was changed)."""
         cached = int(self.counters["cached"][0])
@@ -204,7 +283,6 @@ class Engine:
             self.counters["cached"] = 0
             return
         rows = self.cache[:cached]
-        pairs = self.pairs[rows["pair"]]
-        kept = rows[(pairs["a"] != body) & (pairs["b"] != body)]
+        kept = rows[(rows["a"] != body) & (rows["b"] != body)]
         self.cache[: len(kept)] = kept
         self.counters["cached"] = len(kept)

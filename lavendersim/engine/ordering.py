@@ -41,7 +41,7 @@ def make(spec: Spec):
         colour, row = 0, 0
         for c in range(count):
             contact = contacts[c]
-            if c == 0 or contact.pair != contacts[c - 1].pair:
+            if c == 0 or contact.key != contacts[c - 1].key:
                 a, b = contact.a, contact.b
                 used = 0
                 if bodies[a].inv_m > 0.0:

@@ -21,6 +21,10 @@ Field = tuple[str, str]
 PLANE: Final = 0
 SPHERE: Final = 1
 BOX: Final = 2
+CAPSULE: Final = 3
+CYLINDER: Final = 4
+HULL: Final = 5
+COMPOUND: Final = 6
 
 # Surfaces closer than this touch [m]. Bodies placed face to face leave gaps of round-off size
 # (1e-16 at 1 m, 1e-11 at 100 km); without it one corner of a box rests while another falls a step.
@@ -31,6 +35,8 @@ TOUCHING: Final = 1e-9
 RUNNING: Final = 0
 ROWS_FULL: Final = 1  # trace columns are full: hand them on and call again
 CONTACTS_FULL: Final = 2  # contact rows are full: enlarge them and call again; the state is intact
+PAIRS_FULL: Final = 4  # rows of pairs are full: likewise
+WOKEN: Final = 5  # bodies woke up, the step begins again with them: call again
 DIVERGED: Final = 3  # the run cannot go on; `counters.body` and `.cause` say for whom and why
 
 # Why a run diverged.
@@ -59,14 +65,34 @@ ORIENTED_BODY: Final[list[Field]] = [
     *[(f"r{row}{column}", F8) for row in range(3) for column in range(3)],  # the same as a matrix
 ]
 
+HULL_BODY: Final[list[Field]] = [("hull", I8)]  # hull: row of the hull tables
+
 VELOCITY: Final[list[Field]] = [("vx", F8), ("vy", F8), ("vz", F8)]  # of the centre of mass [m/s]
 ANGULAR_VELOCITY: Final[list[Field]] = [("wx", F8), ("wy", F8), ("wz", F8)]  # [rad/s]
 
 # A pair of bodies that may touch, ordered as the kernel of its shape pair takes them.
-PAIR: Final[list[Field]] = [("a", I8), ("b", I8), ("kind", I8)]
+# Rows ascend in `key`, which names the two bodies whatever row they have.
+PAIR: Final[list[Field]] = [("a", I8), ("b", I8), ("kind", I8), ("key", I8)]
+
+# What a body did within a step, beside its velocity at the end.
+MOTION: Final[list[Field]] = [
+    ("vx", F8),  # velocity at the start of the step [m/s]
+    ("vy", F8),
+    ("vz", F8),
+    ("wx", F8),  # angular velocity at the start [rad/s]
+    ("wy", F8),
+    ("wz", F8),
+    ("dvx", F8),  # change of velocity by forces [m/s]
+    ("dvy", F8),
+    ("dvz", F8),
+    ("tau", F8),  # time of its first impact, from the start of the step; dt without one [s]
+    ("held", I8),  # 0: free; else AFTERWARDS or ALWAYS, see `integrate`
+    ("reach", F8),  # farthest a point of it moves in the step [m]
+]
 
 CONTACT: Final[list[Field]] = [
     ("pair", I8),  # row of the pair table
+    ("key", I8),  # of the pair: the same two bodies have the same key in every step
     ("a", U8),
     ("b", U8),
     ("feature", I8),  # which vertices, edges, faces made the point; equal while they do
@@ -113,6 +139,8 @@ PARAMETERS: Final[list[Field]] = [
     ("projection", F8),  # share of (d - slop) removed per step [-]
     ("restitution_speed", F8),  # approach speed above which restitution applies [m/s]
     ("tolerance", F8),  # residual at which sweeping stops [m/s]
+    ("sleep_speed", F8),  # no point of a body at rest is faster [m/s]
+    ("sleep_time", F8),  # for which a body is at rest before it sleeps [s]
     ("cache_distance", F8),  # farthest a contact point may have moved to keep its impulse [m]
     ("cache_normal_cosine", F8),  # least cosine between old and new normal [-]
     ("residuals_from", I8),  # first and last step whose sweeps are written
@@ -128,9 +156,15 @@ COUNTERS: Final[list[Field]] = [
     ("cached", I8),  # rows in use in the cache
     ("cached_dt", F8),  # timestep the cached impulses belong to [s]
     ("sweeps", I8),  # sweeps spent in the last step
+    ("stronge", I8),  # 1 when Stronge's law replaced Newton's in the last step
+    ("newton_steps", I8),  # of Newton's method since the start
+    ("sharpen", I8),  # 1 when the next solve must end sharper than its tolerance
     ("projection_sweeps", I8),  # and by the positional projection, 0: nothing had to move
     ("residual_contact", I8),  # contact with the largest residual, -1 without contacts
     ("residual", F8),  # of the last step [m/s]
+    ("unsolved", I8),  # 1 when that is above the tolerance asked for
+    ("rows", I8),  # contacts of the last step that were recorded
+    ("residual_row", I8),  # the one of them with the largest residual
     ("body", I8),  # body that diverged
     ("cause", I8),  # NOT_FINITE or TURNS_TOO_FAST
     ("step_rows", I8),  # trace rows written since the caller emptied the columns
@@ -171,7 +205,43 @@ CONTACT_ROW: Final[list[Field]] = [
     ("impulse_n", F8),  # [N s]
     ("force_n", F8),  # impulse / dt [N]
     ("inverse_effective_mass", F8),  # k_n [1/kg]
+    ("target", F8),  # b + b_rest: the row asked v_n + target + gamma lambda_n >= 0 [m/s]
     ("residual", F8),  # of the row [m/s]
+]
+
+# Where a tolerance is asked for.
+UNSOLVED_ROW: Final[list[Field]] = [("unsolved", I8)]  # 1 when the residual stayed above it
+
+# Where bodies may sleep.
+AWAKE_ROW: Final[list[Field]] = [("awake", I8)]  # movable bodies that do not sleep
+
+# Where Newton's law of restitution could give an impact energy.
+STRONGE_ROW: Final[list[Field]] = [("stronge", I8)]  # 1 when Stronge's law took its place
+
+# Further columns where there is friction: impulse on B along t1, t2; slip is the tangential
+# velocity of B's surface relative to A's after the solve.
+FRICTION_ROW: Final[list[Field]] = [
+    ("impulse_t1", F8),  # [N s]
+    ("impulse_t2", F8),
+    ("slip_t1", F8),  # [m/s]
+    ("slip_t2", F8),
+    *[(f"t1{axis}", F8) for axis in "xyz"],  # t2 = n x t1 [-]
+    ("friction", F8),  # mu [-]
+]
+
+# Where contacts resist relative turning; spin is the angular velocity of B relative to A after the
+# solve, about the normal and the tangents.
+TORSION_ROW: Final[list[Field]] = [
+    ("angular_impulse_n", F8),  # on B, about the normal [N m s]
+    ("spin_n", F8),  # [rad/s]
+    ("torsional_friction", F8),  # coefficient of the pair [m]
+]
+ROLLING_ROW: Final[list[Field]] = [
+    ("angular_impulse_t1", F8),
+    ("angular_impulse_t2", F8),
+    ("spin_t1", F8),
+    ("spin_t2", F8),
+    ("rolling_friction", F8),
 ]
 
 RESIDUAL_ROW: Final[list[Field]] = [("step", I8), ("sweep", I8), ("residual", F8)]

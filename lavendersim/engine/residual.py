@@ -3,41 +3,86 @@
 Natural map of the complementarity 0 <= lambda_n, 0 <= w with w = v_n + target + gamma lambda_n:
     r = | min((k_n + gamma) lambda_n, w) |
 zero exactly at a solution, continuous, and in velocity units because lambda is scaled by the row's
-own inverse mass. The residual of a step is the largest over its rows.
+own inverse mass. Of friction, with the disc (or the pyramid's square) of radius mu lambda_n:
+    r_t = | k_t lambda_t - proj(k_t lambda_t - v_t) |
+Of what resists turning, the same maps in rad/s times a lever (`spin_block`). A contact's residual
+is the largest of them, the step's the largest over its contacts.
 """
 
 from __future__ import annotations
 
+from math import sqrt
+
+from .block import make_relative_velocity
 from .compile import kernel
 from .contact import make_normal_velocity
 from .spec import Spec
+from .spin_block import make_spin_residual, resists_turning
 
 
 def make_row_residual(spec: Spec):
-    """Return `kernel(contact, v_n) -> r` [m/s]."""
+    """Return `kernel(contact, va, vb) -> (r, v_n)` [m/s]."""
     compliant = spec.has("compliance")
+    friction = spec.has("friction")
+    pyramid = spec.friction_cone == "pyramid"
+    moving_surface = spec.has("surface_velocity")
+    spins, spin_residual = resists_turning(spec), make_spin_residual(spec)
+    normal_velocity = make_normal_velocity(spec)
+    relative_velocity = make_relative_velocity(spec)
 
-    def row_residual(contact, v_n):
+    def normal_residual(contact, v_n):
         w = v_n + contact.target
         if compliant:
             w += contact.gamma * contact.lambda_n
         # A NaN in the first place of min stays, in the second it is dropped.
         return abs(min(w, contact.lambda_n / contact.inv_k))
 
-    return kernel(row_residual, spec)
+    normal_residual = kernel(normal_residual, spec)
+
+    def row_residual(contact, va, vb):
+        v_n = normal_velocity(contact, va, vb)
+        return normal_residual(contact, v_n), v_n
+
+    def block_residual(contact, va, vb):
+        x, y, z = relative_velocity(contact, va, vb)
+        v_n = contact.nx * x + contact.ny * y + contact.nz * z
+        v_1 = contact.t1x * x + contact.t1y * y + contact.t1z * z
+        v_2 = contact.t2x * x + contact.t2y * y + contact.t2z * z
+        if moving_surface:
+            v_1 += contact.surface_1
+            v_2 += contact.surface_2
+        held_1, held_2 = contact.k_t * contact.lambda_1, contact.k_t * contact.lambda_2
+        limit = contact.k_t * contact.mu * contact.lambda_n
+        new_1, new_2 = held_1 - v_1, held_2 - v_2
+        if pyramid:
+            new_1 = min(max(new_1, -limit), limit)
+            new_2 = min(max(new_2, -limit), limit)
+        else:
+            squared = new_1 * new_1 + new_2 * new_2
+            if squared > limit * limit:
+                scale = limit / sqrt(squared)
+                new_1, new_2 = new_1 * scale, new_2 * scale
+        new_1, new_2 = new_1 - held_1, new_2 - held_2
+        r_t = sqrt(new_1 * new_1 + new_2 * new_2)
+        if spins:
+            r_s = spin_residual(contact, va, vb)
+            if r_s > r_t or r_s != r_s:
+                r_t = r_s
+        r_n = normal_residual(contact, v_n)
+        return (r_t if r_t > r_n or r_t != r_t else r_n), v_n
+
+    return kernel(block_residual if friction else row_residual, spec)
 
 
 def make_residual(spec: Spec):
     """Return `kernel(contacts, count, velocities) -> (largest residual [m/s], its contact)`."""
-    normal_velocity = make_normal_velocity(spec)
     row_residual = make_row_residual(spec)
 
     def residual(contacts, count, velocities):
         largest, worst = 0.0, -1
         for c in range(count):
             contact = contacts[c]
-            v_n = normal_velocity(contact, velocities[contact.a], velocities[contact.b])
-            r = row_residual(contact, v_n)
+            r, _ = row_residual(contact, velocities[contact.a], velocities[contact.b])
             # A NaN wins and stays, or divergence would pass for convergence.
             if worst < 0 or r > largest or r != r:
                 largest, worst = r, c

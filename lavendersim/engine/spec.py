@@ -19,6 +19,7 @@ class Spec(NamedTuple):
     record: whether kernels write trace rows.
     record_residuals: whether the residual of every sweep is evaluated and may be written.
     tolerance: whether sweeping stops at a residual.
+    friction_cone: disc, or pyramid (|lambda_1|, |lambda_2| <= mu lambda_n, for study).
     """
 
     effects: tuple[str, ...] = ()
@@ -27,6 +28,7 @@ class Spec(NamedTuple):
     record: bool = True
     record_residuals: bool = False
     tolerance: bool = False
+    friction_cone: str = "disc"
 
     def has(self, effect: str) -> bool:
         """Whether `effect` is part of this engine."""

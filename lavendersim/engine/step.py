@@ -1,7 +1,7 @@
 """The step on one screen. A `Spec` enters, the kernel `advance` composed for it leaves.
 
-collide      contacts at the pose the step begins with
 accelerate   v += dt * forces
+collide      contacts at the pose the step begins with, and those the step may make
 append       each contact: frame, effective mass, what is captured once
 warm start   impulses of contacts that persist
 solve        velocities that respect every contact, and the trace rows of contacts
@@ -16,69 +16,46 @@ from functools import cache
 from typing import Any
 
 from . import ordering
-from .collide import narrow_phase
+from .collide import broad_phase, narrow_phase
 from .compile import chain, kernel
-from .contact import make_append_contact, make_apply_impulse
-from .effects import EFFECTS, gyroscopic, projection, rotation, warm_start
+from .contact import make_append_contact, make_apply_start
+from .effects import (
+    EFFECTS,
+    friction,
+    impact_time,
+    projection,
+    sleeping,
+    surface_fields,
+    surface_velocity,
+    warm_start,
+)
+from .effects import compound as compound_effect
+from .impact_energy import make_note, make_settle, watches
+from .integrate import (
+    keeps_motion,
+    make_begin,
+    make_classify,
+    make_integrate,
+    make_undo,
+)
 from .kernel_cache import cached
 from .record import make as make_record
-from .records import (
-    CONTACTS_FULL,
-    DIVERGED,
-    NOT_FINITE,
-    ROWS_FULL,
-    RUNNING,
-    TURNS_TOO_FAST,
-)
-from .rotation import turn
+from .records import CONTACTS_FULL, DIVERGED, PAIRS_FULL, ROWS_FULL, RUNNING, WOKEN
 from .solvers import SOLVERS
 from .spec import Spec
 
 
-def make_integrate(spec: Spec) -> Any:
-    """Return `kernel(bodies, velocities, pseudo, moved, dt) -> (diverged body or -1, cause)`."""
-    turns, torque, projects = (
-        spec.has("rotation"),
-        spec.has("contact_torque"),
-        spec.has("projection"),
-    )
-    integrate_rotation = (gyroscopic if spec.has("gyroscopic") else rotation).make(spec)
-
-    def integrate(bodies, velocities, pseudo, moved, dt):
-        for i in range(bodies.shape[0]):
-            body, v = bodies[i], velocities[i]
-            if body.inv_m > 0.0:
-                body.x += v.vx * dt
-                body.y += v.vy * dt
-                body.z += v.vz * dt
-                solved = True
-                if turns:
-                    solved = integrate_rotation(body, v, dt)
-                if projects:
-                    if moved:
-                        u = pseudo[i]
-                        body.x += u.vx
-                        body.y += u.vy
-                        body.z += u.vz
-                        if torque:
-                            turn(body, u.wx, u.wy, u.wz)
-                # x - x is 0 for finite numbers only; one sum tests them all. Speeds enter squared:
-                # one whose square overflows has no energy, and would turn a quaternion into zero.
-                total = body.x + body.y + body.z + v.vx * v.vx + v.vy * v.vy + v.vz * v.vz
-                if turns:
-                    total += body.qw + v.wx * v.wx + v.wy * v.wy + v.wz * v.wz
-                if total - total != 0.0:
-                    return i, NOT_FINITE
-                if not solved:
-                    return i, TURNS_TOO_FAST
-        return -1, NOT_FINITE
-
-    return kernel(integrate, spec)
+def make_find_pairs(spec: Spec) -> Any:
+    """Return the kernel of the broad phase; without one there is nothing to call."""
+    if not spec.has("broad_phase"):
+        return None
+    return broad_phase.make(spec, surface_fields(spec))
 
 
 def make_advance(spec: Spec) -> Any:
-    """Compose `advance(bodies, velocities, pseudo, bits, contacts, cache, pairs, work, parameters,
-    counter, rows, residual_rows, steps) -> status`; counter says how many steps are done.
+    """Compose `advance(bodies, velocities, motion, pseudo, bits, contacts, cache, pairs, work,
+    parameters, counter, rows, residual_rows, steps) -> status`; counter says how many steps are
+    done.
     """
     collide = narrow_phase.make(spec)
     stage = {
@@ -86,26 +63,46 @@ def make_advance(spec: Spec) -> Any:
         for name in ("accelerate", "capture")
     }
     accelerate = chain(stage["accelerate"], spec)
-    append_contact = make_append_contact(spec, chain(stage["capture"], spec))
-    apply_impulse = make_apply_impulse(spec)
+    append_contact = make_append_contact(
+        spec, chain(stage["capture"], spec), surface_velocity.make(spec)
+    )
+    apply_start = make_apply_start(spec)
+    begin, undo = make_begin(spec, accelerate), make_undo(spec)
+    classify = make_classify(spec)
+    strike = impact_time.make_strike(spec)
+    refresh = friction.make_refresh(spec)
+    place_parts = compound_effect.make(spec)
+    find_pairs = make_find_pairs(spec)
     match_contacts, store_contacts = warm_start.make(spec), warm_start.make_store(spec)
     order_contacts = ordering.make(spec)
     solve = SOLVERS[spec.solver].make(spec)
+    watched = watches(spec)
+    settle: Any = make_settle(spec, solve, classify) if watched else None
+    note: Any = make_note(spec) if watched else None
     integrate = make_integrate(spec)
     project_positions = projection.make(spec)
+    set_pace, wake, doze = (
+        sleeping.make_set_pace(spec),
+        sleeping.make_wake(spec),
+        sleeping.make_doze(spec),
+    )
     record_contacts, record_state = make_record(spec)
-    accelerates, warms, projects = (
+    accelerates, warms, projects, rubs, keeps = (
         bool(stage["accelerate"]),
         spec.has("warm_start"),
         spec.has("projection"),
+        spec.has("friction"),
+        keeps_motion(spec),
     )
+    compound, broad = spec.has("compound"), spec.has("broad_phase")
+    strikes, sleeps = spec.has("impact_time"), spec.has("sleeping")
     records, record_residuals = spec.record, spec.record_residuals
 
     def advance(
-        bodies, velocities, pseudo, bits, contacts, cache, pairs, work, parameters, counter,
-        rows, residual_rows, steps,
+        bodies, velocities, motion, pseudo, bits, contacts, cache, pairs, work, parameters,
+        counter, rows, residual_rows, steps,
     ):  # fmt: skip
-        points, normal, scratch, taken, buckets, keys, order = work
+        points, normal, scratch, taken, buckets, keys, order, space, templates, near = work
         params, counters = parameters[0], counter[0]
         if records:
             if counters.started == 0:
@@ -119,28 +116,66 @@ def make_advance(spec: Spec) -> Any:
             if record_residuals:
                 if counters.residual_rows + params.sweeps + 1 > residual_rows.shape[0]:
                     return ROWS_FULL
-            count = collide(bodies, pairs, contacts, points, normal, scratch)
-            if count < 0:
-                return CONTACTS_FULL
+            if sleeps:
+                set_pace(bodies, velocities)
+            if keeps:
+                begin(bodies, velocities, motion, params)
+            if rubs:
+                refresh(bodies, velocities)
+            if compound:
+                place_parts(bodies)
+            listed = pairs.shape[0]
+            if broad:
+                listed = find_pairs(bodies, velocities, pairs, templates, params, near)
+            count = 0
+            if listed >= 0:
+                count = collide(
+                    bodies, motion, pairs, listed, contacts, points, normal, scratch, params.dt
+                )
+            full = RUNNING
+            if listed < 0:
+                full = PAIRS_FULL
+            elif count < 0:
+                full = CONTACTS_FULL
             if records:
-                if counters.contact_rows + count > rows[2].shape[0]:
-                    return ROWS_FULL
-            if accelerates:
+                if full == RUNNING and counters.contact_rows + count > rows[2].shape[0]:
+                    full = ROWS_FULL
+            if sleeps:
+                if full == RUNNING and wake(bodies, contacts, count, params):
+                    full = WOKEN
+            if full != RUNNING:
+                if keeps:
+                    undo(velocities, motion)
+                return full
+            if accelerates and not keeps:
                 for i in range(bodies.shape[0]):
                     if bodies[i].inv_m > 0.0:
                         accelerate(bodies[i], velocities[i], params)
             for c in range(count):
                 contact = contacts[c]
-                append_contact(contact, bodies, velocities, pairs[contact.pair], params)
+                append_contact(contact, bodies, velocities, motion, pairs[contact.pair], params)
+            if watched:
+                for c in range(count):
+                    contact = contacts[c]
+                    note(contact, velocities[contact.a], velocities[contact.b])
+            if strikes:
+                strike(contacts, count, motion, params)
             if warms:
                 match_contacts(contacts, count, bodies, cache, counters, params)
                 for c in range(count):
                     contact = contacts[c]
                     if contact.lambda_n > 0.0:
                         va, vb = velocities[contact.a], velocities[contact.b]
-                        apply_impulse(contact, va, vb, contact.lambda_n)
+                        apply_start(contact, va, vb)
             order_contacts(bodies, contacts, count, taken, buckets, keys, order)
-            solve(contacts, order, count, velocities, params, counters, residual_rows)
+            solve(
+                contacts, order, count, bodies, velocities, space, params, counters, residual_rows
+            )
+            if watched:
+                settle(
+                    contacts, order, count, bodies, velocities, motion, space, params, counters,
+                    residual_rows,
+                )  # fmt: skip
             if records:
                 record_contacts(contacts, count, velocities, params, counters, rows)
             if warms:
@@ -149,8 +184,12 @@ def make_advance(spec: Spec) -> Any:
                 counters.projection_sweeps = project_positions(
                     contacts, order, count, velocities, pseudo, params
                 )
+            if keeps:
+                classify(contacts, count, motion, params)
             moved = counters.projection_sweeps > 0
-            diverged, cause = integrate(bodies, velocities, pseudo, moved, params.dt)
+            diverged, cause = integrate(bodies, velocities, motion, pseudo, moved, params.dt)
+            if sleeps:
+                doze(bodies, velocities, motion, contacts, count, taken, params)
             counters.step += 1
             counters.contacts = count
             if records:

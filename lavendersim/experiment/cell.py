@@ -13,8 +13,8 @@ from pydantic import ValidationError
 from lavendersim.errors import ConfigError
 from lavendersim.experiment.messages import report_errors
 from lavendersim.experiment.models import CellSource
-from lavendersim.experiment.node import Node
-from lavendersim.experiment.placement import PlacementError
+from lavendersim.experiment.node import Node, Path
+from lavendersim.experiment.placement import SceneError
 from lavendersim.experiment.references import check_names
 from lavendersim.experiment.report import Report
 from lavendersim.experiment.resolved import CellConfig, resolve_cell
@@ -43,12 +43,17 @@ def build_cell(root: Node, point: Point, report: Report) -> CellConfig | None:
         return None
     try:
         return resolve_cell(source)
-    except PlacementError as error:
-        release = tree.get("scene", "bodies", error.body, "release")
-        place = (release.get(error.key) or release) if release is not None else tree
-        report.add(place.mark, str(error))
+    except SceneError as error:
+        report.add(_deepest(tree, error.path).mark, str(error))
         report.close_round()
         return None
+
+
+def _deepest(tree: Node, path: Path) -> Node:
+    """Return the node at the path, or the last one on the way to it."""
+    for step in path:
+        tree = tree.get(step) or tree
+    return tree
 
 
 def _own(tree: Node) -> dict[str, Any]:

@@ -6,7 +6,7 @@ no `kind`: the judgement's own key says it, so the config reads as a sentence:
     - {name: rebound, measure: rebound, at: {e: 0.8}, between: [0.62, 0.68]}
 
 Judged cell by cell: `between`, `at_most`, `at_least`, `exactly`, `equals`, `row`.
-Judged across cells: `increasing`, `decreasing`, `ratio`, `crosses`.
+Judged across cells: `increasing`, `decreasing`, `ratio`, `order`, `crosses`.
 An expectation that selects no cell fails, and so does NaN: a check that cannot fail is none.
 
 What this asks of the loader: `sweep` is one mapping of axes or a list of such mappings. A list is
@@ -23,7 +23,7 @@ from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
 from lavendersim.experiment.base import ConfigModel
-from lavendersim.experiment.measure_specs import ClosedForm
+from lavendersim.experiment.measure_base import ClosedForm
 from lavendersim.experiment.names import AxisName, MeasureName
 from lavendersim.experiment.quantities import Quantity
 from lavendersim.experiment.selection import Selection
@@ -33,7 +33,7 @@ Tolerance = Annotated[float, Quantity(minimum=0)]
 Reduction = Literal["max", "min", "mean"]
 
 CELL_JUDGEMENTS = ("between", "at_most", "at_least", "exactly", "equals", "row")
-SWEEP_JUDGEMENTS = ("increasing", "decreasing", "ratio", "crosses")
+SWEEP_JUDGEMENTS = ("increasing", "decreasing", "ratio", "order", "crosses")
 
 
 class Equals(ConfigModel):
@@ -75,12 +75,31 @@ class Ratio(ConfigModel):
         description="rows are compared number by number until numerator and denominator both are "
         "at or below this round-off level [measure's unit]",
     )
+    negligible: Tolerance = Field(
+        default=0.0,
+        description="a numerator at or below this passes, whatever it is divided by [measure's "
+        "unit]",
+    )
 
     @model_validator(mode="after")
     def _bounded(self) -> Ratio:
         if self.at_most is None and self.at_least is None:
             raise _refusal("expected at_most or at_least")
         return self
+
+
+class Order(ConfigModel):
+    """The p of measure ~ axis^p: the slope of a line through their logarithms (least squares)."""
+
+    along: AxisName = Field(description="the axis, such as the timestep; its values are above 0")
+    reduce: Reduction = Field(default="max", description="how the other axes become one number")
+    at_least: Number = Field(description="smallest order allowed [-]")
+    at_most: Number | None = Field(default=None, description="largest order allowed [-]")
+    negligible: Tolerance = Field(
+        default=0.0,
+        description="passes where every number is at or below this, round-off has no order "
+        "[measure's unit]",
+    )
 
 
 class Crosses(ConfigModel):
@@ -114,6 +133,7 @@ class ExpectSpec(ConfigModel):
     increasing: Trend | None = Field(default=None, description="strictly rises along an axis")
     decreasing: Trend | None = Field(default=None, description="strictly falls along an axis")
     ratio: Ratio | None = Field(default=None, description="ratio between two selections of cells")
+    order: Order | None = Field(default=None, description="the power of an axis it goes with")
     crosses: Crosses | None = Field(default=None, description="where it rises through a level")
 
     @model_validator(mode="after")

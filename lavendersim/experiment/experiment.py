@@ -58,7 +58,13 @@ class Experiment:
 
 def resolved_yaml(cell: Cell) -> str:
     """Return a cell's resolved config as YAML text, in the order of the file format."""
-    text: str = yaml.safe_dump(
-        cell.resolved, sort_keys=False, allow_unicode=True, default_flow_style=None
+    # libyaml's writer takes a tenth of the time, where PyYAML was built with it.
+    dumper = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
+    text: str = yaml.dump(
+        cell.resolved,
+        Dumper=dumper,
+        sort_keys=False,
+        allow_unicode=True,
+        default_flow_style=None,
     )
     return text

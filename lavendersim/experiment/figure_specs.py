@@ -12,14 +12,16 @@ from pydantic import Field
 
 from lavendersim.experiment.base import ConfigModel
 from lavendersim.experiment.expect_specs import Reduction
-from lavendersim.experiment.measure_specs import ClosedForm
+from lavendersim.experiment.measure_base import ClosedForm
 from lavendersim.experiment.names import AxisName, BodyName, MeasureName, PlaneName
 from lavendersim.experiment.quantities import Quantity
 from lavendersim.experiment.selection import Selection
 
 Scale = Literal["linear", "log"]
 Number = Annotated[float, Quantity()]
-Column = Literal["penetration", "normal_force", "clearance", "energy", "residual"]
+Column = Literal[
+    "penetration", "normal_force", "clearance", "energy", "residual", "drift", "overlap"
+]
 
 
 class Ideal(ConfigModel):
@@ -77,6 +79,9 @@ class MeasureAgainstAxis(_Panel):
         default=1.0, description="multiplies measure and ideal for display (1000: m as mm)"
     )
     x_factor: Number = Field(default=1.0, description="multiplies the axis values for display")
+    floor: Number | None = Field(
+        default=None, description="numbers below are round-off and drawn at this height"
+    )
     onsets: tuple[Onset, ...] = Field(default=(), description="crossings to mark")
 
 
@@ -99,7 +104,8 @@ class TimeSeries(_Panel):
 
     kind: Literal["time_series"]
     column: Column = Field(
-        description="penetration [m], normal_force [N], clearance [m], energy [J], residual [m/s]"
+        description="penetration [m], normal_force [N], clearance [m], energy [J], residual [m/s], "
+        "drift [m] of any centre from its place at 0.5 s, overlap [m] of any two bodies, from poses"
     )
     body: BodyName | None = Field(
         default=None, description="the body, for penetration, normal_force and clearance"
@@ -111,13 +117,26 @@ class TimeSeries(_Panel):
     window: tuple[Number, Number] | None = Field(
         default=None, description="[from, to] around that zero [s]"
     )
+    every: Annotated[int, Quantity(whole=True, minimum=1)] = Field(
+        default=1, description="for overlap: every k-th logged step, counted back from the last [-]"
+    )
     ideal: Ideal | None = Field(default=None, description="the constant it approaches")
     factor: Number = Field(default=1.0, description="multiplies the values for display")
     x_factor: Number = Field(default=1.0, description="multiplies the time for display (1000: ms)")
 
 
+class FreeRotation(_Panel):
+    """Angular velocity in body axes: Jacobi's solution as lines, the log as markers."""
+
+    kind: Literal["free_rotation"]
+    body: BodyName = Field(description="the free body; the only movable one")
+    markers: Annotated[int, Quantity(whole=True, minimum=2)] = Field(
+        default=60, description="how many logged states are marked, evenly spread [-]"
+    )
+
+
 PanelSpec = Annotated[
-    MeasureAgainstAxis | RowAgainstIndex | TimeSeries, Field(discriminator="kind")
+    MeasureAgainstAxis | RowAgainstIndex | TimeSeries | FreeRotation, Field(discriminator="kind")
 ]
 
 

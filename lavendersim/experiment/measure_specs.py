@@ -1,76 +1,25 @@
 """One entry of a config's `measure` section in; a validated MeasureSpec out.
 
 A measure turns the log of one cell into one number (or one row of numbers). What each kind
-computes stands in `lavendersim/measures`, one function per kind. Every kind may carry
-
-- `at`: the cells in which the measure means something (all of them when absent), and
-- `over` or `against`: a closed form; the measure then becomes the fraction value / closed form, or
-  the relative distance |value / closed form - 1|.
+computes stands in `lavendersim/measures`, one function per kind. What all kinds may carry stands in
+`measure_base`; kinds that read motion from the logged poses in `motion_specs`, kinds that hold a
+log against a law of mechanics in `law_specs`.
 """
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, Self
+from typing import Annotated, Literal
 
-from pydantic import Field, model_validator
-from pydantic_core import PydanticCustomError
+from pydantic import Field
 
-from lavendersim.experiment.base import ConfigModel
+from lavendersim.experiment.law_specs import LawSpec
+from lavendersim.experiment.measure_base import Measure, PairMeasure, Seconds
+from lavendersim.experiment.motion_specs import MotionSpec
 from lavendersim.experiment.names import BodyName, PlaneName
 from lavendersim.experiment.quantities import Quantity
-from lavendersim.experiment.selection import Selection
-
-FormName = Literal[
-    "newton_impulse",
-    "newton_separation_velocity",
-    "inverse_effective_mass",
-    "impact_speed",
-    "drop_impulse",
-    "rebound_height",
-    "release_height",
-    "weight",
-    "slop",
-    "steady_penetration_above_slop",
-]
-Seconds = Annotated[float, Quantity("s", minimum=0)]
 
 
-class ClosedForm(ConfigModel):
-    """A named formula, evaluated from the cell's resolved config alone, never from its log."""
-
-    form: FormName = Field(description="name of the formula (measures/closed_forms.py)")
-    bodies: tuple[BodyName, ...] = Field(
-        default=(), description="the bodies it speaks of, in order: (A, B), (body, plane), ..."
-    )
-
-
-class _Measure(ConfigModel):
-    at: Selection = Field(
-        default_factory=dict, description="the cells it is taken in; all when absent"
-    )
-    over: ClosedForm | None = Field(
-        default=None, description="turn the value into value / closed form, without unit"
-    )
-    against: ClosedForm | None = Field(
-        default=None, description="turn the value into |value / closed form - 1|, without unit"
-    )
-
-    @model_validator(mode="after")
-    def _one_form(self) -> Self:
-        if self.over is not None and self.against is not None:
-            sentence = "expected at most one of over, against"
-            raise PydanticCustomError("lavender", "{sentence}", {"sentence": sentence})
-        return self
-
-
-class _Pair(_Measure):
-    body: BodyName = Field(description="the body the measure is taken on")
-    other: BodyName | None = Field(
-        default=None, description="only contacts with this body; all contacts when absent"
-    )
-
-
-class FirstApex(_Measure):
+class FirstApex(Measure):
     """Surface clearance [m] at the first apex after the first contact; 0 if it never leaves."""
 
     kind: Literal["first_apex"]
@@ -78,51 +27,51 @@ class FirstApex(_Measure):
     above: PlaneName = Field(description="the plane the clearance is taken above")
 
 
-class ImpactImpulse(_Pair):
+class ImpactImpulse(PairMeasure):
     """Sum of the normal impulses [N s] of the first unbroken run of pushing steps."""
 
     kind: Literal["impact_impulse"]
 
 
-class StepImpulse(_Pair):
+class StepImpulse(PairMeasure):
     """Sum of the normal impulses [N s] of one step."""
 
     kind: Literal["step_impulse"]
     step: Annotated[int, Quantity("", minimum=1, whole=True)] = Field(description="which step [-]")
 
 
-class ApproachVelocity(_Pair):
+class ApproachVelocity(PairMeasure):
     """Normal velocity [m/s] of the first contact before its step's solve; negative: approaching."""
 
     kind: Literal["approach_velocity"]
 
 
-class SeparationVelocity(_Pair):
+class SeparationVelocity(PairMeasure):
     """Normal velocity [m/s] of the first contact after its step's solve."""
 
     kind: Literal["separation_velocity"]
 
 
-class InverseEffectiveMass(_Pair):
+class InverseEffectiveMass(PairMeasure):
     """Inverse effective mass k_n [1/kg] of the first contact."""
 
     kind: Literal["inverse_effective_mass"]
 
 
-class PeakForce(_Pair):
+class PeakForce(PairMeasure):
     """Largest normal force [N] on the body in any step (an average over that step)."""
 
     kind: Literal["peak_force"]
 
 
-class StepsAboveForce(_Pair):
+class StepsAboveForce(PairMeasure):
     """Number of steps whose normal force on the body exceeds a threshold."""
 
     kind: Literal["steps_above_force"]
     threshold: Annotated[float, Quantity("N", minimum=0)] = Field(description="threshold [N]")
 
 
-class ImpulseBalance(_Measure):
+class ImpulseBalance(Measure):
     """Relative distance of impulse from momentum change plus weight times time, whole scene."""
 
     kind: Literal["impulse_balance"]
@@ -132,13 +81,13 @@ class ImpulseBalance(_Measure):
     )
 
 
-class MomentumDrift(_Measure):
+class MomentumDrift(Measure):
     """Largest change of the scene's momentum over the run, over its largest momentum."""
 
     kind: Literal["momentum_drift"]
 
 
-class SteadyForce(_Pair):
+class SteadyForce(PairMeasure):
     """Normal force [N] on the body at the end of the run."""
 
     kind: Literal["steady_force"]
@@ -148,7 +97,7 @@ class SteadyForce(_Pair):
     )
 
 
-class SteadyPenetration(_Pair):
+class SteadyPenetration(PairMeasure):
     """Mean of the body's deepest penetration [m] at the end of the run."""
 
     kind: Literal["steady_penetration"]
@@ -158,34 +107,34 @@ class SteadyPenetration(_Pair):
     )
 
 
-class MaxPenetration(_Pair):
+class MaxPenetration(PairMeasure):
     """Deepest penetration [m] of the body in any step."""
 
     kind: Literal["max_penetration"]
 
 
-class SettlingTime(_Pair):
+class SettlingTime(PairMeasure):
     """Time [s] from the first contact until the penetration stays below a threshold."""
 
     kind: Literal["settling_time"]
     threshold: Annotated[float, Quantity("m", above=0)] = Field(description="threshold [m]")
 
 
-class ResidualBySweep(_Measure):
+class ResidualBySweep(Measure):
     """Residual [m/s] before sweep 1 and after each sweep (a row of numbers) of one step."""
 
     kind: Literal["residual_by_sweep"]
     after: Seconds = Field(description="the first step that ends after this time [s] is taken")
 
 
-class FinalResidual(_Measure):
+class FinalResidual(Measure):
     """Residual [m/s] after the last sweep of one step."""
 
     kind: Literal["final_residual"]
     after: Seconds = Field(description="the first step that ends after this time [s] is taken")
 
 
-class EnergyByBounce(_Measure):
+class EnergyByBounce(Measure):
     """Relative change of mechanical energy at the apex after bounce 1, 2, ... (a row)."""
 
     kind: Literal["energy_by_bounce"]
@@ -196,7 +145,7 @@ class EnergyByBounce(_Measure):
     )
 
 
-class EnergyAfterBounces(_Measure):
+class EnergyAfterBounces(Measure):
     """The last number of `energy_by_bounce`."""
 
     kind: Literal["energy_after_bounces"]
@@ -207,7 +156,7 @@ class EnergyAfterBounces(_Measure):
     )
 
 
-class SimulatedDuration(_Measure):
+class SimulatedDuration(Measure):
     """Simulated time [s] at the last logged step."""
 
     kind: Literal["simulated_duration"]
@@ -232,6 +181,8 @@ MeasureSpec = Annotated[
     | FinalResidual
     | EnergyByBounce
     | EnergyAfterBounces
-    | SimulatedDuration,
+    | SimulatedDuration
+    | MotionSpec
+    | LawSpec,
     Field(discriminator="kind"),
 ]

@@ -12,7 +12,13 @@ from lavendersim.experiment.expect_specs import ExpectSpec
 from lavendersim.experiment.figure_specs import FigureSpec
 from lavendersim.experiment.measure_specs import MeasureSpec
 from lavendersim.experiment.names import BodyName, NewName
-from lavendersim.experiment.quantities import Position, Quantity, either
+from lavendersim.experiment.quantities import (
+    AngularVelocity,
+    Position,
+    Quantity,
+    Velocity,
+    either,
+)
 from lavendersim.experiment.scene_models import Scene
 
 
@@ -20,12 +26,18 @@ class Event(ConfigModel):
     """A change to one body during the run, applied before the first step that starts at `at`."""
 
     at: Annotated[float, Quantity("s", minimum=0)] = Field(description="[s] simulated time")
-    body: BodyName = Field(description="name of a movable body")
+    body: BodyName = Field(description="name of a body that is not fixed")
     scale_mass: Annotated[float, Quantity(above=0)] | None = Field(
         default=None, description="factor on mass and inertia"
     )
     teleport: Position | None = Field(
         default=None, description="[m] new centre of mass; clears the body's cached contacts"
+    )
+    velocity: Velocity | None = Field(
+        default=None, description="[m/s] new velocity of the centre of mass"
+    )
+    angular_velocity: AngularVelocity | None = Field(
+        default=None, description="[rad/s] new angular velocity, world frame"
     )
     contact_cache: Literal["keep", "clear"] | None = Field(
         default=None,
@@ -36,6 +48,10 @@ class Event(ConfigModel):
 
 Count = Annotated[int, Quantity(whole=True, minimum=1, maximum=1_000_000)]
 CountOrNone = Annotated[int, Quantity(whole=True, minimum=0, maximum=1_000_000)]
+Solver = Literal["projected_gauss_seidel", "nonsmooth_conjugate_gradient", "adaptive"]
+Impacts = Literal["captured", "at_surface"]
+Integrator = Literal["semi_implicit_euler", "midpoint"]
+FrictionCone = Literal["disc", "pyramid"]
 
 
 class NumericsChange(ConfigModel):
@@ -47,9 +63,7 @@ class NumericsChange(ConfigModel):
     timestep: Annotated[Fraction, Quantity("s", above=0, exact=True)] | None = Field(
         default=None, description="[s] a ratio such as 1/480 is kept exactly"
     )
-    solver: Literal["projected_gauss_seidel"] | None = Field(
-        default=None, description="the solver of the contact problem"
-    )
+    solver: Solver | None = Field(default=None, description="the solver of the contact problem")
     sweeps: Count | None = Field(default=None, description="most velocity sweeps per step")
     tolerance: Annotated[float, Quantity("m/s", above=0)] | None = Field(
         default=None, description="[m/s] residual at which sweeping stops early; null: never"
@@ -79,6 +93,29 @@ class NumericsChange(ConfigModel):
     cache_normal_cosine: Annotated[float, Quantity(minimum=-1, maximum=1)] | None = Field(
         default=None,
         description="smallest cosine between a contact's normal and its cached match's",
+    )
+    speculative: bool | None = Field(
+        default=None, description="contacts are made ahead of touching; a gap may close, no more"
+    )
+    impacts: Impacts | None = Field(
+        default=None,
+        description="when restitution acts: captured (at the start of the step that finds the "
+        "contact) or at_surface (at the time within the step when the surfaces meet)",
+    )
+    integrator: Integrator | None = Field(
+        default=None, description="how poses follow from velocities between contacts"
+    )
+    friction_cone: FrictionCone | None = Field(
+        default=None, description="disc: Coulomb's; pyramid: each tangent on its own, for study"
+    )
+    sleeping: bool | None = Field(
+        default=None, description="bodies that have come to rest are left out until touched"
+    )
+    sleep_speed: Annotated[float, Quantity("m/s", minimum=0)] | None = Field(
+        default=None, description="[m/s] speed of every point below which a body counts as at rest"
+    )
+    sleep_time: Annotated[float, Quantity("s", minimum=0)] | None = Field(
+        default=None, description="[s] how long a body is at rest before it sleeps"
     )
 
 

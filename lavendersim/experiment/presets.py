@@ -28,13 +28,26 @@ CHAPTER: Final[dict[str, PresetValue]] = {
     "restitution_threshold": 2.0,  # in units of g dt
     "cache_distance": 0.02,  # [m]
     "cache_normal_cosine": 0.95,
+    "speculative": False,
+    "impacts": "captured",
+    "integrator": "semi_implicit_euler",
+    "friction_cone": "disc",
+    "sleeping": False,
+    "sleep_speed": 0.005,  # [m/s]
+    "sleep_time": 0.5,  # [s]
 }
 
 # No gain: projection alone repairs penetration, so resting repair never becomes bounce.
 DEFAULT: Final[dict[str, PresetValue]] = CHAPTER | {
-    "stabilisation_gain": 0.0,
-    "slop": 0.0005,
+    "solver": "adaptive",
     "sweeps": 50,
+    "tolerance": 1e-9,
+    "stabilisation_gain": 0.0,
+    "slop": 1e-7,
+    "projection_sweeps": 20,
+    "speculative": True,
+    "impacts": "at_surface",
+    "integrator": "midpoint",
 }
 
 PRESETS: Final = MappingProxyType({"chapter": CHAPTER, "default": DEFAULT})

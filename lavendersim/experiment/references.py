@@ -11,12 +11,13 @@ from lavendersim.experiment.found import nearest, quoted
 from lavendersim.experiment.messages import name_of
 from lavendersim.experiment.names import NamedKind
 from lavendersim.experiment.node import Mark, Node
+from lavendersim.experiment.population import body_names
 from lavendersim.experiment.report import Report
 from lavendersim.experiment.scalars import exact, written
 from lavendersim.experiment.walk import Model, Place, places
 
 ANY_VALUE = "any"
-SOLIDS = ("sphere", "box")
+SOLIDS = ("sphere", "box", "capsule", "cylinder", "hull", "compound")
 
 
 def check_references(root: Node, model: Model, axes: Collection[str], report: Report) -> None:
@@ -30,7 +31,7 @@ def check_names(root: Node, model: Model, axes: Collection[str], report: Report)
     values = swept_values(root)
     bodies = root.get("scene", "bodies")
     known: dict[NamedKind, Collection[str]] = {
-        "body": bodies.entries if bodies is not None else {},
+        "body": dict.fromkeys(body_names(root)),
         "plane": bodies.entries if bodies is not None else {},
         "measure": _entries(root, "measure"),
         "surface": _entries(root, "scene", "surfaces"),

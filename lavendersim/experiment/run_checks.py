@@ -1,4 +1,4 @@
-"""Checks of events, the run's length and its record, against the scene and the numerics.
+"""Checks of events, forces, the run's length and its record, against scene and numerics.
 
 Works on the tree, and says nothing about values of a wrong type: those are refused elsewhere.
 """
@@ -8,12 +8,14 @@ from __future__ import annotations
 from fractions import Fraction
 
 from lavendersim.experiment.messages import place_of
-from lavendersim.experiment.node import Node
+from lavendersim.experiment.node import Node, key_mark
+from lavendersim.experiment.population import body_node
 from lavendersim.experiment.presets import PRESETS
 from lavendersim.experiment.report import Report
 from lavendersim.experiment.scalars import exact
-from lavendersim.experiment.scene_checks import is_static, kind_of
+from lavendersim.experiment.scene_checks import is_kinematic, is_static, kind_of
 
+_CHANGES = ("scale_mass", "teleport", "velocity", "angular_velocity", "contact_cache")
 MOST_STEPS = 100_000_000  # 1e8 steps of a small scene take minutes and log tens of gigabytes
 
 
@@ -27,6 +29,10 @@ def check_run(root: Node, report: Report) -> None:
     for index, event in enumerate(events.items if events is not None else ()):
         if event.entries:
             _check_event(event, index, root, length, report)
+    forces = root.get("scene", "forces")
+    for index, force in enumerate(forces.items if forces is not None else ()):
+        if force.entries:
+            _check_force(force, index, root, length, report)
     window = root.get("record", "residuals")
     if window is not None and window.entries:
         _check_window(window, length, report)
@@ -78,18 +84,42 @@ def _check_event(event: Node, index: int, root: Node, length: float | None, repo
         sentence = f"at: {at.number:g} s is after the end of the run, duration {length:g} s"
         report.add(at.mark, sentence)
     if body is not None and body.text is not None:
-        target = root.get("scene", "bodies", body.text)
+        target = body_node(root, body.text)
         if target is not None and is_static(target):
             what = "a plane" if kind_of(target) == "plane" else "fixed"
             report.add(body.mark, f'body: "{body.text}" is {what}; expected a movable body')
-    stated = [key for key in ("scale_mass", "teleport", "contact_cache") if event.get(key)]
+        elif target is not None and is_kinematic(target) and event.get("scale_mass"):
+            sentence = f'scale_mass: "{body.text}" is kinematic; a kinematic body has no mass'
+            report.add(key_mark(event, "scale_mass"), sentence)
+    stated = [key for key in _CHANGES if event.get(key)]
     if not stated:
-        sentence = f"{place_of(('events', index))} changes nothing; expected scale_mass, teleport"
-        report.add(event.mark, f"{sentence} or contact_cache")
+        changes = f"{', '.join(_CHANGES[:-1])} or {_CHANGES[-1]}"
+        sentence = f"{place_of(('events', index))} changes nothing; expected {changes}"
+        report.add(event.mark, sentence)
     cache = event.get("contact_cache")
     if cache is not None and cache.text == "keep" and "teleport" in stated:
         sentence = "contact_cache: a teleport always clears the body's cached contacts"
         report.add(cache.mark, sentence)
+
+
+def _check_force(force: Node, index: int, root: Node, length: float | None, report: Report) -> None:
+    body, begin, end = force.get("body"), force.get("from"), force.get("to")
+    if body is not None and body.text is not None:
+        target = body_node(root, body.text)
+        if target is not None and (is_static(target) or is_kinematic(target)):
+            what = "kinematic" if is_kinematic(target) else "fixed"
+            what = "a plane" if kind_of(target) == "plane" else what
+            report.add(body.mark, f'body: "{body.text}" is {what}; expected a movable body')
+    if not force.get("force") and not force.get("torque"):
+        sentence = f"{place_of(('scene', 'forces', index))} does nothing; expected force or torque"
+        report.add(force.mark, sentence)
+    start = 0.0 if begin is None else begin.number
+    if begin is not None and start is not None and length is not None and start > length > 0:
+        sentence = f"from: {start:g} s is after the end of the run, duration {length:g} s"
+        report.add(begin.mark, sentence)
+    elif end is not None and end.number is not None and start is not None and end.number <= start:
+        sentence = f"to: expected a time after from ({start:g} s), found {end.number:g}"
+        report.add(end.mark, sentence)
 
 
 def _check_window(window: Node, length: float | None, report: Report) -> None:

@@ -5,31 +5,72 @@ Works on the tree, and says nothing about values of a wrong type: those are refu
 
 from __future__ import annotations
 
-from lavendersim.experiment.found import near
+from lavendersim.experiment.arrangement_models import MOST_BODIES
+from lavendersim.experiment.body_models import Body
+from lavendersim.experiment.found import near, quoted
 from lavendersim.experiment.messages import missing_key, place_of
 from lavendersim.experiment.node import Mark, Node, Path, key_mark
+from lavendersim.experiment.population import (
+    ARRANGEMENTS,
+    BODIES,
+    described,
+    entries,
+    member_name,
+    members,
+)
 from lavendersim.experiment.references import SOLIDS
 from lavendersim.experiment.report import Report
-from lavendersim.experiment.scene_models import Body
 
-_BODIES: Path = ("scene", "bodies")
-_OF_MOVABLE = ("mass", "density", "velocity", "angular_velocity")
+_OF_MOVING = ("velocity", "angular_velocity")
+_OF_MOVABLE = ("mass", "density", "inertia", "drag")
 
 
 def check_scene(root: Node, report: Report) -> None:
     """Note what is wrong between the values of `scene`."""
-    bodies = root.get(*_BODIES)
+    bodies = root.get(*BODIES)
     if bodies is None or not isinstance(bodies.content, dict):
         return
-    for name, body in bodies.entries.items():
+    for path, body in described(root):
         if body.entries:
-            _check_body(body, (*_BODIES, name), report)
-    if not bodies.entries:
+            _check_body(body, path, report)
+    _check_names_of_members(root, report)
+    gravity = root.get("scene", "gravity")
+    if gravity is not None:
+        _check_gravity(gravity, report)
+    if not any(True for _ in described(root)):
         report.add(bodies.mark, "bodies: expected at least one movable body, found none")
-    elif not any(_may_move(body) for body in bodies.entries.values()):
+    elif not any(_may_move(body) for _, body in described(root)):
         scene = root.get("scene") or root
         sentence = "bodies: nothing can move here; expected at least one body that is not fixed"
         report.add(key_mark(scene, "bodies"), sentence)
+
+
+def _check_gravity(gravity: Node, report: Report) -> None:
+    tilt, slope = _stated(gravity, "tilt_degrees"), _stated(gravity, "slope")
+    if tilt and slope:
+        sentence = "gravity states both tilt_degrees and slope; keep one"
+        report.add(max(tilt, slope), sentence)
+
+
+def _check_names_of_members(root: Node, report: Report) -> None:
+    """Note arrangements that are too large, and those with a body named like one in `bodies`."""
+    single, total = entries(root, *BODIES), 0
+    arrangements = root.get(*ARRANGEMENTS)
+    for name, arrangement in entries(root, *ARRANGEMENTS).items():
+        assert arrangements is not None
+        count = members(arrangement)
+        total += count
+        if total > MOST_BODIES:
+            sentence = f"{name}: {total} bodies in arrangements, expected at most {MOST_BODIES}"
+            report.add(key_mark(arrangements, name), sentence)
+            return
+        numbers = range(1, count + 1)
+        clash = next((n for n in numbers if member_name(name, n) in single), None)
+        if clash is not None:
+            sentence = (
+                f"{name}: its body {quoted(member_name(name, clash))} has a namesake in bodies"
+            )
+            report.add(key_mark(arrangements, name), sentence)
 
 
 def kind_of(body: Node) -> str | None:
@@ -40,8 +81,17 @@ def kind_of(body: Node) -> str | None:
 
 def is_static(body: Node) -> bool:
     """Tell whether a body never moves: a plane, or fixed."""
-    fixed = body.get("fixed")
-    return kind_of(body) == "plane" or (fixed is not None and fixed.content is True)
+    return kind_of(body) == "plane" or _is_true(body, "fixed")
+
+
+def is_kinematic(body: Node) -> bool:
+    """Tell whether a body moves as its velocity says, whatever touches it."""
+    return _is_true(body, "kinematic")
+
+
+def _is_true(body: Node, key: str) -> bool:
+    value = body.get(key)
+    return value is not None and value.content is True
 
 
 def _may_move(body: Node) -> bool:
@@ -63,14 +113,24 @@ def _check_body(body: Node, path: Path, report: Report) -> None:
 
 
 def _check_solid(body: Node, path: Path, report: Report) -> None:
-    _exactly_one_start(body, path, report)
-    if is_static(body):
-        for key in _OF_MOVABLE:
+    if path[:2] == BODIES:
+        _exactly_one_start(body, path, report)
+    fixed, kinematic = is_static(body), is_kinematic(body)
+    if fixed and kinematic:
+        report.add(
+            max(key_mark(body, "fixed"), key_mark(body, "kinematic")),
+            f"{place_of(path)} states both fixed and kinematic; keep one",
+        )
+        return
+    if fixed or kinematic:
+        word = "fixed" if fixed else "kinematic"
+        for key in (*_OF_MOVABLE, *(_OF_MOVING if fixed else ())):
             if mark := _stated(body, key):
-                sentence = f"{key}: {place_of(path)} is fixed; a fixed body has no {_words(key)}"
+                sentence = f"{key}: {place_of(path)} is {word}; a {word} body has no {_words(key)}"
                 report.add(mark, sentence)
         if mark := _stated(body, "release"):
-            sentence = f"release: {place_of(path)} is fixed and stays; state its position"
+            goes = "stays" if fixed else "goes its own way"
+            sentence = f"release: {place_of(path)} is {word} and {goes}; state its position"
             report.add(mark, sentence)
         return
     mass, density = _stated(body, "mass"), _stated(body, "density")
@@ -79,13 +139,31 @@ def _check_solid(body: Node, path: Path, report: Report) -> None:
     elif not mass and not density:
         meaning = "[kg], or a density [kg/m^3], or fixed: true"
         _missing(body, ("mass", "density"), path, meaning, report)
+    _check_inertia(body, path, report)
+
+
+def _check_inertia(body: Node, path: Path, report: Report) -> None:
+    inertia, kind = body.get("inertia"), kind_of(body)
+    if inertia is None or inertia.content is None:
+        return
+    if kind in ("hull", "compound"):
+        sentence = f"inertia: {place_of(path)} is a {kind}; its shape says it, leave it out"
+        report.add(key_mark(body, "inertia"), sentence)
+        return
+    moments = [item.number for item in inertia.items]
+    numbers = sorted(moment for moment in moments if moment is not None)
+    # 1, 2, 3 is a flat body, the limit; written numbers may miss it by their round-off.
+    if len(numbers) == 3 and numbers[2] > (numbers[0] + numbers[1]) * (1.0 + 1e-12):
+        sentence = "inertia: no body has a moment above the sum of the other two"
+        largest = moments.index(numbers[2])
+        report.add(inertia.items[largest].mark, f"{sentence}, found {numbers[2]:g}")
 
 
 def _check_plane(body: Node, path: Path, report: Report) -> None:
     fixed = body.get("fixed")
     if fixed is not None and fixed.content is False:
         report.add(fixed.mark, f"fixed: {place_of(path)} is a plane; planes are always fixed")
-    for key in (*_OF_MOVABLE, "position", "release", "orientation"):
+    for key in (*_OF_MOVABLE, *_OF_MOVING, "kinematic", "position", "release", "orientation"):
         if mark := _stated(body, key):
             instead = (
                 "; its normal and offset say where it is"
@@ -93,6 +171,10 @@ def _check_plane(body: Node, path: Path, report: Report) -> None:
                 else ""
             )
             sentence = f"{key}: {place_of(path)} is a plane; a plane has no {_words(key)}{instead}"
+            if key == "kinematic":
+                sentence = f"kinematic: {place_of(path)} is a plane; planes are always fixed"
+                if not _is_true(body, key):
+                    continue
             report.add(mark, sentence)
 
 

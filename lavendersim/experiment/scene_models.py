@@ -1,112 +1,40 @@
-"""The `scene` of a config as written: gravity, named surfaces, shapes and bodies."""
+"""The `scene` of a config as written: gravity, surfaces, bodies, arrangements and forces."""
 
 from __future__ import annotations
 
-from fractions import Fraction
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 from pydantic import Field, Tag
 
+from lavendersim.experiment.arrangement_models import Arrangement
 from lavendersim.experiment.base import ConfigModel
-from lavendersim.experiment.names import NewName, PlaneName, SurfaceName
-from lavendersim.experiment.quantities import (
-    AngularVelocity,
-    BoxSize,
-    Direction,
-    Position,
-    Quantity,
-    Vector,
-    Vector3,
-    Velocity,
-    either,
-)
+from lavendersim.experiment.body_models import Body, Surface
+from lavendersim.experiment.names import BodyName, NewName
+from lavendersim.experiment.quantities import Quantity, Vector, Vector3, either
 
 GRAVITY = 9.81  # [m/s^2]
-STATIC_HINT = "a body that never moves has fixed: true"
 
 
-class Surface(ConfigModel):
-    """What a body's surface does in a contact; a property that is not stated is 0.
+class TiltedGravity(ConfigModel):
+    """Gravity by its angle from -z: a flat floor is an incline that goes down along the azimuth."""
 
-    In a contact the restitution of the pair is the larger one, compliances add (two springs in
-    series).
-    """
-
-    restitution: Annotated[float, Quantity(minimum=0, maximum=1)] = Field(
-        default=0.0,
-        description="share of the approach speed given back, 0 to 1; a pair takes the larger",
+    magnitude: Annotated[float, Quantity("m/s^2", minimum=0)] = Field(
+        default=GRAVITY, description="[m/s^2]"
     )
-    compliance: Annotated[float, Quantity("m/N", minimum=0)] = Field(
-        default=0.0, description="[m/N] indentation per force; the two surfaces of a contact add"
+    tilt_degrees: Annotated[float, Quantity("degree", minimum=0, maximum=180)] | None = Field(
+        default=None, description="[degree] angle from -z; not stated: 0, or by the slope"
     )
-
-
-class Plane(ConfigModel):
-    """The half-space n.x <= offset, always static."""
-
-    kind: Literal["plane"]
-    normal: Direction = Field(default=(0.0, 0.0, 1.0), description="outward normal; is normalised")
-    offset: Annotated[float, Quantity("m")] = Field(
-        default=0.0, description="[m] n.x of its points"
+    slope: Annotated[float, Quantity(minimum=0)] | None = Field(
+        default=None, description="tangent of that angle, instead of tilt_degrees"
     )
-
-
-class Sphere(ConfigModel):
-    """A ball."""
-
-    kind: Literal["sphere"]
-    radius: Annotated[float, Quantity("m", above=0)] = Field(description="[m]")
-
-
-class Box(ConfigModel):
-    """A rectangular block."""
-
-    kind: Literal["box"]
-    size: BoxSize = Field(description="[m] full edge lengths along the body's x, y, z")
-
-
-Shape = Annotated[Plane | Sphere | Box, Field(discriminator="kind")]
-
-
-class Release(ConfigModel):
-    """A start above a plane, by the clearance of the surfaces instead of a position."""
-
-    above: PlaneName = Field(description="name of the plane below")
-    clearance: Annotated[float, Quantity("m", minimum=0)] = Field(
-        description="[m] gap between the body's surface and the plane along the plane's normal"
+    azimuth_degrees: Annotated[float, Quantity("degree")] = Field(
+        default=0.0, description="[degree] from x towards y: the direction in which it goes down"
     )
-    phase: Annotated[Fraction, Quantity(minimum=0, exact=True)] = Field(
-        default=Fraction(0),
-        description="share of the fall of one step at impact, sqrt(2 g h) dt, added to the gap",
-    )
-    at: Annotated[tuple[float, float], Vector(2, Quantity("m"))] | None = Field(
-        default=None,
-        description="[m] x and y of the centre; not stated: on the plane's normal through 0",
-    )
-
-
-class AxisAngle(ConfigModel):
-    """A rotation by an angle about an axis."""
-
-    axis: Direction = Field(description="axis of rotation, world frame; is normalised")
-    degrees: Annotated[float, Quantity("degree")] = Field(description="[degree] right-handed angle")
-
-
-def _orientation_form(value: Any) -> str | None:
-    forms: dict[type, str] = {tuple: "quaternion", list: "quaternion", dict: "rotation"}
-    return forms.get(type(value))
-
-
-Quaternion = Annotated[
-    tuple[float, float, float, float], Vector(4, Quantity(), nonzero=True), Tag("quaternion")
-]
-Orientation = Annotated[
-    Quaternion | Annotated[AxisAngle, Tag("rotation")],
-    either("a quaternion [w, x, y, z] or {axis: [x, y, z], degrees: angle}", _orientation_form),
-]
 
 
 def _gravity_form(value: Any) -> str:
+    if isinstance(value, dict):
+        return "tilted"
     return "vector" if isinstance(value, list | tuple) else "magnitude"
 
 
@@ -116,57 +44,49 @@ Gravity = Annotated[
         Quantity("m/s^2", minimum=0, hint="a number is the magnitude along -z"),
         Tag("magnitude"),
     ]
-    | Annotated[Vector3, Vector(3, Quantity("m/s^2")), Tag("vector")],
-    either("a number or a list of 3 numbers [m/s^2]", _gravity_form),
+    | Annotated[Vector3, Vector(3, Quantity("m/s^2")), Tag("vector")]
+    | Annotated[TiltedGravity, Tag("tilted")],
+    either("a number, a list of 3 numbers [m/s^2] or {slope: ...}", _gravity_form),
 ]
 
-
-def _surface_form(value: Any) -> str | None:
-    forms: dict[type, str] = {str: "name", dict: "properties"}
-    return forms.get(type(value))
+_ZERO = (0.0, 0.0, 0.0)
 
 
-SurfaceOf = Annotated[
-    Annotated[SurfaceName, Tag("name")] | Annotated[Surface, Tag("properties")],
-    either("the name of a surface or {restitution: ..., compliance: ...}", _surface_form),
-]
+class Force(ConfigModel):
+    """A force and a torque on one body, constant for a while; those of one body add."""
 
-
-class Body(ConfigModel):
-    """One rigid body. Planes are static; a movable body has exactly one of mass and density."""
-
-    shape: Shape = Field(description="plane, sphere or box")
-    mass: Annotated[float, Quantity("kg", above=0, hint=STATIC_HINT)] | None = Field(
-        default=None, description="[kg]"
+    body: BodyName = Field(description="name of a movable body")
+    begin: Annotated[float, Quantity("s", minimum=0)] = Field(
+        default=0.0, alias="from", description="[s] acts from the first step that starts then"
     )
-    density: Annotated[float, Quantity("kg/m^3", above=0)] | None = Field(
-        default=None, description="[kg/m^3]"
+    end: Annotated[float, Quantity("s", minimum=0)] | None = Field(
+        default=None,
+        alias="to",
+        description="[s] until the first step that starts then; not stated: to the end of the run",
     )
-    fixed: bool = Field(default=False, description="true: never moves, has no mass")
-    surface: SurfaceOf = Field(
-        default=Surface(), description="name of one of scene.surfaces, or its properties in place"
+    force: Annotated[Vector3, Vector(3, Quantity("N"))] = Field(
+        default=_ZERO, description="[N] on the centre of mass, world frame"
     )
-    position: Position | None = Field(default=None, description="[m] centre of mass, world frame")
-    release: Release | None = Field(
-        default=None, description="start above a plane, instead of position"
-    )
-    orientation: Orientation = Field(
-        default=(1.0, 0.0, 0.0, 0.0),
-        description="quaternion w x y z, or axis and degrees; is normalised",
-    )
-    velocity: Velocity = Field(default=(0.0, 0.0, 0.0), description="[m/s] of the centre of mass")
-    angular_velocity: AngularVelocity = Field(
-        default=(0.0, 0.0, 0.0), description="[rad/s] world frame, right-handed"
+    torque: Annotated[Vector3, Vector(3, Quantity("N m"))] = Field(
+        default=_ZERO, description="[N m] world frame, right-handed"
     )
 
 
 class Scene(ConfigModel):
-    """What is there: gravity, surfaces and bodies, in the order in which they are written."""
+    """What is there; bodies in the order in which they are written, then those arranged."""
 
     gravity: Gravity = Field(
-        default=GRAVITY, description="[m/s^2] magnitude along -z, or a vector [gx, gy, gz]"
+        default=GRAVITY,
+        description="[m/s^2] magnitude along -z, a vector [gx, gy, gz], or its tilt",
     )
     surfaces: dict[NewName, Surface] = Field(
         default={}, description="named surfaces, shared by bodies"
     )
     bodies: dict[NewName, Body] = Field(description="name of the body: its properties")
+    arrangements: dict[NewName, Arrangement] = Field(
+        default={}, description="name: one body in many places; they are called name_1, name_2, ..."
+    )
+    forces: tuple[Force, ...] = Field(default=(), description="forces and torques over time")
+
+
+__all__ = ["GRAVITY", "Body", "Force", "Gravity", "Scene", "Surface", "TiltedGravity"]

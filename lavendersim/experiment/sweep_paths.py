@@ -45,7 +45,7 @@ def _resolve(path: str, root: Node) -> Path:
     for step in steps:
         annotation, key = _enter(annotation, node, step, ".".join(map(str, found)))
         node = node.get(key) if node is not None else None
-        if found[:2] == ["scene", "bodies"] and key == "surface" and node is not None and node.text:
+        if key == "surface" and node is not None and node.text:
             node = root.get("scene", "surfaces", node.text) or node
         found.append(key)
     if not _takes_value(annotation):
@@ -59,7 +59,8 @@ def _enter(annotation: Any, node: Node | None, step: str, where: str) -> tuple[A
     if any(get_origin(member) is dict for member, _ in members):
         return _enter_names(members, node, step, where)
     lists = [(member, data) for member, data in members if get_origin(member) is tuple]
-    if lists and (node is None or node.items or not _models(annotation)):
+    into_list = step.isdigit() if node is None else bool(node.items)
+    if lists and (into_list or not _models(annotation)):
         return _enter_list(*lists[0], node, step, where)
     if not _models(annotation):
         raise _NoPath(f"{where} is a single value, there is no {quoted(step)} in it")
@@ -79,6 +80,8 @@ def _models(annotation: Any) -> list[Model]:
 def _model_of(annotation: Any, node: Node | None, step: str, where: str) -> Model:
     if node is not None and node.text is not None and where != "numerics":
         raise _NoPath(f"{where} is {quoted(node.text)}, there is no {quoted(step)} in it")
+    if node is not None and node.number is not None:
+        raise _NoPath(f"{where} is a number in this file; write it as a mapping to sweep {step}")
     model = model_for(annotation, node)
     if model is None:
         raise _NoPath(f"{where} has no known kind, so that nothing in it can be swept")

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
+
 from lavendersim.experiment.figure_specs import MeasureAgainstAxis
 from lavendersim.figures.drawing import draw_band, draw_ideal, ticks_at_values
 from lavendersim.figures.ideal import ideal_line
@@ -15,15 +17,31 @@ from lavendersim.measures.values import Values
 from lavendersim.measures.views import Cell
 
 
+def marker_size(index: int, count: int) -> float:
+    """Return the size [pt] of the markers of one of `count` series.
+
+    Small ones lie on large ones: of markers in one place all are seen.
+    """
+    return max(4.0, 10.0 - 2.4 * index) if count > 1 else 7.5
+
+
+def _lifted(panel: MeasureAgainstAxis, number: float) -> float:
+    """Return a number, or the floor for one that is round-off; NaN stays."""
+    return float(number) if panel.floor is None else float(np.maximum(number, panel.floor))
+
+
 def draw_panel(
     axes: Any, panel: MeasureAgainstAxis, cells: Sequence[Cell], values: Values, experiment: Any
 ) -> None:
     """Draw one panel onto the axes."""
     shown = [cell for cell in cells if panel.axis in cell.coordinates]
     drawn: set[tuple[float, ...]] = set()
-    for index, series in enumerate(series_of(shown, panel.series, panel.series_label)):
+    all_series = series_of(shown, panel.series, panel.series_label)
+    for index, series in enumerate(all_series):
         band = band_along(
-            series.cells, panel.axis, lambda cell: float(values.row(panel.measure, cell)[0])
+            series.cells,
+            panel.axis,
+            lambda cell: _lifted(panel, values.row(panel.measure, cell)[0]),
         )
         band = band._replace(
             places=band.places * panel.x_factor,
@@ -40,7 +58,7 @@ def draw_panel(
                 label = panel.ideal.label if not drawn else None
                 draw_ideal(axes, places * panel.x_factor, ideal * panel.factor, label)
                 drawn.add(key)
-        draw_band(axes, band, look(index), series.label, size=7.5 - 0.7 * index)
+        draw_band(axes, band, look(index), series.label, size=marker_size(index, len(all_series)))
         ticks_at_values(axes, band.places)
     for index, onset in enumerate(panel.onsets):
         stations = along_axis(shown, values.of(panel.measure), panel.axis, onset.reduce)

@@ -21,9 +21,14 @@ def dress(axes: Any, panel: Any) -> None:
     axes.set_ylabel(panel.y_label)
     axes.set_xscale(panel.x_scale)
     axes.set_yscale(panel.y_scale)
-    for index, level in enumerate(panel.levels):
+    labels = list(dict.fromkeys(level.label for level in panel.levels))
+    for place, level in enumerate(panel.levels):
+        index = labels.index(level.label)
         dashes = ((0, (5, 3)), (0, (1, 2)), (0, (5, 2, 1, 2)))[index % 3]
-        axes.axhline(level.value, color=GREY, linewidth=1.1, linestyle=dashes, label=level.label)
+        # Levels of one label, such as the two ends of a range, share one entry of the legend.
+        first = all(earlier.label != level.label for earlier in panel.levels[:place])
+        label = level.label if first else None
+        axes.axhline(level.value, color=GREY, linewidth=1.1, linestyle=dashes, label=label)
 
 
 def limit(axes: Any, panel: Any) -> None:
@@ -72,9 +77,15 @@ def ticks_at_values(axes: Any, values: Any) -> None:
     if unique[0] <= 0 or unique[-1] / unique[0] >= TWO_DECADES * 4:
         return
     axes.xaxis.set_major_locator(FixedLocator(list(unique)))
-    axes.xaxis.set_major_formatter(lambda value, _: f"{value:.3g}")
+    axes.xaxis.set_major_formatter(lambda value, _: _few_digits(value))
     axes.xaxis.set_minor_locator(NullLocator())
     axes.xaxis.set_minor_formatter(NullFormatter())
+
+
+def _few_digits(value: float) -> str:
+    """Return three digits, or the whole number; a reader should not have to count 1e+04."""
+    whole = value >= 1000.0 and value == round(value) and value < 1e6
+    return f"{value:.0f}" if whole else f"{value:.3g}"
 
 
 def legend(axes: Any) -> None:

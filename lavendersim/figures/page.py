@@ -18,7 +18,7 @@ from matplotlib.textpath import TextPath
 
 from lavendersim.errors import TraceError
 from lavendersim.experiment.figure_specs import FigureSpec
-from lavendersim.figures import against_axis, row_against_index, time_series
+from lavendersim.figures import against_axis, row_against_index, spinning_top, time_series
 from lavendersim.figures.drawing import dress, legend, limit
 from lavendersim.figures.style import DPI, LINE_HEIGHT, PANEL_HEIGHT, PANEL_WIDTH, STYLE
 from lavendersim.measures.selection import select
@@ -29,6 +29,7 @@ PANELS: Final[dict[str, Callable[..., None]]] = {
     "measure_against_axis": against_axis.draw_panel,
     "row_against_index": row_against_index.draw_panel,
     "time_series": time_series.draw_panel,
+    "free_rotation": spinning_top.draw_panel,
 }
 POINTS_PER_INCH: Final = 72.0
 HINTING: Final = 0.93  # letters placed on whole pixels run wider than their outlines

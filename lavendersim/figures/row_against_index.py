@@ -24,7 +24,7 @@ def draw_panel(
         rows = [_shown(values.row(panel.measure, cell), panel) for cell in series.cells]
         band = band_of_rows(rows, panel.first_index, panel.factor)
         draw_band(axes, band, look(index), series.label, joined=True)
-    axes.xaxis.set_major_locator(MaxNLocator(integer=True))
+    axes.xaxis.set_major_locator(MaxNLocator(integer=True, steps=[1, 2, 5, 10]))
 
 
 def _shown(row: Floats, panel: RowAgainstIndex) -> Floats:

@@ -19,9 +19,12 @@ from lavendersim.measures.columns import (
     mechanical_energy,
     summed_by_step,
 )
+from lavendersim.measures.motion import drift_by_step
+from lavendersim.measures.overlap import overlap_of_rows
 from lavendersim.measures.values import Values
 from lavendersim.measures.views import Cell, Floats, Rows, Trace
 
+DRIFT_AFTER = 0.5  # [s] as the measure counts it
 MOST_MARKERS = 130  # beyond this many points markers run into a stripe; every k-th is marked
 
 
@@ -61,14 +64,16 @@ def window_of(panel: TimeSeries, trace: Trace) -> tuple[Floats, Floats]:
         rows = _contacts(panel, trace)
         if len(rows):
             time = time - time[np.searchsorted(trace.step["step"], rows["step"][0])]
+    known = ~np.isnan(quantity)
     if panel.window is not None:
-        inside = (time >= panel.window[0]) & (time <= panel.window[1])
-        time, quantity = time[inside], quantity[inside]
-    return time, quantity
+        known &= (time >= panel.window[0]) & (time <= panel.window[1])
+    return time[known], quantity[known]
 
 
 def quantity_of(panel: TimeSeries, trace: Trace) -> Floats:
-    """Return the panel's quantity in every logged step [SI]."""
+    """Return the panel's quantity in every logged step [SI]; NaN where it is not taken."""
+    if panel.column in ("drift", "overlap"):
+        return _of_poses(panel, trace)
     if panel.column == "energy":
         return mechanical_energy(trace)
     if panel.column == "residual":
@@ -81,6 +86,17 @@ def quantity_of(panel: TimeSeries, trace: Trace) -> Floats:
     if panel.column == "penetration":
         return deepest_by_step(trace, rows)
     return summed_by_step(trace, rows, "force_n")
+
+
+def _of_poses(panel: TimeSeries, trace: Trace) -> Floats:
+    quantity = np.full(len(trace.step), np.nan)
+    if panel.column == "drift":
+        later = drift_by_step(trace, DRIFT_AFTER)
+        quantity[len(quantity) - len(later) :] = later
+        return quantity
+    rows = np.arange(len(quantity))[:: -panel.every]
+    quantity[rows] = overlap_of_rows(trace, rows)
+    return quantity
 
 
 def _contacts(panel: TimeSeries, trace: Trace) -> Rows:

@@ -25,7 +25,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from lavendersim.experiment.measure_specs import ClosedForm
+from lavendersim.experiment.measure_base import ClosedForm
 from lavendersim.measures.cell_config import BodyConfig, body, gravity, numerics
 from lavendersim.measures.views import Floats
 
@@ -49,7 +49,7 @@ def contact_geometry(a: BodyConfig, b: BodyConfig) -> tuple[Floats, Floats]:
     kinds = (a.shape["kind"], b.shape["kind"])
     if kinds[0] == "plane":
         normal = a.normal
-        return b.position - normal * b.extent(normal), normal
+        return b.lowest(normal), normal
     if kinds == ("sphere", "sphere"):
         normal = b.position - a.position
         normal = normal / math.sqrt(float(normal @ normal))
@@ -94,13 +94,13 @@ def inverse_effective_mass(resolved: Resolved, a: BodyConfig, b: BodyConfig) -> 
 def newton_impulse(resolved: Resolved, a: BodyConfig, b: BodyConfig) -> float:
     """Return Newton's impulse j [N s]; exactly 0 for a pair that separates."""
     k_n = inverse_effective_mass(resolved, a, b)
-    return max(0.0, -(1.0 + _restitution(a, b)) * normal_velocity(a, b) / k_n)
+    return max(0.0, -(1.0 + pair_restitution(a, b)) * normal_velocity(a, b) / k_n)
 
 
 def newton_separation_velocity(resolved: Resolved, a: BodyConfig, b: BodyConfig) -> float:
     """Return v_n [m/s] after the impact: -e v_n, or v_n itself for a pair that separates."""
     before = normal_velocity(a, b)
-    return -_restitution(a, b) * before if before < 0.0 else before
+    return -pair_restitution(a, b) * before if before < 0.0 else before
 
 
 def impact_speed(resolved: Resolved, moving: BodyConfig, plane: BodyConfig) -> float:
@@ -111,12 +111,12 @@ def impact_speed(resolved: Resolved, moving: BodyConfig, plane: BodyConfig) -> f
 def drop_impulse(resolved: Resolved, moving: BodyConfig, plane: BodyConfig) -> float:
     """Return the impulse [N s] that turns the impact speed v into e v."""
     speed = impact_speed(resolved, moving, plane)
-    return (1.0 + _restitution(moving, plane)) * moving.mass * speed
+    return (1.0 + pair_restitution(moving, plane)) * moving.mass * speed
 
 
 def rebound_height(resolved: Resolved, moving: BodyConfig, plane: BodyConfig) -> float:
     """Return e^2 h [m]."""
-    return _restitution(moving, plane) ** 2 * clearance(moving, plane)
+    return pair_restitution(moving, plane) ** 2 * clearance(moving, plane)
 
 
 def release_height(resolved: Resolved, moving: BodyConfig, plane: BodyConfig) -> float:
@@ -145,8 +145,9 @@ def steady_penetration_above_slop(
     return left * indentation / (1.0 - left * (1.0 - numerics(resolved, "stabilisation_gain")))
 
 
-def _restitution(a: BodyConfig, b: BodyConfig) -> float:
-    return max(a.restitution, b.restitution)  # the livelier of two surfaces decides
+def pair_restitution(a: BodyConfig, b: BodyConfig) -> float:
+    """Return e of two surfaces: the livelier one decides."""
+    return max(a.restitution, b.restitution)
 
 
 def _pull(resolved: Resolved, plane: BodyConfig) -> float:

@@ -8,7 +8,17 @@ from typing import Any, Final
 import numpy as np
 
 from lavendersim.experiment.measure_specs import MeasureSpec
-from lavendersim.measures import convergence, energy, impact, steady
+from lavendersim.measures import (
+    convergence,
+    energy,
+    impact,
+    laws,
+    motion,
+    optimality,
+    overlap,
+    spinning,
+    steady,
+)
 from lavendersim.measures.closed_forms import evaluate_form
 from lavendersim.measures.selection import selects
 from lavendersim.measures.views import Trace, Value
@@ -33,6 +43,22 @@ MEASURES: Final[dict[str, Callable[[Any, Trace], Value]]] = {
     "final_residual": convergence.final_residual,
     "energy_by_bounce": energy.energy_by_bounce,
     "energy_after_bounces": energy.energy_after_bounces,
+    "apex_error": motion.apex_error,
+    "drift": motion.drift,
+    "overlap": overlap.overlap,
+    "slip_distance": motion.slip_distance,
+    "creep": motion.creep,
+    "effective_friction": motion.effective_friction,
+    "passed_through": motion.passed_through,
+    "force_error": laws.force_error,
+    "energy_drift": laws.energy_drift,
+    "energy_gain": laws.energy_gain,
+    "angular_momentum_drift": laws.angular_momentum_drift,
+    "velocity_error": spinning.velocity_error,
+    "angular_velocity_error": spinning.angular_velocity_error,
+    "flip_time_error": spinning.flip_time_error,
+    "optimality": optimality.optimality,
+    "unsolved_steps": laws.unsolved_steps,
 }
 
 

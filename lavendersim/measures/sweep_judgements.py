@@ -8,7 +8,7 @@ from typing import Final
 
 import numpy as np
 
-from lavendersim.experiment.expect_specs import Crosses, ExpectSpec, Ratio
+from lavendersim.experiment.expect_specs import Crosses, ExpectSpec, Order, Ratio
 from lavendersim.experiment.scalars import written
 from lavendersim.measures.selection import group_by, select
 from lavendersim.measures.verdict import Outcome, failure
@@ -29,6 +29,8 @@ def judge_sweep(expectation: ExpectSpec, cells: Sequence[Cell], row_of: RowOf) -
         return _ratio(expectation.ratio, cells, row_of)
     if expectation.crosses is not None:
         return _crosses(expectation.crosses, cells, row_of)
+    if expectation.order is not None:
+        return _order(expectation.order, cells, row_of)
     return _trend(expectation, cells, row_of)
 
 
@@ -101,6 +103,8 @@ def _ratio(spec: Ratio, cells: Sequence[Cell], row_of: RowOf) -> Outcome:
     bounds = [f"at most {spec.at_most!r}"] if spec.at_most is not None else []
     bounds += [f"at least {spec.at_least!r}"] if spec.at_least is not None else []
     expected = f"{spec.reduce} ratio {' and '.join(bounds)}"
+    if spec.negligible:
+        expected += f", or a numerator of at most {spec.negligible:g}"
     tolerance = f"numbers up to {spec.floor:g} are round-off" if spec.floor else NO_TOLERANCE
     tops = group_by(select(cells, spec.of), spec.each)
     bottoms = group_by(select(cells, spec.to), spec.each)
@@ -112,12 +116,14 @@ def _ratio(spec: Ratio, cells: Sequence[Cell], row_of: RowOf) -> Outcome:
         bottom = reduced(bottoms[group], row_of, spec.reduce)
         if len(top) != len(bottom) or np.isnan(top).any() or np.isnan(bottom).any():
             return failure(expected, f"not a number, or rows of unequal length {group}".strip())
-        counted = np.flatnonzero((np.abs(top) > spec.floor) | (np.abs(bottom) > spec.floor))
+        above = (np.abs(top) > spec.floor) | (np.abs(bottom) > spec.floor)
+        counted = np.flatnonzero(above | (spec.negligible > 0.0))
         if len(counted) == 0:
             return failure(expected, f"every number is round-off or 0 {group}".strip())
         for index in counted:
             ratio = float(top[index] / bottom[index]) if bottom[index] else float("inf")
-            margin = _margin(spec, ratio)
+            small = spec.negligible > 0.0 and abs(top[index]) <= spec.negligible
+            margin = 0.0 if small else _margin(spec, ratio)
             if margin < worst_margin:
                 worst, worst_margin = ratio, margin
                 place = [group] if group else []
@@ -126,6 +132,22 @@ def _ratio(spec: Ratio, cells: Sequence[Cell], row_of: RowOf) -> Outcome:
                     f" ({', '.join(place)})" if place else ""
                 )
     return Outcome(worst_margin >= 0.0, worst, expected, tolerance, reason)
+
+
+def _order(spec: Order, cells: Sequence[Cell], row_of: RowOf) -> Outcome:
+    expected = f"order of at least {spec.at_least!r} along {spec.along}"
+    expected += f" and at most {spec.at_most!r}" if spec.at_most is not None else ""
+    expected += f", or numbers of at most {spec.negligible:g}" if spec.negligible else ""
+    places, numbers = along_axis(cells, row_of, spec.along, spec.reduce)
+    if len(places) < 2:
+        return failure(expected, f"fewer than 2 values of {spec.along}")
+    if all(abs(number) <= spec.negligible for number in numbers):
+        return Outcome(True, float("inf"), expected, NO_TOLERANCE)
+    if not (min(places) > 0.0 and all(0.0 < number < float("inf") for number in numbers)):
+        return failure(expected, f"no logarithm of {numbers} at {places}")
+    slope = float(np.polyfit(np.log(places), np.log(numbers), 1)[0])
+    passed = slope >= spec.at_least and (spec.at_most is None or slope <= spec.at_most)
+    return Outcome(passed, slope, expected, NO_TOLERANCE, f"{numbers} at {places}")
 
 
 def _margin(spec: Ratio, ratio: float) -> float:

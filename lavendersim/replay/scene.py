@@ -1,4 +1,4 @@
-"""A resolved config and its poses enter; shapes, their extent and rerun's static geometry leave.
+"""Shapes and their poses enter; their extent and rerun's static geometry leave.
 
 Entities are `bodies/<name>`. Each body is a coordinate frame of the same name below the world's, so
 that its pose (see columns.py) moves whatever is drawn in it.
@@ -7,20 +7,21 @@ that its pose (see columns.py) moves whatever is drawn in it.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 import rerun as rr
+
+from lavendersim.replay.shapes import UP, Shape, Vector, rotate, shapes
+from lavendersim.replay.solids import Look, archetypes
 
 if TYPE_CHECKING:
     from lavendersim.trace import Trace
 
-Vector = npt.NDArray[np.float64]
+__all__ = ["WORLD", "Extent", "Shape", "Vector", "draw", "entity", "extent", "shapes"]
 
 WORLD = "tf#/"  # rerun's name of the root frame, which no body can have
-UP = np.array([0.0, 0.0, 1.0])
 
 # Okabe and Ito's palette, which stays distinct for all common kinds of colour blindness. Yellow
 # and vermillion are kept for forces (columns.py).
@@ -31,23 +32,6 @@ GRID_COLOUR = (112, 118, 128)
 
 PATH_POINTS = 2000  # more than a screen has pixels along a path
 LABELLED_BODIES = 8  # more names than this cover what they name
-
-
-class Shape(NamedTuple):
-    """One body's geometry: `size` is a box's edges or a sphere's diameters [m]."""
-
-    name: str
-    kind: Literal["plane", "sphere", "box"]
-    fixed: bool
-    size: Vector
-    normal: Vector
-    offset: float
-
-    @property
-    def reach(self) -> float:
-        """Largest distance [m] of the body's surface from its centre."""
-        radius = self.size[0] / 2 if self.kind == "sphere" else np.linalg.norm(self.size) / 2
-        return float(radius)
 
 
 class Extent(NamedTuple):
@@ -70,27 +54,6 @@ class Extent(NamedTuple):
 def entity(name: str) -> str:
     """Entity path of a body; its last part is the body's name, escaped as rerun asks."""
     return rr.new_entity_path(["bodies", name])
-
-
-def shapes(resolved: Mapping[str, Any]) -> list[Shape]:
-    """Geometry of every body of a resolved config, in its order."""
-    return [_shape(name, body) for name, body in resolved["scene"]["bodies"].items()]
-
-
-def _shape(name: str, body: Mapping[str, Any]) -> Shape:
-    given = body["shape"]
-    kind = given["kind"]
-    size, normal, offset = np.zeros(3), UP, 0.0
-    if kind == "sphere":
-        size = np.full(3, 2.0 * float(given["radius"]))
-    elif kind == "box":
-        size = np.array(given["size"], dtype=np.float64)
-    else:
-        direction = np.array(given["normal"], dtype=np.float64)
-        normal = direction / np.linalg.norm(direction)
-        offset = float(given["offset"])
-    fixed = kind == "plane" or bool(body.get("fixed", False))
-    return Shape(name, kind, fixed, size, normal, offset)
 
 
 def extent(trace: Trace, bodies: Iterable[Shape]) -> Extent:
@@ -121,16 +84,16 @@ def draw(stream: rr.RecordingStream, trace: Trace, bodies: Sequence[Shape], room
             continue
         colour = FIXED_COLOUR if shape.fixed else next(colours)
         _draw_path(stream, trace, shape, colour)
-        look: dict[str, Any] = {
-            "colors": [colour],
-            # Forces act at surfaces and point into bodies: solid bodies would hide them.
-            "fill_mode": "Solid" if shape.fixed else "TransparentFillMajorWireframe",
-            "labels": [shape.name],
-            "show_labels": len(bodies) <= LABELLED_BODIES,
-        }
-        form = rr.Ellipsoids3D if shape.kind == "sphere" else rr.Boxes3D
-        geometry = form(half_sizes=[shape.size / 2], **look)
-        stream.log(entity(shape.name), rr.CoordinateFrame(shape.name), geometry, static=True)
+        # Forces act at surfaces and point into bodies: solid bodies would hide them.
+        look = Look(colour, shape.fixed, shape.name, len(bodies) <= LABELLED_BODIES)
+        drawn = archetypes(shape.pieces, look)
+        frame = rr.CoordinateFrame(shape.name)
+        for kind, forms in drawn.items():
+            within = [] if len(drawn) == 1 else [kind]
+            for form in forms:
+                edges = ["edges"] if isinstance(form, rr.LineStrips3D) else []
+                place = rr.new_entity_path(["bodies", shape.name, *within, *edges])
+                stream.log(place, frame, form, static=True)
 
 
 def _draw_path(
@@ -171,7 +134,7 @@ def _draw_plane(stream: rr.RecordingStream, plane: Shape, room: Extent) -> None:
     lift = 0.1 * thickness  # or the slab's face hides the lines
     along = [[(tick, end, lift) for end in ends] for tick in ticks]
     corners = np.array(along + [[(y, x, z) for x, y, z in line] for line in along])
-    lines = foot + _rotate(turn, corners)
+    lines = foot + rotate(turn, corners)
     radius = rr.Radius.ui_points(0.5)
     grid = rr.LineStrips3D(list(lines), colors=[GRID_COLOUR], radii=radius)
     place = rr.new_entity_path(["grid", plane.name])
@@ -181,12 +144,6 @@ def _draw_plane(stream: rr.RecordingStream, plane: Shape, room: Extent) -> None:
 def grid_spacing(room: Extent) -> float:
     """A power of ten [m] that gives a plane's grid some 10 to 100 lines."""
     return float(10.0 ** math.floor(math.log10(room.diagonal / 2)))
-
-
-def _rotate(xyzw: Vector, vectors: Vector) -> Vector:
-    """Rotate vectors (..., 3) by a unit quaternion."""
-    turn = np.cross(xyzw[:3], vectors) * 2
-    return np.asarray(vectors + xyzw[3] * turn + np.cross(xyzw[:3], turn))
 
 
 def turn_up_to(normal: Vector) -> Vector:

@@ -36,6 +36,23 @@ class CellJob(NamedTuple):
     as_written: str
     path: Path
     plan: Plan
+    seeds: str  # of what was drawn at random, in words
+
+
+class Accuracy(NamedTuple):
+    """How far the steps of a cell were solved."""
+
+    worst_residual: float = 0.0  # [m/s] of any step
+    tolerance: float | None = None  # [m/s] asked for; None: every step takes all its sweeps
+    unsolved: int = 0  # steps that ended above the tolerance
+
+    def after(self, step: np.ndarray) -> Accuracy:
+        """Return the accuracy with more rows of steps counted in; a NaN stays the worst."""
+        missed = self.unsolved
+        if self.tolerance is not None:
+            missed += int(np.count_nonzero(step["unsolved"]))
+        worst = np.max(step["residual"], initial=self.worst_residual)
+        return self._replace(worst_residual=float(worst), unsolved=missed)
 
 
 class CellOutcome(NamedTuple):
@@ -47,6 +64,7 @@ class CellOutcome(NamedTuple):
     compile_ns: int  # composing, compiling or loading the kernel
     physics_ns: int  # inside the kernel
     logging_ns: int  # encoding and writing
+    accuracy: Accuracy
 
 
 def time_ns(steps: np.ndarray, timestep: Fraction) -> np.ndarray:
@@ -67,7 +85,7 @@ def block_of(rows: Rows, timestep: Fraction) -> Block:
     return Block(step=step, contact=rows.contact, pose=rows.pose, residual=rows.residual)
 
 
-def metadata_of(plan: Plan) -> dict[str, dict[str, str]]:
+def metadata_of(plan: Plan, seeds: str) -> dict[str, dict[str, str]]:
     """Return what the log says about the engine that made it."""
     return {
         "versions": versions(),
@@ -75,7 +93,7 @@ def metadata_of(plan: Plan) -> dict[str, dict[str, str]]:
             "source": source_hash(),
             "plan": plan.spec.digest(),
             "solver": plan.spec.solver,
-            "seed": "none, nothing is drawn at random",
+            "seed": seeds,
         },
         "plan": {
             name: f"{'on' if decision.on else 'off'}: {decision.reason}"
@@ -109,9 +127,10 @@ def run_cell(job: CellJob) -> CellOutcome:
         job.resolved,
         job.as_written,
         scene.timestep,
-        metadata_of(job.plan),
+        metadata_of(job.plan, job.seeds),
     )
     events = EventQueue(engine, scene, job.resolved["events"])
+    accuracy = Accuracy(tolerance=job.resolved["numerics"]["tolerance"])
     status = "complete"
     done = 0
     while True:
@@ -128,10 +147,11 @@ def run_cell(job: CellJob) -> CellOutcome:
         rows = engine.take_rows()
         if len(rows.step):
             writer.append(block_of(rows, scene.timestep))
+            accuracy = accuracy.after(rows.step)
         logging_ns += perf_counter_ns() - start
         if outcome == DIVERGED or (outcome == RUNNING and done >= job.steps):
             break
     start = perf_counter_ns()
     writer.close(status)
     logging_ns += perf_counter_ns() - start
-    return CellOutcome(job.cell, status, done, compile_ns, physics_ns, logging_ns)
+    return CellOutcome(job.cell, status, done, compile_ns, physics_ns, logging_ns, accuracy)

@@ -8,7 +8,10 @@ from datetime import UTC, datetime
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from lavendersim.engine.spec import Spec
 
 PACKAGES = ("numpy", "numba", "llvmlite", "mcap", "pydantic", "zstandard", "protobuf")
 
@@ -71,7 +74,7 @@ def delete_kernels() -> int:
     return len(files)
 
 
-def environment(spec: Any) -> dict[str, Any]:
+def environment(*specs: Spec) -> dict[str, Any]:
     """Return what a reader needs to judge the timings of a run and to repeat it."""
     from lavendersim.engine.kernel_cache import source_hash
     from lavendersim.engine.step import advance_for
@@ -80,7 +83,12 @@ def environment(spec: Any) -> dict[str, Any]:
         "date": datetime.now(UTC).isoformat(timespec="seconds"),
         **machine(),
         "engine source": source_hash(),
-        "plan": spec.digest(),
-        "kernel": advance_for(spec)._cache.used,
-        "spec": spec._asdict(),
+        "kernels": [
+            {
+                "plan": spec.digest(),
+                "kernel": advance_for(spec)._cache.used,
+                "spec": spec._asdict(),
+            }
+            for spec in specs
+        ],
     }

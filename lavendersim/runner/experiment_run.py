@@ -8,10 +8,8 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-from collections.abc import Callable, Iterator
-from concurrent.futures import ProcessPoolExecutor
+from collections.abc import Callable
 from datetime import UTC, datetime
-from multiprocessing import get_context
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -20,7 +18,7 @@ from lavendersim.experiment import Experiment, load_experiment, resolved_yaml
 from lavendersim.measures import Values, Verdict, judge
 
 from .environment import environment
-from .results import measure_cells, write_results
+from .results import compile_seconds, measure_cells, unsolved_notices, write_results
 from .run_directory import (
     CELLS,
     CONFIG,
@@ -32,6 +30,7 @@ from .run_directory import (
     is_run_directory,
     point_latest,
 )
+from .seeds import Seeds
 
 
 class Finished(NamedTuple):
@@ -46,6 +45,16 @@ class Finished(NamedTuple):
         """Whether every cell completed and every expectation was met."""
         complete = all(outcome.status == "complete" for outcome in self.outcomes)
         return complete and all(verdict.passed for verdict in self.verdicts)
+
+    @property
+    def compile_s(self) -> float:
+        """What composing, compiling and loading kernels took [s]; in no step's time."""
+        return compile_seconds(self)
+
+    @property
+    def unsolved(self) -> list[str]:
+        """A sentence for every cell that missed the accuracy asked for; a warning, no failure."""
+        return unsolved_notices(self)
 
 
 class Progress(NamedTuple):
@@ -113,23 +122,6 @@ def _file_of(cell: Any, source: str) -> str:
     return hashlib.sha256(f"{cell.digest} {source}".encode()).hexdigest()[:16] + ".mcap"
 
 
-def _outcomes(jobs: list[Any], workers: int) -> Iterator[Any]:
-    """Yield the outcome of each job, in order, from this process or from a pool."""
-    from .cell import run_cell
-
-    if workers <= 1:
-        yield from map(run_cell, jobs)
-        return
-    # The first cell runs here: it leaves the compiled kernel where the others find it.
-    yield run_cell(jobs[0])
-    if not jobs[1:]:
-        return
-    # Spawned, never forked: numba's threads do not survive a fork.
-    with ProcessPoolExecutor(min(workers, len(jobs) - 1), get_context("spawn")) as pool:
-        chunk = max(1, len(jobs) // (4 * workers))
-        yield from pool.map(run_cell, jobs[1:], chunksize=chunk)
-
-
 def run(
     experiment: Experiment | Path | str,
     root: Path | str = RUNS,
@@ -142,18 +134,16 @@ def run(
     A cell that diverges ends there, with a readable log; the others go on.
     """
     from lavendersim.engine.kernel_cache import source_hash
-    from lavendersim.engine.step import advance_for, is_compiled
-    from lavendersim.scene.plan import plan_of, union
 
     from .cell import CellJob
+    from .executor import outcomes_of
+    from .plans import distinct, shared_plans
 
     if not isinstance(experiment, Experiment):
         experiment = load_experiment(experiment)
     cells = experiment.cells()
-    plan = union(plan_of(cell.resolved) for cell in cells)
-    advance_for(plan.spec)
-    if not is_compiled(plan.spec):
-        progress.compiling(plan)
+    plans = shared_plans(cell.resolved for cell in cells)
+    seeds = Seeds(experiment)
     root = Path(root)
     directory = make_directory(experiment, root)
     (directory / "cells").mkdir()
@@ -170,18 +160,19 @@ def run(
             experiment.text,
             directory / "cells" / _file_of(cell, source_hash()),
             plan,
+            seeds.of(cell.coordinates),
         )
-        for cell in cells
+        for cell, plan in zip(cells, plans, strict=True)
     ]
     # Cells of several products may be the same simulation: it has one log and is run once.
-    distinct = list({job.path: job for job in pending}.values())
+    different = list({job.path: job for job in pending}.values())
     ended: dict[Path, Any] = {}
     # The index stands from the start, so that an interrupted run can be listed and replayed.
     _write_index(directory, experiment, pending, ended)
     try:
-        for job, outcome in zip(distinct, _outcomes(distinct, jobs), strict=True):
+        for job, outcome in outcomes_of(different, jobs, progress.compiling):
             ended[job.path] = outcome
-            progress.cell_done(len(ended), len(distinct))
+            progress.cell_done(len(ended), len(different))
     finally:
         _write_index(directory, experiment, pending, ended)
     outcomes = [ended[job.path]._replace(cell=job.cell) for job in pending]
@@ -191,7 +182,7 @@ def run(
     verdicts = judge(experiment.measures, experiment.expectations, finished.cells, values)
     result = Finished(finished, outcomes, verdicts)
     write_results(result, measured)
-    _write_json(directory / ENVIRONMENT, environment(plan.spec))
+    _write_json(directory / ENVIRONMENT, environment(*(plan.spec for plan in distinct(plans))))
     (directory / DONE).write_text("")
     point_latest(directory, root)
     return result

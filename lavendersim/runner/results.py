@@ -13,6 +13,10 @@ from lavendersim.measures import Values, applies
 
 from .run_directory import RESULTS, TABLE, Run
 
+# Columns of both tables, beside the measures: what a cell cost, and how well it was solved.
+COSTS = ("physics_us_per_step", "logging_us_per_step", "compile_s")
+ACCURACY = ("tolerance", "worst_residual", "unsolved_steps")  # m/s, m/s, number of steps
+
 
 def measure_cells(run: Run, experiment: Experiment, values: Values) -> list[dict[str, Any]]:
     """Take every measure of every cell, once; its log is let go before the next is opened.
@@ -63,11 +67,16 @@ def write_results(finished: Any, measured: list[dict[str, Any]]) -> None:
                 "physics_us_per_step": outcome.physics_ns / steps / 1000,
                 "logging_us_per_step": outcome.logging_ns / steps / 1000,
                 "compile_s": outcome.compile_ns / 1e9,
+                "tolerance": outcome.accuracy.tolerance,
+                "worst_residual": outcome.accuracy.worst_residual,
+                "unsolved_steps": outcome.accuracy.unsolved,
             }
         )
     table = {
         "experiment": run.name,
         "cells": rows,
+        # Cells share kernels, so what compiling costs is a number of the run.
+        "compile_s": compile_seconds(finished),
         "checks": [verdict._asdict() for verdict in finished.verdicts],
         "passed": finished.good,
     }
@@ -76,16 +85,41 @@ def write_results(finished: Any, measured: list[dict[str, Any]]) -> None:
     _write_csv(run, rows)
 
 
+def compile_seconds(finished: Any) -> float:
+    """Return what composing, compiling and loading kernels took in all [s]."""
+    # Cells that are the same simulation share one outcome.
+    once = {
+        cell.path: outcome.compile_ns
+        for cell, outcome in zip(finished.run.cells, finished.outcomes, strict=True)
+    }
+    total: float = sum(once.values()) / 1e9
+    return total
+
+
+def unsolved_notices(finished: Any) -> list[str]:
+    """Return a sentence for every cell that did not reach the accuracy asked for."""
+    notices = []
+    for cell, outcome in zip(finished.run.cells, finished.outcomes, strict=True):
+        accuracy = outcome.accuracy
+        if accuracy.unsolved:
+            where = f"[{cell.label}]" if cell.label else ""
+            notices.append(
+                f"{finished.run.name}{where}: {accuracy.unsolved} of {outcome.steps} steps ended "
+                f"above the tolerance {accuracy.tolerance:g} m/s, "
+                f"worst {accuracy.worst_residual:.2g} m/s"
+            )
+    return notices
+
+
 def _write_csv(run: Run, rows: list[dict[str, Any]]) -> None:
     names, axes = list(run.experiment.measures), list(run.experiment.axes)
-    costs = ["physics_us_per_step", "logging_us_per_step", "compile_s"]
     with (run.path / TABLE).open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
-        writer.writerow(["cell", *axes, "status", "steps", *names, *costs])
+        writer.writerow(["cell", *axes, "status", "steps", *names, *COSTS, *ACCURACY])
         for cell, row in zip(run.cells, rows, strict=True):
             coordinates = [str(cell.coordinates.get(axis, "")) for axis in axes]
             values = [row["measures"].get(name, "") for name in names]
             writer.writerow(
                 [cell.label, *coordinates, row["status"], row["steps"], *values]
-                + [row[cost] for cost in costs]
+                + [row[name] for name in (*COSTS, *ACCURACY)]
             )

@@ -8,27 +8,24 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from lavendersim.engine.collide import SHAPE_PAIRS
-from lavendersim.engine.engine import (
-    Engine,
-    allocate_bodies,
-    allocate_pairs,
-    allocate_parameters,
-    allocate_velocities,
-)
-from lavendersim.engine.records import BOX, PLANE, SPHERE
+from lavendersim.engine.collide.hull_geometry import HullGeometry
+from lavendersim.engine.engine import Engine, allocate_parameters, allocate_velocities
 from lavendersim.engine.spec import Spec
 
-from .mass_properties import bounding_radius, mass_properties
-from .plan import candidate_pairs, is_movable
+from .body_rows import body_table, pose_of
+from .colliders import colliders
+from .pair_tables import pair_tables
 
-_SHAPES = {"plane": PLANE, "sphere": SPHERE, "box": BOX}
 # Where nothing of a run is to be recorded: a window of steps that is empty.
 _NO_STEPS = (1, 0)
 
 
 class Scene(NamedTuple):
-    """The arrays of one scene, as the engine takes them, and the names of its bodies."""
+    """The arrays of one scene, as the engine takes them, and the names of its bodies.
+
+    Behind the rows of the bodies stand those of the parts of compounds; `names` and `poses` end
+    before them.
+    """
 
     names: list[str]
     bodies: np.ndarray
@@ -37,6 +34,9 @@ class Scene(NamedTuple):
     parameters: np.ndarray
     poses: np.ndarray  # (bodies, 7) initial x y z qw qx qy qz
     timestep: Fraction  # [s], exact
+    templates: np.ndarray  # (classes, classes) what their pairs have in common; see `pair_tables`
+    hulls: HullGeometry
+    forces: list[dict[str, Any]]  # resolved; `events` lets them act
 
     def engine(self, spec: Spec, block_steps: int | None = None) -> Engine:
         """Return an engine at the scene's initial state."""
@@ -48,43 +48,10 @@ class Scene(NamedTuple):
             self.pairs,
             self.parameters,
             self.poses,
+            self.templates,
+            self.hulls,
             **extra,
         )
-
-
-def rotation_matrix(q: np.ndarray) -> np.ndarray:
-    """Return the (3, 3) body-to-world matrix of a unit quaternion w x y z."""
-    w, x, y, z = q
-    return np.array(
-        [
-            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
-        ]
-    )
-
-
-def _fill_shape(row: np.void, shape: dict[str, Any]) -> None:
-    row["shape"] = _SHAPES[shape["kind"]]
-    if shape["kind"] == "plane":
-        normal = np.asarray(shape["normal"], float)
-        row["hx"], row["hy"], row["hz"] = normal / np.linalg.norm(normal)
-        row["offset"] = float(shape["offset"])
-    elif shape["kind"] == "sphere":
-        row["hx"] = float(shape["radius"])
-    else:
-        row["hx"], row["hy"], row["hz"] = (0.5 * float(edge) for edge in shape["size"])
-    row["bound"] = bounding_radius(shape)
-
-
-def _fill_mass(row: np.void, body: dict[str, Any], turns: bool) -> None:
-    if not is_movable(body):
-        return
-    properties = mass_properties(body["shape"], body["mass"])
-    row["inv_m"] = 1.0 / properties.mass
-    if turns:
-        for axis, inertia in zip("xyz", properties.inertia, strict=True):
-            row[f"inv_i{axis}"] = 1.0 / inertia
 
 
 def _parameters(resolved: dict[str, Any], timestep: Fraction) -> np.ndarray:
@@ -95,14 +62,9 @@ def _parameters(resolved: dict[str, Any], timestep: Fraction) -> np.ndarray:
     p["dt"] = dt
     gravity = [float(g) for g in resolved["scene"]["gravity"]]
     p["gx"], p["gy"], p["gz"] = gravity
-    for name in (
-        "stabilisation_gain",
-        "slop",
-        "projection",
-        "cache_distance",
-        "cache_normal_cosine",
-    ):
-        p[name] = float(numerics[name])
+    for name in p.dtype.names or ():
+        if name in numerics and name not in ("tolerance",):
+            p[name] = numerics[name]
     if not numerics["warm_start"]:
         # An engine shared with warm cells: no cosine is this large, so nothing is carried over.
         p["cache_normal_cosine"] = 2.0
@@ -112,8 +74,6 @@ def _parameters(resolved: dict[str, Any], timestep: Fraction) -> np.ndarray:
     p["restitution_speed"] = float(numerics["restitution_threshold"]) * magnitude * dt
     # A residual is never negative, so this tolerance never stops a cell that states none.
     p["tolerance"] = -1.0 if numerics["tolerance"] is None else float(numerics["tolerance"])
-    p["sweeps"] = numerics["sweeps"]
-    p["projection_sweeps"] = numerics["projection_sweeps"]
     p["residuals_from"], p["residuals_to"] = residual_window(resolved, timestep)
     return parameters
 
@@ -133,37 +93,26 @@ def residual_window(resolved: dict[str, Any], timestep: Fraction) -> tuple[int, 
 def build(resolved: dict[str, Any], spec: Spec) -> Scene:
     """Fill the engine's arrays for one cell; `spec` may have effects the cell does not call for."""
     config = resolved["scene"]["bodies"]
-    names, described = list(config), list(config.values())
-    turns = spec.has("rotation")
-    bodies = allocate_bodies(spec, len(names))
-    velocities = allocate_velocities(spec, len(names))
-    poses = np.zeros((len(names), 7))
-    poses[:, 3] = 1.0
-    oriented = "qw" in (bodies.dtype.names or ())
-    for row, velocity, pose, body in zip(bodies, velocities, poses, described, strict=True):
-        _fill_shape(row, body["shape"])
-        _fill_mass(row, body, turns)
-        if body["shape"]["kind"] != "plane":
-            pose[:3] = body["position"]
-            pose[3:] = np.asarray(body["orientation"], float)
-            pose[3:] /= np.linalg.norm(pose[3:])
-            row["x"], row["y"], row["z"] = pose[:3]
+    rows = colliders(list(config.values()))
+    poses = np.array([pose_of(body) for body in config.values()]).reshape(-1, 7)
+    bodies, hulls = body_table(spec, rows, poses)
+    velocities = allocate_velocities(spec, len(rows))
+    turns = "wx" in (velocities.dtype.names or ())
+    for velocity, body in zip(velocities, config.values(), strict=False):  # parts have none
         velocity["vx"], velocity["vy"], velocity["vz"] = body["velocity"]
         if turns:
             velocity["wx"], velocity["wy"], velocity["wz"] = body["angular_velocity"]
-        if oriented:
-            row["qw"], row["qx"], row["qy"], row["qz"] = pose[3:]
-            matrix = rotation_matrix(pose[3:])
-            for i in range(3):
-                for j in range(3):
-                    row[f"r{i}{j}"] = matrix[i, j]
-    candidates = candidate_pairs(described)
-    pairs = allocate_pairs(spec, len(candidates))
-    for row, pair in zip(pairs, candidates, strict=True):
-        row["a"], row["b"] = pair.a, pair.b
-        row["kind"] = SHAPE_PAIRS[pair.shape_pair][0]
-        for surface_property in ("restitution", "compliance"):
-            if spec.has(surface_property):
-                row[surface_property] = getattr(pair, surface_property)
+    pairs, templates = pair_tables(spec, rows, bodies)
     timestep = Fraction(resolved["numerics"]["timestep"])
-    return Scene(names, bodies, velocities, pairs, _parameters(resolved, timestep), poses, timestep)
+    return Scene(
+        names=list(config),
+        bodies=bodies,
+        velocities=velocities,
+        pairs=pairs,
+        parameters=_parameters(resolved, timestep),
+        poses=poses,
+        timestep=timestep,
+        templates=templates,
+        hulls=hulls,
+        forces=resolved["scene"]["forces"],
+    )

@@ -1,38 +1,82 @@
-"""Changes from the config enter; between two steps they change the arrays of a running engine."""
+"""Changes from the config enter; between two steps they change the arrays of a running engine.
+
+Whatever has a time, an event or the begin and end of a force, acts before the first step that
+starts at that time or later.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from fractions import Fraction
-from math import ceil
-from typing import Any
+from math import ceil, fsum
+from typing import Any, NamedTuple
 
 from lavendersim.engine.engine import Engine
 
 from .build import Scene
 
 
+class Change(NamedTuple):
+    """Something that happens between two steps."""
+
+    after: int  # steps
+    order: int  # among those at one time: forces first, then events as they are written
+    apply: Callable[[], None]
+
+
 class EventQueue:
-    """The events of one run, in the order of their time."""
+    """The changes of one run, in the order of their time."""
 
     def __init__(self, engine: Engine, scene: Scene, events: list[dict[str, Any]]) -> None:
         self._engine, self._scene = engine, scene
-        # An event is applied before the first step that starts at its time or later.
-        self._pending = sorted(
-            (
-                (ceil(Fraction(repr(event["at"])) / scene.timestep), order, event)
-                for order, event in enumerate(events)
-            ),
-            key=lambda due: due[:2],
-        )
+        self._acting: list[dict[str, Any]] = []
+        changes = [*self._force_changes(scene.forces), *self._event_changes(events)]
+        self._pending = sorted(changes, key=lambda change: change[:2])
 
     def apply_due(self, done: int) -> None:
-        """Apply every event that is due after `done` steps."""
-        while self._pending and self._pending[0][0] <= done:
-            apply_event(self._engine, self._scene, self._pending.pop(0)[2])
+        """Apply every change that is due after `done` steps."""
+        while self._pending and self._pending[0].after <= done:
+            self._pending.pop(0).apply()
 
     def next_stop(self, limit: int) -> int:
-        """Return the step after which the next event is due, `limit` without one before it."""
-        return min(self._pending[0][0], limit) if self._pending else limit
+        """Return the step after which the next change is due, `limit` without one before it."""
+        return min(self._pending[0].after, limit) if self._pending else limit
+
+    def _after(self, time: float) -> int:
+        """Return how many steps are done when a time [s], as written, is reached."""
+        return ceil(Fraction(repr(time)) / self._scene.timestep)
+
+    def _event_changes(self, events: list[dict[str, Any]]) -> Iterator[Change]:
+        for order, event in enumerate(events, start=1):
+            yield Change(
+                self._after(event["at"]),
+                order,
+                lambda event=event: apply_event(self._engine, self._scene, event),  # type: ignore[misc]
+            )
+
+    def _force_changes(self, forces: list[dict[str, Any]]) -> Iterator[Change]:
+        for force in forces:
+            begin, end = self._after(force["from"]), self._after(force["to"])
+            if begin < end:
+                yield Change(begin, 0, lambda force=force: self._begin(force))  # type: ignore[misc]
+                yield Change(end, 0, lambda force=force: self._end(force))  # type: ignore[misc]
+
+    def _begin(self, force: dict[str, Any]) -> None:
+        self._acting.append(force)
+        self._set_force(force["body"])
+
+    def _end(self, force: dict[str, Any]) -> None:
+        self._acting = [other for other in self._acting if other is not force]
+        self._set_force(force["body"])
+
+    def _set_force(self, name: str) -> None:
+        """Write the sum of what acts on a body now: no remainder is left when forces end."""
+        body = self._engine.bodies[self._scene.names.index(name)]
+        acting = [force for force in self._acting if force["body"] == name]
+        for k, axis in enumerate("xyz"):
+            body[f"f{axis}"] = fsum(force["force"][k] for force in acting)
+            if f"t{axis}" in (body.dtype.names or ()):
+                body[f"t{axis}"] = fsum(force["torque"][k] for force in acting)
 
 
 def apply_event(engine: Engine, scene: Scene, event: dict[str, Any]) -> None:
@@ -41,12 +85,17 @@ def apply_event(engine: Engine, scene: Scene, event: dict[str, Any]) -> None:
     `contact_cache: clear` drops every cached impulse: the next solve starts from zero everywhere.
     """
     index = scene.names.index(event["body"])
-    body = engine.bodies[index]
+    engine.wake(index)
+    body, velocity = engine.bodies[index], engine.velocities[index]
     if event["scale_mass"] is not None:
         body["inv_m"] /= event["scale_mass"]
         if engine.spec.has("rotation"):
             for axis in "xyz":
                 body[f"inv_i{axis}"] /= event["scale_mass"]
+    if event["velocity"] is not None:
+        velocity["vx"], velocity["vy"], velocity["vz"] = event["velocity"]
+    if event["angular_velocity"] is not None and engine.spec.has("rotation"):
+        velocity["wx"], velocity["wy"], velocity["wz"] = event["angular_velocity"]
     if event["teleport"] is not None:
         body["x"], body["y"], body["z"] = event["teleport"]
         engine.forget_contacts(index)

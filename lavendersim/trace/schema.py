@@ -60,6 +60,9 @@ STEP_COLUMNS = (
     Column("angular_momentum_y", "f8", 15, "about the world origin, world y [kg m^2/s]"),
     Column("angular_momentum_z", "f8", 16, "about the world origin, world z [kg m^2/s]"),
     Column("state_hash", "u8", 17, "hash of positions and velocities; equal states, equal hashes"),
+    Column("unsolved", "i8", 18, "1 when the residual stayed above the tolerance asked for"),
+    Column("stronge", "i8", 19, "1 when Stronge's law of restitution replaced Newton's"),
+    Column("awake", "i8", 20, "number of movable bodies that do not sleep"),
 )
 
 RESIDUAL_COLUMNS = (
@@ -82,10 +85,25 @@ CONTACT_COLUMNS = {
     "approach_velocity": "normal velocity of B relative to A before the solve [m/s]",
     "normal_velocity": "normal velocity of B relative to A after the solve [m/s]",
     "impulse_n": "normal impulse on B [N s]",
-    "impulse_t1": "tangential impulse on B, first axis [N s]",
-    "impulse_t2": "tangential impulse on B, second axis [N s]",
+    "impulse_t1": "tangential impulse on B along t1 [N s]",
+    "impulse_t2": "tangential impulse on B along t2 = n x t1 [N s]",
+    "slip_t1": "tangential velocity of B relative to A after the solve, along t1 [m/s]",
+    "slip_t2": "tangential velocity of B relative to A after the solve, along t2 [m/s]",
+    "t1x": "first unit tangent, world x",
+    "t1y": "first unit tangent, world y",
+    "t1z": "first unit tangent, world z",
+    "friction": "coefficient of the pair [-]",
+    "angular_impulse_n": "of torsional friction on B about the normal [N m s]",
+    "spin_n": "angular velocity of B relative to A after the solve, about the normal [rad/s]",
+    "torsional_friction": "coefficient of the pair [m]",
+    "angular_impulse_t1": "of rolling friction on B about t1 [N m s]",
+    "angular_impulse_t2": "of rolling friction on B about t2 [N m s]",
+    "spin_t1": "angular velocity of B relative to A after the solve, about t1 [rad/s]",
+    "spin_t2": "angular velocity of B relative to A after the solve, about t2 [rad/s]",
+    "rolling_friction": "coefficient of the pair [m]",
     "force_n": "impulse_n / timestep: the step's average [N]",
     "inverse_effective_mass": "along the normal [1/kg]",
+    "target": "b + b_rest: the row asked v_n + target + gamma impulse_n >= 0 [m/s]",
     "residual": "natural-map residual after the solve [m/s]",
 }
 

@@ -6,22 +6,22 @@ top face is the plane; it is placed against the plane body's own pose, whatever 
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lavendersim.trace.layout import root_frame
+from lavendersim.trace.urdf_visuals import PLANE_THICKNESS, Matrix, Visual, visuals
 
-PLANE_THICKNESS = 0.02  # m; thin beside any body, thick enough to be seen edge-on
+__all__ = ["PLANE_THICKNESS", "robot_description"]
+
 # Okabe and Ito, without the two that contacts are drawn in
 PALETTE = ((0, 114, 178), (230, 159, 0), (0, 158, 115), (204, 121, 167), (240, 228, 66))
 STATIC_COLOUR = (170, 170, 170)
-
-Matrix = NDArray[np.float64]
+# A viewer makes an entity of each primitive. Hulls have dozens; beyond this they are left out.
+MOST_VISUALS = 20_000
 
 
 def robot_description(
@@ -35,20 +35,19 @@ def robot_description(
     world = root_frame(bodies)
     lines = ['<?xml version="1.0"?>', '<robot name="scene">', f"  <link name={quoteattr(world)}/>"]
     side = _plane_side(poses)
+    left = MOST_VISUALS
     for index, name in enumerate(bodies):
         config = shapes.get(name, {})
         shape = config.get("shape", {})
-        static = bool(config.get("fixed")) or shape.get("kind") == "plane"
-        colour = STATIC_COLOUR if static else PALETTE[index % len(PALETTE)]
-        lines += [f"  <link name={quoteattr(name)}>", *_visual(name, shape, poses[index], side)]
-        if lines[-1].startswith("    <visual"):
-            rgba = " ".join(f"{channel / 255:.3f}" for channel in colour)
-            lines += [
-                f"      <material name={quoteattr(name)}><color rgba={quoteattr(rgba + ' 1')}/>"
-                "</material>",
-                "    </visual>",
-            ]
-        lines += ["  </link>", *_joint(world, name, "fixed" if static else "floating")]
+        immovable = bool(config.get("fixed")) or shape.get("kind") == "plane"
+        colour = STATIC_COLOUR if immovable else PALETTE[index % len(PALETTE)]
+        drawn = visuals(shape, poses[index], side)
+        if len(drawn) > max(1, left):
+            drawn = []
+        left -= len(drawn)
+        lines += [f"  <link name={quoteattr(name)}>", *_visuals(name, drawn, colour), "  </link>"]
+        still = immovable and not config.get("kinematic")
+        lines += _joint(world, name, "fixed" if still else "floating")
     return "\n".join([*lines, "</robot>", ""])
 
 
@@ -65,55 +64,15 @@ def _joint(parent: str, child: str, kind: str) -> list[str]:
     ]
 
 
-def _visual(name: str, shape: Mapping[str, Any], pose: Matrix, side: float) -> list[str]:
-    kind = shape.get("kind")
-    origin = '<origin xyz="0 0 0" rpy="0 0 0"/>'
-    if kind == "sphere":
-        geometry = f'<sphere radius="{float(shape["radius"])!r}"/>'
-    elif kind == "box":
-        geometry = f'<box size="{_numbers(shape["size"])}"/>'
-    elif kind == "plane":
-        geometry = f'<box size="{_numbers((side, side, PLANE_THICKNESS))}"/>'
-        origin = _plane_origin(shape, pose)
-    else:
-        return []
-    # the visual's name becomes part of the viewer's entity path
-    head = f"    <visual name={quoteattr(name)}>{origin}<geometry>{geometry}</geometry>"
-    return [head]
-
-
-def _plane_origin(shape: Mapping[str, Any], pose: Matrix) -> str:
-    """Return where the plane's box stands in the plane body's frame."""
-    normal = np.array([float(v) for v in shape["normal"]])
-    normal /= np.linalg.norm(normal)
-    centre = normal * (float(shape["offset"]) - PLANE_THICKNESS / 2)
-    body = _rotation(pose[3:])
-    box = body.T @ _facing(normal)
-    position = body.T @ (centre - pose[:3])
-    roll = math.atan2(box[2, 1], box[2, 2])
-    pitch = math.asin(min(1.0, max(-1.0, -float(box[2, 0]))))
-    yaw = math.atan2(box[1, 0], box[0, 0])
-    return f'<origin xyz="{_numbers(position)}" rpy="{_numbers((roll, pitch, yaw))}"/>'
-
-
-def _facing(normal: Matrix) -> Matrix:
-    """Return a rotation that takes z to `normal`."""
-    helper = np.eye(3)[int(np.argmin(np.abs(normal)))]
-    x = np.cross(helper, normal)
-    x /= np.linalg.norm(x)
-    return np.column_stack([x, np.cross(normal, x), normal])
-
-
-def _rotation(q: Matrix) -> Matrix:
-    w, x, y, z = q
-    return np.array(
-        [
-            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+def _visuals(name: str, drawn: Sequence[Visual], colour: tuple[int, int, int]) -> list[str]:
+    rgba = quoteattr(" ".join(f"{channel / 255:.3f}" for channel in colour) + " 1")
+    lines = []
+    for number, visual in enumerate(drawn, start=1):
+        # the visual's name becomes part of the viewer's entity path
+        called = quoteattr(name if len(drawn) == 1 else f"{name} {number}")
+        lines += [
+            f"    <visual name={called}>{visual.origin}<geometry>{visual.geometry}</geometry>",
+            f"      <material name={quoteattr(name)}><color rgba={rgba}/></material>",
+            "    </visual>",
         ]
-    )
-
-
-def _numbers(values: Any) -> str:
-    return " ".join(repr(float(value)) for value in values)
+    return lines

@@ -4,11 +4,17 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+
+# Rests on another ball on the floor: one sweep cannot carry both, so its steps stay unsolved.
+ON_THE_BALL = """
+    low: {shape: {kind: sphere, radius: 0.1}, mass: 1.0, position: [5, 0, 0.1]}
+    high: {shape: {kind: sphere, radius: 0.1}, mass: 1.0, position: [5, 0, 0.3]}"""
 
 
 def lavender(*arguments: object, where: Path) -> subprocess.CompletedProcess[str]:
@@ -181,3 +187,55 @@ def test_a_path_that_cannot_be_written_is_one_sentence(drop: Path, tmp_path: Pat
     assert done.returncode == 2
     assert len(done.stderr.strip().splitlines()) == 1
     assert "afile: file exists" in done.stderr
+
+
+def test_costs_are_printed_by_cell_and_compilation_once(drop: Path, tmp_path: Path) -> None:
+    text = drop.read_text()
+    swept = "sweep:\n  e: {path: scene.bodies.ball.surface.restitution, values: [0.5, 0.52]}\n"
+    drop.write_text(text.replace("measure:\n", swept + "measure:\n"))
+    done = lavender("run", drop, where=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert re.search(
+        r"^drop: 2 cells, 240 steps; logging [\d.]+ us/step, compile [\d.]+ s$", done.stdout, re.M
+    )
+    for value in ("0.5", "0.52"):
+        assert re.search(rf"^  physics +[\d.]+ us/step  e={value}$", done.stdout, re.M)
+    shown = lavender("show", where=tmp_path).stdout
+    assert re.search(r"^cells  logging [\d.]+ us/step, compile [\d.]+ s$", shown, re.M)
+    assert re.search(r"e=0.52  complete  physics [\d.]+ us/step  residual <= \S+ m/s", shown)
+
+
+def test_an_accuracy_that_was_missed_is_a_warning(drop: Path, tmp_path: Path) -> None:
+    text = drop.read_text().replace("\n    ball:", ON_THE_BALL + "\n    ball:")
+    text = text[: text.index("measure:\n")]
+    drop.write_text(
+        text.replace(
+            "numerics: chapter",
+            "numerics: {preset: chapter, sweeps: 1, warm_start: false, tolerance: 1e-9}",
+        )
+    )
+    done = lavender("run", drop, where=tmp_path)
+    assert done.returncode == 0
+    sentence = r"^drop: \d+ of 120 steps ended above the tolerance 1e-09 m/s, worst \S+ m/s$"
+    assert re.search(sentence, done.stderr, re.M)
+    assert re.search(sentence, lavender("check", drop, where=tmp_path).stderr, re.M)
+    assert re.search(
+        r"\(\d+ of 120 steps above the tolerance 1e-09 m/s\)",
+        lavender("show", where=tmp_path).stdout,
+    )
+
+
+def test_a_sweep_over_solvers_has_a_plan_for_each(drop: Path, tmp_path: Path) -> None:
+    solvers = "[projected_gauss_seidel, nonsmooth_conjugate_gradient]"
+    drop.write_text(
+        drop.read_text().replace(
+            "measure:\n",
+            f"sweep:\n  s: {{path: numerics.solver, values: {solvers}}}\nmeasure:\n",
+        )
+    )
+    plans = json.loads(lavender("plan", drop, "--json", where=tmp_path).stdout)
+    assert plans["spec"]["solver"] == "projected_gauss_seidel"
+    assert [one["spec"]["solver"] for one in plans["others"]] == ["nonsmooth_conjugate_gradient"]
+    printed = lavender("plan", drop, where=tmp_path).stdout
+    assert printed.count("shape pairs: ") == 2
+    assert "solver: nonsmooth_conjugate_gradient" in printed

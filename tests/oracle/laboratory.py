@@ -5,20 +5,26 @@ Every engine of a test session is built from a few specs, because each spec cost
 
 from __future__ import annotations
 
-from typing import Any
+import json
+from typing import Annotated, Any
 
 import numpy as np
+from pydantic import Field, TypeAdapter
 
 from lavendersim.engine.effects import EFFECTS
 from lavendersim.engine.engine import Engine, Rows
 from lavendersim.engine.records import ROWS_FULL
 from lavendersim.engine.spec import Spec
+from lavendersim.experiment.resolve_shape import resolve_shape
+from lavendersim.experiment.shape_models import Solid
 from lavendersim.scene.build import Scene, build
 from lavendersim.scene.plan import plan_of
 
-# Every effect but the implicit rotation, every shape pair: one compilation serves most tests.
+# Effects that put another law in a law's place: no coefficient of theirs takes them away.
+OTHER_LAWS = {"broad_phase", "impact_time", "midpoint", "sleeping", "speculative"}
+# Every other effect and the shapes of most tests: one compilation serves them.
 EVERYTHING = Spec(
-    effects=tuple(sorted(effect.NAME for effect in EFFECTS)),
+    effects=tuple(sorted(effect.NAME for effect in EFFECTS if effect.NAME not in OTHER_LAWS)),
     shape_pairs=("box_box", "box_plane", "sphere_box", "sphere_plane", "sphere_sphere"),
     record=True,
     record_residuals=True,
@@ -38,19 +44,39 @@ NUMERICS: dict[str, Any] = {
     "restitution_threshold": 2.0,
     "cache_distance": 0.02,
     "cache_normal_cosine": 0.95,
+    "speculative": False,
+    "impacts": "captured",
+    "integrator": "semi_implicit_euler",
+    "friction_cone": "disc",
+    "sleeping": False,
+    "sleep_speed": 0.005,
+    "sleep_time": 0.5,
 }
+SOLID: TypeAdapter[Any] = TypeAdapter(Annotated[Solid, Field(discriminator="kind")])
+SURFACE = ("restitution", "compliance", "friction", "torsional_friction", "rolling_friction")
 
 
 def body(shape: dict[str, Any], position=(0.0, 0.0, 0.0), **stated: Any) -> dict[str, Any]:
-    """Return one resolved body; mass 1 kg unless stated."""
-    surface = {name: stated.pop(name, 0.0) for name in ("restitution", "compliance")}
-    fixed = stated.pop("fixed", shape["kind"] == "plane")
+    """Return one resolved body; mass 1 kg unless stated. Hulls and compounds: as written."""
+    surface = {name: stated.pop(name, 0.0) for name in SURFACE}
+    kinematic = stated.pop("kinematic", False)
+    fixed = stated.pop("fixed", kinematic or shape["kind"] == "plane")
+    mass = None if fixed else stated.pop("mass", 1.0)
+    inertia = None
+    if shape["kind"] != "plane":
+        solid = resolve_shape(SOLID.validate_json(json.dumps(shape)))
+        shape = solid.shape.model_dump(mode="json")
+        inertia = None if fixed else [mass * moment for moment in solid.inertia_per_mass]
     return {
         "shape": shape,
         "fixed": fixed,
-        "mass": None if fixed else stated.pop("mass", 1.0),
+        "kinematic": kinematic,
+        "mass": mass,
         "density": None,
+        "inertia": stated.pop("inertia", inertia),
         "surface": surface,
+        "surface_velocity": list(stated.pop("surface_velocity", (0.0, 0.0, 0.0))),
+        "drag": {"linear": 0.0, "quadratic": 0.0, "angular": 0.0, **stated.pop("drag", {})},
         "position": list(position),
         "release": None,
         "orientation": list(stated.pop("orientation", (1.0, 0.0, 0.0, 0.0))),
@@ -77,8 +103,9 @@ def plane(normal=(0.0, 0.0, 1.0), offset: float = 0.0, **stated: Any) -> dict[st
 def resolved(bodies: dict[str, Any], gravity=(0.0, 0.0, 0.0), **numerics: Any) -> dict[str, Any]:
     """Return a resolved cell as the experiment room hands it on."""
     return {
-        "scene": {"gravity": list(gravity), "bodies": bodies},
+        "scene": {"gravity": list(gravity), "bodies": bodies, "forces": []},
         "events": [],
+        "duration": 1.0,
         "numerics": {**NUMERICS, **numerics},
         "record": {"residuals": "all"},
     }

@@ -14,7 +14,7 @@ from lavendersim.engine.collide.box_box import allocate_scratch
 from lavendersim.engine.compile import kernel
 from lavendersim.engine.engine import MANIFOLD_POINTS, allocate_bodies
 from lavendersim.engine.kernel_cache import cached
-from lavendersim.engine.records import POINT, dtype
+from lavendersim.engine.records import POINT, TOUCHING, dtype
 from lavendersim.engine.spec import Spec
 
 # Kept on disk like the engine's own kernels; the name follows this file's text.
@@ -37,7 +37,7 @@ def _every_pose(pair: str) -> Any:
 
         def every_pose(first, second, found, normals, counts, points, normal, scratch):
             for i in range(first.shape[0]):
-                count = manifold(first[i], second[i], points, normal, scratch)
+                count = manifold(first[i], second[i], points, normal, scratch, TOUCHING)
                 counts[i] = count
                 for k in range(3):
                     normals[i, k] = normal[k]

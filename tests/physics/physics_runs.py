@@ -10,6 +10,7 @@ import numpy as np
 from lavendersim.engine.records import DIVERGED, RUNNING
 from lavendersim.experiment import load_experiment_text
 from lavendersim.scene.build import build
+from lavendersim.scene.events import EventQueue
 from lavendersim.scene.plan import plan_of, union
 
 GRAVITY = 9.81  # [m/s^2], what a config has that states none
@@ -44,12 +45,15 @@ def run_config(text: str) -> list[Course]:
     for cell in cells:
         scene = build(cell.resolved, spec)
         engine = scene.engine(spec)
-        blocks = []
+        changes = EventQueue(engine, scene, cell.resolved["events"])
+        blocks, done, last = [], 0, cell.config.steps
         while True:
-            status = engine.advance(cell.config.steps - int(engine.counters["step"][0]))
+            changes.apply_due(done)
+            status = engine.advance(changes.next_stop(last) - done)
+            done = int(engine.counters["step"][0])
             blocks.append(engine.take_rows())
             assert status != DIVERGED, f"{cell.label}: body {engine.counters['body'][0]} diverged"
-            if status == RUNNING:
+            if status == RUNNING and done >= last:
                 break
         step, pose, contact, _ = (np.concatenate(rows) for rows in zip(*blocks, strict=True))
         dt = float(Fraction(cell.resolved["numerics"]["timestep"]))

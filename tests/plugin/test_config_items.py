@@ -62,6 +62,25 @@ def test_a_defective_config_is_a_collection_error_with_its_place(
     result.stdout.fnmatch_lines(["*drop.yaml:8:*mass*"])
 
 
+def test_an_accuracy_that_was_missed_is_said_and_fails_nothing(pytester: pytest.Pytester) -> None:
+    # One sweep without a start leaves the lower of two stacked balls with half of g dt.
+    low = "    low: {shape: {kind: sphere, radius: 0.1}, mass: 1.0, position: [5, 0, 0.1]}\n"
+    text = DROP.replace(
+        "    ball:\n", low + low.replace("0.1]", "0.3]").replace("low", "high", 1) + "    ball:\n"
+    )
+    numerics = "{preset: chapter, sweeps: 1, warm_start: false, tolerance: 1e-9}"
+    text = text.replace("numerics: chapter", f"numerics: {numerics}")
+    pytester.makefile(".yaml", drop=text)
+    result = run(pytester)
+    result.assert_outcomes(passed=2)
+    result.stdout.fnmatch_lines(
+        [
+            "*accuracy asked for, not met*",
+            "drop: * of 120 steps ended above the tolerance 1e-09 m/s*",
+        ]
+    )
+
+
 def test_other_yaml_files_are_left_alone(pytester: pytest.Pytester) -> None:
     pytester.makefile(".yaml", compose="services:\n  scene: {image: x}\n")
     assert run(pytester).ret == pytest.ExitCode.NO_TESTS_COLLECTED

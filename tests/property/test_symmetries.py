@@ -27,7 +27,7 @@ def moved(bodies, **changes):
     return copied
 
 
-@given(clusters(restitution=True), vector)
+@given(clusters(restitution=True, friction=True), vector)
 @FEW
 def test_a_moving_observer_sees_the_same_motion(bodies, direction):
     speed = 3.0 * np.array(direction)
@@ -38,7 +38,7 @@ def test_a_moving_observer_sees_the_same_motion(bodies, direction):
     np.testing.assert_allclose(seen.contact["impulse_n"], still.contact["impulse_n"], atol=1e-9)
 
 
-@given(clusters(restitution=True), st.floats(-3.0, 3.0, width=32))
+@given(clusters(restitution=True, friction=True), st.floats(-3.0, 3.0, width=32))
 @FEW
 def test_the_world_turned_about_gravity_moves_turned(bodies, angle):
     gravity = (0.0, 0.0, -9.81)
@@ -60,13 +60,14 @@ def test_the_world_turned_about_gravity_moves_turned(bodies, angle):
     np.testing.assert_allclose(seen.pose[:, :, :3], plain.pose[:, :, :3] @ matrix.T, atol=1e-9)
 
 
-@given(clusters(restitution=True), st.integers(-8, 8))
+@given(clusters(restitution=True, friction=True), st.integers(-8, 8))
 @FEW
 def test_masses_times_a_power_of_two_scale_impulses_and_nothing_else(bodies, exponent):
     """Times 2^k nothing is rounded differently: positions are bit-equal, impulses exactly 2^k."""
     heavier = copy.deepcopy(bodies)
     for described in heavier.values():
         described["mass"] *= 2.0**exponent
+        described["inertia"] = [moment * 2.0**exponent for moment in described["inertia"]]
     _, plain = run(bodies, STEPS, **NUMERICS)
     _, scaled = run(heavier, STEPS, **NUMERICS)
     np.testing.assert_array_equal(scaled.pose, plain.pose)
@@ -74,7 +75,7 @@ def test_masses_times_a_power_of_two_scale_impulses_and_nothing_else(bodies, exp
     np.testing.assert_array_equal(scaled.contact["impulse_n"], impulses)
 
 
-@given(clusters(restitution=True))
+@given(clusters(restitution=True, friction=True))
 @FEW
 def test_equal_worlds_are_equal_to_the_last_bit(bodies):
     _, one = run(bodies, STEPS, **NUMERICS)

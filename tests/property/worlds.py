@@ -17,7 +17,9 @@ vector = st.tuples(unit, unit, unit)
 
 
 @st.composite
-def clusters(draw, restitution: bool = False, boxes: bool = True) -> dict[str, Any]:
+def clusters(
+    draw, restitution: bool = False, boxes: bool = True, friction: bool = False
+) -> dict[str, Any]:
     """Two to four free bodies near the origin that fly towards it and each other."""
     bodies = {}
     for i in range(draw(st.integers(2, 4))):
@@ -28,6 +30,7 @@ def clusters(draw, restitution: bool = False, boxes: bool = True) -> dict[str, A
             "mass": 10.0 ** draw(unit),
             "velocity": velocity,
             "restitution": draw(st.floats(0.0, 1.0, width=32)) if restitution else 0.0,
+            "friction": draw(st.floats(0.0, 1.0, width=32)) if friction else 0.0,
         }
         if not boxes or draw(st.booleans()):
             bodies[f"body_{i}"] = sphere(0.2 + 0.05 * draw(unit), place, **stated)

@@ -6,18 +6,28 @@ import re
 
 import pytest
 
-from lavendersim.engine.records import CONTACT_ROW, RESIDUAL_ROW, STEP_ROW, Field
+from lavendersim.engine.records import (
+    AWAKE_ROW,
+    CONTACT_ROW,
+    RESIDUAL_ROW,
+    ROLLING_ROW,
+    STEP_ROW,
+    TORSION_ROW,
+    Field,
+)
 from lavendersim.trace.schema import CONTACT_COLUMNS, RESIDUAL_COLUMNS, STEP_COLUMNS
 
 UNIT = re.compile(r"\[[^]]+\]")
 # Counts, indices, hashes and directions have no unit.
 WITHOUT_UNIT = {
-    "step", "contact_count", "sweeps", "residual_contact", "state_hash", "sweep",
+    "step", "contact_count", "sweeps", "residual_contact", "state_hash", "sweep", "awake",
     "body_a", "body_b", "feature", "nx", "ny", "nz",
 }  # fmt: skip
 # The step of a contact or a residual is the number of the message that carries it.
 OF_THE_MESSAGE = "step"
 
+CONTACTS = [*CONTACT_ROW, *TORSION_ROW, *ROLLING_ROW]
+STEPS = [*STEP_ROW, *AWAKE_ROW]
 STEP = {column.name: column for column in STEP_COLUMNS}
 RESIDUAL = {column.name: column for column in RESIDUAL_COLUMNS}
 
@@ -27,14 +37,14 @@ def names(rows: list[Field]) -> list[str]:
     return [name for name, _ in rows]
 
 
-@pytest.mark.parametrize("field", STEP_ROW, ids=names(STEP_ROW))
+@pytest.mark.parametrize("field", STEPS, ids=names(STEPS))
 def test_a_step_column_is_described_with_its_kind_and_unit(field: Field) -> None:
     name, kind = field
     assert STEP[name].kind == kind
     assert bool(UNIT.search(STEP[name].meaning)) != (name in WITHOUT_UNIT)
 
 
-@pytest.mark.parametrize("name", [name for name in names(CONTACT_ROW) if name != OF_THE_MESSAGE])
+@pytest.mark.parametrize("name", [name for name in names(CONTACTS) if name != OF_THE_MESSAGE])
 def test_a_contact_column_is_described_with_its_unit(name: str) -> None:
     assert bool(UNIT.search(CONTACT_COLUMNS[name])) != (name in WITHOUT_UNIT)
 

@@ -29,6 +29,7 @@ ROOMS = {
 LIBRARIES = {
     "numba": {"engine"},
     "numpy": {"scene", "engine", "trace", "measures", "figures", "replay", "simulator", "runner"},
+    "scipy": {"experiment"},  # hulls, and only where a scene has one
     "mcap": {"trace"},
     "google": {"trace"},  # google.protobuf
     "zstandard": {"trace"},

@@ -113,7 +113,7 @@ def test_every_change_of_an_engine_source_changes_the_source_hash(
         deepest = engine / "collide/box_box.py"
         deepest.write_text(deepest.read_text() + "# a word\n")
     elif change == "new file":
-        (engine / "effects/friction.py").write_text("")
+        (engine / "effects/unheard_of.py").write_text("")
     else:
         (engine / "rotation.py").rename(engine / "rotations.py")
     assert source_hash() != before

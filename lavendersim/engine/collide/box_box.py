@@ -17,7 +17,7 @@ contact does not flicker between equivalent axes.
 from __future__ import annotations
 
 from math import sqrt
-from typing import NamedTuple
+from typing import Any
 
 import numba
 import numpy as np
@@ -25,7 +25,12 @@ import numpy as np
 from ..compile import OPTIONS, kernel
 from ..records import TOUCHING
 from .clip import clip_incident_face
+from .gjk import APART, make_gjk
 from .point import keep_four, place
+from .scratch import allocate_scratch
+from .separation import FACE_SHARE
+
+__all__ = ["allocate_scratch", "make"]
 
 # A face is kept while its penetration is at most this much deeper than the edges': a share of the
 # depth plus a share of the smallest half edge [-]. Smaller: flicker in stacks; larger: true
@@ -36,25 +41,13 @@ EDGE_SIZE = 0.005
 PARALLEL_SINE = 1e-6
 # B's face wins over A's only by more than this share of the smallest half edge [-].
 FACE_SIZE = 1e-6
+# Boxes farther apart than this share of the smallest half edge have their true distance looked for;
+# nearer, a face that separates most and meets the other box is as near as it is for stacking [-].
+FAR = 0.1
 # Features of edge pairs start behind those of faces, whose six by six choices take 64 numbers each.
 EDGE_FEATURES = 36 * 64
-
-
-class Scratch(NamedTuple):
-    """Small arrays the kernel fills anew for each pair: no allocation, no slices in kernels."""
-
-    frame_a: np.ndarray
-    frame_b: np.ndarray
-    cosines: np.ndarray
-    half_a: np.ndarray
-    half_b: np.ndarray
-    offset_a: np.ndarray
-    offset_b: np.ndarray
-
-
-def allocate_scratch() -> Scratch:
-    """Return scratch for one thread."""
-    return Scratch(*(np.zeros((3, 3)) for _ in range(3)), *(np.zeros(3) for _ in range(4)))
+# Nine pairs of edges of sixteen choices each come before the nearest points of boxes far apart.
+NEAREST_FEATURE = EDGE_FEATURES + 9 * 16
 
 
 @numba.njit(**OPTIONS)
@@ -155,14 +148,32 @@ def edge_contact(a, b, fa, fb, ha, hb, edges, separation, points, normal):
     return 1
 
 
-def make(spec):
-    """Return `kernel(a, b, points, normal, scratch) -> count`."""
+@numba.njit(**OPTIONS)
+def nearest_contact(a, nearest, points, normal):
+    """Two boxes that are far apart have one point, between the nearest ones that GJK found."""
+    normal[0], normal[1], normal[2] = nearest[0], nearest[1], nearest[2]
+    place(
+        points[0],
+        a.x + 0.5 * (nearest[4] + nearest[7]),
+        a.y + 0.5 * (nearest[5] + nearest[8]),
+        a.z + 0.5 * (nearest[6] + nearest[9]),
+        nearest[3],
+        NEAREST_FEATURE,
+    )
+    return 1
 
-    def box_box(a, b, points, normal, scratch):
+
+def make(spec):
+    """Return `kernel(a, b, points, normal, scratch, margin) -> count`."""
+    # Contacts ahead of touching: an axis that separates most bounds the distance from below only.
+    ahead = spec.has("speculative")
+    gjk: Any = make_gjk(spec) if ahead else None
+
+    def box_box(a, b, points, normal, scratch, margin):
         fa, fb, C = scratch.frame_a, scratch.frame_b, scratch.cosines
         ha, hb, t, t_b = scratch.half_a, scratch.half_b, scratch.offset_a, scratch.offset_b
         dx, dy, dz = b.x - a.x, b.y - a.y, b.z - a.z
-        reach = a.bound + b.bound + TOUCHING
+        reach = a.bound + b.bound + margin
         if dx * dx + dy * dy + dz * dz > reach * reach:
             return 0
         half_edges(a, ha)
@@ -175,26 +186,45 @@ def make(spec):
             for j in range(3):
                 C[i, j] = fa[i, 0] * fb[j, 0] + fa[i, 1] * fb[j, 1] + fa[i, 2] * fb[j, 2]
         s_a, axis_a = deepest_face(t, ha, hb, C, False)
-        if s_a > TOUCHING:
+        if s_a > margin:
             return 0
         s_b, axis_b = deepest_face(t_b, hb, ha, C, True)
-        if s_b > TOUCHING:
+        if s_b > margin:
             return 0
         s_e, edges = deepest_edges(t, ha, hb, C)
-        if s_e > TOUCHING:
+        if s_e > margin:
             return 0
         size = min(min(ha[0], min(ha[1], ha[2])), min(hb[0], min(hb[1], hb[2])))
         s_face = max(s_a, s_b)
-        if edges >= 0 and s_e > EDGE_SHARE * s_face + EDGE_SIZE * size:
+        if ahead:
+            if s_face > FAR * size or s_e > max(TOUCHING, s_face / EDGE_SHARE + EDGE_SIZE * size):
+                status, _ = gjk(a, b, dx, dy, dz, margin, scratch)
+                if status != APART:
+                    return 0
+                if s_face < scratch.result[3] - FACE_SHARE * (a.bound + b.bound):
+                    return nearest_contact(a, scratch.result, points, normal)
+        touching_edges = edges >= 0 and s_e <= TOUCHING
+        if touching_edges and s_e > EDGE_SHARE * s_face + EDGE_SIZE * size:
             return edge_contact(a, b, fa, fb, ha, hb, edges, s_e, points, normal)
         if s_b > s_a + FACE_SIZE * size:
             # B is the reference: its outward normal points back to A.
             side = 1.0 if t_b[axis_b] < 0.0 else -1.0
-            count = clip_incident_face(b, a, fb, fa, hb, ha, axis_b, side, 18 * 64, points, normal)
+            count = clip_incident_face(
+                b, a, fb, fa, hb, ha, axis_b, side, 18 * 64, points, normal, margin
+            )
             normal[0], normal[1], normal[2] = -normal[0], -normal[1], -normal[2]
         else:
             side = 1.0 if t[axis_a] >= 0.0 else -1.0
-            count = clip_incident_face(a, b, fa, fb, ha, hb, axis_a, side, 0, points, normal)
+            count = clip_incident_face(
+                a, b, fa, fb, ha, hb, axis_a, side, 0, points, normal, margin
+            )
+        if ahead:
+            if count == 0 and s_face > 0.0:
+                # The face that separates most looks past the other box.
+                status, _ = gjk(a, b, dx, dy, dz, margin, scratch)
+                if status != APART:
+                    return 0
+                return nearest_contact(a, scratch.result, points, normal)
         return keep_four(points, count, normal[0], normal[1], normal[2])
 
     return kernel(box_box, spec)

@@ -6,19 +6,18 @@ The feature of a point is its corner, bit 0, 1, 2 set where the corner lies at +
 from __future__ import annotations
 
 from ..compile import kernel
-from ..records import TOUCHING
 from ..rotation import to_body, to_world
 from .point import keep_four, place
 
 
 def make(spec):
-    """Return `kernel(plane, box, points, normal, scratch) -> count`."""
+    """Return `kernel(plane, box, points, normal, scratch, margin) -> count`."""
 
-    def box_plane(plane, box, points, normal, scratch):
+    def box_plane(plane, box, points, normal, scratch, margin):
         nx, ny, nz = plane.hx, plane.hy, plane.hz
         height = nx * box.x + ny * box.y + nz * box.z - plane.offset
         bx, by, bz = to_body(box, nx, ny, nz)
-        if height > abs(bx) * box.hx + abs(by) * box.hy + abs(bz) * box.hz + TOUCHING:
+        if height > abs(bx) * box.hx + abs(by) * box.hy + abs(bz) * box.hz + margin:
             return 0
         normal[0], normal[1], normal[2] = nx, ny, nz
         count = 0
@@ -27,7 +26,7 @@ def make(spec):
             cy = box.hy if corner & 2 else -box.hy
             cz = box.hz if corner & 4 else -box.hz
             phi = height + bx * cx + by * cy + bz * cz
-            if phi <= TOUCHING:
+            if phi <= margin:
                 wx, wy, wz = to_world(box, cx, cy, cz)
                 place(
                     points[count],

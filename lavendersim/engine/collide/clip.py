@@ -69,7 +69,7 @@ def cut(points, start, count, target, axis, side, limit, line):
 
 
 @numba.njit(**OPTIONS)
-def clip_incident_face(ref, inc, fr, fi, hr, hi, axis, side, base, points, normal):
+def clip_incident_face(ref, inc, fr, fi, hr, hi, axis, side, base, points, normal, margin):
     """Write the manifold on the reference face; returns the count (at most 8).
 
     ref, inc: the boxes; fr, fi: their axes as rows; hr, hi: half edges; axis, side: the reference
@@ -113,7 +113,7 @@ def clip_incident_face(ref, inc, fr, fi, hr, hi, axis, side, base, points, norma
     kept = 0
     for k in range(count):
         p = points[k]
-        if p.z <= TOUCHING:
+        if p.z <= margin:
             u = min(max(p.x, -hr[iu]), hr[iu])
             v = min(max(p.y, -hr[iv]), hr[iv])
             phi = p.z

@@ -11,6 +11,9 @@ import numba
 
 from ..compile import OPTIONS
 
+# Points that `keep_four` exchanges at most: three are kept beside the deepest, most fit at once.
+EXCHANGES = 4
+
 
 @numba.njit(**OPTIONS)
 def place(point, x, y, z, phi, feature):
@@ -48,11 +51,45 @@ def signed_area(p, q, r, nx, ny, nz):
 
 
 @numba.njit(**OPTIONS)
+def quadrilateral(p, q, r, s, nx, ny, nz):
+    """Twice the area spanned by four points in any order, if none lies between the others [m^2].
+
+    The diagonals of the largest of the three loops through them: |pr x qs| and its like.
+    """
+    pq = signed_area(p, q, r, nx, ny, nz) + signed_area(p, r, s, nx, ny, nz)
+    pr = signed_area(p, r, q, nx, ny, nz) + signed_area(p, q, s, nx, ny, nz)
+    ps = signed_area(p, q, s, nx, ny, nz) + signed_area(p, s, r, nx, ny, nz)
+    return max(abs(pq), max(abs(pr), abs(ps)))
+
+
+@numba.njit(**OPTIONS)
+def exchange(points, count, nx, ny, nz):
+    """Replace each of points 1..3 by one of the others while that spans more.
+
+    A body half over an edge keeps both ends of it, so that it is carried up to the edge.
+    """
+    best = quadrilateral(points[0], points[1], points[2], points[3], nx, ny, nz)
+    for _ in range(EXCHANGES):
+        out, chosen = -1, -1
+        for k in range(1, 4):
+            p = points[2 if k == 1 else 1]
+            q = points[2 if k == 3 else 3]
+            for i in range(4, count):
+                area = quadrilateral(points[0], p, q, points[i], nx, ny, nz)
+                if area > best * (1.0 + 1e-9):
+                    best, out, chosen = area, k, i
+        if out < 0:
+            break
+        swap_points(points[out], points[chosen])
+
+
+@numba.njit(**OPTIONS)
 def keep_four(points, count, nx, ny, nz):
     """Order `points` so that the first four are the deepest and the largest quadrilateral with it.
 
     The deepest point comes first, the farthest from it second, then the one that makes the largest
-    triangle, last the one that adds most area outside that triangle. Returns the new count.
+    triangle, then the one that adds most area outside that triangle; last, all but the deepest are
+    exchanged for better ones. Returns the new count.
     """
     if count <= 4:
         return count
@@ -93,4 +130,5 @@ def keep_four(points, count, nx, ny, nz):
     if chosen < 0:
         return 3
     swap_points(points[3], points[chosen])
+    exchange(points, count, nx, ny, nz)
     return 4

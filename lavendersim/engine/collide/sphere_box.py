@@ -9,16 +9,15 @@ from __future__ import annotations
 from math import sqrt
 
 from ..compile import kernel
-from ..records import TOUCHING
 from ..rotation import to_body, to_world
 from .point import place
 from .sphere_sphere import NO_DIRECTION
 
 
 def make(spec):
-    """Return `kernel(box, sphere, points, normal, scratch) -> count`."""
+    """Return `kernel(box, sphere, points, normal, scratch, margin) -> count`."""
 
-    def sphere_box(box, sphere, points, normal, scratch):
+    def sphere_box(box, sphere, points, normal, scratch, margin):
         cx, cy, cz = to_body(box, sphere.x - box.x, sphere.y - box.y, sphere.z - box.z)
         px = min(max(cx, -box.hx), box.hx)
         py = min(max(cy, -box.hy), box.hy)
@@ -26,7 +25,7 @@ def make(spec):
         dx, dy, dz = cx - px, cy - py, cz - pz
         squared = dx * dx + dy * dy + dz * dz
         r = sphere.hx
-        if squared > (r + TOUCHING) * (r + TOUCHING):
+        if squared > (r + margin) * (r + margin):
             return 0
         distance = sqrt(squared)
         if distance > NO_DIRECTION:

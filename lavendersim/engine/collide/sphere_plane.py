@@ -6,18 +6,17 @@ phi = n . x_b - offset - r
 from __future__ import annotations
 
 from ..compile import kernel
-from ..records import TOUCHING
 from .point import place
 
 
 def make(spec):
-    """Return `kernel(plane, sphere, points, normal, scratch) -> count`."""
+    """Return `kernel(plane, sphere, points, normal, scratch, margin) -> count`."""
 
-    def sphere_plane(plane, sphere, points, normal, scratch):
+    def sphere_plane(plane, sphere, points, normal, scratch, margin):
         nx, ny, nz = plane.hx, plane.hy, plane.hz
         r = sphere.hx
         phi = nx * sphere.x + ny * sphere.y + nz * sphere.z - plane.offset - r
-        if phi > TOUCHING:
+        if phi > margin:
             return 0
         normal[0], normal[1], normal[2] = nx, ny, nz
         reach = r + 0.5 * phi

@@ -10,7 +10,6 @@ from __future__ import annotations
 from math import sqrt
 
 from ..compile import kernel
-from ..records import TOUCHING
 from .point import place
 
 # Centres closer than this count as coincident: their squared distance has lost its digits [m].
@@ -18,11 +17,11 @@ NO_DIRECTION = 1e-150
 
 
 def make(spec):
-    """Return `kernel(a, b, points, normal, scratch) -> count`."""
+    """Return `kernel(a, b, points, normal, scratch, margin) -> count`."""
 
-    def sphere_sphere(a, b, points, normal, scratch):
+    def sphere_sphere(a, b, points, normal, scratch, margin):
         dx, dy, dz = b.x - a.x, b.y - a.y, b.z - a.z
-        reach = a.hx + b.hx + TOUCHING
+        reach = a.hx + b.hx + margin
         squared = dx * dx + dy * dy + dz * dz
         if squared > reach * reach:
             return 0

@@ -11,30 +11,65 @@ Stages:
     integrate, match, project, solve   called by name from `engine.step` and the solver
 """
 
+from ..records import Field
+from ..spec import Spec
 from . import (
+    broad_phase,
     compliance,
+    compound,
     contact_torque,
+    drag,
+    force,
+    friction,
     gravity,
     gyroscopic,
+    impact_time,
+    kinematic,
+    midpoint,
     projection,
     restitution,
+    rolling_friction,
     rotation,
+    sleeping,
+    speculative,
     stabilisation,
+    surface_velocity,
+    torsional_friction,
     warm_start,
 )
 from .decision import BodyFacts, Decision, Facts, PairFacts
 
 # Order matters within a stage: kernels of one stage run in this order.
 EFFECTS = (
+    compound,
+    broad_phase,
     gravity,
+    force,
+    drag,
     rotation,
     gyroscopic,
+    kinematic,
     contact_torque,
+    friction,
+    torsional_friction,
+    rolling_friction,
+    surface_velocity,
+    midpoint,
+    impact_time,
+    speculative,
     restitution,
     stabilisation,
     compliance,
     warm_start,
     projection,
+    sleeping,
 )
 
-__all__ = ["EFFECTS", "BodyFacts", "Decision", "Facts", "PairFacts"]
+
+def surface_fields(spec: Spec) -> list[Field]:
+    """Return the columns that surfaces bring to pairs."""
+    extra = [getattr(e, "PAIR_FIELDS", []) for e in EFFECTS if spec.has(e.NAME)]
+    return [field for fields in extra for field in fields]
+
+
+__all__ = ["EFFECTS", "BodyFacts", "Decision", "Facts", "PairFacts", "surface_fields"]

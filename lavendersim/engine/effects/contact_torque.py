@@ -5,12 +5,23 @@ from .decision import Decision, Facts, named
 
 NAME = "contact_torque"
 STAGE = "solve"
-CONTACT_FIELDS = LEVER
 
 
 def wanted(facts: Facts) -> Decision:
-    """On when a movable body has a shape whose contact normals may miss its centre of mass."""
-    levered = [body.name for body in facts.bodies if body.movable and body.shape == "box"]
-    if levered and facts.pairs:
+    """On when a contact may push a movable body past its centre of mass."""
+    if not facts.pairs:
+        return Decision(False, "nothing can touch")
+    levered = [body.name for body in facts.bodies if body.movable and body.shape != "sphere"]
+    if levered:
         return Decision(True, f"{named(levered)}: contact normals may miss the centre of mass")
+    for pair in facts.pairs:
+        if pair.friction > 0.0:
+            return Decision(True, f"{pair.a} and {pair.b}: friction acts off the centre of mass")
+        if pair.resists_turning:
+            return Decision(True, f"{pair.a} and {pair.b}: their contact resists turning")
     return Decision(False, "every contact normal passes through the centre of mass it pushes")
+
+
+def contact_fields(spec):
+    """Return the columns of a normal row; the blocks of friction have levers of their own."""
+    return [] if spec.has("friction") else LEVER

@@ -6,22 +6,42 @@ from typing import NamedTuple
 
 
 class BodyFacts(NamedTuple):
-    """One body as the predicates see it; `spins`: it has an initial angular velocity."""
+    """One body as the predicates see it."""
 
     name: str
     shape: str
     movable: bool
-    spins: bool
+    spins: bool  # it has an initial angular velocity
     round: bool  # all principal inertias equal
+    kinematic: bool = False  # moves as told, whatever touches it
+    speed: float = 0.0  # initial [m/s]
+    size: float = 0.0  # radius of the sphere about its centre that holds it [m], planes: inf
+    drag: bool = False
+    surface_velocity: bool = False
+    force: bool = False  # a force acts on it at some time
+    torque: bool = False
+    parts: int = 0  # of a compound
 
 
 class PairFacts(NamedTuple):
-    """Two bodies that may touch, with the properties of their surfaces already mixed."""
+    """Two bodies that may touch, with the properties of their surfaces already mixed.
+
+    Bodies that are alike in shape, surface and movability share one entry, under the names of the
+    first of them: the number of entries does not grow with the number of bodies.
+    """
 
     a: str
     b: str
     restitution: float
     compliance: float
+    friction: float = 0.0
+    torsional_friction: float = 0.0  # [m]
+    rolling_friction: float = 0.0  # [m]
+
+    @property
+    def resists_turning(self) -> bool:
+        """Whether a contact of the pair passes on a torque of its own."""
+        return self.torsional_friction > 0.0 or self.rolling_friction > 0.0
 
 
 class Facts(NamedTuple):
@@ -33,6 +53,14 @@ class Facts(NamedTuple):
     stabilisation_gain: float
     projection: float
     warm_start: bool
+    pair_count: int = 0  # pairs of bodies that may touch
+    speculative: bool = False
+    impacts: str = "captured"
+    integrator: str = "semi_implicit_euler"
+    friction_cone: str = "disc"
+    sleeping: bool = False
+    timestep: float = 0.0  # [s]
+    duration: float = 0.0  # [s]
 
 
 class Decision(NamedTuple):

@@ -7,8 +7,10 @@ rule keeps quadratic invariants, so the energy is kept: both to round-off, for a
 found by Newton's method.
 """
 
+from math import sqrt
+
 from ..compile import kernel
-from ..rotation import to_body, to_world, turn
+from ..rotation import inertia_times, to_body, to_world, turn
 from .decision import Decision, Facts, named
 
 NAME = "gyroscopic"
@@ -25,9 +27,7 @@ def wanted(facts: Facts) -> Decision:
     uneven = [
         body.name
         for body in facts.bodies
-        if body.movable
-        and not body.round
-        and (body.spins or (body.shape == "box" and bool(facts.pairs)))
+        if body.movable and not body.round and (body.spins or body.torque or bool(facts.pairs))
     ]
     if uneven:
         return Decision(True, f"{named(uneven)}: unequal principal inertias and may turn")
@@ -80,3 +80,43 @@ def make(spec):
         return True
 
     return kernel(integrate_gyroscopic, spec)
+
+
+def make_jump(spec):
+    """Return `kernel(body, velocity, x, y, z, twice_spent)`: add a jump of spin within a step.
+
+    The solver found the jump dw [rad/s] with the inertia I_0 of the step's start, and counts on the
+    energy dw . L + dw . I_0 dw / 2 for it; twice_spent is dw . I_0 dw [J]. By then the body has
+    turned, so dw is scaled by the root near 1 of
+        beta dw . L + beta^2 dw . I dw / 2 = dw . L + dw . I_0 dw / 2,    L = I omega;
+    a jump that takes all that its direction can take has no such root, and scales the spin instead.
+    """
+
+    def jump(body, velocity, x, y, z, twice_spent):
+        ix, iy, iz = inertia_times(body, x, y, z)
+        along = ix * velocity.wx + iy * velocity.wy + iz * velocity.wz
+        spent = ix * x + iy * y + iz * z
+        if spent == 0.0:
+            return
+        squared = along * along + spent * (2.0 * along + twice_spent)
+        root = sqrt(max(squared, 0.0))
+        if along + spent < 0.0:
+            root = -root
+        # Of two forms of the same root the one that does not cancel.
+        if along * root > 0.0:
+            share = (2.0 * along + twice_spent) / (along + root)
+        else:
+            share = (root - along) / spent
+        wx, wy, wz = velocity.wx, velocity.wy, velocity.wz
+        scale = 1.0
+        if squared < 0.0:
+            lx, ly, lz = inertia_times(body, wx, wy, wz)
+            before = lx * wx + ly * wy + lz * wz
+            left = before - along * along / spent
+            if left > 0.0:
+                scale = sqrt(max(before + 2.0 * along + twice_spent, 0.0) / left)
+        velocity.wx = scale * (wx + share * x)
+        velocity.wy = scale * (wy + share * y)
+        velocity.wz = scale * (wz + share * z)
+
+    return kernel(jump, spec)

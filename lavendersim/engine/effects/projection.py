@@ -32,6 +32,7 @@ def make(spec):
     normal_velocity = make_normal_velocity(spec)
     apply_impulse = make_apply_impulse(spec)
     torque = spec.has("contact_torque")
+    friction = spec.has("friction")
 
     def project_positions(contacts, order, count, velocities, pseudo, params):
         asked = False
@@ -52,6 +53,10 @@ def make(spec):
             u.vx, u.vy, u.vz = 0.0, 0.0, 0.0
             if torque:
                 u.wx, u.wy, u.wz = 0.0, 0.0, 0.0
+            if friction:  # an impulse finds a body's inertia beside its velocity
+                v = velocities[i]
+                u.jxx, u.jxy, u.jxz = v.jxx, v.jxy, v.jxz
+                u.jyy, u.jyz, u.jzz = v.jyy, v.jyz, v.jzz
         for _ in range(params.projection_sweeps):
             changed = False
             for c in range(count):

@@ -1,7 +1,8 @@
-"""Restitution: the row asks v_n >= -e v_n_pre, captured once from the velocity before the solve.
+"""Restitution: Newton's law v_n >= -e v_n_pre, captured once from the velocity before the solve.
 
-Gravity alone gives a resting body the approach speed g dt in every step; restitution applies above
-`restitution_speed` only, or resting contact would bounce for ever.
+Captured at the start of the step: gravity alone gives a resting body the approach speed g dt in
+every step, so the law applies above `restitution_speed` only, or resting contact would bounce for
+ever. At the surface, `impact_time` applies the law itself and only takes the coefficient from here.
 """
 
 from ..compile import kernel
@@ -23,8 +24,11 @@ def wanted(facts: Facts) -> Decision:
 def make(spec):
     """Return `kernel(contact, pair, params)`."""
 
-    def restitution(contact, pair, params):
+    def captured(contact, pair, params):
         if -contact.v_n_pre > params.restitution_speed:
             contact.target += pair.restitution * contact.v_n_pre
 
-    return kernel(restitution, spec)
+    def noted(contact, pair, params):
+        contact.e = pair.restitution
+
+    return kernel(noted if spec.has("impact_time") else captured, spec)

@@ -12,13 +12,24 @@ VELOCITY_FIELDS = ANGULAR_VELOCITY
 
 
 def wanted(facts: Facts) -> Decision:
-    """On when a movable body spins at the start or has a shape that normal forces can turn."""
+    """On when a body spins at the start, is twisted, or can be turned by its contacts."""
     spinning = [body.name for body in facts.bodies if body.movable and body.spins]
     if spinning:
         return Decision(True, f"{named(spinning)}: initial angular velocity")
-    levered = [body.name for body in facts.bodies if body.movable and body.shape == "box"]
+    twisted = [body.name for body in facts.bodies if body.movable and body.torque]
+    if twisted:
+        return Decision(True, f"{named(twisted)}: a torque from the config")
+    levered = [body.name for body in facts.bodies if body.movable and body.shape != "sphere"]
     if levered and facts.pairs:
         return Decision(True, f"{named(levered)}: a contact off the centre of mass exerts a torque")
+    for pair in facts.pairs:
+        if pair.friction > 0.0:
+            return Decision(True, f"{pair.a} and {pair.b}: friction exerts a torque")
+        if pair.resists_turning:
+            return Decision(True, f"{pair.a} and {pair.b}: their contact resists turning")
+    turning = [body.name for body in facts.bodies if body.kinematic and body.spins]
+    if turning:
+        return Decision(True, f"{named(turning)}: kinematic and turning")
     movable = [body.name for body in facts.bodies if body.movable]
     return Decision(
         False,

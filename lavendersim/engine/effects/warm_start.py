@@ -12,7 +12,9 @@ NAME = "warm_start"
 STAGE = "match"
 CONTACT_FIELDS = [("matched", "i8")]  # 1 once it has taken a cached impulse
 CACHE_FIELDS = [
-    ("pair", "i8"),
+    ("key", "i8"),  # of the pair
+    ("a", "u8"),  # bodies of the pair
+    ("b", "u8"),
     ("feature", "i8"),
     ("claimed", "i8"),  # 1 once a new contact has taken the impulse
     ("rx", "f8"),  # contact point from the centre of A, world axes [m]
@@ -35,6 +37,9 @@ def wanted(facts: Facts) -> Decision:
 def make(spec):
     """Return `kernel(contacts, count, bodies, cache, counters, params)` that sets lambda_n."""
 
+    friction = spec.has("friction")
+    torsional, rolling = spec.has("torsional_friction"), spec.has("rolling_friction")
+
     def match_contacts(contacts, count, bodies, cache, counters, params):
         if counters.cached == 0:
             return
@@ -52,13 +57,13 @@ def make(spec):
                 contact = contacts[c]
                 if contact.matched == 1:
                     continue
-                while first < counters.cached and cache[first].pair < contact.pair:
+                while first < counters.cached and cache[first].key < contact.key:
                     first += 1
                 body = bodies[contact.a]
                 rx, ry, rz = contact.x - body.x, contact.y - body.y, contact.z - body.z
                 best, chosen = nearest_allowed, -1
                 k = first
-                while k < counters.cached and cache[k].pair == contact.pair:
+                while k < counters.cached and cache[k].key == contact.key:
                     old = cache[k]
                     if old.claimed == 0 and (not by_feature or old.feature == contact.feature):
                         cosine = old.nx * contact.nx + old.ny * contact.ny + old.nz * contact.nz
@@ -71,6 +76,26 @@ def make(spec):
                     cache[chosen].claimed = 1
                     contact.matched = 1
                     contact.lambda_n = cache[chosen].lambda_n * scale
+                    if friction:
+                        # What the old tangent plane held, seen in the new one; the first sweep
+                        # brings it back into the disc.
+                        old = cache[chosen]
+                        contact.lambda_1 = scale * (
+                            contact.t1x * old.px + contact.t1y * old.py + contact.t1z * old.pz
+                        )
+                        contact.lambda_2 = scale * (
+                            contact.t2x * old.px + contact.t2y * old.py + contact.t2z * old.pz
+                        )
+                    # What begins without a push begins without torque: neither is applied.
+                    if torsional:
+                        if contact.lambda_n > 0.0:
+                            contact.psi_n = scale * cache[chosen].psi_n
+                    if rolling:
+                        if contact.lambda_n > 0.0:
+                            old = cache[chosen]
+                            x, y, z = scale * old.psi_x, scale * old.psi_y, scale * old.psi_z
+                            contact.psi_1 = contact.t1x * x + contact.t1y * y + contact.t1z * z
+                            contact.psi_2 = contact.t2x * x + contact.t2y * y + contact.t2z * z
                     left -= 1
 
     return kernel(match_contacts, spec)
@@ -79,14 +104,30 @@ def make(spec):
 def make_store(spec):
     """Return `kernel(contacts, count, bodies, cache, counters, params)` that refills the cache."""
 
+    friction = spec.has("friction")
+    torsional, rolling = spec.has("torsional_friction"), spec.has("rolling_friction")
+
     def store_contacts(contacts, count, bodies, cache, counters, params):
         for c in range(count):
             contact, row = contacts[c], cache[c]
             body = bodies[contact.a]
-            row.pair, row.feature, row.claimed = contact.pair, contact.feature, 0
+            row.key, row.a, row.b = contact.key, contact.a, contact.b
+            row.feature, row.claimed = contact.feature, 0
             row.rx, row.ry, row.rz = contact.x - body.x, contact.y - body.y, contact.z - body.z
             row.nx, row.ny, row.nz = contact.nx, contact.ny, contact.nz
             row.lambda_n = contact.lambda_n
+            if friction:
+                one, two = contact.lambda_1, contact.lambda_2
+                row.px = contact.t1x * one + contact.t2x * two
+                row.py = contact.t1y * one + contact.t2y * two
+                row.pz = contact.t1z * one + contact.t2z * two
+            if torsional:
+                row.psi_n = contact.psi_n
+            if rolling:
+                one, two = contact.psi_1, contact.psi_2
+                row.psi_x = contact.t1x * one + contact.t2x * two
+                row.psi_y = contact.t1y * one + contact.t2y * two
+                row.psi_z = contact.t1z * one + contact.t2z * two
         counters.cached = count
         counters.cached_dt = params.dt
 

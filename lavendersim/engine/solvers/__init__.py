@@ -1,5 +1,13 @@
-"""Contact rows enter, impulses leave; one file per solver, all with the same signature."""
+"""Contact rows enter, impulses leave; one file per solver, all with the same signature.
 
-from . import projected_gauss_seidel
+A solver's module has `make(spec) -> kernel` and, where it needs them, CONTACT_FIELDS
+(columns per contact) and `allocate(bodies, contacts)` (arrays it works in).
+"""
 
-SOLVERS = {"projected_gauss_seidel": projected_gauss_seidel}
+from . import adaptive, nonsmooth_conjugate_gradient, projected_gauss_seidel
+
+SOLVERS = {
+    "projected_gauss_seidel": projected_gauss_seidel,
+    "nonsmooth_conjugate_gradient": nonsmooth_conjugate_gradient,
+    "adaptive": adaptive,
+}

@@ -1,44 +1,21 @@
 """Projected Gauss-Seidel: visit rows in order, correct each impulse, keep it pushing.
 
-    dlambda = -(v_n + b + b_rest + gamma lambda) / (k_n + gamma)
-    lambda <- max(0, lambda + dlambda)
-
-One sweep costs one visit per row; information travels one contact per visit, so tall stacks need
-many sweeps. The velocities always carry the impulses they have been given. A sweep that changes no
-impulse is the last one: those left would change nothing either.
+The update of one contact is in `row_update`. One sweep costs one visit per row; information travels
+one contact per visit, so tall stacks need many sweeps. The velocities always carry the impulses
+they have been given. A sweep that changes no impulse is the last one: those left would change
+nothing either.
 """
 
 from __future__ import annotations
 
 from ..compile import kernel
-from ..contact import make_apply_impulse, make_normal_velocity
 from ..residual import make_residual
 from ..spec import Spec
-
-
-def make_solve_contact_velocity(spec: Spec):
-    """Return `kernel(contact, va, vb) -> change of impulse`: one projected, compliant update."""
-    compliant = spec.has("compliance")
-    normal_velocity = make_normal_velocity(spec)
-    apply_impulse = make_apply_impulse(spec)
-
-    def solve_contact_velocity(contact, va, vb):
-        w = normal_velocity(contact, va, vb) + contact.target
-        lambda_old = contact.lambda_n
-        if compliant:
-            w += contact.gamma * lambda_old
-        # In this order a NaN stays and is reported; max(0.0, NaN) would be 0.
-        lambda_new = max(lambda_old - w * contact.inv_k, 0.0)
-        contact.lambda_n = lambda_new
-        change = lambda_new - lambda_old
-        apply_impulse(contact, va, vb, change)
-        return change
-
-    return kernel(solve_contact_velocity, spec)
+from .row_update import make_solve_contact_velocity
 
 
 def make(spec: Spec):
-    """Return `kernel(contacts, order, count, velocities, params, counters, residual_rows)`.
+    """Return `kernel(contacts, order, count, bodies, velocities, space, params, counters, rows)`.
 
     Writes counters.sweeps, .residual [m/s] and .residual_contact of this step.
     """
@@ -48,7 +25,9 @@ def make(spec: Spec):
     record_residuals = spec.record_residuals
     stop_early = spec.tolerance
 
-    def projected_gauss_seidel(contacts, order, count, velocities, params, counters, residual_rows):
+    def projected_gauss_seidel(
+        contacts, order, count, bodies, velocities, space, params, counters, residual_rows
+    ):
         step = counters.step + 1
         wanted = params.residuals_from <= step <= params.residuals_to
         largest, worst = 0.0, -1
@@ -83,6 +62,11 @@ def make(spec: Spec):
             largest, worst = residual(contacts, count, velocities)
         counters.sweeps = sweeps
         counters.residual = largest
+        counters.unsolved = 0
+        if stop_early:
+            if params.tolerance >= 0.0:
+                if not largest <= params.tolerance:
+                    counters.unsolved = 1
         counters.residual_contact = worst
 
     return kernel(projected_gauss_seidel, spec)

@@ -100,7 +100,13 @@ def test_sweep_of_a_vector_and_of_one_component() -> None:
 def test_resolved_leaves_nothing_open() -> None:
     resolved = load(DROP).cells()[0].resolved
     ball, other = resolved["scene"]["bodies"]["ball"], resolved["scene"]["bodies"]["other"]
-    assert ball["surface"] == {"restitution": 0.8, "compliance": 1e-6}
+    assert ball["surface"] == {
+        "restitution": 0.8,
+        "compliance": 1e-6,
+        "friction": 0.0,
+        "torsional_friction": 0.0,
+        "rolling_friction": 0.0,
+    }
     assert ball["position"] == [0.0, 0.0, 1.1]
     assert ball["release"]["clearance"] == 1.0
     # 4/3 pi r^3 rho

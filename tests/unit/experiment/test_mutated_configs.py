@@ -21,7 +21,7 @@ EVERYTHING = """\
 question: What if?
 expected: Nothing breaks.
 scene:
-  gravity: [0, 0, -9.81]
+  gravity: {magnitude: 9.81, slope: 0.1, azimuth_degrees: 45}
   surfaces: {rubber: {restitution: 0.8, compliance: 1e-6}}
   bodies:
     floor: {shape: {kind: plane, normal: [0, 0, 1], offset: 0.0}}
@@ -33,13 +33,45 @@ scene:
       orientation: {axis: [0, 0, 1], degrees: 30}
     block: {shape: {kind: box, size: [1, 1, 1]}, density: 10, position: [5, 0, 2]}
     wall: {shape: {kind: box, size: [1, 1, 1]}, fixed: true, position: [-5, 0, 0]}
+    rock:
+      shape: {kind: hull, points: [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [0.1, 0.1, 0.1]]}
+      density: 10
+      drag: {linear: 0.1, quadratic: 0.2}
+      release: {above: floor, clearance: 0.5, at: [9, 9]}
+    thing:
+      shape:
+        kind: compound
+        parts:
+          - {shape: {kind: capsule, radius: 0.1, length: 0.3}, position: [0.1, 0, 0]}
+          - {shape: {kind: cylinder, radius: 0.1, length: 0.3}, orientation: [1, 1, 0, 0]}
+      mass: 2.0
+      position: [7, 0, 1]
+    belt: {shape: {kind: box, size: [1, 1, 1]}, kinematic: true, position: [0, 9, 0]}
+  arrangements:
+    tower:
+      kind: tower
+      count: 3
+      base: [4, 4, 0]
+      body: {shape: {kind: box, size: [1, 1, 1]}, mass: 1}
+    heap:
+      {kind: grid, counts: [2, 2, 1], spacing: [1, 1, 1], jitter: 0.1, seed: 3,
+      body: {shape: {kind: sphere, radius: 0.1}, mass: 1, surface: rubber}}
+    pyramid:
+      kind: pyramid
+      base_count: 3
+      gap: 0.1
+      body: {shape: {kind: box, size: [1, 1, 1]}, mass: 1}
+  forces:
+    - {body: tower_2, from: 0.5, to: 1, force: [0, 0, 1], torque: [1, 0, 0]}
 events:
   - {at: 1.0, body: ball, scale_mass: 1.05, contact_cache: keep}
-numerics: {preset: chapter, timestep: 1/480}
+  - {at: 1.0, body: belt, velocity: [1, 0, 0], angular_velocity: [0, 0, 1]}
+numerics: {preset: chapter, timestep: 1/480, speculative: true, impacts: at_surface}
 duration: 2.0
 sweep:
   e: {path: scene.surfaces.rubber.restitution, values: [0, 0.5]}
   phase: {path: scene.bodies.ball.release.phase, values: [0, 1/16]}
+  count: {path: scene.arrangements.tower.count, values: [2, 3]}
 record: {residuals: {from: 0.5, to: 1}}
 measure:
   rebound: {kind: first_apex, body: ball, above: floor}
@@ -52,6 +84,7 @@ STRANGE = [
     *("null", "true", "yes", ".nan", "-1", "1e400", "1/0", "0", "''", "- ", ": ", "\n  ", "\n"),
     *("ball", "floor", "kind", "plane", "box", "scene", "numerics", "path", "values", "9" * 70),
     *("scene.bodies", "events.0", "events.9", "numerics.timestep", "5 ms", "!!python/none", "*a"),
+    *("hull", "compound", "parts", "points", "tower", "count", "tower_3", "arrangements", "slope"),
     *("<<", "...", "---", "{}", "[]", "[[0, 1], {a: b}]", "at", "any", "index", "1e-9", "1e9"),
 ]
 LINE_BREAK = re.compile("\r\n|[\n\r\x85\u2028\u2029]")  # of YAML 1.1, as libyaml counts

@@ -7,14 +7,10 @@ from fractions import Fraction
 
 import pytest
 
-from lavendersim.experiment.placement import (
-    PlacementError,
-    reach,
-    released_position,
-    rotation_quaternion,
-    unit,
-)
-from lavendersim.experiment.scene_models import Box, Plane, Release, Sphere
+from lavendersim.experiment.body_models import Release
+from lavendersim.experiment.frames import rotation_quaternion, unit
+from lavendersim.experiment.placement import SceneError, reach, released_position
+from lavendersim.experiment.shape_models import Box, Plane, Sphere
 
 DOWN = (0.0, 0.0, -9.81)
 UPRIGHT = (1.0, 0.0, 0.0, 0.0)
@@ -24,7 +20,7 @@ STEP = Fraction(1, 240)
 
 
 def place(release: Release, plane: Plane, shape: Sphere | Box = BALL) -> tuple[float, ...]:
-    return released_position("body", release, plane, shape, UPRIGHT, DOWN, STEP)
+    return released_position(release, plane, shape, UPRIGHT, DOWN, STEP)
 
 
 def test_clearance_is_between_the_surfaces() -> None:
@@ -53,7 +49,7 @@ def test_clearance_above_a_slope_is_along_its_normal() -> None:
 
 def test_phase_needs_gravity_towards_the_plane() -> None:
     ceiling = Plane(kind="plane", normal=(0.0, 0.0, -1.0), offset=-3.0)
-    with pytest.raises(PlacementError, match="does not pull towards ceiling"):
+    with pytest.raises(SceneError, match="does not pull towards ceiling"):
         place(Release(above="ceiling", clearance=1.0, phase=Fraction(1, 2)), ceiling)
 
 

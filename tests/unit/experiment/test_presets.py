@@ -25,6 +25,13 @@ def test_chapter_is_frozen() -> None:
         "restitution_threshold": 2.0,
         "cache_distance": 0.02,
         "cache_normal_cosine": 0.95,
+        "speculative": False,
+        "impacts": "captured",
+        "integrator": "semi_implicit_euler",
+        "friction_cone": "disc",
+        "sleeping": False,
+        "sleep_speed": 0.005,
+        "sleep_time": 0.5,
     }
     assert frozen == CHAPTER
 

@@ -100,6 +100,17 @@ def test_good_config_loads_and_fits_the_schema(path: Path) -> None:
         "sweep_without_values",
         "unknown_measure_kind",
         "many_defects",
+        "hull_of_three_points",
+        "hull_point_of_two_numbers",
+        "compound_of_nothing",
+        "compound_of_a_plane",
+        "friction_negative",
+        "arrangement_without_kind",
+        "arrangement_of_planes",
+        "tower_of_none",
+        "gravity_of_negative_slope",
+        "impacts_unknown",
+        "drag_misspelt",
     ],
 )
 def test_bad_config_does_not_fit_the_schema(case: str) -> None:

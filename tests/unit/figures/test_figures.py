@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 from matplotlib import style
-from synthetic import RESIDUAL, SyntheticCell, ball_and_floor, trace_of
+from synthetic import RESIDUAL, SyntheticCell, ball_and_floor, spinning_log, trace_of
 
 from lavendersim.errors import TraceError
 from lavendersim.experiment.figure_specs import FigureSpec
@@ -83,6 +83,9 @@ def legend_of(axes: Any) -> list[str]:
     return [text.get_text() for text in axes.get_legend().get_texts()]
 
 
+TOP = LABELS | {"kind": "free_rotation", "body": "top", "markers": 5}
+
+
 @pytest.mark.parametrize("panel", [AGAINST_AXIS, ROW, TIME], ids=lambda panel: panel["kind"])
 def test_a_panel_has_title_labels_with_units_and_a_legend(panel: dict[str, Any]) -> None:
     figure = compose(experiment(panel), cells())
@@ -143,6 +146,44 @@ def test_a_force_is_a_step_that_ends_at_its_time() -> None:
     np.testing.assert_allclose(line.get_xdata(), [-0.01, 0.0, 0.01], atol=1e-12)
     np.testing.assert_allclose(line.get_ydata(), [0.0, 0.33, 0.0])  # 3.3 N s in 10 ms, in kN
     assert "m g" in legend_of(axes)
+
+
+def test_a_number_below_the_floor_is_drawn_at_it() -> None:
+    (axes,) = compose(experiment(AGAINST_AXIS | {"ideal": None, "floor": 5.0}), cells()).axes
+    fine = next(line for line in axes.lines if line.get_label() == "timestep 1/200 s")
+    np.testing.assert_allclose(fine.get_ydata(), [12.0, 6.0, 5.0, 5.0])
+
+
+def test_drift_is_drawn_from_half_a_second_on() -> None:
+    panel = LABELS | {"kind": "time_series", "column": "drift", "factor": 1000.0}
+    heights = [0.3] * 50 + [0.01 * k for k in range(11)]
+    (axes,) = compose(experiment(panel), [SyntheticCell({}, trace_of(heights))]).axes
+    line = axes.lines[0]
+    np.testing.assert_allclose(line.get_xdata(), 0.5 + 0.01 * np.arange(11), atol=1e-12)
+    np.testing.assert_allclose(line.get_ydata(), 10.0 * np.arange(11), atol=1e-12)
+
+
+def test_overlap_is_drawn_for_every_k_th_step_back_from_the_last() -> None:
+    panel = LABELS | {"kind": "time_series", "column": "overlap", "every": 2}
+    log = trace_of([-0.001, -0.002, 0.1, -0.004])
+    (axes,) = compose(experiment(panel), [SyntheticCell({}, log)]).axes
+    line = axes.lines[0]
+    np.testing.assert_allclose(line.get_xdata(), [0.01, 0.03], atol=1e-12)
+    np.testing.assert_allclose(line.get_ydata(), [0.002, 0.004], atol=1e-15)
+
+
+def test_a_free_rotation_has_the_exact_solution_as_lines_and_the_log_as_markers() -> None:
+    log = spinning_log()
+    (axes,) = compose(experiment(TOP), [SyntheticCell({}, log)]).axes
+    assert legend_of(axes) == ["Jacobi", "about x", "about y", "about z"]
+    measured = [line for line in axes.lines if line.get_marker() != "None"]
+    assert [len(line.get_xdata()) for line in measured] == [5, 5, 5]
+    assert measured[1].get_ydata()[0] == pytest.approx(5.0)
+    exact = [line for line in axes.lines if line.get_color() == DARK]
+    for line, markers in zip(exact, measured, strict=True):
+        # 1200 points over 20 s, between which a slope of up to 14 rad/s^2 is a straight line
+        curve = np.interp(markers.get_xdata(), line.get_xdata(), line.get_ydata())
+        np.testing.assert_allclose(markers.get_ydata(), curve, atol=1e-2)
 
 
 def test_cells_without_a_log_are_counted_in_the_caption() -> None:

@@ -9,6 +9,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import numpy.lib.recfunctions as recfunctions
+
+from lavendersim.measures.free_rotation import free_rotation
 
 STEP = [
     ("step", "i8"),
@@ -149,3 +152,55 @@ def trace_of(
         pose=poses(heights),
         **changes,
     )
+
+
+def scene_of(bodies: Mapping[str, Mapping[str, Any]], **changes: Any) -> dict[str, Any]:
+    """A resolved config of these bodies; one without a mass is fixed."""
+    filled = {
+        name: {"fixed": "mass" not in entry, "orientation": [1.0, 0.0, 0.0, 0.0]} | dict(entry)
+        for name, entry in bodies.items()
+    }
+    scene = {"gravity": [0.0, 0.0, -GRAVITY], "bodies": filled} | changes
+    return ball_and_floor() | {"scene": scene}
+
+
+def log_of(
+    resolved: Mapping[str, Any], places: Any, quaternions: Any = None, **changes: Any
+) -> SyntheticTrace:
+    """A log from centres (rows, bodies, 3) [m] and orientations (rows, bodies, 4), 100 Hz."""
+    places = np.asarray(places, dtype=float)
+    table = np.zeros((*places.shape[:2], 7))
+    table[:, :, :3] = places
+    table[:, :, 3:] = [1.0, 0.0, 0.0, 0.0] if quaternions is None else quaternions
+    return SyntheticTrace(
+        step=steps([0.0] * len(places)),
+        contact=contacts([]),
+        pose=table,
+        bodies=tuple(resolved["scene"]["bodies"]),
+        resolved=resolved,
+        **changes,
+    )
+
+
+def spinning_log(slow: float = 0.0, moments: tuple[float, ...] = (1.0, 2.0, 3.0)) -> SyntheticTrace:
+    """The exact motion, its clock wrong by a share: L fixed in the world, omega in body axes."""
+    omega = np.array([0.01, 5.0, 0.01])
+    body = {
+        "shape": {"kind": "box", "size": [1.0, 1.0, 1.0]},
+        "mass": 2.0,
+        "inertia": list(moments),
+        "angular_velocity": omega.tolist(),
+    }
+    exact = free_rotation(np.array(moments), omega)
+    rates = exact.angular_velocity(np.arange(2001) / 100.0 * (1.0 - slow))
+    log = log_of(scene_of({"top": body}), np.tile([3.0, -1.0, 2.0], (2001, 1, 1)))
+    # any rotation that takes I omega to the fixed L will do: here turn the world, not the body
+    momentum = rates * moments + np.cross([3.0, -1.0, 2.0], [0.5, 0.25, -0.125])
+    columns = {f"angular_momentum_{axis}": momentum[:, k] for k, axis in enumerate("xyz")}
+    log.step = recfunctions.append_fields(
+        log.step, list(columns), list(columns.values()), usemask=False
+    )
+    # moving, so that L about the origin has an orbital part that must be taken off
+    for axis, value in zip("xyz", (0.5, 0.25, -0.125), strict=True):
+        log.step[f"momentum_{axis}"] = value
+    return log

@@ -9,6 +9,7 @@ import pytest
 from synthetic import GRAVITY, MASS, ball_and_floor, trace_of
 
 from lavendersim.experiment import measure_specs as specs
+from lavendersim.experiment.measure_base import ClosedForm
 from lavendersim.measures import evaluate
 from lavendersim.measures.impact import parabola_vertex
 
@@ -142,7 +143,7 @@ def test_momentum_drift_is_relative_to_the_largest_momentum() -> None:
 
 
 def test_over_and_against_a_closed_form() -> None:
-    form = specs.ClosedForm(form="rebound_height", bodies=("ball", "floor"))  # 0.25 * 1 m
+    form = ClosedForm(form="rebound_height", bodies=("ball", "floor"))  # 0.25 * 1 m
     log = trace_of(bounce(0.3, 0.0), [(3, 1.0, 0.002)])
     over = evaluate(APEX.model_copy(update={"over": form}), log)
     against = evaluate(APEX.model_copy(update={"against": form}), log)

@@ -114,6 +114,41 @@ def test_decreasing_ignores_the_order_of_the_sweep() -> None:
     assert passed(expect(decreasing={"along": "a"}), *cells)
 
 
+@pytest.mark.parametrize(
+    ("fine", "coarse", "good"),
+    [
+        (1.0, 2.0, True),
+        (2.0, 1.0, False),
+        (1e-10, 1e-12, True),  # it grew, but both are nothing
+        (0.0, 0.0, True),
+        (1.1e-9, 1e-12, False),
+        (NAN, 1.0, False),
+    ],
+)
+def test_a_negligible_numerator_needs_no_ratio(fine: float, coarse: float, good: bool) -> None:
+    ratio = {"of": {"a": 0}, "to": {"a": 1}, "at_most": 1.0, "negligible": 1e-9}
+    assert passed(expect(ratio=ratio), cell(fine, a=0), cell(coarse, a=1)) is good
+
+
+@pytest.mark.parametrize(
+    ("numbers", "good"),
+    [
+        ({1.0: 3.0, 2.0: 12.0, 4.0: 48.0}, True),  # exactly 2
+        ({1.0: 3.0, 2.0: 11.0, 4.0: 41.0}, False),  # log2(41/3)/2 = 1.886
+        ({1.0: 3.0, 2.0: 15.0, 4.0: 60.0}, False),  # log2(60/3)/2 = 2.16
+        ({1.0: 1e-12, 2.0: 0.0, 4.0: 5e-13}, True),  # round-off has no order
+        ({1.0: 3.0, 2.0: NAN, 4.0: 48.0}, False),
+        ({1.0: 3.0, 2.0: 0.0, 4.0: 48.0}, False),
+        ({1.0: 3.0}, False),
+    ],
+)
+def test_the_order_is_the_slope_between_logarithms(numbers: Any, good: bool) -> None:
+    order = {"along": "dt", "at_least": 1.9, "at_most": 2.1, "negligible": 1e-9}
+    cells = [cell(0.5 * number, dt=dt, b=b) for dt, number in numbers.items() for b in (0, 1)]
+    cells += [cell(number, dt=dt, b=2) for dt, number in numbers.items()]
+    assert passed(expect(order=order), *cells) is good
+
+
 def test_a_ratio_reduces_the_other_axes_first() -> None:
     cells = [cell(1.0, a=0, b=0), cell(2.0, a=0, b=1), cell(8.0, a=1, b=0), cell(4.0, a=1, b=1)]
 

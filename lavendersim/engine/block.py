@@ -1,0 +1,150 @@
+"""Contact blocks: what a frictional contact is to the solver. Frame, levers and its 3x3 of W.
+
+    v = (v_B + omega_B x r_B) - (v_A + omega_A x r_A)        relative velocity, world axes
+    p = n lambda_n + t1 lambda_1 + t2 lambda_2               impulse on B, world axes; A gets -p
+Levers end on each body's own surface, so that a contact made ahead of touching has the levers it
+will have when the surfaces meet.
+"""
+
+from __future__ import annotations
+
+from math import sqrt
+from typing import Any
+
+import numba
+
+from .compile import OPTIONS, kernel
+from .spec import Spec
+
+
+@numba.njit(**OPTIONS)
+def set_tangents(contact):
+    """Fill t1, t2 such that (n, t1, t2) is right-handed and orthonormal.
+
+    Duff et al. 2017, "Building an orthonormal basis, revisited": continuous but at n = -z.
+    """
+    x, y, z = contact.nx, contact.ny, contact.nz
+    side = 1.0 if z >= 0.0 else -1.0
+    a = -1.0 / (side + z)
+    b = x * y * a
+    contact.t1x, contact.t1y, contact.t1z = 1.0 + side * x * x * a, side * b, -side * x
+    contact.t2x, contact.t2y, contact.t2z = b, side + y * y * a, -y
+
+
+@numba.njit(**OPTIONS)
+def inertia_response(v, x, y, z):
+    """World inverse inertia of the body of `v` applied to a vector."""
+    return (
+        v.jxx * x + v.jxy * y + v.jxz * z,
+        v.jxy * x + v.jyy * y + v.jyz * z,
+        v.jxz * x + v.jyz * y + v.jzz * z,
+    )
+
+
+@numba.njit(**OPTIONS)
+def point_response(v, inv_m, rx, ry, rz, x, y, z):
+    """Velocity that a unit impulse (x, y, z) at r gives to the body's point r [1/kg]."""
+    wx, wy, wz = inertia_response(v, ry * z - rz * y, rz * x - rx * z, rx * y - ry * x)
+    return (
+        inv_m * x + wy * rz - wz * ry,
+        inv_m * y + wz * rx - wx * rz,
+        inv_m * z + wx * ry - wy * rx,
+    )
+
+
+@numba.njit(**OPTIONS)
+def block_response(contact, va, vb, x, y, z):
+    """Relative velocity that a unit impulse (x, y, z) on B, and its opposite on A, gives [1/kg]."""
+    ax, ay, az = point_response(va, contact.inv_m_a, contact.rax, contact.ray, contact.raz, x, y, z)
+    bx, by, bz = point_response(vb, contact.inv_m_b, contact.rbx, contact.rby, contact.rbz, x, y, z)
+    return ax + bx, ay + by, az + bz
+
+
+def make_relative_velocity(spec: Spec):
+    """Return `kernel(contact, va, vb) -> (x, y, z)`, of B's surface relative to A's [m/s]."""
+    if not spec.has("friction"):
+        return None
+
+    def relative_velocity(contact, va, vb):
+        return (
+            vb.vx + vb.wy * contact.rbz - vb.wz * contact.rby
+            - va.vx - va.wy * contact.raz + va.wz * contact.ray,
+            vb.vy + vb.wz * contact.rbx - vb.wx * contact.rbz
+            - va.vy - va.wz * contact.rax + va.wx * contact.raz,
+            vb.vz + vb.wx * contact.rby - vb.wy * contact.rbx
+            - va.vz - va.wx * contact.ray + va.wy * contact.rax,
+        )  # fmt: skip
+
+    return kernel(relative_velocity, spec)
+
+
+def make_apply_vector(spec: Spec):
+    """Return `kernel(contact, va, vb, px, py, pz)`: + on B, - on A, world axes [N s]."""
+    if not spec.has("friction"):
+        return None
+
+    def apply_vector(contact, va, vb, px, py, pz):
+        if contact.inv_m_a > 0.0:
+            va.vx -= px * contact.inv_m_a
+            va.vy -= py * contact.inv_m_a
+            va.vz -= pz * contact.inv_m_a
+            rx, ry, rz = contact.rax, contact.ray, contact.raz
+            x, y, z = inertia_response(va, ry * pz - rz * py, rz * px - rx * pz, rx * py - ry * px)
+            va.wx -= x
+            va.wy -= y
+            va.wz -= z
+        if contact.inv_m_b > 0.0:
+            vb.vx += px * contact.inv_m_b
+            vb.vy += py * contact.inv_m_b
+            vb.vz += pz * contact.inv_m_b
+            rx, ry, rz = contact.rbx, contact.rby, contact.rbz
+            x, y, z = inertia_response(vb, ry * pz - rz * py, rz * px - rx * pz, rx * py - ry * px)
+            vb.wx += x
+            vb.wy += y
+            vb.wz += z
+
+    return kernel(apply_vector, spec)
+
+
+def make_complete_block(spec: Spec, surface_velocity: Any):
+    """Return `kernel(contact, body_a, body_b, va, vb, pair) -> k_n`: frame, levers and the 3x3.
+
+    surface_velocity: that effect's kernel.
+    """
+
+    moving_surface, ahead = spec.has("surface_velocity"), spec.has("speculative")
+
+    def complete_block(contact, body_a, body_b, va, vb, pair):
+        half = 0.5 * contact.phi
+        x, y, z = contact.nx * half, contact.ny * half, contact.nz * half
+        contact.rax = contact.x - x - body_a.x
+        contact.ray = contact.y - y - body_a.y
+        contact.raz = contact.z - z - body_a.z
+        contact.rbx = contact.x + x - body_b.x
+        contact.rby = contact.y + y - body_b.y
+        contact.rbz = contact.z + z - body_b.z
+        if ahead:
+            contact.rbx -= contact.beside_x
+            contact.rby -= contact.beside_y
+            contact.rbz -= contact.beside_z
+        set_tangents(contact)
+        contact.mu = pair.friction
+        contact.lambda_1, contact.lambda_2 = 0.0, 0.0
+        x, y, z = block_response(contact, va, vb, contact.nx, contact.ny, contact.nz)
+        k_n = contact.nx * x + contact.ny * y + contact.nz * z
+        contact.k_n1 = contact.t1x * x + contact.t1y * y + contact.t1z * z
+        contact.k_n2 = contact.t2x * x + contact.t2y * y + contact.t2z * z
+        x, y, z = block_response(contact, va, vb, contact.t1x, contact.t1y, contact.t1z)
+        k_11 = contact.t1x * x + contact.t1y * y + contact.t1z * z
+        k_12 = contact.t2x * x + contact.t2y * y + contact.t2z * z
+        x, y, z = block_response(contact, va, vb, contact.t2x, contact.t2y, contact.t2z)
+        k_22 = contact.t2x * x + contact.t2y * y + contact.t2z * z
+        scale = 1.0 / (k_11 * k_22 - k_12 * k_12)
+        contact.i_11, contact.i_12, contact.i_22 = k_22 * scale, -k_12 * scale, k_11 * scale
+        if moving_surface:
+            surface_velocity(contact, body_a, body_b)
+        half_gap = 0.5 * (k_11 - k_22)
+        contact.k_t = 0.5 * (k_11 + k_22) + sqrt(half_gap * half_gap + k_12 * k_12)
+        return k_n
+
+    return kernel(complete_block, spec)

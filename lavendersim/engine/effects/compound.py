@@ -1,0 +1,57 @@
+"""Compounds: bodies of several parts. Parts collide; contacts act on the body that owns them.
+
+    x = X + R p,   q = Q p_q        part (x, q), owner (X, Q), place in the owner's frame (p, p_q)
+Parts are rows of the body table behind all bodies; every other row is its own owner.
+"""
+
+from math import sqrt
+
+from ..compile import kernel
+from ..records import ORIENTED_BODY
+from ..rotation import orient, to_world
+from .decision import Decision, Facts, named
+
+NAME = "compound"
+STAGE = "collide"
+BODY_FIELDS = [
+    *ORIENTED_BODY,
+    ("owner", "i8"),  # row of the body that moves
+    ("px", "f8"),  # part: its centre in the owner's frame [m]
+    ("py", "f8"),
+    ("pz", "f8"),
+    ("pqw", "f8"),  # part to owner
+    ("pqx", "f8"),
+    ("pqy", "f8"),
+    ("pqz", "f8"),
+]
+
+
+def wanted(facts: Facts) -> Decision:
+    """On when a body has parts."""
+    whole = [body.name for body in facts.bodies if body.parts]
+    if whole:
+        return Decision(True, f"{named(whole)}: made of parts")
+    return Decision(False, "every body is one shape")
+
+
+def make(spec):
+    """Return `kernel(bodies)`: parts follow their owners."""
+
+    def place_parts(bodies):
+        for i in range(bodies.shape[0]):
+            part = bodies[i]
+            if part.owner != i:
+                whole = bodies[part.owner]
+                x, y, z = to_world(whole, part.px, part.py, part.pz)
+                part.x, part.y, part.z = whole.x + x, whole.y + y, whole.z + z
+                a, b, c, d = whole.qw, whole.qx, whole.qy, whole.qz
+                w, x, y, z = part.pqw, part.pqx, part.pqy, part.pqz
+                qw = a * w - b * x - c * y - d * z
+                qx = a * x + b * w + c * z - d * y
+                qy = a * y - b * z + c * w + d * x
+                qz = a * z + b * y - c * x + d * w
+                scale = 1.0 / sqrt(qw * qw + qx * qx + qy * qy + qz * qz)
+                part.qw, part.qx, part.qy, part.qz = qw * scale, qx * scale, qy * scale, qz * scale
+                orient(part)
+
+    return kernel(place_parts, spec)

@@ -1,0 +1,56 @@
+"""Drag: force -(c1 + c2 |v|) v and torque -c omega, implicit, so that no step turns a body back.
+
+    v' = v - h (c1 + c2 |v'|) v',   h = dt/m
+       = 2 v / (k + sqrt(k^2 + 4 c2 h |v|)),   k = 1 + c1 h
+    omega' = (1 + c dt I^-1)^-1 omega,   axis by axis in the body's frame
+Explicit steps overshoot rest where the bracket times h exceeds 1; these come to rest for any dt.
+Forces act before, so that a fall ends at the very speed at which drag carries the weight.
+"""
+
+from math import sqrt
+
+from ..compile import kernel
+from ..rotation import to_body, to_world
+from .decision import Decision, Facts, named
+
+NAME = "drag"
+STAGE = "accelerate"
+BODY_FIELDS = [
+    ("drag_linear", "f8"),  # c1 [N s/m]
+    ("drag_quadratic", "f8"),  # c2 [N s^2/m^2]
+    ("drag_angular", "f8"),  # c [N m s]
+]
+
+
+def wanted(facts: Facts) -> Decision:
+    """On when a movable body has a coefficient."""
+    dragged = [body.name for body in facts.bodies if body.movable and body.drag]
+    if dragged:
+        return Decision(True, f"{named(dragged)}: drag")
+    return Decision(False, "no body has drag")
+
+
+def make(spec):
+    """Return `kernel(body, velocity, params)`."""
+    turns = spec.has("rotation")
+
+    def drag(body, velocity, params):
+        dt = params.dt
+        vx, vy, vz = velocity.vx, velocity.vy, velocity.vz
+        speed = sqrt(vx * vx + vy * vy + vz * vz)
+        h = dt * body.inv_m
+        k = 1.0 + body.drag_linear * h
+        scale = 2.0 / (k + sqrt(k * k + 4.0 * body.drag_quadratic * h * speed))
+        velocity.vx, velocity.vy, velocity.vz = vx * scale, vy * scale, vz * scale
+        if turns:
+            if body.drag_angular > 0.0:
+                x, y, z = to_body(body, velocity.wx, velocity.wy, velocity.wz)
+                c = body.drag_angular * dt
+                velocity.wx, velocity.wy, velocity.wz = to_world(
+                    body,
+                    x / (1.0 + c * body.inv_ix),
+                    y / (1.0 + c * body.inv_iy),
+                    z / (1.0 + c * body.inv_iz),
+                )
+
+    return kernel(drag, spec)

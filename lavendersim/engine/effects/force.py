@@ -1,0 +1,42 @@
+"""Forces and torques from the config: constant within a step, changed between steps.
+
+    v += F dt / m,   omega += I^-1 T dt
+Both act on the centre of mass, in world axes.
+"""
+
+from ..compile import kernel
+from ..rotation import inverse_inertia_times
+from .decision import Decision, Facts, named
+
+NAME = "force"
+STAGE = "accelerate"
+BODY_FIELDS = [
+    *[(f"f{axis}", "f8") for axis in "xyz"],  # [N] world axes
+    *[(f"t{axis}", "f8") for axis in "xyz"],  # [N m]
+]
+
+
+def wanted(facts: Facts) -> Decision:
+    """On when a force or a torque acts on a movable body at some time."""
+    pushed = [body.name for body in facts.bodies if body.movable and (body.force or body.torque)]
+    if pushed:
+        return Decision(True, f"{named(pushed)}: a force or torque from the config")
+    return Decision(False, "no force or torque is stated")
+
+
+def make(spec):
+    """Return `kernel(body, velocity, params)`."""
+    turns = spec.has("rotation")
+
+    def force(body, velocity, params):
+        scale = body.inv_m * params.dt
+        velocity.vx += body.fx * scale
+        velocity.vy += body.fy * scale
+        velocity.vz += body.fz * scale
+        if turns:
+            x, y, z = inverse_inertia_times(body, body.tx, body.ty, body.tz)
+            velocity.wx += x * params.dt
+            velocity.wy += y * params.dt
+            velocity.wz += z * params.dt
+
+    return kernel(force, spec)

@@ -1,0 +1,110 @@
+"""Impact time: an impact happens at the surface, at the time within the step when it is reached.
+
+With the gap phi, its rate v and its free acceleration a at the start of the step, the surfaces meet
+after tau with speed |v_hit|,
+    phi + v tau + a tau^2/2 = 0,   v_hit = -sqrt(v^2 - 2 a phi),
+leave with -e v_hit, and end the step with v_n = -e v_hit + a (dt - tau): this is what the row asks
+for. The bodies move on their old velocity until tau and on the new one from there; their other
+contacts ask that the gap left at tau does not close in the rest of the step. A flight so short that
+it would end within the step is no flight: the contact is then a plastic one.
+"""
+
+from math import sqrt
+
+from ..compile import kernel
+from ..records import TOUCHING
+from .decision import Decision, Facts
+
+NAME = "impact_time"
+STAGE = "solve"
+CONTACT_FIELDS = [
+    ("dv_n", "f8"),  # change of v_n by forces in this step [m/s]
+    ("e", "f8"),  # coefficient of restitution of the pair [-]
+    ("tau", "f8"),  # when the surfaces meet, from the start of the step; dt: not in it [s]
+    ("hit", "f8"),  # speed at which they meet [m/s]
+    ("up", "f8"),  # speed at which they leave, by Newton's law [m/s]
+    ("after", "f8"),  # what forces add to v_n from then to the end of the step [m/s]
+    ("struck", "i8"),  # 1 where the impact sets the row's target
+    ("pre_1", "f8"),  # tangential velocity before the solve [m/s]
+    ("pre_2", "f8"),
+]
+# Slower than so many times what forces change in a step, surfaces come to rest, they do not hit.
+SLOWEST = 4.0
+
+
+def wanted(facts: Facts) -> Decision:
+    """On when the numerics ask for it and something can touch."""
+    if facts.impacts != "at_surface":
+        return Decision(False, f"impacts are {facts.impacts}")
+    if facts.pairs:
+        return Decision(True, "impacts are at_surface")
+    return Decision(False, "nothing can touch")
+
+
+def make_foresee(spec):
+    """Return `kernel(contact, params)`: when the surfaces meet in free flight, and how fast."""
+
+    def foresee(contact, params):
+        dt = params.dt
+        contact.tau, contact.struck = dt, 0
+        v, a = contact.v_n_pre - contact.dv_n, contact.dv_n / dt
+        # Surfaces that touch or overlap meet at once.
+        gap = contact.phi if contact.phi > TOUCHING else 0.0
+        squared = v * v - 2.0 * a * gap
+        if squared <= 0.0 or (v >= 0.0 and (a >= 0.0 or gap == 0.0)):
+            return
+        hit = sqrt(squared)
+        # The smaller root, in the form that does not cancel.
+        tau = 2.0 * gap / (hit - v) if gap > 0.0 else 0.0
+        rest = dt - tau
+        if rest <= 0.0:
+            return
+        up = contact.e * hit
+        # A flight that outlasts the step, or a plastic impact worth the name.
+        if 2.0 * up > -a * rest or hit > SLOWEST * abs(contact.dv_n):
+            contact.tau, contact.hit, contact.up = tau, hit, up
+            contact.after = a * rest if 2.0 * up > -a * rest else 0.0
+            if contact.after == 0.0 and a != 0.0:
+                contact.up = 0.0
+
+    return kernel(foresee, spec)
+
+
+def make_strike(spec):
+    """Return `kernel(contacts, count, motion, params)`: targets of impacts and of what is near.
+
+    Of a body's contacts the first to meet is the impact, with those that meet at the same place
+    within the slop; later ones are seen from that time on.
+    """
+    foresee = make_foresee(spec)
+
+    def strike(contacts, count, motion, params):
+        dt = params.dt
+        for i in range(motion.shape[0]):
+            motion[i].tau = dt
+        for c in range(count):
+            contact = contacts[c]
+            foresee(contact, params)
+            if contact.tau < dt:
+                if contact.inv_m_a > 0.0:
+                    motion[contact.a].tau = min(motion[contact.a].tau, contact.tau)
+                if contact.inv_m_b > 0.0:
+                    motion[contact.b].tau = min(motion[contact.b].tau, contact.tau)
+        for c in range(count):
+            contact = contacts[c]
+            first = dt
+            if contact.inv_m_a > 0.0:
+                first = min(first, motion[contact.a].tau)
+            if contact.inv_m_b > 0.0:
+                first = min(first, motion[contact.b].tau)
+            if first >= dt:
+                continue
+            v, a = contact.v_n_pre - contact.dv_n, contact.dv_n / dt
+            gap = contact.phi + first * (v + 0.5 * a * first)
+            if contact.tau < dt and gap <= params.slop:
+                contact.struck = 1
+                contact.target = -(contact.up + contact.after)
+            elif gap > params.slop:
+                contact.target = (gap - params.slop) / (dt - first)
+
+    return kernel(strike, spec)

@@ -1,0 +1,18 @@
+"""Kinematic bodies: they keep their velocity whatever touches them; to contacts they are immovable.
+
+Their inverse mass is 0, as that of fixed bodies; the step moves them all the same (`integrate`).
+"""
+
+from .decision import Decision, Facts, named
+
+NAME = "kinematic"
+STAGE = "integrate"
+BODY_FIELDS = [("kinematic", "i8")]  # 1: keeps its velocity
+
+
+def wanted(facts: Facts) -> Decision:
+    """On when a body is kinematic."""
+    told = [body.name for body in facts.bodies if body.kinematic]
+    if told:
+        return Decision(True, f"{named(told)}: moves as its velocity says")
+    return Decision(False, "no body is kinematic")

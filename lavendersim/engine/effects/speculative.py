@@ -1,0 +1,46 @@
+"""Speculative contacts: rows are made ahead of touching and ask that a gap does not close too far.
+
+    v_n >= -(phi - slop)/dt   for phi > slop
+A body never falls into the floor before the floor answers, and a fast one does not pass through it:
+how far ahead a pair looks follows from the speeds of its bodies (`collide.narrow_phase`). Surfaces
+within the slop of each other rest where they are: closing gaps of round-off size would keep every
+stack moving.
+"""
+
+from ..compile import kernel
+from .decision import Decision, Facts
+
+NAME = "speculative"
+STAGE = "capture"
+CONTACT_FIELDS = [
+    ("beside_x", "f8"),  # way of B relative to A across n until they meet, of fast pairs [m]
+    ("beside_y", "f8"),
+    ("beside_z", "f8"),
+]
+
+
+def wanted(facts: Facts) -> Decision:
+    """On when the numerics ask for it and something can touch."""
+    if facts.speculative and facts.pairs:
+        return Decision(True, "speculative is true")
+    return Decision(False, "nothing can touch" if facts.speculative else "speculative is false")
+
+
+def make(spec):
+    """Return `kernel(contact, pair, params)`."""
+
+    # Without either, a body moves through the whole step with the velocity it ends it with.
+    flies = spec.has("midpoint") or spec.has("impact_time")
+    share = 0.5 if spec.has("midpoint") else 0.0
+
+    def speculative(contact, pair, params):
+        if contact.phi > params.slop:
+            contact.target += (contact.phi - params.slop) / params.dt
+            if flies:
+                # In free flight the gap closes by the mean velocity; where that leaves a gap, the
+                # row must not brake what does not touch.
+                closed = (contact.v_n_pre - share * contact.dv_n) * params.dt
+                if contact.phi + closed > -params.slop:
+                    contact.target = max(contact.target, -contact.v_n_pre)
+
+    return kernel(speculative, spec)

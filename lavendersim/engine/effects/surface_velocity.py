@@ -1,0 +1,41 @@
+"""Surface velocity: a surface that moves along itself under friction, as a conveyor's belt does.
+
+    s = R_B s_B - R_A s_A,   slip += (t1 . s, t2 . s)
+s_A, s_B in the bodies' frames [m/s]. Its part along the normal says nothing and is left out.
+"""
+
+from ..compile import kernel
+from ..records import ORIENTED_BODY
+from ..rotation import to_world
+from .decision import Decision, Facts, named
+
+NAME = "surface_velocity"
+STAGE = "solve"
+BODY_FIELDS = [*ORIENTED_BODY, ("sx", "f8"), ("sy", "f8"), ("sz", "f8")]  # body's frame [m/s]
+CONTACT_FIELDS = [
+    ("surface_1", "f8"),  # velocity of B's surface in B relative to A's in A, along t1 [m/s]
+    ("surface_2", "f8"),
+]
+
+
+def wanted(facts: Facts) -> Decision:
+    """On when a surface moves and some contact has friction."""
+    moving = [body.name for body in facts.bodies if body.surface_velocity]
+    if not moving:
+        return Decision(False, "no surface moves in its body")
+    if any(pair.friction > 0.0 for pair in facts.pairs):
+        return Decision(True, f"{named(moving)}: the surface moves")
+    return Decision(False, f"{named(moving)}: the surface moves, but nothing has friction")
+
+
+def make(spec):
+    """Return `kernel(contact, body_a, body_b)`, once its tangents are set."""
+
+    def surface_velocity(contact, body_a, body_b):
+        ax, ay, az = to_world(body_a, body_a.sx, body_a.sy, body_a.sz)
+        bx, by, bz = to_world(body_b, body_b.sx, body_b.sy, body_b.sz)
+        x, y, z = bx - ax, by - ay, bz - az
+        contact.surface_1 = contact.t1x * x + contact.t1y * y + contact.t1z * z
+        contact.surface_2 = contact.t2x * x + contact.t2y * y + contact.t2z * z
+
+    return kernel(surface_velocity, spec)

@@ -1,0 +1,68 @@
+"""Torsional friction: |psi_n| <= c lambda_n about the contact normal, opposing relative spin.
+
+A disc of contact of radius R that rubs with mu under even pressure has c = 2/3 mu R; the contact
+itself stays a point. Stick where it can, otherwise the limit against the spin:
+    psi_n <- clamp(psi_n - omega_n / k, +-c lambda_n),   k = n . (I_A^-1 + I_B^-1) n
+psi_n: angular impulse on B [N m s]; a pair's c [m] is the larger of its surfaces'. The limit needs
+no other friction: mu may be 0, friction's block is there for its frame.
+"""
+
+from ..compile import kernel
+from .decision import Decision, Facts
+
+NAME = "torsional_friction"
+STAGE = "solve"
+PAIR_FIELDS = [("torsional_friction", "f8")]  # c of the pair [m]
+CONTACT_FIELDS = [
+    ("arm", "f8"),  # greatest distance to the centre of a movable body of the two [m]
+    ("torsional", "f8"),  # c [m]
+    ("k_torsion", "f8"),  # inverse effective inertia about n [1/(kg m^2)]
+    ("psi_n", "f8"),  # accumulated angular impulse on B about n [N m s]
+]
+CACHE_FIELDS = [("psi_n", "f8")]
+
+
+def wanted(facts: Facts) -> Decision:
+    """On when a pair that may touch has a positive coefficient."""
+    for pair in facts.pairs:
+        if pair.torsional_friction > 0.0:
+            return Decision(
+                True, f"{pair.a} and {pair.b}: torsional friction {pair.torsional_friction:g} m"
+            )
+    return Decision(False, "every pair that may touch has torsional friction 0")
+
+
+def make_complete(spec):
+    """Return `kernel(contact, pair, x, y, z)`; x, y, z: the response to a unit psi_n."""
+
+    def complete_torsion(contact, pair, x, y, z):
+        contact.torsional = pair.torsional_friction
+        contact.k_torsion = contact.nx * x + contact.ny * y + contact.nz * z
+        contact.psi_n = 0.0
+
+    return kernel(complete_torsion, spec)
+
+
+def make_solve(spec):
+    """Return `kernel(contact, spin) -> change of psi_n`; spin: omega_n [rad/s]."""
+
+    def solve_torsion(contact, spin):
+        limit = contact.torsional * contact.lambda_n
+        old = contact.psi_n
+        # In this order a NaN stays.
+        new = min(max(old - spin / contact.k_torsion, -limit), limit)
+        contact.psi_n = new
+        return new - old
+
+    return kernel(solve_torsion, spec)
+
+
+def make_residual(spec):
+    """Return `kernel(contact, spin) -> r` [rad/s]: |k psi_n - clamp(k psi_n - omega_n)|."""
+
+    def torsion_residual(contact, spin):
+        held = contact.k_torsion * contact.psi_n
+        limit = contact.k_torsion * contact.torsional * contact.lambda_n
+        return abs(min(max(held - spin, -limit), limit) - held)
+
+    return kernel(torsion_residual, spec)

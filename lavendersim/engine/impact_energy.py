@@ -1,0 +1,121 @@
+"""A solved impact enters; where Newton's law gave it energy, Stronge's law leaves in its place.
+
+With friction, Newton's coefficient (a ratio of speeds) can make an eccentric impact gain energy.
+Stronge's is a ratio of the normal impulse's work in restitution and in compression,
+    W_r = -e^2 W_c,    W = lambda_n (v_n_pre + v_n)/2 in all,
+and never does. The compression is the plastic impact; the speed at which surfaces leave is then
+lowered until the normal work is (1 - e^2) W_c, and the work of all impulses is no gain.
+Stronge 1990, "Rigid body collisions with friction".
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from .block import make_relative_velocity
+from .compile import kernel
+from .spec import Spec
+
+# Gain, relative to the work's own size, that is round-off.
+ROUND_OFF = 1e-13
+HALVINGS = 60
+
+
+def watches(spec: Spec) -> bool:
+    """Whether impacts of this engine can gain energy by Newton's law."""
+    return spec.has("impact_time") and spec.has("friction") and spec.has("restitution")
+
+
+def make_note(spec: Spec) -> Any:
+    """Return `kernel(contact, va, vb)`: tangential velocities before the solve."""
+    relative_velocity = make_relative_velocity(spec)
+
+    def note(contact, va, vb):
+        x, y, z = relative_velocity(contact, va, vb)
+        contact.pre_1 = contact.t1x * x + contact.t1y * y + contact.t1z * z
+        contact.pre_2 = contact.t2x * x + contact.t2y * y + contact.t2z * z
+
+    return kernel(note, spec)
+
+
+def make_settle(spec: Spec, solve: Any, classify: Any) -> Any:
+    """Return the kernel that `settle`s impacts; the arguments are those of a solver, and `motion`.
+
+    classify: the kernel of `integrate` that says which bodies are struck, and when.
+
+    Called after `solve`; sets counters.stronge to 1 where it took Stronge's law.
+    """
+    relative_velocity = make_relative_velocity(spec)
+
+    def work_of(contacts, count, velocities, motion, params):
+        # Of all impulses, at each body's time of impact: before and after it forces work alone.
+        classify(contacts, count, motion, params)
+        dt = params.dt
+        total, size, normal = 0.0, 0.0, 0.0
+        for c in range(count):
+            contact = contacts[c]
+            if contact.lambda_n > 0.0:
+                x, y, z = relative_velocity(contact, velocities[contact.a], velocities[contact.b])
+                v = contact.nx * x + contact.ny * y + contact.nz * z
+                v_1 = contact.t1x * x + contact.t1y * y + contact.t1z * z
+                v_2 = contact.t2x * x + contact.t2y * y + contact.t2z * z
+                ma, mb = motion[contact.a], motion[contact.b]
+                share_a, share_b = 1.0 - ma.tau / dt, 1.0 - mb.tau / dt
+                x = share_b * mb.dvx - share_a * ma.dvx
+                y = share_b * mb.dvy - share_a * ma.dvy
+                z = share_b * mb.dvz - share_a * ma.dvz
+                after_n = contact.nx * x + contact.ny * y + contact.nz * z
+                after_1 = contact.t1x * x + contact.t1y * y + contact.t1z * z
+                after_2 = contact.t2x * x + contact.t2y * y + contact.t2z * z
+                along = contact.lambda_n * (0.5 * (contact.v_n_pre + v) - after_n)
+                across = contact.lambda_1 * (0.5 * (contact.pre_1 + v_1) - after_1)
+                across += contact.lambda_2 * (0.5 * (contact.pre_2 + v_2) - after_2)
+                total += along + across
+                size += abs(along) + abs(across)
+                if contact.struck == 1:
+                    normal += along
+        return total, size, normal
+
+    work_of = kernel(work_of, spec)
+
+    def aim(contacts, count, share):
+        for c in range(count):
+            contact = contacts[c]
+            if contact.struck == 1:
+                contact.target = -(share * contact.up + contact.after)
+
+    aim = kernel(aim, spec)
+
+    def settle(contacts, order, count, bodies, velocities, motion, space, params, counters, rows):
+        counters.stronge = 0
+        total, size, _ = work_of(contacts, count, velocities, motion, params)
+        if not total > ROUND_OFF * size:
+            return
+        gives = False
+        asked = 0.0
+        for c in range(count):
+            if contacts[c].struck == 1 and contacts[c].up > 0.0:
+                gives = True
+        if not gives:
+            return
+        counters.stronge = 1
+        aim(contacts, count, 0.0)
+        solve(contacts, order, count, bodies, velocities, space, params, counters, rows)
+        for c in range(count):
+            contact = contacts[c]
+            if contact.struck == 1:
+                asked += 0.5 * (1.0 - contact.e * contact.e) * contact.lambda_n * contact.v_n_pre
+        low, high = 0.0, 1.0
+        for _ in range(HALVINGS):
+            share = 0.5 * (low + high)
+            aim(contacts, count, share)
+            solve(contacts, order, count, bodies, velocities, space, params, counters, rows)
+            total, size, normal = work_of(contacts, count, velocities, motion, params)
+            if normal <= asked and total <= ROUND_OFF * size:
+                low = share
+            else:
+                high = share
+        aim(contacts, count, low)
+        solve(contacts, order, count, bodies, velocities, space, params, counters, rows)
+
+    return kernel(settle, spec)

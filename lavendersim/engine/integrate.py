@@ -1,0 +1,192 @@
+"""Velocities before and after the solve enter, poses leave.
+
+A body moves through a step in one of three ways:
+    free      x += dt v_new, or dt (v_old + v_new)/2 with `midpoint`
+    held      x += dt v_new: a lasting contact pushes it, and v_new is what respects the contact
+    struck    on its old velocity until tau, on its new one from there (`impact_time`)
+"""
+
+from __future__ import annotations
+
+from math import sqrt
+from typing import Any
+
+from .compile import kernel
+from .effects import gyroscopic, rotation
+from .records import NOT_FINITE, TURNS_TOO_FAST
+from .rotation import inertia_times, turn
+from .spec import Spec
+
+# MOTION.held: a contact carries the body from its impact on, or through the whole step.
+AFTERWARDS = 1
+ALWAYS = 2
+
+
+def keeps_motion(spec: Spec) -> bool:
+    """Whether the step needs to know what bodies did before the solve."""
+    return any(spec.has(name) for name in ("speculative", "midpoint", "impact_time"))
+
+
+def make_begin(spec: Spec, accelerate: Any) -> Any:
+    """Return `kernel(bodies, velocities, motion, params)`: forces act; their effect is noted."""
+    torque = spec.has("rotation")
+    kinematic = spec.has("kinematic")
+
+    def begin(bodies, velocities, motion, params):
+        for i in range(bodies.shape[0]):
+            body, v, m = bodies[i], velocities[i], motion[i]
+            m.vx, m.vy, m.vz = v.vx, v.vy, v.vz
+            if torque:
+                m.wx, m.wy, m.wz = v.wx, v.wy, v.wz
+            moves = body.inv_m > 0.0
+            if moves:
+                accelerate(body, v, params)
+            if kinematic:
+                moves = moves or body.kinematic == 1
+            m.reach = 0.0
+            if moves:
+                m.dvx, m.dvy, m.dvz = v.vx - m.vx, v.vy - m.vy, v.vz - m.vz
+                speed = sqrt(v.vx * v.vx + v.vy * v.vy + v.vz * v.vz)
+                if torque:
+                    speed += body.bound * sqrt(v.wx * v.wx + v.wy * v.wy + v.wz * v.wz)
+                m.reach = params.dt * speed
+
+    return kernel(begin, spec)
+
+
+def make_undo(spec: Spec) -> Any:
+    """Return `kernel(velocities, motion)`: velocities as before `begin`, for a step begun again."""
+    torque = spec.has("rotation")
+
+    def undo(velocities, motion):
+        for i in range(velocities.shape[0]):
+            v, m = velocities[i], motion[i]
+            v.vx, v.vy, v.vz = m.vx, m.vy, m.vz
+            if torque:
+                v.wx, v.wy, v.wz = m.wx, m.wy, m.wz
+
+    return kernel(undo, spec)
+
+
+def make_classify(spec: Spec) -> Any:
+    """Return `kernel(contacts, count, motion, params)`: who is free, held or struck."""
+    at_surface = spec.has("impact_time")
+
+    def classify(contacts, count, motion, params):
+        for i in range(motion.shape[0]):
+            motion[i].held, motion[i].tau = 0, params.dt
+        for c in range(count):
+            contact = contacts[c]
+            if contact.lambda_n > 0.0:
+                a, b = motion[contact.a], motion[contact.b]
+                struck = False
+                if at_surface:
+                    struck = contact.struck == 1
+                if struck:
+                    a.tau, b.tau = min(a.tau, contact.tau), min(b.tau, contact.tau)
+                    if contact.up == 0.0:  # plastic: what meets stays together
+                        a.held, b.held = max(a.held, AFTERWARDS), max(b.held, AFTERWARDS)
+                else:
+                    a.held, b.held = ALWAYS, ALWAYS
+
+    return kernel(classify, spec)
+
+
+def make_displace(spec: Spec) -> Any:
+    """Return `kernel(body, v, m, dt) -> solved`: the body's way through the step."""
+    turns = spec.has("rotation")
+    midpoint = spec.has("midpoint")
+    at_surface = spec.has("impact_time")
+    uneven = spec.has("gyroscopic")
+    integrate_rotation = (gyroscopic if uneven else rotation).make(spec)
+    jump = gyroscopic.make_jump(spec)
+
+    def displace(body, v, m, dt):
+        if at_surface:
+            if m.tau < dt:
+                rest = dt - m.tau
+                # Forces act in flight only: up to the impact, and after it.
+                share = 0.0
+                if m.held == 0:
+                    share = 0.5 * (m.tau * m.tau - rest * rest) / dt
+                elif m.held == AFTERWARDS:
+                    share = 0.5 * m.tau * m.tau / dt
+                body.x += m.vx * m.tau + v.vx * rest + share * m.dvx
+                body.y += m.vy * m.tau + v.vy * rest + share * m.dvy
+                body.z += m.vz * m.tau + v.vz * rest + share * m.dvz
+                if turns:
+                    gained_x, gained_y, gained_z = v.wx - m.wx, v.wy - m.wy, v.wz - m.wz
+                    twice_spent = 0.0
+                    if uneven:
+                        x, y, z = inertia_times(body, gained_x, gained_y, gained_z)
+                        twice_spent = x * gained_x + y * gained_y + z * gained_z
+                    v.wx, v.wy, v.wz = m.wx, m.wy, m.wz
+                    solved = True
+                    if m.tau > 0.0:
+                        solved = integrate_rotation(body, v, m.tau)
+                    if uneven:
+                        jump(body, v, gained_x, gained_y, gained_z, twice_spent)
+                    else:
+                        v.wx, v.wy, v.wz = v.wx + gained_x, v.wy + gained_y, v.wz + gained_z
+                    return integrate_rotation(body, v, rest) and solved
+                return True
+        x, y, z = v.vx * dt, v.vy * dt, v.vz * dt
+        if midpoint:
+            if m.held == 0:
+                half = 0.5 * dt
+                x, y, z = x - half * m.dvx, y - half * m.dvy, z - half * m.dvz
+        body.x += x
+        body.y += y
+        body.z += z
+        if turns:
+            return integrate_rotation(body, v, dt)
+        return True
+
+    return kernel(displace, spec)
+
+
+def make_integrate(spec: Spec) -> Any:
+    """Return `kernel(bodies, velocities, motion, pseudo, moved, dt) -> (diverged or -1, cause)`."""
+    turns, projects = spec.has("rotation"), spec.has("projection")
+    torque = spec.has("contact_torque")
+    kinematic = spec.has("kinematic")
+    keeps = keeps_motion(spec)
+    integrate_rotation = (gyroscopic if spec.has("gyroscopic") else rotation).make(spec)
+    displace = make_displace(spec)
+
+    def integrate(bodies, velocities, motion, pseudo, moved, dt):
+        for i in range(bodies.shape[0]):
+            body, v = bodies[i], velocities[i]
+            moves = body.inv_m > 0.0
+            if kinematic:
+                moves = moves or body.kinematic == 1
+            if moves:
+                solved = True
+                if keeps:
+                    solved = displace(body, v, motion[i], dt)
+                else:
+                    body.x += v.vx * dt
+                    body.y += v.vy * dt
+                    body.z += v.vz * dt
+                    if turns:
+                        solved = integrate_rotation(body, v, dt)
+                if projects:
+                    if moved:
+                        u = pseudo[i]
+                        body.x += u.vx
+                        body.y += u.vy
+                        body.z += u.vz
+                        if torque:
+                            turn(body, u.wx, u.wy, u.wz)
+                # x - x is 0 for finite numbers only; one sum tests them all. Speeds enter squared:
+                # one whose square overflows has no energy, and would turn a quaternion into zero.
+                total = body.x + body.y + body.z + v.vx * v.vx + v.vy * v.vy + v.vz * v.vz
+                if turns:
+                    total += body.qw + v.wx * v.wx + v.wy * v.wy + v.wz * v.wz
+                if total - total != 0.0:
+                    return i, NOT_FINITE
+                if not solved:
+                    return i, TURNS_TOO_FAST
+        return -1, NOT_FINITE
+
+    return kernel(integrate, spec)

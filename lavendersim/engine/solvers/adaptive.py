@@ -1,0 +1,128 @@
+"""Projected Gauss-Seidel, and Newton's method where its sweeps converge slowly.
+
+Sweeps are cheap and good at finding who pushes, who sticks and who slides; they carry a load
+through a tower, or across a ratio of masses, one contact per sweep. When the changes that sweeps
+make shrink so slowly that Newton's steps cost less than the sweeps still needed, Newton's method
+takes over (`newton`); sweeps follow, so that impulses end inside their cones. Both costs are
+counted in operations, never in time: equal runs take equal decisions.
+
+A solve that begins near its solution is over after a sweep and pays for nothing else.
+"""
+
+from __future__ import annotations
+
+from math import log
+from typing import Any
+
+from ..compile import kernel
+from ..residual import make_residual
+from ..spec import Spec
+from .envelope import allocate_envelope
+from .newton import CONTACT_FIELDS, make_newton
+from .row_update import make_solve_contact_velocity
+
+__all__ = ["CONTACT_FIELDS", "allocate", "make"]
+
+# Sweeps between two looks at how fast they converge.
+LOOK = 8
+# No solve is worth more than so many sweeps.
+MOST_SWEEPS = 3000.0
+# Multiplications that take the time of one contact's visit in a sweep.
+VISIT = 50.0
+# Newton goes on to this share of the tolerance, or resting loads would creep at it.
+SHARPNESS = 0.01
+# Matrix entries at most (32 MB).
+MOST_ENTRIES = 4_000_000
+
+
+def allocate(bodies: int, contacts: int) -> Any:
+    """Return the arrays this solver works in."""
+    rows = 6 * bodies
+    return allocate_envelope(bodies, contacts, min(rows * (rows + 1) // 2, MOST_ENTRIES))
+
+
+def make(spec: Spec):
+    """Return `kernel(contacts, order, count, bodies, velocities, space, params, counters, rows)`.
+
+    Writes counters.sweeps, .residual [m/s], .residual_contact and .unsolved of this step.
+    """
+    record_residuals = spec.record_residuals
+    solve_contact_velocity = make_solve_contact_velocity(spec)
+    residual = make_residual(spec)
+    # The square of a pyramid is no cone of revolution: it is left to sweeps.
+    hastens = spec.friction_cone != "pyramid"
+    newton: Any = make_newton(spec) if hastens else None
+
+    def adaptive(
+        contacts, order, count, bodies, velocities, space, params, counters, residual_rows
+    ):
+        step = counters.step + 1
+        wanted = params.residuals_from <= step <= params.residuals_to
+        largest, worst = 0.0, -1
+        if record_residuals:
+            largest, worst = residual(contacts, count, velocities)
+            if wanted:
+                row = residual_rows[counters.residual_rows]
+                row.step, row.sweep, row.residual = step, 0, largest
+                counters.residual_rows += 1
+        sweeps, look, pause = 0, LOOK, LOOK
+        sharp = SHARPNESS * params.tolerance
+        aim = sharp if counters.sharpen == 1 else params.tolerance
+        counters.sharpen = 0
+        measured = False
+        earlier = 0.0
+        while sweeps < params.sweeps:
+            greatest = 0.0
+            for c in range(count):
+                contact = contacts[order[c]]
+                va, vb = velocities[contact.a], velocities[contact.b]
+                change = solve_contact_velocity(contact, va, vb)
+                # A NaN is greater than anything.
+                if change > greatest or change != change:
+                    greatest = change
+            sweeps += 1
+            measured = False
+            if record_residuals:
+                largest, worst = residual(contacts, count, velocities)
+                measured = True
+                if wanted:
+                    row = residual_rows[counters.residual_rows]
+                    row.step, row.sweep, row.residual = step, sweeps, largest
+                    counters.residual_rows += 1
+            # The residual is evaluated when the sweep's own changes say that it may be small.
+            over = greatest == 0.0 or greatest != greatest
+            if over or greatest <= aim:
+                if not measured:
+                    largest, worst = residual(contacts, count, velocities)
+                    measured = True
+                if over or largest <= aim:
+                    break
+            if hastens:
+                if sweeps >= look:
+                    look = sweeps + pause
+                    if earlier > 0.0:
+                        # Sweeps still needed at the rate of the last LOOK of them.
+                        needed = MOST_SWEEPS
+                        if greatest < earlier:
+                            rate = log(greatest / earlier) / pause
+                            needed = min(log(aim / greatest) / rate, MOST_SWEEPS)
+                        allowance = VISIT * count * needed
+                        steps = newton(contacts, count, bodies, velocities, space, sharp, allowance)
+                        counters.newton_steps += steps
+                        if steps > 0:
+                            counters.sharpen = 1
+                            aim = params.tolerance
+                            # Where this was not the last call, sweeps must prepare the next one.
+                            greatest, pause = 0.0, 4 * pause
+                    earlier = greatest
+        if not measured:
+            largest, worst = residual(contacts, count, velocities)
+        counters.sweeps = sweeps
+        counters.residual = largest
+        counters.residual_contact = worst
+        counters.unsolved = 0
+        if params.tolerance >= 0.0:
+            if not largest <= params.tolerance:
+                counters.unsolved = 1
+
+    return kernel(adaptive, spec)

@@ -1,0 +1,206 @@
+"""A sparse symmetric matrix over bodies enters, its L D L^T and solutions leave.
+
+Rows of six, one per body. The matrix is kept by envelope: of each row everything from its first
+entry to the diagonal, where fill stays. Bodies are numbered breadth first from an end of their
+contact graph (Cuthill and McKee 1969, without the sorting by degree), which keeps rows short: a
+tower's are two bodies long, a pyramid's as long as its base.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numba
+import numpy as np
+
+from ..compile import OPTIONS
+
+DOF = 6
+
+
+class Envelope(NamedTuple):
+    """Arrays of one factorisation; n bodies, 6 n rows."""
+
+    position: np.ndarray  # (bodies,) row block of a body, -1: not in the system
+    visited: np.ndarray  # (bodies,) body at each position
+    neighbours: np.ndarray  # (2 * contact capacity,) bodies, by body
+    begin: np.ndarray  # (bodies + 1,) where a body's neighbours start
+    first: np.ndarray  # (bodies,) first block column of each block row
+    start: np.ndarray  # (6 bodies,) where a row's entries start in `values`
+    values: np.ndarray  # (capacity,) entries, rows one after the other, diagonal last
+    diagonal: np.ndarray  # (6 bodies,) D
+    gradient: np.ndarray  # (6 bodies,)
+    step: np.ndarray  # (6 bodies,)
+    moved: np.ndarray  # (6 bodies,)
+    mass: np.ndarray  # (bodies, 7) mass and world inertia xx xy xz yy yz zz, by position
+    rows: np.ndarray  # (9, 6) rows n, t1, t2 of one contact: body A's, body B's, and scaled
+
+
+def allocate_envelope(bodies: int, contacts: int, capacity: int) -> Envelope:
+    """Return the arrays for so many bodies, contacts and matrix entries."""
+    rows = DOF * bodies
+    return Envelope(
+        np.zeros(bodies, np.int64),
+        np.zeros(bodies, np.int64),
+        np.zeros(2 * contacts, np.int64),
+        np.zeros(bodies + 1, np.int64),
+        np.zeros(bodies, np.int64),
+        np.zeros(rows, np.int64),
+        np.zeros(capacity),
+        np.zeros(rows),
+        np.zeros(rows),
+        np.zeros(rows),
+        np.zeros(rows),
+        np.zeros((bodies, 7)),
+        np.zeros((9, DOF)),
+    )
+
+
+@numba.njit(**OPTIONS)
+def _gather(contacts, count, space):
+    # Neighbours of every body that a contact joins to another movable one, by counting sort.
+    begin, neighbours, position = space.begin, space.neighbours, space.position
+    bodies = position.shape[0]
+    for i in range(bodies + 1):
+        begin[i] = 0
+    for i in range(bodies):
+        position[i] = -1
+    last = -1
+    for c in range(count):
+        contact = contacts[c]
+        if contact.inv_m_a > 0.0:
+            position[contact.a] = -2
+        if contact.inv_m_b > 0.0:
+            position[contact.b] = -2
+        if contact.key != last and contact.inv_m_a > 0.0 and contact.inv_m_b > 0.0:
+            begin[contact.a + 1] += 1
+            begin[contact.b + 1] += 1
+        last = contact.key
+    for i in range(bodies):
+        begin[i + 1] += begin[i]
+    last = -1
+    for c in range(count):
+        contact = contacts[c]
+        if contact.key != last and contact.inv_m_a > 0.0 and contact.inv_m_b > 0.0:
+            neighbours[begin[contact.a]] = contact.b
+            begin[contact.a] += 1
+            neighbours[begin[contact.b]] = contact.a
+            begin[contact.b] += 1
+        last = contact.key
+    for i in range(bodies, 0, -1):
+        begin[i] = begin[i - 1]
+    begin[0] = 0
+
+
+@numba.njit(**OPTIONS)
+def _walk(root, filled, space):
+    # Number the component of `root` breadth first from position `filled` on.
+    position, visited = space.position, space.visited
+    position[root] = filled
+    visited[filled] = root
+    head, tail = filled, filled + 1
+    while head < tail:
+        body = visited[head]
+        head += 1
+        for k in range(space.begin[body], space.begin[body + 1]):
+            other = space.neighbours[k]
+            if position[other] == -2:
+                position[other] = tail
+                visited[tail] = other
+                tail += 1
+    return tail
+
+
+@numba.njit(**OPTIONS)
+def lay_out(contacts, count, space):
+    """Number the bodies and lay out the rows; returns (bodies, entries, multiplications).
+
+    The walk runs twice: its last body is an end of the component, a good place to begin.
+    """
+    _gather(contacts, count, space)
+    position, visited, first = space.position, space.visited, space.first
+    filled = 0
+    for root in range(position.shape[0]):
+        if position[root] == -2:
+            end = _walk(root, filled, space)
+            far = visited[end - 1]
+            for k in range(filled, end):
+                position[visited[k]] = -2
+            filled = _walk(far, filled, space)
+    entries, work = 0, 0
+    for p in range(filled):
+        lowest = p
+        body = visited[p]
+        for k in range(space.begin[body], space.begin[body + 1]):
+            lowest = min(lowest, position[space.neighbours[k]])
+        first[p] = lowest
+        for k in range(DOF):
+            space.start[DOF * p + k] = entries
+            length = DOF * (p - lowest) + k + 1
+            entries += length
+            work += length * length // 2
+    return filled, entries, work
+
+
+@numba.njit(**OPTIONS)
+def _dot(values, i, j, length):
+    # Four sums side by side: a single one would wait for itself at every addition.
+    a, b, c, d = 0.0, 0.0, 0.0, 0.0
+    k = 0
+    while k + 4 <= length:
+        a += values[i + k] * values[j + k]
+        b += values[i + k + 1] * values[j + k + 1]
+        c += values[i + k + 2] * values[j + k + 2]
+        d += values[i + k + 3] * values[j + k + 3]
+        k += 4
+    while k < length:
+        a += values[i + k] * values[j + k]
+        k += 1
+    return (a + b) + (c + d)
+
+
+@numba.njit(**OPTIONS)
+def factorise(bodies, space):
+    """Replace the matrix by L (unit diagonal not stored) and D; returns whether D is positive."""
+    values, start, diagonal = space.values, space.start, space.diagonal
+    for row in range(DOF * bodies):
+        begin = DOF * space.first[row // DOF]
+        base = start[row]
+        # Row of L D first: entries of L scaled by D, column by column.
+        for column in range(begin, row):
+            other = DOF * space.first[column // DOF]
+            low = max(begin, other)
+            length = column - low
+            at = base + column - begin
+            if length > 0:
+                values[at] -= _dot(values, base + low - begin, start[column] + low - other, length)
+        pivot = values[base + row - begin]
+        for column in range(begin, row):
+            at = base + column - begin
+            scaled = values[at]
+            values[at] = scaled / diagonal[column]
+            pivot -= scaled * values[at]
+        diagonal[row] = pivot
+        if not pivot > 0.0:
+            return False
+    return True
+
+
+@numba.njit(**OPTIONS)
+def solve_factorised(bodies, space, x):
+    """Solve in place: x enters as the right side, leaves as the solution."""
+    values, start, diagonal = space.values, space.start, space.diagonal
+    rows = DOF * bodies
+    for row in range(rows):
+        begin = DOF * space.first[row // DOF]
+        total = x[row]
+        for column in range(begin, row):
+            total -= values[start[row] + column - begin] * x[column]
+        x[row] = total
+    for row in range(rows):
+        x[row] /= diagonal[row]
+    for row in range(rows - 1, -1, -1):
+        begin = DOF * space.first[row // DOF]
+        known = x[row]
+        for column in range(begin, row):
+            x[column] -= values[start[row] + column - begin] * known

@@ -1,0 +1,141 @@
+"""Newton's method on the augmented Lagrangian of a contact problem, factorised over the bodies.
+
+Around impulses lambda^k the next ones answer velocities v as stiff dampers would (`newton_rows`),
+    lambda(v) = proj(lambda^k - E (J v + b + s)),    E = 1/(softness k) per row,
+onto Coulomb's cone, with De Saxce's shift s = mu |v_t^k| along the normal, without which the
+projection onto the cone would lift what slides. Held for a round, it leaves a convex problem
+(`newton_minimise`). At rest s = 0, and a round shrinks the error by softness over the least
+eigenvalue of the scaled Delassus operator. A round must end exactly: what it leaves undone comes
+back in the impulses, times E.
+
+The first round is stiff and takes contacts to be at rest: a load that is carried without slip is
+found at once, through a tower or a pyramid. Where that fails, rounds begin soft, where few contacts
+change their minds at a time, and stiffen.
+"""
+
+from __future__ import annotations
+
+from math import sqrt
+
+from ..compile import kernel
+from ..residual import make_residual
+from ..spec import Spec
+from .envelope import lay_out
+from .newton_minimise import make_minimise, make_weigh
+from .newton_rows import FIELDS as CONTACT_FIELDS
+from .newton_rows import make_answer, make_start
+from .row_update import make_change
+
+__all__ = ["CONTACT_FIELDS", "make_newton"]
+
+# Newton steps in a call; fewer than these are not worth beginning.
+MOST_STEPS = 80
+FEWEST_STEPS = 12.0
+# Softness of the first round, of the second where the first failed, and the least [-].
+BOLD = 1e-6
+SOFTEST = 1e-2
+STIFFEST = 1e-8
+# Softness falls by this factor from round to round, by its root after one that failed [-].
+CUT = 0.03
+# Rounds that may fail before sweeps go on.
+FAILURES = 6
+# A round may leave the largest residual this much above the least so far: it falls on average.
+WORSE = 10.0
+# A round's impulses may be this share of the residual, squared, off the minimum's [-].
+EXACTNESS = 0.01
+# Multiplications per contact in a step, beside the factorisation.
+ASSEMBLY = 1000
+
+
+def make_newton(spec: Spec):
+    """Return `kernel(contacts, count, bodies, velocities, space, tolerance, allowance) -> steps`.
+
+    None when the system is larger than its arrays; no more steps than fit into `allowance`
+    multiplications. Impulses and velocities leave consistent with each other.
+    """
+    friction = spec.has("friction")
+    residual, change = make_residual(spec), make_change(spec)
+    start, answer = make_start(spec), make_answer(spec)
+    weigh, minimise = make_weigh(spec), make_minimise(spec)
+
+    def accept(contacts, count, velocities):
+        for c in range(count):
+            contact = contacts[c]
+            n, one, two = answer(contact, 0.0)
+            change_1, change_2 = 0.0, 0.0
+            change_n = n - contact.lambda_n
+            contact.lambda_n = n
+            if friction:
+                limit = contact.mu * n
+                squared = one * one + two * two
+                if squared > limit * limit:
+                    scale = limit / squared**0.5
+                    one, two = one * scale, two * scale
+                change_1, change_2 = one - contact.lambda_1, two - contact.lambda_2
+                contact.lambda_1, contact.lambda_2 = one, two
+            va, vb = velocities[contact.a], velocities[contact.b]
+            change(contact, va, vb, change_n, change_1, change_2)
+
+    accept = kernel(accept, spec)
+
+    def take_back(contacts, count, velocities):
+        for c in range(count):
+            contact = contacts[c]
+            change_1, change_2 = 0.0, 0.0
+            change_n = contact.held_n - contact.lambda_n
+            contact.lambda_n = contact.held_n
+            if friction:
+                change_1 = contact.held_1 - contact.lambda_1
+                change_2 = contact.held_2 - contact.lambda_2
+                contact.lambda_1, contact.lambda_2 = contact.held_1, contact.held_2
+            va, vb = velocities[contact.a], velocities[contact.b]
+            change(contact, va, vb, change_n, change_1, change_2)
+
+    take_back = kernel(take_back, spec)
+
+    def newton(contacts, count, bodies, velocities, space, tolerance, allowance):
+        size, entries, work = lay_out(contacts, count, space)
+        if size == 0:
+            return 0
+        if entries > space.values.shape[0]:
+            return 0
+        most = min(float(MOST_STEPS), allowance / (work + ASSEMBLY * count))
+        if most < FEWEST_STEPS:
+            return 0
+        weigh(bodies, size, space)
+        # A gain of dI^2 softness k / 2 is what an impulse dI off the minimum costs.
+        lightest = 1.0 / contacts[0].k_n
+        for c in range(count):
+            lightest = min(lightest, 1.0 / contacts[c].k_n)
+        least, _ = residual(contacts, count, velocities)
+        softness, good, cut = BOLD, SOFTEST / CUT, CUT
+        steps, failed = 0, 0
+        while steps < most:
+            off = max(least, tolerance)
+            start(contacts, count, velocities, softness, steps == 0)
+            made, found = minimise(
+                contacts, count, size, space, EXACTNESS * softness * lightest * off * off
+            )
+            steps += made
+            better = False
+            if found:  # impulses that answer no minimum would be as large as E
+                accept(contacts, count, velocities)
+                largest, _ = residual(contacts, count, velocities)
+                if largest <= tolerance:
+                    break
+                better = largest < WORSE * least
+                if better:
+                    least, good = min(least, largest), softness
+                    softness = max(softness * cut, STIFFEST)
+                else:
+                    take_back(contacts, count, velocities)
+            if not better:
+                failed += 1
+                if failed > FAILURES:
+                    break
+                if failed > 1:
+                    cut = sqrt(cut)
+                softness = good * cut
+        return steps
+
+    return kernel(newton, spec)

@@ -1,0 +1,206 @@
+"""One convex problem enters, its minimiser leaves: Newton steps with an exact search along each.
+
+    g(v) = M (v - v^k) - J^T (lambda(v) - lambda^k)
+is the gradient of a convex function of the velocities, because every contact's answer lambda(v)
+(`newton_rows`) is a projection. Its Hessian M + J^T E' J is sparse over bodies and positive
+definite however redundant the contacts are. Each step factorises it (`envelope`) and is shortened,
+or lengthened, to where the slope along it is nearly gone.
+"""
+
+from __future__ import annotations
+
+from ..compile import kernel
+from ..rotation import inertia_times
+from ..spec import Spec
+from .envelope import DOF, factorise, solve_factorised
+from .newton_rows import make_answer, make_assemble, make_fill_rows
+
+# Steps at most. The one that finds every contact in its final state is the last but one.
+MOST_STEPS = 24
+# By this step the gain of the next one has fallen to this share, or the round is given up [-].
+LOOK_BACK, LOOKED_FOR = 8, 0.1
+# Nothing is left to gain below this share of what the first step gains: round-off [-].
+ROUND_OFF = 1e-20
+# A length is good when it leaves this share of the slope along the step [-]; trials of it.
+SLOPE_LEFT = 0.2
+LENGTHS = 40
+
+
+def make_weigh(spec: Spec):
+    """Return `kernel(bodies, size, space)`: masses and world inertias by position."""
+    turns = spec.has("rotation")
+
+    def weigh(bodies, size, space):
+        mass = space.mass
+        for p in range(size):
+            body = bodies[space.visited[p]]
+            mass[p, 0] = 1.0 / body.inv_m
+            mass[p, 1], mass[p, 4], mass[p, 6] = 1.0, 1.0, 1.0
+            mass[p, 2], mass[p, 3], mass[p, 5] = 0.0, 0.0, 0.0
+            if turns:
+                mass[p, 1], mass[p, 2], mass[p, 3] = inertia_times(body, 1.0, 0.0, 0.0)
+                _, mass[p, 4], mass[p, 5] = inertia_times(body, 0.0, 1.0, 0.0)
+                _, _, mass[p, 6] = inertia_times(body, 0.0, 0.0, 1.0)
+
+    return kernel(weigh, spec)
+
+
+def make_minimise(spec: Spec):
+    """Return `kernel(contacts, count, size, space, enough) -> (steps, found)`.
+
+    Contacts stand at their `held` impulses and `seen` velocities and leave with the latter at the
+    minimum; enough: a further step need not gain more [J].
+    """
+    friction = spec.has("friction")
+    directions = 3 if friction else 1
+    answer, fill_rows = make_answer(spec), make_fill_rows(spec)
+    assemble = make_assemble(spec)
+
+    def multiply(size, space, x, p, i):
+        # Row i of block p of M x.
+        mass = space.mass
+        at = DOF * p
+        if i < 3:
+            return mass[p, 0] * x[at + i]
+        wx, wy, wz = x[at + 3], x[at + 4], x[at + 5]
+        if i == 3:
+            return mass[p, 1] * wx + mass[p, 2] * wy + mass[p, 3] * wz
+        if i == 4:
+            return mass[p, 2] * wx + mass[p, 4] * wy + mass[p, 5] * wz
+        return mass[p, 3] * wx + mass[p, 5] * wy + mass[p, 6] * wz
+
+    multiply = kernel(multiply, spec)
+
+    def body_of(contact, space, side):
+        if side == 0:
+            return space.position[contact.a] if contact.inv_m_a > 0.0 else -1
+        return space.position[contact.b] if contact.inv_m_b > 0.0 else -1
+
+    body_of = kernel(body_of, spec)
+
+    def gather(contacts, count, size, space):
+        # gradient = M moved - J^T (lambda - lambda^k)
+        gradient, rows = space.gradient, space.rows
+        for p in range(size):
+            for i in range(DOF):
+                gradient[DOF * p + i] = multiply(size, space, space.moved, p, i)
+        for c in range(count):
+            contact = contacts[c]
+            n, one, two = answer(contact, 0.0)
+            n -= contact.held_n
+            if friction:
+                one, two = one - contact.held_1, two - contact.held_2
+            if n != 0.0 or one != 0.0 or two != 0.0:
+                fill_rows(contact, rows)
+                for side in range(2):
+                    p = body_of(contact, space, side)
+                    if p >= 0:
+                        for i in range(DOF):
+                            total = n * rows[3 * side, i]
+                            if friction:
+                                total += one * rows[3 * side + 1, i] + two * rows[3 * side + 2, i]
+                            gradient[DOF * p + i] -= total
+
+    gather = kernel(gather, spec)
+
+    def look_along(contacts, count, space):
+        # What the step adds to the velocities that contacts see.
+        rows, step = space.rows, space.step
+        for c in range(count):
+            contact = contacts[c]
+            fill_rows(contact, rows)
+            n, one, two = 0.0, 0.0, 0.0
+            for side in range(2):
+                p = body_of(contact, space, side)
+                if p >= 0:
+                    for i in range(DOF):
+                        x = step[DOF * p + i]
+                        n += rows[3 * side, i] * x
+                        if directions == 3:
+                            one += rows[3 * side + 1, i] * x
+                            two += rows[3 * side + 2, i] * x
+            contact.step_n = n
+            if friction:
+                contact.step_1, contact.step_2 = one, two
+
+    look_along = kernel(look_along, spec)
+
+    def slope_at(contacts, count, length):
+        # The contacts' part of the derivative along the step; it grows with the length.
+        total = 0.0
+        for c in range(count):
+            contact = contacts[c]
+            n, one, two = answer(contact, length)
+            total -= contact.step_n * (n - contact.held_n)
+            if friction:
+                total -= contact.step_1 * (one - contact.held_1)
+                total -= contact.step_2 * (two - contact.held_2)
+        return total
+
+    slope_at = kernel(slope_at, spec)
+
+    def choose_length(contacts, count, size, space, slope):
+        constant, linear = 0.0, 0.0
+        for p in range(size):
+            for i in range(DOF):
+                s = space.step[DOF * p + i]
+                constant += s * multiply(size, space, space.moved, p, i)
+                linear += s * multiply(size, space, space.step, p, i)
+        length, low, high = 1.0, 0.0, -1.0
+        left = slope
+        for _ in range(LENGTHS):
+            left = constant + length * linear + slope_at(contacts, count, length)
+            if abs(left) <= SLOPE_LEFT * abs(slope):
+                break
+            if left > 0.0:
+                high = length
+            else:
+                low = length
+            length = 0.5 * (low + high) if high > 0.0 else 2.0 * length
+        return length
+
+    choose_length = kernel(choose_length, spec)
+
+    def minimise(contacts, count, size, space, enough):
+        rows = DOF * size
+        first = 0.0
+        for r in range(rows):
+            space.moved[r] = 0.0
+        for c in range(count):
+            contact = contacts[c]
+            contact.step_n = 0.0
+            if friction:
+                contact.step_1, contact.step_2 = 0.0, 0.0
+        for done in range(MOST_STEPS):
+            gather(contacts, count, size, space)
+            assemble(contacts, count, size, space)
+            if not factorise(size, space):
+                return done, False
+            for r in range(rows):
+                space.step[r] = -space.gradient[r]
+            solve_factorised(size, space, space.step)
+            slope = 0.0
+            for r in range(rows):
+                slope += space.step[r] * space.gradient[r]
+            if done == 0:
+                first = slope
+            if not slope < min(ROUND_OFF * first, -enough):
+                return done + 1, slope == slope
+            if done == LOOK_BACK:
+                if slope < LOOKED_FOR * first:
+                    return done + 1, False
+            look_along(contacts, count, space)
+            length = choose_length(contacts, count, size, space, slope)
+            for r in range(rows):
+                space.moved[r] += length * space.step[r]
+            for c in range(count):
+                contact = contacts[c]
+                contact.seen_n += length * contact.step_n
+                if friction:
+                    contact.seen_1 += length * contact.step_1
+                    contact.seen_2 += length * contact.step_2
+                    contact.step_1, contact.step_2 = 0.0, 0.0
+                contact.step_n = 0.0
+        return MOST_STEPS, False
+
+    return kernel(minimise, spec)

@@ -1,0 +1,156 @@
+"""Nonsmooth nonlinear conjugate gradients over projected Gauss-Seidel sweeps.
+
+A sweep is a fixed-point map; its step lambda' - lambda stands for the negative gradient g of a
+function whose minimum is the solution. Between sweeps the impulses move on along the last search
+direction, by Fletcher and Reeves' share,
+    beta = |g_k|^2 / |g_k-1|^2,    p_k = beta p_k-1 - g_k,
+and where beta > 1 the direction is dropped. Silcowitz-Hansen, Niebe and Erleben 2010, "A nonsmooth
+nonlinear conjugate gradient method for interactive contact force problems". Norms are taken in the
+metric of the rows' own inverse masses, so light and heavy bodies count alike.
+
+The first sweeps are plain: a solve that begins near its solution needs no directions. The last
+thing done is always a sweep, so impulses end inside their cones.
+"""
+
+from __future__ import annotations
+
+from ..block import make_apply_vector
+from ..compile import kernel
+from ..contact import make_apply_impulse
+from ..residual import make_residual
+from ..spec import Spec
+from .row_update import make_solve_contact_velocity
+
+CONTACT_FIELDS = [
+    ("start_n", "f8"),  # impulse before the sweep [N s]
+    ("start_1", "f8"),
+    ("start_2", "f8"),
+    ("path_n", "f8"),  # search direction [N s]
+    ("path_1", "f8"),
+    ("path_2", "f8"),
+]
+PLAIN_SWEEPS = 8
+
+
+def make_move_on(spec: Spec):
+    """Return `kernel(contact, va, vb, share)`: lambda += share p, p <- share p + last change."""
+    friction = spec.has("friction")
+    apply_vector = make_apply_vector(spec)
+    apply_impulse = make_apply_impulse(spec)
+
+    def move_on(contact, va, vb, share):
+        step = share * contact.path_n
+        contact.path_n = step + contact.lambda_n - contact.start_n
+        contact.lambda_n += step
+        if friction:
+            step_1, step_2 = share * contact.path_1, share * contact.path_2
+            contact.path_1 = step_1 + contact.lambda_1 - contact.start_1
+            contact.path_2 = step_2 + contact.lambda_2 - contact.start_2
+            contact.lambda_1 += step_1
+            contact.lambda_2 += step_2
+            if share > 0.0:
+                apply_vector(
+                    contact,
+                    va,
+                    vb,
+                    contact.nx * step + contact.t1x * step_1 + contact.t2x * step_2,
+                    contact.ny * step + contact.t1y * step_1 + contact.t2y * step_2,
+                    contact.nz * step + contact.t1z * step_1 + contact.t2z * step_2,
+                )
+        elif share > 0.0:
+            apply_impulse(contact, va, vb, step)
+
+    return kernel(move_on, spec)
+
+
+def make(spec: Spec):
+    """Return `kernel(contacts, order, count, bodies, velocities, space, params, counters, rows)`.
+
+    Writes counters.sweeps, .residual [m/s], .residual_contact and .unsolved of this step.
+    """
+    friction = spec.has("friction")
+    record_residuals = spec.record_residuals
+    solve_contact_velocity = make_solve_contact_velocity(spec)
+    residual = make_residual(spec)
+    move_on = make_move_on(spec)
+
+    def nonsmooth_conjugate_gradient(
+        contacts, order, count, bodies, velocities, space, params, counters, residual_rows
+    ):
+        step = counters.step + 1
+        wanted = params.residuals_from <= step <= params.residuals_to
+        largest, worst = 0.0, -1
+        previous, fresh = 0.0, True
+        if record_residuals:
+            largest, worst = residual(contacts, count, velocities)
+            if wanted:
+                row = residual_rows[counters.residual_rows]
+                row.step, row.sweep, row.residual = step, 0, largest
+                counters.residual_rows += 1
+        sweeps = 0
+        measured = False
+        while sweeps < params.sweeps:
+            greatest = 0.0
+            directed = sweeps >= PLAIN_SWEEPS
+            if directed:
+                for c in range(count):
+                    contact = contacts[c]
+                    contact.start_n = contact.lambda_n
+                    if friction:
+                        contact.start_1, contact.start_2 = contact.lambda_1, contact.lambda_2
+            for c in range(count):
+                contact = contacts[order[c]]
+                va, vb = velocities[contact.a], velocities[contact.b]
+                change = solve_contact_velocity(contact, va, vb)
+                # A NaN is greater than anything.
+                if change > greatest or change != change:
+                    greatest = change
+            sweeps += 1
+            measured = False
+            if record_residuals:
+                largest, worst = residual(contacts, count, velocities)
+                measured = True
+                if wanted:
+                    row = residual_rows[counters.residual_rows]
+                    row.step, row.sweep, row.residual = step, sweeps, largest
+                    counters.residual_rows += 1
+            # The residual is evaluated when the sweep's own changes say that it may be small.
+            if greatest <= params.tolerance or greatest == 0.0 or greatest != greatest:
+                if not measured:
+                    largest, worst = residual(contacts, count, velocities)
+                    measured = True
+                if largest <= params.tolerance or greatest == 0.0 or greatest != greatest:
+                    break
+            if directed:
+                squared = 0.0
+                for c in range(count):
+                    contact = contacts[c]
+                    change = contact.lambda_n - contact.start_n
+                    squared += change * change * contact.k_n
+                    if friction:
+                        one = contact.lambda_1 - contact.start_1
+                        two = contact.lambda_2 - contact.start_2
+                        squared += (one * one + two * two) * contact.k_t
+                share = 0.0 if fresh else squared / previous
+                if share > 1.0:
+                    share = 0.0
+                if sweeps < params.sweeps:
+                    for c in range(count):
+                        contact = contacts[c]
+                        if fresh:
+                            contact.path_n = 0.0
+                            if friction:
+                                contact.path_1, contact.path_2 = 0.0, 0.0
+                        move_on(contact, velocities[contact.a], velocities[contact.b], share)
+                previous, fresh = squared, False
+        if not measured:
+            largest, worst = residual(contacts, count, velocities)
+        counters.sweeps = sweeps
+        counters.residual = largest
+        counters.residual_contact = worst
+        counters.unsolved = 0
+        if params.tolerance >= 0.0:
+            if not largest <= params.tolerance:
+                counters.unsolved = 1
+
+    return kernel(nonsmooth_conjugate_gradient, spec)

@@ -1,0 +1,132 @@
+"""One contact's impulses enter, corrected ones leave: the update every relaxation solver repeats.
+
+Normal, compliant:
+    lambda_n <- max(0, lambda_n - (v_n + b + b_rest + gamma lambda_n) / (k_n + gamma))
+Friction, with v_t after the normal's change:
+    lambda_t <- lambda_t - K_tt^-1 v_t                              where that is in the disc: stick
+                proj(lambda_t - v_t / k_t),  |lambda_t| <= mu lambda_n          otherwise: slide
+Both tangential forms have the same fixed point, Coulomb's law with maximal dissipation; k_t, the
+largest eigenvalue of K_tt, makes the second one a descent step. What resists turning follows with
+the new lambda_n (`spin_block`).
+"""
+
+from __future__ import annotations
+
+from math import sqrt
+
+from ..block import make_apply_vector, make_relative_velocity
+from ..compile import kernel
+from ..contact import make_apply_impulse, make_normal_velocity
+from ..spec import Spec
+from ..spin_block import make_solve_spin, resists_turning
+
+
+def make_solve_contact_velocity(spec: Spec):
+    """Return `kernel(contact, va, vb) -> change`: one projected, compliant update.
+
+    change: the largest change of the contact's velocity that the update makes [m/s].
+    """
+    return _make_block(spec) if spec.has("friction") else _make_normal(spec)
+
+
+def make_change(spec: Spec):
+    """Return `kernel(contact, va, vb, n, one, two)`: apply impulses along n, t1, t2 [N s]."""
+    if not spec.has("friction"):
+        apply_impulse = make_apply_impulse(spec)
+
+        def change_normal(contact, va, vb, n, one, two):
+            apply_impulse(contact, va, vb, n)
+
+        return kernel(change_normal, spec)
+    apply_vector = make_apply_vector(spec)
+
+    def change_block(contact, va, vb, n, one, two):
+        apply_vector(
+            contact,
+            va,
+            vb,
+            contact.nx * n + contact.t1x * one + contact.t2x * two,
+            contact.ny * n + contact.t1y * one + contact.t2y * two,
+            contact.nz * n + contact.t1z * one + contact.t2z * two,
+        )
+
+    return kernel(change_block, spec)
+
+
+def _make_normal(spec: Spec):
+    compliant = spec.has("compliance")
+    normal_velocity = make_normal_velocity(spec)
+    apply_impulse = make_apply_impulse(spec)
+
+    def solve_contact_velocity(contact, va, vb):
+        w = normal_velocity(contact, va, vb) + contact.target
+        lambda_old = contact.lambda_n
+        if compliant:
+            w += contact.gamma * lambda_old
+        # In this order a NaN stays and is reported; max(0.0, NaN) would be 0.
+        lambda_new = max(lambda_old - w * contact.inv_k, 0.0)
+        contact.lambda_n = lambda_new
+        change = lambda_new - lambda_old
+        apply_impulse(contact, va, vb, change)
+        return abs(change) * contact.k_n
+
+    return kernel(solve_contact_velocity, spec)
+
+
+def _make_block(spec: Spec):
+    compliant = spec.has("compliance")
+    pyramid = spec.friction_cone == "pyramid"
+    moving_surface = spec.has("surface_velocity")
+    spins, solve_spin = resists_turning(spec), make_solve_spin(spec)
+    relative_velocity = make_relative_velocity(spec)
+    apply_vector = make_apply_vector(spec)
+
+    def solve_contact_block(contact, va, vb):
+        x, y, z = relative_velocity(contact, va, vb)
+        w = contact.nx * x + contact.ny * y + contact.nz * z + contact.target
+        w1 = contact.t1x * x + contact.t1y * y + contact.t1z * z
+        w2 = contact.t2x * x + contact.t2y * y + contact.t2z * z
+        if moving_surface:
+            w1 += contact.surface_1
+            w2 += contact.surface_2
+        old_n, old_1, old_2 = contact.lambda_n, contact.lambda_1, contact.lambda_2
+        if compliant:
+            w += contact.gamma * old_n
+        new_n = max(old_n - w * contact.inv_k, 0.0)
+        change_n = new_n - old_n
+        w1 += contact.k_n1 * change_n
+        w2 += contact.k_n2 * change_n
+        limit = contact.mu * new_n
+        new_1 = old_1 - contact.i_11 * w1 - contact.i_12 * w2
+        new_2 = old_2 - contact.i_12 * w1 - contact.i_22 * w2
+        if pyramid:
+            new_1 = min(max(new_1, -limit), limit)
+            new_2 = min(max(new_2, -limit), limit)
+        elif new_1 * new_1 + new_2 * new_2 > limit * limit:
+            new_1, new_2 = old_1 - w1 / contact.k_t, old_2 - w2 / contact.k_t
+            squared = new_1 * new_1 + new_2 * new_2
+            if squared > limit * limit:
+                scale = limit / sqrt(squared)
+                new_1, new_2 = new_1 * scale, new_2 * scale
+        contact.lambda_n, contact.lambda_1, contact.lambda_2 = new_n, new_1, new_2
+        change_1, change_2 = new_1 - old_1, new_2 - old_2
+        apply_vector(
+            contact,
+            va,
+            vb,
+            contact.nx * change_n + contact.t1x * change_1 + contact.t2x * change_2,
+            contact.ny * change_n + contact.t1y * change_1 + contact.t2y * change_2,
+            contact.nz * change_n + contact.t1z * change_1 + contact.t2z * change_2,
+        )
+        # In this order a NaN stays.
+        change = max(
+            max(abs(change_n) * contact.k_n, abs(change_1) * contact.k_t),
+            abs(change_2) * contact.k_t,
+        )
+        if spins:
+            turned = solve_spin(contact, va, vb)
+            if turned > change or turned != turned:
+                change = turned
+        return change
+
+    return kernel(solve_contact_block, spec)

@@ -1,0 +1,87 @@
+"""The resolved config of one impact in; the velocities it leaves, in closed form, out.
+
+A body flies under gravity g and meets a plane once, with one point of its surface. With the gap
+phi, the normal n and r from the centre to the point, it arrives at the t of
+    phi + v_n t + g_n t^2/2 = 0,   v = v0 + g t
+and leaves with v + J/m, omega + I^-1 (r x J), where (Newton's law)
+    J = j n + J_t,   j = -(1 + e) v_n / k_n.
+A sphere's normal and tangential impulse do not act on each other's velocity (r is along n), so its
+friction is in closed form too: with the slip u and k_t = 1/m + r^2/I, J_t = -u/k_t stops the slip
+where |u|/k_t <= mu j (stick), else J_t = -mu j u/|u| (slip; the direction of u does not change).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from lavendersim.measures import cell_config
+from lavendersim.measures.cell_config import BodyConfig
+from lavendersim.measures.closed_forms import clearance, pair_restitution
+from lavendersim.measures.views import Floats
+
+
+def velocities_after(
+    resolved: Mapping[str, Any], body: str, plane: str, time: float
+) -> tuple[Floats, Floats] | None:
+    """Return v [m/s] and omega [rad/s] of a body at a time [s] after its only impact.
+
+    None where this has no closed form: a turning or rough body that is no sphere, no impact before
+    that time, or a second one.
+    """
+    moving, ground = cell_config.body(resolved, body), cell_config.body(resolved, plane)
+    gravity = cell_config.gravity(resolved)
+    friction = math.sqrt(moving.friction * ground.friction)
+    is_sphere = moving.shape["kind"] == "sphere"
+    if not is_sphere and (friction > 0.0 or np.any(moving.angular_velocity)):
+        return None
+    pull = float(ground.normal @ gravity)
+    arrival = _arrival(clearance(moving, ground), float(ground.normal @ moving.velocity), pull)
+    if arrival is None or arrival > time:
+        return None
+    before = moving.velocity + gravity * arrival
+    impulse, lever = _impulse(moving, ground, before, friction)
+    velocity = before + impulse / moving.mass
+    turn = moving.angular_velocity + moving.inverse_inertia @ np.cross(lever, impulse)
+    up = float(ground.normal @ velocity)
+    if pull < 0.0 and time - arrival >= -2.0 * up / pull:
+        return None
+    return velocity + gravity * (time - arrival), turn
+
+
+def _arrival(gap: float, speed: float, pull: float) -> float | None:
+    """Return the first t >= 0 with gap + speed t + pull t^2/2 = 0, in a form without cancelling."""
+    inner = speed * speed - 2.0 * pull * gap
+    if inner < 0.0:
+        return None
+    root = math.sqrt(inner)
+    if speed > 0.0:  # it rises first, and falls back if it is pulled
+        return -(speed + root) / pull if pull < 0.0 else None
+    if root - speed == 0.0:
+        return 0.0 if gap == 0.0 else None
+    return 2.0 * gap / (root - speed)
+
+
+def _impulse(
+    moving: BodyConfig, ground: BodyConfig, velocity: Floats, friction: float
+) -> tuple[Floats, Floats]:
+    """Return the impulse on the body [N s] and the lever from its centre [m]."""
+    normal = ground.normal
+    lever = moving.lowest(normal) - moving.position
+    cross = np.cross(lever, normal)
+    k_n = moving.inverse_mass + float(cross @ moving.inverse_inertia @ cross)
+    at_point = velocity + np.cross(moving.angular_velocity, lever)
+    v_n = float(normal @ at_point)
+    size = max(0.0, -(1.0 + pair_restitution(moving, ground)) * v_n / k_n)
+    impulse: Floats = size * normal
+    if friction == 0.0:
+        return impulse, lever
+    slip = at_point - v_n * normal
+    speed = math.sqrt(float(slip @ slip))
+    k_t = moving.inverse_mass + float(lever @ lever) * moving.inverse_inertia[0, 0]
+    if speed > 0.0:
+        impulse = impulse - min(speed / k_t, friction * size) * slip / speed
+    return impulse, lever

@@ -1,0 +1,96 @@
+"""A log in; how well it keeps balance and conservation, and whether its steps were solved, out."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from lavendersim.experiment import law_specs as specs
+from lavendersim.measures import cell_config
+from lavendersim.measures.columns import clearance_by_step, last_window, mechanical_energy
+from lavendersim.measures.views import Floats, Rows, Trace
+
+NAN = float("nan")
+
+
+def force_error(spec: specs.ForceError, trace: Trace) -> float:
+    """Return the largest |F/(m g) - 1| of any step in the last window, F against gravity.
+
+    Of one body all contacts count; of the scene those between movable and fixed bodies, since the
+    others cancel. NaN without gravity or a movable body, and for a run shorter than the window.
+    """
+    configs = {one.name: one for one in cell_config.bodies(trace.resolved)}
+    gravity = cell_config.gravity(trace.resolved)
+    pull = math.sqrt(float(gravity @ gravity))
+    names = [spec.body] if spec.body else [name for name, one in configs.items() if one.movable]
+    carried = np.array([name in names for name in trace.bodies])
+    weight = pull * sum(configs[name].mass for name in names)
+    rows = np.flatnonzero(last_window(trace, spec.last))
+    if weight == 0.0 or len(rows) == 0:
+        return NAN
+    contacts = trace.contact
+    first = np.searchsorted(contacts["step"], trace.step["step"][rows[0]])
+    contacts = contacts[first:]
+    contacts = contacts[carried[contacts["body_a"]] != carried[contacts["body_b"]]]
+    sign = np.where(carried[contacts["body_b"]], 1.0, -1.0)
+    lift = sign * (impulses(contacts) @ (-gravity / pull)) / float(trace.timestep)
+    forces = np.zeros(len(trace.step))
+    np.add.at(forces, np.searchsorted(trace.step["step"], contacts["step"]), lift)
+    return float(np.max(np.abs(forces[rows] / weight - 1.0)))
+
+
+def impulses(contacts: Rows) -> Floats:
+    """Return the impulse vector on B of each contact [N s] (n, 3), friction included."""
+    normals = np.column_stack([contacts[f"n{axis}"] for axis in "xyz"])
+    total: Floats = normals * contacts["impulse_n"][:, None]
+    if "impulse_t1" in (contacts.dtype.names or ()):
+        first = np.column_stack([contacts[f"t1{axis}"] for axis in "xyz"])
+        second = np.cross(normals, first)  # the frame (n, t1, t2) is right-handed
+        total += first * contacts["impulse_t1"][:, None]
+        total += second * contacts["impulse_t2"][:, None]
+    return total
+
+
+def energy_drift(spec: specs.EnergyDrift, trace: Trace) -> float:
+    """Return the largest |E/E0 - 1| over the run; NaN for a run that starts without energy."""
+    change = _energy_change(spec, trace)
+    return float(np.max(np.abs(change)))
+
+
+def energy_gain(spec: specs.EnergyGain, trace: Trace) -> float:
+    """Return the largest E/E0 - 1 over the run; NaN for a run that starts without energy."""
+    return float(np.max(_energy_change(spec, trace)))
+
+
+def _energy_change(spec: specs.EnergyDrift | specs.EnergyGain, trace: Trace) -> Floats:
+    energy = mechanical_energy(trace)
+    if spec.body is not None and spec.above is not None:
+        # resting on the plane: the potential energy of the start less m g times the clearance
+        moving = cell_config.body(trace.resolved, spec.body)
+        plane = cell_config.body(trace.resolved, spec.above)
+        pull = -float(plane.normal @ cell_config.gravity(trace.resolved))
+        height = float(clearance_by_step(trace, spec.body, spec.above)[0])
+        at_rest = float(trace.step["potential_energy"][0]) - moving.mass * pull * height
+        energy = energy - at_rest
+    return energy / energy[0] - 1.0 if energy[0] != 0.0 else np.array([NAN])
+
+
+def angular_momentum_drift(spec: specs.AngularMomentumDrift, trace: Trace) -> float:
+    """Return the largest |L - L0| / |L0| over the run; NaN for a scene that does not turn."""
+    momentum = angular_momentum(trace)
+    size = math.sqrt(float(momentum[0] @ momentum[0]))
+    change = momentum - momentum[0]
+    return float(np.sqrt((change**2).sum(axis=1)).max()) / size if size > 0.0 else NAN
+
+
+def angular_momentum(trace: Trace) -> Floats:
+    """Return the scene's angular momentum about the origin [kg m^2/s] in every state (n, 3)."""
+    return np.column_stack([trace.step[f"angular_momentum_{axis}"] for axis in "xyz"])
+
+
+def unsolved_steps(spec: specs.UnsolvedSteps, trace: Trace) -> float:
+    """Return how many steps ended above the tolerance asked for; NaN where none was asked for."""
+    if "unsolved" not in (trace.step.dtype.names or ()):
+        return NAN
+    return float(np.count_nonzero(trace.step["unsolved"]))

@@ -1,0 +1,137 @@
+"""Logged poses in; apexes, drift, creep, sliding and tunnelling out. No solver's word is taken."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from lavendersim.experiment import motion_specs as specs
+from lavendersim.measures import cell_config
+from lavendersim.measures.closed_forms import clearance, pair_restitution
+from lavendersim.measures.columns import clearance_by_step, last_window
+from lavendersim.measures.impact import parabola_vertex
+from lavendersim.measures.views import Floats, Trace
+
+NAN = float("nan")
+
+
+def apex_error(spec: specs.ApexError, trace: Trace) -> float:
+    """Return |apex / (e^(2 k) h) - 1| after bounce k; NaN if the run does not reach it.
+
+    The apex is the vertex of the parabola through the highest sample of a flight and its
+    neighbours. A flight begins where the sampled clearance has a valley.
+    """
+    heights = clearance_by_step(trace, spec.body, spec.above)
+    falls, rises = heights[1:-1] < heights[:-2], heights[1:-1] <= heights[2:]
+    valleys = np.flatnonzero(falls & rises) + 1
+    if len(valleys) < spec.bounce:
+        return NAN
+    start = valleys[spec.bounce - 1]
+    end = valleys[spec.bounce] if len(valleys) > spec.bounce else len(heights) - 1
+    top = int(start + np.argmax(heights[start : end + 1]))
+    if top in (start, end):  # still rising at the end of the run, or at rest
+        return NAN
+    apex = parabola_vertex(*(float(height) for height in heights[top - 1 : top + 2]))
+    moving = cell_config.body(trace.resolved, spec.body)
+    plane = cell_config.body(trace.resolved, spec.above)
+    restitution = pair_restitution(moving, plane)
+    ideal = restitution ** (2 * spec.bounce) * clearance(moving, plane)
+    return abs(apex / ideal - 1.0) if ideal > 0.0 else NAN
+
+
+def drift(spec: specs.Drift, trace: Trace) -> float:
+    """Return the greatest distance [m] of any centre from its place at `after`, later in the run.
+
+    NaN when the run ends before that time.
+    """
+    later = drift_by_step(trace, spec.after, spec.bodies)
+    return float(np.max(later)) if len(later) else NAN
+
+
+def drift_by_step(trace: Trace, after: float, bodies: tuple[str, ...] = ()) -> Floats:
+    """Return the greatest distance [m] of any centre, in every logged state from `after` on."""
+    time = np.asarray(trace.step["time"])
+    # logged times are whole nanoseconds, rounded down
+    rows = np.flatnonzero(time > after - 2e-9)
+    if len(rows) < 2:
+        return np.zeros(0)
+    names = bodies or [one.name for one in cell_config.bodies(trace.resolved) if one.movable]
+    columns = [list(trace.bodies).index(name) for name in names]
+    centres = trace.pose[rows[0] :, columns, :3]
+    distances: Floats = np.sqrt(((centres - centres[0]) ** 2).sum(axis=2)).max(axis=1)
+    return distances
+
+
+def slip_distance(spec: specs.SlipDistance, trace: Trace) -> float:
+    """Return how far [m] the centre is at the end of the run from where the window began."""
+    window = _window(trace, spec.last)
+    if window is None:
+        return NAN
+    return math.dist(*_ends(trace, spec.body, window)[0])
+
+
+def creep(spec: specs.Creep, trace: Trace) -> float:
+    """Return the mean speed [m/s] of the centre over the last window."""
+    window = _window(trace, spec.last)
+    if window is None:
+        return NAN
+    places, duration = _ends(trace, spec.body, window)
+    return math.dist(*places) / duration
+
+
+def effective_friction(spec: specs.EffectiveFriction, trace: Trace) -> float:
+    """Return (g_t - a)/g_n from the mean acceleration a down the slope in the last window.
+
+    a is the second difference of the positions at beginning, middle and end of the window, which
+    is exact for a constant acceleration. NaN when gravity does not pull towards the plane.
+    """
+    window = _window(trace, spec.last)
+    plane = cell_config.body(trace.resolved, spec.on)
+    pull = cell_config.gravity(trace.resolved)
+    into = -float(plane.normal @ pull)
+    if window is None or window[1] - window[0] < 2 or into <= 0.0:
+        return NAN
+    along = pull + into * plane.normal
+    size = math.sqrt(float(along @ along))
+    if size == 0.0:
+        return NAN
+    half = (window[1] - window[0]) // 2
+    rows = [window[1] - 2 * half, window[1] - half, window[1]]
+    places = trace.pose[rows, list(trace.bodies).index(spec.body), :3] @ (along / size)
+    interval = half * float(trace.timestep)
+    acceleration = float(places[0] - 2.0 * places[1] + places[2]) / interval**2
+    return (size - acceleration) / into
+
+
+def passed_through(spec: specs.PassedThrough, trace: Trace) -> float:
+    """Return how far [m] the centre came behind the middle of the wall; negative: never."""
+    wall = cell_config.body(trace.resolved, spec.wall)
+    centres = trace.pose[:, list(trace.bodies).index(spec.body), :3]
+    if wall.shape["kind"] == "plane":
+        return float(np.max(wall.offset - centres @ wall.normal))
+    if wall.shape["kind"] != "box":
+        return NAN
+    local = (centres - wall.position) @ wall.rotation
+    outside = np.abs(local[0]) - 0.5 * np.asarray(wall.shape["size"], dtype=float)
+    edge = int(np.argmax(outside))
+    side = -np.sign(local[0, edge])
+    return float(np.max(side * local[:, edge])) if outside[edge] > 0.0 else NAN
+
+
+def _window(trace: Trace, seconds: float) -> tuple[int, int] | None:
+    """Return the state in which the last window begins, and the last one."""
+    rows = np.flatnonzero(last_window(trace, seconds))
+    return (int(rows[0]) - 1, int(rows[-1])) if len(rows) and rows[0] > 0 else None
+
+
+def _ends(trace: Trace, body: str, window: tuple[int, int]) -> tuple[tuple[Floats, Floats], float]:
+    """Return the centre [m] at both ends of a window, and the time [s] between them.
+
+    Time is counted in steps: logged times are whole nanoseconds.
+    """
+    first, last = window
+    column = list(trace.bodies).index(body)
+    steps = int(trace.step["step"][last] - trace.step["step"][first])
+    places = (trace.pose[first, column, :3], trace.pose[last, column, :3])
+    return places, steps * float(trace.timestep)

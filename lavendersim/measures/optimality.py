@@ -1,0 +1,87 @@
+"""Logged contacts in; by how much they break each law of contact, beyond the residual, out.
+
+    pushing          lambda_n >= 0
+    complementarity  0 <= lambda_n, 0 <= w, lambda_n w = 0  with  w = v_n + target + gamma lambda_n,
+                     target = b + b_rest, what stabilisation and restitution asked of the row
+    cone             |lambda_t| <= mu lambda_n
+    sliding          lambda_t = -mu lambda_n v_t/|v_t| where v_t is not 0
+The second and the fourth by their natural maps, |min((k_n + gamma) lambda_n, w)| and
+|k lambda_t - proj(k lambda_t - v_t)| with the projection onto the cone's section: both in m/s, and
+zero exactly where the law holds. The residual of a step bounds both: the first is its very terms,
+and the second grows with k, for which it has the largest response of the contact to a tangential
+impulse and this file the least that any contact of the two bodies can have, the sum of their
+inverse masses. mu is the config's, not the log's.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from lavendersim.experiment.law_specs import Optimality
+from lavendersim.measures import cell_config
+from lavendersim.measures.views import Floats, Rows, Trace
+
+NAN = float("nan")
+
+
+def optimality(spec: Optimality, trace: Trace) -> Floats:
+    """Return the largest violations [m/s]: pushing, complementarity; with friction cone, sliding.
+
+    One NaN for a log without contacts or without what their rows asked for (`target`). Sliding is
+    NaN where a surface moves by itself.
+    """
+    contacts = trace.contact
+    if len(contacts) == 0 or "target" not in contacts.dtype.names:
+        return np.array([NAN])
+    configs = [cell_config.body(trace.resolved, name) for name in trace.bodies]
+    dt = float(trace.timestep)
+    residual = np.asarray(trace.step["residual"])[
+        np.searchsorted(trace.step["step"], contacts["step"])
+    ]
+    gamma = _summed(contacts, [one.compliance for one in configs]) / dt**2
+    least = _summed(contacts, [one.inverse_mass for one in configs])
+    pushed = (contacts["inverse_effective_mass"] + gamma) * contacts["impulse_n"]
+    away = contacts["normal_velocity"] + contacts["target"] + gamma * contacts["impulse_n"]
+    violations = [
+        np.maximum(-pushed, 0.0),
+        np.maximum(np.abs(np.minimum(pushed, away)) - residual, 0.0),
+    ]
+    if "impulse_t1" in (contacts.dtype.names or ()):
+        mu = _friction_of(contacts, [one.friction for one in configs])
+        cone, sliding = _friction(trace, contacts, least, mu)
+        violations += [cone, np.maximum(sliding - residual, 0.0)]
+    return np.array([float(np.max(one)) for one in violations])
+
+
+def _summed(contacts: Rows, of_bodies: list[float]) -> Floats:
+    """Return a property of each contact's two bodies, summed."""
+    values = np.array(of_bodies)
+    total: Floats = values[contacts["body_a"]] + values[contacts["body_b"]]
+    return total
+
+
+def _friction_of(contacts: Rows, of_bodies: list[float]) -> Floats:
+    """Return mu of each contact by the config: the geometric mean of its two surfaces."""
+    values = np.array(of_bodies)
+    mu: Floats = np.sqrt(values[contacts["body_a"]] * values[contacts["body_b"]])
+    return mu
+
+
+def _friction(trace: Trace, contacts: Rows, scale: Floats, mu: Floats) -> tuple[Floats, Floats]:
+    limit = scale * mu * np.maximum(contacts["impulse_n"], 0.0)
+    held = scale[:, None] * np.column_stack([contacts["impulse_t1"], contacts["impulse_t2"]])
+    slip = np.column_stack([contacts["slip_t1"], contacts["slip_t2"]])
+    bodies = trace.resolved["scene"]["bodies"].values()
+    if any(any(one.get("surface_velocity") or ()) for one in bodies):
+        slip = slip * NAN
+    wanted = held - slip
+    if trace.resolved["numerics"].get("friction_cone") == "pyramid":
+        sizes = np.abs(held).max(axis=1)
+        nearest = np.clip(wanted, -limit[:, None], limit[:, None])
+    else:
+        sizes = np.sqrt((held**2).sum(axis=1))
+        lengths = np.sqrt((wanted**2).sum(axis=1))
+        with np.errstate(divide="ignore", invalid="ignore"):
+            shrink = np.where(lengths > limit, limit / lengths, 1.0)
+        nearest = wanted * shrink[:, None]
+    return np.maximum(sizes - limit, 0.0), np.sqrt(((held - nearest) ** 2).sum(axis=1))

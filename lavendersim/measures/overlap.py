@@ -1,0 +1,64 @@
+"""Logged poses and resolved shapes in; how deep bodies overlap out. No solver's word is taken."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from lavendersim.experiment.motion_specs import Overlap
+from lavendersim.measures.columns import last_window
+from lavendersim.measures.penetration import depths
+from lavendersim.measures.solids import Ground, Placed, near_pairs, reach, solids_of
+from lavendersim.measures.views import Floats, Trace
+
+NAN = float("nan")
+
+
+def overlap(spec: Overlap, trace: Trace) -> float:
+    """Return the deepest penetration [m] in the last window; 0 when nothing overlaps.
+
+    NaN where the run is shorter than the window, or two bodies come close whose shapes have no
+    closed form here (all pairs of spheres, boxes and planes have one, and capsules among
+    themselves, with spheres and planes; cylinders with planes only).
+    """
+    rows = np.flatnonzero(last_window(trace, spec.last))[:: -spec.every]
+    return float(np.max(overlap_of_rows(trace, rows))) if len(rows) else NAN
+
+
+def overlap_of_rows(trace: Trace, rows: Any) -> Floats:
+    """Return the deepest penetration [m] of any two bodies in each of these rows of the log."""
+    solids, grounds = solids_of(trace.resolved, list(trace.bodies))
+    poses = trace.pose
+    deepest = np.zeros(len(rows))
+    for index, row in enumerate(rows):
+        placed = solids.placed(poses[row])
+        found = [
+            *_with_planes(solids.kind, placed, solids.movable, grounds),
+            *_among_solids(solids.kind, placed, solids.movable),
+        ]
+        # np.max, not fmax: one depth that is unknown leaves the deepest unknown
+        deepest[index] = max(0.0, np.max(found)) if not np.isnan(found).any() else NAN
+    return deepest
+
+
+def _with_planes(
+    kind: np.ndarray, placed: Placed, movable: np.ndarray, grounds: list[Ground]
+) -> list[float]:
+    found = [0.0]
+    for normal, offset in grounds:
+        inside = offset - placed.position @ normal + reach(kind, placed, -normal)
+        inside = inside[movable]
+        found += [float(np.max(np.where(np.isinf(inside), NAN, inside)))] if len(inside) else []
+    return found
+
+
+def _among_solids(kind: np.ndarray, placed: Placed, movable: np.ndarray) -> list[float]:
+    first, second = near_pairs(kind, placed, movable)
+    found = [0.0]
+    kinds = np.stack([kind[first], kind[second]], axis=1)
+    for kind_a, kind_b in np.unique(kinds, axis=0):
+        alike = (kinds == (kind_a, kind_b)).all(axis=1)
+        a, b = placed.take(first[alike]), placed.take(second[alike])
+        found.append(float(np.max(depths(int(kind_a), int(kind_b), a, b))))
+    return found

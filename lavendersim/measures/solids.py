@@ -1,0 +1,121 @@
+"""A resolved config and logged poses in; solids in place, their reach and which may overlap out.
+
+A body's size is three numbers: sphere (radius, 0, 0), box its half edges, capsule and cylinder
+(radius, 0, half length along the body's z).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+
+from lavendersim.measures import cell_config
+from lavendersim.measures.views import Floats
+
+SPHERE, BOX, CAPSULE, CYLINDER, OTHER = range(5)
+KINDS: Final = {"sphere": SPHERE, "box": BOX, "capsule": CAPSULE, "cylinder": CYLINDER}
+X, Y, Z = np.eye(3)
+
+
+class Placed(NamedTuple):
+    """Several solids of one kind, in the world."""
+
+    position: Floats  # (n, 3) [m]
+    rotation: Floats  # (n, 3, 3) body to world
+    size: Floats  # (n, 3) [m]
+
+    def take(self, rows: Any) -> Placed:
+        """Return some of them."""
+        return Placed(self.position[rows], self.rotation[rows], self.size[rows])
+
+
+@dataclass(frozen=True)
+class Solids:
+    """The bodies of a scene that are no planes; columns are rows of the pose table."""
+
+    columns: np.ndarray  # (n,) which body of the log
+    kind: np.ndarray  # (n,)
+    size: Floats  # (n, 3) [m]
+    movable: np.ndarray  # (n,)
+
+    def placed(self, poses: Floats) -> Placed:
+        """Return the solids at one row of the pose table (bodies, 7)."""
+        chosen = poses[self.columns]
+        return Placed(chosen[:, :3], rotations(chosen[:, 3:]), self.size)
+
+
+class Ground(NamedTuple):
+    """A plane: the points n . x <= offset are inside."""
+
+    normal: Floats
+    offset: float
+
+
+def solids_of(resolved: Mapping[str, Any], names: list[str]) -> tuple[Solids, list[Ground]]:
+    """Return the solids and the planes of a scene."""
+    columns, kinds, sizes, movable, grounds = [], [], [], [], []
+    for column, name in enumerate(names):
+        body = cell_config.body(resolved, name)
+        if body.shape["kind"] == "plane":
+            grounds.append(Ground(body.normal, body.offset))
+            continue
+        columns.append(column)
+        kinds.append(KINDS.get(body.shape["kind"], OTHER))
+        sizes.append(_size(body.shape))
+        movable.append(body.movable)
+    table = np.array(sizes, dtype=np.float64).reshape(-1, 3)
+    return Solids(np.array(columns, int), np.array(kinds, int), table, np.array(movable)), grounds
+
+
+def _size(shape: Mapping[str, Any]) -> tuple[float, ...]:
+    if shape["kind"] == "sphere":
+        return float(shape["radius"]), 0.0, 0.0
+    if shape["kind"] == "box":
+        return tuple(0.5 * float(edge) for edge in shape["size"])
+    if shape["kind"] in KINDS:
+        return float(shape["radius"]), 0.0, 0.5 * float(shape["length"])
+    return 0.0, 0.0, 0.0
+
+
+def rotations(quaternions: Floats) -> Floats:
+    """Return the matrices (n, 3, 3), body to world, of quaternions w x y z (n, 4)."""
+    w, x, y, z = (quaternions / np.linalg.norm(quaternions, axis=1)[:, None]).T
+    columns = [
+        (1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)),
+        (2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)),
+        (2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)),
+    ]
+    return np.stack([np.stack(column, axis=1) for column in columns], axis=2)
+
+
+def reach(kind: np.ndarray, placed: Placed, direction: Floats) -> Floats:
+    """Return how far each solid reaches along a unit direction [m]; inf where that is unknown."""
+    along = np.einsum("nij,i->nj", placed.rotation, direction)  # in body axes
+    radius, half = placed.size[:, 0], placed.size[:, 2]
+    boxes = np.einsum("nj,nj->n", np.abs(along), placed.size)
+    slope = np.abs(along[:, 2])
+    across = np.sqrt(np.maximum(0.0, 1.0 - slope * slope))
+    found = [radius, boxes, radius + half * slope, radius * across + half * slope]
+    return np.choose(kind, [*found, np.full(len(kind), np.inf)])
+
+
+def near_pairs(kind: np.ndarray, placed: Placed, movable: np.ndarray) -> tuple[Any, Any]:
+    """Return the two columns of pairs whose boxes along the world's axes meet (sweep and prune).
+
+    Sorted by their lower ends along the axis on which the scene is longest, a solid can meet only
+    those whose lower end comes before its own upper end.
+    """
+    half = np.stack([reach(kind, placed, axis) for axis in (X, Y, Z)], axis=1)
+    low, high = placed.position - half, placed.position + half
+    axis = int(np.argmax(np.ptp(placed.position, axis=0)))
+    order = np.argsort(low[:, axis], kind="stable")
+    ends = np.searchsorted(low[order, axis], high[order, axis], side="right")
+    counts = ends - np.arange(len(order)) - 1
+    first = np.repeat(np.arange(len(order)), counts)
+    step = np.arange(len(first)) - np.repeat(np.cumsum(counts) - counts, counts)
+    a, b = order[first], order[first + 1 + step]
+    meet = (movable[a] | movable[b]) & np.all((low[a] <= high[b]) & (low[b] <= high[a]), axis=1)
+    return a[meet], b[meet]

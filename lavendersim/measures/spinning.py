@@ -1,0 +1,121 @@
+"""The log of one free or colliding body in; its distance from closed forms of rigid motion out."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from lavendersim.experiment import law_specs as specs
+from lavendersim.measures import cell_config
+from lavendersim.measures.cell_config import BodyConfig
+from lavendersim.measures.free_rotation import FreeRotation, free_rotation
+from lavendersim.measures.impact_forms import velocities_after
+from lavendersim.measures.laws import angular_momentum
+from lavendersim.measures.solids import rotations
+from lavendersim.measures.views import Floats, Trace
+
+NAN = float("nan")
+
+
+def velocity_error(spec: specs.VelocityError, trace: Trace) -> float:
+    """Return the larger of |v - v*| and rho |omega - omega*| [m/s] at the end of the run.
+
+    v and omega follow from the logged momenta and pose. NaN where another body can move, or the
+    impact has no closed form.
+    """
+    moving = cell_config.body(trace.resolved, spec.body)
+    steps = int(trace.step["step"][-1] - trace.step["step"][0])
+    time = steps * float(trace.timestep)
+    ideal = velocities_after(trace.resolved, spec.body, spec.other, time)
+    if ideal is None or not _alone(trace, moving):
+        return NAN
+    velocity = np.array([float(trace.step[f"momentum_{axis}"][-1]) for axis in "xyz"]) / moving.mass
+    omega = body_rates(trace, moving)[-1] @ rotations(_pose(trace, moving)[-1:, 3:])[0].T
+    return max(
+        math.dist(velocity, ideal[0]),
+        moving.radius * math.dist(omega, ideal[1]),
+    )
+
+
+def angular_velocity_error(spec: specs.AngularVelocityError, trace: Trace) -> float:
+    """Return the largest |omega - omega*| / |omega(0)|, in body axes, over the run or until a time.
+
+    NaN where another body can move or the body does not turn.
+    """
+    moving = cell_config.body(trace.resolved, spec.body)
+    if not _alone(trace, moving) or not np.any(moving.angular_velocity):
+        return NAN
+    time = times(trace)
+    rows = time <= (spec.until if spec.until is not None else math.inf)
+    exact = exact_rotation(moving).angular_velocity(time[rows])
+    gaps = body_rates(trace, moving)[rows] - exact
+    first = math.sqrt(float(moving.angular_velocity @ moving.angular_velocity))
+    return float(np.sqrt((gaps**2).sum(axis=1)).max()) / first
+
+
+def flip_time_error(spec: specs.FlipTimeError, trace: Trace) -> float:
+    """Return the largest |t - t*| [s] of the first flips; NaN if the run has fewer.
+
+    Between two samples of opposite sign the middle component of omega is the cubic through them and
+    their neighbours, whose root is found by bisection.
+    """
+    moving = cell_config.body(trace.resolved, spec.body)
+    if not _alone(trace, moving) or not np.any(moving.angular_velocity):
+        return NAN
+    exact = exact_rotation(moving)
+    rate = body_rates(trace, moving)[:, exact.middle_axis]
+    ideal = exact.flip_times(spec.flips)
+    found = crossings(rate)[: spec.flips] * float(trace.timestep)
+    if len(found) < spec.flips or len(ideal) < spec.flips:
+        return NAN
+    return float(np.max(np.abs(found - ideal)))
+
+
+def crossings(values: Floats) -> Floats:
+    """Return where samples change their sign, in samples, by the cubic through four of them."""
+    places = []
+    for k in np.flatnonzero(np.signbit(values[1:]) != np.signbit(values[:-1])):
+        first = min(max(int(k) - 1, 0), len(values) - 4)
+        cubic = np.polyfit(np.arange(4.0), values[first : first + 4], 3)
+        low, high = float(k - first), float(k - first + 1)
+        rising = values[k + 1] > values[k]
+        while True:
+            middle = 0.5 * (low + high)
+            if middle in (low, high):
+                break
+            if (np.polyval(cubic, middle) > 0.0) == rising:
+                high = middle
+            else:
+                low = middle
+        places.append(first + low)
+    return np.array(places)
+
+
+def exact_rotation(moving: BodyConfig) -> FreeRotation:
+    """Return Jacobi's solution that starts as the config says."""
+    return free_rotation(moving.principal_inertia, moving.rotation.T @ moving.angular_velocity)
+
+
+def times(trace: Trace) -> Floats:
+    """Return the time [s] of every state, counted in steps (logged times are whole nanoseconds)."""
+    steps = trace.step["step"] - trace.step["step"][0]
+    return np.asarray(steps * float(trace.timestep), dtype=np.float64)
+
+
+def body_rates(trace: Trace, moving: BodyConfig) -> Floats:
+    """Return omega in the body's own axes [rad/s] (n, 3), from angular momentum and pose."""
+    pose = _pose(trace, moving)
+    momentum = np.column_stack([trace.step[f"momentum_{axis}"] for axis in "xyz"])
+    spin = angular_momentum(trace) - np.cross(pose[:, :3], momentum)
+    rates: Floats = np.einsum("nji,nj->ni", rotations(pose[:, 3:]), spin)
+    return rates / moving.principal_inertia
+
+
+def _pose(trace: Trace, moving: BodyConfig) -> Floats:
+    pose: Floats = trace.pose[:, list(trace.bodies).index(moving.name)]
+    return pose
+
+
+def _alone(trace: Trace, moving: BodyConfig) -> bool:
+    return moving.movable and sum(one.movable for one in cell_config.bodies(trace.resolved)) == 1

@@ -1,0 +1,102 @@
+"""Pieces of a body enter; rerun's archetypes that draw them leave, one for each kind of piece."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+from typing import Any, NamedTuple
+
+import numpy as np
+import rerun as rr
+
+from lavendersim.replay.shapes import Piece, Vector, rotate
+
+# Of the faces of a movable hull: forces act at surfaces and point into bodies, so they must be seen
+# through them.
+VEIL = 60
+
+
+class Look(NamedTuple):
+    """How one body is drawn."""
+
+    colour: tuple[int, int, int]
+    solid: bool
+    label: str
+    labelled: bool
+
+    @property
+    def words(self) -> dict[str, Any]:
+        """The arguments that rerun's solids share."""
+        return {
+            "colors": [self.colour],
+            "fill_mode": "Solid" if self.solid else "TransparentFillMajorWireframe",
+            "labels": [self.label],
+            "show_labels": self.labelled,
+        }
+
+
+def archetypes(pieces: Sequence[Piece], look: Look) -> dict[str, list[Any]]:
+    """Return by kind what draws all pieces of that kind, in the body's frame."""
+    kinds = dict.fromkeys(piece.kind for piece in pieces)
+    return {kind: _draw(kind, [p for p in pieces if p.kind == kind], look) for kind in kinds}
+
+
+def _draw(kind: str, pieces: Sequence[Piece], look: Look) -> list[Any]:
+    if kind == "hull":
+        return _hulls(pieces, look)
+    centres = np.array([piece.position for piece in pieces])
+    turns = np.array([_xyzw(piece) for piece in pieces])
+    if kind == "box":
+        sizes = np.array([piece.shape["size"] for piece in pieces], dtype=np.float64)
+        return [rr.Boxes3D(half_sizes=sizes / 2, centers=centres, quaternions=turns, **look.words)]
+    radii = np.array([float(piece.shape["radius"]) for piece in pieces])
+    if kind == "sphere":
+        return [rr.Ellipsoids3D(radii=radii, centers=centres, quaternions=turns, **look.words)]
+    lengths = np.array([float(piece.shape["length"]) for piece in pieces])
+    size: dict[str, Any] = {"lengths": lengths, "radii": radii, "quaternions": turns}
+    if kind == "cylinder":
+        return [rr.Cylinders3D(**size, centers=centres, **look.words)]
+    # rerun's capsules begin in their origin
+    begins = [
+        centre - rotate(turn, np.array([0.0, 0.0, 0.5 * length]))
+        for centre, turn, length in zip(centres, turns, lengths, strict=True)
+    ]
+    return [rr.Capsules3D(**size, translations=np.array(begins), **look.words)]
+
+
+def _hulls(pieces: Sequence[Piece], look: Look) -> list[Any]:
+    """Return the faces of all hulls as one mesh, and their edges as lines."""
+    corners: list[Vector] = []
+    triangles: list[tuple[int, int, int]] = []
+    edges: list[Vector] = []
+    for piece in pieces:
+        first = sum(len(points) for points in corners)
+        local = np.array(piece.shape["points"], dtype=np.float64)
+        points = piece.position + rotate(_xyzw(piece), local)
+        corners.append(points)
+        for face in piece.shape["faces"]:
+            loop = [int(corner) for corner in face]
+            edges.append(points[[*loop, loop[0]]])
+            fan = pairwise(loop[1:])
+            triangles += [(first + loop[0], first + one, first + two) for one, two in fan]
+    # Every triangle has corners of its own, or faces would be shaded as if they were round.
+    flat = np.concatenate(corners)[np.array(triangles).ravel()]
+    alpha = 255 if look.solid else VEIL
+    mesh = rr.Mesh3D(
+        vertex_positions=flat,
+        triangle_indices=np.arange(len(flat)).reshape(-1, 3),
+        albedo_factor=(*look.colour, alpha),
+    )
+    lines = rr.LineStrips3D(
+        edges,
+        colors=[look.colour],
+        radii=rr.Radius.ui_points(1.5),
+        labels=[look.label],
+        show_labels=look.labelled,
+    )
+    return [mesh, lines]
+
+
+def _xyzw(piece: Piece) -> Vector:
+    """Return the turn of a piece as rerun takes it; ours is w x y z."""
+    return piece.quaternion[[1, 2, 3, 0]]

@@ -1,0 +1,128 @@
+"""Rows of the body table enter, described; the table and those of hulls leave, filled here alone.
+
+Columns that effects bring are filled where they are present.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import Any, Final
+
+import numpy as np
+
+from lavendersim.engine.collide.hull_geometry import HullGeometry, hull_geometry
+from lavendersim.engine.engine import allocate_bodies
+from lavendersim.engine.records import BOX, CAPSULE, COMPOUND, CYLINDER, HULL, PLANE, SPHERE
+from lavendersim.engine.spec import Spec
+
+from .colliders import Collider, bounding_radius, is_movable
+
+SHAPES: Final = {
+    "plane": PLANE,
+    "sphere": SPHERE,
+    "box": BOX,
+    "capsule": CAPSULE,
+    "cylinder": CYLINDER,
+    "hull": HULL,
+    "compound": COMPOUND,
+}
+
+
+def rotation_matrix(q: np.ndarray) -> np.ndarray:
+    """Return the (3, 3) body-to-world matrix of a unit quaternion w x y z."""
+    w, x, y, z = q
+    return np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+        ]
+    )
+
+
+def quaternion_product(one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """Return the rotation that does `other` first, in the frame that `one` turns."""
+    w, v = one[0], one[1:]
+    real = w * other[0] - v @ other[1:]
+    return np.array([real, *(w * other[1:] + other[0] * v + np.cross(v, other[1:]))])
+
+
+def pose_of(body: dict[str, Any]) -> np.ndarray:
+    """Return x y z qw qx qy qz of a body; planes stand in the origin."""
+    pose = np.array([0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0])
+    if body["shape"]["kind"] != "plane":
+        pose[:3] = body["position"]
+        pose[3:] = body["orientation"]
+        pose[3:] /= np.linalg.norm(pose[3:])
+    return pose
+
+
+def part_pose(pose: np.ndarray, part: dict[str, Any]) -> np.ndarray:
+    """Return the pose of a part in the world by that of its owner."""
+    position = pose[:3] + rotation_matrix(pose[3:]) @ np.asarray(part["position"], float)
+    turn = quaternion_product(pose[3:], np.asarray(part["orientation"], float))
+    return np.concatenate([position, turn / np.linalg.norm(turn)])
+
+
+def body_table(
+    spec: Spec, rows: Sequence[Collider], poses: np.ndarray
+) -> tuple[np.ndarray, HullGeometry]:
+    """Return the records of all rows, and the tables of their hulls; equal hulls share one.
+
+    poses: (bodies, 7), those of the bodies alone.
+    """
+    bodies = allocate_bodies(spec, len(rows))
+    hulls: dict[str, int] = {}
+    polyhedra: list[Any] = []
+    for k, (record, row) in enumerate(zip(bodies, rows, strict=True)):
+        pose = poses[row.owner]
+        _fill_shape(record, row.shape)
+        if row.kind == "hull":
+            known = len(hulls)
+            record["hull"] = hulls.setdefault(repr(row.shape["points"]), known)
+            if len(hulls) > known:
+                polyhedra.append((np.array(row.shape["points"], float), row.shape["faces"]))
+        if row.part is None:
+            _fill_mass(record, row.body)
+        else:
+            _fill(record, ("px", "py", "pz"), row.part["position"])
+            _fill(record, ("pqw", "pqx", "pqy", "pqz"), row.part["orientation"])
+            pose = part_pose(pose, row.part)
+        _fill(record, ("owner", "kinematic"), (row.owner, bool(row.body["kinematic"])))
+        _fill(record, ("x", "y", "z", "qw", "qx", "qy", "qz"), pose)
+        names = [f"r{i}{j}" for i in range(3) for j in range(3)]
+        _fill(record, names, rotation_matrix(pose[3:]).ravel())
+        _fill(record, ("sx", "sy", "sz"), row.body["surface_velocity"])
+        _fill(record, (f"drag_{name}" for name in row.body["drag"]), row.body["drag"].values())
+        assert k == row.owner or row.part is not None
+    return bodies, hull_geometry(polyhedra)
+
+
+def _fill(record: np.void, names: Iterable[str], values: Iterable[Any]) -> None:
+    """Fill the fields that the record has."""
+    present = record.dtype.names or ()
+    for name, value in zip(names, values, strict=True):
+        if name in present:
+            record[name] = value
+
+
+def _fill_shape(record: np.void, shape: dict[str, Any]) -> None:
+    kind = shape["kind"]
+    record["shape"] = SHAPES[kind]
+    record["bound"] = bounding_radius(shape)
+    if kind == "plane":
+        normal = np.asarray(shape["normal"], float)
+        record["hx"], record["hy"], record["hz"] = normal / np.linalg.norm(normal)
+        record["offset"] = shape["offset"]
+    elif kind == "box":
+        record["hx"], record["hy"], record["hz"] = (0.5 * float(edge) for edge in shape["size"])
+    elif kind in ("sphere", "capsule", "cylinder"):
+        record["hx"] = shape["radius"]
+        record["hz"] = 0.5 * float(shape.get("length", 0.0))
+
+
+def _fill_mass(record: np.void, body: dict[str, Any]) -> None:
+    if is_movable(body):
+        record["inv_m"] = 1.0 / body["mass"]
+        inverse = (1.0 / float(moment) for moment in body["inertia"])
+        _fill(record, ("inv_ix", "inv_iy", "inv_iz"), inverse)

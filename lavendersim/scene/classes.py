@@ -1,0 +1,116 @@
+"""Rows of the body table enter; classes of rows that are alike and their mixed surfaces leave.
+
+Ten thousand equal spheres are one class: what holds for a pair of rows is worked out once for a
+pair of classes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import sqrt
+from typing import NamedTuple
+
+from lavendersim.engine.collide import SHAPE_PAIRS
+
+from .colliders import Collider, is_movable
+
+_PAIR_BY_SHAPES = {shapes: name for name, (_, shapes, _) in SHAPE_PAIRS.items()}
+
+
+class Surface(NamedTuple):
+    """The properties of a surface, or of a pair of surfaces once mixed; names are those of PAIR."""
+
+    restitution: float
+    compliance: float  # [m/N]
+    friction: float
+    torsional_friction: float  # [m]
+    rolling_friction: float  # [m]
+
+
+class RowClass(NamedTuple):
+    """What rows must have in common to touch others alike."""
+
+    kind: str
+    surface: Surface
+    movable: bool
+
+    def touches(self, other: RowClass) -> bool:
+        """Whether rows of the two classes may touch: one of them moves, both have a surface."""
+        return (self.movable or other.movable) and "compound" not in (self.kind, other.kind)
+
+
+class ClassPair(NamedTuple):
+    """Two classes with rows that may touch, and the first such rows.
+
+    `a` and `b` are in the order that the kernel of the shape pair takes them.
+    """
+
+    a: int
+    b: int
+    shape_pair: str
+    surface: Surface
+    row_pairs: int  # how many
+
+
+def mix(one: Surface, other: Surface) -> Surface:
+    """Return what holds between two surfaces.
+
+    Compliances add (springs in series), friction is the geometric mean, the rest the larger one.
+    """
+    return Surface(
+        restitution=max(one.restitution, other.restitution),
+        compliance=one.compliance + other.compliance,
+        friction=sqrt(one.friction * other.friction),
+        torsional_friction=max(one.torsional_friction, other.torsional_friction),
+        rolling_friction=max(one.rolling_friction, other.rolling_friction),
+    )
+
+
+def class_of(row: Collider) -> RowClass:
+    """Return the class of one row."""
+    surface = row.body["surface"]
+    mixed = Surface(*(float(surface[name]) for name in Surface._fields))
+    return RowClass(row.kind, mixed, is_movable(row.body))
+
+
+def classes_of(rows: Sequence[Collider]) -> tuple[list[RowClass], list[int]]:
+    """Return the classes in the order of their first rows, and the class of every row."""
+    numbers: dict[RowClass, int] = {}
+    members = [numbers.setdefault(class_of(row), len(numbers)) for row in rows]
+    return list(numbers), members
+
+
+def ordered(kinds: tuple[str, str]) -> tuple[bool, str]:
+    """Return whether the two shapes must change places, and the name of their pair."""
+    if kinds in _PAIR_BY_SHAPES:
+        return False, _PAIR_BY_SHAPES[kinds]
+    return True, _PAIR_BY_SHAPES[kinds[1], kinds[0]]
+
+
+def class_pairs(rows: Sequence[Collider]) -> list[ClassPair]:
+    """Return every pair of classes of which rows may touch, in the order of their first rows.
+
+    Parts of one body do not touch each other; `row_pairs` counts theirs too.
+    """
+    classes, members = classes_of(rows)
+    first: list[list[int]] = [[] for _ in classes]  # of each class: the first rows of two owners
+    sizes = [0] * len(classes)
+    for row, number in enumerate(members):
+        sizes[number] += 1
+        known = first[number]
+        if not known or (len(known) == 1 and rows[known[0]].owner != rows[row].owner):
+            known.append(row)
+    found = []
+    for i, one in enumerate(classes):
+        for j in range(i, len(classes)):
+            other = classes[j]
+            pairs = [(a, b) for a in first[i] for b in first[j] if rows[a].owner != rows[b].owner]
+            if not pairs or not one.touches(other):
+                continue
+            count = sizes[i] * (sizes[i] - 1) // 2 if i == j else sizes[i] * sizes[j]
+            a, b = min(pairs, key=sorted)
+            swap, name = ordered((rows[a].kind, rows[b].kind))
+            if swap:
+                a, b = b, a
+            found.append(ClassPair(a, b, name, mix(one.surface, other.surface), count))
+    return sorted(found, key=lambda pair: sorted((pair.a, pair.b)))

@@ -1,0 +1,143 @@
+"""A shape of a resolved config enters; the <visual> elements that show it in its body leave.
+
+URDF knows boxes, spheres and cylinders without files. A capsule is a cylinder and two spheres. A
+hull is drawn by its edges, thin cylinders: a mesh would be a file beside the log. Shapes are given
+in the body's frame, so nothing here knows where the body is, but for planes.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+PLANE_THICKNESS = 0.02  # m; thin beside any body, thick enough to be seen edge-on
+EDGE_SHARE = 0.01  # radius of a drawn edge by the reach of its hull
+
+Matrix = NDArray[np.float64]
+
+
+class Visual(NamedTuple):
+    """One primitive: its URDF element, where its centre stands in the body and how it is turned."""
+
+    geometry: str
+    position: Matrix
+    rotation: Matrix
+
+    def within(self, position: Matrix, rotation: Matrix) -> Visual:
+        """Return the same as part of something that is placed itself."""
+        return Visual(self.geometry, position + rotation @ self.position, rotation @ self.rotation)
+
+    @property
+    def origin(self) -> str:
+        """The <origin> element."""
+        angles = numbers(roll_pitch_yaw(self.rotation))
+        return f'<origin xyz="{numbers(self.position)}" rpy="{angles}"/>'
+
+
+def visuals(shape: Mapping[str, Any], pose: Matrix, plane_side: float) -> list[Visual]:
+    """Return what shows a shape; nothing for a kind that this does not know.
+
+    pose: of the body, x y z qw qx qy qz. plane_side: of the square that stands for a plane [m].
+    """
+    kind = shape.get("kind")
+    if kind == "plane":
+        return [_plane(shape, pose, plane_side)]
+    if kind == "compound":
+        return [
+            visual.within(np.array(part["position"], float), rotation(part["orientation"]))
+            for part in shape["parts"]
+            for visual in _solid(part["shape"])
+        ]
+    return list(_solid(shape))
+
+
+def _solid(shape: Mapping[str, Any]) -> Iterator[Visual]:
+    kind = shape.get("kind")
+    if kind == "sphere":
+        yield _centred(_sphere(shape["radius"]))
+    elif kind == "box":
+        yield _centred(f'<box size="{numbers(shape["size"])}"/>')
+    elif kind in ("cylinder", "capsule"):
+        radius, length = float(shape["radius"]), float(shape["length"])
+        yield _centred(_cylinder(radius, length))
+        if kind == "capsule":
+            for end in (-0.5, 0.5):
+                yield Visual(_sphere(radius), np.array([0.0, 0.0, end * length]), np.eye(3))
+    elif kind == "hull":
+        yield from _edges(shape)
+
+
+def _edges(hull: Mapping[str, Any]) -> Iterator[Visual]:
+    points = np.array(hull["points"], float)
+    radius = EDGE_SHARE * float(np.linalg.norm(points, axis=1).max())
+    pairs = {
+        (min(one, other), max(one, other))
+        for face in hull["faces"]
+        for one, other in zip(face, [*face[1:], face[0]], strict=True)
+    }
+    for one, other in sorted(pairs):
+        along = points[other] - points[one]
+        length = float(np.linalg.norm(along))
+        middle = 0.5 * (points[one] + points[other])
+        yield Visual(_cylinder(radius, length), middle, facing(along / length))
+
+
+def _plane(shape: Mapping[str, Any], pose: Matrix, side: float) -> Visual:
+    """Return a thin box whose top is the plane, placed against the plane body's own pose."""
+    normal = np.array([float(v) for v in shape["normal"]])
+    normal /= np.linalg.norm(normal)
+    centre = normal * (float(shape["offset"]) - PLANE_THICKNESS / 2)
+    body = rotation(pose[3:])
+    box = f'<box size="{numbers((side, side, PLANE_THICKNESS))}"/>'
+    return Visual(box, body.T @ (centre - pose[:3]), body.T @ facing(normal))
+
+
+def _centred(geometry: str) -> Visual:
+    return Visual(geometry, np.zeros(3), np.eye(3))
+
+
+def _sphere(radius: float) -> str:
+    return f'<sphere radius="{float(radius)!r}"/>'
+
+
+def _cylinder(radius: float, length: float) -> str:
+    return f'<cylinder radius="{radius!r}" length="{length!r}"/>'
+
+
+def facing(direction: Matrix) -> Matrix:
+    """Return a rotation that takes z to a unit vector."""
+    helper = np.eye(3)[int(np.argmin(np.abs(direction)))]
+    x = np.cross(helper, direction)
+    x /= np.linalg.norm(x)
+    return np.column_stack([x, np.cross(direction, x), direction])
+
+
+def rotation(q: Any) -> Matrix:
+    """Return the matrix of a unit quaternion w x y z."""
+    w, x, y, z = q
+    return np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+        ]
+    )
+
+
+def roll_pitch_yaw(matrix: Matrix) -> tuple[float, float, float]:
+    """Return URDF's angles: Rz(yaw) Ry(pitch) Rx(roll)."""
+    level = math.hypot(matrix[2, 1], matrix[2, 2])  # cosine of the pitch
+    pitch = math.atan2(-matrix[2, 0], level)
+    if level < 1e-9:  # straight up or down: roll and yaw turn about one axis, yaw takes it all
+        return 0.0, pitch, math.atan2(-matrix[0, 1], matrix[1, 1])
+    roll = math.atan2(matrix[2, 1], matrix[2, 2])
+    return roll, pitch, math.atan2(matrix[1, 0], matrix[0, 0])
+
+
+def numbers(values: Any) -> str:
+    """Return numbers as URDF lists them, with all their digits."""
+    return " ".join(repr(float(value)) for value in values)

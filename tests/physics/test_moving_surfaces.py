@@ -1,0 +1,89 @@
+"""Belts carry, lifts lift, wind drags and compounds stand, each as its own law says.
+
+One scene, its bodies far apart, in the default numerics: one compilation serves all claims.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from physics_runs import GRAVITY, Course, run_config
+
+BLOCK = "{kind: box, size: [0.2, 0.2, 0.2]}"
+SCENE = f"""\
+scene:
+  surfaces: {{rough: {{friction: 0.5}}}}
+  bodies:
+    belt: {{shape: {{kind: plane}}, surface: rough, surface_velocity: [0.6, 0, 0]}}
+    block: {{shape: {BLOCK}, mass: 1, surface: rough, position: [0, 0, 0.1]}}
+    dumbbell:
+      shape:
+        kind: compound
+        parts:
+          - {{shape: {BLOCK}, position: [0, -0.3, 0]}}
+          - {{shape: {BLOCK}, position: [0, 0.3, 0]}}
+      mass: 3
+      surface: rough
+      position: [0, 2, 0.1]
+    lift:
+      shape: {{kind: box, size: [0.4, 0.4, 0.2]}}
+      kinematic: true
+      surface: rough
+      position: [0, 5, 1]
+      velocity: [0, 0, 0.25]
+    rider: {{shape: {BLOCK}, mass: 1, surface: rough, position: [0, 5, 1.2]}}
+    kite: {{shape: {BLOCK}, mass: 1, position: [0, -5, 3], drag: {{linear: 2}}}}
+  forces:
+    - {{body: kite, force: [1, 0, {GRAVITY}]}}
+numerics: {{timestep: 1/240}}
+duration: 1.0
+"""
+DT, MU, BELT = 1.0 / 240.0, 0.5, 0.6
+
+
+@pytest.fixture(scope="module")
+def course() -> Course:
+    return run_config(SCENE)[0]
+
+
+def velocity(course: Course, body: str) -> np.ndarray:
+    return np.diff(course.pose[:, course.names.index(body), :3], axis=0) / DT
+
+
+@pytest.mark.parametrize("body", ["block", "dumbbell"])
+def test_belt_speeds_up_with_mu_g_to_its_own_speed_and_no_further(
+    course: Course, body: str
+) -> None:
+    v = velocity(course, body)[:, 0]
+    slipping = int(BELT / (MU * GRAVITY * DT))  # whole steps
+    # A body that is held moves with its velocity at the end of the step. The impulses are solved
+    # to 1e-7 m/s a step, the default tolerance.
+    ramp = MU * GRAVITY * DT * (np.arange(slipping) + 1.0)
+    np.testing.assert_allclose(v[:slipping], ramp, atol=slipping * 1e-7)
+    np.testing.assert_allclose(v[slipping + 2 :], BELT, atol=1e-6)
+
+
+def test_lift_keeps_its_velocity_and_carries_its_rider(course: Course) -> None:
+    np.testing.assert_allclose(velocity(course, "lift"), [[0, 0, 0.25]] * 240, atol=1e-12)
+    np.testing.assert_allclose(velocity(course, "rider")[5:, 2], 0.25, atol=1e-6)
+    late = course.contacts_of("lift", "rider")
+    late = late[late["step"] > 20]
+    force = late["force_n"].sum() / (240 - 20)
+    assert force == pytest.approx(GRAVITY, rel=1e-6)
+
+
+def test_weight_of_a_compound_rests_on_its_parts(course: Course) -> None:
+    rows = course.contacts_of("belt", "dumbbell")
+    last = rows[rows["step"] == 240]
+    assert len(last) == 8  # four corners of each part
+    assert last["force_n"].sum() == pytest.approx(3 * GRAVITY, rel=1e-6)
+    assert sorted(np.unique(last["y"].round(6))) == pytest.approx([1.6, 1.8, 2.2, 2.4])
+
+
+def test_kite_tends_to_the_speed_that_its_drag_carries(course: Course) -> None:
+    # implicit: v_{k+1} = (v_k + F dt)/(1 + c dt), at the ends of steps; means are logged
+    ends = 0.5 * (1.0 - (1.0 + 2.0 * DT) ** -np.arange(241.0))
+    expected = 0.5 * (ends[1:] + ends[:-1])
+    np.testing.assert_allclose(velocity(course, "kite")[:, 0], expected, atol=1e-12)
+    # the weight is carried to the rounding of the decimal it is stated with
+    np.testing.assert_allclose(course.height("kite"), 3.0, atol=1e-12)

@@ -1,0 +1,87 @@
+"""Forces, torques and drag on free bodies, against the discrete laws they are made of."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from laboratory import Bench, body, resolved
+
+from lavendersim.engine.spec import Spec
+
+SPEC = Spec(effects=("drag", "force", "gravity", "rotation"))
+DT, G = 1.0 / 240.0, 9.81
+STEPS = 200
+BRICK = {"kind": "box", "size": [0.2, 0.3, 0.5]}
+
+
+def bench(gravity=(0.0, 0.0, 0.0), **stated) -> Bench:
+    return Bench(resolved({"brick": body(BRICK, **stated)}, gravity), spec=SPEC)
+
+
+def test_constant_force_gives_its_impulse() -> None:
+    one = bench(mass=2.0)
+    one.engine.bodies["fx"], one.engine.bodies["fz"] = 3.0, -5.0
+    one.run(STEPS)
+    # STEPS additions, each rounded to 1e-16 of the sum
+    expected = np.array([3.0, 0.0, -5.0]) / 2.0 * STEPS * DT
+    np.testing.assert_allclose(one.velocity[0], expected, rtol=STEPS * 2e-16)
+
+
+@pytest.mark.parametrize("axis", range(3))
+def test_constant_torque_about_a_principal_axis(axis: int) -> None:
+    turn = (np.sqrt(0.5), 0.0, np.sqrt(0.5), 0.0)  # about y: body x to world -z, body z to world x
+    one = bench(mass=2.0, orientation=turn)
+    world = [(2, -1.0), (1, 1.0), (0, 1.0)][axis]
+    one.engine.bodies["t" + "xyz"[world[0]]] = 0.1 * world[1]
+    moment = one.cell["scene"]["bodies"]["brick"]["inertia"][axis]
+    one.run(STEPS)
+    expected = np.zeros(3)
+    expected[world[0]] = 0.1 * world[1] / moment * STEPS * DT
+    # the turn about that axis is rounded in every step, the axis drifts by 1e-16 each
+    np.testing.assert_allclose(one.spin[0], expected, atol=STEPS * 1e-15 * abs(expected).max())
+
+
+@pytest.mark.parametrize(("linear", "quadratic"), [(4.0, 0.0), (0.0, 2.5), (1.0, 1.5)])
+def test_fall_ends_at_the_speed_at_which_drag_carries_the_weight(linear, quadratic) -> None:
+    """(c1 + c2 v) v = m g, to round-off: the step is implicit, so dt does not enter."""
+    one = bench((0.0, 0.0, -G), drag={"linear": linear, "quadratic": quadratic})
+    one.run(20 * 240)  # the slowest tends to it with e^{-4 t}
+    speed = -one.velocity[0, 2]
+    assert (linear + quadratic * speed) * speed == pytest.approx(G, rel=1e-13)
+
+
+def test_linear_drag_is_implicit_euler() -> None:
+    one = bench(mass=2.0, velocity=(3.0, -1.0, 2.0), drag={"linear": 6.0})
+    one.run(STEPS)
+    factor = (1.0 + 6.0 * DT / 2.0) ** -STEPS
+    expected = np.array([3.0, -1.0, 2.0]) * factor
+    np.testing.assert_allclose(one.velocity[0], expected, rtol=STEPS * 4e-16)
+
+
+@pytest.mark.parametrize("coefficient", [1e3, 1e9])
+def test_drag_of_any_size_slows_and_never_turns_back(coefficient: float) -> None:
+    drag = {"linear": coefficient, "quadratic": coefficient, "angular": coefficient}
+    one = bench(velocity=(100.0, 0.0, 0.0), angular_velocity=(0.0, 0.0, 10.0), drag=drag)
+    speed, spin = 100.0, 10.0
+    for _ in range(3):
+        one.run(1)
+        assert 0.0 <= one.velocity[0, 0] < speed
+        assert 0.0 <= one.spin[0, 2] < spin
+        speed, spin = one.velocity[0, 0], one.spin[0, 2]
+
+
+def test_angular_drag_acts_axis_by_axis() -> None:
+    one = bench(angular_velocity=(0.1, 0.2, 0.3), drag={"angular": 0.5})
+    moments = np.array(one.cell["scene"]["bodies"]["brick"]["inertia"])
+    one.run(1)
+    expected = np.array([0.1, 0.2, 0.3]) / (1.0 + 0.5 * DT / moments)
+    np.testing.assert_allclose(one.spin[0], expected, rtol=4e-16)
+
+
+def test_no_drag_changes_no_bit() -> None:
+    stated = {"velocity": (1.1, 2.3, -0.7), "angular_velocity": (0.3, 0.2, 0.9)}
+    with_effect = bench((0.0, 0.0, -G), **stated)
+    cell = with_effect.cell
+    without = Bench(cell, spec=SPEC._replace(effects=("gravity", "rotation")))
+    one, other = with_effect.run(STEPS), without.run(STEPS)
+    assert one.pose.tobytes() == other.pose.tobytes()

@@ -1,0 +1,145 @@
+"""Jacobi's solution against scipy's functions, an integrator of high order, and synthetic logs."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.special import ellipj, ellipkinc, ellipkm1
+from synthetic import spinning_log
+
+from lavendersim.experiment import law_specs as specs
+from lavendersim.measures import evaluate
+from lavendersim.measures.elliptic import integral, jacobi, quarter_period
+from lavendersim.measures.free_rotation import free_rotation
+from lavendersim.measures.spinning import crossings
+
+# sorted and unsorted, near both stable axes and the unstable one, both senses, equal moments
+CASES = [
+    ((1.0, 2.0, 3.0), (0.01, 5.0, 0.01)),
+    ((1.0, 2.0, 3.0), (0.01, -5.0, -0.01)),
+    ((2.0, 1.0, 3.0), (5.0, 0.01, 0.01)),
+    ((3.0, 2.0, 1.0), (0.01, 5.0, -0.01)),
+    ((2.0, 3.0, 1.0), (0.3, -0.2, 1.5)),
+    ((1.0, 2.0, 3.0), (2.0, 0.3, 0.1)),
+    ((1.0, 2.0, 3.0), (0.1, 0.3, -2.0)),
+    ((1.0, 2.0, 3.0), (0.0, 1.0, 2.0)),
+    ((1.0, 1.0, 2.0), (1.0, 2.0, 3.0)),
+    ((1.0, 2.0, 2.0), (1.0, 2.0, 3.0)),
+    ((1.0, 2.0, 2.0), (0.0, 2.0, 3.0)),
+    ((2.0, 2.0, 2.0), (1.0, 2.0, 3.0)),
+    ((1.0, 2.0, 3.0), (0.0, 2.0, 0.0)),
+    ((1.0, 2.0, 2.25), (0.75, 0.5, 1.0)),  # on the separatrix, without round-off
+    ((1.0, 2.0, 2.25), (-0.75, 0.5, 1.0)),
+    ((1.0, 2.0, 2.25), (0.75, 0.5, -1.0)),
+]
+
+
+@pytest.mark.parametrize("m1", [1.0, 0.9, 0.5, 0.1, 1e-3, 1e-5, 8e-6])
+def test_elliptic_functions_are_those_of_scipy(m1: float) -> None:
+    period = quarter_period(m1)
+    assert period == pytest.approx(ellipkm1(m1), rel=5e-16)
+    u = np.linspace(-5.0 * period, 5.0 * period, 1001)
+    # scipy takes m = 1 - m1, whose last digit is 1.1e-16: that moves its period by 1.1e-16/(2 m1)
+    # and its functions by ten times that over five periods
+    lost = 1e-14 + 5.0 * 1.1e-16 / m1
+    for ours, theirs in zip(jacobi(u, m1), ellipj(u, 1.0 - m1)[:3], strict=True):
+        np.testing.assert_allclose(ours, theirs, atol=lost)
+    phases = np.linspace(-3.1, 3.1, 41)
+    ours = [integral(float(phase), m1) for phase in phases]
+    np.testing.assert_allclose(ours, ellipkinc(phases, 1.0 - m1), atol=lost * period)
+
+
+@pytest.mark.parametrize("m1", [0.7, 1e-3, 1e-6, 1e-9])
+def test_integral_and_functions_are_inverse_to_each_other(m1: float) -> None:
+    period = quarter_period(m1)
+    u = np.linspace(-1.99 * period, 1.99 * period, 101)
+    sn, cn, dn = jacobi(u, m1)
+    back = [integral(math.atan2(s, c), m1) for s, c in zip(sn, cn, strict=True)]
+    # near u = K the phase is blind to u: du = dphase/dn, and dn is as small as sqrt(m1)
+    np.testing.assert_allclose(np.abs(back - u) * dn, 0.0, atol=1e-15 * period)
+
+
+@pytest.mark.parametrize(("moments", "omega"), CASES)
+def test_the_solution_solves_eulers_equations(
+    moments: tuple[float, ...], omega: tuple[float, ...]
+) -> None:
+    i1, i2, i3 = moments
+
+    def rates(_: float, w: Any) -> list[float]:
+        return [
+            (i2 - i3) * w[1] * w[2] / i1,
+            (i3 - i1) * w[2] * w[0] / i2,
+            (i1 - i2) * w[0] * w[1] / i3,
+        ]
+
+    times = np.linspace(0.0, 6.0, 61)
+    found = solve_ivp(rates, (0.0, 6.0), omega, "DOP853", times, rtol=1e-13, atol=1e-15).y.T
+    exact = free_rotation(np.array(moments), np.array(omega)).angular_velocity(times)
+    # the integrator's own error, grown by exp(rate t) < 1e5 beside the unstable axis
+    np.testing.assert_allclose(exact, found, atol=2e-9)
+
+
+def test_flips_are_where_the_middle_component_vanishes_once_each_half_period() -> None:
+    exact = free_rotation(np.array([1.0, 2.0, 3.0]), np.array([0.01, 5.0, 0.01]))
+    flips = exact.flip_times(12)
+    assert np.all(np.diff(flips) > 0.0)
+    assert flips[0] > 0.0
+    around = np.concatenate([flips - 1e-4, flips, flips + 1e-4])
+    before, at, after = exact.angular_velocity(around)[:, 1].reshape(3, 12)
+    np.testing.assert_allclose(at, 0.0, atol=1e-11)  # 14 rad/s^2 times round-off of 60 s
+    assert np.all(before * after < 0.0)
+    scan = exact.angular_velocity(np.linspace(0.0, flips[-1] + 1e-4, 5001))[:, 1]
+    assert np.count_nonzero(np.diff(np.sign(scan))) == 12
+    # K = ln(4/sqrt(m1)) for small m1, and a flip every 2 K/rate
+    rate = math.sqrt(50.0006 / 6.0)
+    half = 2.0 * math.log(4.0 / math.sqrt(8e-6)) / rate
+    assert np.diff(flips) == pytest.approx(np.full(11, half), rel=1e-5)  # next term: m1 K/4
+
+
+def test_a_crossing_is_found_between_samples() -> None:
+    times = np.arange(40.0)
+    # a sine with 40 samples per period; the cubic's error is 9/16 (2 pi/40)^4/24 = 1.4e-5 of the
+    # amplitude at most, and 1/(2 pi/40) as much in samples
+    found = crossings(np.sin(2.0 * math.pi * (times + 0.3) / 40.0))
+    np.testing.assert_allclose(found, [19.7], atol=1e-4)
+    assert len(crossings(np.ones(5))) == 0
+
+
+RATE = specs.AngularVelocityError(kind="angular_velocity_error", body="top")
+FLIP = specs.FlipTimeError(kind="flip_time_error", body="top", flips=3)
+
+
+def test_the_exact_motion_has_no_error() -> None:
+    # orbital part taken off: 1e-15; samples 1/100 s, rate 2.9/s: the cubic's error is
+    # (0.029)^4 0.6/24 = 2e-8 of omega, over its slope of 14 rad/s^2: 6e-9 s
+    assert evaluate(RATE, spinning_log()) < 1e-13
+    assert evaluate(FLIP, spinning_log()) < 6e-9
+
+
+def test_a_clock_a_thousandth_slow_shifts_the_flips_by_a_thousandth() -> None:
+    log = spinning_log(slow=1e-3)
+    third = free_rotation(np.array([1.0, 2.0, 3.0]), np.array([0.01, 5.0, 0.01])).flip_times(3)[2]
+    assert evaluate(FLIP, log) == pytest.approx(third / 999.0, rel=1e-4)
+    until = RATE.model_copy(update={"until": 1.0})
+    assert evaluate(until, log) < 1e-2 < evaluate(RATE, log)
+
+
+def test_fewer_flips_than_asked_for_are_no_answer() -> None:
+    assert math.isnan(evaluate(FLIP.model_copy(update={"flips": 9}), spinning_log()))
+
+
+def test_a_second_movable_body_makes_the_sums_useless() -> None:
+    log = spinning_log()
+    scene = log.resolved["scene"]
+    scene["bodies"]["other"] = scene["bodies"]["top"]
+    assert math.isnan(evaluate(RATE, log))
+
+
+def test_a_wrong_moment_shows() -> None:
+    log = spinning_log()
+    log.resolved["scene"]["bodies"]["top"]["inertia"] = [1.0, 2.0, 3.001]
+    assert evaluate(RATE, log) > 1e-4

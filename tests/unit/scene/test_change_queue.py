@@ -1,0 +1,141 @@
+"""Forces and events act before the first step that starts at their time, and leave no remainder."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from laboratory import body, plane, resolved
+
+from lavendersim.engine.spec import Spec
+from lavendersim.scene.build import Scene, build
+from lavendersim.scene.events import EventQueue
+from lavendersim.scene.plan import facts_of, plan_of
+
+SPEC = Spec(effects=("force", "kinematic", "rotation"), shape_pairs=("sphere_plane",))
+BALL = {"kind": "sphere", "radius": 0.1}
+
+
+def force(begin: float, end: float, **stated: list[float]) -> dict:
+    return {
+        "body": "ball", "from": begin, "to": end,
+        "force": stated.get("force", [0.0] * 3), "torque": stated.get("torque", [0.0] * 3),
+    }  # fmt: skip
+
+
+def event(at: float, name: str = "ball", **stated) -> dict:
+    changes = ("scale_mass", "teleport", "velocity", "angular_velocity")
+    return {
+        "at": at, "body": name, "contact_cache": "keep",
+        **{key: stated.get(key) for key in changes},
+    }  # fmt: skip
+
+
+class Bench:
+    """A scene of floor, ball and belt at 0.1 s, whose engine is nothing but its arrays."""
+
+    def __init__(self, forces=(), events=()) -> None:
+        bodies = {"floor": plane(), "ball": body(BALL), "belt": body(BALL, kinematic=True)}
+        self.cell = resolved(bodies, timestep="1/10")
+        self.cell["scene"]["forces"] = list(forces)
+        self.cell["events"] = list(events)
+        self.scene: Scene = build(self.cell, SPEC)
+        self.forgotten: list = []
+        engine = SimpleNamespace(
+            spec=SPEC, bodies=self.scene.bodies, velocities=self.scene.velocities,
+            forget_contacts=lambda *body: self.forgotten.append(body),
+            wake=lambda index: None,
+        )  # fmt: skip
+        self.queue = EventQueue(engine, self.scene, self.cell["events"])
+
+    def after(self, steps: int) -> list[float]:
+        """Return force and torque of the ball once what is due after `steps` steps acts."""
+        self.queue.apply_due(steps)
+        return [float(self.scene.bodies[1][k]) for k in ("fx", "fy", "fz", "tx", "ty", "tz")]
+
+
+def test_force_acts_from_its_begin_up_to_its_end() -> None:
+    bench = Bench([force(0.2, 0.5, force=[1, 2, 3], torque=[4, 5, 6])])
+    acting = [any(bench.after(step)) for step in range(7)]
+    assert acting == [False, False, True, True, True, False, False]
+
+
+def test_time_within_a_step_waits_for_the_next() -> None:
+    bench = Bench([force(0.01, 0.11, force=[1, 0, 0])])
+    assert [bench.after(step)[0] for step in range(4)] == [0.0, 1.0, 0.0, 0.0]
+
+
+def test_forces_add_and_leave_no_remainder() -> None:
+    """0.1 + 0.2 + 0.3 less its parts again is 2.8e-17 in floats; here it is 0."""
+    shares = (0.1, 0.2, 0.3)
+    bench = Bench([force(0.1 * k, 1.0 - 0.1 * k, force=[s, 0, 0]) for k, s in enumerate(shares)])
+    found = [bench.after(step)[0] for step in range(11)]
+    assert found[2:8] == [0.1 + 0.2 + 0.3 - 1.1102230246251565e-16] * 6  # 0.6, rounded once
+    assert found[10] == 0.0
+
+
+def test_one_force_follows_another_without_a_gap() -> None:
+    bench = Bench([force(0.0, 0.3, force=[1, 0, 0]), force(0.3, 0.6, force=[2, 0, 0])])
+    assert [bench.after(step)[0] for step in range(7)] == [1.0] * 3 + [2.0] * 3 + [0.0]
+
+
+def test_force_shorter_than_the_way_to_a_step_does_nothing() -> None:
+    bench = Bench([force(0.11, 0.19, force=[1, 0, 0])])
+    assert bench.queue.next_stop(9) == 9
+    assert not any(any(bench.after(step)) for step in range(4))
+
+
+def test_queue_stops_where_something_changes() -> None:
+    bench = Bench([force(0.2, 0.5, force=[1, 0, 0])], [event(0.35, scale_mass=2.0)])
+    stops = []
+    done = 0
+    while done < 9:
+        bench.queue.apply_due(done)
+        done = bench.queue.next_stop(9)
+        stops.append(done)
+    assert stops == [2, 4, 5, 9]
+
+
+def test_events_set_velocities() -> None:
+    events = [
+        event(0.1, velocity=[1, 2, 3], angular_velocity=[4, 5, 6]),
+        event(0.1, "belt", velocity=[7, 0, 0]),
+    ]
+    bench = Bench(events=events)
+    bench.queue.apply_due(1)
+    ball, belt = bench.scene.velocities[1], bench.scene.velocities[2]
+    assert [ball[k] for k in ("vx", "vy", "vz", "wx", "wy", "wz")] == [1, 2, 3, 4, 5, 6]
+    assert belt["vx"] == 7
+    assert bench.forgotten == []
+
+
+def test_mass_and_inertia_are_scaled_together() -> None:
+    bench = Bench(events=[event(0.0, scale_mass=4.0)])
+    before = bench.scene.bodies[1].copy()
+    bench.queue.apply_due(0)
+    for name in ("inv_m", "inv_ix", "inv_iy", "inv_iz"):
+        assert bench.scene.bodies[1][name] == before[name] / 4.0
+
+
+def test_plan_knows_what_is_pushed_twisted_and_thrown() -> None:
+    pushed = Bench([force(0.0, 1.0, force=[1, 0, 0])], [event(0.5, velocity=[0, 3, 4])])
+    facts = {one.name: one for one in facts_of(pushed.cell).bodies}
+    assert (facts["ball"].force, facts["ball"].torque, facts["ball"].speed) == (True, False, 5.0)
+    assert facts["belt"].kinematic
+    assert not facts["belt"].movable
+    decisions = plan_of(pushed.cell).decisions
+    assert decisions["force"].on
+    assert not decisions["rotation"].on
+    twisted = Bench([force(0.0, 1.0, torque=[1, 0, 0])])
+    assert plan_of(twisted.cell).decisions["rotation"].on
+    spun = Bench(events=[event(0.5, angular_velocity=[0, 0, 1])])
+    assert plan_of(spun.cell).decisions["rotation"].on
+    assert not np.isnan(pushed.scene.poses).any()
+
+
+@pytest.mark.parametrize("at", [0.3, 0.30000000000000004])
+def test_times_are_read_as_written(at: float) -> None:
+    """3 steps of 1/10 s are 0.3 s, although the float 0.3 lies below it and 0.1 + 0.2 above."""
+    bench = Bench([force(at, 1.0, force=[1, 0, 0])])
+    assert bench.queue.next_stop(9) == (3 if at == 0.3 else 4)
