@@ -1,11 +1,10 @@
 """A solved impact enters; where Newton's law gave it energy, Stronge's law leaves in its place.
 
 With friction, Newton's coefficient (a ratio of speeds) can make an eccentric impact gain energy.
-Stronge's is a ratio of the normal impulse's work in restitution and in compression,
-    W_r = -e^2 W_c,    W = lambda_n (v_n_pre + v_n)/2 in all,
-and never does. The compression is the plastic impact; the speed at which surfaces leave is then
-lowered until the normal work is (1 - e^2) W_c, and the work of all impulses is no gain.
-Stronge 1990, "Rigid body collisions with friction".
+Stronge's (`stronge`) is a ratio of the normal impulse's work in restitution and in compression and
+cannot. It lowers the speed at which the surfaces leave; the friction that goes with it is that of
+the row, by the slip that is left. Where several impacts meet in one step and still gain, all their
+speeds are lowered by one factor until nothing is gained.
 """
 
 from __future__ import annotations
@@ -15,6 +14,7 @@ from typing import Any
 from .block import make_relative_velocity
 from .compile import kernel
 from .spec import Spec
+from .stronge import make_leave
 
 # Gain, relative to the work's own size, that is round-off.
 ROUND_OFF = 1e-13
@@ -46,12 +46,13 @@ def make_settle(spec: Spec, solve: Any, classify: Any) -> Any:
     Called after `solve`; sets counters.stronge to 1 where it took Stronge's law.
     """
     relative_velocity = make_relative_velocity(spec)
+    leave = make_leave(spec)
 
     def work_of(contacts, count, velocities, motion, params):
         # Of all impulses, at each body's time of impact: before and after it forces work alone.
         classify(contacts, count, motion, params)
         dt = params.dt
-        total, size, normal = 0.0, 0.0, 0.0
+        total, size = 0.0, 0.0
         for c in range(count):
             contact = contacts[c]
             if contact.lambda_n > 0.0:
@@ -72,9 +73,7 @@ def make_settle(spec: Spec, solve: Any, classify: Any) -> Any:
                 across += contact.lambda_2 * (0.5 * (contact.pre_2 + v_2) - after_2)
                 total += along + across
                 size += abs(along) + abs(across)
-                if contact.struck == 1:
-                    normal += along
-        return total, size, normal
+        return total, size
 
     work_of = kernel(work_of, spec)
 
@@ -88,30 +87,30 @@ def make_settle(spec: Spec, solve: Any, classify: Any) -> Any:
 
     def settle(contacts, order, count, bodies, velocities, motion, space, params, counters, rows):
         counters.stronge = 0
-        total, size, _ = work_of(contacts, count, velocities, motion, params)
+        total, size = work_of(contacts, count, velocities, motion, params)
         if not total > ROUND_OFF * size:
             return
         gives = False
-        asked = 0.0
         for c in range(count):
-            if contacts[c].struck == 1 and contacts[c].up > 0.0:
+            contact = contacts[c]
+            if contact.struck == 1 and contact.up > 0.0:
                 gives = True
+                contact.up = min(contact.up, leave(contact, contact.pre_1, contact.pre_2))
         if not gives:
             return
         counters.stronge = 1
-        aim(contacts, count, 0.0)
+        aim(contacts, count, 1.0)
         solve(contacts, order, count, bodies, velocities, space, params, counters, rows)
-        for c in range(count):
-            contact = contacts[c]
-            if contact.struck == 1:
-                asked += 0.5 * (1.0 - contact.e * contact.e) * contact.lambda_n * contact.v_n_pre
+        total, size = work_of(contacts, count, velocities, motion, params)
+        if total <= ROUND_OFF * size:
+            return
         low, high = 0.0, 1.0
         for _ in range(HALVINGS):
             share = 0.5 * (low + high)
             aim(contacts, count, share)
             solve(contacts, order, count, bodies, velocities, space, params, counters, rows)
-            total, size, normal = work_of(contacts, count, velocities, motion, params)
-            if normal <= asked and total <= ROUND_OFF * size:
+            total, size = work_of(contacts, count, velocities, motion, params)
+            if total <= ROUND_OFF * size:
                 low = share
             else:
                 high = share
