@@ -41,6 +41,8 @@ CUT = 0.03
 FAILURES = 6
 # A round may leave the largest residual this much above the least so far: it falls on average.
 WORSE = 10.0
+# The first round has to bring it down to this share, or what it took to be at rest slides.
+REST = 0.1
 # A round's impulses may be this share of the residual, squared, off the minimum's [-].
 EXACTNESS = 0.01
 # Multiplications per contact in a step, beside the factorisation.
@@ -123,7 +125,7 @@ def make_newton(spec: Spec):
                 largest, _ = residual(contacts, count, velocities)
                 if largest <= tolerance:
                     break
-                better = largest < WORSE * least
+                better = largest < (REST if steps == made else WORSE) * least
                 if better:
                     least, good = min(least, largest), softness
                     softness = max(softness * cut, STIFFEST)
