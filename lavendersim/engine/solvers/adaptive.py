@@ -27,6 +27,8 @@ __all__ = ["CONTACT_FIELDS", "allocate", "make"]
 LOOK = 8
 # No solve is worth more than so many sweeps.
 MOST_SWEEPS = 3000.0
+# An end that the sweeps left would not reach is worth so many.
+WORTH = 300.0
 # Multiplications that take the time of one contact's visit in a sweep.
 VISIT = 50.0
 # Newton goes on to this share of the tolerance, or resting loads would creep at it.
@@ -106,6 +108,8 @@ def make(spec: Spec):
                         if greatest < earlier:
                             rate = log(greatest / earlier) / pause
                             needed = min(log(aim / greatest) / rate, MOST_SWEEPS)
+                        if sweeps + needed > params.sweeps:
+                            needed = max(needed, WORTH)
                         allowance = VISIT * count * needed
                         steps = newton(contacts, count, bodies, velocities, space, sharp, allowance)
                         counters.newton_steps += steps
