@@ -108,20 +108,21 @@ def make_apply_impulse(spec: Spec):
     return kernel(apply_impulse, spec)
 
 
-def make_apply_start(spec: Spec):
-    """Return `kernel(contact, va, vb)`: apply the impulses the contact starts the solve with."""
+def make_apply_block(spec: Spec):
+    """Return `kernel(contact, va, vb, n, one, two)`: + on B, - on A, along n, t1, t2 [N s].
+
+    Without friction there is only n.
+    """
     if not spec.has("friction"):
         apply_impulse = make_apply_impulse(spec)
 
-        def apply_normal(contact, va, vb):
-            apply_impulse(contact, va, vb, contact.lambda_n)
+        def apply_normal(contact, va, vb, n, one, two):
+            apply_impulse(contact, va, vb, n)
 
         return kernel(apply_normal, spec)
     apply_vector = make_apply_vector(spec)
-    spins, apply_held = resists_turning(spec), make_apply_held(spec)
 
-    def apply_block(contact, va, vb):
-        n, one, two = contact.lambda_n, contact.lambda_1, contact.lambda_2
+    def apply_block(contact, va, vb, n, one, two):
         apply_vector(
             contact,
             va,
@@ -130,10 +131,24 @@ def make_apply_start(spec: Spec):
             contact.ny * n + contact.t1y * one + contact.t2y * two,
             contact.nz * n + contact.t1z * one + contact.t2z * two,
         )
+
+    return kernel(apply_block, spec)
+
+
+def make_apply_start(spec: Spec):
+    """Return `kernel(contact, va, vb)`: apply the impulses the contact starts the solve with."""
+    friction, apply_block = spec.has("friction"), make_apply_block(spec)
+    spins, apply_held = resists_turning(spec), make_apply_held(spec)
+
+    def apply_start(contact, va, vb):
+        one, two = 0.0, 0.0
+        if friction:
+            one, two = contact.lambda_1, contact.lambda_2
+        apply_block(contact, va, vb, contact.lambda_n, one, two)
         if spins:
             apply_held(contact, va, vb)
 
-    return kernel(apply_block, spec)
+    return kernel(apply_start, spec)
 
 
 def make_append_contact(spec: Spec, capture, surface_velocity):
