@@ -54,17 +54,34 @@ def compiling() -> Iterator[None]:
         yield
 
 
+# Lists that want to know what is composed: (module, name of the kernel).
+_listeners: list[list[tuple[str, str]]] = []
+
+
+@contextmanager
+def composing() -> Iterator[list[tuple[str, str]]]:
+    """Note every kernel that is composed inside, by module and name; none of them is compiled."""
+    composed: list[tuple[str, str]] = []
+    _listeners.append(composed)
+    try:
+        yield composed
+    finally:
+        _listeners.remove(composed)
+
+
 def kernel(function: Callable[..., Any], spec: Spec) -> Any:
     """Compile `function`, made for `spec`, for use inside other kernels."""
+    for composed in _listeners:
+        composed.append((function.__module__, function.__name__))
     function.__qualname__ = f"{function.__qualname__}_{spec.digest()}"
     return numba.njit(**OPTIONS)(function)
 
 
 def chain(kernels: Sequence[Any], spec: Spec) -> Any:
-    """One kernel that calls `kernels` in order with the same three arguments."""
+    """One kernel that calls `kernels` in order with the same arguments."""
     if not kernels:
 
-        def nothing(first, second, third):
+        def nothing(*arguments):
             pass
 
         return kernel(nothing, spec)
@@ -73,9 +90,9 @@ def chain(kernels: Sequence[Any], spec: Spec) -> Any:
         return head
     tail = chain(kernels[1:], spec)
 
-    def both(first, second, third):
-        head(first, second, third)
-        tail(first, second, third)
+    def both(*arguments):
+        head(*arguments)
+        tail(*arguments)
 
     both.__qualname__ += f"_{len(kernels)}"  # each link of the chain has a symbol of its own
     return kernel(both, spec)

@@ -9,6 +9,8 @@ solve. Taken inside the sweeps it would erase the bounce after the first sweep.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numba
 
 from .block import make_apply_vector, make_complete_block, make_relative_velocity
@@ -151,11 +153,10 @@ def make_apply_start(spec: Spec):
     return kernel(apply_start, spec)
 
 
-def make_append_contact(spec: Spec, capture, surface_velocity):
+def make_append_contact(spec: Spec, capture):
     """Return `kernel(contact, bodies, velocities, motion, pair, params)` that completes a row.
 
-    `capture` is the chain of effects that add to the row's target and compliance;
-    `surface_velocity` is that effect's kernel.
+    `capture` is the chain of effects that add to the row's target and compliance.
     """
     friction = spec.has("friction")
     torque = spec.has("contact_torque")
@@ -163,8 +164,9 @@ def make_append_contact(spec: Spec, capture, surface_velocity):
     at_surface = spec.has("impact_time")
     forced = spec.has("impact_time") or spec.has("midpoint")
     normal_velocity = make_normal_velocity(spec)
-    complete_block = make_complete_block(spec, surface_velocity)
-    spins, complete_spin = resists_turning(spec), make_complete_spin(spec)
+    complete_block: Any = make_complete_block(spec) if friction else None
+    spins = resists_turning(spec)
+    complete_spin: Any = make_complete_spin(spec) if spins else None
 
     def append_contact(contact, bodies, velocities, motion, pair, params):
         body_a, body_b = bodies[contact.a], bodies[contact.b]

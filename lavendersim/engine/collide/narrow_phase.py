@@ -54,7 +54,7 @@ def make(spec: Spec):
     is_fast, swept_manifold = make_is_fast(spec), make_swept_manifold(spec, manifold)
     share = 0.5 if spec.has("midpoint") else 1.0
     compound = spec.has("compound")
-    sleeps, still = spec.has("sleeping"), sleeping.make_still(spec)
+    sleeps, still = spec.made(sleeping, "make_still")
 
     def narrow_phase(bodies, motion, pairs, listed, contacts, points, normal, scratch, dt):
         total = 0

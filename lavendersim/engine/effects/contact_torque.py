@@ -5,6 +5,7 @@ from .decision import Decision, Facts, named
 
 NAME = "contact_torque"
 STAGE = "solve"
+NEEDS = ("rotation",)
 
 
 def wanted(facts: Facts) -> Decision:

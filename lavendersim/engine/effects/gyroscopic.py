@@ -15,6 +15,7 @@ from .decision import Decision, Facts, named
 
 NAME = "gyroscopic"
 STAGE = "integrate"
+NEEDS = ("rotation",)
 # Newton doubles the digits in each pass: four serve any |omega| dt < 1. A body that has not found
 # its midpoint after these turns several radians a step, and the run ends: nothing here is true.
 PASSES = 20

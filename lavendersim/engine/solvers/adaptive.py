@@ -48,7 +48,7 @@ def make(spec: Spec):
 
     Writes counters.sweeps, .residual [m/s], .residual_contact and .unsolved of this step.
     """
-    record_residuals = spec.record_residuals
+    record_residuals = spec.has("residual_log")
     sweep, note, account = make_sweep(spec), make_note(spec), make_account(spec)
     residual = make_residual(spec)
     # The square of a pyramid is no cone of revolution: it is left to sweeps.

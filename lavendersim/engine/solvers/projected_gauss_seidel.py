@@ -21,8 +21,8 @@ def make(spec: Spec):
     """
     sweep, note, account = make_sweep(spec), make_note(spec), make_account(spec)
     residual = make_residual(spec)
-    every_sweep = spec.record_residuals or spec.tolerance
-    record_residuals = spec.record_residuals
+    every_sweep = spec.has("residual_log") or spec.tolerance
+    record_residuals = spec.has("residual_log")
     stop_early = spec.tolerance
 
     def projected_gauss_seidel(

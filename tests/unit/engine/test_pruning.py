@@ -33,7 +33,9 @@ def boxes():
 
 def test_frictionless_spheres_have_no_rotation_at_all():
     bench = Bench(spheres(), spec=None)
-    assert bench.spec.effects == ("gravity", "warm_start")
+    assert bench.spec.effects == (
+        *("contact_log", "gravity", "pose_log", "step_log", "warm_start"),
+    )
     assert bench.engine.velocities.dtype.names == ("vx", "vy", "vz")
     assert not {"qw", "inv_ix", "r00"} & set(bench.engine.bodies.dtype.names)
     assert not {"lever_ax", "turn_ax", "gamma", "push"} & set(bench.engine.contacts.dtype.names)
@@ -43,7 +45,7 @@ def test_frictionless_spheres_have_no_rotation_at_all():
 def test_coefficients_of_zero_change_no_bit(scene):
     """The plan's own effects against the same plus four whose coefficients are all zero."""
     cell = scene()
-    lean = plan_of(cell).spec._replace(record_residuals=True, tolerance=True)
+    lean = plan_of(cell).spec.including("residual_log")._replace(tolerance=True)
     full = lean._replace(effects=tuple(sorted({*lean.effects, *COEFFICIENTS})))
     assert not set(lean.effects) & set(COEFFICIENTS)
     one, other = Bench(cell, spec=lean).run(120), Bench(cell, spec=full).run(120)
