@@ -20,7 +20,7 @@ from .collide.hull_geometry import HullGeometry
 from .collide.scratch import allocate_scratch
 from .collide.support import shapes_in
 from .compile import compiling
-from .effects import EFFECTS, contact_log, contact_torque, residual_log, sleeping, step_log
+from .effects import EFFECTS, contact_log, residual_log, sleeping, step_log
 from .integrate import keeps_motion
 from .ordering import BUCKETS
 from .records import (
@@ -71,7 +71,12 @@ def _dtype(base: list[Field], spec: Spec, group: str) -> np.dtype:
 
 def _contact_dtype(spec: Spec) -> np.dtype:
     """Return the contact record: what several effects share, and what the solver keeps."""
-    dependent = contact_torque.contact_fields(spec) if spec.has("contact_torque") else []
+    dependent = [
+        field
+        for effect in EFFECTS
+        if spec.has(effect.NAME) and hasattr(effect, "contact_fields")
+        for field in effect.contact_fields(spec)
+    ]
     solver = getattr(SOLVERS[spec.solver], "CONTACT_FIELDS", [])
     return dtype(_fields(CONTACT, spec, "CONTACT_FIELDS"), dependent, solver)
 
@@ -123,6 +128,14 @@ class Engine:
         hulls: HullGeometry | None = None,
         block_steps: int = BLOCK_STEPS,
     ) -> None:
+        lacking = {
+            f"{effect.NAME} needs {name}"
+            for effect in EFFECTS
+            for name in getattr(effect, "NEEDS", ())
+            if spec.has(effect.NAME) and not spec.has(name)
+        }
+        if lacking:
+            raise ValueError(", ".join(sorted(lacking)))
         self.spec = spec
         self.bodies, self.velocities = bodies, velocities
         self.pairs, self.parameters = pairs, parameters
@@ -150,7 +163,7 @@ class Engine:
             np.zeros(BUCKETS + 1, np.int64),
             np.zeros(capacity, np.int64),
             np.zeros(capacity, np.uint64),
-            allocate(len(self.bodies), capacity) if allocate else (),
+            allocate(self.spec, len(self.bodies), capacity) if allocate else (),
             self._templates,
             self._near,
         )

@@ -66,10 +66,13 @@ def make_advance(spec: Spec) -> Any:
     classify: Any = make_classify(spec) if keeps else None
     integrate = make_integrate(spec)
 
-    collide = narrow_phase.make(spec)
-    append_contact = make_append_contact(spec, chain(made_by(spec, "make", "capture"), spec))
-    order_contacts = ordering.make(spec)
-    solve = SOLVERS[spec.solver].make(spec)
+    touches = bool(spec.shape_pairs)
+    collide: Any = narrow_phase.make(spec) if touches else None
+    append_contact: Any = None
+    if touches:
+        append_contact = make_append_contact(spec, chain(made_by(spec, "make", "capture"), spec))
+    order_contacts: Any = ordering.make(spec) if touches else None
+    solve: Any = SOLVERS[spec.solver].make(spec) if touches else None
     apply_start: Any = make_apply_start(spec) if spec.has("warm_start") else None
 
     strikes, strike = spec.made(impact_time, "make_strike")
@@ -122,10 +125,11 @@ def make_advance(spec: Spec) -> Any:
             if broad:
                 listed = find_pairs(bodies, velocities, pairs, templates, params, near)
             count = 0
-            if listed >= 0:
-                count = collide(
-                    bodies, motion, pairs, listed, contacts, points, normal, scratch, params.dt
-                )
+            if touches:
+                if listed >= 0:
+                    count = collide(
+                        bodies, motion, pairs, listed, contacts, points, normal, scratch, params.dt
+                    )
             full = RUNNING
             if listed < 0:
                 full = PAIRS_FULL
@@ -145,9 +149,10 @@ def make_advance(spec: Spec) -> Any:
                 for i in range(bodies.shape[0]):
                     if bodies[i].inv_m > 0.0:
                         accelerate(bodies[i], velocities[i], params)
-            for c in range(count):
-                contact = contacts[c]
-                append_contact(contact, bodies, velocities, motion, pairs[contact.pair], params)
+            if touches:
+                for c in range(count):
+                    contact, pair = contacts[c], pairs[contacts[c].pair]
+                    append_contact(contact, bodies, velocities, motion, pair, params)
             if watched:
                 for c in range(count):
                     contact = contacts[c]
@@ -161,10 +166,12 @@ def make_advance(spec: Spec) -> Any:
                     if contact.lambda_n > 0.0:
                         va, vb = velocities[contact.a], velocities[contact.b]
                         apply_start(contact, va, vb)
-            order_contacts(bodies, contacts, count, taken, buckets, keys, order)
-            solve(
-                contacts, order, count, bodies, velocities, space, params, counters, residual_rows
-            )
+            if touches:
+                order_contacts(bodies, contacts, count, taken, buckets, keys, order)
+                solve(
+                    contacts, order, count, bodies, velocities, space, params, counters,
+                    residual_rows,
+                )  # fmt: skip
             if watched:
                 settle(
                     contacts, order, count, bodies, velocities, motion, space, params, counters,

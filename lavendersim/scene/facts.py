@@ -33,11 +33,17 @@ def _body_facts(resolved: dict[str, Any]) -> Iterator[BodyFacts]:
             kinematic=bool(body["kinematic"]),
             speed=max(hypot(*speed) for speed in speeds),
             size=bounding_radius(body["shape"]),
+            least_size=_least_size(body["shape"]),
             stated=body,
             force=name in pushed,
             torque=name in twisted,
             parts=len(body["shape"].get("parts", ())),
         )
+
+
+def _least_size(shape: dict[str, Any]) -> float:
+    """Return the bounding radius of the smallest thing that collides [m]."""
+    return min(bounding_radius(part["shape"]) for part in shape.get("parts", [{"shape": shape}]))
 
 
 def facts_of(resolved: dict[str, Any], record: bool = True) -> Facts:
@@ -63,8 +69,10 @@ def facts_of(resolved: dict[str, Any], record: bool = True) -> Facts:
         speculative=bool(numerics["speculative"]),
         impacts=numerics["impacts"],
         integrator=numerics["integrator"],
+        solver=numerics["solver"],
         friction_cone=numerics["friction_cone"],
         sleeping=bool(numerics["sleeping"]),
+        events=bool(resolved["events"]),
         record=record,
         residuals=resolved["record"]["residuals"] != "none",
         timestep=float(Fraction(numerics["timestep"])),

@@ -25,7 +25,15 @@ SHARED_BY_PAIRS = {
     *("support", "simplex", "gjk", "tetrahedron", "polytope", "epa", "separation"),
     *("features", "lines", "outline", "overlay"),
 }
-SHARED_BY_SOLVERS = {"row_update", "sweep", "newton", "newton_minimise", "newton_rows", "envelope"}
+SHARED_BY_SOLVERS = {
+    "row_update",
+    "sweep",
+    "newton",
+    "newton_minimise",
+    "newton_rows",
+    "newton_matrix",
+    "envelope",
+}
 FIELD_GROUPS = (
     *("BODY_FIELDS", "VELOCITY_FIELDS", "PAIR_FIELDS", "CONTACT_FIELDS", "CACHE_FIELDS"),
     *("CONTACT_ROW_FIELDS", "STEP_ROW_FIELDS"),

@@ -13,7 +13,8 @@ from lavendersim.trace.schema import CONTACT_COLUMNS, RESIDUAL_COLUMNS, STEP_COL
 UNIT = re.compile(r"\[[^]]+\]")
 # Counts, indices, hashes and directions have no unit.
 WITHOUT_UNIT = {
-    "step", "contact_count", "sweeps", "residual_contact", "state_hash", "sweep", "awake", "stronge", "unsolved",
+    "step", "contact_count", "sweeps", "residual_contact", "state_hash", "sweep",
+    "awake", "stronge", "unsolved",
     "body_a", "body_b", "feature", "nx", "ny", "nz", "t1x", "t1y", "t1z",
 }  # fmt: skip
 # The step of a contact or a residual is the number of the message that carries it.

@@ -8,6 +8,7 @@ and, where there is need,
     NEEDS              effects without which it cannot be
     CHOSEN_BY          the key of the numerics that chooses it: a law, no coefficient turns it off
     BODY_FIELDS, VELOCITY_FIELDS, PAIR_FIELDS, CONTACT_FIELDS, CACHE_FIELDS   columns it brings
+    contact_fields(spec)   columns of contacts that depend on other effects
     body_values(body)  values of its BODY_FIELDS for one body of a resolved config, by name
     CONTACT_ROW_FIELDS with make_log(spec) -> kernel(out, contact, va, vb)
     STEP_ROW_FIELDS    with make_step_log(spec) -> kernel(row, bodies, counters)
@@ -32,6 +33,7 @@ from . import (
     contact_torque,
     drag,
     external_force,
+    fast_bodies,
     friction,
     gravity,
     gyroscopic,
@@ -39,6 +41,7 @@ from . import (
     impact_time,
     kinematic,
     midpoint,
+    newton,
     pose_log,
     projection,
     residual_log,
@@ -46,6 +49,7 @@ from . import (
     rolling_friction,
     rotation,
     sleeping,
+    smooth_contact,
     speculative,
     stabilisation,
     step_log,
@@ -66,6 +70,7 @@ EFFECTS = (
     gyroscopic,
     kinematic,
     contact_torque,
+    smooth_contact,
     friction,
     torsional_friction,
     rolling_friction,
@@ -73,11 +78,13 @@ EFFECTS = (
     midpoint,
     impact_time,
     speculative,
+    fast_bodies,
     restitution,
     impact_energy,
     stabilisation,
     compliance,
     warm_start,
+    newton,
     projection,
     sleeping,
     step_log,

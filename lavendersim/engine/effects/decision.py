@@ -18,6 +18,7 @@ class BodyFacts(NamedTuple):
     kinematic: bool = False  # moves as told, whatever touches it
     speed: float = 0.0  # largest stated [m/s]
     size: float = 0.0  # radius of the sphere about its centre that holds it [m], planes: inf
+    least_size: float = 0.0  # of the smallest of its parts, where it has some; planes: inf
     stated: Mapping[str, Any] = MappingProxyType({})  # the body as the resolved config has it
     force: bool = False  # a force acts on it at some time
     torque: bool = False
@@ -59,7 +60,9 @@ class Facts(NamedTuple):
     impacts: str = "captured"
     integrator: str = "semi_implicit_euler"
     friction_cone: str = "disc"
+    solver: str = "adaptive"
     sleeping: bool = False
+    events: bool = False  # something is changed during the run
     record: bool = True  # the run is logged
     residuals: bool = False  # and the residual of every sweep, for some steps
     timestep: float = 0.0  # [s]

@@ -67,6 +67,7 @@ def make_settle(spec: Spec, solve: Any, classify: Any) -> Any:
     """
     relative_velocity = make_relative_velocity(spec)
     leave = make_leave(spec)
+    some_smooth = spec.has("smooth_contact")
 
     def work_of(contacts, count, velocities, motion, params):
         # Of all impulses, at each body's time of impact: before and after it forces work alone.
@@ -107,6 +108,13 @@ def make_settle(spec: Spec, solve: Any, classify: Any) -> Any:
 
     def settle(contacts, order, count, bodies, velocities, motion, space, params, counters, rows):
         counters.stronge = 0
+        if some_smooth:
+            rubs = False
+            for c in range(count):
+                if contacts[c].rough == 1:
+                    rubs = True
+            if not rubs:
+                return
         total, size = work_of(contacts, count, velocities, motion, params)
         if not total > ROUND_OFF * size:
             return

@@ -12,9 +12,11 @@ RESIDUAL_ROW_FIELDS = [("step", "i8"), ("sweep", "i8"), ("residual", "f8")]
 
 
 def wanted(facts: Facts) -> Decision:
-    """On when the config asks for the sweeps of some steps."""
+    """On when the config asks for the sweeps of some steps, and there are any."""
     if not facts.record:
         return Decision(False, "nothing of the run is logged")
     if not facts.residuals:
         return Decision(False, "record.residuals is none")
+    if not facts.pairs:
+        return Decision(False, "nothing can touch: there are no sweeps")
     return Decision(True, "record.residuals asks for the sweeps of some steps")

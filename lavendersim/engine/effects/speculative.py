@@ -13,11 +13,6 @@ from .decision import Decision, Facts
 NAME = "speculative"
 STAGE = "capture"
 CHOSEN_BY = "speculative"
-CONTACT_FIELDS = [
-    ("beside_x", "f8"),  # way of B relative to A across n until they meet, of fast pairs [m]
-    ("beside_y", "f8"),
-    ("beside_z", "f8"),
-]
 
 
 def wanted(facts: Facts) -> Decision:

@@ -18,10 +18,8 @@ from ..compile import kernel
 from ..residual import make_residual
 from ..spec import Spec
 from .envelope import allocate_envelope
-from .newton import CONTACT_FIELDS, make_newton
+from .newton import make_newton
 from .sweep import make_account, make_note, make_sweep
-
-__all__ = ["CONTACT_FIELDS", "allocate", "make"]
 
 # Sweeps between two looks at how fast they converge.
 LOOK = 8
@@ -37,8 +35,10 @@ SHARPNESS = 0.01
 MOST_ENTRIES = 4_000_000
 
 
-def allocate(bodies: int, contacts: int) -> Any:
+def allocate(spec: Spec, bodies: int, contacts: int) -> Any:
     """Return the arrays this solver works in."""
+    if not spec.has("newton"):
+        return ()
     rows = 6 * bodies
     return allocate_envelope(bodies, contacts, min(rows * (rows + 1) // 2, MOST_ENTRIES))
 
@@ -51,8 +51,7 @@ def make(spec: Spec):
     record_residuals = spec.has("residual_log")
     sweep, note, account = make_sweep(spec), make_note(spec), make_account(spec)
     residual = make_residual(spec)
-    # The square of a pyramid is no cone of revolution: it is left to sweeps.
-    hastens = spec.friction_cone != "pyramid"
+    hastens = spec.has("newton")
     newton: Any = make_newton(spec) if hastens else None
 
     def adaptive(

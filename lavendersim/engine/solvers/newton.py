@@ -23,10 +23,7 @@ from ..residual import make_residual
 from ..spec import Spec
 from .envelope import lay_out
 from .newton_minimise import make_minimise, make_weigh
-from .newton_rows import FIELDS as CONTACT_FIELDS
 from .newton_rows import make_answer, make_start
-
-__all__ = ["CONTACT_FIELDS", "make_newton"]
 
 # Newton steps in a call; fewer than these are not worth beginning.
 MOST_STEPS = 80

@@ -16,7 +16,8 @@ from math import sqrt
 
 from ..block import make_relative_velocity
 from ..compile import kernel
-from ..contact import make_apply_block, make_apply_impulse, make_normal_velocity
+from ..contact import make_apply_all, make_smooth_impulse, make_smooth_velocity
+from ..effects.smooth_contact import by_roughness
 from ..spec import Spec
 from ..spin_block import make_solve_spin, resists_turning
 
@@ -26,13 +27,13 @@ def make_solve_contact_velocity(spec: Spec):
 
     change: the largest change of the contact's velocity that the update makes [m/s].
     """
-    return _make_block(spec) if spec.has("friction") else _make_normal(spec)
+    return by_roughness(spec, _make_normal, _make_block)
 
 
 def _make_normal(spec: Spec):
     compliant = spec.has("compliance")
-    normal_velocity = make_normal_velocity(spec)
-    apply_impulse = make_apply_impulse(spec)
+    normal_velocity = make_smooth_velocity(spec)
+    apply_impulse = make_smooth_impulse(spec)
 
     def solve_contact_velocity(contact, va, vb):
         w = normal_velocity(contact, va, vb) + contact.target
@@ -55,7 +56,7 @@ def _make_block(spec: Spec):
     moving_surface = spec.has("surface_velocity")
     spins, solve_spin = resists_turning(spec), make_solve_spin(spec)
     relative_velocity = make_relative_velocity(spec)
-    apply_block = make_apply_block(spec)
+    apply_block = make_apply_all(spec)
 
     def solve_contact_block(contact, va, vb):
         x, y, z = relative_velocity(contact, va, vb)
