@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,7 @@ from sample import run, split, without, write
 
 from lavendersim.errors import TraceError, UsageError
 from lavendersim.trace import Block, open_trace, recover
+from lavendersim.trace.container import Container
 
 STEPS = 900  # several groups of steps
 TOUCH = "nothing can touch (plan: contact_log off)"
@@ -171,3 +173,19 @@ def test_a_log_without_steps_or_of_a_misspelt_topic_is_refused(
         write(tmp_path / "run.mcap", [block], absent={"/step": "?"})
     with pytest.raises(ValueError, match="/contact'"):
         write(tmp_path / "other.mcap", [block], absent={"/contact": "?"})
+
+
+def test_a_log_from_before_there_was_a_choice_has_every_topic(
+    block: Block, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    real = Container.describe
+
+    def as_before(self: Container, name: str, values: Mapping[str, str]) -> None:
+        real(self, name, {key: value for key, value in values.items() if key != "absent"})
+
+    monkeypatch.setattr(Container, "describe", as_before)
+    trace = open_trace(write(tmp_path / "run.mcap", [block]))
+    assert "absent" not in trace.metadata["trace"]
+    assert trace.absent == {}
+    assert trace.contact["x"].tobytes() == block.contact["x"].tobytes()
+    assert trace.residual["residual"].tobytes() == block.residual["residual"].tobytes()
