@@ -1,4 +1,4 @@
-"""Python functions enter, numba kernels leave. The one place that knows numba's options.
+"""Python functions enter, numba kernels leave. The one place that knows how numba compiles.
 
 Kernels are closures over the flags of a `Spec`. Numba removes the branches that a flag makes dead
 before it types them, so a pruned kernel is as small as one that never had the effect.
@@ -10,14 +10,18 @@ of the spec it was made for.
 
 from __future__ import annotations
 
+import gc
 import warnings
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
 import numba
+from numba.core.compiler_lock import global_compiler_lock
 from numba.core.cpu import CPUTargetOptions
 from numba.core.errors import NumbaExperimentalFeatureWarning
+from numba.core.registry import CPUDispatcher
+from numba.core.sigutils import normalize_signature
 
 from .spec import Spec
 
@@ -37,27 +41,91 @@ def known(options: dict[str, Any], target_options: Any = CPUTargetOptions) -> di
 
 # No fastmath and no contraction: results must not depend on the optimiser's mood.
 # error_model numpy: a division by zero gives inf, which the runner reports, and never raises.
+# Nobody calls kernels from C.
 OPTIONS: dict[str, Any] = known(
-    {"error_model": "numpy", "fastmath": False, "nogil": True, "_nrt": False}
+    {
+        "error_model": "numpy",
+        "fastmath": False,
+        "nogil": True,
+        "no_cfunc_wrapper": True,
+        "_nrt": False,
+    }
 )
+
+
+class Kernel(CPUDispatcher):
+    """Machine code of one function for each signature; a door to Python only where Python calls.
+
+    One kernel in a hundred is called from Python. Without the others' doors an engine compiles in
+    three quarters of the time. Numba would jump to address zero where a door is missing, so a
+    signature that Python calls after all is compiled a second time, with its door.
+    """
+
+    called_by_kernel = False
+
+    def get_call_template(self, args: Any, kws: Any) -> Any:
+        """Compile for a kernel that calls this one."""
+        with global_compiler_lock:
+            before, self.called_by_kernel = self.called_by_kernel, True
+            self.targetoptions["no_cpython_wrapper"] = True
+            try:
+                return super().get_call_template(args, kws)
+            finally:
+                self.called_by_kernel = before
+                self.targetoptions["no_cpython_wrapper"] = before
+
+    def compile(self, sig: Any) -> Any:
+        """Compile for the caller: a kernel, or Python, which needs the door."""
+        with global_compiler_lock:
+            args = tuple(normalize_signature(sig)[0])
+            if not self.called_by_kernel and args in self.overloads and not self.has_door(args):
+                del self.overloads[args]
+            return super().compile(sig)
+
+    def add_overload(self, cres: Any) -> None:
+        """Remember compiled code; Python's own table lists what has a door."""
+        if self.called_by_kernel:
+            self.overloads[tuple(cres.signature.args)] = cres
+        else:
+            super().add_overload(cres)
+
+    def has_door(self, args: tuple[Any, ...]) -> bool:
+        """Whether Python can call the code compiled for these types."""
+        result: Any = self.overloads[args]
+        door = result.fndesc.llvm_cpython_wrapper_name
+        return bool(result.library.get_pointer_to_function(door))
+
+
+def inner(function: Callable[..., Any]) -> Any:
+    """Compile `function`, which is the same for every `Spec`, for use inside other kernels."""
+    if numba.config.DISABLE_JIT:  # type: ignore[attr-defined]
+        return function
+    return Kernel(function, targetoptions={"nopython": True, "boundscheck": None, **OPTIONS})
 
 
 @contextmanager
 def compiling() -> Iterator[None]:
-    """Compile inside: numba's remark that records share their first fields is not passed on.
+    """Compile inside: without numba's remark that records share their first fields, and faster.
 
     A kernel compiled for one record serves records that begin with the same fields, at the same
-    offsets; that is what we want, and numba calls it experimental each time.
+    offsets; that is what we want, and numba calls it experimental each time. Next to nothing of
+    what a compiler makes is garbage, and looking for it takes a tenth of the time.
     """
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", NumbaExperimentalFeatureWarning)
-        yield
+    collected = gc.isenabled()
+    gc.disable()
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", NumbaExperimentalFeatureWarning)
+            yield
+    finally:
+        if collected:
+            gc.enable()
 
 
 def kernel(function: Callable[..., Any], spec: Spec) -> Any:
     """Compile `function`, made for `spec`, for use inside other kernels."""
     function.__qualname__ = f"{function.__qualname__}_{spec.digest()}"
-    return numba.njit(**OPTIONS)(function)
+    return inner(function)
 
 
 def chain(kernels: Sequence[Any], spec: Spec) -> Any:
