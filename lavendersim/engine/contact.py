@@ -9,16 +9,14 @@ solve. Taken inside the sweeps it would erase the bounce after the first sweep.
 
 from __future__ import annotations
 
-import numba
-
 from .block import make_apply_vector, make_complete_block, make_relative_velocity
-from .compile import OPTIONS, kernel
+from .compile import inner, kernel
 from .rotation import inverse_inertia_times
 from .spec import Spec
 from .spin_block import make_apply_held, make_complete_spin, resists_turning
 
 
-@numba.njit(**OPTIONS)
+@inner
 def add_levers(contact, body_a, body_b, bx, by, bz):
     """Fill the angular parts of a row; returns what they add to k_n [1/kg].
 
