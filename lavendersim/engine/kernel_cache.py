@@ -23,6 +23,7 @@ from typing import Any
 import numba
 import numpy as np
 from numba.core.compiler import CompileResult
+from numba.core.runtime import rtsys
 from numba.core.serialize import dumps
 
 from .compile import OPTIONS
@@ -99,7 +100,6 @@ class KernelCache:
 
     def load_overload(self, signature: Any, target_context: Any) -> Any:
         """Return the compiled kernel for `signature`, or None; a damaged file counts as absent."""
-        target_context.refresh()
         try:
             self.used = self.key(signature, target_context.codegen())
             stored = self.path(self.used).read_bytes()
@@ -111,6 +111,9 @@ class KernelCache:
             self.misses += 1
             return None
         self.hits += 1
+        # Numba's own cache readies the context to compile before it loads, a quarter of a second
+        # that machine code does not need; of all that, arrays passed from Python need this.
+        rtsys.initialize(target_context)
         return CompileResult._rebuild(target_context, *pickle.loads(payload))
 
     def save_overload(self, signature: Any, result: Any) -> None:
