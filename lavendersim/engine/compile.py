@@ -16,7 +16,6 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
-import numba
 from numba.core.compiler_lock import global_compiler_lock
 from numba.core.cpu import CPUTargetOptions
 from numba.core.errors import NumbaExperimentalFeatureWarning
@@ -98,8 +97,6 @@ class Kernel(CPUDispatcher):
 
 def inner(function: Callable[..., Any]) -> Any:
     """Compile `function`, which is the same for every `Spec`, for use inside other kernels."""
-    if numba.config.DISABLE_JIT:  # type: ignore[attr-defined]
-        return function
     return Kernel(function, targetoptions={"nopython": True, "boundscheck": None, **OPTIONS})
 
 
