@@ -124,12 +124,12 @@ def kept_kernels() -> list[Kept]:
     return sorted(found, key=lambda kept: (kept.used, kept.path))
 
 
-def make_room(limit: int = LIMIT) -> None:
-    """Delete the kernels that were not used for longest until the others fit the limit."""
+def make_room() -> None:
+    """Delete the kernels that were not used for longest until the others fit `LIMIT`."""
     kept = kept_kernels()
     total = sum(each.size for each in kept)
     for each in kept:
-        if total <= limit:
+        if total <= LIMIT:
             return
         with contextlib.suppress(OSError):
             each.path.unlink()
