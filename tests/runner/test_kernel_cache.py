@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from numba.core.registry import cpu_target
+from numba.core.registry import CPUDispatcher, cpu_target
 from small_configs import DROPS, copy_package, python, run_in_new_process, write
 
 from lavendersim.engine import compile as engine_compile
@@ -142,6 +142,22 @@ def test_kernels_without_reference_counting_give_the_same_bits(
     assert counting.targetoptions.get("_nrt", True)
     assert rows_of_a_drop(spec, cell.resolved, counting) == without
     assert len(without[0]) > 120 * 100
+
+
+def test_kernels_linked_into_their_callers_give_the_same_bits_as_numba_s_own(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    cell = load_experiment_text(DROPS, "drops.yaml").cells()[2]
+    spec = plan_of(cell.resolved).spec
+    linked = rows_of_a_drop(spec, cell.resolved, make_advance(spec))
+
+    def refuse(*_: Any) -> None:
+        raise AssertionError("a part was compiled")
+
+    monkeypatch.setattr(engine_compile.PartCompiler, "__init__", refuse)
+    monkeypatch.setattr(engine_compile.Kernel, "get_call_template", CPUDispatcher.get_call_template)
+    assert rows_of_a_drop(spec, cell.resolved, make_advance(spec)) == linked
+    assert len(linked[0]) > 120 * 100
 
 
 def test_a_numba_that_does_not_know_the_option_gets_the_others() -> None:
