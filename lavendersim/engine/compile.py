@@ -16,6 +16,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
+import numba
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler
 from numba.core.compiler_lock import global_compiler_lock
@@ -120,6 +121,11 @@ class Kernel(CPUDispatcher):
         """Whether Python can call the code compiled for these types."""
         result: Any = self.overloads[args]
         return not isinstance(result.library, Part)
+
+
+def compiler_is_off() -> bool:
+    """Whether numba was told to leave functions as they are; its own do not work together then."""
+    return bool(numba.config.DISABLE_JIT)
 
 
 def inner(function: Callable[..., Any]) -> Any:

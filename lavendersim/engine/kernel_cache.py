@@ -19,10 +19,10 @@ import tempfile
 import time
 from collections.abc import Callable
 from functools import cache
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import llvmlite  # type: ignore[import-untyped]
 import numba
 import numpy as np
 from numba.core.compiler import CompileResult
@@ -61,12 +61,17 @@ def source_hash() -> str:
     return digest.hexdigest()
 
 
+@cache
+def _llvmlite() -> str:
+    return version("llvmlite")
+
+
 def build() -> str:
     """Return eight hex digits of what all kernels depend on, whatever their spec and signature."""
     parts = (
         source_hash(),
         sorted(OPTIONS.items()),
-        (numba.__version__, llvmlite.__version__, np.__version__, sys.version_info[:3]),
+        (numba.__version__, _llvmlite(), np.__version__, sys.version_info[:3]),
         platform.machine(),
         cpu_target.target_context.codegen().magic_tuple(),
         [getattr(numba.config, name, None) for name in SETTINGS],

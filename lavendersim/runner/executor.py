@@ -8,8 +8,7 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
-import numba
-
+from lavendersim.engine.compile import compiler_is_off
 from lavendersim.engine.kernel_cache import directory
 from lavendersim.engine.step import is_compiled
 from lavendersim.errors import UsageError
@@ -25,7 +24,7 @@ def outcomes_of(
 
     compiling: called before a kernel is compiled, once for each plan that has none yet.
     """
-    if numba.config.DISABLE_JIT:  # type: ignore[attr-defined]
+    if compiler_is_off():
         raise UsageError("NUMBA_DISABLE_JIT is set: lavender runs compiled kernels only, unset it")
     first: dict[tuple[Any, ...], CellJob] = {}
     for job in jobs:
