@@ -9,9 +9,9 @@ will have when the surfaces meet.
 from __future__ import annotations
 
 from math import sqrt
-from typing import Any
 
 from .compile import inner, kernel
+from .effects import surface_velocity as surface_velocity_effect
 from .spec import Spec
 
 
@@ -104,13 +104,10 @@ def make_apply_vector(spec: Spec):
     return kernel(apply_vector, spec)
 
 
-def make_complete_block(spec: Spec, surface_velocity: Any):
-    """Return `kernel(contact, body_a, body_b, va, vb, pair) -> k_n`: frame, levers and the 3x3.
-
-    surface_velocity: that effect's kernel.
-    """
-
-    moving_surface, ahead = spec.has("surface_velocity"), spec.has("speculative")
+def make_complete_block(spec: Spec):
+    """Return `kernel(contact, body_a, body_b, va, vb, pair) -> k_n`: frame, levers and the 3x3."""
+    moving_surface, surface_velocity = spec.made(surface_velocity_effect)
+    ahead = spec.has("fast_bodies")
 
     def complete_block(contact, body_a, body_b, va, vb, pair):
         half = 0.5 * contact.phi

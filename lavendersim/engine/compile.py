@@ -125,7 +125,7 @@ class Kernel(CPUDispatcher):
 
 def compiler_is_off() -> bool:
     """Whether numba was told to leave functions as they are; its own do not work together then."""
-    return bool(numba.config.DISABLE_JIT)
+    return bool(numba.config.DISABLE_JIT)  # type: ignore[attr-defined]
 
 
 def inner(function: Callable[..., Any]) -> Any:
@@ -152,17 +152,34 @@ def compiling() -> Iterator[None]:
             gc.enable()
 
 
+# Lists that want to know what is composed: (module, name of the kernel).
+_listeners: list[list[tuple[str, str]]] = []
+
+
+@contextmanager
+def composing() -> Iterator[list[tuple[str, str]]]:
+    """Note every kernel that is composed inside, by module and name; none of them is compiled."""
+    composed: list[tuple[str, str]] = []
+    _listeners.append(composed)
+    try:
+        yield composed
+    finally:
+        _listeners.remove(composed)
+
+
 def kernel(function: Callable[..., Any], spec: Spec) -> Any:
     """Compile `function`, made for `spec`, for use inside other kernels."""
+    for composed in _listeners:
+        composed.append((function.__module__, function.__name__))
     function.__qualname__ = f"{function.__qualname__}_{spec.digest()}"
     return inner(function)
 
 
 def chain(kernels: Sequence[Any], spec: Spec) -> Any:
-    """One kernel that calls `kernels` in order with the same three arguments."""
+    """One kernel that calls `kernels` in order with the same arguments."""
     if not kernels:
 
-        def nothing(first, second, third):
+        def nothing(*arguments):
             pass
 
         return kernel(nothing, spec)
@@ -171,9 +188,9 @@ def chain(kernels: Sequence[Any], spec: Spec) -> Any:
         return head
     tail = chain(kernels[1:], spec)
 
-    def both(first, second, third):
-        head(first, second, third)
-        tail(first, second, third)
+    def both(*arguments):
+        head(*arguments)
+        tail(*arguments)
 
     both.__qualname__ += f"_{len(kernels)}"  # each link of the chain has a symbol of its own
     return kernel(both, spec)

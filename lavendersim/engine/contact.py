@@ -9,11 +9,15 @@ solve. Taken inside the sweeps it would erase the bounce after the first sweep.
 
 from __future__ import annotations
 
+from typing import Any
+
 from .block import make_apply_vector, make_complete_block, make_relative_velocity
 from .compile import inner, kernel
+from .effects.smooth_contact import by_roughness, has_smooth
+from .records import SPHERE
 from .rotation import inverse_inertia_times
 from .spec import Spec
-from .spin_block import make_apply_held, make_complete_spin, resists_turning
+from .spin_block import make_apply_held, make_complete_spin, make_turns_hard, resists_turning
 
 
 @inner
@@ -25,12 +29,17 @@ def add_levers(contact, body_a, body_b, bx, by, bz):
     nx, ny, nz = contact.nx, contact.ny, contact.nz
     rx, ry, rz = contact.x - body_a.x, contact.y - body_a.y, contact.z - body_a.z
     lx, ly, lz = ry * nz - rz * ny, rz * nx - rx * nz, rx * ny - ry * nx
+    # Every normal of a ball passes through its centre: what the product leaves is round-off.
+    if body_a.shape == SPHERE:
+        lx, ly, lz = 0.0, 0.0, 0.0
     tx, ty, tz = inverse_inertia_times(body_a, lx, ly, lz)
     contact.lever_ax, contact.lever_ay, contact.lever_az = lx, ly, lz
     contact.turn_ax, contact.turn_ay, contact.turn_az = tx, ty, tz
     k = lx * tx + ly * ty + lz * tz
     rx, ry, rz = contact.x - bx, contact.y - by, contact.z - bz
     lx, ly, lz = ry * nz - rz * ny, rz * nx - rx * nz, rx * ny - ry * nx
+    if body_b.shape == SPHERE:
+        lx, ly, lz = 0.0, 0.0, 0.0
     tx, ty, tz = inverse_inertia_times(body_b, lx, ly, lz)
     contact.lever_bx, contact.lever_by, contact.lever_bz = lx, ly, lz
     contact.turn_bx, contact.turn_by, contact.turn_bz = tx, ty, tz
@@ -39,15 +48,22 @@ def add_levers(contact, body_a, body_b, bx, by, bz):
 
 def make_normal_velocity(spec: Spec):
     """Return `kernel(contact, va, vb) -> v_n`, the velocity of B relative to A along n [m/s]."""
+    return by_roughness(spec, make_smooth_velocity, _make_rough_velocity)
+
+
+def _make_rough_velocity(spec: Spec):
+    relative_velocity = make_relative_velocity(spec)
+
+    def block_normal_velocity(contact, va, vb):
+        x, y, z = relative_velocity(contact, va, vb)
+        return contact.nx * x + contact.ny * y + contact.nz * z
+
+    return kernel(block_normal_velocity, spec)
+
+
+def make_smooth_velocity(spec: Spec):
+    """Return `kernel(contact, va, vb) -> v_n` of a row without friction [m/s]."""
     torque = spec.has("contact_torque")
-    if spec.has("friction"):
-        relative_velocity = make_relative_velocity(spec)
-
-        def block_normal_velocity(contact, va, vb):
-            x, y, z = relative_velocity(contact, va, vb)
-            return contact.nx * x + contact.ny * y + contact.nz * z
-
-        return kernel(block_normal_velocity, spec)
 
     def normal_velocity(contact, va, vb):
         v_n = (
@@ -71,21 +87,23 @@ def make_normal_velocity(spec: Spec):
 
 def make_apply_impulse(spec: Spec):
     """Return `kernel(contact, va, vb, impulse)`: + on B, - on A, along n [N s]."""
+    return by_roughness(spec, make_smooth_impulse, _make_rough_impulse)
+
+
+def _make_rough_impulse(spec: Spec):
+    apply_vector = make_apply_vector(spec)
+
+    def apply_block_impulse(contact, va, vb, impulse):
+        apply_vector(
+            contact, va, vb, contact.nx * impulse, contact.ny * impulse, contact.nz * impulse
+        )
+
+    return kernel(apply_block_impulse, spec)
+
+
+def make_smooth_impulse(spec: Spec):
+    """Return `kernel(contact, va, vb, impulse)` of a row without friction."""
     torque = spec.has("contact_torque")
-    if spec.has("friction"):
-        apply_vector = make_apply_vector(spec)
-
-        def apply_block_impulse(contact, va, vb, impulse):
-            apply_vector(
-                contact,
-                va,
-                vb,
-                contact.nx * impulse,
-                contact.ny * impulse,
-                contact.nz * impulse,
-            )
-
-        return kernel(apply_block_impulse, spec)
 
     def apply_impulse(contact, va, vb, impulse):
         pa, pb = impulse * contact.inv_m_a, impulse * contact.inv_m_b
@@ -106,20 +124,28 @@ def make_apply_impulse(spec: Spec):
     return kernel(apply_impulse, spec)
 
 
-def make_apply_start(spec: Spec):
-    """Return `kernel(contact, va, vb)`: apply the impulses the contact starts the solve with."""
-    if not spec.has("friction"):
-        apply_impulse = make_apply_impulse(spec)
+def make_apply_block(spec: Spec):
+    """Return `kernel(contact, va, vb, n, one, two)`: + on B, - on A, along n, t1, t2 [N s].
 
-        def apply_normal(contact, va, vb):
-            apply_impulse(contact, va, vb, contact.lambda_n)
+    Without friction there is only n.
+    """
+    return by_roughness(spec, _make_apply_normal, make_apply_all)
 
-        return kernel(apply_normal, spec)
+
+def _make_apply_normal(spec: Spec):
+    apply_impulse = make_smooth_impulse(spec)
+
+    def apply_normal(contact, va, vb, n, one, two):
+        apply_impulse(contact, va, vb, n)
+
+    return kernel(apply_normal, spec)
+
+
+def make_apply_all(spec: Spec):
+    """Return `kernel(contact, va, vb, n, one, two)` of a contact that rubs."""
     apply_vector = make_apply_vector(spec)
-    spins, apply_held = resists_turning(spec), make_apply_held(spec)
 
-    def apply_block(contact, va, vb):
-        n, one, two = contact.lambda_n, contact.lambda_1, contact.lambda_2
+    def apply_block(contact, va, vb, n, one, two):
         apply_vector(
             contact,
             va,
@@ -128,42 +154,75 @@ def make_apply_start(spec: Spec):
             contact.ny * n + contact.t1y * one + contact.t2y * two,
             contact.nz * n + contact.t1z * one + contact.t2z * two,
         )
-        if spins:
-            apply_held(contact, va, vb)
 
     return kernel(apply_block, spec)
 
 
-def make_append_contact(spec: Spec, capture, surface_velocity):
+def make_apply_start(spec: Spec):
+    """Return `kernel(contact, va, vb)`: apply the impulses the contact starts the solve with."""
+    friction, apply_block = spec.has("friction"), make_apply_block(spec)
+    spins, apply_held = resists_turning(spec), make_apply_held(spec)
+
+    def apply_start(contact, va, vb):
+        one, two = 0.0, 0.0
+        if friction:
+            one, two = contact.lambda_1, contact.lambda_2
+        apply_block(contact, va, vb, contact.lambda_n, one, two)
+        if spins:
+            apply_held(contact, va, vb)
+
+    return kernel(apply_start, spec)
+
+
+def make_complete_row(spec: Spec):
+    """Return `kernel(contact, body_a, body_b) -> k_n` of a row without friction: its levers."""
+    torque, ahead = spec.has("contact_torque"), spec.has("fast_bodies")
+
+    def complete_row(contact, body_a, body_b):
+        k_n = body_a.inv_m + body_b.inv_m
+        if torque:
+            bx, by, bz = body_b.x, body_b.y, body_b.z
+            if ahead:
+                bx, by, bz = bx + contact.beside_x, by + contact.beside_y, bz + contact.beside_z
+            k_n += add_levers(contact, body_a, body_b, bx, by, bz)
+        return k_n
+
+    return kernel(complete_row, spec)
+
+
+def make_append_contact(spec: Spec, capture):
     """Return `kernel(contact, bodies, velocities, motion, pair, params)` that completes a row.
 
-    `capture` is the chain of effects that add to the row's target and compliance;
-    `surface_velocity` is that effect's kernel.
+    `capture` is the chain of effects that add to the row's target and compliance.
     """
-    friction = spec.has("friction")
-    torque = spec.has("contact_torque")
-    compliant, ahead = spec.has("compliance"), spec.has("speculative")
+    friction, smooth = spec.has("friction"), has_smooth(spec)
+    compliant = spec.has("compliance")
     at_surface = spec.has("impact_time")
     forced = spec.has("impact_time") or spec.has("midpoint")
     normal_velocity = make_normal_velocity(spec)
-    complete_block = make_complete_block(spec, surface_velocity)
-    spins, complete_spin = resists_turning(spec), make_complete_spin(spec)
+    complete_block: Any = make_complete_block(spec) if friction else None
+    spins = resists_turning(spec)
+    complete_spin: Any = make_complete_spin(spec) if spins else None
+    turns_hard: Any = make_turns_hard(spec) if spins else None
+    complete_row: Any = make_complete_row(spec) if smooth else None
 
     def append_contact(contact, bodies, velocities, motion, pair, params):
         body_a, body_b = bodies[contact.a], bodies[contact.b]
         va, vb = velocities[contact.a], velocities[contact.b]
         contact.inv_m_a, contact.inv_m_b = body_a.inv_m, body_b.inv_m
+        k_n = 0.0
+        rough = False
         if friction:
             k_n = complete_block(contact, body_a, body_b, va, vb, pair)
+            rough = pair.friction > 0.0
             if spins:
                 complete_spin(contact, va, vb, pair)
-        else:
-            k_n = body_a.inv_m + body_b.inv_m
-            if torque:
-                bx, by, bz = body_b.x, body_b.y, body_b.z
-                if ahead:
-                    bx, by, bz = bx + contact.beside_x, by + contact.beside_y, bz + contact.beside_z
-                k_n += add_levers(contact, body_a, body_b, bx, by, bz)
+                rough = rough or turns_hard(pair)
+            if smooth:
+                contact.rough = 1 if rough else 0
+        if smooth:
+            if not rough:
+                k_n = complete_row(contact, body_a, body_b)
         contact.k_n = k_n
         contact.v_n_pre = normal_velocity(contact, va, vb)
         if forced:

@@ -20,18 +20,14 @@ from .collide.hull_geometry import HullGeometry
 from .collide.scratch import allocate_scratch
 from .collide.support import shapes_in
 from .compile import compiling
-from .effects import EFFECTS, contact_torque, sleeping
-from .impact_energy import watches
+from .effects import EFFECTS, contact_log, residual_log, sleeping, step_log
 from .integrate import keeps_motion
 from .ordering import BUCKETS
 from .records import (
-    AWAKE_ROW,
     BODY,
     CONTACT,
-    CONTACT_ROW,
     CONTACTS_FULL,
     COUNTERS,
-    FRICTION_ROW,
     HULL_BODY,
     MOTION,
     ORIENTED_BODY,
@@ -39,13 +35,7 @@ from .records import (
     PAIRS_FULL,
     PARAMETERS,
     POINT,
-    RESIDUAL_ROW,
-    ROLLING_ROW,
     ROWS_FULL,
-    STEP_ROW,
-    STRONGE_ROW,
-    TORSION_ROW,
-    UNSOLVED_ROW,
     VELOCITY,
     WOKEN,
     Field,
@@ -81,27 +71,23 @@ def _dtype(base: list[Field], spec: Spec, group: str) -> np.dtype:
 
 def _contact_dtype(spec: Spec) -> np.dtype:
     """Return the contact record: what several effects share, and what the solver keeps."""
-    dependent = contact_torque.contact_fields(spec) if spec.has("contact_torque") else []
+    dependent = [
+        field
+        for effect in EFFECTS
+        if spec.has(effect.NAME) and hasattr(effect, "contact_fields")
+        for field in effect.contact_fields(spec)
+    ]
     solver = getattr(SOLVERS[spec.solver], "CONTACT_FIELDS", [])
     return dtype(_fields(CONTACT, spec, "CONTACT_FIELDS"), dependent, solver)
 
 
 def _step_dtype(spec: Spec) -> np.dtype:
-    return dtype(
-        STEP_ROW,
-        UNSOLVED_ROW if spec.tolerance else [],
-        STRONGE_ROW if watches(spec) else [],
-        AWAKE_ROW if spec.has("sleeping") else [],
-    )
+    unsolved = step_log.UNSOLVED_ROW if spec.tolerance else []
+    return dtype(_fields(step_log.STEP_ROW_FIELDS, spec, "STEP_ROW_FIELDS"), unsolved)
 
 
 def _contact_row_dtype(spec: Spec) -> np.dtype:
-    return dtype(
-        CONTACT_ROW,
-        FRICTION_ROW if spec.has("friction") else [],
-        TORSION_ROW if spec.has("torsional_friction") else [],
-        ROLLING_ROW if spec.has("rolling_friction") else [],
-    )
+    return _dtype(contact_log.CONTACT_ROW_FIELDS, spec, "CONTACT_ROW_FIELDS")
 
 
 def allocate_bodies(spec: Spec, count: int) -> np.ndarray:
@@ -142,15 +128,23 @@ class Engine:
         hulls: HullGeometry | None = None,
         block_steps: int = BLOCK_STEPS,
     ) -> None:
+        lacking = {
+            f"{effect.NAME} needs {name}"
+            for effect in EFFECTS
+            for name in getattr(effect, "NEEDS", ())
+            if spec.has(effect.NAME) and not spec.has(name)
+        }
+        if lacking:
+            raise ValueError(", ".join(sorted(lacking)))
         self.spec = spec
         self.bodies, self.velocities = bodies, velocities
         self.pairs, self.parameters = pairs, parameters
-        self.block_steps = max(block_steps, 1) if spec.record else 0
+        self.block_steps = max(block_steps, 1) if spec.has("step_log") else 0
         self.counters = np.zeros(1, dtype(COUNTERS))
-        self.counters["residual_contact"] = -1
+        self.counters["residual_contact"] = self.counters["residual_row"] = -1
         self.motion = np.zeros(len(bodies) if keeps_motion(spec) else 0, dtype(MOTION))
         self.pseudo = np.zeros(len(bodies) if spec.has("projection") else 0, velocities.dtype)
-        self._bits = (bodies.view(np.uint64), velocities.view(np.uint64))
+        self._velocity_bits = velocities.view(np.uint64).reshape(len(velocities), -1)
         self._initial_pose = poses
         self._kernel = advance_for(spec)
         self._hulls = hulls
@@ -169,7 +163,7 @@ class Engine:
             np.zeros(BUCKETS + 1, np.int64),
             np.zeros(capacity, np.int64),
             np.zeros(capacity, np.uint64),
-            allocate(len(self.bodies), capacity) if allocate else (),
+            allocate(self.spec, len(self.bodies), capacity) if allocate else (),
             self._templates,
             self._near,
         )
@@ -202,12 +196,13 @@ class Engine:
             np.repeat(self._initial_pose[None], steps, axis=0),
             np.zeros(contact_rows, _contact_row_dtype(self.spec)),
         )
+        self._pose_bits = self._rows[1].view(np.uint64)
         residual_rows = max(steps, 1) * self._sweep_rows()
-        self._residual_rows = np.zeros(residual_rows, dtype(RESIDUAL_ROW))
+        self._residual_rows = np.zeros(residual_rows, dtype(residual_log.RESIDUAL_ROW_FIELDS))
 
     def _sweep_rows(self) -> int:
         """Rows that the sweeps of one step need."""
-        return int(self.parameters["sweeps"][0]) + 1 if self.spec.record_residuals else 0
+        return int(self.parameters["sweeps"][0]) + 1 if self.spec.has("residual_log") else 0
 
     def advance(self, steps: int) -> int:
         """Do up to `steps` steps; return RUNNING, ROWS_FULL (take rows, call again) or DIVERGED."""
@@ -240,7 +235,7 @@ class Engine:
             self.velocities,
             self.motion,
             self.pseudo,
-            self._bits,
+            (self._pose_bits, self._velocity_bits),
             self.contacts,
             self.cache,
             self.pairs,

@@ -92,14 +92,21 @@ def make_classify(spec: Spec) -> Any:
     return kernel(classify, spec)
 
 
+def make_turn(spec: Spec) -> Any:
+    """Return `kernel(body, velocity, dt) -> solved`: the body's turn; None where nothing turns."""
+    if not spec.has("rotation"):
+        return None
+    return (gyroscopic if spec.has("gyroscopic") else rotation).make(spec)
+
+
 def make_displace(spec: Spec) -> Any:
     """Return `kernel(body, v, m, dt) -> solved`: the body's way through the step."""
     turns = spec.has("rotation")
     midpoint = spec.has("midpoint")
     at_surface = spec.has("impact_time")
     uneven = spec.has("gyroscopic")
-    integrate_rotation = (gyroscopic if uneven else rotation).make(spec)
-    jump = gyroscopic.make_jump(spec)
+    integrate_rotation: Any = make_turn(spec)
+    _, jump = spec.made(gyroscopic, "make_jump")
 
     def displace(body, v, m, dt):
         if at_surface:
@@ -151,8 +158,8 @@ def make_integrate(spec: Spec) -> Any:
     torque = spec.has("contact_torque")
     kinematic = spec.has("kinematic")
     keeps = keeps_motion(spec)
-    integrate_rotation = (gyroscopic if spec.has("gyroscopic") else rotation).make(spec)
-    displace = make_displace(spec)
+    integrate_rotation: Any = make_turn(spec)
+    displace: Any = make_displace(spec) if keeps else None
 
     def integrate(bodies, velocities, motion, pseudo, moved, dt):
         for i in range(bodies.shape[0]):

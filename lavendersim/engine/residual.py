@@ -15,20 +15,19 @@ from math import sqrt
 
 from .block import make_relative_velocity
 from .compile import kernel
-from .contact import make_normal_velocity
+from .contact import make_smooth_velocity
+from .effects.smooth_contact import by_roughness
 from .spec import Spec
 from .spin_block import make_spin_residual, resists_turning
 
 
 def make_row_residual(spec: Spec):
     """Return `kernel(contact, va, vb) -> (r, v_n)` [m/s]."""
+    return by_roughness(spec, _make_smooth_residual, _make_rough_residual)
+
+
+def _make_normal_residual(spec: Spec):
     compliant = spec.has("compliance")
-    friction = spec.has("friction")
-    pyramid = spec.friction_cone == "pyramid"
-    moving_surface = spec.has("surface_velocity")
-    spins, spin_residual = resists_turning(spec), make_spin_residual(spec)
-    normal_velocity = make_normal_velocity(spec)
-    relative_velocity = make_relative_velocity(spec)
 
     def normal_residual(contact, v_n):
         w = v_n + contact.target
@@ -37,11 +36,25 @@ def make_row_residual(spec: Spec):
         # A NaN in the first place of min stays, in the second it is dropped.
         return abs(min(w, contact.lambda_n / contact.inv_k))
 
-    normal_residual = kernel(normal_residual, spec)
+    return kernel(normal_residual, spec)
+
+
+def _make_smooth_residual(spec: Spec):
+    normal_residual, normal_velocity = _make_normal_residual(spec), make_smooth_velocity(spec)
 
     def row_residual(contact, va, vb):
         v_n = normal_velocity(contact, va, vb)
         return normal_residual(contact, v_n), v_n
+
+    return kernel(row_residual, spec)
+
+
+def _make_rough_residual(spec: Spec):
+    pyramid = spec.friction_cone == "pyramid"
+    moving_surface = spec.has("surface_velocity")
+    spins, spin_residual = resists_turning(spec), make_spin_residual(spec)
+    normal_residual = _make_normal_residual(spec)
+    relative_velocity = make_relative_velocity(spec)
 
     def block_residual(contact, va, vb):
         x, y, z = relative_velocity(contact, va, vb)
@@ -71,7 +84,7 @@ def make_row_residual(spec: Spec):
         r_n = normal_residual(contact, v_n)
         return (r_t if r_t > r_n or r_t != r_t else r_n), v_n
 
-    return kernel(block_residual if friction else row_residual, spec)
+    return kernel(block_residual, spec)
 
 
 def make_residual(spec: Spec):

@@ -7,7 +7,7 @@ sweep over any of them uses one compiled engine.
 from __future__ import annotations
 
 import hashlib
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 
 class Spec(NamedTuple):
@@ -16,8 +16,6 @@ class Spec(NamedTuple):
     effects: names from `engine.effects.EFFECTS`, sorted.
     shape_pairs: names from `engine.collide.SHAPE_PAIRS`, sorted.
     solver: name from `engine.solvers.SOLVERS`.
-    record: whether kernels write trace rows.
-    record_residuals: whether the residual of every sweep is evaluated and may be written.
     tolerance: whether sweeping stops at a residual.
     friction_cone: disc, or pyramid (|lambda_1|, |lambda_2| <= mu lambda_n, for study).
     """
@@ -25,14 +23,25 @@ class Spec(NamedTuple):
     effects: tuple[str, ...] = ()
     shape_pairs: tuple[str, ...] = ()
     solver: str = "projected_gauss_seidel"
-    record: bool = True
-    record_residuals: bool = False
     tolerance: bool = False
     friction_cone: str = "disc"
 
     def has(self, effect: str) -> bool:
         """Whether `effect` is part of this engine."""
         return effect in self.effects
+
+    def made(self, effect: Any, maker: str = "make") -> tuple[bool, Any]:
+        """Return whether this structure has an effect, and then what its module's maker makes."""
+        on = self.has(effect.NAME)
+        return on, getattr(effect, maker)(self) if on else None
+
+    def including(self, *effects: str) -> Spec:
+        """Return this structure with more effects."""
+        return self._replace(effects=tuple(sorted({*self.effects, *effects})))
+
+    def without(self, *effects: str) -> Spec:
+        """Return this structure with fewer effects."""
+        return self._replace(effects=tuple(e for e in self.effects if e not in effects))
 
     def collides(self, pair: str) -> bool:
         """Whether the manifold of `pair` is part of this engine."""

@@ -35,6 +35,21 @@ def _spin_response(va, vb, x, y, z):
     return ax + bx, ay + by, az + bz
 
 
+def make_turns_hard(spec: Spec) -> Any:
+    """Return `kernel(pair) -> whether its contacts resist turning`."""
+    torsional, rolling = spec.has("torsional_friction"), spec.has("rolling_friction")
+
+    def turns_hard(pair):
+        resists = False
+        if torsional:
+            resists = pair.torsional_friction > 0.0
+        if rolling:
+            resists = resists or pair.rolling_friction > 0.0
+        return resists
+
+    return kernel(turns_hard, spec)
+
+
 def make_complete_spin(spec: Spec) -> Any:
     """Return `kernel(contact, va, vb, pair)`: coefficients and responses; psi starts at 0."""
     torsional, rolling = spec.has("torsional_friction"), spec.has("rolling_friction")

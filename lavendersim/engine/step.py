@@ -17,20 +17,22 @@ from typing import Any
 
 from . import ordering
 from .collide import broad_phase, narrow_phase
-from .compile import chain, kernel
+from .compile import chain, composing, kernel
 from .contact import make_append_contact, make_apply_start
+from .effects import compound as compound_effect
 from .effects import (
-    EFFECTS,
+    contact_log,
     friction,
+    impact_energy,
     impact_time,
+    made_by,
+    pose_log,
     projection,
     sleeping,
+    step_log,
     surface_fields,
-    surface_velocity,
     warm_start,
 )
-from .effects import compound as compound_effect
-from .impact_energy import make_note, make_settle, watches
 from .integrate import (
     keeps_motion,
     make_begin,
@@ -39,7 +41,6 @@ from .integrate import (
     make_undo,
 )
 from .kernel_cache import cached
-from .record import make as make_record
 from .records import CONTACTS_FULL, DIVERGED, PAIRS_FULL, ROWS_FULL, RUNNING, WOKEN
 from .solvers import SOLVERS
 from .spec import Spec
@@ -57,46 +58,43 @@ def make_advance(spec: Spec) -> Any:
     parameters, counter, rows, residual_rows, steps) -> status`; counter says how many steps are
     done.
     """
-    collide = narrow_phase.make(spec)
-    stage = {
-        name: [e.make(spec) for e in EFFECTS if e.STAGE == name and spec.has(e.NAME)]
-        for name in ("accelerate", "capture")
-    }
-    accelerate = chain(stage["accelerate"], spec)
-    append_contact = make_append_contact(
-        spec, chain(stage["capture"], spec), surface_velocity.make(spec)
-    )
-    apply_start = make_apply_start(spec)
-    begin, undo = make_begin(spec, accelerate), make_undo(spec)
-    classify = make_classify(spec)
-    strike = impact_time.make_strike(spec)
-    refresh = friction.make_refresh(spec)
-    place_parts = compound_effect.make(spec)
-    find_pairs = make_find_pairs(spec)
-    match_contacts, store_contacts = warm_start.make(spec), warm_start.make_store(spec)
-    order_contacts = ordering.make(spec)
-    solve = SOLVERS[spec.solver].make(spec)
-    watched = watches(spec)
-    settle: Any = make_settle(spec, solve, classify) if watched else None
-    note: Any = make_note(spec) if watched else None
+    accelerations = made_by(spec, "make", "accelerate")
+    accelerates, keeps = bool(accelerations), keeps_motion(spec)
+    accelerate = chain(accelerations, spec)
+    begin: Any = make_begin(spec, accelerate) if keeps else None
+    undo: Any = make_undo(spec) if keeps else None
+    classify: Any = make_classify(spec) if keeps else None
     integrate = make_integrate(spec)
-    project_positions = projection.make(spec)
-    set_pace, wake, doze = (
-        sleeping.make_set_pace(spec),
-        sleeping.make_wake(spec),
-        sleeping.make_doze(spec),
-    )
-    record_contacts, record_state = make_record(spec)
-    accelerates, warms, projects, rubs, keeps = (
-        bool(stage["accelerate"]),
-        spec.has("warm_start"),
-        spec.has("projection"),
-        spec.has("friction"),
-        keeps_motion(spec),
-    )
-    compound, broad = spec.has("compound"), spec.has("broad_phase")
-    strikes, sleeps = spec.has("impact_time"), spec.has("sleeping")
-    records, record_residuals = spec.record, spec.record_residuals
+
+    touches = bool(spec.shape_pairs)
+    collide: Any = narrow_phase.make(spec) if touches else None
+    append_contact: Any = None
+    if touches:
+        append_contact = make_append_contact(spec, chain(made_by(spec, "make", "capture"), spec))
+    order_contacts: Any = ordering.make(spec) if touches else None
+    solve: Any = SOLVERS[spec.solver].make(spec) if touches else None
+    apply_start: Any = make_apply_start(spec) if spec.has("warm_start") else None
+
+    strikes, strike = spec.made(impact_time, "make_strike")
+    rubs, refresh = spec.made(friction, "make_refresh")
+    compound, place_parts = spec.made(compound_effect)
+    warms, match_contacts = spec.made(warm_start)
+    _, store_contacts = spec.made(warm_start, "make_store")
+    projects, project_positions = spec.made(projection)
+    sleeps, set_pace = spec.made(sleeping, "make_set_pace")
+    _, wake = spec.made(sleeping, "make_wake")
+    _, doze = spec.made(sleeping, "make_doze")
+    watched, note = spec.made(impact_energy, "make_note")
+    settle: Any = impact_energy.make_settle(spec, solve, classify) if watched else None
+    broad, find_pairs = spec.has("broad_phase"), make_find_pairs(spec)
+    record_residuals = spec.has("residual_log")
+    records, logs_contacts = spec.has("step_log"), spec.has("contact_log")
+    log_step: Any = None
+    log_contacts: Any = None
+    if records:
+        log_step = step_log.make(spec, pose_log.make(spec), made_by(spec, "make_step_log"))
+    if logs_contacts:
+        log_contacts = contact_log.make(spec, made_by(spec, "make_log"))
 
     def advance(
         bodies, velocities, motion, pseudo, bits, contacts, cache, pairs, work, parameters,
@@ -106,8 +104,7 @@ def make_advance(spec: Spec) -> Any:
         params, counters = parameters[0], counter[0]
         if records:
             if counters.started == 0:
-                record_contacts(contacts, 0, velocities, params, counters, rows)
-                record_state(bodies, velocities, bits, params, counters, rows)
+                log_step(bodies, velocities, bits, params, counters, rows)
         counters.started = 1
         for _ in range(steps):
             if records:
@@ -128,10 +125,11 @@ def make_advance(spec: Spec) -> Any:
             if broad:
                 listed = find_pairs(bodies, velocities, pairs, templates, params, near)
             count = 0
-            if listed >= 0:
-                count = collide(
-                    bodies, motion, pairs, listed, contacts, points, normal, scratch, params.dt
-                )
+            if touches:
+                if listed >= 0:
+                    count = collide(
+                        bodies, motion, pairs, listed, contacts, points, normal, scratch, params.dt
+                    )
             full = RUNNING
             if listed < 0:
                 full = PAIRS_FULL
@@ -151,9 +149,10 @@ def make_advance(spec: Spec) -> Any:
                 for i in range(bodies.shape[0]):
                     if bodies[i].inv_m > 0.0:
                         accelerate(bodies[i], velocities[i], params)
-            for c in range(count):
-                contact = contacts[c]
-                append_contact(contact, bodies, velocities, motion, pairs[contact.pair], params)
+            if touches:
+                for c in range(count):
+                    contact, pair = contacts[c], pairs[contacts[c].pair]
+                    append_contact(contact, bodies, velocities, motion, pair, params)
             if watched:
                 for c in range(count):
                     contact = contacts[c]
@@ -167,17 +166,19 @@ def make_advance(spec: Spec) -> Any:
                     if contact.lambda_n > 0.0:
                         va, vb = velocities[contact.a], velocities[contact.b]
                         apply_start(contact, va, vb)
-            order_contacts(bodies, contacts, count, taken, buckets, keys, order)
-            solve(
-                contacts, order, count, bodies, velocities, space, params, counters, residual_rows
-            )
+            if touches:
+                order_contacts(bodies, contacts, count, taken, buckets, keys, order)
+                solve(
+                    contacts, order, count, bodies, velocities, space, params, counters,
+                    residual_rows,
+                )  # fmt: skip
             if watched:
                 settle(
                     contacts, order, count, bodies, velocities, motion, space, params, counters,
                     residual_rows,
                 )  # fmt: skip
-            if records:
-                record_contacts(contacts, count, velocities, params, counters, rows)
+            if logs_contacts:
+                log_contacts(contacts, count, velocities, params, counters, rows)
             if warms:
                 store_contacts(contacts, count, bodies, cache, counters, params)
             if projects:
@@ -193,13 +194,27 @@ def make_advance(spec: Spec) -> Any:
             counters.step += 1
             counters.contacts = count
             if records:
-                record_state(bodies, velocities, bits, params, counters, rows)
+                log_step(bodies, velocities, bits, params, counters, rows)
             if diverged >= 0:
                 counters.body, counters.cause = diverged, cause
                 return DIVERGED
         return RUNNING
 
     return kernel(advance, spec)
+
+
+def kernels_of(spec: Spec) -> dict[str, list[str]]:
+    """Return the kernels that an engine of `spec` is composed of, by module of `engine`.
+
+    Module names are relative to the engine: `effects.friction`, `solvers.adaptive`, `step`.
+    """
+    with composing() as composed:
+        make_advance(spec)
+    engine = __name__.rpartition(".")[0] + "."
+    kernels: dict[str, list[str]] = {}
+    for module, name in dict.fromkeys(composed):
+        kernels.setdefault(module.removeprefix(engine), []).append(name)
+    return kernels
 
 
 @cache

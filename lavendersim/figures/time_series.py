@@ -61,9 +61,9 @@ def window_of(panel: TimeSeries, trace: Trace) -> tuple[Floats, Floats]:
     time = trace.step["time"].astype(np.float64)
     quantity = quantity_of(panel, trace)
     if panel.start == "first_contact":
-        rows = _contacts(panel, trace)
-        if len(rows):
-            time = time - time[np.searchsorted(trace.step["step"], rows["step"][0])]
+        touching = _contacts(panel, trace)["step"]
+        if len(touching):
+            time = time - time[np.searchsorted(trace.step["step"], touching[0])]
     known = ~np.isnan(quantity)
     if panel.window is not None:
         known &= (time >= panel.window[0]) & (time <= panel.window[1])

@@ -87,8 +87,8 @@ def _outcome(expectation: ExpectSpec, cells: Sequence[Cell], values: Values) -> 
             row = values.row(expectation.measure, cells[0])
             return judge_cell(expectation, row, cells[0].trace())
         return judge_sweep(expectation, cells, values.of(expectation.measure))
-    except LavenderError as error:  # a log that is missing or damaged fails its claims alone
-        return failure("a readable log", str(error))
+    except LavenderError as error:  # a log that is damaged, or has no such topic, fails alone
+        return failure("a log that can answer", str(error))
 
 
 def _path(cells: Sequence[Cell]) -> str:

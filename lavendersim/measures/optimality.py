@@ -28,16 +28,15 @@ def optimality(spec: Optimality, trace: Trace) -> Floats:
     """Return the largest violations [m/s]: pushing, complementarity; with friction cone, sliding.
 
     One NaN for a log without contacts or without what their rows asked for (`target`). Sliding is
-    NaN where a surface moves by itself.
+    NaN where a surface moves by itself. UsageError where the log has no /contacts at all.
     """
     contacts = trace.contact
-    if len(contacts) == 0 or "target" not in contacts.dtype.names:
+    steps = contacts["step"]
+    if len(steps) == 0 or "target" not in contacts.dtype.names:
         return np.array([NAN])
     configs = [cell_config.body(trace.resolved, name) for name in trace.bodies]
     dt = float(trace.timestep)
-    residual = np.asarray(trace.step["residual"])[
-        np.searchsorted(trace.step["step"], contacts["step"])
-    ]
+    residual = np.asarray(trace.step["residual"])[np.searchsorted(trace.step["step"], steps)]
     gamma = _summed(contacts, [one.compliance for one in configs]) / dt**2
     least = _summed(contacts, [one.inverse_mass for one in configs])
     pushed = (contacts["inverse_effective_mass"] + gamma) * contacts["impulse_n"]

@@ -24,7 +24,11 @@ class Trace(Protocol):
 
     @property
     def contact(self) -> Any:
-        """Structured rows, one per contact, grouped by rising step."""
+        """Structured rows, one per contact, grouped by rising step.
+
+        Where the log has no /contacts, for nothing could touch, no column of it can be asked for:
+        LavenderError, one sentence.
+        """
 
     @property
     def pose(self) -> Any:
@@ -32,7 +36,7 @@ class Trace(Protocol):
 
     @property
     def residual(self) -> Any:
-        """Structured rows: step, sweep, residual [m/s]."""
+        """Structured rows: step, sweep, residual [m/s]; LavenderError as for contacts."""
 
     @property
     def bodies(self) -> Sequence[str]:

@@ -9,6 +9,8 @@
 +----------------------+-------------+
 |  sim_time                          |
 +------------------------------------+
+
+The log of a scene in which nothing can touch has no such plots: the bodies take the whole width.
 """
 
 from __future__ import annotations
@@ -44,16 +46,21 @@ SHOWN_SECONDS = 8.0  # contacts are short: play slowly enough to be seen, never 
 
 
 def blueprint(
-    trace: Trace, bodies: Sequence[Shape], room: Extent, scale: ForceScale
+    trace: Trace, bodies: Sequence[Shape], room: Extent, scale: ForceScale | None
 ) -> rrb.Blueprint:
-    """Lay out the 3D view and the plots of a recording."""
+    """Lay out the 3D view and the plots of a recording; scale: None where nothing can touch."""
     times = time_in_nanoseconds(trace)
     seconds = float(times[-1] - times[0]) * 1e-9 if len(times) else 0.0
     grounded = any(shape.kind == "plane" for shape in bodies)
+    rulers = [scale.label if scale is not None else "bodies"]
+    rulers += [f"grid {grid_spacing(room):g} m"] if grounded else []
     scene = rrb.Spatial3DView(
         origin="/",
-        contents=["/bodies/**", "/paths/**", "/grid/**", "/contacts/**"],
-        name=f"{scale.label}; grid {grid_spacing(room):g} m" if grounded else scale.label,
+        contents=[
+            *("/bodies/**", "/paths/**", "/grid/**"),
+            *(["/contacts/**"] if scale is not None else []),
+        ],
+        name="; ".join(rulers),
         background=rrb.Background(color=BACKGROUND),
         eye_controls=rrb.EyeControls3D(
             kind=rrb.Eye3DKind.Orbital,
@@ -65,8 +72,9 @@ def blueprint(
         spatial_information=rrb.SpatialInformation(target_frame=WORLD),
     )
     curves = [_curve(trace, plot, seconds) for plot in plots_of(trace)]
+    beside = rrb.Horizontal(scene, rrb.Vertical(*curves), column_shares=[3, 2])
     return rrb.Blueprint(
-        rrb.Horizontal(scene, rrb.Vertical(*curves), column_shares=[3, 2]),
+        beside if curves else scene,
         rrb.TopPanel(state="collapsed"),
         rrb.BlueprintPanel(state="collapsed"),
         rrb.SelectionPanel(state="collapsed"),

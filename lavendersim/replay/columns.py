@@ -38,9 +38,11 @@ POINT_COLOUR = (255, 255, 255)
 class Plot(NamedTuple):
     """One curve: which field of the log, under which name with unit, and how it is shown.
 
+    `topic`: the log's own curve of the field; without it the field is not worth drawing.
     `dots`: drawn as points, because its values stand alone where contacts last one step.
     """
 
+    topic: str
     entity: str
     field: str
     title: str
@@ -61,9 +63,31 @@ def _log10(residual: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
 
 
 PLOTS = (
-    Plot("plot/force", "total_normal_force", "total normal force [N]", (240, 228, 66), np.asarray),
-    Plot("plot/depth", "max_penetration", "max penetration [mm]", (86, 180, 233), _millimetres),
-    Plot("plot/residual", "residual", "log10 residual [m/s]", (204, 121, 167), _log10, True),
+    Plot(
+        "/plot/force",
+        "plot/force",
+        "total_normal_force",
+        "total normal force [N]",
+        (240, 228, 66),
+        np.asarray,
+    ),
+    Plot(
+        "/plot/penetration",
+        "plot/depth",
+        "max_penetration",
+        "max penetration [mm]",
+        (86, 180, 233),
+        _millimetres,
+    ),
+    Plot(
+        "/plot/log10_residual",
+        "plot/residual",
+        "residual",
+        "log10 residual [m/s]",
+        (204, 121, 167),
+        _log10,
+        dots=True,
+    ),
 )
 
 
@@ -73,14 +97,15 @@ def values_of(trace: Trace, plot: Plot) -> npt.NDArray[np.float64]:
 
 
 def contacts_of(trace: Trace) -> npt.NDArray[Any]:
-    """The trace's contacts; the log of a run without any does not even name their fields."""
+    """The trace's contacts; the log of a run without any may not even name their fields."""
     contact = trace.contact
     return contact if len(contact) else np.zeros(0, [(name, "f8") for name in CONTACT_FIELDS])
 
 
 def plots_of(trace: Trace) -> list[Plot]:
-    """The plots whose fields the log has; which fields it has follows the experiment's plan."""
-    return [plot for plot in PLOTS if plot.field in (trace.step.dtype.names or ())]
+    """The plots whose topic and field the log has; which it has follows the experiment's plan."""
+    fields = trace.step.dtype.names or ()
+    return [plot for plot in PLOTS if plot.topic not in trace.absent and plot.field in fields]
 
 
 def blocks(rows: int) -> Iterator[slice]:
@@ -94,11 +119,12 @@ def time_in_nanoseconds(trace: Trace) -> npt.NDArray[np.int64]:
     return np.asarray(trace.step["time_ns"], dtype=np.int64)
 
 
-def send(stream: rr.RecordingStream, trace: Trace, room: Extent, scale: ForceScale) -> None:
-    """Send everything that changes from step to step."""
+def send(stream: rr.RecordingStream, trace: Trace, room: Extent, scale: ForceScale | None) -> None:
+    """Send everything that changes from step to step; contacts where there is a scale for them."""
     times = time_in_nanoseconds(trace).astype("timedelta64[ns]")
     _send_poses(stream, trace, times)
-    _send_contacts(stream, trace, times, room, scale)
+    if scale is not None:
+        _send_contacts(stream, trace, times, room, scale)
     _send_plots(stream, trace, times)
 
 

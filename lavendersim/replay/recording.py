@@ -33,7 +33,9 @@ def record(trace: Trace, stream: rr.RecordingStream, title: str) -> None:
     """Send the whole trace and the layout of the viewer to `stream`."""
     bodies = scene.shapes(trace.resolved)
     room = scene.extent(trace, bodies)
-    scale = force_scale(columns.contacts_of(trace), room.diagonal)
+    # Where nothing can touch there are no contacts to place and no forces to scale.
+    touching = "/contacts" not in trace.absent
+    scale = force_scale(columns.contacts_of(trace), room.diagonal) if touching else None
 
     stream.send_recording_name(title)
     stream.send_blueprint(blueprint(trace, bodies, room, scale))

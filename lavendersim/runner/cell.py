@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.lib.recfunctions as recfunctions
 
+from lavendersim.engine.effects import EFFECTS
 from lavendersim.engine.engine import Engine, Rows
 from lavendersim.engine.kernel_cache import source_hash
 from lavendersim.engine.records import DIVERGED, NOT_FINITE, RUNNING, TURNS_TOO_FAST
@@ -102,6 +103,16 @@ def metadata_of(plan: Plan, seeds: str) -> dict[str, dict[str, str]]:
     }
 
 
+def absent_topics(plan: Plan) -> dict[str, str]:
+    """Return the topics that the log does without, each with the plan's reason."""
+    return {
+        topic: f"{plan.decisions[effect.NAME].reason} (plan: {effect.NAME} off)"
+        for effect in EFFECTS
+        if not plan.spec.has(effect.NAME)
+        for topic in getattr(effect, "CHANNELS", ())
+    }
+
+
 def divergence(scene: Scene, engine: Engine) -> str:
     """Return one sentence naming the body, the step and the time of the divergence."""
     counters = engine.counters[0]
@@ -138,6 +149,7 @@ def run_cell(job: CellJob) -> CellOutcome:
         job.as_written,
         scene.timestep,
         metadata_of(job.plan, job.seeds),
+        absent_topics(job.plan),
     )
     events = EventQueue(engine, scene, job.resolved["events"])
     accuracy = Accuracy(tolerance=job.resolved["numerics"]["tolerance"])

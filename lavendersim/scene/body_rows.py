@@ -11,6 +11,7 @@ from typing import Any, Final
 import numpy as np
 
 from lavendersim.engine.collide.hull_geometry import HullGeometry, hull_geometry
+from lavendersim.engine.effects import EFFECTS
 from lavendersim.engine.engine import allocate_bodies
 from lavendersim.engine.records import BOX, CAPSULE, COMPOUND, CYLINDER, HULL, PLANE, SPHERE
 from lavendersim.engine.spec import Spec
@@ -88,12 +89,14 @@ def body_table(
             _fill(record, ("px", "py", "pz"), row.part["position"])
             _fill(record, ("pqw", "pqx", "pqy", "pqz"), row.part["orientation"])
             pose = part_pose(pose, row.part)
-        _fill(record, ("owner", "kinematic"), (row.owner, bool(row.body["kinematic"])))
+        _fill(record, ("owner",), (row.owner,))
+        for effect in EFFECTS:
+            if hasattr(effect, "body_values"):
+                values = effect.body_values(row.body)
+                _fill(record, values, values.values())
         _fill(record, ("x", "y", "z", "qw", "qx", "qy", "qz"), pose)
         names = [f"r{i}{j}" for i in range(3) for j in range(3)]
         _fill(record, names, rotation_matrix(pose[3:]).ravel())
-        _fill(record, ("sx", "sy", "sz"), row.body["surface_velocity"])
-        _fill(record, (f"drag_{name}" for name in row.body["drag"]), row.body["drag"].values())
         assert k == row.owner or row.part is not None
     return bodies, hull_geometry(polyhedra)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from math import ceil, sqrt
+from math import ceil, inf, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -70,6 +70,8 @@ def _parameters(resolved: dict[str, Any], timestep: Fraction) -> np.ndarray:
         p["cache_normal_cosine"] = 2.0
     if not numerics["projection_sweeps"]:
         p["projection"] = 0.0
+    if not numerics["sleeping"]:
+        p["sleep_time"] = inf
     magnitude = sqrt(sum(g * g for g in gravity))
     p["restitution_speed"] = float(numerics["restitution_threshold"]) * magnitude * dt
     # A residual is never negative, so this tolerance never stops a cell that states none.

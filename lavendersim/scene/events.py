@@ -55,6 +55,8 @@ class EventQueue:
             )
 
     def _force_changes(self, forces: list[dict[str, Any]]) -> Iterator[Change]:
+        if not self._engine.spec.has("external_force"):
+            return
         for force in forces:
             begin, end = self._after(force["from"]), self._after(force["to"])
             if begin < end:

@@ -17,9 +17,9 @@ from lavendersim.engine.effects import surface_fields
 from lavendersim.engine.engine import allocate_pairs
 from lavendersim.engine.spec import Spec
 
+from .candidates import candidate_pairs
 from .classes import Surface, classes_of, mix, ordered
 from .colliders import Collider
-from .plan import candidate_pairs
 
 # Rows of pairs that a scene with a broad phase starts with, per body: a densely packed pile of
 # spheres has six, and the engine makes more when it needs them.

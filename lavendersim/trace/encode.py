@@ -5,11 +5,13 @@ for the fixed part of each kind of message and one for each kind of row that fol
 
     light   | /step /plot.. [/residuals: head, row, row, ..] | next step ..
     bulk    | /tf /contacts: head, point, point, ..          | next step ..
+
+A topic that the log does without takes no byte; a stream without topics is empty.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -53,20 +55,23 @@ class Encoded(NamedTuple):
 
 
 class Encoder:
-    """The layouts of one run, fixed by the columns of its first block."""
+    """The layouts of one run, fixed by its topics and by the columns of its first block."""
 
-    def __init__(self, bodies: Sequence[str], block: Block) -> None:
+    def __init__(self, bodies: Sequence[str], block: Block, topics: Collection[str]) -> None:
+        self._topics = topics
         self.step_columns = columns_of(block.step.dtype, STEP_COLUMNS)
         residual = [name for name in block.residual.dtype.names or () if name != "step"]
         self.residual_columns = columns_of(block.residual.dtype[residual], RESIDUAL_COLUMNS)
-        self.fields = layout.contact_fields(block.contact.dtype)
-        self.plots = [t for t, name in PLOTS.items() if name in (block.step.dtype.names or ())]
+        names = block.step.dtype.names or ()
+        self.plots = [t for t, name in PLOTS.items() if t in topics and name in names]
         self._dtypes = (block.step.dtype, block.contact.dtype, block.residual.dtype)
         self._bodies = len(bodies)
-        self._point = layout.packed_dtype(self.fields, layout.point_stride(self.fields))
-        frame = layout.root_frame(bodies)
         self._tf = layout.transforms_layout(bodies)
-        self._cloud = layout.contact_layout(self.fields, self._point.itemsize, frame)
+        if "/contacts" in topics:
+            self.fields = layout.contact_fields(block.contact.dtype)
+            self._point = layout.packed_dtype(self.fields, layout.point_stride(self.fields))
+            frame = layout.root_frame(bodies)
+            self._cloud = layout.contact_layout(self.fields, self._point.itemsize, frame)
         self._light = layout.step_layout(self.step_columns)
         self._starts = {layout.CHANNELS["/step"]: 0}
         for topic in self.plots:
@@ -81,6 +86,9 @@ class Encoder:
             raise ValueError("a block has other columns than the first one")
         if block.pose.shape != (len(block.step), self._bodies, layout.POSE):
             raise ValueError(f"poses have shape {block.pose.shape}")
+        for topic, rows in (("/contacts", block.contact), ("/residuals", block.residual)):
+            if len(rows) and topic not in self._topics:
+                raise ValueError(f"a block has rows for {topic}, which its log does without")
         return self._encode_light(block), self._encode_bulk(block)
 
     def _encode_light(self, block: Block) -> Encoded:
@@ -103,9 +111,9 @@ class Encoder:
 
         every = np.arange(len(step))
         messages = {c: (every, start[:-1] + offset) for c, offset in self._starts.items()}
-        heads = start[asked] + len(self._light)
-        messages[layout.CHANNELS["/residuals"]] = (asked, heads)
         if len(asked):
+            heads = start[asked] + len(self._light)
+            messages[layout.CHANNELS["/residuals"]] = (asked, heads)
             rows = self._clocked(self._sweeps, step[asked])
             self._sweeps.put(rows, "step", step["step"][asked])
             self._put_length(self._sweeps, rows, counts[asked] * row)
@@ -118,19 +126,36 @@ class Encoder:
 
     def _encode_bulk(self, block: Block) -> Encoded:
         step = block.step
+        posed, touching = "/tf" in self._topics, "/contacts" in self._topics
+        sizes = np.full(len(step), len(self._tf) if posed else 0, np.int64)
         counts = _counts(step["step"], block.contact["step"], "contacts")
-        point = self._point.itemsize
-        start = _cumulative(len(self._tf) + len(self._cloud) + counts * point)
+        if touching:
+            sizes += len(self._cloud) + counts * self._point.itemsize
+        start = _cumulative(sizes)
         data = np.empty(start[-1], np.uint8)
+        every = np.arange(len(step))
+        messages: dict[int, tuple[Rows, Rows]] = {}
+        heads = start[:-1]
+        if posed:
+            self._put_poses(data, heads, block)
+            messages[layout.CHANNELS["/tf"]] = (every, heads)
+            heads = heads + len(self._tf)
+        if touching:
+            self._put_contacts(data, heads, counts, block)
+            messages[layout.CHANNELS["/contacts"]] = (every, heads)
+        return Encoded(data, start, messages)
 
+    def _put_poses(self, data: Bytes, heads: Rows, block: Block) -> None:
+        step = block.step
         rows = self._clocked(self._tf, step)
         if self._bodies:
             poses = np.asarray(block.pose, "<f8")[:, :, [0, 1, 2, 4, 5, 6, 3]]
             self._tf.put(rows, "timestamp", _repeat(timestamps(step["time_ns"]), self._bodies))
             self._tf.put(rows, "pose", poses.reshape(len(step), -1))
-        scatter(data, start[:-1], rows)
+        scatter(data, heads, rows)
 
-        heads = start[:-1] + len(self._tf)
+    def _put_contacts(self, data: Bytes, heads: Rows, counts: Rows, block: Block) -> None:
+        step, point = block.step, self._point.itemsize
         rows = self._clocked(self._cloud, step)
         self._cloud.put(rows, "timestamp", timestamps(step["time_ns"]))
         self._cloud.put(rows, "data_length", padded_varints(counts * point))
@@ -138,11 +163,6 @@ class Encoder:
         scatter(data, heads, rows)
         points = self._points(block.contact).view(np.uint8).reshape(-1, point)
         scatter(data, _ranks(heads + len(self._cloud), counts, point), points)
-
-        every = np.arange(len(step))
-        channels = layout.CHANNELS
-        messages = {channels["/tf"]: (every, start[:-1]), channels["/contacts"]: (every, heads)}
-        return Encoded(data, start, messages)
 
     def _points(self, contact: NDArray[Any]) -> NDArray[Any]:
         """Return the contacts as packed points."""

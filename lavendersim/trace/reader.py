@@ -17,8 +17,9 @@ import yaml
 from mcap.records import Attachment, Schema
 from numpy.typing import NDArray
 
-from lavendersim.errors import TraceError
+from lavendersim.errors import TraceError, UsageError
 from lavendersim.trace import decode, layout
+from lavendersim.trace.absent import absent_table
 from lavendersim.trace.container import CRC_KEY, FileIndex
 from lavendersim.trace.index import (
     ChunkContent,
@@ -31,7 +32,7 @@ from lavendersim.trace.index import (
 )
 from lavendersim.trace.scan import scan
 from lavendersim.trace.schema import FORMAT, RESIDUAL_COLUMNS, STEP_COLUMNS, Column
-from lavendersim.trace.writer import AS_WRITTEN, DESCRIPTION, ENDING, RESOLVED
+from lavendersim.trace.writer import ABSENT, AS_WRITTEN, DESCRIPTION, ENDING, RESOLVED
 
 COMPLETE = "complete"
 INCOMPLETE = "incomplete"
@@ -52,6 +53,8 @@ class Trace:
                 )
             self.bodies: list[str] = json.loads(description["bodies"])
             self.timestep = Fraction(description["timestep"])
+            # topic -> why this log does without it; logs before there was a choice have them all
+            self.absent: dict[str, str] = json.loads(description.get(ABSENT, "{}"))
             self.status = self.metadata[ENDING]["status"] if finished else INCOMPLETE
         self.complete = self.status == COMPLETE
 
@@ -65,7 +68,12 @@ class Trace:
 
     @cached_property
     def residual(self) -> NDArray[Any]:
-        """One row per sweep of the steps that were asked for: step, sweep, residual [m/s]."""
+        """One row per sweep of the steps that were asked for: step, sweep, residual [m/s].
+
+        Without /residuals an empty table, which says why where a column is asked of it.
+        """
+        if "/residuals" in self.absent:
+            return absent_table(self.why_not("/residuals"))
         with damage(self.path, "/residuals"):
             columns = self._columns("/residuals", "Sweep", RESIDUAL_COLUMNS)
             parts = [decode.decode_residuals(c, columns) for c in self._chunks("/residuals")]
@@ -73,7 +81,12 @@ class Trace:
 
     @cached_property
     def pose(self) -> NDArray[np.float64]:
-        """Poses (rows, bodies, 7): x y z [m], qw qx qy qz; the same rows as `step`."""
+        """Poses (rows, bodies, 7): x y z [m], qw qx qy qz; the same rows as `step`.
+
+        UsageError for a log without /tf.
+        """
+        if "/tf" in self.absent:
+            raise UsageError(self.why_not("/tf"))
         with damage(self.path, "/tf"):
             parts = [decode.decode_poses(c, self.bodies) for c in self._chunks("/tf")]
             steps = np.concatenate([np.empty(0, np.int64), *(steps for steps, _ in parts)])
@@ -84,7 +97,12 @@ class Trace:
 
     @cached_property
     def contact(self) -> NDArray[Any]:
-        """One row per contact and step: `step`, the file's columns, and `time` [s]."""
+        """One row per contact and step: `step`, the file's columns, and `time` [s].
+
+        Without /contacts an empty table, which says why where a column is asked of it.
+        """
+        if "/contacts" in self.absent:
+            return absent_table(self.why_not("/contacts"))
         with damage(self.path, "/contacts"):
             frame = layout.root_frame(self.bodies)
             parts, columns = [], [("step", "i8"), ("time", "f8")]
@@ -96,6 +114,10 @@ class Trace:
                     columns = decode.contact_columns(fields)
                 parts.append(decode.decode_contacts(chunk, fields, stride, frame))
             return decode.join(parts, columns)
+
+    def why_not(self, topic: str) -> str:
+        """Return the sentence that says why this log has no such topic."""
+        return f"{self.path}: this log has no {topic}: {self.absent[topic]}"
 
     @cached_property
     def as_written(self) -> str:

@@ -4,10 +4,14 @@
 |---|---|---|---|
 | `/robot_description` | std_msgs/msg/String | ros2msg, cdr | run: the URDF of the scene |
 | `/tf` | foxglove.FrameTransforms | protobuf | step: pose of every body in the world frame |
-| `/contacts` | foxglove.PointCloud | protobuf | step: all contacts, also when there are none |
+| `/contacts` | foxglove.PointCloud | protobuf | step: all contacts, also when it has none |
 | `/step` | lavender.Step | protobuf | step: STEP_COLUMNS |
 | `/residuals` | lavender.Residuals | protobuf | step for which it was asked: RESIDUAL_COLUMNS |
 | `/plot/*` | std_msgs/msg/Float64MultiArray | ros2msg, cdr | step: one number, for viewers |
+
+A log has the topics that its plan calls for: `/contacts` and `/plot/*` where something can touch,
+`/residuals` where `record.residuals` asks for steps, the others always. The metadata record `trace`
+has under `absent` every topic that the log does without, and why.
 
 `/contacts` is identity-posed in the world frame and its data is packed: x y z, then the other
 columns, then red green blue alpha. PointCloud knows no 64-bit integer, so an integer column is

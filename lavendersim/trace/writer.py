@@ -1,6 +1,7 @@
 """Blocks of steps enter, a log file grows: the only writer of lavender's logs.
 
-Steps are cut into groups, and each group is two chunks, bulk then light. A group closes with the
+Steps are cut into groups, and each group is two chunks, bulk then light; a log without poses and
+contacts has light ones only. A group closes with the
 step that fills either stream, so where it closes depends on the steps alone, never on how they
 came in or on a clock: equal runs give equal bytes. Bulk goes first: where a light chunk is whole,
 everything before it is, and a killed run is readable up to its last light chunk.
@@ -18,6 +19,7 @@ from typing import Any
 import numpy as np
 import yaml
 from mcap.records import Channel, Schema
+from numpy.typing import NDArray
 
 from lavendersim.trace import descriptors, layout
 from lavendersim.trace.container import INDEX_ENTRY, Container, Messages
@@ -39,6 +41,7 @@ BULK_BYTES = 1024 * 1024
 
 AS_WRITTEN, RESOLVED = "config.yaml", "resolved.yaml"  # attachments
 DESCRIPTION, ENDING = "trace", "lavender"  # metadata written first and last
+ABSENT = "absent"  # of the description: topic -> why the log does without it
 
 
 class _Stream:
@@ -80,7 +83,13 @@ class TraceWriter:
         as_written: str,
         timestep: Fraction,
         metadata: Mapping[str, Mapping[str, str]],
+        absent: Mapping[str, str] | None = None,
     ) -> None:
+        """Open the file. absent: the topics that this log does without, each with the reason."""
+        absent = dict(absent or {})
+        if unknown := absent.keys() - layout.CHANNELS.keys():
+            raise ValueError(f"no topics of a log: {sorted(unknown)}")
+        self._topics = layout.CHANNELS.keys() - absent.keys()
         self._bodies = list(bodies)
         self._resolved = resolved
         self._encoder: Encoder | None = None
@@ -93,13 +102,14 @@ class TraceWriter:
             "format": FORMAT,
             "bodies": json.dumps(self._bodies),
             "timestep": str(timestep),
+            ABSENT: json.dumps(absent, sort_keys=True),
         }
         self._container.describe(DESCRIPTION, description)
         for name, values in metadata.items():
             if name in (DESCRIPTION, ENDING):
                 raise ValueError(f"metadata may not be called {name!r}")
             self._container.describe(name, values)
-        self._light = self._bulk = _Stream(b"")
+        self._light, self._bulk = _Stream(b""), _Stream(b"")
         # zstd runs beside the simulation; one chunk pair at a time keeps order and memory
         self._pool = ThreadPoolExecutor(1, "trace")
         self._writing: Future[None] | None = None
@@ -115,6 +125,8 @@ class TraceWriter:
         order = np.concatenate([[self._last_step], step["step"]])
         if np.any(np.diff(order) <= 0) or step["step"][-1] >= 2**32:
             raise ValueError("steps do not ascend, or exceed 32 bits")
+        if "/step" not in self._topics:
+            raise ValueError("a log without /step takes no steps")
         if self._encoder is None:
             self._begin(block)
         assert self._encoder is not None
@@ -149,9 +161,38 @@ class TraceWriter:
 
     def _begin(self, block: Block) -> None:
         """Write the scene's geometry and open the streams: the columns are known now."""
-        self._encoder = encoder = Encoder(self._bodies, block)
+        self._encoder = encoder = Encoder(self._bodies, block, self._topics)
+        if "/robot_description" in self._topics:
+            self._describe_geometry(block.pose[0].astype(np.float64))
+        schemas, channels = [], []
+        if "/tf" in self._topics:
+            form = descriptors.transforms_schema()
+            schemas.append(Schema(2, form, "protobuf", "foxglove.FrameTransforms"))
+            channels.append(_channel("/tf", 2, "protobuf"))
+        if "/contacts" in self._topics:
+            form = descriptors.point_cloud_schema()
+            schemas.append(Schema(3, form, "protobuf", "foxglove.PointCloud"))
+            names = [field.name for field in encoder.fields]
+            meanings = {name: CONTACT_COLUMNS[name] for name in names if name in CONTACT_COLUMNS}
+            channels.append(_channel("/contacts", 3, "protobuf", meanings))
+        self._bulk = _Stream(self._container.register(schemas, channels))
+
+        step, sweep = encoder.step_columns, encoder.residual_columns
+        schemas = [Schema(4, descriptors.step_schema(step), "protobuf", "lavender.Step")]
+        channels = [_channel("/step", 4, "protobuf", _meanings(step))]
+        if "/residuals" in self._topics:
+            form = descriptors.residuals_schema(sweep)
+            schemas.append(Schema(5, form, "protobuf", "lavender.Residuals"))
+            channels.append(_channel("/residuals", 5, "protobuf", _meanings(sweep)))
+        if encoder.plots:
+            form = MULTI_ARRAY_DEFINITION.encode()
+            schemas.append(Schema(6, form, "ros2msg", "std_msgs/msg/Float64MultiArray"))
+            channels += [_channel(topic, 6, "cdr") for topic in encoder.plots]
+        self._light = _Stream(self._container.register(schemas, channels))
+
+    def _describe_geometry(self, poses: NDArray[np.float64]) -> None:
+        """Write the chunk of /robot_description; poses: of the initial state (bodies, 7)."""
         shapes = self._resolved.get("scene", {}).get("bodies", {})
-        poses = block.pose[0].astype(np.float64)
         text = robot_description(self._bodies, shapes, poses).encode() + b"\0"
         schema = Schema(1, STRING_DEFINITION.encode(), "ros2msg", "std_msgs/msg/String")
         prologue = self._container.register([schema], [_channel("/robot_description", 1, "cdr")])
@@ -161,29 +202,6 @@ class TraceWriter:
         entries = np.array([(0, len(prologue))], INDEX_ENTRY)
         self._container.write_chunk(payload, [Messages(1, entries)])
 
-        tf = Schema(2, descriptors.transforms_schema(), "protobuf", "foxglove.FrameTransforms")
-        cloud = Schema(3, descriptors.point_cloud_schema(), "protobuf", "foxglove.PointCloud")
-        contact_names = [field.name for field in encoder.fields]
-        meanings = {n: CONTACT_COLUMNS[n] for n in contact_names if n in CONTACT_COLUMNS}
-        channels = [
-            _channel("/tf", 2, "protobuf"),
-            _channel("/contacts", 3, "protobuf", meanings),
-        ]
-        self._bulk = _Stream(self._container.register([tf, cloud], channels))
-
-        step, sweep = encoder.step_columns, encoder.residual_columns
-        schemas = [
-            Schema(4, descriptors.step_schema(step), "protobuf", "lavender.Step"),
-            Schema(5, descriptors.residuals_schema(sweep), "protobuf", "lavender.Residuals"),
-            Schema(6, MULTI_ARRAY_DEFINITION.encode(), "ros2msg", "std_msgs/msg/Float64MultiArray"),
-        ]
-        channels = [
-            _channel("/step", 4, "protobuf", _meanings(step)),
-            _channel("/residuals", 5, "protobuf", _meanings(sweep)),
-            *(_channel(topic, 6, "cdr") for topic in encoder.plots),
-        ]
-        self._light = _Stream(self._container.register(schemas, channels))
-
     def _close_group(self) -> None:
         """Hand the open chunks to the writing thread."""
         self._wait()
@@ -192,7 +210,8 @@ class TraceWriter:
 
     def _write_group(self, *streams: _Stream) -> None:
         for stream in streams:
-            self._container.write_chunk(*stream.finish())
+            if stream.size:
+                self._container.write_chunk(*stream.finish())
 
     def _wait(self) -> None:
         """Wait for the writing thread; what went wrong there is raised here."""

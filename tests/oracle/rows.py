@@ -13,7 +13,7 @@ import numpy as np
 from complementarity import Body, jacobian
 from laboratory import Bench
 
-from lavendersim.scene.plan import candidate_pairs
+from lavendersim.scene.candidates import candidate_pairs
 
 
 def inertia_of(shape, mass) -> np.ndarray:

@@ -16,7 +16,7 @@ from lavendersim.engine.solvers import SOLVERS
 
 ENGINE = ROOT / "lavendersim/engine"
 LONGEST_FILE = 400  # lines; beyond it a file does more than one thing
-STAGES = {"accelerate", "capture", "collide", "integrate", "match", "project", "solve"}
+STAGES = {"accelerate", "capture", "collide", "integrate", "match", "project", "record", "solve"}
 CHAINED = {"accelerate", "capture"}  # every effect of these is called through `make`
 # Of the folder `collide`: the phases, and what several shape pairs are made of.
 SHARED_BY_PAIRS = {
@@ -25,8 +25,19 @@ SHARED_BY_PAIRS = {
     *("support", "simplex", "gjk", "tetrahedron", "polytope", "epa", "separation"),
     *("features", "lines", "outline", "overlay"),
 }
-SHARED_BY_SOLVERS = {"row_update", "newton", "newton_minimise", "newton_rows", "envelope"}
-FIELD_GROUPS = ("BODY_FIELDS", "VELOCITY_FIELDS", "PAIR_FIELDS", "CONTACT_FIELDS", "CACHE_FIELDS")
+SHARED_BY_SOLVERS = {
+    "row_update",
+    "sweep",
+    "newton",
+    "newton_minimise",
+    "newton_rows",
+    "newton_matrix",
+    "envelope",
+}
+FIELD_GROUPS = (
+    *("BODY_FIELDS", "VELOCITY_FIELDS", "PAIR_FIELDS", "CONTACT_FIELDS", "CACHE_FIELDS"),
+    *("CONTACT_ROW_FIELDS", "STEP_ROW_FIELDS"),
+)
 
 
 def test_no_file_is_longer_than_the_limit() -> None:

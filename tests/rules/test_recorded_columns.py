@@ -6,28 +6,29 @@ import re
 
 import pytest
 
-from lavendersim.engine.records import (
-    AWAKE_ROW,
-    CONTACT_ROW,
-    RESIDUAL_ROW,
-    ROLLING_ROW,
-    STEP_ROW,
-    TORSION_ROW,
-    Field,
-)
+from lavendersim.engine.effects import EFFECTS, residual_log, step_log
+from lavendersim.engine.records import Field
 from lavendersim.trace.schema import CONTACT_COLUMNS, RESIDUAL_COLUMNS, STEP_COLUMNS
 
 UNIT = re.compile(r"\[[^]]+\]")
 # Counts, indices, hashes and directions have no unit.
 WITHOUT_UNIT = {
-    "step", "contact_count", "sweeps", "residual_contact", "state_hash", "sweep", "awake",
-    "body_a", "body_b", "feature", "nx", "ny", "nz",
+    "step", "contact_count", "sweeps", "residual_contact", "state_hash", "sweep",
+    "awake", "stronge", "unsolved",
+    "body_a", "body_b", "feature", "nx", "ny", "nz", "t1x", "t1y", "t1z",
 }  # fmt: skip
 # The step of a contact or a residual is the number of the message that carries it.
 OF_THE_MESSAGE = "step"
 
-CONTACTS = [*CONTACT_ROW, *TORSION_ROW, *ROLLING_ROW]
-STEPS = [*STEP_ROW, *AWAKE_ROW]
+
+def rows(group: str) -> list[Field]:
+    """Return the columns that all effects log."""
+    return [field for effect in EFFECTS for field in getattr(effect, group, [])]
+
+
+CONTACTS = rows("CONTACT_ROW_FIELDS")
+STEPS = [*rows("STEP_ROW_FIELDS"), *step_log.UNSOLVED_ROW]
+RESIDUALS = residual_log.RESIDUAL_ROW_FIELDS[1:]
 STEP = {column.name: column for column in STEP_COLUMNS}
 RESIDUAL = {column.name: column for column in RESIDUAL_COLUMNS}
 
@@ -49,7 +50,7 @@ def test_a_contact_column_is_described_with_its_unit(name: str) -> None:
     assert bool(UNIT.search(CONTACT_COLUMNS[name])) != (name in WITHOUT_UNIT)
 
 
-@pytest.mark.parametrize("field", RESIDUAL_ROW[1:], ids=names(RESIDUAL_ROW[1:]))
+@pytest.mark.parametrize("field", RESIDUALS, ids=names(RESIDUALS))
 def test_a_residual_column_is_described_with_its_kind_and_unit(field: Field) -> None:
     name, kind = field
     assert RESIDUAL[name].kind == kind

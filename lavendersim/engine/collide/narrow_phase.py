@@ -5,6 +5,8 @@ Only the manifolds that a scene's shapes call for are compiled in.
 
 from __future__ import annotations
 
+from typing import Any
+
 from ..compile import kernel
 from ..effects import sleeping
 from ..records import TOUCHING
@@ -51,10 +53,12 @@ def make(spec: Spec):
     """
     manifold = make_manifold(spec, spec.shape_pairs)
     ahead = spec.has("speculative")
-    is_fast, swept_manifold = make_is_fast(spec), make_swept_manifold(spec, manifold)
+    sweeps = spec.has("fast_bodies")
+    is_fast: Any = make_is_fast(spec) if sweeps else None
+    swept_manifold: Any = make_swept_manifold(spec, manifold) if sweeps else None
     share = 0.5 if spec.has("midpoint") else 1.0
     compound = spec.has("compound")
-    sleeps, still = spec.has("sleeping"), sleeping.make_still(spec)
+    sleeps, still = spec.made(sleeping, "make_still")
 
     def narrow_phase(bodies, motion, pairs, listed, contacts, points, normal, scratch, dt):
         total = 0
@@ -72,6 +76,8 @@ def make(spec: Spec):
             if ahead:
                 ma, mb = motion[owner_i], motion[owner_j]
                 margin = TOUCHING + ma.reach + mb.reach
+            if sweeps:
+                ma, mb = motion[owner_i], motion[owner_j]
                 dx = (mb.vx - ma.vx + share * (mb.dvx - ma.dvx)) * dt
                 dy = (mb.vy - ma.vy + share * (mb.dvy - ma.dvy)) * dt
                 dz = (mb.vz - ma.vz + share * (mb.dvz - ma.dvz)) * dt
@@ -96,7 +102,7 @@ def make(spec: Spec):
                 contact.x, contact.y, contact.z = point.x, point.y, point.z
                 contact.nx, contact.ny, contact.nz = normal[0], normal[1], normal[2]
                 contact.phi = point.phi
-                if ahead:
+                if sweeps:
                     # Across n B's surface is met where B will be then.
                     along = dx * normal[0] + dy * normal[1] + dz * normal[2]
                     contact.beside_x = met * (dx - along * normal[0])

@@ -54,30 +54,29 @@ def make_write_rows(spec: Spec, surface: Sequence[str]):
     """
     copy_surface = make_copy_fields(spec, surface)
 
+    def sort(by, first, second, to_first, to_second, counts, bodies_count, found):
+        # Stable, by a column of bodies.
+        for k in range(bodies_count + 1):
+            counts[k] = 0
+        for p in range(found):
+            counts[by[p] + 1] += 1
+        for k in range(bodies_count):
+            counts[k + 1] += counts[k]
+        for p in range(found):
+            place = counts[by[p]]
+            counts[by[p]] = place + 1
+            to_first[place], to_second[place] = first[p], second[p]
+
+    sort = kernel(sort, spec)
+
     def write_rows(bodies, templates, work, found, pairs):
-        bodies_count, counts = bodies.shape[0], work.counts
+        bodies_count = bodies.shape[0]
         first, second = work.first, work.second
         other_first, other_second = work.other_first, work.other_second
-        for k in range(bodies_count + 1):
-            counts[k] = 0
-        for p in range(found):
-            counts[second[p] + 1] += 1
-        for k in range(bodies_count):
-            counts[k + 1] += counts[k]
-        for p in range(found):
-            place = counts[second[p]]
-            counts[second[p]] = place + 1
-            other_first[place], other_second[place] = first[p], second[p]
-        for k in range(bodies_count + 1):
-            counts[k] = 0
-        for p in range(found):
-            counts[other_first[p] + 1] += 1
-        for k in range(bodies_count):
-            counts[k + 1] += counts[k]
-        for p in range(found):
-            place = counts[other_first[p]]
-            counts[other_first[p]] = place + 1
-            first[place], second[place] = other_first[p], other_second[p]
+        sort(second, first, second, other_first, other_second, work.counts, bodies_count, found)
+        sort(
+            other_first, other_first, other_second, first, second, work.counts, bodies_count, found
+        )
         for p in range(found):
             i, j = first[p], second[p]
             template, row = templates[bodies[i].material, bodies[j].material], pairs[p]

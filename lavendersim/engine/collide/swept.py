@@ -27,6 +27,7 @@ could bring together. Parts move with the velocity of their owner's centre.
 from __future__ import annotations
 
 from ..compile import kernel
+from ..effects.fast_bodies import FAST
 from ..records import PLANE, TOUCHING
 from ..spec import Spec
 from . import SHAPE_PAIRS
@@ -44,8 +45,6 @@ ADVANCES = 64
 APPROACHES, ACROSS = 30, 1e-3
 # Least cosine between the manifold's normal and that of the distance [-]: 2.6 degrees.
 ALIKE = 0.999
-# Share of the smaller bounding radius that a pair may close in a step before it is fast [-].
-FAST = 0.5
 
 
 def make_is_fast(spec: Spec):

@@ -2,16 +2,22 @@
 
 from ..records import LEVER
 from .decision import Decision, Facts, named
+from .smooth_contact import has_smooth
 
 NAME = "contact_torque"
 STAGE = "solve"
+NEEDS = ("rotation",)
 
 
 def wanted(facts: Facts) -> Decision:
     """On when a contact may push a movable body past its centre of mass."""
     if not facts.pairs:
         return Decision(False, "nothing can touch")
-    levered = [body.name for body in facts.bodies if body.movable and body.shape != "sphere"]
+    levered = [
+        body.name
+        for body in facts.bodies
+        if body.shape != "sphere" and (body.movable or (body.kinematic and body.spins))
+    ]
     if levered:
         return Decision(True, f"{named(levered)}: contact normals may miss the centre of mass")
     for pair in facts.pairs:
@@ -24,4 +30,4 @@ def wanted(facts: Facts) -> Decision:
 
 def contact_fields(spec):
     """Return the columns of a normal row; the blocks of friction have levers of their own."""
-    return [] if spec.has("friction") else LEVER
+    return LEVER if has_smooth(spec) else []

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Any, NamedTuple
 
 
 class BodyFacts(NamedTuple):
@@ -14,10 +16,10 @@ class BodyFacts(NamedTuple):
     spins: bool  # it has an initial angular velocity
     round: bool  # all principal inertias equal
     kinematic: bool = False  # moves as told, whatever touches it
-    speed: float = 0.0  # initial [m/s]
+    speed: float = 0.0  # largest stated [m/s]
     size: float = 0.0  # radius of the sphere about its centre that holds it [m], planes: inf
-    drag: bool = False
-    surface_velocity: bool = False
+    least_size: float = 0.0  # of the smallest of its parts, where it has some; planes: inf
+    stated: Mapping[str, Any] = MappingProxyType({})  # the body as the resolved config has it
     force: bool = False  # a force acts on it at some time
     torque: bool = False
     parts: int = 0  # of a compound
@@ -58,7 +60,11 @@ class Facts(NamedTuple):
     impacts: str = "captured"
     integrator: str = "semi_implicit_euler"
     friction_cone: str = "disc"
+    solver: str = "adaptive"
     sleeping: bool = False
+    events: bool = False  # something is changed during the run
+    record: bool = True  # the run is logged
+    residuals: bool = False  # and the residual of every sweep, for some steps
     timestep: float = 0.0  # [s]
     duration: float = 0.0  # [s]
 

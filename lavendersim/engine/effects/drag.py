@@ -7,7 +7,9 @@ Explicit steps overshoot rest where the bracket times h exceeds 1; these come to
 Forces act before, so that a fall ends at the very speed at which drag carries the weight.
 """
 
+from collections.abc import Mapping
 from math import sqrt
+from typing import Any
 
 from ..compile import kernel
 from ..rotation import to_body, to_world
@@ -22,9 +24,18 @@ BODY_FIELDS = [
 ]
 
 
+def body_values(body: Mapping[str, Any]) -> dict[str, float]:
+    """Return the values of BODY_FIELDS that a config states for a body."""
+    return {f"drag_{name}": float(value) for name, value in body["drag"].items()}
+
+
 def wanted(facts: Facts) -> Decision:
     """On when a movable body has a coefficient."""
-    dragged = [body.name for body in facts.bodies if body.movable and body.drag]
+    dragged = [
+        body.name
+        for body in facts.bodies
+        if body.movable and any(body_values(body.stated).values())
+    ]
     if dragged:
         return Decision(True, f"{named(dragged)}: drag")
     return Decision(False, "no body has drag")

@@ -6,11 +6,13 @@ taken in the contact frame. Bodies carry their world inverse inertia beside thei
 a sweep needs both and nothing else of a body.
 """
 
+from ..block import make_relative_velocity
 from ..compile import kernel
 from .decision import Decision, Facts
 
 NAME = "friction"
 STAGE = "solve"
+NEEDS = ("contact_torque", "rotation")
 PAIR_FIELDS = [("friction", "f8")]  # mu of the pair, the geometric mean of its surfaces' [-]
 VELOCITY_FIELDS = [(f"j{axes}", "f8") for axes in ("xx", "xy", "xz", "yy", "yz", "zz")]
 CONTACT_FIELDS = [
@@ -25,6 +27,16 @@ CONTACT_FIELDS = [
     ("k_t", "f8"),  # bound on the largest eigenvalue of that 2x2 [1/kg]
     ("lambda_1", "f8"),  # accumulated impulse on B along t1, t2 [N s]
     ("lambda_2", "f8"),
+]
+# Of the impulse on B along t1, t2; slip: tangential velocity of B's surface relative to A's after
+# the solve.
+CONTACT_ROW_FIELDS = [
+    ("impulse_t1", "f8"),  # [N s]
+    ("impulse_t2", "f8"),
+    ("slip_t1", "f8"),  # [m/s]
+    ("slip_t2", "f8"),
+    *[(f"t1{axis}", "f8") for axis in "xyz"],  # t2 = n x t1 [-]
+    ("friction", "f8"),  # mu [-]
 ]
 CACHE_FIELDS = [("px", "f8"), ("py", "f8"), ("pz", "f8")]  # tangential impulse, world axes [N s]
 
@@ -67,3 +79,18 @@ def make_refresh(spec):
                 v.jzz = a * za * za + b * zb * zb + c * zc * zc
 
     return kernel(refresh, spec)
+
+
+def make_log(spec):
+    """Return `kernel(out, contact, va, vb)` that fills CONTACT_ROW_FIELDS."""
+    relative_velocity = make_relative_velocity(spec)
+
+    def log_friction(out, contact, va, vb):
+        x, y, z = relative_velocity(contact, va, vb)
+        out.impulse_t1, out.impulse_t2 = contact.lambda_1, contact.lambda_2
+        out.slip_t1 = contact.t1x * x + contact.t1y * y + contact.t1z * z
+        out.slip_t2 = contact.t2x * x + contact.t2y * y + contact.t2z * z
+        out.t1x, out.t1y, out.t1z = contact.t1x, contact.t1y, contact.t1z
+        out.friction = contact.mu
+
+    return kernel(log_friction, spec)

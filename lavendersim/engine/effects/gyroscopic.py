@@ -15,6 +15,7 @@ from .decision import Decision, Facts, named
 
 NAME = "gyroscopic"
 STAGE = "integrate"
+NEEDS = ("rotation",)
 # Newton doubles the digits in each pass: four serve any |omega| dt < 1. A body that has not found
 # its midpoint after these turns several radians a step, and the run ends: nothing here is true.
 PASSES = 20
@@ -42,6 +43,9 @@ def make(spec):
         if wx == 0.0 and wy == 0.0 and wz == 0.0:
             return True
         ix, iy, iz = body.inv_ix, body.inv_iy, body.inv_iz
+        if ix == iy and iy == iz:  # a round body turns at constant omega, to the bit
+            turn(body, wx * dt, wy * dt, wz * dt)
+            return True
         bx, by, bz = to_body(body, wx, wy, wz)
         px, py, pz = bx / ix, by / iy, bz / iz
         # (m x I^-1 m)_x = m_y m_z (1/I_z - 1/I_y), and so round the axes.
@@ -93,6 +97,11 @@ def make_jump(spec):
     """
 
     def jump(body, velocity, x, y, z, twice_spent):
+        if body.inv_ix == body.inv_iy and body.inv_iy == body.inv_iz:
+            velocity.wx += x
+            velocity.wy += y
+            velocity.wz += z
+            return
         ix, iy, iz = inertia_times(body, x, y, z)
         along = ix * velocity.wx + iy * velocity.wy + iz * velocity.wz
         spent = ix * x + iy * y + iz * z

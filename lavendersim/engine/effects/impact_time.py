@@ -17,6 +17,7 @@ from .decision import Decision, Facts
 
 NAME = "impact_time"
 STAGE = "solve"
+CHOSEN_BY = "impacts"
 CONTACT_FIELDS = [
     ("dv_n", "f8"),  # change of v_n by forces in this step [m/s]
     ("e", "f8"),  # coefficient of restitution of the pair [-]
@@ -25,8 +26,6 @@ CONTACT_FIELDS = [
     ("up", "f8"),  # speed at which they leave, by Newton's law [m/s]
     ("after", "f8"),  # what forces add to v_n from then to the end of the step [m/s]
     ("struck", "i8"),  # 1 where the impact sets the row's target
-    ("pre_1", "f8"),  # tangential velocity before the solve [m/s]
-    ("pre_2", "f8"),
 ]
 # Slower than so many times what forces change in a step, surfaces come to rest, they do not hit.
 SLOWEST = 4.0

@@ -3,11 +3,19 @@
 Their inverse mass is 0, as that of fixed bodies; the step moves them all the same (`integrate`).
 """
 
+from collections.abc import Mapping
+from typing import Any
+
 from .decision import Decision, Facts, named
 
 NAME = "kinematic"
 STAGE = "integrate"
 BODY_FIELDS = [("kinematic", "i8")]  # 1: keeps its velocity
+
+
+def body_values(body: Mapping[str, Any]) -> dict[str, bool]:
+    """Return the value of BODY_FIELDS that a config states for a body."""
+    return {"kinematic": bool(body["kinematic"])}
 
 
 def wanted(facts: Facts) -> Decision:

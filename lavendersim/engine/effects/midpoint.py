@@ -8,6 +8,7 @@ from .decision import Decision, Facts
 
 NAME = "midpoint"
 STAGE = "integrate"
+CHOSEN_BY = "integrator"
 CONTACT_FIELDS = [("dv_n", "f8")]  # change of v_n by forces in this step [m/s]
 
 
@@ -15,9 +16,10 @@ def wanted(facts: Facts) -> Decision:
     """On when the numerics ask for it and something accelerates bodies between contacts."""
     if facts.integrator != "midpoint":
         return Decision(False, f"the integrator is {facts.integrator}")
-    if any(facts.gravity):
-        return Decision(True, "integrator is midpoint and gravity accelerates")
-    pushed = [body.name for body in facts.bodies if body.force or body.drag]
-    if pushed:
-        return Decision(True, f"integrator is midpoint and {pushed[0]} is pushed or dragged")
+    from . import EFFECTS  # by the time it is asked, all are there
+
+    for effect in EFFECTS:
+        if effect.STAGE == "accelerate" and effect.wanted(facts).on:
+            name = effect.NAME.replace("_", " ")
+            return Decision(True, f"integrator is midpoint and {name} accelerates bodies")
     return Decision(False, "free bodies keep their velocity, any integrator moves them alike")

@@ -17,10 +17,9 @@ def wanted(facts: Facts) -> Decision:
     """On when a pair that may touch has a positive coefficient."""
     for pair in facts.pairs:
         if pair.restitution > 0.0:
-            reason = f"{pair.a} and {pair.b}: coefficient {pair.restitution:g}, Newton's law"
-            if facts.impacts == "at_surface" and any(other.friction > 0.0 for other in facts.pairs):
-                reason += ", or Stronge's where friction would make that gain energy"
-            return Decision(True, reason)
+            return Decision(
+                True, f"{pair.a} and {pair.b}: coefficient {pair.restitution:g}, Newton's law"
+            )
     return Decision(False, "every pair that may touch has coefficient 0")
 
 

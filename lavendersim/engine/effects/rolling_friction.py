@@ -15,6 +15,7 @@ from .decision import Decision, Facts
 
 NAME = "rolling_friction"
 STAGE = "solve"
+NEEDS = ("friction",)
 PAIR_FIELDS = [("rolling_friction", "f8")]  # c of the pair [m]
 CONTACT_FIELDS = [
     ("arm", "f8"),  # greatest distance to the centre of a movable body of the two [m]
@@ -25,6 +26,14 @@ CONTACT_FIELDS = [
     ("k_roll", "f8"),  # largest eigenvalue of that 2x2 [1/(kg m^2)]
     ("psi_1", "f8"),  # accumulated angular impulse on B about t1, t2 [N m s]
     ("psi_2", "f8"),
+]
+# spin: angular velocity of B relative to A after the solve, about the tangents.
+CONTACT_ROW_FIELDS = [
+    ("angular_impulse_t1", "f8"),  # on B [N m s]
+    ("angular_impulse_t2", "f8"),
+    ("spin_t1", "f8"),  # [rad/s]
+    ("spin_t2", "f8"),
+    ("rolling_friction", "f8"),  # c of the pair [m]
 ]
 CACHE_FIELDS = [("psi_x", "f8"), ("psi_y", "f8"), ("psi_z", "f8")]  # world axes [N m s]
 
@@ -88,3 +97,16 @@ def make_residual(spec):
         return sqrt(new_1 * new_1 + new_2 * new_2)
 
     return kernel(rolling_residual, spec)
+
+
+def make_log(spec):
+    """Return `kernel(out, contact, va, vb)` that fills CONTACT_ROW_FIELDS."""
+
+    def log_rolling(out, contact, va, vb):
+        x, y, z = vb.wx - va.wx, vb.wy - va.wy, vb.wz - va.wz
+        out.spin_t1 = contact.t1x * x + contact.t1y * y + contact.t1z * z
+        out.spin_t2 = contact.t2x * x + contact.t2y * y + contact.t2z * z
+        out.angular_impulse_t1, out.angular_impulse_t2 = contact.psi_1, contact.psi_2
+        out.rolling_friction = contact.rolling
+
+    return kernel(log_rolling, spec)

@@ -42,7 +42,10 @@ def make(spec):
     """Return `kernel(body, velocity, dt) -> solved`: turn by omega dt; omega stays."""
 
     def integrate_rotation(body, velocity, dt):
-        turn(body, velocity.wx * dt, velocity.wy * dt, velocity.wz * dt)
+        wx, wy, wz = velocity.wx, velocity.wy, velocity.wz
+        # What does not turn keeps its quaternion to the bit.
+        if wx != 0.0 or wy != 0.0 or wz != 0.0:
+            turn(body, wx * dt, wy * dt, wz * dt)
         return True
 
     return kernel(integrate_rotation, spec)

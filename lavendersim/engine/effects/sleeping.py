@@ -37,6 +37,9 @@ BODY_FIELDS = [
 ]
 
 
+STEP_ROW_FIELDS = [("awake", "i8")]  # movable bodies that do not sleep
+
+
 def wanted(facts: Facts) -> Decision:
     """On when the numerics ask for it and something can come to rest."""
     if not facts.sleeping:
@@ -76,7 +79,7 @@ def make_set_pace(spec: Spec) -> Any:
 
 def make_is_pushed(spec: Spec) -> Any:
     """Return `kernel(body) -> whether a force or torque from the config acts on it now`."""
-    force = spec.has("force")
+    force = spec.has("external_force")
 
     def is_pushed(body):
         pushed = False
@@ -228,3 +231,15 @@ def make_doze(spec: Spec) -> Any:
                     join(bodies, a.island, b.island)
 
     return kernel(doze, spec)
+
+
+def make_step_log(spec: Spec) -> Any:
+    """Return `kernel(row, bodies, counters)` that fills STEP_ROW_FIELDS."""
+
+    def log_awake(row, bodies, counters):
+        row.awake = 0
+        for i in range(bodies.shape[0]):
+            if bodies[i].inv_m > 0.0:
+                row.awake += 1
+
+    return kernel(log_awake, spec)

@@ -12,11 +12,7 @@ from .decision import Decision, Facts
 
 NAME = "speculative"
 STAGE = "capture"
-CONTACT_FIELDS = [
-    ("beside_x", "f8"),  # way of B relative to A across n until they meet, of fast pairs [m]
-    ("beside_y", "f8"),
-    ("beside_z", "f8"),
-]
+CHOSEN_BY = "speculative"
 
 
 def wanted(facts: Facts) -> Decision:

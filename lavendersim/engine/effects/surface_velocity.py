@@ -4,6 +4,9 @@
 s_A, s_B in the bodies' frames [m/s]. Its part along the normal says nothing and is left out.
 """
 
+from collections.abc import Mapping
+from typing import Any
+
 from ..compile import kernel
 from ..records import ORIENTED_BODY
 from ..rotation import to_world
@@ -11,6 +14,7 @@ from .decision import Decision, Facts, named
 
 NAME = "surface_velocity"
 STAGE = "solve"
+NEEDS = ("friction",)
 BODY_FIELDS = [*ORIENTED_BODY, ("sx", "f8"), ("sy", "f8"), ("sz", "f8")]  # body's frame [m/s]
 CONTACT_FIELDS = [
     ("surface_1", "f8"),  # velocity of B's surface in B relative to A's in A, along t1 [m/s]
@@ -18,9 +22,14 @@ CONTACT_FIELDS = [
 ]
 
 
+def body_values(body: Mapping[str, Any]) -> dict[str, float]:
+    """Return the values of its own BODY_FIELDS that a config states for a body."""
+    return dict(zip(("sx", "sy", "sz"), body["surface_velocity"], strict=True))
+
+
 def wanted(facts: Facts) -> Decision:
     """On when a surface moves and some contact has friction."""
-    moving = [body.name for body in facts.bodies if body.surface_velocity]
+    moving = [body.name for body in facts.bodies if any(body.stated["surface_velocity"])]
     if not moving:
         return Decision(False, "no surface moves in its body")
     if any(pair.friction > 0.0 for pair in facts.pairs):

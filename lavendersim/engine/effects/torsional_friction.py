@@ -12,12 +12,19 @@ from .decision import Decision, Facts
 
 NAME = "torsional_friction"
 STAGE = "solve"
+NEEDS = ("friction",)
 PAIR_FIELDS = [("torsional_friction", "f8")]  # c of the pair [m]
 CONTACT_FIELDS = [
     ("arm", "f8"),  # greatest distance to the centre of a movable body of the two [m]
     ("torsional", "f8"),  # c [m]
     ("k_torsion", "f8"),  # inverse effective inertia about n [1/(kg m^2)]
     ("psi_n", "f8"),  # accumulated angular impulse on B about n [N m s]
+]
+# spin: angular velocity of B relative to A after the solve, about the normal.
+CONTACT_ROW_FIELDS = [
+    ("angular_impulse_n", "f8"),  # on B [N m s]
+    ("spin_n", "f8"),  # [rad/s]
+    ("torsional_friction", "f8"),  # c of the pair [m]
 ]
 CACHE_FIELDS = [("psi_n", "f8")]
 
@@ -66,3 +73,15 @@ def make_residual(spec):
         return abs(min(max(held - spin, -limit), limit) - held)
 
     return kernel(torsion_residual, spec)
+
+
+def make_log(spec):
+    """Return `kernel(out, contact, va, vb)` that fills CONTACT_ROW_FIELDS."""
+
+    def log_torsion(out, contact, va, vb):
+        x, y, z = vb.wx - va.wx, vb.wy - va.wy, vb.wz - va.wz
+        out.spin_n = contact.nx * x + contact.ny * y + contact.nz * z
+        out.angular_impulse_n = contact.psi_n
+        out.torsional_friction = contact.torsional
+
+    return kernel(log_torsion, spec)

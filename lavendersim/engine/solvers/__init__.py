@@ -1,7 +1,7 @@
 """Contact rows enter, impulses leave; one file per solver, all with the same signature.
 
 A solver's module has `make(spec) -> kernel` and, where it needs them, CONTACT_FIELDS
-(columns per contact) and `allocate(bodies, contacts)` (arrays it works in).
+(columns per contact) and `allocate(spec, bodies, contacts)` (arrays it works in).
 """
 
 from . import adaptive, nonsmooth_conjugate_gradient, projected_gauss_seidel

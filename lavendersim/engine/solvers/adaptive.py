@@ -18,10 +18,8 @@ from ..compile import kernel
 from ..residual import make_residual
 from ..spec import Spec
 from .envelope import allocate_envelope
-from .newton import CONTACT_FIELDS, make_newton
-from .row_update import make_solve_contact_velocity
-
-__all__ = ["CONTACT_FIELDS", "allocate", "make"]
+from .newton import make_newton
+from .sweep import make_account, make_note, make_sweep
 
 # Sweeps between two looks at how fast they converge.
 LOOK = 8
@@ -37,8 +35,10 @@ SHARPNESS = 0.01
 MOST_ENTRIES = 4_000_000
 
 
-def allocate(bodies: int, contacts: int) -> Any:
+def allocate(spec: Spec, bodies: int, contacts: int) -> Any:
     """Return the arrays this solver works in."""
+    if not spec.has("newton"):
+        return ()
     rows = 6 * bodies
     return allocate_envelope(bodies, contacts, min(rows * (rows + 1) // 2, MOST_ENTRIES))
 
@@ -48,25 +48,19 @@ def make(spec: Spec):
 
     Writes counters.sweeps, .residual [m/s], .residual_contact and .unsolved of this step.
     """
-    record_residuals = spec.record_residuals
-    solve_contact_velocity = make_solve_contact_velocity(spec)
+    record_residuals = spec.has("residual_log")
+    sweep, note, account = make_sweep(spec), make_note(spec), make_account(spec)
     residual = make_residual(spec)
-    # The square of a pyramid is no cone of revolution: it is left to sweeps.
-    hastens = spec.friction_cone != "pyramid"
+    hastens = spec.has("newton")
     newton: Any = make_newton(spec) if hastens else None
 
     def adaptive(
         contacts, order, count, bodies, velocities, space, params, counters, residual_rows
     ):
-        step = counters.step + 1
-        wanted = params.residuals_from <= step <= params.residuals_to
         largest, worst = 0.0, -1
         if record_residuals:
             largest, worst = residual(contacts, count, velocities)
-            if wanted:
-                row = residual_rows[counters.residual_rows]
-                row.step, row.sweep, row.residual = step, 0, largest
-                counters.residual_rows += 1
+            note(params, counters, residual_rows, 0, largest)
         sweeps, look, pause = 0, LOOK, LOOK
         sharp = SHARPNESS * params.tolerance
         aim = sharp if counters.sharpen == 1 else params.tolerance
@@ -74,23 +68,13 @@ def make(spec: Spec):
         measured = False
         earlier = 0.0
         while sweeps < params.sweeps:
-            greatest = 0.0
-            for c in range(count):
-                contact = contacts[order[c]]
-                va, vb = velocities[contact.a], velocities[contact.b]
-                change = solve_contact_velocity(contact, va, vb)
-                # A NaN is greater than anything.
-                if change > greatest or change != change:
-                    greatest = change
+            greatest = sweep(contacts, order, count, velocities)
             sweeps += 1
             measured = False
             if record_residuals:
                 largest, worst = residual(contacts, count, velocities)
                 measured = True
-                if wanted:
-                    row = residual_rows[counters.residual_rows]
-                    row.step, row.sweep, row.residual = step, sweeps, largest
-                    counters.residual_rows += 1
+                note(params, counters, residual_rows, sweeps, largest)
             # The residual is evaluated when the sweep's own changes say that it may be small.
             over = greatest == 0.0 or greatest != greatest
             if over or greatest <= aim:
@@ -121,12 +105,6 @@ def make(spec: Spec):
                     earlier = greatest
         if not measured:
             largest, worst = residual(contacts, count, velocities)
-        counters.sweeps = sweeps
-        counters.residual = largest
-        counters.residual_contact = worst
-        counters.unsolved = 0
-        if params.tolerance >= 0.0:
-            if not largest <= params.tolerance:
-                counters.unsolved = 1
+        account(params, counters, sweeps, largest, worst)
 
     return kernel(adaptive, spec)

@@ -18,15 +18,12 @@ from __future__ import annotations
 from math import sqrt
 
 from ..compile import kernel
+from ..contact import make_apply_block
 from ..residual import make_residual
 from ..spec import Spec
 from .envelope import lay_out
 from .newton_minimise import make_minimise, make_weigh
-from .newton_rows import FIELDS as CONTACT_FIELDS
 from .newton_rows import make_answer, make_start
-from .row_update import make_change
-
-__all__ = ["CONTACT_FIELDS", "make_newton"]
 
 # Newton steps in a call; fewer than these are not worth beginning.
 MOST_STEPS = 80
@@ -56,42 +53,43 @@ def make_newton(spec: Spec):
     multiplications. Impulses and velocities leave consistent with each other.
     """
     friction = spec.has("friction")
-    residual, change = make_residual(spec), make_change(spec)
+    residual, apply_block = make_residual(spec), make_apply_block(spec)
     start, answer = make_start(spec), make_answer(spec)
     weigh, minimise = make_weigh(spec), make_minimise(spec)
+
+    def put(contact, velocities, n, one, two):
+        # Impulses in place of those there are, and velocities with them.
+        change_n, change_1, change_2 = n - contact.lambda_n, 0.0, 0.0
+        contact.lambda_n = n
+        if friction:
+            change_1, change_2 = one - contact.lambda_1, two - contact.lambda_2
+            contact.lambda_1, contact.lambda_2 = one, two
+        va, vb = velocities[contact.a], velocities[contact.b]
+        apply_block(contact, va, vb, change_n, change_1, change_2)
+
+    put = kernel(put, spec)
 
     def accept(contacts, count, velocities):
         for c in range(count):
             contact = contacts[c]
             n, one, two = answer(contact, 0.0)
-            change_1, change_2 = 0.0, 0.0
-            change_n = n - contact.lambda_n
-            contact.lambda_n = n
-            if friction:
+            if friction:  # round-off may have left the cone
                 limit = contact.mu * n
                 squared = one * one + two * two
                 if squared > limit * limit:
-                    scale = limit / squared**0.5
+                    scale = limit / sqrt(squared)
                     one, two = one * scale, two * scale
-                change_1, change_2 = one - contact.lambda_1, two - contact.lambda_2
-                contact.lambda_1, contact.lambda_2 = one, two
-            va, vb = velocities[contact.a], velocities[contact.b]
-            change(contact, va, vb, change_n, change_1, change_2)
+            put(contact, velocities, n, one, two)
 
     accept = kernel(accept, spec)
 
     def take_back(contacts, count, velocities):
         for c in range(count):
             contact = contacts[c]
-            change_1, change_2 = 0.0, 0.0
-            change_n = contact.held_n - contact.lambda_n
-            contact.lambda_n = contact.held_n
+            one, two = 0.0, 0.0
             if friction:
-                change_1 = contact.held_1 - contact.lambda_1
-                change_2 = contact.held_2 - contact.lambda_2
-                contact.lambda_1, contact.lambda_2 = contact.held_1, contact.held_2
-            va, vb = velocities[contact.a], velocities[contact.b]
-            change(contact, va, vb, change_n, change_1, change_2)
+                one, two = contact.held_1, contact.held_2
+            put(contact, velocities, contact.held_n, one, two)
 
     take_back = kernel(take_back, spec)
 

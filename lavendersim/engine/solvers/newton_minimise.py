@@ -13,7 +13,8 @@ from ..compile import kernel
 from ..rotation import inertia_times
 from ..spec import Spec
 from .envelope import DOF, factorise, solve_factorised
-from .newton_rows import make_answer, make_assemble, make_fill_rows
+from .newton_matrix import make_assemble
+from .newton_rows import make_answer, make_fill_rows
 
 # Steps at most. The one that finds every contact in its final state is the last but one.
 MOST_STEPS = 24

@@ -14,12 +14,11 @@ thing done is always a sweep, so impulses end inside their cones.
 
 from __future__ import annotations
 
-from ..block import make_apply_vector
 from ..compile import kernel
-from ..contact import make_apply_impulse
+from ..contact import make_apply_block
 from ..residual import make_residual
 from ..spec import Spec
-from .row_update import make_solve_contact_velocity
+from .sweep import make_account, make_note, make_sweep
 
 CONTACT_FIELDS = [
     ("start_n", "f8"),  # impulse before the sweep [N s]
@@ -35,30 +34,21 @@ PLAIN_SWEEPS = 8
 def make_move_on(spec: Spec):
     """Return `kernel(contact, va, vb, share)`: lambda += share p, p <- share p + last change."""
     friction = spec.has("friction")
-    apply_vector = make_apply_vector(spec)
-    apply_impulse = make_apply_impulse(spec)
+    apply_block = make_apply_block(spec)
 
     def move_on(contact, va, vb, share):
         step = share * contact.path_n
         contact.path_n = step + contact.lambda_n - contact.start_n
         contact.lambda_n += step
+        step_1, step_2 = 0.0, 0.0
         if friction:
             step_1, step_2 = share * contact.path_1, share * contact.path_2
             contact.path_1 = step_1 + contact.lambda_1 - contact.start_1
             contact.path_2 = step_2 + contact.lambda_2 - contact.start_2
             contact.lambda_1 += step_1
             contact.lambda_2 += step_2
-            if share > 0.0:
-                apply_vector(
-                    contact,
-                    va,
-                    vb,
-                    contact.nx * step + contact.t1x * step_1 + contact.t2x * step_2,
-                    contact.ny * step + contact.t1y * step_1 + contact.t2y * step_2,
-                    contact.nz * step + contact.t1z * step_1 + contact.t2z * step_2,
-                )
-        elif share > 0.0:
-            apply_impulse(contact, va, vb, step)
+        if share > 0.0:
+            apply_block(contact, va, vb, step, step_1, step_2)
 
     return kernel(move_on, spec)
 
@@ -69,28 +59,22 @@ def make(spec: Spec):
     Writes counters.sweeps, .residual [m/s], .residual_contact and .unsolved of this step.
     """
     friction = spec.has("friction")
-    record_residuals = spec.record_residuals
-    solve_contact_velocity = make_solve_contact_velocity(spec)
+    record_residuals = spec.has("residual_log")
+    sweep, note, account = make_sweep(spec), make_note(spec), make_account(spec)
     residual = make_residual(spec)
     move_on = make_move_on(spec)
 
     def nonsmooth_conjugate_gradient(
         contacts, order, count, bodies, velocities, space, params, counters, residual_rows
     ):
-        step = counters.step + 1
-        wanted = params.residuals_from <= step <= params.residuals_to
         largest, worst = 0.0, -1
         previous, fresh = 0.0, True
         if record_residuals:
             largest, worst = residual(contacts, count, velocities)
-            if wanted:
-                row = residual_rows[counters.residual_rows]
-                row.step, row.sweep, row.residual = step, 0, largest
-                counters.residual_rows += 1
+            note(params, counters, residual_rows, 0, largest)
         sweeps = 0
         measured = False
         while sweeps < params.sweeps:
-            greatest = 0.0
             directed = sweeps >= PLAIN_SWEEPS
             if directed:
                 for c in range(count):
@@ -98,22 +82,13 @@ def make(spec: Spec):
                     contact.start_n = contact.lambda_n
                     if friction:
                         contact.start_1, contact.start_2 = contact.lambda_1, contact.lambda_2
-            for c in range(count):
-                contact = contacts[order[c]]
-                va, vb = velocities[contact.a], velocities[contact.b]
-                change = solve_contact_velocity(contact, va, vb)
-                # A NaN is greater than anything.
-                if change > greatest or change != change:
-                    greatest = change
+            greatest = sweep(contacts, order, count, velocities)
             sweeps += 1
             measured = False
             if record_residuals:
                 largest, worst = residual(contacts, count, velocities)
                 measured = True
-                if wanted:
-                    row = residual_rows[counters.residual_rows]
-                    row.step, row.sweep, row.residual = step, sweeps, largest
-                    counters.residual_rows += 1
+                note(params, counters, residual_rows, sweeps, largest)
             # The residual is evaluated when the sweep's own changes say that it may be small.
             if greatest <= params.tolerance or greatest == 0.0 or greatest != greatest:
                 if not measured:
@@ -145,12 +120,6 @@ def make(spec: Spec):
                 previous, fresh = squared, False
         if not measured:
             largest, worst = residual(contacts, count, velocities)
-        counters.sweeps = sweeps
-        counters.residual = largest
-        counters.residual_contact = worst
-        counters.unsolved = 0
-        if params.tolerance >= 0.0:
-            if not largest <= params.tolerance:
-                counters.unsolved = 1
+        account(params, counters, sweeps, largest, worst)
 
     return kernel(nonsmooth_conjugate_gradient, spec)

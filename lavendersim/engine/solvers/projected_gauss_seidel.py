@@ -11,7 +11,7 @@ from __future__ import annotations
 from ..compile import kernel
 from ..residual import make_residual
 from ..spec import Spec
-from .row_update import make_solve_contact_velocity
+from .sweep import make_account, make_note, make_sweep
 
 
 def make(spec: Spec):
@@ -19,54 +19,37 @@ def make(spec: Spec):
 
     Writes counters.sweeps, .residual [m/s] and .residual_contact of this step.
     """
-    solve_contact_velocity = make_solve_contact_velocity(spec)
+    sweep, note, account = make_sweep(spec), make_note(spec), make_account(spec)
     residual = make_residual(spec)
-    every_sweep = spec.record_residuals or spec.tolerance
-    record_residuals = spec.record_residuals
+    every_sweep = spec.has("residual_log") or spec.tolerance
+    record_residuals = spec.has("residual_log")
     stop_early = spec.tolerance
 
     def projected_gauss_seidel(
         contacts, order, count, bodies, velocities, space, params, counters, residual_rows
     ):
-        step = counters.step + 1
-        wanted = params.residuals_from <= step <= params.residuals_to
         largest, worst = 0.0, -1
         sweeps = 0
         if every_sweep:
             largest, worst = residual(contacts, count, velocities)
-        for sweep in range(params.sweeps + 1):
+        while True:
             if record_residuals:
-                if wanted:
-                    row = residual_rows[counters.residual_rows]
-                    row.step, row.sweep, row.residual = step, sweep, largest
-                    counters.residual_rows += 1
-            if sweep == params.sweeps:
+                note(params, counters, residual_rows, sweeps, largest)
+            if sweeps == params.sweeps:
                 break
             if stop_early:
                 if largest <= params.tolerance:
                     break
-            changed = False
-            for c in range(count):
-                contact = contacts[order[c]]
-                va, vb = velocities[contact.a], velocities[contact.b]
-                if solve_contact_velocity(contact, va, vb) != 0.0:
-                    changed = True
+            greatest = sweep(contacts, order, count, velocities)
             sweeps += 1
             if not record_residuals:
                 # Nothing changed, so nothing would change in the sweeps that are left.
-                if not changed:
+                if greatest == 0.0:
                     break
             if every_sweep:
                 largest, worst = residual(contacts, count, velocities)
         if not every_sweep:
             largest, worst = residual(contacts, count, velocities)
-        counters.sweeps = sweeps
-        counters.residual = largest
-        counters.unsolved = 0
-        if stop_early:
-            if params.tolerance >= 0.0:
-                if not largest <= params.tolerance:
-                    counters.unsolved = 1
-        counters.residual_contact = worst
+        account(params, counters, sweeps, largest, worst)
 
     return kernel(projected_gauss_seidel, spec)

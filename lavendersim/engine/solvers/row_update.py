@@ -14,9 +14,10 @@ from __future__ import annotations
 
 from math import sqrt
 
-from ..block import make_apply_vector, make_relative_velocity
+from ..block import make_relative_velocity
 from ..compile import kernel
-from ..contact import make_apply_impulse, make_normal_velocity
+from ..contact import make_apply_all, make_smooth_impulse, make_smooth_velocity
+from ..effects.smooth_contact import by_roughness
 from ..spec import Spec
 from ..spin_block import make_solve_spin, resists_turning
 
@@ -26,37 +27,13 @@ def make_solve_contact_velocity(spec: Spec):
 
     change: the largest change of the contact's velocity that the update makes [m/s].
     """
-    return _make_block(spec) if spec.has("friction") else _make_normal(spec)
-
-
-def make_change(spec: Spec):
-    """Return `kernel(contact, va, vb, n, one, two)`: apply impulses along n, t1, t2 [N s]."""
-    if not spec.has("friction"):
-        apply_impulse = make_apply_impulse(spec)
-
-        def change_normal(contact, va, vb, n, one, two):
-            apply_impulse(contact, va, vb, n)
-
-        return kernel(change_normal, spec)
-    apply_vector = make_apply_vector(spec)
-
-    def change_block(contact, va, vb, n, one, two):
-        apply_vector(
-            contact,
-            va,
-            vb,
-            contact.nx * n + contact.t1x * one + contact.t2x * two,
-            contact.ny * n + contact.t1y * one + contact.t2y * two,
-            contact.nz * n + contact.t1z * one + contact.t2z * two,
-        )
-
-    return kernel(change_block, spec)
+    return by_roughness(spec, _make_normal, _make_block)
 
 
 def _make_normal(spec: Spec):
     compliant = spec.has("compliance")
-    normal_velocity = make_normal_velocity(spec)
-    apply_impulse = make_apply_impulse(spec)
+    normal_velocity = make_smooth_velocity(spec)
+    apply_impulse = make_smooth_impulse(spec)
 
     def solve_contact_velocity(contact, va, vb):
         w = normal_velocity(contact, va, vb) + contact.target
@@ -79,7 +56,7 @@ def _make_block(spec: Spec):
     moving_surface = spec.has("surface_velocity")
     spins, solve_spin = resists_turning(spec), make_solve_spin(spec)
     relative_velocity = make_relative_velocity(spec)
-    apply_vector = make_apply_vector(spec)
+    apply_block = make_apply_all(spec)
 
     def solve_contact_block(contact, va, vb):
         x, y, z = relative_velocity(contact, va, vb)
@@ -110,14 +87,7 @@ def _make_block(spec: Spec):
                 new_1, new_2 = new_1 * scale, new_2 * scale
         contact.lambda_n, contact.lambda_1, contact.lambda_2 = new_n, new_1, new_2
         change_1, change_2 = new_1 - old_1, new_2 - old_2
-        apply_vector(
-            contact,
-            va,
-            vb,
-            contact.nx * change_n + contact.t1x * change_1 + contact.t2x * change_2,
-            contact.ny * change_n + contact.t1y * change_1 + contact.t2y * change_2,
-            contact.nz * change_n + contact.t1z * change_1 + contact.t2z * change_2,
-        )
+        apply_block(contact, va, vb, change_n, change_1, change_2)
         # In this order a NaN stays.
         change = max(
             max(abs(change_n) * contact.k_n, abs(change_1) * contact.k_t),

@@ -8,7 +8,7 @@ from laboratory import Bench, body, resolved
 
 from lavendersim.engine.spec import Spec
 
-SPEC = Spec(effects=("drag", "force", "gravity", "rotation"))
+SPEC = Spec(effects=("drag", "external_force", "gravity", "rotation"))
 DT, G = 1.0 / 240.0, 9.81
 STEPS = 200
 BRICK = {"kind": "box", "size": [0.2, 0.3, 0.5]}

@@ -38,7 +38,7 @@ def stack(ball=(50.0, 0.0, 50.0), velocity=(0.0, 0.0, 0.0), sleeping=True, **num
     cell = resolved(bodies, (0.0, 0.0, -G), sleeping=sleeping, **numerics)
     # Every test pushes or not on one engine: the effect of forces is there, its forces are zero.
     spec = plan_of(cell).spec
-    spec = spec._replace(effects=tuple(sorted({*spec.effects, "force"})))
+    spec = spec._replace(effects=tuple(sorted({*spec.effects, "external_force"})))
     return Bench(cell, spec=spec)
 
 

@@ -49,14 +49,16 @@ def test_energies_and_momenta_follow_their_definitions(bench):
 
 def fnv(step: int, bench: Bench) -> int:
     state = 0xCBF29CE484222325 ^ step
-    for table in (bench.engine.bodies, bench.engine.velocities):
-        for word in table.view(np.uint64):
+    names = ["x", "y", "z", "qw", "qx", "qy", "qz"]
+    for body, velocity in zip(bench.engine.bodies, bench.engine.velocities, strict=True):
+        pose, speeds = [body[name] for name in names], list(velocity)[:6]
+        for word in np.array([*pose, *speeds]).view(np.uint64):
             bits = 0 if word == 1 << 63 else int(word)
             state = (state ^ bits) * 0x100000001B3 % 2**64
     return state
 
 
-def test_the_hash_is_fnv_over_every_word_of_the_state(bench):
+def test_the_hash_is_fnv_over_every_pose_and_velocity(bench):
     for step in (3, 5):
         row = bench.run(step - int(bench.engine.counters["step"][0])).step[-1]
         assert int(row["state_hash"]) == fnv(step, bench)
@@ -64,7 +66,7 @@ def test_the_hash_is_fnv_over_every_word_of_the_state(bench):
 
 def test_one_flipped_bit_changes_the_hash(bench):
     before = fnv(1, bench)
-    bench.engine.velocities.view(np.uint64)[9] ^= 1
+    bench.engine.velocities.view(np.uint64)[5] ^= 1
     assert fnv(1, bench) != before
 
 

@@ -42,6 +42,7 @@ class SyntheticTrace:
     residual: Any = None
     as_written: str = ""
     metadata: dict[str, Any] = field(default_factory=dict)
+    absent: dict[str, str] = field(default_factory=dict)
     status: str = "complete"
     complete: bool = True
     path: Path = Path("cells/ball_and_box.mcap")

@@ -7,9 +7,15 @@ from collections import defaultdict
 import numpy as np
 import pyarrow as pa
 import pytest
+import rerun.blueprint as rrb
 from rerun.chunk import RrdReader
 
 from lavendersim import replay
+from lavendersim.replay import scene
+from lavendersim.replay.blueprint import blueprint
+from lavendersim.replay.columns import contacts_of
+from lavendersim.replay.force_scale import force_scale
+from lavendersim.trace.absent import absent_table
 
 # Rerun stores positions, vectors and quaternions as float32.
 FLOAT32 = 2 * np.finfo(np.float32).eps
@@ -172,3 +178,47 @@ def test_failed_save_leaves_the_old_file_and_nothing_beside_it(two_bodies, tmp_p
         replay.save(two_bodies, path)
     assert path.read_bytes() == b"yesterday's"
     assert list(tmp_path.iterdir()) == [path]
+
+
+def where_nothing_can_touch(trace):
+    """Make the trace that of a log without /contacts, as the trace room reads it."""
+    topics = ("/contacts", "/plot/force", "/plot/penetration", "/plot/log10_residual")
+    trace.absent = dict.fromkeys(topics, "nothing can touch (plan: contact_log off)")
+    trace.contact = absent_table("this log has no /contacts")
+    for name in ("contact_count", "total_normal_force", "max_penetration", "residual"):
+        trace.step[name] = 0
+    return trace
+
+
+def test_where_nothing_can_touch_bodies_and_their_paths_are_all_there_is(one_ball, tmp_path):
+    replay.save(where_nothing_can_touch(one_ball), tmp_path / "trace.rrd")
+    moving, static = read(tmp_path / "trace.rrd")
+    assert set(moving) == {"/bodies/ball"}
+    rooms = {path.split("/")[1] for path in static} - {"", "__properties"}
+    assert rooms == {"bodies", "paths", "grid"}
+
+
+def views_in(part):
+    """The views of a part of the layout, in order; no part of it is empty."""
+    if not isinstance(part, rrb.Container):
+        return [part]
+    assert part.contents
+    return [view for inner in part.contents for view in views_in(inner)]
+
+
+def views_of(trace):
+    """The kinds of views in the blueprint of a trace, and the title of the view of the scene."""
+    bodies = scene.shapes(trace.resolved)
+    room = scene.extent(trace, bodies)
+    scale = None if trace.absent else force_scale(contacts_of(trace), room.diagonal)
+    views = views_in(blueprint(trace, bodies, room, scale).root_container)
+    return [type(view).__name__ for view in views], str(views[0].name)
+
+
+def test_where_nothing_can_touch_the_scene_is_the_only_view(one_ball):
+    kinds, title = views_of(one_ball)
+    assert kinds == ["Spatial3DView", *["TimeSeriesView"] * 3]
+    assert title.startswith("contact forces: ")
+    kinds, title = views_of(where_nothing_can_touch(one_ball))
+    assert kinds == ["Spatial3DView"]
+    assert "force" not in title

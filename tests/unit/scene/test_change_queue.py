@@ -11,9 +11,10 @@ from laboratory import body, plane, resolved
 from lavendersim.engine.spec import Spec
 from lavendersim.scene.build import Scene, build
 from lavendersim.scene.events import EventQueue
-from lavendersim.scene.plan import facts_of, plan_of
+from lavendersim.scene.facts import facts_of
+from lavendersim.scene.plan import plan_of
 
-SPEC = Spec(effects=("force", "kinematic", "rotation"), shape_pairs=("sphere_plane",))
+SPEC = Spec(effects=("external_force", "kinematic", "rotation"), shape_pairs=("sphere_plane",))
 BALL = {"kind": "sphere", "radius": 0.1}
 
 
@@ -125,7 +126,7 @@ def test_plan_knows_what_is_pushed_twisted_and_thrown() -> None:
     assert facts["belt"].kinematic
     assert not facts["belt"].movable
     decisions = plan_of(pushed.cell).decisions
-    assert decisions["force"].on
+    assert decisions["external_force"].on
     assert not decisions["rotation"].on
     twisted = Bench([force(0.0, 1.0, torque=[1, 0, 0])])
     assert plan_of(twisted.cell).decisions["rotation"].on

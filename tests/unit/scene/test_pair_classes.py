@@ -12,9 +12,11 @@ from laboratory import body, box, plane, resolved, sphere
 from lavendersim.engine.collide import SHAPE_PAIRS
 from lavendersim.engine.spec import Spec
 from lavendersim.scene.build import build
+from lavendersim.scene.candidates import candidate_pairs
 from lavendersim.scene.classes import Surface, class_pairs, classes_of, mix
 from lavendersim.scene.colliders import colliders
-from lavendersim.scene.plan import candidate_pairs, facts_of, plan_of
+from lavendersim.scene.facts import facts_of
+from lavendersim.scene.plan import plan_of
 
 KINDS = [
     {"kind": "sphere", "radius": 0.1},

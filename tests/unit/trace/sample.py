@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from collections.abc import Mapping
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -79,9 +80,21 @@ def split(block: Block, sizes: list[int]) -> list[Block]:
     return blocks
 
 
-def write(path: Path, blocks: list[Block], status: str | None = "complete") -> Path:
+def without(block: Block, *topics: str) -> Block:
+    """Return the run as an engine gives it that logs no rows for these topics."""
+    contact = block.contact[:0] if "/contacts" in topics else block.contact
+    residual = block.residual[:0] if "/residuals" in topics else block.residual
+    return block._replace(contact=contact, residual=residual)
+
+
+def write(
+    path: Path,
+    blocks: list[Block],
+    status: str | None = "complete",
+    absent: Mapping[str, str] | None = None,
+) -> Path:
     """Write blocks as a log; status None leaves it as a killed run would."""
-    writer = TraceWriter(path, BODIES, RESOLVED, AS_WRITTEN, TIMESTEP, METADATA)
+    writer = TraceWriter(path, BODIES, RESOLVED, AS_WRITTEN, TIMESTEP, METADATA, absent)
     for block in blocks:
         writer.append(block)
     if status is None:

@@ -1,4 +1,4 @@
-"""A solved impact enters; where Newton's law gave it energy, Stronge's law leaves in its place.
+"""Impact energy: where Newton's law gives an impact energy, Stronge's takes its place.
 
 With friction, Newton's coefficient (a ratio of speeds) can make an eccentric impact gain energy.
 Stronge's (`stronge`) is a ratio of the normal impulse's work in restitution and in compression and
@@ -11,19 +11,39 @@ from __future__ import annotations
 
 from typing import Any
 
-from .block import make_relative_velocity
-from .compile import kernel
-from .spec import Spec
-from .stronge import make_leave
+from ..block import make_relative_velocity
+from ..compile import kernel
+from ..spec import Spec
+from ..stronge import make_leave
+from .decision import Decision, Facts
 
+NAME = "impact_energy"
+STAGE = "solve"
+NEEDS = ("friction", "impact_time", "restitution")
+CONTACT_FIELDS = [
+    ("pre_1", "f8"),  # tangential velocity before the solve [m/s]
+    ("pre_2", "f8"),
+]
+STEP_ROW_FIELDS = [("stronge", "i8")]  # 1 when Stronge's law took the place of Newton's
 # Gain, relative to the work's own size, that is round-off.
 ROUND_OFF = 1e-13
 HALVINGS = 60
 
 
-def watches(spec: Spec) -> bool:
-    """Whether impacts of this engine can gain energy by Newton's law."""
-    return spec.has("impact_time") and spec.has("friction") and spec.has("restitution")
+def wanted(facts: Facts) -> Decision:
+    """On where impacts at the surface may bounce and rub."""
+    if facts.impacts != "at_surface":
+        return Decision(False, f"impacts are {facts.impacts}")
+    if not any(pair.restitution > 0.0 for pair in facts.pairs):
+        return Decision(False, "every pair that may touch has restitution 0")
+    for pair in facts.pairs:
+        if pair.friction > 0.0 or pair.resists_turning:
+            return Decision(
+                True,
+                f"{pair.a} and {pair.b}: friction could make Newton's law of restitution give "
+                "energy; Stronge's takes its place where it does",
+            )
+    return Decision(False, "nothing rubs: Newton's law of restitution gives no energy")
 
 
 def make_note(spec: Spec) -> Any:
@@ -47,6 +67,7 @@ def make_settle(spec: Spec, solve: Any, classify: Any) -> Any:
     """
     relative_velocity = make_relative_velocity(spec)
     leave = make_leave(spec)
+    some_smooth = spec.has("smooth_contact")
 
     def work_of(contacts, count, velocities, motion, params):
         # Of all impulses, at each body's time of impact: before and after it forces work alone.
@@ -87,6 +108,13 @@ def make_settle(spec: Spec, solve: Any, classify: Any) -> Any:
 
     def settle(contacts, order, count, bodies, velocities, motion, space, params, counters, rows):
         counters.stronge = 0
+        if some_smooth:
+            rubs = False
+            for c in range(count):
+                if contacts[c].rough == 1:
+                    rubs = True
+            if not rubs:
+                return
         total, size = work_of(contacts, count, velocities, motion, params)
         if not total > ROUND_OFF * size:
             return
@@ -118,3 +146,12 @@ def make_settle(spec: Spec, solve: Any, classify: Any) -> Any:
         solve(contacts, order, count, bodies, velocities, space, params, counters, rows)
 
     return kernel(settle, spec)
+
+
+def make_step_log(spec: Spec) -> Any:
+    """Return `kernel(row, bodies, counters)` that fills STEP_ROW_FIELDS."""
+
+    def log_stronge(row, bodies, counters):
+        row.stronge = counters.stronge
+
+    return kernel(log_stronge, spec)

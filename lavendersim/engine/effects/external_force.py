@@ -8,7 +8,7 @@ from ..compile import kernel
 from ..rotation import inverse_inertia_times
 from .decision import Decision, Facts, named
 
-NAME = "force"
+NAME = "external_force"
 STAGE = "accelerate"
 BODY_FIELDS = [
     *[(f"f{axis}", "f8") for axis in "xyz"],  # [N] world axes
@@ -28,7 +28,7 @@ def make(spec):
     """Return `kernel(body, velocity, params)`."""
     turns = spec.has("rotation")
 
-    def force(body, velocity, params):
+    def external_force(body, velocity, params):
         scale = body.inv_m * params.dt
         velocity.vx += body.fx * scale
         velocity.vy += body.fy * scale
@@ -39,4 +39,4 @@ def make(spec):
             velocity.wy += y * params.dt
             velocity.wz += z * params.dt
 
-    return kernel(force, spec)
+    return kernel(external_force, spec)

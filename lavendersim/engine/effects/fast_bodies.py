@@ -1,0 +1,122 @@
+"""Fast bodies: pairs whose way in a step is long for their size get the contacts of their meeting.
+
+`collide.swept` finds where two such bodies meet, or pass, within the step. Planes need none of it:
+their normal is the same from everywhere. A scene whose energy cannot make any two bodies that fast
+is spared the search, by bounds that hold whatever the contacts do, for no contact gives energy:
+
+    kinetic energy E <= E_0 + sum m |g| h        above a floor across gravity, h height over it
+    sqrt(2 E) <= sqrt(2 E_0) + |g| T sqrt(sum m)    falling for all the time T: gravity's power is
+                                                 at most |g| sum m |v| <= |g| sqrt(sum m) sqrt(2 E)
+    |v_A - v_B| <= sqrt(2 E (1/m_A + 1/m_B))     with all of it in two bodies
+"""
+
+from math import hypot, inf, sqrt
+
+from .decision import BodyFacts, Decision, Facts
+
+NAME = "fast_bodies"
+STAGE = "collide"
+NEEDS = ("speculative",)
+CONTACT_FIELDS = [
+    ("beside_x", "f8"),  # way of B relative to A across n until they meet [m]
+    ("beside_y", "f8"),
+    ("beside_z", "f8"),
+]
+# Share of the smaller bounding radius that a pair may close in a step before it is fast [-].
+FAST = 0.5
+# The bound on speeds is taken this many times, for what a solver's error may add to them [-].
+SAFETY = 2.0
+# A floor is across gravity when the cosine between them is 1 to so much [-].
+LEVEL = 1e-9
+
+
+def wanted(facts: Facts) -> Decision:
+    """On when two bodies without a plane between them may come to close in fast."""
+    if not facts.speculative:
+        return Decision(False, "speculative is false")
+    bodies = {body.name: body for body in facts.bodies}
+    between = [
+        pair for pair in facts.pairs if "plane" not in (bodies[pair.a].shape, bodies[pair.b].shape)
+    ]
+    if not between:
+        return Decision(False, "only planes can be run into, and their normal is everywhere alike")
+    source = _source_of_energy(facts)
+    if source:
+        return Decision(True, f"{source}: no bound on how fast {between[0].a} may become")
+    way = facts.timestep * SAFETY * _closing_speed(facts)
+    smallest = min(body.least_size for body in facts.bodies)
+    allowed = FAST * smallest
+    if way > allowed:
+        return Decision(
+            True,
+            f"the energy there is could move bodies {way:.2g} m in a step, {allowed:.2g} m is"
+            " far for the smallest",
+        )
+    return Decision(
+        False,
+        f"the energy there is moves no body {way:.2g} m in a step, {allowed:.2g} m would be"
+        " far for the smallest",
+    )
+
+
+def _source_of_energy(facts: Facts) -> str:
+    """Return what may give energy besides gravity, in words; nothing where nothing does."""
+    for body in facts.bodies:
+        if body.force or body.torque:
+            return f"a force or torque acts on {body.name}"
+        if body.kinematic and (body.spins or body.speed > 0.0):
+            return f"{body.name} moves as its velocity says"
+        if body.stated and any(body.stated["surface_velocity"]):
+            return f"the surface of {body.name} moves"
+    if facts.events:
+        return "events change bodies"
+    if facts.stabilisation_gain > 0.0:
+        return "stabilisation pushes bodies apart"
+    for pair in facts.pairs:
+        if pair.compliance > 0.0:
+            return f"{pair.a} and {pair.b} are springs"
+        if pair.restitution > 1.0:
+            return f"{pair.a} and {pair.b} leave faster than they meet"
+    return ""
+
+
+def _closing_speed(facts: Facts) -> float:
+    """Return the greatest speed relative to each other that two bodies may reach [m/s]."""
+    movable = [body for body in facts.bodies if body.movable]
+    masses = [float(body.stated["mass"]) for body in movable]
+    g = hypot(*facts.gravity)
+    energy = sum(_kinetic_energy(body) for body in movable)
+    falling = sqrt(2.0 * energy) + g * facts.duration * sqrt(sum(masses))
+    bound = 0.5 * falling * falling
+    floor = _floor(facts, g)
+    if floor > -inf:
+        fx, fy, fz = facts.gravity
+        fall = 0.0
+        for body, mass in zip(movable, masses, strict=True):
+            x, y, z = body.stated["position"]
+            height = -(fx * x + fy * y + fz * z) / g - floor
+            fall += mass * g * max(height + body.size, 0.0)
+        bound = min(bound, energy + fall)
+    lightest = sorted(masses)[:2]
+    return sqrt(2.0 * bound * sum(1.0 / mass for mass in lightest))
+
+
+def _floor(facts: Facts, g: float) -> float:
+    """Return the height against gravity of the highest plane that lies across it [m], or -inf."""
+    if g == 0.0:
+        return -inf
+    heights = [-inf]
+    for body in facts.bodies:
+        if body.shape == "plane":
+            shape = body.stated["shape"]
+            upward = -sum(n * f for n, f in zip(shape["normal"], facts.gravity, strict=True)) / g
+            if upward >= 1.0 - LEVEL:
+                heights.append(float(shape["offset"]))
+    return max(heights)
+
+
+def _kinetic_energy(body: BodyFacts) -> float:
+    """Return the largest kinetic energy that is stated for a body [J]."""
+    mass, spin = float(body.stated["mass"]), hypot(*body.stated["angular_velocity"])
+    inertia = float(max(body.stated["inertia"]))
+    return 0.5 * mass * body.speed**2 + 0.5 * inertia * spin**2

@@ -1,0 +1,41 @@
+"""Newton's method: solves of `adaptive` whose sweeps converge slowly are finished by it.
+
+Two contacts that share a body trade their impulses sweep by sweep, more slowly the longer the chain
+and the larger the ratio of masses. One row alone is solved by its first sweep.
+"""
+
+from .decision import Decision, Facts
+
+NAME = "newton"
+STAGE = "solve"
+CHOSEN_BY = "solver"
+CONTACT_FIELDS = [
+    *[
+        (f"{name}_{axis}", "f8")
+        # lambda^k [N s], the velocities seen, and those that a step adds [m/s].
+        for name in ("held", "seen", "step")
+        for axis in "n12"
+    ],
+    ("scale", "f8"),  # s
+    ("stiff_n", "f8"),  # e along the normal and in the tangent plane [kg]
+    ("stiff_t", "f8"),
+]
+# Shapes that touch each other, or a plane, in one point.
+ONE_POINT = {"sphere", "plane"}
+
+
+def wanted(facts: Facts) -> Decision:
+    """On where the solver is adaptive and some step may have two rows."""
+    if facts.solver != "adaptive":
+        return Decision(False, f"the solver is {facts.solver}")
+    if facts.friction_cone == "pyramid":
+        return Decision(False, "a pyramid of friction is no cone of revolution: sweeps solve it")
+    if not facts.pairs:
+        return Decision(False, "nothing can touch")
+    shapes = {body.name: body.shape for body in facts.bodies}
+    (pair, *others) = facts.pairs
+    alone = facts.pair_count == 1 and not others
+    rubs = pair.friction > 0.0 or pair.resists_turning
+    if alone and not rubs and {shapes[pair.a], shapes[pair.b]} <= ONE_POINT:
+        return Decision(False, f"{pair.a} and {pair.b} touch in one point, without friction")
+    return Decision(True, "contacts that share a body may trade impulses for many sweeps")

@@ -1,0 +1,28 @@
+"""Pose log: `/tf`, where every body is after every step, and `/robot_description` to draw it by."""
+
+from ..compile import kernel
+from .decision import Decision, Facts
+
+NAME = "pose_log"
+STAGE = "record"
+CHANNELS = ("/robot_description", "/tf")
+POSE_ROW_FIELDS = [(name, "f8") for name in ("x", "y", "z", "qw", "qx", "qy", "qz")]
+
+
+def wanted(facts: Facts) -> Decision:
+    """On when the run is logged."""
+    if facts.record:
+        return Decision(True, "the run is logged")
+    return Decision(False, "nothing of the run is logged")
+
+
+def make(spec):
+    """Return `kernel(body, row)`; row: (7,) x y z qw qx qy qz, as it was where nothing turns."""
+    turns = spec.has("rotation")
+
+    def log_pose(body, row):
+        row[0], row[1], row[2] = body.x, body.y, body.z
+        if turns:
+            row[3], row[4], row[5], row[6] = body.qw, body.qx, body.qy, body.qz
+
+    return kernel(log_pose, spec)

@@ -1,0 +1,120 @@
+"""Step log: `/step`, the sums of every step: energy, momentum, residual, hash of the state.
+
+What an effect adds to a step it logs itself: STEP_ROW_FIELDS and `make_step_log` of its module.
+"""
+
+from ..compile import chain, kernel
+from ..records import Field
+from ..rotation import inertia_times
+from ..spec import Spec
+from .decision import Decision, Facts
+
+NAME = "step_log"
+STAGE = "record"
+CHANNELS = ("/step",)
+STEP_ROW_FIELDS: list[Field] = [
+    ("step", "i8"),
+    ("contact_count", "i8"),
+    ("sweeps", "i8"),
+    ("residual_contact", "i8"),
+    ("total_normal_force", "f8"),  # sum over contacts [N]
+    ("max_penetration", "f8"),  # [m]
+    ("residual", "f8"),  # [m/s]
+    ("kinetic_energy", "f8"),  # [J]
+    ("potential_energy", "f8"),  # -m g . x, zero at the origin [J]
+    ("momentum_x", "f8"),  # [kg m/s]
+    ("momentum_y", "f8"),
+    ("momentum_z", "f8"),
+    ("angular_momentum_x", "f8"),  # about the origin [kg m^2/s]
+    ("angular_momentum_y", "f8"),
+    ("angular_momentum_z", "f8"),
+    ("state_hash", "u8"),  # of every body's pose and velocity
+]
+# Where a tolerance is asked for.
+UNSOLVED_ROW: list[Field] = [("unsolved", "i8")]  # 1 when the residual stayed above it
+
+
+def wanted(facts: Facts) -> Decision:
+    """On when the run is logged."""
+    if facts.record:
+        return Decision(True, "the run is logged")
+    return Decision(False, "nothing of the run is logged")
+
+
+def make(spec: Spec, log_pose, loggers):
+    """Return `kernel(bodies, velocities, bits, params, counters, rows)`, at the end of a step.
+
+    log_pose: the kernel of `pose_log`; loggers: kernels (row, bodies, counters) of the effects that
+    log more of a step. bits: uint64 views of the pose rows (n, bodies, 7) and the velocities
+    (bodies, words), for the state hash. rows: (step rows, pose rows, contact rows) with room.
+    """
+    rotation, tolerance = spec.has("rotation"), spec.tolerance
+    sleeps = spec.has("sleeping")
+    speeds = 6 if rotation else 3  # vx vy vz, wx wy wz: the first words of a velocity record
+    log_more = chain(loggers, spec)
+
+    def hash_into(state_hash, words, count):
+        # FNV-1a over 64-bit words; -0.0 counts as 0.0, because no result may depend on it.
+        for k in range(count):
+            word = words[k]
+            if word == 0x8000000000000000:
+                word = word ^ word
+            state_hash = (state_hash ^ word) * 0x100000001B3
+        return state_hash
+
+    hash_into = kernel(hash_into, spec)
+
+    def log_bodies(bodies, velocities, row, pose, params):
+        kinetic, potential = 0.0, 0.0
+        px, py, pz = 0.0, 0.0, 0.0
+        ax, ay, az = 0.0, 0.0, 0.0
+        for i in range(pose.shape[0]):
+            body, v = bodies[i], velocities[i]
+            log_pose(body, pose[i])
+            inv_m = body.inv_m
+            if sleeps:
+                if body.asleep == 1:
+                    inv_m = body.own_inv_m
+            if inv_m > 0.0:
+                m = 1.0 / inv_m
+                kinetic += 0.5 * m * (v.vx * v.vx + v.vy * v.vy + v.vz * v.vz)
+                potential -= m * (params.gx * body.x + params.gy * body.y + params.gz * body.z)
+                mx, my, mz = m * v.vx, m * v.vy, m * v.vz
+                px, py, pz = px + mx, py + my, pz + mz
+                ax += body.y * mz - body.z * my
+                ay += body.z * mx - body.x * mz
+                az += body.x * my - body.y * mx
+                if rotation:
+                    lx, ly, lz = inertia_times(body, v.wx, v.wy, v.wz)
+                    kinetic += 0.5 * (lx * v.wx + ly * v.wy + lz * v.wz)
+                    ax, ay, az = ax + lx, ay + ly, az + lz
+        row.kinetic_energy, row.potential_energy = kinetic, potential
+        row.momentum_x, row.momentum_y, row.momentum_z = px, py, pz
+        row.angular_momentum_x, row.angular_momentum_y, row.angular_momentum_z = ax, ay, az
+
+    log_bodies = kernel(log_bodies, spec)
+
+    def log_step(bodies, velocities, bits, params, counters, rows):
+        steps, poses, _ = rows
+        row = steps[counters.step_rows]
+        row.step = counters.step
+        row.sweeps = counters.sweeps
+        row.residual_contact = counters.residual_row
+        if tolerance:
+            row.unsolved = counters.unsolved
+        row.residual = counters.residual
+        log_bodies(bodies, velocities, row, poses[counters.step_rows], params)
+        log_more(row, bodies, counters)
+        pose_bits, velocity_bits = bits
+        state_hash = 0xCBF29CE484222325 ^ row.step
+        for i in range(poses.shape[1]):
+            state_hash = hash_into(state_hash, pose_bits[counters.step_rows, i], 7)
+            state_hash = hash_into(state_hash, velocity_bits[i], speeds)
+            # What cannot turn hashes as what does not: the plan leaves no trace in the hash.
+            for _ in range(speeds, 6):
+                state_hash = state_hash * 0x100000001B3
+        row.state_hash = state_hash
+        counters.step_rows += 1
+        counters.contact_rows += row.contact_count
+
+    return kernel(log_step, spec)

@@ -1,0 +1,83 @@
+"""Contacts at their velocities enter, the matrix of Newton's method leaves: M + J^T E' J.
+
+It lies in the envelope (`envelope`): block rows of bodies, each from its first neighbour on.
+"""
+
+from __future__ import annotations
+
+from ..compile import kernel
+from ..spec import Spec
+from .envelope import DOF
+from .newton_rows import make_fill_rows, make_stiffness
+
+
+def make_assemble(spec: Spec):
+    """Return `kernel(contacts, count, size, space)`: fill the envelope with M + J^T E' J."""
+    friction = spec.has("friction")
+    fill_rows, stiffness = make_fill_rows(spec), make_stiffness(spec)
+    directions = 3 if friction else 1
+
+    def add_block(space, p, q, rows_p, rows_q):
+        # += rows_p^T E' rows_q on block row p and block column q <= p; E' rows_q are rows 6..8.
+        values, start, rows = space.values, space.start, space.rows
+        offset = DOF * (q - space.first[p])
+        for i in range(DOF):
+            base = start[DOF * p + i] + offset
+            for j in range(i + 1 if p == q else DOF):
+                total = 0.0
+                for k in range(directions):
+                    total += rows[rows_p + k, i] * rows[6 + k, j]
+                values[base + j] += total
+
+    add_block = kernel(add_block, spec)
+
+    def scale_rows(space, source, h_nn, h_n1, h_n2, h_11, h_12, h_22):
+        rows = space.rows
+        for j in range(DOF):
+            n = rows[source, j]
+            rows[6, j] = h_nn * n
+            if friction:
+                one, two = rows[source + 1, j], rows[source + 2, j]
+                rows[6, j] += h_n1 * one + h_n2 * two
+                rows[7, j] = h_n1 * n + h_11 * one + h_12 * two
+                rows[8, j] = h_n2 * n + h_12 * one + h_22 * two
+
+    scale_rows = kernel(scale_rows, spec)
+
+    def assemble(contacts, count, size, space):
+        values, start, mass = space.values, space.start, space.mass
+        last = DOF * size - 1
+        for k in range(start[last] + last - DOF * space.first[size - 1] + 1):
+            values[k] = 0.0
+        for p in range(size):
+            offset = DOF * (p - space.first[p])
+            for i in range(3):
+                values[start[DOF * p + i] + offset + i] = mass[p, 0]
+            values[start[DOF * p + 3] + offset + 3] = mass[p, 1]
+            base = start[DOF * p + 4] + offset
+            values[base + 3], values[base + 4] = mass[p, 2], mass[p, 4]
+            base = start[DOF * p + 5] + offset
+            values[base + 3], values[base + 4], values[base + 5] = (
+                mass[p, 3],
+                mass[p, 5],
+                mass[p, 6],
+            )
+        for c in range(count):
+            contact = contacts[c]
+            h_nn, h_n1, h_n2, h_11, h_12, h_22 = stiffness(contact)
+            if h_nn > 0.0:
+                fill_rows(contact, space.rows)
+                a = space.position[contact.a] if contact.inv_m_a > 0.0 else -1
+                b = space.position[contact.b] if contact.inv_m_b > 0.0 else -1
+                if a >= 0:
+                    scale_rows(space, 0, h_nn, h_n1, h_n2, h_11, h_12, h_22)
+                    add_block(space, a, a, 0, 0)
+                    if b > a:
+                        add_block(space, b, a, 3, 0)
+                if b >= 0:
+                    scale_rows(space, 3, h_nn, h_n1, h_n2, h_11, h_12, h_22)
+                    add_block(space, b, b, 3, 3)
+                    if a > b:
+                        add_block(space, a, b, 0, 3)
+
+    return kernel(assemble, spec)

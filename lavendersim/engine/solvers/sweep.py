@@ -1,0 +1,55 @@
+"""What solvers by sweeps share: the sweep, a history of residuals, the account of a solve."""
+
+from __future__ import annotations
+
+from ..compile import kernel
+from ..spec import Spec
+from .row_update import make_solve_contact_velocity
+
+
+def make_sweep(spec: Spec):
+    """Return `kernel(contacts, order, count, velocities) -> greatest change` [m/s]."""
+    solve_contact_velocity = make_solve_contact_velocity(spec)
+
+    def sweep(contacts, order, count, velocities):
+        greatest = 0.0
+        for c in range(count):
+            contact = contacts[order[c]]
+            va, vb = velocities[contact.a], velocities[contact.b]
+            change = solve_contact_velocity(contact, va, vb)
+            # A NaN is greater than anything.
+            if change > greatest or change != change:
+                greatest = change
+        return greatest
+
+    return kernel(sweep, spec)
+
+
+def make_note(spec: Spec):
+    """Return `kernel(params, counters, rows, sweep, residual)`: a row of the history, if asked."""
+
+    def note(params, counters, rows, sweep, residual):
+        step = counters.step + 1
+        if params.residuals_from <= step <= params.residuals_to:
+            row = rows[counters.residual_rows]
+            row.step, row.sweep, row.residual = step, sweep, residual
+            counters.residual_rows += 1
+
+    return kernel(note, spec)
+
+
+def make_account(spec: Spec):
+    """Return `kernel(params, counters, sweeps, residual, worst)`: what the step's record tells."""
+    asked = spec.tolerance
+
+    def account(params, counters, sweeps, residual, worst):
+        counters.sweeps = sweeps
+        counters.residual = residual
+        counters.residual_contact = worst
+        counters.unsolved = 0
+        if asked:
+            if params.tolerance >= 0.0:
+                if not residual <= params.tolerance:
+                    counters.unsolved = 1
+
+    return kernel(account, spec)

@@ -1,0 +1,38 @@
+"""Bodies of a small scene enter; every pair of rows that may touch leaves."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+from .classes import class_of, mix, ordered
+from .colliders import colliders
+
+
+class CandidatePair(NamedTuple):
+    """Two bodies that may touch: rows of the body table in the order of the pair's kernel."""
+
+    a: int
+    b: int
+    shape_pair: str
+    restitution: float
+    compliance: float
+    friction: float
+    torsional_friction: float
+    rolling_friction: float
+
+
+def candidate_pairs(bodies: Sequence[dict[str, Any]]) -> list[CandidatePair]:
+    """Return every pair of rows of which one moves, in the order of the rows; for small scenes."""
+    rows = colliders(bodies)
+    classes = [class_of(row) for row in rows]
+    pairs = []
+    for i, one in enumerate(classes):
+        for j in range(i + 1, len(classes)):
+            other = classes[j]
+            if rows[i].owner == rows[j].owner or not one.touches(other):
+                continue
+            swap, name = ordered((one.kind, other.kind))
+            a, b = (j, i) if swap else (i, j)
+            pairs.append(CandidatePair(a, b, name, *mix(one.surface, other.surface)))
+    return pairs
