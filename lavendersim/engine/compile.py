@@ -56,14 +56,11 @@ OPTIONS: dict[str, Any] = known(
 
 
 class Part(JITCodeLibrary):
-    """Code of a kernel that other kernels call: linked into each of them, and optimised there.
+    """Code of a kernel that other kernels call: optimised, and linked into each of them.
 
-    Numba would optimise and assemble every kernel by itself as well, with all that it calls. None
-    of that is ever run, and it doubles the time an engine takes to compile.
+    Numba would make machine code of every kernel by itself as well, with all that it calls. None of
+    that is ever run, and it doubles the time an engine takes to compile.
     """
-
-    def _optimize_final_module(self) -> None:
-        """Leave that to the kernel this is linked into."""
 
     def _finalize_final_module(self) -> None:
         """Make no machine code."""
