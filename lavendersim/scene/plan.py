@@ -28,6 +28,10 @@ CHOICES: Final = (
     "sleeping",
     "effects",
 )
+APART: Final = {
+    name: Decision(False, f"no {one} and {other} may touch")
+    for name, (_, (one, other), _) in SHAPE_PAIRS.items()
+}
 DERIVED: Final = "derived"  # no effect is switched by hand
 MOST_LABELS: Final = 4  # of cells in a sentence
 
@@ -38,7 +42,13 @@ class CellName(NamedTuple):
     number: int = 0
     label: str = ""
 
+    @property
+    def said(self) -> str:
+        """What a sentence calls it."""
+        return self.label or str(self.number)
 
+
+Reasons = dict[str, tuple[CellName, ...]]  # reason -> cells
 ALONE: Final = CellName()
 
 
@@ -52,13 +62,27 @@ class Plan(NamedTuple):
     forced: dict[str, Forced]  # what was switched against the scene
     cells: tuple[CellName, ...]  # that this is the plan of
     callers: dict[str, tuple[CellName, ...]]  # of an effect or pair: the cells that call for it
+    reasons: dict[str, Reasons]  # of a union: see `reasons_of`
+
+    def decided(self, name: str) -> Decision:
+        """Return the decision on an effect or a shape pair."""
+        return self.decisions[name] if name in self.decisions else self.shape_pairs[name]
+
+    def reasons_of(self, name: str) -> Reasons:
+        """Return every reason for the decision on an effect or pair, and the cells it holds in."""
+        return self.reasons.get(name) or {self.decided(name).reason: self.cells}
+
+    def said(self, name: str) -> str:
+        """Return the reason in one line, with the cells that it holds for."""
+        callers = self.called_for_by(name)
+        return f"{self.decided(name).reason}; {callers}" if callers else self.decided(name).reason
 
     def called_for_by(self, name: str) -> str:
         """Say which cells call for an effect or pair, where it is some of them and not all."""
         callers = self.callers.get(name, ())
         if not 0 < len(callers) < len(self.cells):
             return ""
-        labels = [caller.label or f"cell {caller.number}" for caller in callers]
+        labels = [caller.said for caller in callers]
         if len(labels) > MOST_LABELS:
             labels = [*labels[: MOST_LABELS - 1], f"{len(labels) - MOST_LABELS + 1} more"]
         return f"called for by {len(callers)} of {len(self.cells)} cells: {'; '.join(labels)}"
@@ -90,6 +114,7 @@ def plan_of(resolved: dict[str, Any], record: bool = True, cell: CellName = ALON
         made.forced,
         (cell,),
         {name: (cell,) if on else () for name, on in called.items()},
+        {},
     )
 
 
@@ -110,8 +135,12 @@ def union(plans: Iterable[Plan]) -> Plan:
     for name, *values in zip(CHOICES, *(plan.choices for plan in plans), strict=True):
         if len(set(values)) > 1:
             raise UsageError(f"the cells of one sweep share their {name}")
-    effects = _joined([plan.decisions for plan in plans], plans)
-    shape_pairs = _joined([plan.shape_pairs for plan in plans], plans)
+    if len(plans) == 1:
+        return first
+    reasons = {name: _reasons(plans, name) for name in first.callers}
+    joined = {name: _joined(plans, name, reasons[name]) for name in first.callers}
+    effects = {name: joined[name] for name in first.decisions}
+    shape_pairs = {name: joined[name] for name in first.shape_pairs}
     spec = first.spec._replace(
         effects=_on(effects),
         shape_pairs=_on(shape_pairs),
@@ -125,25 +154,30 @@ def union(plans: Iterable[Plan]) -> Plan:
         if how == "forced on" and callers[name]:
             del forced[name]  # on without being forced, for the cells that call for it
     cells = tuple(cell for plan in plans for cell in plan.cells)
-    return Plan(spec, effects, first.choices, shape_pairs, forced, cells, callers)
+    return Plan(spec, effects, first.choices, shape_pairs, forced, cells, callers, reasons)
 
 
-def _joined(tables: list[dict[str, Decision]], plans: list[Plan]) -> dict[str, Decision]:
-    """Return the decisions of a union: on where any is on, and rather called for than forced."""
-    joined = {}
-    for name in tables[0]:
-        found = [
-            (table[name], name in plan.forced) for table, plan in zip(tables, plans, strict=True)
-        ]
-        on = [(one, forced) for one, forced in found if one.on]
-        # of those that are off, one that is forced off says more
-        first = min(on, key=_is_forced) if on else max(found, key=_is_forced)
-        joined[name] = first[0]
-    return joined
+def _joined(plans: list[Plan], name: str, reasons: Reasons) -> Decision:
+    """Return the decision of a union, whose reason says of which cell it is where they differ."""
+    on = any(plan.decided(name).on for plan in plans)
+    first, cells = next(iter(reasons.items()))
+    if len(reasons) == 1:
+        return Decision(on, first)
+    more = "1 other reason" if len(reasons) == 2 else f"{len(reasons) - 1} other reasons"
+    return Decision(on, f"{first} (cell {cells[0].said}; {more} in other cells)")
 
 
-def _is_forced(found: tuple[Decision, bool]) -> bool:
-    return found[1]
+def _reasons(plans: list[Plan], name: str) -> Reasons:
+    """Return why an effect is on, where it is in any cell, else why off: rather called for than
+    forced on, rather forced off than not called for.
+    """
+    on = any(plan.decided(name).on for plan in plans)
+    agreeing = [plan for plan in plans if plan.decided(name).on == on]
+    telling = [plan for plan in agreeing if (name in plan.forced) != on]
+    reasons: dict[str, list[CellName]] = {}
+    for plan in telling or agreeing:
+        reasons.setdefault(plan.decided(name).reason, []).extend(plan.cells)
+    return {reason: tuple(cells) for reason, cells in reasons.items()}
 
 
 def _on(decisions: Mapping[str, Decision]) -> tuple[str, ...]:
@@ -165,8 +199,6 @@ def _shape_pairs(resolved: dict[str, Any]) -> dict[str, Decision]:
         more = f" ({pair.row_pairs} pairs like it)" if pair.row_pairs > 1 else ""
         touching.setdefault(pair.shape_pair, []).append(f"{a} and {b}{more}")
     return {
-        name: Decision(True, named(touching[name]))
-        if name in touching
-        else Decision(False, f"no {one} and {other} may touch")
-        for name, (_, (one, other), _) in SHAPE_PAIRS.items()
+        name: Decision(True, named(touching[name])) if name in touching else APART[name]
+        for name in SHAPE_PAIRS
     }
