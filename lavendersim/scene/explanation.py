@@ -73,10 +73,10 @@ class Explanation(NamedTuple):
 def explain(plan: Plan, others: Iterable[Plan] = ()) -> Explanation:
     """Explain a plan; `others` are those of the same sweep, from which it is to be told."""
     spec, choices = plan.spec, dict(zip(CHOICES, plan.choices, strict=True))
-    composed = _kernels(spec)
+    composed = composed_kernels(spec)
     effects = [_effect(plan, effect) for effect in EFFECTS]
     pairs = [_shape_pair(plan, name) for name in SHAPE_PAIRS]
-    always = _common(composed, _kernels(Spec(solver=spec.solver)))
+    always = _common(composed, composed_kernels(Spec(solver=spec.solver)))
     brought = [part.kernels for part in (*effects, *pairs)]
     solver = _solver(plan, _without(composed, *brought))
     always = _without(always, solver.kernels, *brought)
@@ -144,9 +144,9 @@ def _brought(spec: Spec, effect: Any) -> Kernels:
     own = effect.__name__.removeprefix(_ENGINE)
     dependents = [e.NAME for e in EFFECTS if spec.has(e.NAME) and effect.NAME in needs_of(e.NAME)]
     lean = spec.without(*dependents)
-    gone = _without(_kernels(lean), _kernels(lean.without(effect.NAME)))
+    gone = _without(composed_kernels(lean), composed_kernels(lean.without(effect.NAME)))
     gone = {module: names for module, names in gone.items() if not _of_an_effect(module)}
-    stated = _kernels(spec).get(own)
+    stated = composed_kernels(spec).get(own)
     return ({own: stated} if stated else {}) | gone
 
 
@@ -167,7 +167,7 @@ def _shape_pair(plan: Plan, name: str) -> Part:
     if decision.on:
         others = tuple(pair for pair in plan.spec.shape_pairs if pair != name)
         lean = plan.spec._replace(shape_pairs=others)
-        kernels = _without(_kernels(plan.spec), _kernels(lean))
+        kernels = _without(composed_kernels(plan.spec), composed_kernels(lean))
     return Part(
         name=name,
         on=decision.on,
@@ -229,7 +229,8 @@ def _composed(spec: Spec) -> tuple[tuple[str, tuple[str, ...]], ...]:
     return tuple((module, tuple(names)) for module, names in kernels_of(spec).items())
 
 
-def _kernels(spec: Spec) -> Kernels:
+def composed_kernels(spec: Spec) -> Kernels:
+    """Return the kernels that an engine is composed of, without the links between them."""
     return {module: list(names) for module, names in _composed(spec) if module != _GLUE}
 
 

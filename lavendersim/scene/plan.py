@@ -123,9 +123,8 @@ def plan_of_cell(cell: Cell, record: bool = True) -> Plan:
     try:
         return plan_of(cell.resolved, record, CellName(cell.index, cell.label))
     except OverrideError as error:
-        raise ConfigError(
-            [cell.defect(("effects", one.name), one.sentence) for one in error.refusals]
-        ) from None
+        defects = [cell.defect(("effects", one.name), one.sentence) for one in error.refusals]
+        raise ConfigError(sorted(defects)) from None  # in the order of the file
 
 
 def union(plans: Iterable[Plan]) -> Plan:
