@@ -203,12 +203,8 @@ def _solver(plan: Plan, composed: Kernels) -> Part:
         chosen_by="solver",
         fields=fields,
         channels=[],
-        kernels={module: names for module, names in composed.items() if _of_solver(module)},
+        kernels={m: names for m, names in composed.items() if m.startswith("solvers.")},
     )
-
-
-def _of_solver(module: str) -> bool:
-    return module.startswith("solvers.")
 
 
 def _title(plan: Plan, others: Iterable[Plan]) -> str:
