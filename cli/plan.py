@@ -63,7 +63,7 @@ def write(explained: Explanation, title: str, width: int | None = None) -> None:
             console.print(_pairs([("not called for", ", ".join(others))], dim=True))
         console.print()
         console.print(_table([explained.solver], "solver"))
-        console.print("kernels of every engine", style="bold")
+        console.print("kernels without any effect", style="bold")
         console.print(_pairs(list(_modules(explained.always).items())))
         if explained.shared:
             console.print("kernels that several effects share", style="bold")

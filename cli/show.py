@@ -73,8 +73,8 @@ def plans_of(cells: Sequence[RunCell]) -> list[tuple[list[RunCell], Metadata]]:
 
 def print_plan(cells: list[RunCell], metadata: Metadata, count: int) -> None:
     """Print one plan: what is on with its reason, what is off by name, what was overridden."""
-    shared = "" if len(cells) == count else f" of {len(cells)} cells, {cells[0].label} the first"
-    typer.echo(f"plan{shared}")
+    more = "" if len(cells) == 1 else f" and {len(cells) - 1} more"
+    typer.echo("plan" if len(cells) == count else f"plan of {cells[0].label}{more}")
     forced = metadata["forced"]
     if forced:
         changes = "; ".join(f"{name} {how}" for name, how in forced.items())

@@ -54,7 +54,7 @@ class Explanation(NamedTuple):
     effects: list[Part]  # in the engine's order
     shape_pairs: list[Part]
     solver: Part
-    always: Kernels  # that every engine with this solver has, and nothing above brings
+    always: Kernels  # that an engine has without any effect, and none of the above brings
     shared: Kernels  # that several of the above bring together
 
     def parts(self) -> list[Part]:
@@ -76,7 +76,8 @@ def explain(plan: Plan, others: Iterable[Plan] = ()) -> Explanation:
     composed = composed_kernels(spec)
     effects = [_effect(plan, effect) for effect in EFFECTS]
     pairs = [_shape_pair(plan, name) for name in SHAPE_PAIRS]
-    always = _common(composed, composed_kernels(Spec(solver=spec.solver)))
+    bare = Spec(solver=spec.solver, shape_pairs=spec.shape_pairs)
+    always = _common(composed, composed_kernels(bare))
     brought = [part.kernels for part in (*effects, *pairs)]
     solver = _solver(plan, _without(composed, *brought))
     always = _without(always, solver.kernels, *brought)
@@ -166,8 +167,10 @@ def _shape_pair(plan: Plan, name: str) -> Part:
     kernels: Kernels = {}
     if decision.on:
         others = tuple(pair for pair in plan.spec.shape_pairs if pair != name)
-        lean = plan.spec._replace(shape_pairs=others)
-        kernels = _without(composed_kernels(plan.spec), composed_kernels(lean))
+        # An engine in which nothing touches lacks more than the pair: compared with another one.
+        lean = others or tuple(pair for pair in SHAPE_PAIRS if pair != name)[:1]
+        without = composed_kernels(plan.spec._replace(shape_pairs=lean))
+        kernels = _without(composed_kernels(plan.spec), without)
     return Part(
         name=name,
         on=decision.on,
@@ -187,9 +190,8 @@ def _shape_pair(plan: Plan, name: str) -> Part:
 def _solver(plan: Plan, composed: Kernels) -> Part:
     spec = plan.spec
     fields = fields_of(SOLVERS[spec.solver])
-    stops = "takes all its sweeps"
+    stops = "stops at a tolerance" if spec.tolerance else "takes all its sweeps"
     if spec.tolerance:
-        stops = "stops at a tolerance"
         fields["step_row"] = _names(step_log.UNSOLVED_ROW)
     return Part(
         name=spec.solver,

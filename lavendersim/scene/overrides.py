@@ -13,16 +13,27 @@ from collections.abc import Iterator, Mapping
 from typing import Any, Literal, NamedTuple, get_args
 
 from lavendersim.engine.collide import SHAPE_PAIRS
-from lavendersim.engine.effects import EFFECTS, Decision, Facts, PairFacts, pose_log, step_log
+from lavendersim.engine.effects import (
+    EFFECTS,
+    Decision,
+    Facts,
+    PairFacts,
+    contact_log,
+    pose_log,
+    step_log,
+)
 from lavendersim.errors import UsageError
 from lavendersim.experiment.cell_models import Numerics
 from lavendersim.experiment.found import nearest, quoted
 
 _BY_NAME = {effect.NAME: effect for effect in EFFECTS}
 _LOGS = (step_log.NAME, pose_log.NAME)  # without them nothing of a run can be read
-# A scene in which something falls and touches: what is off there, the numerics have switched off.
-_TOUCHING = (PairFacts("", "", restitution=0.0, compliance=0.0),)
-_FALLING = (0.0, 0.0, -1.0)
+# A scene in which bodies fall, touch and rub: what is off there, the numerics have switched off.
+_BUSY: dict[str, Any] = {
+    "pairs": (PairFacts("", "", restitution=1.0, compliance=0.0, friction=1.0),) * 2,
+    "pair_count": 2,
+    "gravity": (0.0, 0.0, -1.0),
+}
 
 Forced = Literal["forced on", "forced off"]
 
@@ -87,6 +98,8 @@ def _switch(
         return f"{reason} may touch; without it they would pass through each other"
     if name in _LOGS:
         return "a run without its log is no run; leave it on"
+    if name == contact_log.NAME:
+        return "the sums in /step are those of the contacts that are logged; leave it on"
     if key := getattr(_BY_NAME[name], "CHOSEN_BY", ""):
         return f"the numerics choose it; write {_choosing(name, key, facts, on=False)} instead"
     if not stated["force"]:
@@ -109,10 +122,11 @@ def _force_on(
     """Put an effect or shape pair in, with all that it needs; returns why that cannot be."""
     for need in (name, *_needs(name)):
         key = getattr(_BY_NAME.get(need), "CHOSEN_BY", "")
-        if key and not _BY_NAME[need].wanted(_busy(facts)).on:
+        if key and not _BY_NAME[need].wanted(facts._replace(**_BUSY)).on:
             which = "it" if need == name else f"it needs {need}, which"
             choice = _choosing(need, key, facts, on=True)
-            return f"{which} is another law, no idle effect; write {choice} to choose it"
+            how = f"; write {choice} to choose it" if choice else ""
+            return f"{which} is another law, no idle effect{how}"
     decisions[name] = Decision(True, f"forced on; not called for: {decisions[name].reason}")
     made.forced[name] = "forced on"
     for need in _needs(name):
@@ -149,16 +163,14 @@ def _unmet(made: Overridden, switches: Mapping[str, str]) -> Iterator[Refusal]:
                 )
 
 
-def _busy(facts: Facts) -> Facts:
-    """Return the facts of the same numerics in a scene where something falls and touches."""
-    return facts._replace(pairs=facts.pairs or _TOUCHING, gravity=_FALLING)
-
-
 def _choosing(name: str, key: str, facts: Facts, on: bool) -> str:
-    """Return what the numerics must say for an effect to be on or off, as a config states it."""
+    """Return what the numerics must say for an effect to be on or off, as a config states it.
+
+    Nothing where that key alone does not do it.
+    """
     annotation: Any = Numerics.model_fields[key].annotation
     for value in (False, True) if annotation is bool else get_args(annotation):
-        if _BY_NAME[name].wanted(_busy(facts)._replace(**{key: value})).on == on:
+        if _BY_NAME[name].wanted(facts._replace(**_BUSY, **{key: value})).on == on:
             written = str(value).lower() if isinstance(value, bool) else value
             return f"`numerics: {{{key}: {written}}}`"
-    return f"`numerics.{key}`"
+    return ""
