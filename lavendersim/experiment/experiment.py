@@ -51,6 +51,16 @@ class Experiment:
         """What is drawn, if anything."""
         return self.config.figure
 
+    @property
+    def switches_effects(self) -> bool:
+        """Whether some cell switches an effect by hand, so that its plan may be refused."""
+        sweep = self.config.sweep
+        products = (sweep,) if isinstance(sweep, dict) else sweep
+        swept = (axis.path for product in products for axis in product.values())
+        return bool(self.config.effects.switches) or any(
+            path.startswith("effects.") for path in swept
+        )
+
     def cells(self) -> tuple[Cell, ...]:
         """All cells of the sweep, the first axis slowest; one cell without a sweep."""
         return self._cells
