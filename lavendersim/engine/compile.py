@@ -18,6 +18,7 @@ from functools import wraps
 from typing import Any
 
 import numba
+from llvmlite.binding import Linkage
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler
 from numba.core.compiler_lock import global_compiler_lock
@@ -57,15 +58,29 @@ OPTIONS: dict[str, Any] = known(
 
 
 class Part(JITCodeLibrary):
-    """Code of a kernel that other kernels call: optimised, and linked into each of them.
+    """Code of a kernel that other kernels call: linked into each of them, and optimised there.
 
-    Numba would make machine code of every kernel by itself as well, with all that it calls. None of
-    that is ever run, and it doubles the time an engine takes to compile.
+    Numba would optimise and assemble every kernel by itself as well, with all that it calls. None
+    of that is ever run, and it doubles the time an engine takes to compile.
     """
+
+    def _optimize_final_module(self) -> None:
+        """Leave that to the kernel this is linked into."""
 
     def _finalize_final_module(self) -> None:
         """Make no machine code."""
         self._finalized = True
+
+
+class Whole(JITCodeLibrary):
+    """Code of a kernel that Python calls, with all its parts."""
+
+    def _optimize_final_module(self) -> None:
+        """Optimise: parts are called from here alone, so what is called once is merged in whole."""
+        for function in self._final_module.functions:
+            if function.linkage == Linkage.linkonce_odr and not function.is_declaration:
+                function.linkage = Linkage.internal
+        super()._optimize_final_module()
 
 
 class PartCompiler(Compiler):
@@ -75,6 +90,15 @@ class PartCompiler(Compiler):
         flags.no_compile = flags.no_cpython_wrapper = True
         part = Part(targetctx.codegen(), "part")
         super().__init__(typingctx, targetctx, part, args, return_type, flags, locals)
+
+
+class WholeCompiler(Compiler):
+    """Numba's pipeline for a kernel that Python calls; its code can be kept on disk."""
+
+    def __init__(self, typingctx, targetctx, library, args, return_type, flags, locals):
+        whole = Whole(targetctx.codegen(), "whole")
+        whole.enable_object_caching()
+        super().__init__(typingctx, targetctx, whole, args, return_type, flags, locals)
 
 
 class Kernel(CPUDispatcher):
@@ -90,12 +114,11 @@ class Kernel(CPUDispatcher):
     def get_call_template(self, args: Any, kws: Any) -> Any:
         """Compile for a kernel that calls this one."""
         with global_compiler_lock:
-            before = self.called_by_kernel, self._compiler.pipeline_class
-            self.called_by_kernel, self._compiler.pipeline_class = True, PartCompiler
+            before, self.called_by_kernel = self.called_by_kernel, True
             try:
                 return super().get_call_template(args, kws)
             finally:
-                self.called_by_kernel, self._compiler.pipeline_class = before
+                self.called_by_kernel = before
 
     def compile(self, sig: Any) -> Any:
         """Compile for the caller: a kernel, or Python, which needs the door."""
@@ -103,6 +126,8 @@ class Kernel(CPUDispatcher):
             args = tuple(normalize_signature(sig)[0])
             if not self.called_by_kernel and args in self.overloads and not self.has_door(args):
                 del self.overloads[args]
+            pipeline = PartCompiler if self.called_by_kernel else WholeCompiler
+            self._compiler.pipeline_class = pipeline
             return super().compile(sig)
 
     def add_overload(self, cres: Any) -> None:

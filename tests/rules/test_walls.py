@@ -28,6 +28,7 @@ ROOMS = {
 # Who may import a library of others; what is not listed is imported by nobody.
 LIBRARIES = {
     "numba": {"engine"},
+    "llvmlite": {"engine"},
     "numpy": {"scene", "engine", "trace", "measures", "figures", "replay", "simulator", "runner"},
     "scipy": {"experiment"},  # hulls, and only where a scene has one
     "mcap": {"trace"},
