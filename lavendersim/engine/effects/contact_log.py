@@ -11,6 +11,7 @@ from .decision import Decision, Facts
 
 NAME = "contact_log"
 STAGE = "record"
+NEEDS = ("step_log",)  # its kernel sums up contacts in the row of the step
 CHANNELS = ("/contacts", "/plot/force", "/plot/penetration", "/plot/log10_residual")
 CONTACT_ROW_FIELDS: list[Field] = [
     *[(name, "i8") for name in ("step", "body_a", "body_b", "feature")],
