@@ -1,0 +1,109 @@
+"""A scene and effects that it does not call for enter; runs without and with them leave.
+
+An effect is idle where it is compiled in though the plan has it off: its coefficients are zero, or
+what it looks for never occurs. A run must equal the one without it under ==, which takes -0.0 for
+0.0; no tolerance is needed anywhere. Records of the fuller engine have more columns, so what both
+say is compared column by column.
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+from collections.abc import Iterable
+from concurrent.futures import ProcessPoolExecutor
+from typing import Any
+
+import numpy as np
+from laboratory import Bench
+
+from lavendersim.engine.effects import EFFECTS
+from lavendersim.engine.spec import Spec
+from lavendersim.engine.step import is_compiled
+from lavendersim.scene.plan import plan_of
+
+MODULES = {effect.NAME: effect for effect in EFFECTS}
+# What lets a law in that the numerics choose, by the key that its module names.
+LETS_IN = {
+    "impacts": "at_surface",
+    "integrator": "midpoint",
+    "speculative": True,
+    "solver": "adaptive",
+}
+LOGS = {  # tables of `Rows`, and the effect that fills each
+    "step": "step_log",
+    "pose": "step_log",
+    "contact": "contact_log",
+    "residual": "residual_log",
+}
+STEPS = 144  # 0.6 s at 240 Hz: what is thrown lands, what bounces comes back, stacks come to rest
+PIECES = 12  # that state is looked at after so many parts of a run
+
+
+def closed(*names: str) -> set[str]:
+    """Return the effects and all that they cannot be without."""
+    needed = {need for name in names for need in getattr(MODULES[name], "NEEDS", ())}
+    return {*names, *(closed(*needed) if needed else ())}
+
+
+def may_idle(cell: dict[str, Any], name: str, record: bool = True) -> bool:
+    """Whether a scene does not call for an effect, and its numerics choose no other law for it."""
+    plan = plan_of(cell, record)
+    return not plan.decisions[name].on and all(
+        plan.spec.has(other) or _is_let_in(cell, other) for other in closed(name)
+    )
+
+
+def _is_let_in(cell: dict[str, Any], name: str) -> bool:
+    key = getattr(MODULES[name], "CHOSEN_BY", None)
+    return key is None or bool(cell["numerics"][key] == LETS_IN[key])
+
+
+class Run:
+    """All that an engine says of a scene: its rows, and its state every few steps."""
+
+    def __init__(self, cell: dict[str, Any], spec: Spec, steps: int = STEPS) -> None:
+        self.bench = Bench(cell, spec)
+        engine, bodies = self.bench.engine, len(self.bench.scene.names)
+        pieces, self.tables = [], {}
+        for k in range(PIECES):
+            pieces.append(self.bench.run(steps // PIECES))
+            self.tables[f"bodies {k}"] = engine.bodies[:bodies].copy()
+            self.tables[f"velocities {k}"] = engine.velocities[:bodies].copy()
+        for name, log in LOGS.items():
+            if spec.has(log):
+                rows = [getattr(piece, name) for piece in pieces]
+                self.tables[name] = np.concatenate(rows)
+
+
+def differences(one: Run, other: Run, *but: str) -> list[str]:
+    """Return which columns, of those that both runs have, are not equal."""
+    found = [] if one.bench.status == other.bench.status else ["status"]
+    for name in one.tables.keys() & other.tables.keys():
+        first, second = one.tables[name], other.tables[name]
+        if len(first) != len(second):
+            found.append(f"length of {name}")
+        elif first.dtype.names is None:
+            found += [name] * (not np.array_equal(first, second))
+        else:
+            columns = [column for column in first.dtype.names if column in second.dtype.names]
+            found += [
+                f"{name}: {column}"
+                for column in columns
+                if column not in but and not np.array_equal(first[column], second[column])
+            ]
+    return sorted(found)
+
+
+def _compile(cell: dict[str, Any], spec: Spec) -> None:
+    Bench(cell, spec).engine.advance(1)
+
+
+def compile_together(engines: Iterable[tuple[dict[str, Any], Spec]]) -> None:
+    """Compile engines two at a time; their kernels are kept, and each is as if compiled here."""
+    missing = {spec: cell for cell, spec in engines if not is_compiled(spec)}
+    if len(missing) < 2:
+        return
+    context = multiprocessing.get_context("spawn")  # numba's threads survive no fork
+    with ProcessPoolExecutor(2, mp_context=context) as pool:
+        for job in [pool.submit(_compile, cell, spec) for spec, cell in missing.items()]:
+            job.result()

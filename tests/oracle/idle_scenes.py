@@ -1,0 +1,192 @@
+"""Small scenes with contacts that matter, each without something that another one has.
+
+Shapes are spheres where they will do: their kernels compile in a third of the time of boxes'.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from fractions import Fraction
+from typing import Any
+
+from laboratory import body, box, plane, resolved, sphere
+
+from lavendersim.experiment.presets import CHAPTER, DEFAULT
+
+GRAVITY = (0.0, 0.0, -9.81)  # [m/s^2]
+NOWHERE = (0.0, 0.0, 0.0)
+TILTED = (1.0, 0.4, -0.3, 0.2)
+CUBE = (0.24, 0.24, 0.24)
+BRICK = (0.3, 0.24, 0.16)
+CONJUGATE = {"solver": "nonsmooth_conjugate_gradient", "sweeps": 60}
+HULL = ((0.2, 0, -0.12), (-0.1, 0.17, -0.12), (-0.1, -0.17, -0.12), (0.02, 0.03, 0.25))
+
+
+def _numerics(preset: dict[str, Any]) -> dict[str, Any]:
+    return {k: str(v) if isinstance(v, Fraction) else v for k, v in preset.items()}
+
+
+# bare: captured impacts and projected Gauss-Seidel, without any repair of penetration.
+PRESETS: dict[str, dict[str, Any]] = {
+    "bare": {},
+    "chapter": _numerics(CHAPTER),
+    "default": _numerics(DEFAULT),
+}
+
+
+def cell(bodies: dict[str, Any], gravity: Any = GRAVITY, preset: str = "bare", **numerics: Any):
+    """Return a resolved cell that does not ask for the residual of every sweep."""
+    made = resolved(bodies, gravity, **{**PRESETS[preset], **numerics})
+    made["record"]["residuals"] = "none"
+    return made
+
+
+def balls(**surface: float) -> dict[str, Any]:
+    """A ball at rest, one that falls on it off centre, one that runs into both, one of 8 kg."""
+    return {
+        "floor": plane(**surface),
+        "low": sphere(0.1, (0.0, 0.0, 0.1), **surface),
+        "high": sphere(0.08, (0.03, 0.02, 0.4), velocity=(0.0, 0.0, -1.0), **surface),
+        "runner": sphere(0.1, (-0.6, 0.05, 0.1), velocity=(2.0, 0.0, 0.0), **surface),
+        "heavy": sphere(0.15, (0.5, -0.3, 0.3), velocity=(-1.5, 1.0, 0.0), mass=8.0, **surface),
+    }
+
+
+def slow(**surface: float) -> dict[str, Any]:
+    """Two balls, one on the floor, with too little energy to be fast in any step."""
+    falling = sphere(0.08, (0.03, 0.02, 0.27), velocity=(0.2, 0.1, 0.0), **surface)
+    return {"floor": plane(**surface), "low": sphere(0.1, (0.0, 0.0, 0.1), **surface), "b": falling}
+
+
+def boxes(size: Any = BRICK, **surface: float) -> dict[str, Any]:
+    """A stack of two, and a box at an odd angle that lands on an edge and runs into it."""
+    return {
+        "floor": plane(**surface),
+        "low": box(size, (0.0, 0.0, 0.5 * size[2]), **surface),
+        "high": box(size, (0.04, 0.02, 1.5 * size[2]), **surface),
+        "thrown": box(
+            size,
+            (-0.7, 0.05, 0.4),
+            orientation=TILTED,
+            velocity=(2.5, 0.0, -1.0),
+            angular_velocity=(1.0, 3.0, -2.0),
+            mass=2.0,
+            **surface,
+        ),
+    }
+
+
+def mixed(**surface: float) -> dict[str, Any]:
+    """Balls and a box that slide on a rough floor; one ball is smooth."""
+    bodies = {**balls(**surface), "brick": boxes(**surface)["thrown"]}
+    bodies["high"]["surface"] = dict.fromkeys(bodies["high"]["surface"], 0.0)
+    return bodies
+
+
+def spinning() -> dict[str, Any]:
+    """Smooth balls that spin: their contacts exert no torque."""
+    bodies = balls()
+    for k, name in enumerate(("low", "high", "runner", "heavy")):
+        bodies[name]["angular_velocity"] = [1.0 + k, -2.0, 3.0 * k]
+    return bodies
+
+
+def drifting() -> dict[str, Any]:
+    """Balls that nothing accelerates; two of them bounce between the third and the floor."""
+    bodies = balls(restitution=0.8)
+    bodies["low"]["velocity"], bodies["high"]["velocity"] = [0.3, 0.1, -0.4], [0.0, 0.0, -2.0]
+    return bodies
+
+
+def flying() -> dict[str, Any]:
+    """A brick in free flight: nothing can touch it, and nothing turns it."""
+    return {"brick": box(BRICK, (0.0, 0.0, 5.0), orientation=TILTED, velocity=(1.0, 0.0, 2.0))}
+
+
+def single() -> dict[str, Any]:
+    """A smooth ball on a floor: one point."""
+    return {"floor": plane(), "ball": sphere(0.1, (0.0, 0.0, 0.12), restitution=0.3)}
+
+
+def others(**surface: float) -> dict[str, Any]:
+    """Every shape but spheres and boxes, thrown at each other over a floor."""
+    shapes: tuple[dict[str, Any], ...] = (
+        {"kind": "hull", "points": [list(point) for point in HULL]},
+        {"kind": "capsule", "radius": 0.12, "length": 0.25},
+        {"kind": "cylinder", "radius": 0.16, "length": 0.3},
+    )
+    bodies = {"floor": plane(**surface)}
+    for k, (shape, x) in enumerate(zip(shapes, (-0.5, 0.0, 0.5), strict=True)):
+        stated = {"orientation": TILTED, "velocity": (-3.0 * x, 0.0, -1.0), **surface}
+        bodies[shape["kind"]] = body(shape, (x, 0.05 * k, 0.35), **stated)
+    return bodies
+
+
+SCENES: dict[str, Callable[[], dict[str, Any]]] = {
+    "balls": lambda: cell(balls(restitution=0.5)),
+    "plastic balls": lambda: cell(balls()),
+    "cold balls": lambda: cell(balls(), warm_start=False),
+    "spinning balls": lambda: cell(spinning()),
+    "rough balls": lambda: cell(balls(friction=0.4)),
+    "drifting balls": lambda: cell(drifting(), NOWHERE, integrator="midpoint"),
+    "conjugate balls": lambda: cell(balls(friction=0.4), **CONJUGATE),
+    "adaptive balls": lambda: cell(
+        balls(friction=0.4), solver="adaptive", sweeps=50, tolerance=1e-9
+    ),
+    "slow balls": lambda: cell(slow(), speculative=True),
+    "slow smooth impacts": lambda: cell(slow(restitution=0.7), impacts="at_surface"),
+    "slow rough impacts": lambda: cell(slow(friction=0.4), impacts="at_surface"),
+    "boxes": lambda: cell(boxes()),
+    "rough boxes": lambda: cell(boxes(friction=0.4)),
+    "rough cubes": lambda: cell(boxes(CUBE, friction=0.4)),
+    "mixed": lambda: cell(mixed(friction=0.4)),
+    "others": lambda: cell(others(friction=0.3)),
+    "flying brick": lambda: cell(flying(), preset="default"),
+    "single ball": lambda: cell(single(), solver="adaptive", sweeps=50),
+    "balls, chapter": lambda: cell(balls(restitution=0.5), preset="chapter"),
+    "boxes, chapter": lambda: cell(boxes(), preset="chapter"),
+    "mixed, chapter": lambda: cell(mixed(friction=0.4, restitution=0.3), preset="chapter"),
+    "conjugate boxes, chapter": lambda: cell(boxes(), preset="chapter", **CONJUGATE),
+    "single ball, default": lambda: cell(single(), preset="default"),
+    "drifting balls, default": lambda: cell(drifting(), NOWHERE, preset="default"),
+    "balls, default": lambda: cell(balls(restitution=0.5), preset="default"),
+    "boxes, default": lambda: cell(boxes(), preset="default"),
+    "mixed, default": lambda: cell(mixed(friction=0.4, restitution=0.3), preset="default"),
+    "others, default": lambda: cell(others(), preset="default"),
+}
+
+# For each effect scenes that do not call for it, with what it would act on if it did.
+CASES: dict[str, tuple[str, ...]] = {
+    "compound": ("rough balls",),
+    "broad_phase": ("balls",),
+    "gravity": ("drifting balls",),
+    "external_force": ("rough balls",),
+    "drag": ("rough balls",),
+    "rotation": ("balls",),
+    "gyroscopic": ("rough balls", "flying brick"),  # round bodies; one that is not, nor turns
+    "kinematic": ("balls",),
+    "contact_torque": ("spinning balls",),
+    "smooth_contact": ("rough balls",),
+    "friction": ("balls", "boxes"),
+    "torsional_friction": ("rough balls",),
+    "rolling_friction": ("rough balls",),
+    "surface_velocity": ("rough balls",),
+    "midpoint": ("drifting balls",),
+    "impact_time": ("flying brick",),
+    "speculative": ("flying brick",),
+    "fast_bodies": ("slow balls",),
+    "restitution": ("plastic balls",),
+    "impact_energy": ("slow smooth impacts", "slow rough impacts"),
+    "stabilisation": ("balls",),
+    "compliance": ("balls", "conjugate balls"),
+    "warm_start": ("cold balls",),
+    "newton": ("single ball",),
+    "projection": ("balls",),
+    "sleeping": ("rough balls",),
+    "step_log": ("balls",),
+    "pose_log": ("balls",),
+    "contact_log": ("balls",),
+    "residual_log": ("balls", "adaptive balls"),
+}
+# Whose scenes are not logged.
+UNLOGGED = {"step_log", "pose_log", "contact_log"}

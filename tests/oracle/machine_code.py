@@ -1,0 +1,63 @@
+"""A compiled engine enters; which kernels went into its machine code, and its size, leave.
+
+Numba leaves one symbol (`NumbaEnv`) in the object code for every function that was linked into it,
+whether or not the function was inlined: what has none was never compiled. The object code is what
+runs, and what is kept on disk; both are read alike.
+"""
+
+from __future__ import annotations
+
+import pickle
+import re
+from typing import NamedTuple
+
+from llvmlite.binding import ObjectFileRef
+
+from lavendersim.engine.engine import Engine
+
+LOCALS = "_3clocals_3e"  # mangled, between a maker and its kernel
+
+
+class Code(NamedTuple):
+    """What an engine's kernel was compiled to."""
+
+    kernels: set[tuple[str, str]]  # (module of the engine, name) of those made for the spec
+    size: int  # of the machine code [bytes]
+
+    def of(self, effect: str) -> set[tuple[str, str]]:
+        """Return the kernels of an effect's module."""
+        return {kernel for kernel in self.kernels if kernel[0] == f"effects.{effect}"}
+
+
+def _parts(symbol: str) -> list[str]:
+    """Return the parts of a mangled name; each is preceded by its length."""
+    parts, rest = [], symbol
+    while found := re.match(r"\d+", rest):
+        end = found.end() + int(found.group())
+        parts.append(rest[found.end() : end])
+        rest = rest[end:]
+    return parts
+
+
+def _object_code(engine: Engine) -> bytes:
+    (compiled,) = engine._kernel.overloads.values()
+    if compiled.library._compiled_object:
+        return bytes(compiled.library._compiled_object)
+    # Loaded: what was kept holds a checksum, then a library, as (name, kind, (code, bitcode)).
+    kept = engine._kernel._cache
+    (_, _, (code, _)), *_ = pickle.loads(kept.path(kept.used).read_bytes()[32:])
+    return bytes(code)
+
+
+def code_of(engine: Engine) -> Code:
+    """Read the object code of an engine that has made a step."""
+    kernels, size = set(), 0
+    for section in ObjectFileRef.from_data(_object_code(engine)).sections():
+        size += section.size() if section.is_text() else 0
+        if section.name() == b".strtab":
+            for symbol in re.findall(r"_ZN08NumbaEnv(\w+)", section.data().decode("latin-1")):
+                package, room, *parts = _parts(symbol)
+                if (package, room) == ("lavendersim", "engine") and LOCALS in parts:
+                    place = ".".join(parts[: parts.index(LOCALS) - 1])
+                    kernels.add((place, parts[-1].partition(f"_{engine.spec.digest()}")[0]))
+    return Code(kernels, size)

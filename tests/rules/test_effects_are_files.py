@@ -1,0 +1,210 @@
+"""An effect that accelerates bodies or captures contacts is its file and its name in one list.
+
+Nothing else in the engine or the scene names it, but for what is told here with its reason. To show
+that this is enough, a wind is added to a copy of lavender: one file, one line.
+"""
+
+from __future__ import annotations
+
+import ast
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import pytest
+from sources import ROOT
+
+from lavendersim.engine.effects import EFFECTS
+from tests.drop_config import DROP
+
+LIST = "lavendersim/engine/effects/__init__.py"
+CHAINED = [effect for effect in EFFECTS if effect.STAGE in ("accelerate", "capture")]
+FACT = "a property of the scene, which predicates may ask for, has the same name"
+SHARED = "a property of pairs of surfaces, mixed for all effects alike, has the same name"
+ROW = "a soft row is a term in what every solver computes"
+LAW = "a row ahead of touching must be looked for, and its body's flight be kept"
+# Where else a name stands, as an identifier or a string, and why it must.
+ELSEWHERE = {
+    "gravity": {
+        "engine/effects/decision.py": FACT,
+        "scene/facts.py": FACT,
+        "scene/overrides.py": FACT,
+        "scene/build.py": "its vector is a parameter of the run, with the other coefficients",
+        "engine/effects/fast_bodies.py": "how fast bodies may fall",
+    },
+    "external_force": {
+        "engine/effects/sleeping.py": "who is pushed does not sleep",
+        "scene/events.py": "forces begin and end during the run",
+    },
+    "compliance": {
+        "engine/effects/decision.py": FACT,
+        "scene/overrides.py": FACT,
+        "scene/classes.py": SHARED,
+        "scene/candidates.py": SHARED,
+        "engine/effects/fast_bodies.py": "springs give energy back",
+        "engine/contact.py": ROW,
+        "engine/residual.py": ROW,
+        "engine/solvers/row_update.py": ROW,
+        "engine/solvers/newton_rows.py": ROW,
+    },
+    "restitution": {
+        "engine/effects/decision.py": FACT,
+        "scene/overrides.py": FACT,
+        "scene/classes.py": SHARED,
+        "scene/candidates.py": SHARED,
+        "engine/effects/fast_bodies.py": "more than 1 gives energy",
+        "engine/effects/impact_energy.py": "takes the place of its law",
+    },
+    "speculative": {
+        "engine/effects/decision.py": FACT,
+        "scene/facts.py": FACT,
+        "scene/plan.py": "numerics choose this law: cells that differ in it share no engine",
+        "engine/effects/fast_bodies.py": "finds where to look ahead",
+        "engine/effects/contact_log.py": "rows ahead that never push are not logged",
+        "engine/effects/sleeping.py": LAW,
+        "engine/integrate.py": LAW,
+        "engine/collide/narrow_phase.py": LAW,
+        "engine/collide/box_box.py": LAW,
+    },
+}
+WIND = '''\
+"""Wind: a force c (u - v) of air that moves at u along x, on every movable body."""
+
+from ..compile import kernel
+from .decision import Decision
+
+NAME = "wind"
+STAGE = "accelerate"
+BODY_FIELDS = [("wind", "f8")]  # c [N s/m]
+SPEED = 3.0  # u [m/s]
+
+
+def body_values(body):
+    return {"wind": 0.4}
+
+
+def wanted(facts):
+    if facts.pairs:
+        return Decision(True, f"{facts.pairs[0].b} stands in a wind of {SPEED:g} m/s")
+    return Decision(False, "nothing stands in the wind")
+
+
+def make(spec):
+    def wind(body, velocity, params):
+        velocity.vx += params.dt * body.inv_m * body.wind * (SPEED - velocity.vx)
+
+    return kernel(wind, spec)
+'''
+# Prints the plan's word on the wind, and the ball's velocity along x after each of 30 steps.
+BLOW = """
+import json, sys
+from pathlib import Path
+import lavendersim
+from lavendersim.experiment import load_experiment
+from lavendersim.scene.build import build
+from lavendersim.scene.plan import plan_of
+
+cell = next(iter(load_experiment(Path(sys.argv[1])).cells())).resolved
+plan = plan_of(cell)
+engine = build(cell, plan.spec).engine(plan.spec)
+speeds, hashes = [], []
+for _ in range(30):
+    engine.advance(1)
+    speeds.append(float(engine.velocities["vx"][1]))
+    hashes.append(int(engine.take_rows().step["state_hash"][-1]))
+decision = plan.decisions.get("wind")
+print(json.dumps({"package": lavendersim.__file__, "decision": decision, "speeds": speeds,
+                  "hashes": hashes, "columns": engine.bodies.dtype.names}))
+"""
+
+
+def names(file: Path) -> set[str]:
+    """Return the identifiers and strings of a source file; prose and docstrings are none."""
+    found = set()
+    for node in ast.walk(ast.parse(file.read_text())):
+        for field in ("id", "attr", "arg", "name", "module"):
+            found.add(getattr(node, field, None))
+        if isinstance(node, ast.Constant) and isinstance(node.value, str):
+            found.add(node.value)
+    return {name for name in found if isinstance(name, str)}
+
+
+@pytest.mark.parametrize("effect", CHAINED, ids=lambda effect: effect.NAME)
+def test_nothing_else_names_an_effect(effect: ModuleType) -> None:
+    own = {LIST, f"lavendersim/engine/effects/{effect.NAME}.py"}
+    files = [
+        path for room in ("engine", "scene") for path in (ROOT / "lavendersim" / room).rglob("*.py")
+    ]
+    naming = {
+        path.relative_to(ROOT / "lavendersim").as_posix()
+        for path in files
+        if path.relative_to(ROOT).as_posix() not in own and effect.NAME in names(path)
+    }
+    assert naming == set(ELSEWHERE.get(effect.NAME, ()))
+
+
+class Copy:
+    """A copy of lavender that is run by processes of its own."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        without = shutil.ignore_patterns("__pycache__")
+        shutil.copytree(ROOT / "lavendersim", folder / "lavendersim", ignore=without)
+        shutil.copytree(ROOT / "cli", folder / "lavender_cli", ignore=without)
+        self.config = folder / "drop.yaml"
+        self.config.write_text(DROP)
+
+    def add_wind(self, listed: bool) -> None:
+        (self.folder / "lavendersim/engine/effects/wind.py").write_text(WIND)
+        if listed:
+            path = self.folder / LIST
+            text = path.read_text()
+            assert text.count("    warm_start,\n") == 2  # imported, and listed
+            path.write_text(text.replace("    warm_start,\n", "    warm_start,\n    wind,\n"))
+
+    def python(self, *arguments: Any) -> str:
+        """Return what a Python process prints; -P: this copy, not the working directory's."""
+        done = subprocess.run(
+            [sys.executable, "-P", *map(str, arguments)],
+            env=os.environ | {"PYTHONPATH": str(self.folder), "NO_COLOR": "1"},
+            capture_output=True,
+            text=True,
+            timeout=300,
+            check=False,
+        )
+        assert done.returncode == 0, done.stderr
+        return done.stdout
+
+    def blow(self) -> dict[str, Any]:
+        found: dict[str, Any] = json.loads(self.python("-c", BLOW, self.config).splitlines()[-1])
+        assert found["package"].startswith(str(self.folder))
+        return found
+
+    def plan(self) -> str:
+        command = "import sys; from lavender_cli.main import main; sys.argv[0] = 'lavender'; main()"
+        return self.python("-c", command, "plan", self.config)
+
+
+def test_an_effect_is_added_by_a_file_and_a_line(tmp_path: Path) -> None:
+    copy = Copy(tmp_path)
+    calm = copy.blow()
+    copy.add_wind(listed=False)
+    unlisted = copy.blow()
+    assert unlisted == calm  # a file that nothing lists
+    assert calm["decision"] is None
+    assert set(calm["speeds"]) == {0.0}
+    copy.add_wind(listed=True)
+    windy = copy.blow()
+    assert windy["decision"][0] is True
+    assert "wind" in windy["columns"]
+    (line,) = [line for line in copy.plan().splitlines() if line.startswith("wind ")]
+    assert line.split(maxsplit=2) == ["wind", "on", "ball stands in a wind of 3 m/s"]
+    # v_k = u (1 - (1 - c dt/m)^k) with u = 3 m/s, c = 0.4 N s/m, m = 1 kg, dt = 1/240 s; each of
+    # 30 steps rounds a handful of times, 2^-53 each, of numbers below 0.2.
+    expected = [3.0 * (1.0 - (1.0 - 0.4 / 240.0) ** k) for k in range(1, 31)]
+    assert windy["speeds"] == pytest.approx(expected, rel=0.0, abs=30 * 4 * 2.0**-53)
