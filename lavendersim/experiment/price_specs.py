@@ -11,8 +11,7 @@ from lavendersim.experiment.quantities import Quantity, either
 
 
 def _effects_form(value: Any) -> str | None:
-    forms: dict[type, str] = {str: "all", tuple: "named", list: "named"}
-    return forms.get(type(value))
+    return "all" if value == "all" else "named" if isinstance(value, list | tuple) else None
 
 
 EffectNames = Annotated[
