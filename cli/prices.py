@@ -6,7 +6,7 @@ from typing import Any
 
 import typer
 
-HEADER = ("effect", "scene calls", "off", "on", "price", "interval", "compile s", "")
+HEADER = ("effect", "scene calls", "off", "on", "price", "interval", "compile off/on s", "")
 
 
 def print_table(run: Any) -> None:
@@ -42,7 +42,7 @@ def _cells(row: dict[str, Any]) -> tuple[str, ...]:
         _short(row["on"]["median"]),
         f"{_short(price['median'])} /{row['unit'][0]}",
         f"{_short(price['low'])} to {_short(price['high'])}",
-        f"{row['compile_s_off']:.1f} to {row['compile_s_on']:.1f}",
+        f"{row['compile_s_off']:.1f}/{row['compile_s_on']:.1f}",
         ", ".join(_notes(row)),
     )
 
@@ -59,4 +59,5 @@ def _notes(row: dict[str, Any]) -> list[str]:
 
 def _short(value: float) -> str:
     """Return nanoseconds to a tenth, whole above a thousand."""
+    value = round(value, 1) + 0.0  # no -0.0
     return f"{value:.0f}" if abs(value) >= 1000.0 else f"{value:.1f}"

@@ -23,14 +23,14 @@ from lavendersim.figures.style import DARK, DPI, GREY, LINE_HEIGHT, STYLE, look
 ROW: Final = 0.27  # [inch]
 SCENE_WIDTH, COMPILE_WIDTH, NAMES_WIDTH = 3.6, 2.6, 2.0  # [inch]
 LINEAR: Final = 1.0  # [ns] below, the axis is linear: noise goes through zero
-IDLE, CALLED = look(0).colour, look(1).colour
+IDLE, MOVES, CALLED = look(0).colour, look(1).colour, look(4).colour
 MARKERS: Final = {"body": "o", "contact": "s"}
 CAPTION: Final = (
     "Nanoseconds a step that an effect adds, per body (circles) or per contact (squares): medians "
     "of {repeats} interleaved repeats, with the interval that holds the median in 19 of 20 cases; "
     "hollow where that reaches zero. Blue: the scene does not call for it, and the engine carries "
-    "it idle through the same motion. Vermilion: the scene calls for it, and without it the motion "
-    "may be another. The axis is linear within ±1 ns and logarithmic outside. Right: what the "
+    "it idle through the same motion. Orange: the scene calls for it. Vermilion: the motion without "
+    "it is another. The axis is linear within ±1 ns and logarithmic outside. Right: what the "
     "engine with the effect takes to compile, once; lines, the engine of the plan alone. "
     "{processor}."
 )
@@ -103,7 +103,7 @@ def _draw_scene(axes: Any, name: str, table: dict[str, Any], places: dict[str, i
         if row["why_not"]:
             _write_why_not(axes, place, row["why_not"])
             continue
-        price, colour = row["price"], CALLED if row["called_for"] else IDLE
+        price, colour = row["price"], _colour(row)
         axes.plot([price["low"], price["high"]], [place, place], color=colour, linewidth=1.6)
         axes.plot(
             price["median"],
@@ -121,6 +121,12 @@ def _draw_scene(axes: Any, name: str, table: dict[str, Any], places: dict[str, i
     axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
 
 
+def _colour(row: dict[str, Any]) -> str:
+    if not row["same_motion"]:
+        return MOVES
+    return CALLED if row["called_for"] else IDLE
+
+
 def _write_why_not(axes: Any, place: int, why_not: str) -> None:
     """Say in the row why it has no number."""
     axes.text(
@@ -131,6 +137,7 @@ def _write_why_not(axes: Any, place: int, why_not: str) -> None:
         va="center",
         fontsize=8.5,
         color=GREY,
+        bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.5},
     )
 
 

@@ -11,7 +11,7 @@ from matplotlib import style
 from matplotlib.figure import Figure
 
 from lavendersim.figures import draw, draw_prices
-from lavendersim.figures.prices import CALLED, IDLE, compose
+from lavendersim.figures.prices import CALLED, IDLE, MOVES, compose
 from lavendersim.figures.style import STYLE
 
 
@@ -23,6 +23,7 @@ def row(effect: str, price: float, half: float = 0.25, **others: Any) -> dict[st
         "called_for": False,
         "unit": "body",
         "why_not": "",
+        "same_motion": True,
         "within_noise": abs(price) <= half,
         "price": spread,
         "compile_s_off": 2.0,
@@ -36,7 +37,8 @@ def gap(effect: str, why_not: str) -> dict[str, Any]:
 
 ROWS = (
     row("drag", 2.5),
-    row("gravity", 400.0, called_for=True),
+    row("gravity", 400.0, called_for=True, same_motion=False),
+    row("step_log", 70.0, called_for=True),
     row("friction", -0.1, unit="contact"),
     gap("rotation", "friction needs it"),
 )
@@ -78,18 +80,19 @@ def marks(axes: Any) -> dict[float, Any]:
 def test_a_price_is_drawn_at_its_number_with_its_interval() -> None:
     axes = page(("sphere", table())).axes[0]
     found = marks(axes)
-    assert set(found) == {2.5, 400.0, -0.1}
+    assert set(found) == {2.5, 400.0, 70.0, -0.1}
     bars = [line.get_xdata() for line in axes.lines if len(line.get_xdata()) == 2]
     assert [2.25, 2.75] in [list(bar) for bar in bars]
     names = [text.get_text() for text in axes.get_yticklabels()]
-    assert names == ["drag", "gravity", "friction", "rotation"]
-    places = [found[price].get_ydata()[0] for price in (2.5, 400.0, -0.1)]
-    assert places == [0, 1, 2]
+    assert names == ["drag", "gravity", "step log", "friction", "rotation"]
+    places = [found[price].get_ydata()[0] for price in (2.5, 400.0, 70.0, -0.1)]
+    assert places == [0, 1, 2, 3]
 
 
 def test_colour_tells_who_calls_shape_the_unit_and_a_hollow_mark_noise() -> None:
     found = marks(page(("sphere", table())).axes[0])
-    assert [found[price].get_color() for price in (2.5, 400.0, -0.1)] == [IDLE, CALLED, IDLE]
+    colours = [found[price].get_color() for price in (2.5, 400.0, 70.0, -0.1)]
+    assert colours == [IDLE, MOVES, CALLED, IDLE]
     assert [found[price].get_marker() for price in (2.5, 400.0, -0.1)] == ["o", "o", "s"]
     assert [found[p].get_markerfacecolor() == "white" for p in (2.5, 400.0, -0.1)] == [
         False,
@@ -101,7 +104,7 @@ def test_colour_tells_who_calls_shape_the_unit_and_a_hollow_mark_noise() -> None
 def test_an_effect_without_a_price_says_why_in_its_row() -> None:
     texts = page(("sphere", table())).axes[0].texts
     assert [(text.get_text(), text.get_position()[1]) for text in texts] == [
-        ("friction needs it", 3)
+        ("friction needs it", 4)
     ]
 
 
@@ -118,8 +121,10 @@ def test_several_scenes_share_the_names_of_effects() -> None:
     figure = page(("sphere", table()), ("pile", more))
     assert len(figure.axes) == 3  # a panel a scene, and compile times
     places = {price: line.get_ydata()[0] for price, line in marks(figure.axes[1]).items()}
-    assert places == {1.0: 0, 7.0: 4}
-    assert {text.get_text() for text in figure.axes[2].get_legend().texts} == {"sphere", "pile"}
+    assert places == {1.0: 0, 7.0: 5}
+    legend = figure.axes[2].get_legend()
+    assert legend is not None
+    assert {text.get_text() for text in legend.texts} == {"sphere", "pile"}
 
 
 def test_compile_times_stand_beside_the_prices() -> None:
