@@ -112,16 +112,13 @@ def as_json(data: Any) -> None:
 def reporting(name: str) -> Iterator[Any]:
     """Give a runner.Progress that shows compilation always, and a bar on a terminal only."""
     from lavendersim.runner import Progress
-    from lavendersim.runner.environment import kernel_note
+    from lavendersim.runner.environment import kernel_place
 
     def compiling(plan: Any) -> None:
         effects = ", ".join(plan.spec.effects) or "no effects"
         pairs = ", ".join(plan.spec.shape_pairs) or "no pairs"
-        note = kernel_note()
-        often = "" if note else ", once,"
-        typer.echo(f"{name}: compiling kernels{often} for {effects}; {pairs}", err=True)
-        if note:
-            typer.echo(f"{name}: {note}", err=True)
+        what = f"{name}: compiling kernels for {effects}; {pairs} ({kernel_place()})"
+        typer.echo(what, err=True)
 
     if not sys.stderr.isatty():
 

@@ -10,14 +10,12 @@ from __future__ import annotations
 
 from math import sqrt
 
-import numba
-
-from .compile import OPTIONS, kernel
+from .compile import inner, kernel
 from .effects import surface_velocity as surface_velocity_effect
 from .spec import Spec
 
 
-@numba.njit(**OPTIONS)
+@inner
 def set_tangents(contact):
     """Fill t1, t2 such that (n, t1, t2) is right-handed and orthonormal.
 
@@ -31,7 +29,7 @@ def set_tangents(contact):
     contact.t2x, contact.t2y, contact.t2z = b, side + y * y * a, -y
 
 
-@numba.njit(**OPTIONS)
+@inner
 def inertia_response(v, x, y, z):
     """World inverse inertia of the body of `v` applied to a vector."""
     return (
@@ -41,7 +39,7 @@ def inertia_response(v, x, y, z):
     )
 
 
-@numba.njit(**OPTIONS)
+@inner
 def point_response(v, inv_m, rx, ry, rz, x, y, z):
     """Velocity that a unit impulse (x, y, z) at r gives to the body's point r [1/kg]."""
     wx, wy, wz = inertia_response(v, ry * z - rz * y, rz * x - rx * z, rx * y - ry * x)
@@ -52,7 +50,7 @@ def point_response(v, inv_m, rx, ry, rz, x, y, z):
     )
 
 
-@numba.njit(**OPTIONS)
+@inner
 def block_response(contact, va, vb, x, y, z):
     """Relative velocity that a unit impulse (x, y, z) on B, and its opposite on A, gives [1/kg]."""
     ax, ay, az = point_response(va, contact.inv_m_a, contact.rax, contact.ray, contact.raz, x, y, z)

@@ -1,4 +1,4 @@
-"""Python functions enter, numba kernels leave. The one place that knows numba's options.
+"""Python functions enter, numba kernels leave. The one place that knows how numba compiles.
 
 Kernels are closures over the flags of a `Spec`. Numba removes the branches that a flag makes dead
 before it types them, so a pruned kernel is as small as one that never had the effect.
@@ -10,14 +10,20 @@ of the spec it was made for.
 
 from __future__ import annotations
 
+import gc
 import warnings
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
 import numba
+from numba.core.codegen import JITCodeLibrary
+from numba.core.compiler import Compiler
+from numba.core.compiler_lock import global_compiler_lock
 from numba.core.cpu import CPUTargetOptions
 from numba.core.errors import NumbaExperimentalFeatureWarning
+from numba.core.registry import CPUDispatcher
+from numba.core.sigutils import normalize_signature
 
 from .spec import Spec
 
@@ -37,21 +43,113 @@ def known(options: dict[str, Any], target_options: Any = CPUTargetOptions) -> di
 
 # No fastmath and no contraction: results must not depend on the optimiser's mood.
 # error_model numpy: a division by zero gives inf, which the runner reports, and never raises.
+# Nobody calls kernels from C.
 OPTIONS: dict[str, Any] = known(
-    {"error_model": "numpy", "fastmath": False, "nogil": True, "_nrt": False}
+    {
+        "error_model": "numpy",
+        "fastmath": False,
+        "nogil": True,
+        "no_cfunc_wrapper": True,
+        "_nrt": False,
+    }
 )
+
+
+class Part(JITCodeLibrary):
+    """Code of a kernel that other kernels call: linked into each of them, and optimised there.
+
+    Numba would optimise and assemble every kernel by itself as well, with all that it calls. None
+    of that is ever run, and it doubles the time an engine takes to compile.
+    """
+
+    def _optimize_final_module(self) -> None:
+        """Leave that to the kernel this is linked into."""
+
+    def _finalize_final_module(self) -> None:
+        """Make no machine code."""
+        self._finalized = True
+
+
+class PartCompiler(Compiler):
+    """Numba's pipeline for a kernel that only kernels call."""
+
+    def __init__(self, typingctx, targetctx, library, args, return_type, flags, locals):
+        flags.no_compile = flags.no_cpython_wrapper = True
+        part = Part(targetctx.codegen(), "part")
+        super().__init__(typingctx, targetctx, part, args, return_type, flags, locals)
+
+
+class Kernel(CPUDispatcher):
+    """Compiled code of one function for each signature; a door to Python only where Python calls.
+
+    One kernel in a hundred is called from Python; the others are parts of it. A signature that
+    Python calls after all is compiled a second time.
+    """
+
+    _compiler: Any  # numba does not declare its own
+    called_by_kernel = False
+
+    def get_call_template(self, args: Any, kws: Any) -> Any:
+        """Compile for a kernel that calls this one."""
+        with global_compiler_lock:
+            before = self.called_by_kernel, self._compiler.pipeline_class
+            self.called_by_kernel, self._compiler.pipeline_class = True, PartCompiler
+            try:
+                return super().get_call_template(args, kws)
+            finally:
+                self.called_by_kernel, self._compiler.pipeline_class = before
+
+    def compile(self, sig: Any) -> Any:
+        """Compile for the caller: a kernel, or Python, which needs the door."""
+        with global_compiler_lock:
+            args = tuple(normalize_signature(sig)[0])
+            if not self.called_by_kernel and args in self.overloads and not self.has_door(args):
+                del self.overloads[args]
+            return super().compile(sig)
+
+    def add_overload(self, cres: Any) -> None:
+        """Remember compiled code; Python's own table lists what has a door."""
+        if self.called_by_kernel:
+            # Numba looks code up by its door; the library stands in for that.
+            cres = cres._replace(entry_point=cres.library)
+            self.targetctx.insert_user_function(cres.entry_point, cres.fndesc, [cres.library])
+            self.overloads[tuple(cres.signature.args)] = cres
+        else:
+            super().add_overload(cres)
+
+    def has_door(self, args: tuple[Any, ...]) -> bool:
+        """Whether Python can call the code compiled for these types."""
+        result: Any = self.overloads[args]
+        return not isinstance(result.library, Part)
+
+
+def compiler_is_off() -> bool:
+    """Whether numba was told to leave functions as they are; its own do not work together then."""
+    return bool(numba.config.DISABLE_JIT)  # type: ignore[attr-defined]
+
+
+def inner(function: Callable[..., Any]) -> Any:
+    """Compile `function`, which is the same for every `Spec`, for use inside other kernels."""
+    return Kernel(function, targetoptions={"nopython": True, "boundscheck": None, **OPTIONS})
 
 
 @contextmanager
 def compiling() -> Iterator[None]:
-    """Compile inside: numba's remark that records share their first fields is not passed on.
+    """Compile inside: without numba's remark that records share their first fields, and faster.
 
     A kernel compiled for one record serves records that begin with the same fields, at the same
-    offsets; that is what we want, and numba calls it experimental each time.
+    offsets; that is what we want, and numba calls it experimental each time. Next to nothing of
+    what a compiler makes is garbage, and looking for it takes a tenth of the time.
     """
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", NumbaExperimentalFeatureWarning)
-        yield
+    collected = gc.isenabled()
+    gc.disable()
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", NumbaExperimentalFeatureWarning)
+            yield
+    finally:
+        if collected:
+            gc.enable()
 
 
 # Lists that want to know what is composed: (module, name of the kernel).
@@ -74,7 +172,7 @@ def kernel(function: Callable[..., Any], spec: Spec) -> Any:
     for composed in _listeners:
         composed.append((function.__module__, function.__name__))
     function.__qualname__ = f"{function.__qualname__}_{spec.digest()}"
-    return numba.njit(**OPTIONS)(function)
+    return inner(function)
 
 
 def chain(kernels: Sequence[Any], spec: Spec) -> Any:

@@ -11,10 +11,8 @@ from __future__ import annotations
 
 from typing import Any
 
-import numba
-
 from .block import make_apply_vector, make_complete_block, make_relative_velocity
-from .compile import OPTIONS, kernel
+from .compile import inner, kernel
 from .effects.smooth_contact import by_roughness, has_smooth
 from .records import SPHERE
 from .rotation import inverse_inertia_times
@@ -22,7 +20,7 @@ from .spec import Spec
 from .spin_block import make_apply_held, make_complete_spin, make_turns_hard, resists_turning
 
 
-@numba.njit(**OPTIONS)
+@inner
 def add_levers(contact, body_a, body_b, bx, by, bz):
     """Fill the angular parts of a row; returns what they add to k_n [1/kg].
 

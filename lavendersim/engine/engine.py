@@ -147,6 +147,7 @@ class Engine:
         self._velocity_bits = velocities.view(np.uint64).reshape(len(velocities), -1)
         self._initial_pose = poses
         self._kernel = advance_for(spec)
+        self._entry: Any = None  # its machine code for the types of these arrays, once known
         self._hulls = hulls
         self._templates = templates if spec.has("broad_phase") else ()
         self._near = self._allocate_near()
@@ -212,25 +213,31 @@ class Engine:
             self._allocate_rows(len(self.contacts))
         target = int(self.counters["step"][0]) + steps
         while True:
-            left = target - int(self.counters["step"][0])
-            if self._kernel.overloads:
-                status = self._call(left)
-            else:
-                with compiling():
-                    status = self._call(left)
+            status = self._call(target - int(self.counters["step"][0]))
             if status == PAIRS_FULL:
                 self._grow_pairs()
                 continue
             if status == WOKEN:
                 continue
             if status != CONTACTS_FULL:
-                return int(status)
+                return status
             if self.counters["step_rows"][0]:
                 return ROWS_FULL  # rows first: enlarging the columns would drop them
             self._grow_contacts(2 * len(self.contacts))
 
     def _call(self, steps: int) -> int:
-        status = self._kernel(
+        if self._entry is not None:
+            return int(self._entry(*self._arguments(steps)))
+        with compiling():
+            status = int(self._kernel(*self._arguments(steps)))
+        # Looking up the types of forty arrays costs 6 us a call; they stay what they are.
+        compiled = list(self._kernel.overloads.values())
+        if len(compiled) == 1:
+            self._entry = compiled[0].entry_point
+        return status
+
+    def _arguments(self, steps: int) -> tuple[Any, ...]:
+        return (
             self.bodies,
             self.velocities,
             self.motion,
@@ -246,7 +253,6 @@ class Engine:
             self._residual_rows,
             steps,
         )
-        return int(status)
 
     def take_rows(self) -> Rows:
         """Return copies of the rows written since the last call and empty the columns."""

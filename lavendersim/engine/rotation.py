@@ -8,12 +8,10 @@ from __future__ import annotations
 
 from math import sqrt
 
-import numba
-
-from .compile import OPTIONS
+from .compile import inner
 
 
-@numba.njit(**OPTIONS)
+@inner
 def orient(body):
     """Refresh the matrix of `body` from its unit quaternion."""
     w, x, y, z = body.qw, body.qx, body.qy, body.qz
@@ -28,7 +26,7 @@ def orient(body):
     body.r22 = 1.0 - 2.0 * (x * x + y * y)
 
 
-@numba.njit(**OPTIONS)
+@inner
 def to_world(body, x, y, z):
     """Rotate a vector from the body's frame to the world's."""
     return (
@@ -38,7 +36,7 @@ def to_world(body, x, y, z):
     )
 
 
-@numba.njit(**OPTIONS)
+@inner
 def to_body(body, x, y, z):
     """Rotate a vector from the world's frame to the body's."""
     return (
@@ -48,14 +46,14 @@ def to_body(body, x, y, z):
     )
 
 
-@numba.njit(**OPTIONS)
+@inner
 def inverse_inertia_times(body, x, y, z):
     """I^-1 applied to a world vector, by way of the principal axes."""
     bx, by, bz = to_body(body, x, y, z)
     return to_world(body, body.inv_ix * bx, body.inv_iy * by, body.inv_iz * bz)
 
 
-@numba.njit(**OPTIONS)
+@inner
 def inertia_times(body, x, y, z):
     """I applied to a world vector; a fixed body (inverse inertia 0) gives zero."""
     bx, by, bz = to_body(body, x, y, z)
@@ -64,7 +62,7 @@ def inertia_times(body, x, y, z):
     return to_world(body, bx / body.inv_ix, by / body.inv_iy, bz / body.inv_iz)
 
 
-@numba.njit(**OPTIONS)
+@inner
 def turn(body, angle_x, angle_y, angle_z):
     """Turn `body` by a small world rotation vector [rad] and refresh its matrix."""
     hx, hy, hz = 0.5 * angle_x, 0.5 * angle_y, 0.5 * angle_z

@@ -16,10 +16,8 @@ from __future__ import annotations
 from math import sqrt
 from typing import Any
 
-import numba
-
 from .block import inertia_response
-from .compile import OPTIONS, kernel
+from .compile import inner, kernel
 from .effects import rolling_friction, torsional_friction
 from .spec import Spec
 
@@ -29,7 +27,7 @@ def resists_turning(spec: Spec) -> bool:
     return spec.has("torsional_friction") or spec.has("rolling_friction")
 
 
-@numba.njit(**OPTIONS)
+@inner
 def _spin_response(va, vb, x, y, z):
     """Relative angular velocity that a unit angular impulse (x, y, z) gives [1/(kg m^2)]."""
     ax, ay, az = inertia_response(va, x, y, z)

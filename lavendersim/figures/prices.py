@@ -30,8 +30,8 @@ CAPTION: Final = (
     "of {repeats} interleaved repeats, with the interval that holds the median in 19 of 20 cases; "
     "hollow where that reaches zero. Blue: the scene does not call for it, and the engine carries "
     "it idle through the same motion. Orange: the scene calls for it. Vermilion: the motion "
-    "without it is another. The axis is linear within ±1 ns and logarithmic outside. Right: what the "
-    "engine with the effect takes to compile, once; lines, the engine of the plan alone. "
+    "without it is another. The axis is linear within ±1 ns and logarithmic outside. Right: what "
+    "the engine with the effect takes to compile, once; lines, the engine of the plan alone. "
     "{processor}."
 )
 

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import os
 import platform
+from collections.abc import Iterable
 from datetime import UTC, datetime
 from functools import cache
 from importlib.metadata import version
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
+    from lavendersim.engine.kernel_cache import Kept
     from lavendersim.engine.spec import Spec
 
 PACKAGES = ("numpy", "numba", "llvmlite", "mcap", "pydantic", "zstandard", "protobuf")
@@ -51,27 +52,52 @@ def machine() -> dict[str, Any]:
     }
 
 
-def kernel_note() -> str:
-    """Return a sentence when kernels are not kept in the usual place, else nothing."""
+def kernel_place() -> str:
+    """Return how often kernels are compiled and where they are kept, in words."""
     from lavendersim.engine.kernel_cache import directory
 
-    return directory()[1]
+    kept, note = directory()
+    return f"once; {note or f'kept in {kept}'}" if kept.name else note
 
 
-def kernel_files() -> list[Path]:
-    """Return the compiled kernels on disk."""
-    from lavendersim.engine.kernel_cache import directory
+class Kernels(NamedTuple):
+    """Compiled kernels on disk: how many, and their size [byte]."""
 
-    kept = directory()[0]
-    return sorted(kept.glob("*.kernel")) if kept.name else []
+    files: int
+    size: int
+
+    @classmethod
+    def of(cls, kept: Iterable[Kept]) -> Kernels:
+        """Count kernels."""
+        sizes = [each.size for each in kept]
+        return cls(len(sizes), sum(sizes))
+
+    def __str__(self) -> str:
+        return f"{self.files} file{'' if self.files == 1 else 's'}, {self.size / 1e6:.1f} MB"
 
 
-def delete_kernels() -> int:
-    """Delete the compiled kernels; returns how many there were."""
-    files = kernel_files()
-    for file in files:
-        file.unlink(missing_ok=True)
-    return len(files)
+def kernels(current: bool) -> Kernels:
+    """Return what is kept of this version on this machine, or of all others."""
+    from lavendersim.engine.kernel_cache import kept_kernels
+
+    return Kernels.of(each for each in kept_kernels() if each.current == current)
+
+
+def kernel_limit() -> int:
+    """Return the size [byte] above which kernels that were not used for longest are deleted."""
+    from lavendersim.engine.kernel_cache import LIMIT
+
+    return LIMIT
+
+
+def delete_kernels(current: bool) -> Kernels:
+    """Delete the compiled kernels of other versions, with `current` this one's; returns those."""
+    from lavendersim.engine.kernel_cache import kept_kernels
+
+    deleted = [each for each in kept_kernels() if each.current == current]
+    for each in deleted:
+        each.path.unlink(missing_ok=True)
+    return Kernels.of(deleted)
 
 
 def environment(*specs: Spec) -> dict[str, Any]:

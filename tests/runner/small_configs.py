@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
 from typing import Any
+
+import lavendersim
 
 DROPS = """\
 question: How high does a small ball rebound?
@@ -55,6 +58,7 @@ print(json.dumps({
     "logs": [sha256(cell.path.read_bytes()).hexdigest() for cell in finished.run.cells],
     "hashes": [int(cell.trace().step["state_hash"][-1]) for cell in finished.run.cells],
     "heights": [float(cell.trace().pose[-1, 1, 2]) for cell in finished.run.cells],
+    "contacts": [len(cell.trace().contact) for cell in finished.run.cells],
     "cache": [str(directory()[0]), directory()[1]],
     "source": source_hash(),
 }))
@@ -66,6 +70,14 @@ def write(folder: Path, text: str = DROPS, name: str = "drops.yaml") -> Path:
     path = folder / name
     path.write_text(text)
     return path
+
+
+def copy_package(folder: Path) -> Path:
+    """Copy lavender's sources into a folder, to be edited there; returns the engine's."""
+    package = folder / "lavendersim"
+    skipped = shutil.ignore_patterns("__pycache__")
+    shutil.copytree(Path(lavendersim.__file__).parent, package, ignore=skipped)
+    return package / "engine"
 
 
 def python(code: str, *arguments: Any, **environment: str) -> str:

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import shutil
 from pathlib import Path
 from typing import Any
 
 import pytest
-from numba.core.registry import cpu_target
-from small_configs import DROPS, python, run_in_new_process, write
+from numba.core.registry import CPUDispatcher, cpu_target
+from small_configs import DROPS, copy_package, python, run_in_new_process, write
 
-import lavendersim
 from lavendersim.engine import compile as engine_compile
 from lavendersim.engine.kernel_cache import KernelCache
 from lavendersim.engine.spec import Spec
@@ -18,14 +16,6 @@ from lavendersim.engine.step import advance_for, make_advance
 from lavendersim.experiment import load_experiment_text
 from lavendersim.scene.build import build
 from lavendersim.scene.plan import plan_of
-
-PACKAGE = Path(lavendersim.__file__).parent
-
-
-def copy_package(folder: Path) -> None:
-    """Copy lavender's sources into a folder, to be edited there."""
-    skipped = shutil.ignore_patterns("__pycache__")
-    shutil.copytree(PACKAGE, folder / "lavendersim", ignore=skipped)
 
 
 @pytest.fixture(scope="module")
@@ -75,25 +65,6 @@ def test_a_truncated_kernel_counts_as_absent(
     stored.write_bytes(file.read_bytes()[:length])
     assert cache.load_overload("signature", context) is None
     assert (cache.hits, cache.misses) == (0, 1)
-
-
-def test_an_edited_engine_source_is_compiled_anew(
-    kept: tuple[Path, Path, dict[str, Any]], tmp_path: Path
-) -> None:
-    config, kernels, first = kept
-    copy_package(tmp_path)
-    source = tmp_path / "lavendersim/engine/effects/gravity.py"
-    upwards = source.read_text().replace("velocity.vz += params.gz", "velocity.vz -= params.gz")
-    assert upwards != source.read_text()
-    source.write_text(upwards)
-    edited = run_in_new_process(
-        config, tmp_path / "runs", LAVENDER_CACHE_DIR=str(kernels), PYTHONPATH=str(tmp_path)
-    )
-    assert Path(edited["package"]).is_relative_to(tmp_path)
-    assert edited["source"] != first["source"]
-    # Falling upwards for 0.5 s from 0.15 m: the kernel that ran is the edited one.
-    assert min(edited["heights"]) > 1.0 > max(first["heights"])
-    assert edited["statuses"] == first["statuses"] == ["complete"] * 3
 
 
 @pytest.mark.parametrize("change", ["comment", "new file", "renamed file"])
@@ -171,6 +142,22 @@ def test_kernels_without_reference_counting_give_the_same_bits(
     assert counting.targetoptions.get("_nrt", True)
     assert rows_of_a_drop(spec, cell.resolved, counting) == without
     assert len(without[0]) > 120 * 100
+
+
+def test_kernels_linked_into_their_callers_give_the_same_bits_as_numba_s_own(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    cell = load_experiment_text(DROPS, "drops.yaml").cells()[2]
+    spec = plan_of(cell.resolved).spec
+    linked = rows_of_a_drop(spec, cell.resolved, make_advance(spec))
+
+    def refuse(*_: Any) -> None:
+        raise AssertionError("a part was compiled")
+
+    monkeypatch.setattr(engine_compile.PartCompiler, "__init__", refuse)
+    monkeypatch.setattr(engine_compile.Kernel, "get_call_template", CPUDispatcher.get_call_template)
+    assert rows_of_a_drop(spec, cell.resolved, make_advance(spec)) == linked
+    assert len(linked[0]) > 120 * 100
 
 
 def test_a_numba_that_does_not_know_the_option_gets_the_others() -> None:

@@ -19,10 +19,9 @@ from __future__ import annotations
 from math import sqrt
 from typing import Any
 
-import numba
 import numpy as np
 
-from ..compile import OPTIONS, kernel
+from ..compile import inner, kernel
 from ..records import TOUCHING
 from .clip import clip_incident_face
 from .gjk import APART, make_gjk
@@ -50,13 +49,13 @@ EDGE_FEATURES = 36 * 64
 NEAREST_FEATURE = EDGE_FEATURES + 9 * 16
 
 
-@numba.njit(**OPTIONS)
+@inner
 def half_edges(box, out):
     """Write the half edge lengths of `box` [m]."""
     out[0], out[1], out[2] = box.hx, box.hy, box.hz
 
 
-@numba.njit(**OPTIONS)
+@inner
 def frame_of(box, out):
     """Write the axes of `box` as rows: out[i] is its i-th axis in world coordinates."""
     out[0, 0], out[0, 1], out[0, 2] = box.r00, box.r10, box.r20
@@ -64,7 +63,7 @@ def frame_of(box, out):
     out[2, 0], out[2, 1], out[2, 2] = box.r02, box.r12, box.r22
 
 
-@numba.njit(**OPTIONS)
+@inner
 def deepest_face(t, ha, hb, C, transposed):
     """Least penetrated face of the box whose frame `t` is in: (separation, axis)."""
     best, axis = -np.inf, 0
@@ -78,7 +77,7 @@ def deepest_face(t, ha, hb, C, transposed):
     return best, axis
 
 
-@numba.njit(**OPTIONS)
+@inner
 def deepest_edges(t, ha, hb, C):
     """Least penetrated pair of edges: (separation, edge of A * 3 + edge of B), -1 without any."""
     best, chosen = -np.inf, -1
@@ -101,7 +100,7 @@ def deepest_edges(t, ha, hb, C):
     return best, chosen
 
 
-@numba.njit(**OPTIONS)
+@inner
 def edge_contact(a, b, fa, fb, ha, hb, edges, separation, points, normal):
     """Nearest points of one edge of A and one of B; the contact lies half way between them."""
     i, j = edges // 3, edges % 3
@@ -148,7 +147,7 @@ def edge_contact(a, b, fa, fb, ha, hb, edges, separation, points, normal):
     return 1
 
 
-@numba.njit(**OPTIONS)
+@inner
 def nearest_contact(a, nearest, points, normal):
     """Two boxes that are far apart have one point, between the nearest ones that GJK found."""
     normal[0], normal[1], normal[2] = nearest[0], nearest[1], nearest[2]

@@ -13,9 +13,7 @@ from __future__ import annotations
 
 from math import sqrt
 
-import numba
-
-from ..compile import OPTIONS, kernel
+from ..compile import inner, kernel
 from .point import place
 
 # Axes whose directions differ by less than this [rad] touch in two points. The ends of an overlap
@@ -25,7 +23,7 @@ PARALLEL = 2e-3
 MEETING = 1e-14
 
 
-@numba.njit(**OPTIONS)
+@inner
 def nearest_on_axes(dx, dy, dz, ux, uy, uz, wx, wy, wz, ha, hb):
     """Nearest points of two segments: (s, r), from their centres along the units u and w [m].
 
@@ -45,7 +43,7 @@ def nearest_on_axes(dx, dy, dz, ux, uy, uz, wx, wy, wz, ha, hb):
     return s, min(max(cosine * s - dw, -hb), hb)
 
 
-@numba.njit(**OPTIONS)
+@inner
 def direction(dx, dy, dz, a, b):
     """Unit vector along d; across both axes where d is round-off."""
     length = sqrt(dx * dx + dy * dy + dz * dz)

@@ -13,14 +13,12 @@ boxes slide, so the contact cache can follow a vertex.
 
 from __future__ import annotations
 
-import numba
-
-from ..compile import OPTIONS
+from ..compile import inner
 from ..records import TOUCHING
 from .point import copy_point, place
 
 
-@numba.njit(**OPTIONS)
+@inner
 def incident_axis(fi, nx, ny, nz):
     """Axis and side of the face of the incident box whose normal opposes n most."""
     axis, steepest = 0, 0.0
@@ -32,7 +30,7 @@ def incident_axis(fi, nx, ny, nz):
     return axis, (-1.0 if steepest > 0.0 else 1.0)
 
 
-@numba.njit(**OPTIONS)
+@inner
 def cut(points, start, count, target, axis, side, limit, line):
     """Keep the part of a polygon with side * coordinate <= limit.
 
@@ -68,7 +66,7 @@ def cut(points, start, count, target, axis, side, limit, line):
     return kept
 
 
-@numba.njit(**OPTIONS)
+@inner
 def clip_incident_face(ref, inc, fr, fi, hr, hi, axis, side, base, points, normal, margin):
     """Write the manifold on the reference face; returns the count (at most 8).
 

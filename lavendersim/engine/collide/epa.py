@@ -10,10 +10,9 @@ from __future__ import annotations
 
 from functools import cache
 
-import numba
 import numpy as np
 
-from ..compile import OPTIONS, kernel
+from ..compile import inner, kernel
 from .gjk import make_difference
 from .polytope import flood, grow, join, nearest_face, put_face
 from .scratch import EPA_VERTICES
@@ -35,7 +34,7 @@ SAME_WAY = 0.999
 FIRST = np.array([[0, 1, 2, 1, 2, 3], [0, 3, 1, 3, 2, 0], [1, 3, 2, 1, 3, 0], [2, 3, 0, 2, 1, 0]])
 
 
-@numba.njit(**OPTIONS)
+@inner
 def nearest_in_face(corners, i, j, k, x, y, z):
     """Point of the triangle i j k nearest to (x, y, z): (squared distance, three weights)."""
     px, py, pz, wi, wj, wk = nearest_on_triangle(
@@ -52,7 +51,7 @@ def nearest_in_face(corners, i, j, k, x, y, z):
     return px * px + py * py + pz * pz, wi, wj, wk
 
 
-@numba.njit(**OPTIONS)
+@inner
 def write_witness(mesh, result, faces, chosen, depth, slack):
     """Write the points of A and B where the ray along `result[:3]` leaves the polytope.
 

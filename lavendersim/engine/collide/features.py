@@ -15,9 +15,7 @@ from __future__ import annotations
 from functools import cache
 from math import sqrt
 
-import numba
-
-from ..compile import OPTIONS, kernel
+from ..compile import inner, kernel
 from ..records import BOX, CAPSULE, CYLINDER, SPHERE
 from ..rotation import to_body, to_world
 from .hull_geometry import MOST_FACES
@@ -39,14 +37,14 @@ EDGES = MOST_FACES
 DIAGONAL = sqrt(0.5)
 
 
-@numba.njit(**OPTIONS)
+@inner
 def put_corner(body, ox, oy, oz, lx, ly, lz, loop, k):
     """Write the corner (lx, ly, lz) of the body's frame as row k."""
     x, y, z = to_world(body, lx, ly, lz)
     loop[k, 0], loop[k, 1], loop[k, 2] = ox + x, oy + y, oz + z
 
 
-@numba.njit(**OPTIONS)
+@inner
 def octagon_corner(k):
     """Cosine and sine of k eighths of a turn."""
     if k & 1:
@@ -59,7 +57,7 @@ def octagon_corner(k):
     return 1.0 if k == 0 else -1.0, 0.0
 
 
-@numba.njit(**OPTIONS)
+@inner
 def put_cap(body, ox, oy, oz, lx, ly, lz, loop, plane):
     """Write the octagon and the disc of the cap that looks along (lx, ly, lz), body frame."""
     up = 1.0 if lz >= 0.0 else -1.0
@@ -84,7 +82,7 @@ def put_cap(body, ox, oy, oz, lx, ly, lz, loop, plane):
     plane[6] = body.hx
 
 
-@numba.njit(**OPTIONS)
+@inner
 def flattest_edge(loop, count, nx, ny, nz):
     """Edge of the loop whose lower end is highest along n: (edge, its slope)."""
     chosen, best = 0, -1e300

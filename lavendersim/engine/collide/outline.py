@@ -13,9 +13,7 @@ from __future__ import annotations
 
 from math import sqrt
 
-import numba
-
-from ..compile import OPTIONS
+from ..compile import inner
 from ..records import TOUCHING
 from .features import DISC
 from .point import copy_point, place
@@ -23,7 +21,7 @@ from .point import copy_point, place
 OTHER = 1 << 8
 
 
-@numba.njit(**OPTIONS)
+@inner
 def blend(p, q, share, target, in_line, out_line):
     """Write the point p + share (q - p)."""
     place(
@@ -37,7 +35,7 @@ def blend(p, q, share, target, in_line, out_line):
     target.in_line, target.out_line = in_line, out_line
 
 
-@numba.njit(**OPTIONS)
+@inner
 def cut_straight(rows, start, count, target, gu, gv, limit, line):
     """Keep the part of a polygon with g . (u, v) <= limit; returns the new count."""
     kept, room = 0, rows.shape[0] // 2
@@ -61,7 +59,7 @@ def cut_straight(rows, start, count, target, gu, gv, limit, line):
     return kept
 
 
-@numba.njit(**OPTIONS)
+@inner
 def disc_roots(p, q, cu, cv, gu, gv, radius):
     """Where the line p q, seen along n, enters and leaves a tilted disc: shares of p q.
 
@@ -81,7 +79,7 @@ def disc_roots(p, q, cu, cv, gu, gv, radius):
     return (-b - root) / a, (-b + root) / a
 
 
-@numba.njit(**OPTIONS)
+@inner
 def cut_round(rows, start, count, target, cu, cv, gu, gv, radius):
     """Keep the part of a polygon inside a disc, arcs as their chords; returns the new count."""
     kept = 0
@@ -101,7 +99,7 @@ def cut_round(rows, start, count, target, cu, cv, gu, gv, radius):
     return kept
 
 
-@numba.njit(**OPTIONS)
+@inner
 def side_of(loop, count, k, turn, frame):
     """Outward unit vector of a loop's side k seen along n, and its limit: (gu, gv, limit)."""
     j = (k + 1) % count
@@ -117,7 +115,7 @@ def side_of(loop, count, k, turn, frame):
     return gu, gv, gu * pu + gv * pv + TOUCHING
 
 
-@numba.njit(**OPTIONS)
+@inner
 def slope_of(plane, frame):
     """Rise of w on a plane per u and per v."""
     nu = plane[0] * frame[0] + plane[1] * frame[1] + plane[2] * frame[2]
@@ -126,7 +124,7 @@ def slope_of(plane, frame):
     return -nu / nw, -nv / nw
 
 
-@numba.njit(**OPTIONS)
+@inner
 def cut_polygon(rows, half, count, loop, other_count, plane, other_kind, turn, frame):
     """Cut the polygon in rows 0.. to the other's outline; returns (first row, count)."""
     cu = frame[0] * plane[3] + frame[1] * plane[4] + frame[2] * plane[5]
@@ -142,7 +140,7 @@ def cut_polygon(rows, half, count, loop, other_count, plane, other_kind, turn, f
     return start, count
 
 
-@numba.njit(**OPTIONS)
+@inner
 def cut_line(rows, half, loop, other_count, plane, other_kind, turn, frame):
     """Cut the line in rows 0 and 1 to the other's outline; its ends go to `half`; the count."""
     p, q = rows[0], rows[1]

@@ -11,9 +11,7 @@ from __future__ import annotations
 
 from math import sqrt
 
-import numba
-
-from ..compile import OPTIONS
+from ..compile import inner
 from ..records import TOUCHING
 from .features import DISC, FACE, LINE, POINT
 from .outline import OTHER, blend, cut_line, cut_polygon, slope_of
@@ -27,7 +25,7 @@ CROSS = 2
 PARALLEL = 2e-3
 
 
-@numba.njit(**OPTIONS)
+@inner
 def across(nx, ny, nz):
     """Two unit vectors that make a right-handed frame t1, t2, n."""
     if abs(nx) <= abs(ny) and abs(nx) <= abs(nz):
@@ -41,7 +39,7 @@ def across(nx, ny, nz):
     return x, y, z, ny * z - nz * y, nz * x - nx * z, nx * y - ny * x
 
 
-@numba.njit(**OPTIONS)
+@inner
 def load(loop, count, frame, rows):
     """Write a loop's corners as u, v, w."""
     for k in range(count):
@@ -57,7 +55,7 @@ def load(loop, count, frame, rows):
         rows[k].in_line, rows[k].out_line = (k + count - 1) % count, k
 
 
-@numba.njit(**OPTIONS)
+@inner
 def overlap_lines(rows, half):
     """Where two lines cross, or the ends of their overlap when nearly parallel; returns the count.
 
@@ -102,7 +100,7 @@ def overlap_lines(rows, half):
     return 2
 
 
-@numba.njit(**OPTIONS)
+@inner
 def overlay(kind_a, count_a, name_a, kind_b, count_b, name_b, radius_a, radius_b, frame, scratch):
     """Write the corners of the overlap; returns (first row of `scratch.polygon`, count).
 

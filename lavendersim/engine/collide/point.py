@@ -7,15 +7,13 @@ the support polygon that matters for its balance.
 
 from __future__ import annotations
 
-import numba
-
-from ..compile import OPTIONS
+from ..compile import inner
 
 # Points that `keep_four` exchanges at most: three are kept beside the deepest, most fit at once.
 EXCHANGES = 4
 
 
-@numba.njit(**OPTIONS)
+@inner
 def place(point, x, y, z, phi, feature):
     """Write one candidate point."""
     point.x, point.y, point.z = x, y, z
@@ -23,7 +21,7 @@ def place(point, x, y, z, phi, feature):
     point.feature = feature
 
 
-@numba.njit(**OPTIONS)
+@inner
 def copy_point(source, target):
     """Copy a point field by field (records are references)."""
     target.x, target.y, target.z = source.x, source.y, source.z
@@ -32,7 +30,7 @@ def copy_point(source, target):
     target.in_line, target.out_line = source.in_line, source.out_line
 
 
-@numba.njit(**OPTIONS)
+@inner
 def swap_points(a, b):
     """Exchange two points."""
     ax, ay, az, phi, feature = a.x, a.y, a.z, a.phi, a.feature
@@ -42,7 +40,7 @@ def swap_points(a, b):
     b.in_line, b.out_line = in_line, out_line
 
 
-@numba.njit(**OPTIONS)
+@inner
 def signed_area(p, q, r, nx, ny, nz):
     """Twice the area of triangle p q r, positive when it turns left about n [m^2]."""
     ux, uy, uz = q.x - p.x, q.y - p.y, q.z - p.z
@@ -50,7 +48,7 @@ def signed_area(p, q, r, nx, ny, nz):
     return nx * (uy * wz - uz * wy) + ny * (uz * wx - ux * wz) + nz * (ux * wy - uy * wx)
 
 
-@numba.njit(**OPTIONS)
+@inner
 def quadrilateral(p, q, r, s, nx, ny, nz):
     """Twice the area spanned by four points in any order, if none lies between the others [m^2].
 
@@ -62,7 +60,7 @@ def quadrilateral(p, q, r, s, nx, ny, nz):
     return max(abs(pq), max(abs(pr), abs(ps)))
 
 
-@numba.njit(**OPTIONS)
+@inner
 def exchange(points, count, nx, ny, nz):
     """Replace each of points 1..3 by one of the others while that spans more.
 
@@ -83,7 +81,7 @@ def exchange(points, count, nx, ny, nz):
         swap_points(points[out], points[chosen])
 
 
-@numba.njit(**OPTIONS)
+@inner
 def keep_four(points, count, nx, ny, nz):
     """Order `points` so that the first four are the deepest and the largest quadrilateral with it.
 

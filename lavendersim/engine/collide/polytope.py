@@ -13,15 +13,13 @@ from __future__ import annotations
 
 from math import sqrt
 
-import numba
-
-from ..compile import OPTIONS
+from ..compile import inner
 
 # A face whose area is below this share of its edges' product has no normal [-].
 NO_AREA = 1e-12
 
 
-@numba.njit(**OPTIONS)
+@inner
 def put_face(corners, triangles, planes, t, i, j, k):
     """Write face `t` through the corners i j k and its plane; the neighbours stay open."""
     triangles[t, 0], triangles[t, 1], triangles[t, 2], triangles[t, 6] = i, j, k, 1
@@ -38,13 +36,13 @@ def put_face(corners, triangles, planes, t, i, j, k):
     planes[t, 3] = nx * px + ny * py + nz * pz
 
 
-@numba.njit(**OPTIONS)
+@inner
 def join(triangles, t, ij, jk, ki):
     """Write the neighbours of face `t`."""
     triangles[t, 3], triangles[t, 4], triangles[t, 5] = ij, jk, ki
 
 
-@numba.njit(**OPTIONS)
+@inner
 def nearest_face(triangles, planes, count):
     """Face whose plane is nearest to the origin, counted negative where the origin is outside."""
     chosen, nearest = 0, 1e301
@@ -54,7 +52,7 @@ def nearest_face(triangles, planes, count):
     return chosen
 
 
-@numba.njit(**OPTIONS)
+@inner
 def flood(mesh, corner, start, stamp, slack):
     """Mark with `stamp` the faces joined to `start` that see `corner`; returns how many."""
     triangles, planes, visible, stack = mesh.triangles, mesh.planes, mesh.visible, mesh.stack
@@ -80,7 +78,7 @@ def flood(mesh, corner, start, stamp, slack):
     return count
 
 
-@numba.njit(**OPTIONS)
+@inner
 def grow(mesh, corner, faces, seen, stamp):
     """Replace the faces in `stack[:seen]` by a cone to `corner`; returns the new face count.
 

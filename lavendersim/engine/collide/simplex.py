@@ -11,15 +11,13 @@ dozen operations more than walking the Voronoi regions and cannot lose its way i
 
 from __future__ import annotations
 
-import numba
-
-from ..compile import OPTIONS
+from ..compile import inner
 
 # Triangles whose squared sine is below this have no normal to speak of: their edges are tried.
 FLAT = 1e-26
 
 
-@numba.njit(**OPTIONS)
+@inner
 def nearest_on_segment(px, py, pz, qx, qy, qz):
     """Point of the segment p q nearest to the origin: (x, y, z, weight of p, weight of q)."""
     tx, ty, tz = qx - px, qy - py, qz - pz
@@ -33,7 +31,7 @@ def nearest_on_segment(px, py, pz, qx, qy, qz):
     return px + share * tx, py + share * ty, pz + share * tz, 1.0 - share, share
 
 
-@numba.njit(**OPTIONS)
+@inner
 def nearest_on_triangle(px, py, pz, qx, qy, qz, rx, ry, rz):
     """Point of the triangle p q r nearest to the origin: (x, y, z, weights of p, q, r)."""
     ux, uy, uz = qx - px, qy - py, qz - pz
@@ -77,7 +75,7 @@ def nearest_on_triangle(px, py, pz, qx, qy, qz, rx, ry, rz):
     return bx, by, bz, wp, wq, wr
 
 
-@numba.njit(**OPTIONS)
+@inner
 def faces_away(corners, i, j, k, opposite, grain):
     """Whether the origin and the corner `opposite` are not clearly on one side of face i j k.
 
@@ -97,7 +95,7 @@ def faces_away(corners, i, j, k, opposite, grain):
     return origin * other <= 0.0 or flat
 
 
-@numba.njit(**OPTIONS)
+@inner
 def nearest_on_tetrahedron(corners, weights, grain):
     """Write the weights of the nearest point; returns (inside, x, y, z)."""
     best = 1e300
@@ -125,7 +123,7 @@ def nearest_on_tetrahedron(corners, weights, grain):
     return best == 1e300, x, y, z
 
 
-@numba.njit(**OPTIONS)
+@inner
 def nearest_on_simplex(corners, count, weights, grain):
     """Nearest point of the first `count` corners to the origin; returns (inside, x, y, z).
 
@@ -147,7 +145,7 @@ def nearest_on_simplex(corners, count, weights, grain):
     return False, x, y, z
 
 
-@numba.njit(**OPTIONS)
+@inner
 def drop_weightless(corners, count, weights):
     """Keep the corners with a weight, in order; returns how many."""
     kept = 0

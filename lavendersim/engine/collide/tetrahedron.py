@@ -9,16 +9,14 @@ from __future__ import annotations
 from functools import cache
 from math import sqrt
 
-import numba
-
-from ..compile import OPTIONS, kernel
+from ..compile import inner, kernel
 from .gjk import make_difference
 
 # A simplex thinner than this share of the sizes is built anew [-].
 THIN = 1e-9
 
 
-@numba.njit(**OPTIONS)
+@inner
 def off_line(corners, i, j, k):
     """Squared distance of corner k from the line through i and j."""
     ux = corners[j, 0] - corners[i, 0]
@@ -31,7 +29,7 @@ def off_line(corners, i, j, k):
     return (cx * cx + cy * cy + cz * cz) / (ux * ux + uy * uy + uz * uz)
 
 
-@numba.njit(**OPTIONS)
+@inner
 def above_plane(corners, k):
     """Height of corner k over the plane of the corners 0, 1, 2, and that plane's unnormalised n."""
     ux = corners[1, 0] - corners[0, 0]
@@ -49,14 +47,14 @@ def above_plane(corners, k):
     return height / sqrt(nx * nx + ny * ny + nz * nz), nx, ny, nz
 
 
-@numba.njit(**OPTIONS)
+@inner
 def copy_row(corners, source, target):
     """Copy one corner."""
     for k in range(9):
         corners[target, k] = corners[source, k]
 
 
-@numba.njit(**OPTIONS)
+@inner
 def swap_rows(corners, i, j):
     """Exchange two corners."""
     for k in range(9):

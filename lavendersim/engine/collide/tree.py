@@ -18,9 +18,7 @@ visits one and a half times as many nodes.
 
 from __future__ import annotations
 
-import numba
-
-from ..compile import OPTIONS
+from ..compile import inner
 from ..records import F8, I8, Field
 
 # Bits of a place along one axis: cells of 1e-6 of the scene, so that one body far away does not
@@ -57,7 +55,7 @@ def node_count(leaves: int) -> int:
     return total
 
 
-@numba.njit(**OPTIONS)
+@inner
 def spread(n):
     """Put two zero bits between the 20 bits of n."""
     n = (n | (n << 32)) & 0x1F00000000FFFF
@@ -67,7 +65,7 @@ def spread(n):
     return (n | (n << 2)) & 0x1249249249249249
 
 
-@numba.njit(**OPTIONS)
+@inner
 def hilbert(x, y, z):
     """Place of a cell, 20 bits an axis, on the Hilbert curve through all cells, 60 bits.
 
@@ -94,7 +92,7 @@ def hilbert(x, y, z):
     return spread(x ^ parity) << 2 | spread(y ^ parity) << 1 | spread(z ^ parity)
 
 
-@numba.njit(**OPTIONS)
+@inner
 def cell(place):
     """Cell of a place in [0, 1] along one axis; whatever is not a number is in cell 0."""
     if place > 0.0:
@@ -102,7 +100,7 @@ def cell(place):
     return 0
 
 
-@numba.njit(**OPTIONS)
+@inner
 def size_class(size, largest):
     """0 for the largest, one more for each factor of CLASS_RATIO below."""
     limit, found = largest / CLASS_RATIO, 0
@@ -112,7 +110,7 @@ def size_class(size, largest):
     return found
 
 
-@numba.njit(**OPTIONS)
+@inner
 def sort_by_code(codes, order, other_codes, other_order, counts, count):
     """Sort codes (63 bits, not negative) and carry `order` along, stably; the result is in place.
 
@@ -139,7 +137,7 @@ def sort_by_code(codes, order, other_codes, other_order, counts, count):
             order[k] = other_order[k]
 
 
-@numba.njit(**OPTIONS)
+@inner
 def enclose(bounds, first, last, out):
     """Write the box around rows first ... last - 1 of `bounds`."""
     row = bounds[first]
@@ -154,7 +152,7 @@ def enclose(bounds, first, last, out):
     out.high_x, out.high_y, out.high_z = high_x, high_y, high_z
 
 
-@numba.njit(**OPTIONS)
+@inner
 def build_nodes(leaves, count, nodes, starts):
     """Fill the levels above the leaves; starts[l] is where level l begins in `nodes`."""
     width, level, begin = (count + 3) // 4, 1, 0
@@ -172,7 +170,7 @@ def build_nodes(leaves, count, nodes, starts):
             enclose(nodes, first, last, nodes[begin + n])
 
 
-@numba.njit(**OPTIONS)
+@inner
 def overlap(a, b):
     """Whether two boxes have a point in common; without branches, which would be mispredicted."""
     return (
@@ -185,7 +183,7 @@ def overlap(a, b):
     )
 
 
-@numba.njit(**OPTIONS)
+@inner
 def meet(a, b):
     """Whether two leaves may pair: boxes and spheres meet, something may push one of them."""
     dx, dy, dz = a.x - b.x, a.y - b.y, a.z - b.z
@@ -195,7 +193,7 @@ def meet(a, b):
     return False
 
 
-@numba.njit(**OPTIONS)
+@inner
 def next_group(nodes, starts, groups, box, place):
     """First group at `place` > 0 or behind whose box overlaps `box`, or `groups` if there is none.
 

@@ -25,7 +25,7 @@ CONTACT_FIELDS = [
 # Share of the smaller bounding radius that a pair may close in a step before it is fast [-].
 FAST = 0.5
 # The bound on speeds is taken this many times, for what a solver's error may add to them [-].
-SAFETY = 2.0
+SAFETY = 1.5
 # A floor is across gravity when the cosine between them is 1 to so much [-].
 LEVEL = 1e-9
 

@@ -10,10 +10,9 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-import numba
 import numpy as np
 
-from ..compile import OPTIONS
+from ..compile import inner
 
 DOF = 6
 
@@ -56,7 +55,7 @@ def allocate_envelope(bodies: int, contacts: int, capacity: int) -> Envelope:
     )
 
 
-@numba.njit(**OPTIONS)
+@inner
 def _gather(contacts, count, space):
     # Neighbours of every body that a contact joins to another movable one, by counting sort.
     begin, neighbours, position = space.begin, space.neighbours, space.position
@@ -92,7 +91,7 @@ def _gather(contacts, count, space):
     begin[0] = 0
 
 
-@numba.njit(**OPTIONS)
+@inner
 def _walk(root, filled, space):
     # Number the component of `root` breadth first from position `filled` on.
     position, visited = space.position, space.visited
@@ -111,7 +110,7 @@ def _walk(root, filled, space):
     return tail
 
 
-@numba.njit(**OPTIONS)
+@inner
 def lay_out(contacts, count, space):
     """Number the bodies and lay out the rows; returns (bodies, entries, multiplications).
 
@@ -142,7 +141,7 @@ def lay_out(contacts, count, space):
     return filled, entries, work
 
 
-@numba.njit(**OPTIONS)
+@inner
 def _dot(values, i, j, length):
     # Four sums side by side: a single one would wait for itself at every addition.
     a, b, c, d = 0.0, 0.0, 0.0, 0.0
@@ -159,7 +158,7 @@ def _dot(values, i, j, length):
     return (a + b) + (c + d)
 
 
-@numba.njit(**OPTIONS)
+@inner
 def factorise(bodies, space):
     """Replace the matrix by L (unit diagonal not stored) and D; returns whether D is positive."""
     values, start, diagonal = space.values, space.start, space.diagonal
@@ -186,7 +185,7 @@ def factorise(bodies, space):
     return True
 
 
-@numba.njit(**OPTIONS)
+@inner
 def solve_factorised(bodies, space, x):
     """Solve in place: x enters as the right side, leaves as the solution."""
     values, start, diagonal = space.values, space.start, space.diagonal

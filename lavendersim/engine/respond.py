@@ -1,0 +1,91 @@
+"""Contacts with geometry alone enter, velocities that respect them all leave.
+
+append       each contact: frame, effective mass, what is captured once
+warm start   impulses of contacts that persist
+solve        velocities, and where impacts gained energy, once more
+log          the trace rows of contacts
+project      pseudo-velocities that move poses out of what still penetrates
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from . import ordering
+from .compile import chain, kernel
+from .contact import make_append_contact, make_apply_start
+from .effects import contact_log, impact_energy, impact_time, made_by, projection, warm_start
+from .integrate import make_classify
+from .solvers import SOLVERS
+from .spec import Spec
+
+
+def make_respond(spec: Spec, log_contacts: Any) -> Any:
+    """Return `kernel(bodies, velocities, motion, pseudo, contacts, count, cache, pairs, work,
+    params, counters, rows, residual_rows)`; log_contacts: the kernel of `contact_log`.
+    """
+    append_contact = make_append_contact(spec, chain(made_by(spec, "make", "capture"), spec))
+    order_contacts = ordering.make(spec)
+    solve = SOLVERS[spec.solver].make(spec)
+    strikes, strike = spec.made(impact_time, "make_strike")
+    warms, match_contacts = spec.made(warm_start)
+    _, store_contacts = spec.made(warm_start, "make_store")
+    apply_start: Any = make_apply_start(spec) if warms else None
+    watched, note = spec.made(impact_energy, "make_note")
+    settle: Any = impact_energy.make_settle(spec, solve, make_classify(spec)) if watched else None
+    projects, project_positions = spec.made(projection)
+    logs = spec.has(contact_log.NAME)
+
+    def respond(
+        bodies, velocities, motion, pseudo, contacts, count, cache, pairs, work, params, counters,
+        rows, residual_rows,
+    ):  # fmt: skip
+        _, _, _, taken, buckets, keys, order, space, _, _ = work
+        for c in range(count):
+            contact, pair = contacts[c], pairs[contacts[c].pair]
+            append_contact(contact, bodies, velocities, motion, pair, params)
+        if watched:
+            for c in range(count):
+                contact = contacts[c]
+                note(contact, velocities[contact.a], velocities[contact.b])
+        if strikes:
+            strike(contacts, count, motion, params)
+        if warms:
+            match_contacts(contacts, count, bodies, cache, counters, params)
+            for c in range(count):
+                contact = contacts[c]
+                if contact.lambda_n > 0.0:
+                    va, vb = velocities[contact.a], velocities[contact.b]
+                    apply_start(contact, va, vb)
+        order_contacts(bodies, contacts, count, taken, buckets, keys, order)
+        solve(contacts, order, count, bodies, velocities, space, params, counters, residual_rows)
+        if watched:
+            settle(
+                contacts, order, count, bodies, velocities, motion, space, params, counters,
+                residual_rows,
+            )  # fmt: skip
+        if logs:
+            log_contacts(contacts, count, velocities, params, counters, rows)
+        if warms:
+            store_contacts(contacts, count, bodies, cache, counters, params)
+        if projects:
+            counters.projection_sweeps = project_positions(
+                contacts, order, count, velocities, pseudo, params
+            )
+
+    return kernel(respond, spec)
+
+
+def make_pass_by(spec: Spec, log_contacts: Any) -> Any:
+    """Return `kernel(contacts, velocities, params, counters, rows)`: the same for no contact."""
+    logs = spec.has(contact_log.NAME)
+
+    def pass_by(contacts, velocities, params, counters, rows):
+        counters.sweeps, counters.projection_sweeps = 0, 0
+        counters.residual, counters.residual_contact = 0.0, -1
+        counters.unsolved, counters.stronge, counters.sharpen = 0, 0, 0
+        counters.cached = 0
+        if logs:
+            log_contacts(contacts, 0, velocities, params, counters, rows)
+
+    return kernel(pass_by, spec)

@@ -1,0 +1,124 @@
+"""While kernels compile one line on stderr says so; `doctor` shows what is kept and deletes it."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+Command = Callable[..., subprocess.CompletedProcess[str]]
+
+
+@pytest.fixture
+def lavender(tmp_path: Path) -> Command:
+    """The command line, in a process and a folder of its own, with a cache that starts empty."""
+
+    def command(*arguments: object, **environment: str) -> subprocess.CompletedProcess[str]:
+        kept = {"LAVENDER_CACHE_DIR": str(tmp_path / "kernels"), "NO_COLOR": "1"}
+        return subprocess.run(
+            [sys.executable, "-m", "lavender_cli.main", *map(str, arguments)],
+            cwd=tmp_path,
+            capture_output=True,
+            text=True,
+            env=os.environ | kept | environment,
+            timeout=120,
+            check=False,
+        )
+
+    return command
+
+
+def test_compiling_is_announced_once_with_effects_and_place(
+    lavender: Command, drop: Path, tmp_path: Path
+) -> None:
+    first = lavender("run", drop)
+    assert first.returncode == 0, first.stderr
+    (line,) = first.stderr.splitlines()
+    assert line.startswith("drop: compiling kernels for ")
+    for part in ("gravity", "restitution", "sphere_plane", f"(once; kept in {tmp_path}/kernels)"):
+        assert part in line
+    assert "compiling" not in first.stdout
+    second = lavender("run", drop)
+    assert (second.returncode, second.stderr) == (0, "")
+
+
+def test_json_on_stdout_is_not_disturbed(lavender: Command, drop: Path) -> None:
+    done = lavender("run", drop, "--json")
+    assert "compiling kernels for" in done.stderr
+    assert json.loads(done.stdout)[0]["run"]
+
+
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_each_plan_of_a_sweep_is_announced_once(lavender: Command, drop: Path, jobs: int) -> None:
+    solvers = "[projected_gauss_seidel, nonsmooth_conjugate_gradient]"
+    heights = "{path: scene.bodies.ball.release.clearance, values: [0.1, 0.11]}"
+    axes = f"sweep:\n  law: {{path: numerics.solver, values: {solvers}}}\n  h: {heights}\n"
+    text = drop.read_text().replace("measure:\n", f"{axes}measure:\n")
+    drop.write_text(text.replace("[0.02, 0.03]", "[0.02, 0.035]"))
+    first = lavender("run", drop, "--jobs", jobs)
+    assert first.returncode == 0, first.stderr
+    lines = first.stderr.splitlines()
+    assert len(lines) == 2
+    assert all("compiling kernels for" in line for line in lines)
+    assert lavender("run", drop, "--jobs", jobs).stderr == ""
+
+
+# A path below a file cannot be made, not even by root, for whom no directory is read-only.
+def test_a_home_that_cannot_be_written_falls_back_and_says_where(
+    lavender: Command, drop: Path, tmp_path: Path
+) -> None:
+    (tmp_path / "temporary").mkdir()
+    (tmp_path / "blocked").write_text("")
+    environment = {
+        "LAVENDER_CACHE_DIR": "",
+        "XDG_CACHE_HOME": str(tmp_path / "blocked"),
+        "TMPDIR": str(tmp_path / "temporary"),
+    }
+    run = lavender("run", drop, **environment)
+    assert run.returncode == 0, run.stderr
+    (place,) = (tmp_path / "temporary").glob("lavender-*")
+    why = f"{tmp_path}/blocked/lavender cannot be written by this user alone"
+    note = f"{why}: kernels are kept in {place}"
+    assert f"(once; {note})" in run.stderr
+    assert len(list(place.glob("*.kernel"))) == 1
+    assert note in lavender("doctor", **environment).stdout
+
+
+def test_without_any_place_each_run_says_that_it_compiles(
+    lavender: Command, drop: Path, tmp_path: Path
+) -> None:
+    (tmp_path / "blocked").write_text("")
+    nowhere = {"LAVENDER_CACHE_DIR": str(tmp_path / "blocked" / "below")}
+    for _ in range(2):
+        run = lavender("run", drop, **nowhere)
+        assert run.returncode == 0, run.stderr
+        assert "kernels are compiled anew in every process" in run.stderr
+        assert "once" not in run.stderr
+    shown = lavender("doctor", **nowhere).stdout
+    assert "kernels are compiled anew in every process" in shown
+    assert "in use         0 files" in shown
+
+
+def test_doctor_tells_kernels_in_use_from_stale_ones_and_deletes_either(
+    lavender: Command, drop: Path, tmp_path: Path
+) -> None:
+    lavender("run", drop)
+    kernels = tmp_path / "kernels"
+    (own,) = kernels.iterdir()
+    size = own.stat().st_size
+    stale = kernels / "01234567-89abcdef-0123456789abcdef01234567.kernel"
+    stale.write_bytes(bytes(2_500_000))
+    shown = lavender("doctor").stdout
+    assert f"kernel cache   {kernels}" in shown
+    assert f"in use         1 file, {size / 1e6:.1f} MB" in shown
+    assert "stale          1 file, 2.5 MB" in shown
+    assert "deleted        1 file, 2.5 MB, stale" in lavender("doctor", "--clean-stale").stdout
+    assert list(kernels.iterdir()) == [own]
+    stale.write_bytes(b"")
+    lavender("doctor", "--clean")
+    assert list(kernels.iterdir()) == []

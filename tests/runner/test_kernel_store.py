@@ -1,0 +1,128 @@
+"""The store of kernels stays within its limit, apart by settings, and whole under two writers."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from small_configs import RUN, python, run_in_new_process, write
+
+from lavendersim.engine import kernel_cache
+from lavendersim.engine.compile import inner
+from lavendersim.engine.kernel_cache import KernelCache, kept_kernels
+from lavendersim.engine.spec import Spec
+
+
+@pytest.fixture
+def store(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """An empty directory of kernels, in this process."""
+    monkeypatch.setattr(kernel_cache, "directory", lambda: (tmp_path, ""))
+    return tmp_path
+
+
+def keep(name: str) -> KernelCache:
+    """Compile a small kernel or load it, as the plan `name`."""
+
+    def twice(x):
+        return 2 * x
+
+    kernel = inner(twice)
+    kernel._cache = KernelCache(Spec(effects=(name,)))
+    assert kernel(21) == 42
+    return kernel._cache
+
+
+def names_in(store: Path) -> set[str]:
+    return {path.name.split("-")[0] for path in store.iterdir()}
+
+
+def test_the_kernel_not_used_for_longest_makes_room(
+    store: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    digests = [keep(name).spec.digest() for name in ("first", "second")]
+    sizes = [kept.size for kept in kept_kernels()]
+    for path in store.iterdir():  # both were used long ago, the first one before the second
+        day = digests.index(path.name.split("-")[0])
+        os.utime(path, ns=(day, path.stat().st_mtime_ns))
+    assert (keep("first").hits, keep("first").misses) == (1, 0)
+    # Three kernels of one function differ by a few bytes of their names; two fit, three do not.
+    monkeypatch.setattr(kernel_cache, "LIMIT", int(2.5 * max(sizes)))
+    third = keep("third").spec.digest()
+    assert names_in(store) == {digests[0], third}
+
+
+def test_everything_stays_while_it_fits(store: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    digests = {keep(name).spec.digest() for name in ("first", "second")}
+    total = sum(kept.size for kept in kept_kernels())
+    monkeypatch.setattr(kernel_cache, "LIMIT", total)
+    kernel_cache.make_room()
+    assert names_in(store) == digests
+    monkeypatch.setattr(kernel_cache, "LIMIT", total - 1)
+    kernel_cache.make_room()
+    assert len(names_in(store)) == 1
+
+
+def test_kernels_of_other_builds_are_told_apart(
+    store: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    keep("ours")
+    with monkeypatch.context() as other:
+        other.setattr(kernel_cache, "source_hash", lambda: "other sources")
+        keep("theirs")
+    stale = {kept.path.name.split("-")[0] for kept in kept_kernels() if not kept.current}
+    assert stale == {Spec(effects=("theirs",)).digest()}
+    assert len(kept_kernels()) == 2
+
+
+BUILD = "from lavendersim.engine.kernel_cache import build; print(build())"
+
+
+def test_each_setting_of_numba_has_kernels_of_its_own() -> None:
+    settings = [
+        {},
+        {"NUMBA_OPT": "1"},
+        {"NUMBA_BOUNDSCHECK": "1"},
+        {"NUMBA_CPU_NAME": "generic"},
+        {"NUMBA_CPU_FEATURES": "+sse2"},
+        {"NUMBA_ENABLE_AVX": "0"},
+        {"NUMBA_LOOP_VECTORIZE": "0"},
+    ]
+    builds = [python(BUILD, **setting) for setting in settings]
+    assert len(set(builds)) == len(settings)
+    assert python(BUILD) == builds[0]
+
+
+def test_numbas_settings_file_counts_as_well(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    before = python(BUILD)
+    (tmp_path / ".numba_config.yaml").write_text("boundscheck: 1\n")
+    monkeypatch.chdir(tmp_path)
+    assert python(BUILD) != before
+
+
+def test_two_processes_may_write_the_same_kernel_at_once(tmp_path: Path) -> None:
+    config, kernels = write(tmp_path), tmp_path / "kernels"
+    environment = os.environ | {"LAVENDER_CACHE_DIR": str(kernels)}
+    both = [
+        subprocess.Popen(
+            [sys.executable, "-P", "-c", RUN, str(config), str(tmp_path / root)],
+            env=environment,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+        for root in ("one", "other")
+    ]
+    ended = [process.communicate(timeout=120) for process in both]
+    assert [process.returncode for process in both] == [0, 0], ended
+    logs = [json.loads(out.splitlines()[-1])["logs"] for out, _ in ended]
+    (file,) = kernels.iterdir()  # one kernel and nothing unfinished
+    written = file.stat().st_mtime_ns
+    third = run_in_new_process(config, tmp_path / "third", LAVENDER_CACHE_DIR=str(kernels))
+    assert logs == [third["logs"]] * 2
+    assert file.stat().st_mtime_ns == written

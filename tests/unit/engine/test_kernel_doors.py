@@ -1,0 +1,86 @@
+"""A kernel has a door to Python where Python calls it, and is right behind every door."""
+
+from __future__ import annotations
+
+import gc
+
+import pytest
+from numba import int64
+from numba.core.errors import TypingError
+
+from lavendersim.engine.compile import compiling, inner
+
+
+def chain_of_two():
+    """Return two kernels, of which the second calls the first."""
+
+    @inner
+    def square(x):
+        return x * x
+
+    @inner
+    def square_plus_one(x):
+        return square(x) + 1
+
+    return square, square_plus_one
+
+
+def test_what_only_a_kernel_calls_has_no_door() -> None:
+    square, square_plus_one = chain_of_two()
+    assert square_plus_one(3) == 10
+    assert square_plus_one.has_door((int64,))
+    assert not square.has_door((int64,))
+
+
+def test_python_may_call_it_afterwards() -> None:
+    square, square_plus_one = chain_of_two()
+    assert square_plus_one(3) == 10
+    assert square(5) == 25
+    assert square.has_door((int64,))
+    assert square_plus_one(4) == 17
+
+
+def test_python_may_call_it_first() -> None:
+    square, square_plus_one = chain_of_two()
+    assert square(5) == 25
+    assert square_plus_one(3) == 10
+    assert square.has_door((int64,))
+
+
+def test_each_signature_has_its_own_door() -> None:
+    square, square_plus_one = chain_of_two()
+    assert square_plus_one(3) == 10
+    assert square(1.5) == 2.25
+    assert not square.has_door((int64,))
+    assert square(3) == 9
+
+
+def test_a_kernel_compiled_later_finds_what_was_compiled_twice() -> None:
+    square, square_plus_one = chain_of_two()
+    square_plus_one(3)
+    square(3)
+
+    @inner
+    def fourth_power(x):
+        return square(square(x))
+
+    assert fourth_power(3) == 81
+
+
+def test_the_collector_is_back_after_a_compilation_that_failed() -> None:
+    @inner
+    def wrong(x):
+        return x + "a"
+
+    resting = []
+
+    def attempt() -> None:
+        with compiling():
+            resting.append(not gc.isenabled())
+            wrong(1)
+
+    assert gc.isenabled()
+    with pytest.raises(TypingError):
+        attempt()
+    assert resting == [True]
+    assert gc.isenabled()
