@@ -1,44 +1,138 @@
-"""`lavender plan`: a config in; which effects its scene calls for, and why, out."""
+"""`lavender plan`: a config in; which effects its scene calls for, why, and what they bring out."""
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from lavender_cli import printing
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+    from rich.table import Table
+
+    from lavendersim.scene.explanation import Explanation, Part
+
+UNWRAPPED = 100_000  # columns: where nobody looks, no line is broken
+STYLES = {"on": "green", "off": "dim", "forced on": "bold yellow", "forced off": "bold yellow"}
+ROWS = {
+    "step_row": "/step",
+    "contact_row": "/contacts",
+    "pose_row": "/tf",
+    "residual_row": "/residuals",
+}
 
 
 def plan(
     config: Annotated[Path, typer.Argument(help="Config file.")],
     as_json: Annotated[bool, typer.Option("--json", help="Print the plan as JSON.")] = False,
 ) -> None:
-    """Show which effects a scene calls for and why; for a sweep, the union over its cells.
+    """Show which effects a scene calls for, why, and what each brings: arrays, log, kernels.
 
-    Cells that differ in a choice between laws, such as the solver, share no union: one plan each.
+    For a sweep the plan is the union over its cells, and says which cells call for what. Cells that
+    differ in a choice between laws, such as the solver, share no union: one plan each.
     """
-    from lavendersim.experiment import load_experiment
+    from lavendersim.runner import load_all
     from lavendersim.runner.plans import distinct, shared_plans
-    from lavendersim.scene.plan import CHOICES
+    from lavendersim.scene.explanation import explain_all
 
-    plans = distinct(shared_plans(cell.resolved for cell in load_experiment(config).cells()))
+    (experiment,) = load_all([config])
+    explained = explain_all(distinct(shared_plans(experiment.cells())))
     if as_json:
-        tables = [
-            {
-                "spec": one.spec._asdict(),
-                "effects": {name: item._asdict() for name, item in one.decisions.items()},
-            }
-            for one in plans
-        ]
+        tables = [one.as_data() for one in explained]
         printing.as_json({**tables[0], "others": tables[1:]})
         return
-    for number, one in enumerate(plans):
-        if number:
-            typer.echo()
-        for name, decision in one.decisions.items():
-            word = typer.style("on ", fg=typer.colors.GREEN) if decision.on else "off"
-            typer.echo(f"{word}  {name:15} {decision.reason}")
-        typer.echo(f"shape pairs: {', '.join(one.spec.shape_pairs) or 'none'}")
-        for name, choice in zip(CHOICES, one.choices, strict=True):
-            typer.echo(f"{name}: {choice}")
+    for one in explained:
+        write(one, f"{experiment.name}: {one.title}")
+
+
+def write(explained: Explanation, title: str, width: int | None = None) -> None:
+    """Print one plan, wrapped to the terminal; a pipe gets whole lines."""
+    from rich.console import Console
+
+    wrapped = sys.stdout.isatty() or width is not None
+    console = Console(width=width if wrapped else UNWRAPPED, highlight=False, markup=False)
+    with console.capture() as captured:
+        console.print(title, style="bold")
+        console.print(_table(explained.effects, "effect"))
+        console.print(_table([one for one in explained.shape_pairs if one.on], "shape pair"))
+        if others := [one.name for one in explained.shape_pairs if not one.on]:
+            console.print(_pairs([("not called for", ", ".join(others))], dim=True))
+        console.print()
+        console.print(_table([explained.solver], "solver"))
+        console.print("kernels without any effect", style="bold")
+        console.print(_pairs(list(_modules(explained.always).items())))
+        if explained.shared:
+            console.print("kernels that several effects share", style="bold")
+            console.print(_pairs(list(_modules(explained.shared).items())))
+        laws = [
+            (name, str(value).lower() if isinstance(value, bool) else str(value))
+            for name, value in explained.choices.items()
+        ]
+        console.print("choices that one engine has", style="bold")
+        console.print(_pairs([*laws, ("digest", explained.digest)]))
+    for line in captured.get().splitlines():
+        typer.echo(line.rstrip())
+
+
+def _table(parts: list[Part], heading: str) -> Table:
+    """Return a row per part: its name, whether it is in, why and what it brings."""
+    from rich.table import Table
+    from rich.text import Text
+
+    table = Table(box=None, padding=(0, 2, 0, 0), header_style="bold", pad_edge=False)
+    table.add_column(heading, no_wrap=True)
+    table.add_column("")
+    table.add_column("why, and what it brings")
+    for part in parts:
+        word = "on" if part.on else "off"
+        style = STYLES[part.forced or word]
+        table.add_row(
+            Text(part.name, "" if part.on or part.forced else "dim"),
+            Text(word, style),
+            _why(part),
+        )
+    return table
+
+
+def _why(part: Part) -> RenderableType:
+    from rich.console import Group
+    from rich.text import Text
+
+    said = Text(f"{part.reason}; {part.callers}" if part.callers else part.reason)
+    if not part.on:
+        said.stylize("" if part.forced else "dim")
+        return said
+    arrays = {record: names for record, names in part.fields.items() if record not in ROWS}
+    rows = {ROWS[record]: names for record, names in part.fields.items() if record in ROWS}
+    channels = [channel for channel in part.channels if channel not in rows]
+    logged = [
+        *channels,
+        *(f"{topic} {len(names)}: {' '.join(names)}" for topic, names in rows.items()),
+    ]
+    details = [
+        ("arrays", "; ".join(f"{name} {len(n)}: {' '.join(n)}" for name, n in arrays.items())),
+        ("log", "; ".join(logged)),
+        ("kernels", "; ".join(f"{module}: {n}" for module, n in _modules(part.kernels).items())),
+    ]
+    return Group(said, _pairs([(name, text) for name, text in details if text], dim=True))
+
+
+def _modules(kernels: dict[str, list[str]]) -> dict[str, str]:
+    return {module: " ".join(names) for module, names in kernels.items()}
+
+
+def _pairs(rows: list[tuple[str, str]], dim: bool = False) -> Table:
+    """Return names and what belongs to them, side by side."""
+    from rich.table import Table
+
+    table = Table.grid(padding=(0, 2, 0, 0))
+    table.style = "dim" if dim else ""
+    table.add_column(no_wrap=True)
+    table.add_column()
+    for name, text in rows:
+        table.add_row(name, text)
+    return table

@@ -3,12 +3,20 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from lavender_cli import printing
 from lavender_cli.run import Runs
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from lavendersim.runner import RunCell
+
+Metadata = dict[str, dict[str, str]]
+SECTIONS = ("plan", "shape pairs", "forced")  # of a log's metadata
 
 
 def show(
@@ -31,9 +39,8 @@ def show(
     for name, text in (("question", experiment.question), ("expected", experiment.expected)):
         if text:
             typer.echo(f"{name}  {text}")
-    typer.echo("plan")
-    for name, reason in opened.cells[0].trace().metadata.get("plan", {}).items():
-        typer.echo(f"  {name:15} {reason}")
+    for cells, metadata in plans_of(opened.cells):
+        print_plan(cells, metadata, len(opened.cells))
     steps = sum(row["steps"] for row in results["cells"])
     logging = sum(row["steps"] * row["logging_us_per_step"] for row in results["cells"])
     compiling = f"compile {results.get('compile_s', float('nan')):.1f} s"
@@ -51,6 +58,38 @@ def show(
     typer.echo("checks")
     for verdict in results["checks"]:
         typer.echo(f"  {printing.mark(verdict['passed'])}  {verdict['node']}")
+
+
+def plans_of(cells: Sequence[RunCell]) -> list[tuple[list[RunCell], Metadata]]:
+    """Return what the logs say of each different plan, with the cells that were run by it."""
+    plans: dict[str, tuple[list[RunCell], Metadata]] = {}
+    for cell in cells:
+        metadata = cell.trace().metadata
+        cell.release()
+        said = {name: metadata.get(name, {}) for name in SECTIONS}
+        plans.setdefault(repr(said), ([], said))[0].append(cell)
+    return list(plans.values())
+
+
+def print_plan(cells: list[RunCell], metadata: Metadata, count: int) -> None:
+    """Print one plan: what is on with its reason, what is off by name, what was overridden."""
+    more = "" if len(cells) == 1 else f" and {len(cells) - 1} more"
+    typer.echo("plan" if len(cells) == count else f"plan of {cells[0].label}{more}")
+    forced = metadata["forced"]
+    if forced:
+        changes = "; ".join(f"{name} {how}" for name, how in forced.items())
+        typer.echo(typer.style(f"  overridden by hand: {changes}", fg=typer.colors.YELLOW))
+    parts = {**metadata["plan"], **metadata["shape pairs"]}
+    width = max(map(len, parts), default=0)
+    off = []
+    for name, decision in parts.items():
+        on, _, reason = decision.partition(": ")
+        if on == "on" or name in forced:
+            typer.echo(f"  {name:{width}}  {on:3}  {reason}")
+        else:
+            off.append(name)
+    if off:
+        typer.echo(f"  off: {', '.join(off)}")
 
 
 def accuracy(row: dict[str, Any]) -> str:

@@ -63,6 +63,10 @@ class ExperimentFile(pytest.File):
 
         try:
             experiment = load_experiment(self.path)
+            if experiment.switches_effects:
+                from lavendersim.runner.plans import check_overrides
+
+                check_overrides(experiment)
         except LavenderError as error:
             raise self.CollectError(str(error)) from None
         for number, node in enumerate([COMPLETES, *judge_nodes(experiment)]):

@@ -23,7 +23,7 @@ from lavendersim.errors import UsageError
 from lavendersim.experiment import Experiment, load_experiment
 from lavendersim.scene.build import Scene, build
 from lavendersim.scene.events import EventQueue
-from lavendersim.scene.plan import Plan, plan_of
+from lavendersim.scene.plan import Plan, plan_of_cell
 
 Observation = dict[str, Any]
 
@@ -70,7 +70,7 @@ class Simulator:
         self.experiment = experiment
         self._resolved = cells[cell].resolved
         self._last_step = cells[cell].config.steps
-        self.plan: Plan = plan_of(self._resolved)
+        self.plan: Plan = plan_of_cell(cells[cell])
         self.np_random = np.random.default_rng()
         self.reset()
 

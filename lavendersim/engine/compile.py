@@ -14,6 +14,7 @@ import gc
 import warnings
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from functools import wraps
 from typing import Any
 
 import numba
@@ -56,14 +57,11 @@ OPTIONS: dict[str, Any] = known(
 
 
 class Part(JITCodeLibrary):
-    """Code of a kernel that other kernels call: linked into each of them, and optimised there.
+    """Code of a kernel that other kernels call: optimised, and linked into each of them.
 
-    Numba would optimise and assemble every kernel by itself as well, with all that it calls. None
-    of that is ever run, and it doubles the time an engine takes to compile.
+    Numba would make machine code of every kernel by itself as well, with all that it calls. None of
+    that is ever run, and it doubles the time an engine takes to compile.
     """
-
-    def _optimize_final_module(self) -> None:
-        """Leave that to the kernel this is linked into."""
 
     def _finalize_final_module(self) -> None:
         """Make no machine code."""
@@ -164,7 +162,7 @@ def composing() -> Iterator[list[tuple[str, str]]]:
     try:
         yield composed
     finally:
-        _listeners.remove(composed)
+        _listeners.pop()  # the innermost; lists that are equal are not the same
 
 
 def kernel(function: Callable[..., Any], spec: Spec) -> Any:
@@ -173,6 +171,27 @@ def kernel(function: Callable[..., Any], spec: Spec) -> Any:
         composed.append((function.__module__, function.__name__))
     function.__qualname__ = f"{function.__qualname__}_{spec.digest()}"
     return inner(function)
+
+
+def once(make: Callable[[Spec], Any]) -> Callable[[Spec], Any]:
+    """Let a factory make its kernels once a spec, however many kernels share them.
+
+    Who listens to what is composed hears of them each time.
+    """
+    made: dict[Spec, tuple[Any, list[tuple[str, str]]]] = {}
+
+    @wraps(make)
+    def shared(spec: Spec) -> Any:
+        if spec not in made:
+            with composing() as composed:
+                kernels = make(spec)
+            made[spec] = kernels, composed
+        else:
+            for composed in _listeners:
+                composed.extend(made[spec][1])
+        return made[spec][0]
+
+    return shared
 
 
 def chain(kernels: Sequence[Any], spec: Spec) -> Any:

@@ -10,10 +10,10 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from lavendersim.errors import ConfigError
+from lavendersim.errors import ConfigError, Defect
 from lavendersim.experiment.messages import report_errors
 from lavendersim.experiment.models import CellSource
-from lavendersim.experiment.node import Node, Path
+from lavendersim.experiment.node import Node, Path, key_mark
 from lavendersim.experiment.placement import SceneError
 from lavendersim.experiment.references import check_names
 from lavendersim.experiment.report import Report
@@ -80,6 +80,16 @@ class Cell:
         if config is None:
             raise ConfigError(report.defects)
         return config
+
+    def defect(self, path: Path, message: str) -> Defect:
+        """Return a defect at a key of this cell, or at the swept value that stands there."""
+        swept = {axis.path: node for axis, node in self._point.choices}
+        if path in swept:
+            mark = swept[path].mark
+        else:
+            parent = _deepest(self._point.tree(self._root), path[:-1])
+            mark = key_mark(parent, str(path[-1]))
+        return Defect(self._name, mark.line, mark.column, message)
 
     @cached_property
     def resolved(self) -> dict[str, Any]:

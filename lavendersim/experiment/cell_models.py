@@ -14,7 +14,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 from lavendersim.experiment.body_models import Drag, Release, Surface
-from lavendersim.experiment.models import FrictionCone, Impacts, Integrator, Solver
+from lavendersim.experiment.models import FrictionCone, Impacts, Integrator, Solver, Switch
 from lavendersim.experiment.quantities import Quantity, Vector3
 from lavendersim.experiment.run_checks import whole_steps
 from lavendersim.experiment.shape_models import Box, Capsule, Cylinder, Plane, Sphere
@@ -145,6 +145,13 @@ class CellRecord(_Resolved):
     residuals: Literal["none", "all"] | ResidualWindow
 
 
+class CellEffects(_Resolved):
+    """What the plan is overridden by."""
+
+    force: bool  # what is off is left out even where the scene calls for it
+    switches: dict[str, Switch]  # by the name of an effect or a shape pair, sorted
+
+
 class CellConfig(_Resolved):
     """One cell of an experiment, complete."""
 
@@ -153,6 +160,7 @@ class CellConfig(_Resolved):
     numerics: Numerics
     duration: float  # [s]
     record: CellRecord
+    effects: CellEffects
 
     @property
     def steps(self) -> int:

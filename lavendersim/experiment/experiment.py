@@ -62,6 +62,16 @@ class Experiment:
         """Whether there is anything to draw."""
         return self.figure is not None or self.price is not None
 
+    @property
+    def switches_effects(self) -> bool:
+        """Whether some cell switches an effect by hand, so that its plan may be refused."""
+        sweep = self.config.sweep
+        products = (sweep,) if isinstance(sweep, dict) else sweep
+        swept = (axis.path for product in products for axis in product.values())
+        return bool(self.config.effects.switches) or any(
+            path.startswith("effects.") for path in swept
+        )
+
     def cells(self) -> tuple[Cell, ...]:
         """All cells of the sweep, the first axis slowest; one cell without a sweep."""
         return self._cells

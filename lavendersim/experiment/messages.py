@@ -38,6 +38,7 @@ _BOUNDS = {
     "less_than": ("lt", "a number below {}"),
     "less_than_equal": ("le", "a number of {} or less"),
 }
+_SWITCHED = ["on", "off"]  # plain texts in YAML 1.2
 _SWITCHES = {"yes": "true", "on": "true", "no": "false", "off": "false"}
 
 
@@ -149,6 +150,8 @@ def _value_sentence(kind: str, context: Mapping[str, Any], value: Any, name: str
         valid = re.findall(r"'([^']*)'", str(context["expected"]))
         close = near(value, valid) if isinstance(value, str) else None
         hint = f'; did you mean "{close}"?' if close else ""
+        if isinstance(value, bool) and valid == _SWITCHED:
+            hint = f"; write {_SWITCHED[not value]}"
         return f"{name}: expected {' or '.join(valid)}, found {found(value)}{hint}"
     if kind in _TYPES:
         sentence = f"{name}: expected {_TYPES[kind]}, found {found(value)}"

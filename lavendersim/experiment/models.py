@@ -5,7 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, Tag
+from pydantic import ConfigDict, Field, Tag
 
 from lavendersim.experiment.base import ConfigModel
 from lavendersim.experiment.expect_specs import ExpectSpec
@@ -156,6 +156,26 @@ class Record(ConfigModel):
     residuals: Residuals = Field(default="none", description="[m/s] residual of every sweep")
 
 
+Switch = Literal["on", "off"]
+
+
+class Effects(ConfigModel):
+    """Effects and shape pairs by name: `on` forces one in, `off` keeps one out; for study."""
+
+    model_config = ConfigDict(extra="allow")
+    # Which names there are is known to the planner.
+    __pydantic_extra__: dict[str, Switch] = Field(init=False)
+
+    force: bool = Field(
+        default=False, description="leave out what is off even where the scene calls for it"
+    )
+
+    @property
+    def switches(self) -> dict[str, Switch]:
+        """What is stated of each name."""
+        return self.__pydantic_extra__
+
+
 class Axis(ConfigModel):
     """One quantity that is varied: the path of a value in this file and the values it takes."""
 
@@ -189,6 +209,9 @@ class CellSource(ConfigModel):
         description="[s] simulated time of a run"
     )
     record: Record = Field(default=Record(), description="what is logged beyond every step")
+    effects: Effects = Field(
+        default=Effects(), description="effect or shape pair: on or off, against the plan"
+    )
 
 
 class ExperimentConfig(CellSource):

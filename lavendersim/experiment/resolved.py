@@ -6,6 +6,7 @@ from typing import Any
 
 from lavendersim.experiment.cell_models import (
     CellConfig,
+    CellEffects,
     CellEvent,
     CellRecord,
     Numerics,
@@ -28,6 +29,9 @@ def resolve_cell(source: CellSource) -> CellConfig:
         numerics=numerics,
         duration=source.duration,
         record=CellRecord(residuals=_residuals(source.record.residuals)),
+        effects=CellEffects(
+            force=source.effects.force, switches=dict(sorted(source.effects.switches.items()))
+        ),
     )
 
 

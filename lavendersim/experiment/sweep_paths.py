@@ -16,9 +16,10 @@ from lavendersim.experiment.walk import (
     fields,
     is_model,
     model_for,
+    names_of,
 )
 
-SWEPT_SECTIONS = ("scene", "events", "numerics", "duration")
+SWEPT_SECTIONS = ("scene", "events", "numerics", "duration", "effects")
 
 
 class _NoPath(Exception):  # noqa: N818 - carries the sentence; never leaves this module
@@ -66,6 +67,8 @@ def _enter(annotation: Any, node: Node | None, step: str, where: str) -> tuple[A
         raise _NoPath(f"{where} is a single value, there is no {quoted(step)} in it")
     model = _model_of(annotation, node, step, where)
     valid = fields(model)
+    if step not in valid and (named := names_of(model)) is not None:
+        return named, step
     if step not in valid:
         raise _NoPath(f"there is no {quoted(step)} in {where or 'a config'}{nearest(step, valid)}")
     if where and node is None and any(info.is_required() for info in valid.values()):

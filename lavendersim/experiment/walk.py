@@ -9,7 +9,7 @@ from __future__ import annotations
 import types
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Annotated, Any, Literal, Union, get_args, get_origin
+from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
 
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
@@ -41,6 +41,13 @@ def field_name(model: Model, name: str) -> str:
 def fields(model: Model) -> dict[str, FieldInfo]:
     """Return the fields of a model by the keys under which they stand in a file."""
     return {field_name(model, name): info for name, info in model.model_fields.items()}
+
+
+def names_of(model: Model) -> Any:
+    """Return the type of what stands under keys that are names; None where keys are fields only."""
+    if model.model_config.get("extra") != "allow":
+        return None
+    return get_args(get_type_hints(model)["__pydantic_extra__"])[1]
 
 
 def annotation_of(info: FieldInfo) -> Any:

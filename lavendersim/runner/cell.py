@@ -87,7 +87,8 @@ def block_of(rows: Rows, timestep: Fraction) -> Block:
 
 
 def metadata_of(plan: Plan, seeds: str) -> dict[str, dict[str, str]]:
-    """Return what the log says about the engine that made it."""
+    """Return what the log says about the engine that made it, and where it was overridden."""
+    forced: dict[str, dict[str, str]] = {"forced": {**plan.forced}} if plan.forced else {}
     return {
         "versions": versions(),
         "engine": {
@@ -97,9 +98,11 @@ def metadata_of(plan: Plan, seeds: str) -> dict[str, dict[str, str]]:
             "seed": seeds,
         },
         "plan": {
-            name: f"{'on' if decision.on else 'off'}: {decision.reason}"
+            name: f"{'on' if decision.on else 'off'}: {plan.said(name)}"
             for name, decision in plan.decisions.items()
         },
+        "shape pairs": {name: f"on: {plan.said(name)}" for name in plan.spec.shape_pairs},
+        **forced,
     }
 
 

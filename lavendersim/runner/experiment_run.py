@@ -90,7 +90,10 @@ def find_configs(paths: list[Path]) -> list[Path]:
 
 
 def load_all(paths: list[Path]) -> list[Experiment]:
-    """Load every config among `paths`; raises ConfigError with the defects of all files."""
+    """Load every config among `paths`; raises ConfigError with the defects of all files.
+
+    Effects that are switched by hand are among them: whether they can be, the scene's plan tells.
+    """
     experiments: list[Experiment] = []
     defects: list[Defect] = []
     for path in find_configs(paths):
@@ -100,6 +103,10 @@ def load_all(paths: list[Path]) -> list[Experiment]:
                 from .prices import check_price  # late: other configs load without numba
 
                 check_price(experiment)
+            if experiment.switches_effects:
+                from .plans import check_overrides  # late: other configs load without numba
+
+                check_overrides(experiment)
             experiments.append(experiment)
         except ConfigError as error:
             defects += error.defects
@@ -153,7 +160,7 @@ def run(
         experiment = load_experiment(experiment)
     check_price(experiment)
     cells = experiment.cells()
-    plans = shared_plans(cell.resolved for cell in cells)
+    plans = shared_plans(cells)
     seeds = Seeds(experiment)
     root = Path(root)
     directory = make_directory(experiment, root)

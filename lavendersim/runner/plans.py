@@ -1,21 +1,36 @@
 """The cells of a sweep enter; the plan each is run by leaves, one for all cells that can share it.
 
 Cells that differ in a coefficient share one compiled engine: the union of what they call for. Cells
-that differ in a choice between laws (`Plan.choices`: solver, integrator, shape of the cone, ...)
-cannot, so they are grouped by these choices, and there is one union, and one compilation, a group.
+that differ in a choice between laws (`Plan.choices`: solver, integrator, shape of the cone, ...) or
+in the effects that are switched by hand cannot, so they are grouped by these choices, and there is
+one union, and one compilation, a group.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from typing import Any
 
-from lavendersim.scene.plan import Plan, plan_of, union
+from lavendersim.errors import ConfigError, Defect
+from lavendersim.experiment import Experiment
+from lavendersim.experiment.cell import Cell
+from lavendersim.scene.plan import Plan, plan_of_cell, union
 
 
-def shared_plans(cells: Iterable[dict[str, Any]]) -> list[Plan]:
-    """Return the plan of each resolved cell; equal choices give one and the same object."""
-    own = [plan_of(resolved) for resolved in cells]
+def shared_plans(cells: Iterable[Cell]) -> list[Plan]:
+    """Return the plan of each cell; equal choices give one and the same object.
+
+    Raises ConfigError with every key of the file's `effects` that cannot be, in any cell.
+    """
+    own: list[Plan] = []
+    defects: dict[Defect, None] = {}
+    for cell in cells:
+        try:
+            own.append(plan_of_cell(cell))
+        except ConfigError as error:
+            defects |= dict.fromkeys(error.defects)
+    if defects:
+        raise ConfigError(list(_first_of_each_place(defects)))
     groups: dict[tuple[Any, ...], list[Plan]] = {}
     for plan in own:
         groups.setdefault(plan.choices, []).append(plan)
@@ -26,3 +41,16 @@ def shared_plans(cells: Iterable[dict[str, Any]]) -> list[Plan]:
 def distinct(plans: Iterable[Plan]) -> list[Plan]:
     """Return each plan once, in the order of their first cells."""
     return list({plan.choices: plan for plan in plans}.values())
+
+
+def check_overrides(experiment: Experiment) -> None:
+    """Raise ConfigError where the `effects` of a config cannot be."""
+    shared_plans(experiment.cells())
+
+
+def _first_of_each_place(defects: Iterable[Defect]) -> Iterator[Defect]:
+    """Yield one defect a place, in the file's order: reasons differ by cell, their cause not."""
+    places: dict[tuple[int, int], Defect] = {}
+    for defect in defects:
+        places.setdefault((defect.line, defect.column), defect)
+    yield from (places[place] for place in sorted(places))

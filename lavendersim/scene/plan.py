@@ -2,43 +2,129 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import Any, Final, NamedTuple
 
+from lavendersim.engine.collide import SHAPE_PAIRS
 from lavendersim.engine.effects import EFFECTS, Decision
+from lavendersim.engine.effects.decision import named
 from lavendersim.engine.spec import Spec
-from lavendersim.errors import UsageError
+from lavendersim.errors import ConfigError, UsageError
+from lavendersim.experiment.cell import Cell
 
 from .classes import class_pairs
 from .colliders import colliders
 from .facts import facts_of
+from .overrides import Forced, OverrideError, override
 
-# Numerics that choose between laws: no coefficient turns one engine into another's.
-CHOICES: Final = ("solver", "speculative", "impacts", "integrator", "friction_cone", "sleeping")
+# What cells of one engine agree in. Numerics that choose between laws: no coefficient turns one
+# engine into another's. Effects switched by hand: a union would undo what they leave out.
+CHOICES: Final = (
+    "solver",
+    "speculative",
+    "impacts",
+    "integrator",
+    "friction_cone",
+    "sleeping",
+    "effects",
+)
+APART: Final = {
+    name: Decision(False, f"no {one} and {other} may touch")
+    for name, (_, (one, other), _) in SHAPE_PAIRS.items()
+}
+DERIVED: Final = "derived"  # no effect is switched by hand
+MOST_LABELS: Final = 4  # of cells in a sentence
+
+
+class CellName(NamedTuple):
+    """A cell of a sweep: its place and its label; a scene alone is cell 0 without a label."""
+
+    number: int = 0
+    label: str = ""
+
+    @property
+    def said(self) -> str:
+        """What a sentence calls it."""
+        return self.label or str(self.number)
+
+
+Reasons = dict[str, tuple[CellName, ...]]  # reason -> cells
+ALONE: Final = CellName()
 
 
 class Plan(NamedTuple):
-    """The structure of the engine for a scene and the reason for every choice."""
+    """The structure of the engine for a scene, or for cells that share it, and why."""
 
     spec: Spec
-    decisions: dict[str, Decision]
-    choices: tuple[Any, ...] = ()  # the values of CHOICES; cells that differ share no engine
+    decisions: dict[str, Decision]  # of every effect
+    choices: tuple[Any, ...]  # the values of CHOICES; cells that differ share no engine
+    shape_pairs: dict[str, Decision]  # of every pair of shapes
+    forced: dict[str, Forced]  # what was switched against the scene
+    cells: tuple[CellName, ...]  # that this is the plan of
+    callers: dict[str, tuple[CellName, ...]]  # of an effect or pair: the cells that call for it
+    reasons: dict[str, Reasons]  # of a union: see `reasons_of`
+
+    def decided(self, name: str) -> Decision:
+        """Return the decision on an effect or a shape pair."""
+        return self.decisions[name] if name in self.decisions else self.shape_pairs[name]
+
+    def reasons_of(self, name: str) -> Reasons:
+        """Return every reason for the decision on an effect or pair, and the cells it holds in."""
+        return self.reasons.get(name) or {self.decided(name).reason: self.cells}
+
+    def said(self, name: str) -> str:
+        """Return the reason in one line, with the cells that it holds for."""
+        callers = self.called_for_by(name)
+        return f"{self.decided(name).reason}; {callers}" if callers else self.decided(name).reason
+
+    def called_for_by(self, name: str) -> str:
+        """Say which cells call for an effect or pair, where it is some of them and not all."""
+        callers = self.callers.get(name, ())
+        if not 0 < len(callers) < len(self.cells):
+            return ""
+        labels = [caller.said for caller in callers]
+        if len(labels) > MOST_LABELS:
+            labels = [*labels[: MOST_LABELS - 1], f"{len(labels) - MOST_LABELS + 1} more"]
+        return f"called for by {len(callers)} of {len(self.cells)} cells: {'; '.join(labels)}"
 
 
-def plan_of(resolved: dict[str, Any], record: bool = True) -> Plan:
-    """Derive the plan of one cell from its resolved config alone."""
+def plan_of(resolved: dict[str, Any], record: bool = True, cell: CellName = ALONE) -> Plan:
+    """Derive the plan of one cell from its resolved config alone.
+
+    record: its steps are to be logged. Raises OverrideError where its `effects` cannot be.
+    """
     facts = facts_of(resolved, record)
-    decisions = {effect.NAME: effect.wanted(facts) for effect in EFFECTS}
+    derived = {effect.NAME: effect.wanted(facts) for effect in EFFECTS}
+    touching = _shape_pairs(resolved)
+    made = override(derived, touching, facts, resolved["effects"])
     numerics = resolved["numerics"]
-    pairs = class_pairs(colliders(list(resolved["scene"]["bodies"].values())))
     spec = Spec(
-        effects=tuple(sorted(name for name, decision in decisions.items() if decision.on)),
-        shape_pairs=tuple(sorted({pair.shape_pair for pair in pairs})),
+        effects=_on(made.effects),
+        shape_pairs=_on(made.shape_pairs),
         solver=numerics["solver"],
         tolerance=numerics["tolerance"] is not None,
         friction_cone=numerics["friction_cone"],
     )
-    return Plan(spec, decisions, tuple(numerics[name] for name in CHOICES))
+    called = {name: decision.on for name, decision in (derived | touching).items()}
+    return Plan(
+        spec,
+        made.effects,
+        (*(numerics[name] for name in CHOICES[:-1]), _switched(resolved["effects"])),
+        made.shape_pairs,
+        made.forced,
+        (cell,),
+        {name: (cell,) if on else () for name, on in called.items()},
+        {},
+    )
+
+
+def plan_of_cell(cell: Cell, record: bool = True) -> Plan:
+    """Derive the plan of a cell; raises ConfigError at the keys of its `effects` that cannot be."""
+    try:
+        return plan_of(cell.resolved, record, CellName(cell.index, cell.label))
+    except OverrideError as error:
+        defects = [cell.defect(("effects", one.name), one.sentence) for one in error.refusals]
+        raise ConfigError(sorted(defects)) from None  # in the order of the file
 
 
 def union(plans: Iterable[Plan]) -> Plan:
@@ -48,14 +134,70 @@ def union(plans: Iterable[Plan]) -> Plan:
     for name, *values in zip(CHOICES, *(plan.choices for plan in plans), strict=True):
         if len(set(values)) > 1:
             raise UsageError(f"the cells of one sweep share their {name}")
-    decisions = dict(first.decisions)
-    for plan in plans[1:]:
-        for name, decision in plan.decisions.items():
-            if decision.on and not decisions[name].on:
-                decisions[name] = decision
+    if len(plans) == 1:
+        return first
+    reasons = {name: _reasons(plans, name) for name in first.callers}
+    joined = {name: _joined(plans, name, reasons[name]) for name in first.callers}
+    effects = {name: joined[name] for name in first.decisions}
+    shape_pairs = {name: joined[name] for name in first.shape_pairs}
     spec = first.spec._replace(
-        effects=tuple(sorted(name for name, decision in decisions.items() if decision.on)),
-        shape_pairs=tuple(sorted({pair for plan in plans for pair in plan.spec.shape_pairs})),
+        effects=_on(effects),
+        shape_pairs=_on(shape_pairs),
         tolerance=any(plan.spec.tolerance for plan in plans),
     )
-    return Plan(spec, decisions, first.choices)
+    callers = {
+        name: tuple(cell for plan in plans for cell in plan.callers[name]) for name in first.callers
+    }
+    forced = {name: how for plan in plans for name, how in plan.forced.items()}
+    for name, how in list(forced.items()):
+        if how == "forced on" and callers[name]:
+            del forced[name]  # on without being forced, for the cells that call for it
+    cells = tuple(cell for plan in plans for cell in plan.cells)
+    return Plan(spec, effects, first.choices, shape_pairs, forced, cells, callers, reasons)
+
+
+def _joined(plans: list[Plan], name: str, reasons: Reasons) -> Decision:
+    """Return the decision of a union, whose reason says of which cell it is where they differ."""
+    on = any(plan.decided(name).on for plan in plans)
+    first, cells = next(iter(reasons.items()))
+    if len(reasons) == 1:
+        return Decision(on, first)
+    more = "1 other reason" if len(reasons) == 2 else f"{len(reasons) - 1} other reasons"
+    return Decision(on, f"{first} (cell {cells[0].said}; {more} in other cells)")
+
+
+def _reasons(plans: list[Plan], name: str) -> Reasons:
+    """Return why an effect is on, where it is in any cell, else why off: rather called for than
+    forced on, rather forced off than not called for.
+    """
+    on = any(plan.decided(name).on for plan in plans)
+    agreeing = [plan for plan in plans if plan.decided(name).on == on]
+    telling = [plan for plan in agreeing if (name in plan.forced) != on]
+    reasons: dict[str, list[CellName]] = {}
+    for plan in telling or agreeing:
+        reasons.setdefault(plan.decided(name).reason, []).extend(plan.cells)
+    return {reason: tuple(cells) for reason, cells in reasons.items()}
+
+
+def _on(decisions: Mapping[str, Decision]) -> tuple[str, ...]:
+    return tuple(sorted(name for name, decision in decisions.items() if decision.on))
+
+
+def _switched(stated: Mapping[str, Any]) -> str:
+    """Return what is switched by hand, as the file states it."""
+    return ", ".join(f"{name}: {how}" for name, how in stated["switches"].items()) or DERIVED
+
+
+def _shape_pairs(resolved: dict[str, Any]) -> dict[str, Decision]:
+    """Return of every pair of shapes whether two such bodies may touch, and which."""
+    names = list(resolved["scene"]["bodies"])
+    rows = colliders(list(resolved["scene"]["bodies"].values()))
+    touching: dict[str, list[str]] = {}
+    for pair in class_pairs(rows):
+        a, b = names[rows[pair.a].owner], names[rows[pair.b].owner]
+        more = f" ({pair.row_pairs} pairs like it)" if pair.row_pairs > 1 else ""
+        touching.setdefault(pair.shape_pair, []).append(f"{a} and {b}{more}")
+    return {
+        name: Decision(True, named(touching[name])) if name in touching else APART[name]
+        for name in SHAPE_PAIRS
+    }

@@ -109,6 +109,7 @@ def resolved(bodies: dict[str, Any], gravity=(0.0, 0.0, 0.0), **numerics: Any) -
         "duration": 1.0,
         "numerics": {**NUMERICS, **numerics},
         "record": {"residuals": "all"},
+        "effects": {"force": False, "switches": {}},
     }
 
 

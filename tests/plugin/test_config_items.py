@@ -55,6 +55,17 @@ def test_one_item_can_be_selected_by_its_id(pytester: pytest.Pytester) -> None:
     run(pytester, "drop.yaml::rebound at e=0.5").assert_outcomes(passed=1)
 
 
+def test_an_effect_that_cannot_be_off_is_a_collection_error_with_its_place(
+    pytester: pytest.Pytester,
+) -> None:
+    pytester.makefile(".yaml", drop=DROP + "effects: {gravity: off}\n")
+    result = run(pytester)
+    result.assert_outcomes(errors=1)
+    line = len(DROP.splitlines()) + 1
+    result.stdout.fnmatch_lines([f"*drop.yaml:{line}:11: effects.gravity: the scene calls for it*"])
+    result.stdout.no_fnmatch_line("*Traceback*")
+
+
 def test_a_defective_config_is_a_collection_error_with_its_place(
     pytester: pytest.Pytester,
 ) -> None:

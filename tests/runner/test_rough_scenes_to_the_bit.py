@@ -88,7 +88,7 @@ def main():
             hashes = [cell.trace().step["state_hash"].tolist() for cell in cells]
             logs = [sha256(cell.path.read_bytes()).hexdigest() for cell in cells]
             plans = [plan.spec.effects for plan in shared_plans(
-                cell.resolved for cell in lavendersim.load_experiment(Path(config)).cells())]
+                lavendersim.load_experiment(Path(config)).cells())]
             runs.append({"logs": logs, "hashes": hashes, "contacts": contacts,
                          "effects": plans[0]})
         found.append(runs)

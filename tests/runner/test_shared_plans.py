@@ -14,7 +14,7 @@ from lavendersim.runner.plans import distinct, shared_plans
 from lavendersim.scene.plan import CHOICES
 
 SOLVERS = "[projected_gauss_seidel, nonsmooth_conjugate_gradient]"
-SWEPT = DROPS.replace("sweep:\n", "sweep:\n  law: {path: numerics.%s, values: %s}\n")
+SWEPT = DROPS.replace("sweep:\n", "sweep:\n  law: {path: %s, values: %s}\n")
 VALUES = {
     "solver": SOLVERS,
     "speculative": "[false, true]",
@@ -22,7 +22,9 @@ VALUES = {
     "integrator": "[semi_implicit_euler, midpoint]",
     "friction_cone": "[disc, pyramid]",
     "sleeping": "[false, true]",
+    "effects": "[on, off]",
 }
+PATHS = {name: f"numerics.{name}" for name in VALUES} | {"effects": "effects.friction"}
 
 
 def test_every_choice_can_be_swept() -> None:
@@ -31,8 +33,8 @@ def test_every_choice_can_be_swept() -> None:
 
 @pytest.mark.parametrize("choice", VALUES)
 def test_cells_are_grouped_by_the_choice(choice: str) -> None:
-    cells = load_experiment_text(SWEPT % (choice, VALUES[choice]), "swept.yaml").cells()
-    plans = shared_plans(cell.resolved for cell in cells)
+    cells = load_experiment_text(SWEPT % (PATHS[choice], VALUES[choice]), "swept.yaml").cells()
+    plans = shared_plans(cells)
     assert len(plans) == 6  # two values of the choice times three of e
     # the first axis is the slowest, so the cells of a choice stand together
     assert len({id(plan) for plan in plans[:3]}) == len({id(plan) for plan in plans[3:]}) == 1
@@ -42,8 +44,10 @@ def test_cells_are_grouped_by_the_choice(choice: str) -> None:
 
 
 def test_an_effect_of_one_group_stays_out_of_the_other() -> None:
-    cells = load_experiment_text(SWEPT % ("speculative", "[false, true]"), "swept.yaml").cells()
-    plans = shared_plans(cell.resolved for cell in cells)
+    cells = load_experiment_text(
+        SWEPT % ("numerics.speculative", "[false, true]"), "swept.yaml"
+    ).cells()
+    plans = shared_plans(cells)
     assert [plan.spec.has("speculative") for plan in plans] == [False] * 3 + [True] * 3
 
 
@@ -53,7 +57,7 @@ class Swept:
     def __init__(self, folder: Path, jobs: int) -> None:
         self.compiled: list[str] = []
         # e = 0.2 alone: what is asked here is a matter of plans
-        text = (SWEPT % ("solver", SOLVERS)).replace("[0.2, 0.5, 0.8]", "[0.2, 0.8]")
+        text = (SWEPT % ("numerics.solver", SOLVERS)).replace("[0.2, 0.5, 0.8]", "[0.2, 0.8]")
         text = text[: text.index("measure:\n")]
 
         def compiling(plan: lavendersim.runner.plans.Plan) -> None:

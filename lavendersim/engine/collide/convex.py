@@ -8,9 +8,7 @@ nearest points themselves are added.
 
 from __future__ import annotations
 
-from functools import cache
-
-from ..compile import kernel
+from ..compile import kernel, once
 from ..records import TOUCHING
 from .features import LINE, make_feature
 from .lines import make_line_normal
@@ -23,7 +21,7 @@ from .support import make_radius, shapes_in
 NEAREST = 1 << 60
 
 
-@cache
+@once
 def make(spec):
     """Return `kernel(a, b, points, normal, scratch, margin) -> count`."""
     separate, feature, radius = make_separate(spec), make_feature(spec), make_radius(spec)

@@ -8,11 +8,9 @@ the first polytope need not hold the origin: bodies that only just touch are no 
 
 from __future__ import annotations
 
-from functools import cache
-
 import numpy as np
 
-from ..compile import inner, kernel
+from ..compile import inner, kernel, once
 from .gjk import make_difference
 from .polytope import flood, grow, join, nearest_face, put_face
 from .scratch import EPA_VERTICES
@@ -77,7 +75,7 @@ def write_witness(mesh, result, faces, chosen, depth, slack):
         )
 
 
-@cache
+@once
 def make_epa(spec):
     """Return `kernel(a, b, ox, oy, oz, count, curved, scratch)`, which fills `scratch.result`.
 

@@ -12,10 +12,9 @@ normal. plane: 0..2 outward normal, 3..5 a point of it (a disc's centre), 6 a di
 
 from __future__ import annotations
 
-from functools import cache
 from math import sqrt
 
-from ..compile import inner, kernel
+from ..compile import inner, kernel, once
 from ..records import BOX, CAPSULE, CYLINDER, SPHERE
 from ..rotation import to_body, to_world
 from .hull_geometry import MOST_FACES
@@ -99,7 +98,7 @@ def flattest_edge(loop, count, nx, ny, nz):
     return chosen, abs(dx * nx + dy * ny + dz * nz) / sqrt(dx * dx + dy * dy + dz * dz)
 
 
-@cache
+@once
 def make_feature(spec):
     """Return `kernel(body, ox, oy, oz, nx, ny, nz, tables, loop, plane) -> (kind, count, name)`.
 

@@ -12,10 +12,9 @@ result: 0..2 n from A to B, 3 separation of the cores [m], 4..6 point of A, 7..9
 
 from __future__ import annotations
 
-from functools import cache
 from math import sqrt
 
-from ..compile import kernel
+from ..compile import kernel, once
 from .simplex import drop_weightless, nearest_on_simplex
 from .support import make_support
 
@@ -31,7 +30,7 @@ GRAIN = 2e-15
 CLOSE = 1e-11
 
 
-@cache
+@once
 def make_difference(spec):
     """Return `kernel(a, b, ox, oy, oz, dx, dy, dz, tables, row)`: support of A - B along d."""
     support = make_support(spec)
@@ -47,7 +46,7 @@ def make_difference(spec):
     return kernel(difference, spec)
 
 
-@cache
+@once
 def make_gjk(spec):
     """Return `kernel(a, b, ox, oy, oz, reach, scratch) -> (APART | FARTHER | OVERLAPPING, count)`.
 

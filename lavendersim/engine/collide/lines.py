@@ -11,10 +11,9 @@ kink: there an error of 1e-7 rad is one of 1e-7 half lengths in depth.
 
 from __future__ import annotations
 
-from functools import cache
 from math import sqrt
 
-from ..compile import kernel
+from ..compile import kernel, once
 from ..records import BOX, CYLINDER, HULL
 from .separation import FACE_SHARE, make_separation_along
 
@@ -23,7 +22,7 @@ from .separation import FACE_SHARE, make_separation_along
 CROSSING = 1e-9
 
 
-@cache
+@once
 def make_line_normal(spec):
     """Return `kernel(a, b, ox, oy, oz, scratch)`, which may better `scratch.result[:4]`.
 

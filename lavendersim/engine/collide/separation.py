@@ -12,9 +12,7 @@ caller's to add.
 
 from __future__ import annotations
 
-from functools import cache
-
-from ..compile import kernel
+from ..compile import kernel, once
 from ..records import BOX, CAPSULE, CYLINDER, PLANE, SPHERE
 from ..rotation import to_body, to_world
 from .epa import make_epa
@@ -31,7 +29,7 @@ ASCENTS = 30
 CLEARANCE = 1e-4
 
 
-@cache
+@once
 def make_best_face(spec):
     """Return `kernel(body, nx, ny, nz, tables) -> (face, x, y, z)`, -1 where none looks along n.
 
@@ -70,7 +68,7 @@ def make_best_face(spec):
     return kernel(best_face, spec)
 
 
-@cache
+@once
 def make_separation_along(spec):
     """Return `kernel(a, b, ox, oy, oz, nx, ny, nz, tables) -> s(n)` of the cores [m]."""
     support = make_support(spec)
@@ -83,7 +81,7 @@ def make_separation_along(spec):
     return kernel(separation_along, spec)
 
 
-@cache
+@once
 def make_ascend(spec):
     """Return `kernel(a, b, ox, oy, oz, scratch)`: improve the normal of overlapping cores.
 
@@ -125,7 +123,7 @@ def make_ascend(spec):
     return kernel(ascend, spec)
 
 
-@cache
+@once
 def make_separate(spec):
     """Return `kernel(a, b, ox, oy, oz, reach, scratch) -> apart by no more than reach`.
 

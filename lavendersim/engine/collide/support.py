@@ -7,10 +7,9 @@ world's axes; the origin's distance costs no digits.
 
 from __future__ import annotations
 
-from functools import cache
 from math import sqrt
 
-from ..compile import kernel
+from ..compile import kernel, once
 from ..records import BOX, CAPSULE, CYLINDER, SPHERE
 from ..rotation import to_body, to_world
 
@@ -22,7 +21,7 @@ def shapes_in(spec) -> frozenset[str]:
     return frozenset(shape for pair in spec.shape_pairs for shape in SHAPE_PAIRS[pair][1])
 
 
-@cache
+@once
 def make_radius(spec):
     """Return `kernel(body) -> radius of the ball that the core is grown by` [m]."""
 
@@ -34,7 +33,7 @@ def make_radius(spec):
     return kernel(radius, spec)
 
 
-@cache
+@once
 def make_support(spec):
     """Return `kernel(body, dx, dy, dz, tables) -> (x, y, z)`; d of any length but zero.
 

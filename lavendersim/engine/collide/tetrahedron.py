@@ -6,10 +6,9 @@ a line, a plane and a volume is kept; the rest is looked for across what there i
 
 from __future__ import annotations
 
-from functools import cache
 from math import sqrt
 
-from ..compile import inner, kernel
+from ..compile import inner, kernel, once
 from .gjk import make_difference
 
 # A simplex thinner than this share of the sizes is built anew [-].
@@ -61,7 +60,7 @@ def swap_rows(corners, i, j):
         corners[i, k], corners[j, k] = corners[j, k], corners[i, k]
 
 
-@cache
+@once
 def make_tetrahedron(spec):
     """Return `kernel(a, b, ox, oy, oz, count, corners, tables)`: it makes corners 0..3 a volume.
 

@@ -5,7 +5,7 @@ velocities and its unknown an impulse, F = lambda/dt and d = c F.
 """
 
 from ..compile import kernel
-from .decision import Decision, Facts
+from .decision import Decision, Facts, by_pair
 
 NAME = "compliance"
 STAGE = "capture"
@@ -15,9 +15,11 @@ CONTACT_FIELDS = [("gamma", "f8")]  # [1/kg]
 
 def wanted(facts: Facts) -> Decision:
     """On when a pair that may touch is compliant."""
-    for pair in facts.pairs:
-        if pair.compliance > 0.0:
-            return Decision(True, f"{pair.a} and {pair.b}: compliance {pair.compliance:g} m/N")
+    if any(pair.compliance > 0.0 for pair in facts.pairs):
+        said = by_pair(
+            facts.pairs, lambda p: f"compliance {p.compliance:g} m/N" if p.compliance > 0.0 else ""
+        )
+        return Decision(True, said)
     return Decision(False, "every pair that may touch has compliance 0")
 
 

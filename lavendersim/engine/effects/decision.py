@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
 from typing import Any, NamedTuple
+
+MOST_PAIRS = 3  # in a sentence
 
 
 class BodyFacts(NamedTuple):
@@ -81,3 +83,18 @@ def named(names: list[str]) -> str:
     if len(names) <= 3:
         return ", ".join(names)
     return f"{', '.join(names[:2])} and {len(names) - 2} more"
+
+
+def by_pair(pairs: Sequence[PairFacts], say: Callable[[PairFacts], str]) -> str:
+    """Say something of a few pairs of surfaces: `floor and ball: sliding 0.5; floor and box: none`.
+
+    say: nothing for a pair of which there is nothing to say; such pairs come last.
+    """
+    said = [(f"{pair.a} and {pair.b}", say(pair)) for pair in pairs]
+    telling = [f"{names}: {what}" for names, what in said if what]
+    silent = [f"{names}: none" for names, what in said if not what]
+    if len(telling) > MOST_PAIRS:
+        telling[MOST_PAIRS - 1 :] = [f"{len(telling) - MOST_PAIRS + 1} more pairs"]
+    if len(silent) > 1:
+        silent = [f"{len(silent)} other pairs: none"]
+    return "; ".join(telling + silent)

@@ -8,7 +8,7 @@ a sweep needs both and nothing else of a body.
 
 from ..block import make_relative_velocity
 from ..compile import kernel
-from .decision import Decision, Facts
+from .decision import Decision, Facts, PairFacts, by_pair
 
 NAME = "friction"
 STAGE = "solve"
@@ -41,16 +41,16 @@ CONTACT_ROW_FIELDS = [
 CACHE_FIELDS = [("px", "f8"), ("py", "f8"), ("pz", "f8")]  # tangential impulse, world axes [N s]
 
 
+def _said(pair: PairFacts) -> str:
+    if pair.friction > 0.0:
+        return f"sliding {pair.friction:g}"
+    return "resistance to turning acts in friction's frame" if pair.resists_turning else ""
+
+
 def wanted(facts: Facts) -> Decision:
     """On when a pair that may touch has a positive coefficient, or resists turning without one."""
-    for pair in facts.pairs:
-        if pair.friction > 0.0:
-            return Decision(True, f"{pair.a} and {pair.b}: coefficient {pair.friction:g}")
-    for pair in facts.pairs:
-        if pair.resists_turning:
-            return Decision(
-                True, f"{pair.a} and {pair.b}: resistance to turning acts in friction's frame"
-            )
+    if any(pair.friction > 0.0 or pair.resists_turning for pair in facts.pairs):
+        return Decision(True, by_pair(facts.pairs, _said))
     return Decision(False, "every pair that may touch has coefficient 0")
 
 

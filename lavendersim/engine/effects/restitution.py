@@ -6,7 +6,7 @@ ever. At the surface, `impact_time` applies the law itself and only takes the co
 """
 
 from ..compile import kernel
-from .decision import Decision, Facts
+from .decision import Decision, Facts, by_pair
 
 NAME = "restitution"
 STAGE = "capture"
@@ -15,11 +15,11 @@ PAIR_FIELDS = [("restitution", "f8")]  # e of the pair, the larger of its surfac
 
 def wanted(facts: Facts) -> Decision:
     """On when a pair that may touch has a positive coefficient."""
-    for pair in facts.pairs:
-        if pair.restitution > 0.0:
-            return Decision(
-                True, f"{pair.a} and {pair.b}: coefficient {pair.restitution:g}, Newton's law"
-            )
+    if any(pair.restitution > 0.0 for pair in facts.pairs):
+        said = by_pair(
+            facts.pairs, lambda p: f"coefficient {p.restitution:g}" if p.restitution > 0.0 else ""
+        )
+        return Decision(True, f"{said}; Newton's law")
     return Decision(False, "every pair that may touch has coefficient 0")
 
 

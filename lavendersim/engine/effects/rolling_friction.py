@@ -11,7 +11,7 @@ psi_t: angular impulse on B [N m s]; a pair's c is the larger of its surfaces'. 
 from math import sqrt
 
 from ..compile import kernel
-from .decision import Decision, Facts
+from .decision import Decision, Facts, PairFacts, by_pair
 
 NAME = "rolling_friction"
 STAGE = "solve"
@@ -38,13 +38,14 @@ CONTACT_ROW_FIELDS = [
 CACHE_FIELDS = [("psi_x", "f8"), ("psi_y", "f8"), ("psi_z", "f8")]  # world axes [N m s]
 
 
+def _said(pair: PairFacts) -> str:
+    return f"rolling friction {pair.rolling_friction:g} m" if pair.rolling_friction > 0.0 else ""
+
+
 def wanted(facts: Facts) -> Decision:
     """On when a pair that may touch has a positive coefficient."""
-    for pair in facts.pairs:
-        if pair.rolling_friction > 0.0:
-            return Decision(
-                True, f"{pair.a} and {pair.b}: rolling friction {pair.rolling_friction:g} m"
-            )
+    if any(pair.rolling_friction > 0.0 for pair in facts.pairs):
+        return Decision(True, by_pair(facts.pairs, _said))
     return Decision(False, "every pair that may touch has rolling friction 0")
 
 

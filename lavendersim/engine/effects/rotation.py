@@ -3,39 +3,57 @@
 from ..compile import kernel
 from ..records import ANGULAR_VELOCITY, ORIENTED_BODY
 from ..rotation import turn
-from .decision import Decision, Facts, named
+from .decision import BodyFacts, Decision, Facts, PairFacts, named
 
 NAME = "rotation"
 STAGE = "integrate"
 BODY_FIELDS = [*ORIENTED_BODY, ("inv_ix", "f8"), ("inv_iy", "f8"), ("inv_iz", "f8")]
 VELOCITY_FIELDS = ANGULAR_VELOCITY
+# Bodies of one kind are alike to all others: a pair stands for all pairs of its two kinds.
+Kind = tuple[str, bool, str]
 
 
 def wanted(facts: Facts) -> Decision:
     """On when a body spins at the start, is twisted, or can be turned by its contacts."""
-    spinning = [body.name for body in facts.bodies if body.movable and body.spins]
-    if spinning:
-        return Decision(True, f"{named(spinning)}: initial angular velocity")
-    twisted = [body.name for body in facts.bodies if body.movable and body.torque]
-    if twisted:
-        return Decision(True, f"{named(twisted)}: a torque from the config")
-    levered = [body.name for body in facts.bodies if body.movable and body.shape != "sphere"]
-    if levered and facts.pairs:
-        return Decision(True, f"{named(levered)}: a contact off the centre of mass exerts a torque")
-    for pair in facts.pairs:
-        if pair.friction > 0.0:
-            return Decision(True, f"{pair.a} and {pair.b}: friction exerts a torque")
-        if pair.resists_turning:
-            return Decision(True, f"{pair.a} and {pair.b}: their contact resists turning")
-    turning = [body.name for body in facts.bodies if body.kinematic and body.spins]
-    if turning:
-        return Decision(True, f"{named(turning)}: kinematic and turning")
-    movable = [body.name for body in facts.bodies if body.movable]
-    return Decision(
-        False,
-        f"{named(movable)}: nothing turns at the start and no frictionless contact of it can exert "
-        "a torque",
-    )
+    rubbing = _touched(facts, [pair for pair in facts.pairs if pair.friction > 0.0])
+    resisting = _touched(facts, [pair for pair in facts.pairs if pair.resists_turning])
+    turned: dict[str, list[str]] = {}
+    for body in facts.bodies:
+        if body.movable or body.kinematic:
+            why = _turned_by(body, bool(facts.pairs), rubbing, resisting)
+            turned.setdefault(why, []).append(body.name)
+    still = turned.pop("", [])
+    said = [f"{named(names)}: {why}" for why, names in turned.items()]
+    if still:
+        them = "it" if len(still) == 1 else "them"
+        why = f"no contact of {them} can exert a torque" if facts.pairs else "nothing can touch"
+        said.append(f"{named(still)} cannot turn: {why}")
+    return Decision(bool(turned), "; ".join(said) or "nothing moves")
+
+
+def _turned_by(body: BodyFacts, touches: bool, rubbing: set[Kind], resisting: set[Kind]) -> str:
+    """Return what turns a body, or nothing."""
+    if body.spins:
+        return "initial angular velocity" if body.movable else "kinematic and turning"
+    if not body.movable:
+        return ""
+    if body.torque:
+        return "a torque from the config"
+    if touches and body.shape != "sphere":
+        return "a contact off the centre of mass exerts a torque"
+    if _kind(body) in rubbing:
+        return "friction exerts a torque"
+    return "its contacts resist turning" if _kind(body) in resisting else ""
+
+
+def _kind(body: BodyFacts) -> Kind:
+    return body.shape, body.movable, repr(body.stated.get("surface", body.name))
+
+
+def _touched(facts: Facts, pairs: list[PairFacts]) -> set[Kind]:
+    """Return the kinds of bodies that take part in some pairs."""
+    names = {name for pair in pairs for name in (pair.a, pair.b)}
+    return {_kind(body) for body in facts.bodies if body.name in names}
 
 
 def make(spec):

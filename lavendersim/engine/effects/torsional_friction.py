@@ -8,7 +8,7 @@ no other friction: mu may be 0, friction's block is there for its frame.
 """
 
 from ..compile import kernel
-from .decision import Decision, Facts
+from .decision import Decision, Facts, PairFacts, by_pair
 
 NAME = "torsional_friction"
 STAGE = "solve"
@@ -29,13 +29,16 @@ CONTACT_ROW_FIELDS = [
 CACHE_FIELDS = [("psi_n", "f8")]
 
 
+def _said(pair: PairFacts) -> str:
+    return (
+        f"torsional friction {pair.torsional_friction:g} m" if pair.torsional_friction > 0.0 else ""
+    )
+
+
 def wanted(facts: Facts) -> Decision:
     """On when a pair that may touch has a positive coefficient."""
-    for pair in facts.pairs:
-        if pair.torsional_friction > 0.0:
-            return Decision(
-                True, f"{pair.a} and {pair.b}: torsional friction {pair.torsional_friction:g} m"
-            )
+    if any(pair.torsional_friction > 0.0 for pair in facts.pairs):
+        return Decision(True, by_pair(facts.pairs, _said))
     return Decision(False, "every pair that may touch has torsional friction 0")
 
 

@@ -26,7 +26,12 @@ def make_sweep(spec: Spec):
 
 
 def make_note(spec: Spec):
-    """Return `kernel(params, counters, rows, sweep, residual)`: a row of the history, if asked."""
+    """Return `kernel(params, counters, rows, sweep, residual)`: a row of the history, if asked.
+
+    None where no history is recorded.
+    """
+    if not spec.has("residual_log"):
+        return None
 
     def note(params, counters, rows, sweep, residual):
         step = counters.step + 1

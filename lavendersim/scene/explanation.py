@@ -1,0 +1,250 @@
+"""A plan enters; all there is to say about it leaves as data: reasons, records, log, kernels.
+
+What an effect brings is read from its own module and from what the engine is composed of with it
+and without it. Nothing is compiled.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from functools import cache
+from typing import Any, NamedTuple
+
+from lavendersim.engine.collide import SHAPE_PAIRS
+from lavendersim.engine.effects import EFFECTS, step_log
+from lavendersim.engine.solvers import SOLVERS
+from lavendersim.engine.spec import Spec
+from lavendersim.engine.step import kernels_of
+
+from .plan import CHOICES, Plan
+
+_GROUP = "_FIELDS"  # BODY_FIELDS of a module: columns of the body record
+_ENGINE = "lavendersim.engine."
+_GLUE = "compile"  # links between the kernels of one stage, which have nothing to say
+
+Fields = dict[str, list[str]]  # record -> names of its columns
+Kernels = dict[str, list[str]]  # module of the engine -> names
+
+
+class Part(NamedTuple):
+    """One effect, shape pair or solver: is it in, why, and what it brings."""
+
+    name: str
+    on: bool
+    reason: str
+    reasons: dict[str, list[int]]  # every reason, and the cells it holds in
+    forced: str | None  # `forced on` or `forced off`, against what the scene calls for
+    called_for_by: list[int]  # cells, by their place in the sweep
+    callers: str  # in words, where some cells call for it and others do not
+    needs: list[str]  # effects without which it cannot be
+    chosen_by: str | None  # key of the numerics
+    fields: Fields  # of records that it brings, and of log rows
+    channels: list[str]  # of the log
+    kernels: Kernels  # that are there because of it; none where it is off
+
+
+class Explanation(NamedTuple):
+    """A plan with its reasons."""
+
+    title: str  # what tells it from the other plans of the same sweep, and how many cells it has
+    digest: str  # of the spec
+    spec: dict[str, Any]
+    choices: dict[str, Any]  # what the cells that share it agree in
+    cells: list[dict[str, Any]]  # that share it: `index` and `label`
+    effects: list[Part]  # in the engine's order
+    shape_pairs: list[Part]
+    solver: Part
+    always: Kernels  # that an engine has without any effect, and none of the above brings
+    shared: Kernels  # that several of the above bring together
+
+    def parts(self) -> list[Part]:
+        """Return everything that is in or out."""
+        return [*self.effects, *self.shape_pairs, self.solver]
+
+    def as_data(self) -> dict[str, Any]:
+        """Return it as plain data, effects and pairs by name."""
+        data = self._asdict()
+        for group in ("effects", "shape_pairs"):
+            data[group] = {part.name: part._asdict() for part in data[group]}
+        data["solver"] = self.solver._asdict()
+        return data
+
+
+def explain(plan: Plan, others: Iterable[Plan] = ()) -> Explanation:
+    """Explain a plan; `others` are those of the same sweep, from which it is to be told."""
+    spec, choices = plan.spec, dict(zip(CHOICES, plan.choices, strict=True))
+    composed = composed_kernels(spec)
+    effects = [_effect(plan, effect) for effect in EFFECTS]
+    pairs = [_shape_pair(plan, name) for name in SHAPE_PAIRS]
+    bare = Spec(solver=spec.solver, shape_pairs=spec.shape_pairs)
+    always = _common(composed, composed_kernels(bare))
+    brought = [part.kernels for part in (*effects, *pairs)]
+    solver = _solver(plan, _without(composed, *brought))
+    always = _without(always, solver.kernels, *brought)
+    return Explanation(
+        title=_title(plan, others),
+        digest=spec.digest(),
+        spec=spec._asdict(),
+        choices=choices,
+        cells=[{"index": cell.number, "label": cell.label} for cell in plan.cells],
+        effects=effects,
+        shape_pairs=pairs,
+        solver=solver,
+        always=always,
+        shared=_without(composed, always, solver.kernels, *brought),
+    )
+
+
+def explain_all(plans: Iterable[Plan]) -> list[Explanation]:
+    """Explain the different plans of one sweep."""
+    plans = list(plans)
+    return [explain(plan, plans) for plan in plans]
+
+
+def _effect(plan: Plan, effect: Any) -> Part:
+    spec, name = plan.spec, effect.NAME
+    decision = plan.decisions[name]
+    fields = fields_of(effect)
+    # Some columns depend on what else is there; that is known where the effect is on.
+    if decision.on and hasattr(effect, "contact_fields"):
+        fields["contact"] = _names(effect.contact_fields(spec))
+    return Part(
+        name=name,
+        on=decision.on,
+        reason=decision.reason,
+        reasons=_reasons(plan, name),
+        forced=plan.forced.get(name),
+        called_for_by=[cell.number for cell in plan.callers[name]],
+        callers=plan.called_for_by(name),
+        needs=list(getattr(effect, "NEEDS", ())),
+        chosen_by=getattr(effect, "CHOSEN_BY", None),
+        fields={record: names for record, names in fields.items() if names},
+        channels=list(getattr(effect, "CHANNELS", ())),
+        kernels=_brought(spec, effect) if decision.on else {},
+    )
+
+
+def _reasons(plan: Plan, name: str) -> dict[str, list[int]]:
+    return {why: [cell.number for cell in cells] for why, cells in plan.reasons_of(name).items()}
+
+
+def fields_of(module: Any) -> Fields:
+    """Return the columns that a module of the engine states, by record: `body`, `contact_row`."""
+    return {
+        group.removesuffix(_GROUP).lower(): _names(getattr(module, group))
+        for group in sorted(vars(module))
+        if group.endswith(_GROUP)
+    }
+
+
+def _brought(spec: Spec, effect: Any) -> Kernels:
+    """Return the kernels that are there because of an effect: its own, those that vanish without.
+
+    A kernel of another effect's module is that effect's, whatever else it waits for.
+    """
+    own = effect.__name__.removeprefix(_ENGINE)
+    dependents = [e.NAME for e in EFFECTS if spec.has(e.NAME) and effect.NAME in needs_of(e.NAME)]
+    lean = spec.without(*dependents)
+    gone = _without(composed_kernels(lean), composed_kernels(lean.without(effect.NAME)))
+    gone = {module: names for module, names in gone.items() if not _of_an_effect(module)}
+    stated = composed_kernels(spec).get(own)
+    return ({own: stated} if stated else {}) | gone
+
+
+def _of_an_effect(module: str) -> bool:
+    return module.startswith("effects.")
+
+
+@cache
+def needs_of(name: str) -> frozenset[str]:
+    """Return what an effect needs, and what that needs."""
+    direct = {need for e in EFFECTS if name == e.NAME for need in getattr(e, "NEEDS", ())}
+    return frozenset(direct.union(*(needs_of(need) for need in direct)))
+
+
+def _shape_pair(plan: Plan, name: str) -> Part:
+    decision = plan.shape_pairs[name]
+    kernels: Kernels = {}
+    if decision.on:
+        others = tuple(pair for pair in plan.spec.shape_pairs if pair != name)
+        # An engine in which nothing touches lacks more than the pair: compared with another one.
+        lean = others or tuple(pair for pair in SHAPE_PAIRS if pair != name)[:1]
+        without = composed_kernels(plan.spec._replace(shape_pairs=lean))
+        kernels = _without(composed_kernels(plan.spec), without)
+    return Part(
+        name=name,
+        on=decision.on,
+        reason=decision.reason,
+        reasons=_reasons(plan, name),
+        forced=plan.forced.get(name),
+        called_for_by=[cell.number for cell in plan.callers[name]],
+        callers=plan.called_for_by(name),
+        needs=[],
+        chosen_by=None,
+        fields={},
+        channels=[],
+        kernels=kernels,
+    )
+
+
+def _solver(plan: Plan, composed: Kernels) -> Part:
+    spec = plan.spec
+    fields = fields_of(SOLVERS[spec.solver])
+    stops = "stops at a tolerance" if spec.tolerance else "takes all its sweeps"
+    if spec.tolerance:
+        fields["step_row"] = _names(step_log.UNSOLVED_ROW)
+    return Part(
+        name=spec.solver,
+        on=True,
+        reason=f"numerics.solver is {spec.solver}; it {stops}",
+        reasons={},
+        forced=None,
+        called_for_by=[cell.number for cell in plan.cells],
+        callers="",
+        needs=[],
+        chosen_by="solver",
+        fields=fields,
+        channels=[],
+        kernels={m: names for m, names in composed.items() if m.startswith("solvers.")},
+    )
+
+
+def _title(plan: Plan, others: Iterable[Plan]) -> str:
+    """Return the choices in which plans of one sweep differ, and how many cells share this one."""
+    others = list(others)
+    differing = [
+        f"{name}: {value}"
+        for place, (name, value) in enumerate(zip(CHOICES, plan.choices, strict=True))
+        if len({other.choices[place] for other in others}) > 1
+    ]
+    count = len(plan.cells)
+    cells = f"{count} cells" if count > 1 else plan.cells[0].label or "1 cell"
+    return f"{', '.join(differing)} ({cells})" if differing else cells
+
+
+@cache
+def _composed(spec: Spec) -> tuple[tuple[str, tuple[str, ...]], ...]:
+    return tuple((module, tuple(names)) for module, names in kernels_of(spec).items())
+
+
+def composed_kernels(spec: Spec) -> Kernels:
+    """Return the kernels that an engine is composed of, without the links between them."""
+    return {module: list(names) for module, names in _composed(spec) if module != _GLUE}
+
+
+def _without(kernels: Kernels, *others: Mapping[str, list[str]]) -> Kernels:
+    """Return the kernels that none of the others has."""
+    left = {
+        module: [name for name in names if not any(name in o.get(module, ()) for o in others)]
+        for module, names in kernels.items()
+    }
+    return {module: names for module, names in left.items() if names}
+
+
+def _common(kernels: Kernels, others: Kernels) -> Kernels:
+    """Return the kernels that both have."""
+    return _without(kernels, _without(kernels, others))
+
+
+def _names(fields: Iterable[tuple[str, str]]) -> list[str]:
+    return list(dict.fromkeys(name for name, _ in fields))

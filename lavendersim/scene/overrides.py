@@ -1,0 +1,176 @@
+"""What a config switches by hand enters with what its scene calls for; what is on at last leaves.
+
+    on    an effect that is not called for is compiled in, with the coefficients that the scene
+          states, and so is whatever it needs
+    off   where the scene does not call for it: nothing changes, the file asserts the pruning;
+          where it does: refused, unless the file says `force: true`
+An effect that the numerics choose is another law, no idle effect: only they switch it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any, Literal, NamedTuple, get_args
+
+from lavendersim.engine.collide import SHAPE_PAIRS
+from lavendersim.engine.effects import (
+    EFFECTS,
+    Decision,
+    Facts,
+    PairFacts,
+    contact_log,
+    pose_log,
+    step_log,
+)
+from lavendersim.errors import UsageError
+from lavendersim.experiment.cell_models import Numerics
+from lavendersim.experiment.found import nearest, quoted
+
+_BY_NAME = {effect.NAME: effect for effect in EFFECTS}
+_LOGS = (step_log.NAME, pose_log.NAME)  # without them nothing of a run can be read
+# A scene in which bodies fall, touch and rub: what is off there, the numerics have switched off.
+_BUSY: dict[str, Any] = {
+    "pairs": (PairFacts("", "", restitution=1.0, compliance=0.0, friction=1.0),) * 2,
+    "pair_count": 2,
+    "gravity": (0.0, 0.0, -1.0),
+}
+
+Forced = Literal["forced on", "forced off"]
+
+
+class Refusal(NamedTuple):
+    """A switch that cannot be: a key of the section `effects`, and why."""
+
+    name: str
+    sentence: str
+
+
+class OverrideError(UsageError):
+    """The section `effects` of a config asks for what cannot be; carries every refusal."""
+
+    def __init__(self, refusals: list[Refusal]) -> None:
+        self.refusals = tuple(refusals)
+        super().__init__("\n".join(refusal.sentence for refusal in refusals))
+
+
+class Overridden(NamedTuple):
+    """What is on once the switches have been followed."""
+
+    effects: dict[str, Decision]
+    shape_pairs: dict[str, Decision]
+    forced: dict[str, Forced]  # what the scene does not call for, or does and does not get
+
+
+def override(
+    effects: Mapping[str, Decision],
+    shape_pairs: Mapping[str, Decision],
+    facts: Facts,
+    stated: Mapping[str, Any],
+) -> Overridden:
+    """Follow the switches of a resolved config; raises OverrideError with all that cannot be."""
+    made = Overridden(dict(effects), dict(shape_pairs), {})
+    refusals: list[Refusal] = []
+    for name, switch in stated["switches"].items():
+        sentence = _switch(made, name, switch, facts, stated)
+        if sentence:
+            refusals.append(Refusal(name, f"effects.{name}: {sentence}"))
+    refused = {refusal.name for refusal in refusals}
+    refusals += [one for one in _unmet(made, stated["switches"]) if one.name not in refused]
+    if refusals:
+        raise OverrideError(refusals)
+    return made
+
+
+def _switch(
+    made: Overridden, name: str, switch: str, facts: Facts, stated: Mapping[str, Any]
+) -> str:
+    """Follow one switch; returns why it cannot be, or nothing."""
+    if name not in made.effects and name not in made.shape_pairs:
+        hint = nearest(name, [*_BY_NAME, *SHAPE_PAIRS])
+        return f"no effect or shape pair is called {quoted(name)}{hint}"
+    decisions = made.effects if name in made.effects else made.shape_pairs
+    if decisions[name].on == (switch == "on"):
+        return ""
+    reason = decisions[name].reason
+    if switch == "on":
+        return _force_on(made, decisions, name, facts, stated["switches"])
+    if name in made.shape_pairs:
+        return f"{reason} may touch; without it they would pass through each other"
+    if name in _LOGS:
+        return "a run without its log is no run; leave it on"
+    if name == contact_log.NAME:
+        return "the sums in /step are those of the contacts that are logged; leave it on"
+    if key := getattr(_BY_NAME[name], "CHOSEN_BY", ""):
+        return f"the numerics choose it; write {_choosing(name, key, facts, on=False)} instead"
+    if not stated["force"]:
+        return (
+            f"the scene calls for it: {reason}; add `force: true` beside it to leave it out "
+            "all the same"
+        )
+    decisions[name] = Decision(False, f"forced off, though: {reason}")
+    made.forced[name] = "forced off"
+    return ""
+
+
+def _force_on(
+    made: Overridden,
+    decisions: dict[str, Decision],
+    name: str,
+    facts: Facts,
+    switches: Mapping[str, str],
+) -> str:
+    """Put an effect or shape pair in, with all that it needs; returns why that cannot be."""
+    for need in (name, *_needs(name)):
+        key = getattr(_BY_NAME.get(need), "CHOSEN_BY", "")
+        if key and not _BY_NAME[need].wanted(facts._replace(**_BUSY)).on:
+            which = "it" if need == name else f"it needs {need}, which"
+            choice = _choosing(need, key, facts, on=True)
+            how = f"; write {choice} to choose it" if choice else ""
+            return f"{which} is another law, no idle effect{how}"
+    decisions[name] = Decision(True, f"forced on; not called for: {decisions[name].reason}")
+    made.forced[name] = "forced on"
+    for need in _needs(name):
+        if not made.effects[need].on and switches.get(need) is None:
+            why = f"forced on, needed by {name}; not called for: {made.effects[need].reason}"
+            made.effects[need] = Decision(True, why)
+            made.forced[need] = "forced on"
+    return ""
+
+
+def _needs(name: str) -> tuple[str, ...]:
+    """Return what an effect needs, and what that needs, each once."""
+    found: dict[str, None] = {}
+    waiting = [name]
+    while waiting:
+        for need in getattr(_BY_NAME.get(waiting.pop()), "NEEDS", ()):
+            if need not in found:
+                found[need] = None
+                waiting.append(need)
+    return tuple(found)
+
+
+def _unmet(made: Overridden, switches: Mapping[str, str]) -> Iterator[Refusal]:
+    """Yield what is switched off although something that is on needs it."""
+    for name, switch in switches.items():
+        if switch == "off" and name in made.effects:
+            needing = [other for other in made.effects if name in _needs(other)]
+            on = [other for other in needing if made.effects[other].on]
+            if on:
+                verb, them = ("needs", "that") if len(on) == 1 else ("need", "those")
+                yield Refusal(
+                    name,
+                    f"effects.{name}: {', '.join(on)} {verb} it; switch {them} off as well",
+                )
+
+
+def _choosing(name: str, key: str, facts: Facts, on: bool) -> str:
+    """Return what the numerics must say for an effect to be on or off, as a config states it.
+
+    Nothing where that key alone does not do it.
+    """
+    annotation: Any = Numerics.model_fields[key].annotation
+    for value in (False, True) if annotation is bool else get_args(annotation):
+        if _BY_NAME[name].wanted(facts._replace(**_BUSY, **{key: value})).on == on:
+            written = str(value).lower() if isinstance(value, bool) else value
+            return f"`numerics: {{{key}: {written}}}`"
+    return ""

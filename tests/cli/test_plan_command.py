@@ -1,0 +1,141 @@
+"""`lavender plan` and `lavender show`: what they print, at any width, and what they refuse."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from lavender_cli.plan import write
+from lavendersim.engine.collide import SHAPE_PAIRS
+from lavendersim.engine.effects import EFFECTS
+from lavendersim.experiment import load_experiment
+from lavendersim.runner.plans import shared_plans
+from lavendersim.scene.explanation import Explanation, explain
+
+STACK = Path(__file__).parents[2] / "configs" / "scenes" / "stack_of_six.yaml"
+REFUSED = "effects: {restitution: off, drga: on}\n"
+SWEPT = "sweep:\n  e: {path: scene.bodies.ball.surface.restitution, values: [0, 0.5, 0.8]}\n"
+
+
+def lavender(*arguments: object, where: Path) -> subprocess.CompletedProcess[str]:
+    """Run the command line in `where`, in a process of its own."""
+    return subprocess.run(
+        [sys.executable, "-m", "lavender_cli.main", *map(str, arguments)],
+        cwd=where,
+        capture_output=True,
+        text=True,
+        env={**os.environ, "NO_COLOR": "1"},
+        check=False,
+    )
+
+
+@pytest.fixture(scope="module")
+def stack() -> Explanation:
+    return explain(shared_plans(load_experiment(STACK).cells())[0])
+
+
+def printed(explained: Explanation, width: int, capsys: pytest.CaptureFixture[str]) -> list[str]:
+    write(explained, "title", width)
+    return re.sub(r"\x1b\[[\d;]*m", "", capsys.readouterr().out).splitlines()
+
+
+@pytest.mark.parametrize("width", [80, 120])
+def test_the_table_fits_and_loses_nothing(
+    stack: Explanation, width: int, capsys: pytest.CaptureFixture[str]
+) -> None:
+    lines = printed(stack, width, capsys)
+    assert max(map(len, lines)) <= width
+    words = " ".join(lines).split()
+    assert "…" not in " ".join(lines)
+    for part in stack.parts():
+        assert part.name in " ".join(words).replace(",", " ").split()
+        if part.on:
+            assert set(part.reason.split()) <= set(words) | {w.rstrip(";") for w in words}
+            for names in (*part.fields.values(), *part.kernels.values()):
+                assert set(names) <= {word.rstrip(";") for word in words}
+
+
+@pytest.mark.parametrize("verb", ["run", "check", "plan", "plan --json"])
+def test_switches_that_cannot_be_exit_2_and_leave_nothing(
+    drop: Path, tmp_path: Path, verb: str
+) -> None:
+    drop.write_text(drop.read_text() + REFUSED)
+    line = drop.read_text().splitlines().index(REFUSED.strip()) + 1
+    name, *options = verb.split()
+    done = lavender(name, drop, *options, where=tmp_path)
+    assert (done.returncode, done.stdout) == (2, "")
+    first, second = done.stderr.splitlines()
+    assert first.startswith(f"{drop}:{line}:11: effects.restitution: the scene calls for it: ")
+    assert second == (
+        f'{drop}:{line}:29: effects.drga: no effect or shape pair is called "drga"; '
+        'did you mean "drag"?'
+    )
+    assert not (tmp_path / "runs").exists()
+
+
+def test_a_pipe_gets_whole_lines(tmp_path: Path) -> None:
+    lines = lavender("plan", STACK, where=tmp_path).stdout.splitlines()
+    for effect in EFFECTS:
+        assert any(re.match(rf"{effect.NAME} +(on |off)  \S", line) for line in lines)
+    assert any(line.endswith("friction; velocity 6: jxx jxy jxz jyy jyz jzz") for line in lines)
+    assert lines[0] == "stack_of_six: 1 cell"
+    assert not any(line != line.rstrip() for line in lines)
+
+
+def test_json_has_all_that_the_table_has(drop: Path, tmp_path: Path) -> None:
+    text = drop.read_text()
+    drop.write_text(text[: text.index("measure:")] + SWEPT + "effects: {friction: on}\n")
+    plan = json.loads(lavender("plan", drop, "--json", where=tmp_path).stdout)
+    assert list(plan["effects"]) == [effect.NAME for effect in EFFECTS]
+    assert list(plan["shape_pairs"]) == list(SHAPE_PAIRS)
+    assert plan["effects"]["restitution"]["called_for_by"] == [1, 2]
+    assert plan["effects"]["restitution"]["callers"] == "called for by 2 of 3 cells: e=0.5; e=0.8"
+    assert plan["effects"]["friction"]["forced"] == "forced on"
+    assert plan["effects"]["friction"]["fields"]["pair"] == ["friction"]
+    assert plan["effects"]["friction"]["kernels"]["effects.friction"]
+    assert plan["choices"]["effects"] == "friction: on"
+    assert [cell["label"] for cell in plan["cells"]] == ["e=0", "e=0.5", "e=0.8"]
+    assert plan["others"] == []
+    table = lavender("plan", drop, where=tmp_path).stdout
+    assert plan["digest"] in table
+    for part in (*plan["effects"].values(), plan["solver"]):
+        assert part["reason"] in table
+        assert part["callers"] in table
+
+
+def test_show_tells_the_plan_of_the_log(drop: Path, tmp_path: Path) -> None:
+    text = drop.read_text()
+    swept = text[: text.index("measure:")].replace("duration: 0.5", "duration: 0.02") + SWEPT
+    drop.write_text(swept + "effects: {drag: on}\n")
+    assert lavender("run", drop, where=tmp_path).returncode == 0
+    shown = lavender("show", where=tmp_path).stdout
+    lines = shown[shown.index("\nplan\n") + 1 : shown.index("\ncells ")].splitlines()
+    assert lines[1] == "  overridden by hand: drag forced on"
+    assert any(
+        re.match(r"  drag +on   forced on; not called for: no body has drag$", x) for x in lines
+    )
+    assert any(re.match(r"  sphere_plane +on   floor and ball$", line) for line in lines)
+    assert any(line.endswith("called for by 2 of 3 cells: e=0.5; e=0.8") for line in lines)
+    off = [line for line in lines if line.startswith("  off: ")]
+    assert len(off) == 1
+    assert {"friction", "rotation"} <= set(off[0].removeprefix("  off: ").split(", "))
+
+
+def test_show_tells_each_plan_of_a_run(drop: Path, tmp_path: Path) -> None:
+    text = drop.read_text()
+    switched = "sweep:\n  f: {path: effects.restitution, values: [on, off]}\n"
+    drop.write_text(
+        text[: text.index("measure:")].replace("duration: 0.5", "duration: 0.02")
+        + switched
+        + "effects: {force: true}\n"
+    )
+    assert lavender("run", drop, where=tmp_path).returncode == 0
+    shown = lavender("show", where=tmp_path).stdout
+    assert re.findall(r"^plan.*$", shown, re.M) == ["plan of f=on", "plan of f=off"]
+    assert shown.count("overridden by hand: restitution forced off") == 1

@@ -1,0 +1,60 @@
+"""What an engine is said to be composed of is what is compiled, every time it is asked."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from lavendersim.engine import compile as compiler
+from lavendersim.engine.spec import Spec
+from lavendersim.engine.step import kernels_of, make_advance
+from lavendersim.experiment import load_experiment
+from lavendersim.scene.build import build
+from lavendersim.scene.plan import plan_of_cell
+
+CONFIGS = Path(__file__).parents[3] / "configs"
+ENGINE = "lavendersim.engine."
+# One without friction that stops at a tolerance, one with it; one without, that records its sweeps.
+NAMES = ("scenes/drop", "scenes/stack_of_six", "chapter/warm_start")
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_composed_kernel_is_compiled_and_no_other(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A kernel without an overload was never called by another: dead weight in the plan."""
+    cell = load_experiment(CONFIGS / f"{name}.yaml").cells()[0]
+    spec = plan_of_cell(cell).spec
+    engine = build(cell.resolved, spec).engine(spec)
+    # A spec that no other test has: kernels that are made once a spec are made here.
+    spec = spec._replace(effects=(*spec.effects, "nothing"))
+    made: list[tuple[str, Any]] = []
+    njit = compiler.numba.njit
+
+    def recording(**options: Any) -> Callable[[Any], Any]:
+        def decorate(function: Any) -> Any:
+            kernel = njit(**options)(function)
+            module = function.__module__.removeprefix(ENGINE)
+            made.append((f"{module}.{function.__name__}", kernel))
+            return kernel
+
+        return decorate
+
+    monkeypatch.setattr(compiler.numba, "njit", recording)
+    engine._kernel = make_advance(spec)
+    monkeypatch.undo()
+    engine.advance(0)
+    compiled = {name for name, kernel in made if kernel.overloads}
+    composed = {f"{module}.{name}" for module, names in kernels_of(spec).items() for name in names}
+    assert compiled == composed
+
+
+def test_asking_twice_gives_the_same_answer() -> None:
+    """Kernels that are made once a spec are told each time."""
+    spec = Spec(shape_pairs=("box_box", "hull_hull"), effects=("gravity", "nothing at all"))
+    first = kernels_of(spec)
+    assert "collide.gjk" in first
+    assert kernels_of(spec) == first

@@ -1,0 +1,121 @@
+"""What a plan is said to bring is what its modules state and what its engine is composed of."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from lavendersim.engine.collide import SHAPE_PAIRS
+from lavendersim.engine.effects import EFFECTS
+from lavendersim.engine.engine import allocate_bodies, allocate_pairs, allocate_velocities
+from lavendersim.engine.solvers import SOLVERS
+from lavendersim.engine.spec import Spec
+from lavendersim.engine.step import kernels_of
+from lavendersim.experiment import load_experiment
+from lavendersim.scene.explanation import Explanation, composed_kernels, explain
+from lavendersim.scene.plan import Plan, plan_of_cell
+
+CONFIGS = Path(__file__).parents[3] / "configs"
+NAMES = ("scenes/stack_of_six", "scenes/drop", "chapter/warm_start", "scenes/rough_rod")
+# Groups that the contract of an effect's module lists, by what they are called in an explanation.
+GROUPS = {
+    "body": "BODY_FIELDS",
+    "velocity": "VELOCITY_FIELDS",
+    "pair": "PAIR_FIELDS",
+    "contact": "CONTACT_FIELDS",
+    "cache": "CACHE_FIELDS",
+    "contact_row": "CONTACT_ROW_FIELDS",
+    "step_row": "STEP_ROW_FIELDS",
+}
+
+
+def plan(name: str) -> Plan:
+    return plan_of_cell(load_experiment(CONFIGS / f"{name}.yaml").cells()[0])
+
+
+@pytest.fixture(scope="module", params=NAMES)
+def explained(request: pytest.FixtureRequest) -> tuple[Plan, Explanation]:
+    one = plan(request.param)
+    return one, explain(one)
+
+
+def test_every_effect_and_pair_is_there_in_the_engines_order(
+    explained: tuple[Plan, Explanation],
+) -> None:
+    _, said = explained
+    assert [part.name for part in said.effects] == [effect.NAME for effect in EFFECTS]
+    assert [part.name for part in said.shape_pairs] == list(SHAPE_PAIRS)
+    assert said.solver.name in SOLVERS
+
+
+def test_what_is_on_is_the_spec(explained: tuple[Plan, Explanation]) -> None:
+    one, said = explained
+    assert tuple(sorted(p.name for p in said.effects if p.on)) == one.spec.effects
+    assert tuple(sorted(p.name for p in said.shape_pairs if p.on)) == one.spec.shape_pairs
+    assert (said.digest, Spec(**said.spec)) == (one.spec.digest(), one.spec)
+
+
+def test_fields_and_channels_are_those_of_the_modules(explained: tuple[Plan, Explanation]) -> None:
+    _, said = explained
+    for effect, part in zip(EFFECTS, said.effects, strict=True):
+        for record, group in GROUPS.items():
+            stated = dict.fromkeys(name for name, _ in getattr(effect, group, []))
+            if record == "contact" and hasattr(effect, "contact_fields"):
+                continue  # depends on the spec
+            assert part.fields.get(record, []) == list(stated), (part.name, record)
+        assert part.channels == list(getattr(effect, "CHANNELS", ()))
+        assert part.needs == list(getattr(effect, "NEEDS", ()))
+
+
+@pytest.mark.parametrize(
+    ("record", "allocate"),
+    [("body", allocate_bodies), ("velocity", allocate_velocities), ("pair", allocate_pairs)],
+)
+def test_arrays_have_the_columns_that_are_said(
+    explained: tuple[Plan, Explanation], record: str, allocate: Any
+) -> None:
+    """Beside what an engine without effects has: the difference of the allocated dtypes."""
+    one, said = explained
+    columns = set(allocate(one.spec, 1).dtype.names)
+    base = set(allocate(one.spec.without(*one.spec.effects), 1).dtype.names)
+    brought = {name for part in said.parts() if part.on for name in part.fields.get(record, [])}
+    assert columns == base | brought
+
+
+def test_every_composed_kernel_is_told(explained: tuple[Plan, Explanation]) -> None:
+    one, said = explained
+    groups = [said.always, said.shared, *(part.kernels for part in said.parts())]
+    told = {(module, name) for group in groups for module, names in group.items() for name in names}
+    composed = composed_kernels(one.spec)
+    assert told == {(module, name) for module, names in composed.items() for name in names}
+    assert {"step", "contact", "solvers.sweep"} <= set(composed)
+
+
+def test_what_is_off_brings_no_kernel(explained: tuple[Plan, Explanation]) -> None:
+    _, said = explained
+    assert all(part.kernels == {} for part in said.parts() if not part.on)
+    own = {f"effects.{e.__name__.rpartition('.')[2]}": e.NAME for e in EFFECTS}
+    for part in said.parts():
+        assert {own[m] for m in part.kernels if m.startswith("effects.")} <= {part.name}
+
+
+def test_an_effect_brings_the_kernels_that_vanish_without_it() -> None:
+    one = plan("scenes/drop")
+    brought = {part.name: part.kernels for part in explain(one).effects}["warm_start"]
+    lean = kernels_of(one.spec.without("warm_start"))
+    assert brought
+    for module, names in brought.items():
+        assert not set(names) & set(lean.get(module, ()))
+
+
+def test_it_is_plain_data(explained: tuple[Plan, Explanation]) -> None:
+    one, said = explained
+    data = json.loads(json.dumps(said.as_data()))
+    for name, decision in one.decisions.items():
+        assert data["effects"][name]["on"] is decision.on
+        assert data["effects"][name]["reason"] == decision.reason
+        assert data["effects"][name]["reasons"] == {decision.reason: [0]}
+    assert set(data["shape_pairs"]) == set(SHAPE_PAIRS)
