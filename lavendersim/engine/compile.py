@@ -4,13 +4,16 @@ Kernels are closures over the flags of a `Spec`. Numba removes the branches that
 before it types them, so a pruned kernel is as small as one that never had the effect.
 
 Hazard: numba's symbol names carry a counter of the process, and objects cached by different
-processes can collide (numba issue 10486). Each kernel's qualified name therefore carries the digest
-of the spec it was made for.
+processes can collide (numba issue 10486): the first one loaded is used for both. Each kernel's
+qualified name therefore carries the digest of the spec it was made for. Parts that are the same for
+every spec are told apart by the types of their arguments, and numba names a record by a number of
+the process as well; here records are named by their fields.
 """
 
 from __future__ import annotations
 
 import gc
+import hashlib
 import warnings
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -18,6 +21,7 @@ from functools import wraps
 from typing import Any
 
 import numba
+from numba.core import types
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler
 from numba.core.compiler_lock import global_compiler_lock
@@ -27,6 +31,14 @@ from numba.core.registry import CPUDispatcher
 from numba.core.sigutils import normalize_signature
 
 from .spec import Spec
+
+
+def _record_in_symbols(record: Any) -> tuple[str, tuple[int]]:
+    """Return what stands for a record in symbols: its fields and their offsets, as a digest."""
+    return "Record", (int(hashlib.sha256(record.name.encode()).hexdigest()[:16], 16),)
+
+
+types.Record.mangling_args = property(_record_in_symbols)  # type: ignore[method-assign,assignment]
 
 # Kernels allocate nothing, and without reference counting a sphere's step costs a third. The option
 # is undocumented: a numba that does not know it compiles with counting, to the same bits.
