@@ -34,7 +34,7 @@ def test_a_number_above_its_bar_fails_the_check(
 ) -> None:
     ratio = {"of": "drop, pruned", "to": "drop, full", "bar": 0.5, "samples": [0.6], "median": 0.6}
     found = {"cases": [], "ratios": [ratio]}
-    monkeypatch.setattr(effects, "measure", lambda repeats, starts: found)
+    monkeypatch.setattr(effects, "measure", lambda repeats: found)
     monkeypatch.setattr("sys.argv", ["effects", "--check"])
     assert effects.main() == 1
     ratio["median"] = 0.4
