@@ -118,6 +118,7 @@ def _draw_scene(axes: Any, name: str, table: dict[str, Any], places: dict[str, i
         )
     axes.xaxis.set_major_locator(SymmetricalLogLocator(base=10.0, linthresh=LINEAR))
     axes.xaxis.set_minor_locator(NullLocator())
+    axes.tick_params(axis="x", labelsize=9.5)  # -1000 beside -100
     axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
 
 
@@ -161,5 +162,6 @@ def _draw_compile_times(
         if alone is not None:
             axes.axvline(alone, color=shown.colour, linewidth=1.1)
         handles.append(Line2D([], [], label=name, **marks))
-    axes.set_xlim(left=0.0)
-    axes.legend(handles=handles, loc="best")
+    axes.set_xlim(0.0, 1.06 * axes.dataLim.x1)
+    if len(handles) > 1:
+        axes.legend(handles=handles, loc="best")
