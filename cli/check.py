@@ -24,7 +24,7 @@ def check(
     good, verdicts, cells = True, [], []
     for experiment in experiments:
         with printing.reporting(experiment.name) as progress:
-            finished = run(experiment, runs, jobs, progress)
+            finished = run(experiment, runs, jobs, progress, prices=False)
         good = good and finished.good
         printing.warn_of_unsolved(finished)
         cells += [

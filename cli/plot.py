@@ -28,7 +28,7 @@ def plot(
 
     chosen = [open_run(path, root) for path in runs] if runs else [open_run(None, root)]
     for run in chosen:
-        if run.experiment.figure is None:
+        if not run.experiment.is_drawn:
             raise UsageError(f"{run.path}: its config has no figure section")
         for figure in draw(run, output or run.path / "figures"):
             typer.echo(figure)

@@ -121,7 +121,12 @@ def reporting(name: str) -> Iterator[Any]:
         typer.echo(what, err=True)
 
     if not sys.stderr.isatty():
-        yield Progress(compiling=compiling)
+
+        def said(what: str, done: int, total: int) -> None:
+            if done == 0:
+                typer.echo(f"{name}: {what}, {total} in all", err=True)
+
+        yield Progress(compiling=compiling, pricing=said)
         return
     from rich.console import Console
     from rich.progress import MofNCompleteColumn, TimeRemainingColumn
@@ -134,4 +139,7 @@ def reporting(name: str) -> Iterator[Any]:
         def cell_done(done: int, total: int) -> None:
             bar.update(task, completed=done, total=total)
 
-        yield Progress(compiling=compiling, cell_done=cell_done)
+        def pricing(what: str, done: int, total: int) -> None:
+            bar.update(task, description=f"{name}: {what}", completed=done, total=total)
+
+        yield Progress(compiling=compiling, cell_done=cell_done, pricing=pricing)

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from lavender_cli import printing
+from lavender_cli import prices, printing
 
 Configs = Annotated[
     list[Path], typer.Argument(metavar="CONFIG...", help="Config files, or folders of them.")
@@ -30,23 +30,31 @@ def run(
 
     # Every file is read before the first run, so a defect anywhere leaves nothing half done.
     experiments = load_all(configs)
-    good, tables = True, []
+    good, tables, priced = True, [], []
     for experiment in experiments:
         with printing.reporting(experiment.name) as progress:
             finished = run(experiment, runs, jobs, progress)
         good = good and finished.good
         printing.warn_of_unsolved(finished)
         figures = []
-        if plot and experiment.figure is not None:
+        if plot and experiment.is_drawn:
             from lavendersim.figures import draw
 
             figures = draw(finished.run, finished.run.path / "figures")
+        if experiment.price is not None:
+            priced.append(finished.run)
         if as_json:
             tables.append({**finished.run.results(), "run": finished.run.path, "figures": figures})
             continue
         printing.print_summary(finished)
+        prices.print_table(finished.run)
         for figure in figures:
             typer.echo(f"  figure {figure}")
+    if plot and len(priced) > 1:
+        from lavendersim.figures import draw_prices
+
+        for figure in draw_prices(priced, priced[-1].path / "figures"):
+            typer.echo(f"  figure of all prices {figure}", err=as_json)
     if as_json:
         printing.as_json(tables)
     if not good:

@@ -3,9 +3,10 @@
 Kernels are closures over the flags of a `Spec`. Numba removes the branches that a flag makes dead
 before it types them, so a pruned kernel is as small as one that never had the effect.
 
-Hazard: numba's symbol names carry a counter of the process, and objects cached by different
-processes can collide (numba issue 10486). Each kernel's qualified name therefore carries the digest
-of the spec it was made for.
+Hazard: numba's symbol names carry counters of the process, of functions and of record types, and
+objects cached by different processes can collide (numba issue 10486): the first one loaded is used
+for both. Each kernel's qualified name therefore carries the digest of the spec it was made for, and
+the parts of a kernel are no symbols of its object at all (`Whole`).
 """
 
 from __future__ import annotations

@@ -14,6 +14,7 @@ import hashlib
 import os
 import pickle
 import platform
+import struct
 import sys
 import tempfile
 import time
@@ -141,6 +142,16 @@ def make_room() -> None:
         total -= each.size
 
 
+class Compiled(NamedTuple):
+    """What a kernel took to compile; kept behind its machine code."""
+
+    seconds: float  # of the processor
+    alone: bool  # the first that its process compiled: no part of it was there already
+
+
+_COMPILED = struct.Struct("<d?")
+
+
 class KernelCache:
     """What a numba dispatcher asks for compiled code: the part of its cache interface it calls."""
 
@@ -150,6 +161,10 @@ class KernelCache:
         self.used = ""  # key of the kernel that was loaded or compiled last
         self.hits = 0
         self.misses = 0
+        self.anew = False  # true: what is kept is not loaded but compiled again
+        self._began = 0.0
+
+    saved = 0  # kernels that this process compiled
 
     def key(self, signature: Any, codegen: Any) -> str:
         """Return the hex name of the file for `signature` on this machine."""
@@ -166,10 +181,11 @@ class KernelCache:
 
     def load_overload(self, signature: Any, target_context: Any) -> Any:
         """Return the compiled kernel for `signature`, or None; a damaged file counts as absent."""
+        self._began = time.thread_time()  # numba compiles next, where there is none
         try:
             self.used = self.key(signature, target_context.codegen())
             path = self.path(self.used)
-            stored = path.read_bytes()
+            stored = b"" if self.anew else path.read_bytes()
         except OSError:
             self.misses += 1
             return None
@@ -185,11 +201,22 @@ class KernelCache:
         rtsys.initialize(target_context)
         return CompileResult._rebuild(target_context, *pickle.loads(payload))
 
+    def compiled(self) -> Compiled | None:
+        """Return what the kernel used last took to compile; None where none is kept."""
+        try:
+            stored = self.path(self.used).read_bytes()
+        except OSError:
+            return None
+        return Compiled(*_COMPILED.unpack(stored[-_COMPILED.size :]))
+
     def save_overload(self, signature: Any, result: Any) -> None:
         """Write the compiled kernel in one move, so that no reader sees half a file."""
+        took = Compiled(time.thread_time() - self._began, KernelCache.saved == 0)
+        KernelCache.saved += 1
         if not self.cache_path.name:
             return
-        payload = dumps(result._reduce())
+        # Reading a pickle ends where it ends: what follows it is not in the way.
+        payload = dumps(result._reduce()) + _COMPILED.pack(*took)
         target = self.path(self.key(signature, result.codegen))
         with contextlib.suppress(OSError):  # a full or read-only disk costs time, not the run
             handle, name = tempfile.mkstemp(".unfinished.kernel", dir=self.cache_path)

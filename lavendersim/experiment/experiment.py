@@ -13,6 +13,7 @@ from lavendersim.experiment.expect_specs import ExpectSpec
 from lavendersim.experiment.figure_specs import FigureSpec
 from lavendersim.experiment.measure_specs import MeasureSpec
 from lavendersim.experiment.models import ExperimentConfig
+from lavendersim.experiment.price_specs import PriceSpec
 
 
 @dataclass(frozen=True)
@@ -50,6 +51,16 @@ class Experiment:
     def figure(self) -> FigureSpec | None:
         """What is drawn, if anything."""
         return self.config.figure
+
+    @property
+    def price(self) -> PriceSpec | None:
+        """How the price of every effect is taken, if it is."""
+        return self.config.price
+
+    @property
+    def is_drawn(self) -> bool:
+        """Whether there is anything to draw."""
+        return self.figure is not None or self.price is not None
 
     @property
     def switches_effects(self) -> bool:

@@ -12,6 +12,7 @@ from lavendersim.experiment.expect_specs import ExpectSpec
 from lavendersim.experiment.figure_specs import FigureSpec
 from lavendersim.experiment.measure_specs import MeasureSpec
 from lavendersim.experiment.names import BodyName, NewName
+from lavendersim.experiment.price_specs import PriceSpec
 from lavendersim.experiment.quantities import (
     AngularVelocity,
     Position,
@@ -226,3 +227,4 @@ class ExperimentConfig(CellSource):
     measure: dict[NewName, MeasureSpec] = Field(default={}, description="name: what each log gives")
     expect: tuple[ExpectSpec, ...] = Field(default=(), description="the claims that pytest checks")
     figure: FigureSpec | None = Field(default=None, description="what `lavender plot` draws")
+    price: PriceSpec | None = Field(default=None, description="what each effect costs is taken")

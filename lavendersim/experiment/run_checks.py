@@ -36,6 +36,7 @@ def check_run(root: Node, report: Report) -> None:
     window = root.get("record", "residuals")
     if window is not None and window.entries:
         _check_window(window, length, report)
+    _check_price(root, length, report)
 
 
 def timestep_of(root: Node) -> Fraction | None:
@@ -131,4 +132,24 @@ def _check_window(window: Node, length: float | None, report: Report) -> None:
         report.add(end.mark, sentence)
     elif length is not None and begin.number > length:
         sentence = f"from: {begin.number:g} s is after the end of the run, duration {length:g} s"
+        report.add(begin.mark, sentence)
+
+
+def _check_price(root: Node, length: float | None, report: Report) -> None:
+    """Every sample is the same steps of one cell, in one go."""
+    if root.get("price") is None:
+        return
+    for path, said in (
+        (("sweep",), "sweep"),
+        (("events",), "events"),
+        (("scene", "forces"), "scene.forces"),
+    ):
+        other = root.get(*path)
+        if other is not None and (other.entries or other.items):
+            sentence = f"price: expected one cell without events and forces, found {said}"
+            report.add(key_mark(root, "price"), sentence)
+    begin = root.get("price", "from")
+    start = begin.number if begin is not None else None
+    if begin is not None and start is not None and length is not None and start >= length > 0:
+        sentence = f"from: expected a time before the end (duration {length:g} s), found {start:g}"
         report.add(begin.mark, sentence)

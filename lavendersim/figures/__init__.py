@@ -2,15 +2,27 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 
 def draw(run: Any, directory: Path) -> list[Path]:
-    """Draw the figure of a run (`.experiment`, `.cells`); returns the files written.
+    """Draw the figure of a run (`.experiment`, `.cells`), and that of its prices where it has some.
 
-    matplotlib is imported here and not before: it takes a quarter of a second.
+    Returns the files written. matplotlib is imported here and not before: it takes a quarter of a
+    second.
     """
     from lavendersim.figures.page import draw as draw_page
 
-    return draw_page(run, directory)
+    paths = draw_page(run, directory)
+    if getattr(run.experiment, "price", None) is not None:
+        paths += draw_prices([run], directory)
+    return paths
+
+
+def draw_prices(runs: Sequence[Any], directory: Path) -> list[Path]:
+    """Draw what effects cost in the scenes of some runs, side by side; returns the files."""
+    from lavendersim.figures.prices import draw_prices as draw_page
+
+    return draw_page(runs, directory)

@@ -64,8 +64,8 @@ def compose(experiment: Any, cells: Sequence[Cell]) -> Figure:
     missing = len(cells) - len(readable)
     note = f" Left out: {missing} of {len(cells)} cells have no readable log." if missing else ""
     width = max(NARROWEST, PANEL_WIDTH * len(spec.panels))
-    caption = _wrapped(spec.caption + note, width)
-    question = _wrapped(experiment.question, width, weight="bold")
+    caption = wrapped(spec.caption + note, width)
+    question = wrapped(experiment.question, width, weight="bold")
     below = LINE_HEIGHT * (caption.count("\n") + 1) + 2 * MARGIN
     above = LINE_HEIGHT * (question.count("\n") + 1) + 2 * MARGIN if question else MARGIN
     height = PANEL_HEIGHT + below + above
@@ -100,7 +100,7 @@ def _is_readable(cell: Cell) -> bool:
         return False
 
 
-def _wrapped(text: str, width: float, weight: str = "normal") -> str:
+def wrapped(text: str, width: float, weight: str = "normal") -> str:
     """Break a text into lines that end inside the page, by the true widths of its letters."""
     font = FontProperties(weight=weight, size=STYLE["font.size"], family=STYLE["font.family"])
     left = most = HINTING * (width - 2 * MARGIN) * POINTS_PER_INCH

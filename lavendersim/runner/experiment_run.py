@@ -24,6 +24,7 @@ from .run_directory import (
     CONFIG,
     DONE,
     ENVIRONMENT,
+    PRICES,
     RESOLVED,
     RUNS,
     Run,
@@ -62,6 +63,7 @@ class Progress(NamedTuple):
 
     compiling: Callable[[Any], None] = lambda plan: None
     cell_done: Callable[[int, int], None] = lambda done, total: None
+    pricing: Callable[[str, int, int], None] = lambda what, done, total: None
 
 
 def find_configs(paths: list[Path]) -> list[Path]:
@@ -97,6 +99,10 @@ def load_all(paths: list[Path]) -> list[Experiment]:
     for path in find_configs(paths):
         try:
             experiment = load_experiment(path)
+            if experiment.price is not None:
+                from .prices import check_price  # late: other configs load without numba
+
+                check_price(experiment)
             if experiment.switches_effects:
                 from .plans import check_overrides  # late: other configs load without numba
 
@@ -135,20 +141,24 @@ def run(
     root: Path | str = RUNS,
     jobs: int = 1,
     progress: Progress = Progress(),  # noqa: B008 - immutable
+    prices: bool = True,
 ) -> Finished:
-    """Run every cell of an experiment and judge its expectations.
+    """Run every cell of an experiment and judge its expectations; take prices where it asks.
 
     root: where run directories are made. jobs: processes; the logs are the same for any number.
-    A cell that diverges ends there, with a readable log; the others go on.
+    prices: false leaves out what a section `price` asks for. A cell that diverges ends there, with
+    a readable log; the others go on.
     """
     from lavendersim.engine.kernel_cache import source_hash
 
     from .cell import CellJob
     from .executor import outcomes_of
     from .plans import distinct, shared_plans
+    from .prices import check_price, take_prices, write_prices
 
     if not isinstance(experiment, Experiment):
         experiment = load_experiment(experiment)
+    check_price(experiment)
     cells = experiment.cells()
     plans = shared_plans(cells)
     seeds = Seeds(experiment)
@@ -189,7 +199,11 @@ def run(
     measured = measure_cells(finished, experiment, values)
     verdicts = judge(experiment.measures, experiment.expectations, finished.cells, values)
     result = Finished(finished, outcomes, verdicts)
-    write_results(result, measured)
+    priced = None
+    if prices and experiment.price is not None:
+        priced = take_prices(experiment, jobs, progress.pricing)
+        write_prices(directory / PRICES, priced)
+    write_results(result, measured, priced)
     _write_json(directory / ENVIRONMENT, environment(*(plan.spec for plan in distinct(plans))))
     (directory / DONE).write_text("")
     point_latest(directory, root)

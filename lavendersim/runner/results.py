@@ -51,7 +51,9 @@ def _finite(value: Any) -> Any:
     return value
 
 
-def write_results(finished: Any, measured: list[dict[str, Any]]) -> None:
+def write_results(
+    finished: Any, measured: list[dict[str, Any]], prices: dict[str, Any] | None = None
+) -> None:
     """Write the tables of a finished run; numbers keep all their digits."""
     run = finished.run
     rows = []
@@ -79,6 +81,7 @@ def write_results(finished: Any, measured: list[dict[str, Any]]) -> None:
         "compile_s": compile_seconds(finished),
         "checks": [verdict._asdict() for verdict in finished.verdicts],
         "passed": finished.good,
+        **({} if prices is None else {"prices": prices}),
     }
     text = json.dumps(_finite(table), indent=1, allow_nan=False) + "\n"
     (run.path / RESULTS).write_text(text, encoding="utf-8")

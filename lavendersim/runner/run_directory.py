@@ -17,6 +17,7 @@ from lavendersim.trace import Trace, open_trace
 
 CONFIG, RESOLVED = "config.yaml", "resolved.yaml"
 CELLS, RESULTS, TABLE = "cells.json", "results.json", "results.csv"
+PRICES = "prices.csv"
 ENVIRONMENT, DONE, LATEST = "env.json", "DONE", "latest"
 RUNS = Path("runs")
 

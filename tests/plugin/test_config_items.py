@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+
 import pytest
 
 from tests.drop_config import DROP
@@ -105,3 +107,12 @@ def test_a_diverged_cell_fails_even_where_nothing_is_expected(pytester: pytest.P
     result = run(pytester)
     result.assert_outcomes(failed=1)
     result.stdout.fnmatch_lines(["*diverged: body ball is no longer finite after step *"])
+
+
+def test_pytest_takes_no_prices(pytester: pytest.Pytester) -> None:
+    pytester.makefile(".yaml", drop=DROP + "price: {effects: [drag]}\n")
+    result = run(pytester, "--basetemp", str(pytester.path / "kept"))
+    result.assert_outcomes(passed=2)
+    (results,) = (pytester.path / "kept").rglob("results.json")
+    assert "prices" not in json.loads(results.read_text())
+    assert not list((pytester.path / "kept").rglob("prices.csv"))

@@ -32,18 +32,15 @@ def test_every_composed_kernel_is_compiled_and_no_other(
     # A spec that no other test has: kernels that are made once a spec are made here.
     spec = spec._replace(effects=(*spec.effects, "nothing"))
     made: list[tuple[str, Any]] = []
-    njit = compiler.numba.njit
+    inner = compiler.inner
 
-    def recording(**options: Any) -> Callable[[Any], Any]:
-        def decorate(function: Any) -> Any:
-            kernel = njit(**options)(function)
-            module = function.__module__.removeprefix(ENGINE)
-            made.append((f"{module}.{function.__name__}", kernel))
-            return kernel
+    def recording(function: Callable[..., Any]) -> Any:
+        kernel = inner(function)
+        module = function.__module__.removeprefix(ENGINE)
+        made.append((f"{module}.{function.__name__}", kernel))
+        return kernel
 
-        return decorate
-
-    monkeypatch.setattr(compiler.numba, "njit", recording)
+    monkeypatch.setattr(compiler, "inner", recording)
     engine._kernel = make_advance(spec)
     monkeypatch.undo()
     engine.advance(0)

@@ -1,0 +1,167 @@
+"""Runs with prices in; a page with a panel per scene and one of compile times, as PNG and SVG, out.
+
+    effect |  scene 1, ns   |  scene 2, ns   |  compile time, s
+    drag   |      o         |        -o-     |   o s
+Numbers are those of `results.json`; nothing is timed here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, Final
+
+from matplotlib import style
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.ticker import FuncFormatter, NullLocator, SymmetricalLogLocator
+
+from lavendersim.figures.page import MARGIN, wrapped
+from lavendersim.figures.style import DARK, DPI, GREY, LINE_HEIGHT, STYLE, look
+
+ROW: Final = 0.27  # [inch]
+SCENE_WIDTH, COMPILE_WIDTH, NAMES_WIDTH = 3.6, 2.6, 2.0  # [inch]
+LINEAR: Final = 1.0  # [ns] below, the axis is linear: noise goes through zero
+IDLE, MOVES, CALLED = look(0).colour, look(1).colour, look(4).colour
+MARKERS: Final = {"body": "o", "contact": "s"}
+CAPTION: Final = (
+    "Nanoseconds a step that an effect adds, per body (circles) or per contact (squares): medians "
+    "of {repeats} interleaved repeats, with the interval that holds the median in 19 of 20 cases; "
+    "hollow where that reaches zero. Blue: the scene does not call for it, and the engine carries "
+    "it idle through the same motion. Orange: the scene calls for it. Vermilion: the motion "
+    "without it is another. The axis is linear within ±1 ns and logarithmic outside. Right: what "
+    "the engine with the effect takes to compile, once; lines, the engine of the plan alone. "
+    "{processor}."
+)
+
+
+def draw_prices(runs: Sequence[Any], directory: Path) -> list[Path]:
+    """Write one figure for all runs that have prices; returns its files, none without any.
+
+    A run has `.name` and `.results()`. One run gives `<name>_prices`, several give `prices`.
+    """
+    priced = [(str(run.name), run.results()["prices"]) for run in runs if _has_prices(run)]
+    if not priced:
+        return []
+    directory = Path(directory)
+    directory.mkdir(parents=True, exist_ok=True)
+    stem = f"{priced[0][0]}_prices" if len(priced) == 1 else "prices"
+    paths = [directory / f"{stem}.{suffix}" for suffix in ("png", "svg")]
+    with style.context(STYLE, after_reset=True):
+        figure = compose(priced)
+        figure.savefig(paths[0], dpi=DPI, metadata={"Software": None})
+        figure.savefig(paths[1], metadata={"Date": None, "Creator": "lavender"})
+    return paths
+
+
+def _has_prices(run: Any) -> bool:
+    return "prices" in run.results()
+
+
+def compose(priced: Sequence[tuple[str, dict[str, Any]]]) -> Figure:
+    """Return the page as a matplotlib Figure."""
+    effects = list(dict.fromkeys(row["effect"] for _, table in priced for row in table["rows"]))
+    places = {effect: place for place, effect in enumerate(effects)}
+    width = NAMES_WIDTH + SCENE_WIDTH * len(priced) + COMPILE_WIDTH
+    repeats = sorted({table["repeats"] for _, table in priced})
+    processors = sorted({table["processor"] for _, table in priced})
+    caption = wrapped(
+        CAPTION.format(
+            repeats=" or ".join(map(str, repeats)), processor="Processor: " + ", ".join(processors)
+        ),
+        width,
+    )
+    below = LINE_HEIGHT * (caption.count("\n") + 1) + 2 * MARGIN
+    panels = ROW * (len(effects) + 1) + 1.1
+    height = panels + below
+    figure = Figure(figsize=(width, height))
+    FigureCanvasAgg(figure)
+    figure.set_layout_engine(
+        "constrained", rect=(0.0, below / height, 1.0, panels / height), w_pad=0.08
+    )
+    figure.text(MARGIN / width, MARGIN / height, caption, va="bottom", linespacing=1.25)
+    widths = [*(SCENE_WIDTH for _ in priced), COMPILE_WIDTH]
+    axes = figure.subplots(1, len(widths), squeeze=False, sharey=True, width_ratios=widths)[0]
+    axes[0].set_yticks(list(places.values()), labels=[name.replace("_", " ") for name in effects])
+    axes[0].set_ylim(len(effects) - 0.4, -0.6)  # in the order of the step, from the top
+    for panel, (name, table) in zip(axes, priced, strict=False):
+        _draw_scene(panel, name, table, places)
+    _draw_compile_times(axes[-1], priced, places)
+    return figure
+
+
+def _draw_scene(axes: Any, name: str, table: dict[str, Any], places: dict[str, int]) -> None:
+    bodies, contacts = table["bodies"], table["contacts_per_step"]
+    title = f"{name}: {bodies} {'body' if bodies == 1 else 'bodies'}, {contacts:.3g} contacts"
+    axes.set_title(title, loc="left")
+    axes.set_xlabel("price [ns per body or contact and step]")
+    axes.set_xscale("symlog", linthresh=LINEAR)
+    axes.axvline(0.0, color=DARK, linewidth=1.1)
+    for row in table["rows"]:
+        place = places[row["effect"]]
+        if row["why_not"]:
+            _write_why_not(axes, place, row["why_not"])
+            continue
+        price, colour = row["price"], _colour(row)
+        axes.plot([price["low"], price["high"]], [place, place], color=colour, linewidth=1.6)
+        axes.plot(
+            price["median"],
+            place,
+            linestyle="none",
+            marker=MARKERS[row["unit"]],
+            markersize=6.5,
+            color=colour,
+            markerfacecolor="white" if row["within_noise"] else colour,
+            markeredgewidth=1.3,
+            zorder=3,
+        )
+    axes.xaxis.set_major_locator(SymmetricalLogLocator(base=10.0, linthresh=LINEAR))
+    axes.xaxis.set_minor_locator(NullLocator())
+    axes.tick_params(axis="x", labelsize=9.5)  # -1000 beside -100
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+
+
+def _colour(row: dict[str, Any]) -> str:
+    if not row["same_motion"]:
+        return MOVES
+    return CALLED if row["called_for"] else IDLE
+
+
+def _write_why_not(axes: Any, place: int, why_not: str) -> None:
+    """Say in the row why it has no number."""
+    axes.text(
+        0.02,
+        place,
+        why_not,
+        transform=axes.get_yaxis_transform(),
+        va="center",
+        fontsize=8.5,
+        color=GREY,
+        bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.5},
+    )
+
+
+def _draw_compile_times(
+    axes: Any, priced: Sequence[tuple[str, dict[str, Any]]], places: dict[str, int]
+) -> None:
+    axes.set_title("compile time", loc="left")
+    axes.set_xlabel("compile time [s]")
+    handles = []
+    for index, (name, table) in enumerate(priced):
+        shown = look(index + 2)  # the first two colours mean something else on this page
+        rows = [row for row in table["rows"] if not row["why_not"]]
+        marks: dict[str, Any] = {"linestyle": "none", "marker": shown.marker, "color": shown.colour}
+        axes.plot(
+            [row["compile_s_on"] for row in rows],
+            [places[row["effect"]] for row in rows],
+            **marks,
+            markersize=5.5,
+        )
+        alone = min((row["compile_s_off"] for row in rows if not row["called_for"]), default=None)
+        if alone is not None:
+            axes.axvline(alone, color=shown.colour, linewidth=1.1)
+        handles.append(Line2D([], [], label=name, **marks))
+    axes.set_xlim(0.0, 1.06 * axes.dataLim.x1)
+    if len(handles) > 1:
+        axes.legend(handles=handles, loc="best")

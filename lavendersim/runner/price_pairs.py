@@ -1,0 +1,150 @@
+"""A resolved cell enters; for every effect the two engines whose difference is its price leave.
+
+Off and on differ in one effect. What the effect needs is in both, so that prices add up: rolling
+friction is priced on top of friction. Where there is no such pair, a sentence says why:
+    the numerics chose it, or chose otherwise     another law, no price of carrying one
+    other effects of the plan need it             it cannot be left out alone
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from types import ModuleType
+from typing import Any, Final, NamedTuple
+
+from lavendersim.engine.effects import EFFECTS, BodyFacts, Facts, PairFacts
+from lavendersim.engine.effects import pose_log as poses
+from lavendersim.engine.effects import step_log as steps
+from lavendersim.engine.spec import Spec
+from lavendersim.scene.facts import facts_of
+from lavendersim.scene.plan import plan_of
+
+ALL: Final = "all effects"
+ALL_RECORDED: Final = "all effects, recorded"
+BODY_STAGES: Final = ("accelerate", "integrate", "collide", "record")
+_BY_NAME = {effect.NAME: effect for effect in EFFECTS}
+
+
+class Pair(NamedTuple):
+    """Two engines that differ in an effect; without them, why there are none."""
+
+    effect: str
+    called_for: bool
+    reason: str  # of the plan
+    of_contacts: bool  # it works on contacts; else on bodies
+    off: Spec | None = None
+    on: Spec | None = None
+    on_top_of: tuple[str, ...] = ()  # what both have beyond the scene's own plan
+    why_not: str = ""
+
+
+class Plans(NamedTuple):
+    """What the pairs of one scene are made of."""
+
+    facts: Facts
+    silent: Spec  # the scene's own plan, nothing recorded
+    logged: Spec  # the scene's own plan
+
+
+def names_of_effects() -> tuple[str, ...]:
+    """Return every effect, in the order of the step."""
+    return tuple(_BY_NAME)
+
+
+def pairs_of(resolved: dict[str, Any], names: Iterable[str] = ()) -> list[Pair]:
+    """Return a pair for each named effect, for all without names, and for all effects at once."""
+    logged = plan_of(resolved)
+    plans = Plans(facts_of(resolved), plan_of(resolved, record=False).spec, logged.spec)
+    asked = set(names) or set(_BY_NAME)
+    pairs = [
+        _pair(effect, logged.decisions[effect.NAME].reason, plans)
+        for effect in EFFECTS
+        if effect.NAME in asked
+    ]
+    if names:
+        return pairs
+    return [*pairs, *_everything(plans)]
+
+
+def _pair(effect: ModuleType, reason: str, plans: Plans) -> Pair:
+    name = effect.NAME
+    on = plans.logged.has(name)
+    pair = Pair(name, on, reason, of_contacts(effect))
+    if effect in (steps, poses):
+        if effect is poses:
+            return pair._replace(why_not="written with the rows of step_log: see there")
+        kept = plans.silent.including(name, poses.NAME)
+        return pair._replace(off=plans.silent, on=kept)
+    chosen = [each for each in (name, *needs(name)) if not _is_law_of(each, plans.facts)]
+    if on and hasattr(effect, "CHOSEN_BY"):
+        return pair._replace(why_not=f"chosen by numerics.{effect.CHOSEN_BY}: another law without")
+    if chosen:
+        key = _BY_NAME[chosen[0]].CHOSEN_BY
+        through = "" if chosen[0] == name else f" through {chosen[0]}"
+        return pair._replace(why_not=f"numerics.{key} chooses another law{through}")
+    base = plans.logged if _is_log(effect) else plans.silent
+    if not on:
+        off = base.including(*needs(name))
+        added = tuple(each for each in needs(name) if not base.has(each))
+        return pair._replace(off=off, on=off.including(name), on_top_of=added)
+    needing = [other for other in base.effects if name in needs(other)]
+    if needing:
+        verb = "needs" if len(needing) == 1 else "need"
+        return pair._replace(why_not=f"{', '.join(needing)} {verb} it")
+    return pair._replace(off=base.without(name), on=base)
+
+
+def _everything(plans: Plans) -> list[Pair]:
+    """Return the plan against an engine with all effects that the numerics' laws agree with."""
+    agreeing = [
+        effect
+        for effect in EFFECTS
+        if all(_is_law_of(each, plans.facts) for each in (effect.NAME, *needs(effect.NAME)))
+    ]
+    physics = [effect.NAME for effect in agreeing if not _is_log(effect)]
+    logs = [effect.NAME for effect in agreeing if _is_log(effect)]
+    whole = plans.silent.including(*physics)
+    reason = "every effect whose law the numerics have, idle where the scene does not call for it"
+    return [
+        Pair(ALL, False, reason, False, plans.silent, whole),
+        Pair(ALL_RECORDED, False, reason, False, plans.silent, whole.including(*logs)),
+    ]
+
+
+def needs(name: str) -> tuple[str, ...]:
+    """Return what an effect needs, and what that needs, each once."""
+    found: dict[str, None] = {}
+    waiting = [name]
+    while waiting:
+        for need in getattr(_BY_NAME[waiting.pop()], "NEEDS", ()):
+            if need not in found:
+                found[need] = None
+                waiting.append(need)
+    return tuple(found)
+
+
+def of_contacts(effect: ModuleType) -> bool:
+    """Whether an effect works on contacts; otherwise it works on bodies."""
+    return effect.STAGE not in BODY_STAGES or "/contacts" in getattr(effect, "CHANNELS", ())
+
+
+def _is_log(effect: ModuleType) -> bool:
+    return hasattr(effect, "CHANNELS")
+
+
+def _is_law_of(name: str, facts: Facts) -> bool:
+    """Whether an effect is no law that the numerics exclude: in some scene they would have it."""
+    effect = _BY_NAME[name]
+    return not hasattr(effect, "CHOSEN_BY") or bool(effect.wanted(_busy(facts)).on)
+
+
+def _busy(facts: Facts) -> Facts:
+    """Return the facts of the same numerics where boxes fall, touch and rub in many places."""
+    bodies = tuple(
+        BodyFacts(name, "box", movable=True, spins=True, round=False, size=1.0, least_size=1.0)
+        for name in ("a", "b")
+    )
+    pair = PairFacts("a", "b", restitution=0.5, compliance=0.0, friction=0.5)
+    return facts._replace(
+        bodies=bodies, pairs=(pair, pair), pair_count=2, gravity=(0.0, 0.0, -9.81)
+    )

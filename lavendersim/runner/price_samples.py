@@ -1,0 +1,112 @@
+"""A resolved cell and a spec enter; what the engine's steps cost leaves, sample by sample.
+
+A sample is the same steps of the same motion every time: the engine is set back to the state in
+which they begin. Time is the processor's own in this thread, where the system counts it finely:
+what other programs take meanwhile is not in it.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from math import ceil
+from statistics import median
+from typing import Any
+
+import numpy as np
+
+from lavendersim.engine.engine import BLOCK_STEPS
+from lavendersim.engine.records import DIVERGED, RUNNING
+from lavendersim.engine.spec import Spec
+from lavendersim.scene.build import build
+
+SAMPLE_NS = 5_000_000  # shortest sample: ten thousand times what reading the clock takes
+FINE = 1e-6  # [s] resolution of a clock that times a sample to a thousandth or better
+# Rows are written before they are read: they need not be set back.
+_ROWS = ("_rows", "_pose_bits", "_residual_rows")
+
+
+def clock() -> tuple[str, Callable[[], int]]:
+    """Return the name of the clock that samples are taken with, and the clock [ns]."""
+    if time.get_clock_info("thread_time").resolution <= FINE:
+        return "thread_time", time.thread_time_ns
+    return "perf_counter", time.perf_counter_ns  # where thread time is a system tick
+
+
+class Diverged(Exception):  # noqa: N818 - an outcome of an engine that lacks an effect, no error
+    """The engine's bodies fly apart within the steps that were to be timed."""
+
+
+class Timed:
+    """An engine that does the same steps again and again."""
+
+    def __init__(
+        self,
+        resolved: dict[str, Any],
+        spec: Spec,
+        first: int,
+        steps: int,
+        now: Callable[[], int] | None = None,
+    ) -> None:
+        """Take the engine to step `first`; `steps` after it are timed. Raises Diverged."""
+        self.spec, self.steps = spec, steps
+        self._now = now or clock()[1]
+        self.engine = build(resolved, spec).engine(spec, min(steps, BLOCK_STEPS))
+        self._run(first)
+        self.engine.take_rows()
+        self._held = dict(vars(self.engine))
+        self._contents = [
+            (array, array.copy())
+            for name, value in self._held.items()
+            if name not in _ROWS
+            for array in _arrays(value)
+        ]
+        self.contacts, self.motion = self._observe()
+        self.starts = max(1, ceil(SAMPLE_NS / max(1, self._once())))
+
+    def set_back(self) -> None:
+        """Return to the state in which the timed steps begin."""
+        vars(self.engine).update(self._held)
+        for array, content in self._contents:
+            array[...] = content
+
+    def sample(self) -> float:
+        """Return the cost of a step [ns], the median over enough runs of the timed steps."""
+        return median(self._once() for _ in range(self.starts)) / self.steps
+
+    def _once(self) -> int:
+        """Return the time of the timed steps [ns]."""
+        self.set_back()
+        begin = self._now()
+        self._run(self.steps)
+        return self._now() - begin
+
+    def _run(self, steps: int) -> None:
+        target = int(self.engine.counters["step"][0]) + steps
+        while (
+            status := self.engine.advance(target - int(self.engine.counters["step"][0]))
+        ) != RUNNING:
+            if status == DIVERGED:
+                raise Diverged
+            self.engine.take_rows()
+
+    def _observe(self) -> tuple[float, bytes]:
+        """Return the mean number of contacts a step, and the bits of where bodies end."""
+        self.set_back()
+        contacts = 0
+        for _ in range(self.steps):
+            self._run(1)
+            contacts += int(self.engine.counters["contacts"][0])
+        ends = [self.engine.bodies[axis] for axis in "xyz"]
+        ends += [self.engine.velocities[axis] for axis in ("vx", "vy", "vz")]
+        # Adding 0.0 makes -0.0 the 0.0 that it equals.
+        return contacts / self.steps, b"".join((column + 0.0).tobytes() for column in ends)
+
+
+def _arrays(value: Any) -> Iterator[np.ndarray]:
+    """Yield every array in nested tuples."""
+    if isinstance(value, np.ndarray):
+        yield value
+    elif isinstance(value, tuple):
+        for item in value:
+            yield from _arrays(item)

@@ -1,0 +1,253 @@
+"""A cell enters; a table of what each effect costs in it leaves: off, on, and their difference.
+
+compile every engine -> take each to where timing begins -> rounds of pairs, off and on in turn
+Both engines of a pair are sampled right after each other, in alternating order, and the price is
+the median of their differences: a slow minute of the machine falls on both.
+"""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from math import ceil, comb
+from pathlib import Path
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+
+from lavendersim.engine.spec import Spec
+from lavendersim.errors import ConfigError, Defect
+from lavendersim.experiment import Experiment
+from lavendersim.experiment.cell import Cell
+from lavendersim.experiment.found import nearest, quoted
+from lavendersim.experiment.parse import parse
+from lavendersim.scene.colliders import is_movable
+
+from .environment import processor
+from .price_compile import compile_times
+from .price_pairs import Pair, names_of_effects, pairs_of
+from .price_samples import Diverged, Timed, clock
+
+Report = Callable[[str, int, int], None]
+OUTSIDE: Final = 0.025  # largest probability that the median lies beyond either end of the interval
+
+
+class Spread(NamedTuple):
+    """Some samples in five numbers; low and high hold their true median in 19 of 20 cases."""
+
+    median: float
+    lower_quartile: float
+    upper_quartile: float
+    low: float
+    high: float
+
+    @classmethod
+    def of(cls, samples: Sequence[float]) -> Spread:
+        """Return the spread of samples."""
+        ordered = np.sort(np.asarray(samples, dtype=np.float64))
+        beyond = samples_beyond(len(ordered))
+        middle, lower, upper = np.quantile(ordered, [0.5, 0.25, 0.75]).tolist()
+        return cls(middle, lower, upper, float(ordered[beyond]), float(ordered[-1 - beyond]))
+
+    def per(self, units: float) -> dict[str, float]:
+        """Return the numbers of one unit."""
+        return {name: value / units for name, value in self._asdict().items()}
+
+
+def samples_beyond(count: int) -> int:
+    """Return how many samples may be left out at either end of an interval for the median.
+
+    At most k of n samples lie below the median with probability sum_(i<=k) C(n, i) / 2^n, whatever
+    their distribution; with fewer than six samples even all of them hold it less often than asked.
+    """
+    beyond, below = 0, 0.0
+    for k in range(count):
+        below += comb(count, k) / 2**count
+        if below > OUTSIDE:
+            break
+        beyond = k
+    return beyond
+
+
+def check_price(experiment: Experiment) -> None:
+    """Raise ConfigError where the section `price` names what is no effect."""
+    names = () if experiment.price is None else _named(experiment)
+    wrong = [(place, name) for place, name in enumerate(names) if name not in names_of_effects()]
+    if not wrong:
+        return
+    raw = experiment.text.encode()
+    root, _ = parse(raw, experiment.name, len(raw))
+    asked = root.get("price", "effects") if root is not None else None
+    defects = []
+    for place, name in wrong:
+        assert asked is not None
+        mark = asked.items[place].mark
+        sentence = f"price.effects: no effect is called {quoted(name)}"
+        sentence += nearest(name, names_of_effects())
+        defects.append(Defect(str(experiment.path), mark.line, mark.column, sentence))
+    raise ConfigError(defects)
+
+
+def _named(experiment: Experiment) -> tuple[str, ...]:
+    spec = experiment.price
+    return () if spec is None or spec.effects == "all" else tuple(spec.effects)
+
+
+def take_prices(
+    experiment: Experiment, workers: int = 1, report: Report = lambda what, done, total: None
+) -> dict[str, Any]:
+    """Return what the effects of an experiment's only cell cost, as plain data.
+
+    workers: processes that compile. report: called with what is done, how far, and of how many.
+    """
+    spec = experiment.price
+    assert spec is not None
+    (cell,) = experiment.cells()
+    pairs = pairs_of(cell.resolved, _named(experiment))
+    specs = list(
+        dict.fromkeys(each for pair in pairs for each in (pair.off, pair.on) if each is not None)
+    )
+    seconds = compile_times(
+        cell.resolved,
+        specs,
+        workers,
+        lambda done, total: report("compiling engines for prices", done, total),
+    )
+    first = ceil(Fraction(repr(spec.begin)) / Fraction(cell.resolved["numerics"]["timestep"]))
+    steps = cell.config.steps - first
+    timed, diverged = _timed(cell, specs, first, steps)
+    pairs = [_without_diverged(pair, diverged) for pair in pairs]
+    samples = _rounds(pairs, timed, spec.repeats, report)
+    return _table(cell, pairs, timed, samples, seconds, (first, steps, spec.repeats))
+
+
+def _timed(
+    cell: Cell, specs: Sequence[Spec], first: int, steps: int
+) -> tuple[dict[Spec, Timed], set[Spec]]:
+    timed: dict[Spec, Timed] = {}
+    diverged: set[Spec] = set()
+    for spec in specs:
+        try:
+            timed[spec] = Timed(cell.resolved, spec, first, steps)
+        except Diverged:
+            diverged.add(spec)
+    return timed, diverged
+
+
+def _without_diverged(pair: Pair, diverged: set[Spec]) -> Pair:
+    for which, spec in (("without", pair.off), ("with", pair.on)):
+        if spec in diverged:
+            return pair._replace(off=None, on=None, why_not=f"the scene flies apart {which} it")
+    return pair
+
+
+def _rounds(
+    pairs: Sequence[Pair], timed: dict[Spec, Timed], repeats: int, report: Report
+) -> dict[str, list[tuple[float, float]]]:
+    """Return (off, on) of every repeat, by effect [ns/step]."""
+    samples: dict[str, list[tuple[float, float]]] = {pair.effect: [] for pair in pairs}
+    for repeat in range(repeats):
+        report("rounds of prices", repeat, repeats)
+        for pair in pairs:
+            if pair.off is None or pair.on is None:
+                continue
+            off, on = timed[pair.off], timed[pair.on]
+            if repeat % 2:
+                later = on.sample()
+                samples[pair.effect].append((off.sample(), later))
+            else:
+                earlier = off.sample()
+                samples[pair.effect].append((earlier, on.sample()))
+    report("rounds of prices", repeats, repeats)
+    return samples
+
+
+def _table(
+    cell: Cell,
+    pairs: Sequence[Pair],
+    timed: dict[Spec, Timed],
+    samples: dict[str, list[tuple[float, float]]],
+    seconds: dict[Spec, float],
+    window: tuple[int, int, int],
+) -> dict[str, Any]:
+    bodies = sum(is_movable(body) for body in cell.resolved["scene"]["bodies"].values())
+    # Contacts of the scene's own motion: of an engine whose effects the scene calls for, or idle.
+    own = next(
+        (
+            timed[spec].contacts
+            for pair in pairs
+            for spec in ((pair.on,) if pair.called_for else (pair.off, pair.on))
+            if spec is not None
+        ),
+        0.0,
+    )
+    first, steps, repeats = window
+    return {
+        "first_step": first,
+        "steps": steps,
+        "repeats": repeats,
+        "clock": clock()[0],
+        "processor": processor(),
+        "bodies": bodies,
+        "contacts_per_step": own,
+        "rows": [_row(pair, timed, samples[pair.effect], seconds, bodies, own) for pair in pairs],
+    }
+
+
+def _row(
+    pair: Pair,
+    timed: dict[Spec, Timed],
+    samples: list[tuple[float, float]],
+    seconds: dict[Spec, float],
+    bodies: int,
+    contacts: float,
+) -> dict[str, Any]:
+    # Below one contact a step the cost is that of looking for it, which every body has.
+    by_contact = pair.of_contacts and contacts >= 1.0
+    units = contacts if by_contact else max(bodies, 1)
+    row: dict[str, Any] = {
+        "effect": pair.effect,
+        "called_for": pair.called_for,
+        "reason": pair.reason,
+        "unit": "contact" if by_contact else "body",
+        "units": units,
+        "on_top_of": list(pair.on_top_of),
+        "why_not": pair.why_not,
+    }
+    if pair.off is None or pair.on is None:
+        return row
+    off, on = timed[pair.off], timed[pair.on]
+    difference = Spread.of([after - before for before, after in samples])
+    return row | {
+        "same_motion": off.motion == on.motion,
+        "contacts_off": off.contacts,
+        "contacts_on": on.contacts,
+        "compile_s_off": seconds[pair.off],
+        "compile_s_on": seconds[pair.on],
+        "off": Spread.of([before for before, _ in samples]).per(units),  # ns per unit and step
+        "on": Spread.of([after for _, after in samples]).per(units),
+        "price": difference.per(units),
+        "within_noise": difference.low <= 0.0 <= difference.high,
+        "samples_off": [before for before, _ in samples],  # ns per step
+        "samples_on": [after for _, after in samples],
+    }
+
+
+COLUMNS: Final = (
+    *("effect", "called_for", "unit", "units", "off", "on", "price", "low", "high"),
+    *("within_noise", "same_motion", "contacts_off", "contacts_on"),
+    *("compile_s_off", "compile_s_on", "on_top_of", "why_not", "reason"),
+)
+
+
+def write_prices(path: Path, prices: dict[str, Any]) -> None:
+    """Write a table of prices as CSV: medians and ends of intervals, ns per unit and step."""
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.DictWriter(file, COLUMNS, restval="", extrasaction="ignore")
+        writer.writeheader()
+        for row in prices["rows"]:
+            price = row.get("price", {})
+            medians = {name: row[name]["median"] for name in ("off", "on", "price") if name in row}
+            ends = {name: price[name] for name in ("low", "high") if name in price}
+            writer.writerow({**row, "on_top_of": " ".join(row["on_top_of"]), **ends, **medians})

@@ -1,0 +1,72 @@
+"""Kernels that different processes compiled do not meet in one that loads them.
+
+Parts that are the same for every plan have the same symbols, and the first one loaded is used.
+Their records differ by plan: numbering types by process would call different records alike.
+"""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+from llvmlite.binding import Linkage
+from small_configs import python, write
+
+from lavendersim.engine.step import make_advance
+from lavendersim.experiment import load_experiment_text
+from lavendersim.scene.build import build
+from lavendersim.scene.plan import plan_of
+
+# A heavy ball on light ones: sweeps converge slowly, and Newton's method, whose parts are large
+# enough to keep symbols of their own, takes over.
+HEAVY = """\
+scene:
+  surfaces: {{rough: {{friction: 0.5, {resistance}: 0.001}}}}
+  bodies:
+    floor: {{shape: {{kind: plane}}, surface: rough}}
+    low: {{shape: {{kind: sphere, radius: 0.1}}, mass: 1.0, surface: rough, position: [0, 0, 0.1]}}
+    mid: {{shape: {{kind: sphere, radius: 0.1}}, mass: 1.0, surface: rough, position: [0, 0, 0.3]}}
+    top:
+      shape: {{kind: sphere, radius: 0.1}}
+      mass: 1000.0
+      surface: rough
+      position: [0, 0, 0.5]
+      angular_velocity: [0, 0.1, 5]
+duration: 0.2
+"""
+RESISTANCES = ("torsional_friction", "rolling_friction")
+# Prints the hashes of the last states of the configs in argv, run in turn in one process.
+RUN_ALL = """
+import json, sys
+from pathlib import Path
+import lavendersim
+runs = [lavendersim.run(Path(config), root=Path(config).parent / "runs") for config in sys.argv[1:]]
+print(json.dumps([int(run.run.cells[0].trace().step["state_hash"][-1]) for run in runs]))
+"""
+
+
+def test_two_plans_compiled_apart_and_loaded_together_give_what_each_gives_alone(
+    tmp_path: Path,
+) -> None:
+    kernels = str(tmp_path / "kernels")
+    configs = [
+        write(tmp_path, HEAVY.format(resistance=name), f"{name}.yaml") for name in RESISTANCES
+    ]
+    alone = [json.loads(python(RUN_ALL, each, LAVENDER_CACHE_DIR=kernels))[0] for each in configs]
+    together = json.loads(python(RUN_ALL, *configs, LAVENDER_CACHE_DIR=kernels))
+    assert together == alone
+    assert len(set(alone)) == 2
+
+
+def test_no_part_of_a_kernel_is_a_symbol_of_its_object() -> None:
+    cell = load_experiment_text(HEAVY.format(resistance=RESISTANCES[0]), "heavy.yaml").cells()[0]
+    spec = plan_of(cell.resolved).spec
+    engine = build(cell.resolved, spec).engine(spec)
+    engine._kernel = make_advance(spec)  # compiled here, not loaded
+    engine.advance(0)
+    (compiled,) = engine._kernel.overloads.values()
+    defined = [f for f in compiled.library._final_module.functions if not f.is_declaration]
+    exported = {f.name for f in defined if f.linkage == Linkage.external}
+    doors = {compiled.fndesc.llvm_func_name, compiled.fndesc.llvm_cpython_wrapper_name}
+    assert exported == doors
+    assert len(defined) > len(doors), "some part is large enough to be a function of its own"

@@ -1,0 +1,217 @@
+"""Prices mean what they say: differences of an effect alone, of the same steps, on quiet ground."""
+
+from __future__ import annotations
+
+import csv
+import json
+from itertools import count
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from lavendersim.engine.spec import Spec
+from lavendersim.errors import ConfigError
+from lavendersim.experiment import load_experiment_text
+from lavendersim.runner import load_all, open_run, prices, run
+from lavendersim.runner.price_pairs import ALL, names_of_effects, needs, pairs_of
+from lavendersim.runner.price_samples import Diverged, Timed
+from lavendersim.scene.plan import plan_of
+
+BALL = """\
+scene:
+  bodies:
+    floor: {shape: {kind: plane}}
+    ball:
+      shape: {kind: sphere, radius: 0.1}
+      mass: 1.0
+      surface: {restitution: 0.5}
+      release: {above: floor, clearance: 0.05}
+numerics: chapter
+duration: 0.5
+price: {effects: [gravity, drag, contact_log], repeats: 6}
+"""
+EVERY = BALL.replace("[gravity, drag, contact_log]", "all")
+PLAIN = 100.0  # [ns/step] of the scene's own plan
+COST = {"gravity": 5.0, "drag": 3.0, "contact_log": 40.0}  # [ns/step]; what is not named: 1
+
+
+class Costed:
+    """Stands for `Timed`: a step costs what its effects do, on a machine that gets ever slower."""
+
+    calls = count()
+
+    def __init__(self, resolved: Any, spec: Spec, first: int, steps: int) -> None:
+        self.spec, self.contacts = spec, 0.25
+        self.motion = b"floats" if not spec.has("gravity") else b"falls"
+
+    def sample(self) -> float:
+        cost = PLAIN + sum(COST.get(effect, 1.0) for effect in self.spec.effects)
+        return cost + 0.01 * next(self.calls)
+
+
+@pytest.fixture
+def costed(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(prices, "Timed", Costed)
+    monkeypatch.setattr(
+        prices,
+        "compile_times",
+        lambda resolved, specs, workers, progress: {s: float(len(s.effects)) for s in specs},
+    )
+
+
+def rows_of(text: str) -> dict[str, Any]:
+    table = prices.take_prices(load_experiment_text(text, "ball.yaml"))
+    return {row["effect"]: row for row in table["rows"]}
+
+
+@pytest.mark.usefixtures("costed")
+def test_a_price_is_the_difference_that_the_effect_alone_makes() -> None:
+    for name, row in rows_of(EVERY).items():
+        if row["why_not"] or name.startswith("all effects"):
+            continue
+        # Off and on are neighbours in a round and take turns: a machine that loses 0.01 ns a sample
+        # shifts half of the differences up by that, and half down.
+        cost = COST.get(name, 1.0) + (1.0 if name == "step_log" else 0.0)  # its poses come with it
+        assert row["price"]["median"] == pytest.approx(cost, abs=1e-9), name
+        assert row["price"]["low"] == pytest.approx(cost - 0.01, abs=1e-9), name
+        assert row["price"]["high"] == pytest.approx(cost + 0.01, abs=1e-9), name
+        assert not row["within_noise"]
+        assert row["compile_s_on"] > row["compile_s_off"]
+        assert len(row["samples_off"]) == len(row["samples_on"]) == 6
+
+
+@pytest.mark.usefixtures("costed")
+def test_another_motion_is_called_one_and_a_carried_effect_is_not() -> None:
+    rows = rows_of(BALL)
+    assert set(rows) == {"gravity", "drag", "contact_log"}
+    assert (rows["gravity"]["called_for"], rows["gravity"]["same_motion"]) == (True, False)
+    assert (rows["drag"]["called_for"], rows["drag"]["same_motion"]) == (False, True)
+
+
+@pytest.mark.usefixtures("costed")
+def test_a_price_below_the_machines_noise_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    noise = iter([0.0, 9.0, -7.0, 4.0, -6.0, 8.0] * 100)
+    monkeypatch.setattr(Costed, "sample", lambda self: PLAIN + next(noise))
+    rows = rows_of(BALL)
+    assert all(row["within_noise"] for row in rows.values())
+
+
+@pytest.mark.usefixtures("costed")
+def test_where_an_effect_has_no_price_the_row_says_why(monkeypatch: pytest.MonkeyPatch) -> None:
+    rows = rows_of(EVERY)
+    assert set(rows) >= set(names_of_effects())
+    assert rows["midpoint"]["why_not"] == "numerics.integrator chooses another law"
+    assert rows["fast_bodies"]["why_not"] == (
+        "numerics.speculative chooses another law through speculative"
+    )
+    rows = rows_of(EVERY.replace("numerics: chapter", "numerics: default"))
+    assert rows["midpoint"]["why_not"] == "chosen by numerics.integrator: another law without"
+
+    def diverges(resolved: Any, spec: Spec, first: int, steps: int) -> Costed:
+        if not spec.has("gravity"):
+            raise Diverged
+        return Costed(resolved, spec, first, steps)
+
+    monkeypatch.setattr(prices, "Timed", diverges)
+    rows = rows_of(BALL)
+    assert rows["gravity"]["why_not"] == "the scene flies apart without it"
+    assert "price" not in rows["gravity"]
+    assert rows["drag"]["price"]["median"] == pytest.approx(COST["drag"])
+
+
+@pytest.mark.parametrize("numerics", ["chapter", "default"])
+def test_both_engines_of_a_pair_can_be_and_differ_in_the_effect(numerics: str) -> None:
+    text = EVERY.replace("numerics: chapter", f"numerics: {numerics}")
+    resolved = load_experiment_text(text, "ball.yaml").cells()[0].resolved
+    silent = plan_of(resolved, record=False).spec
+    for pair in pairs_of(resolved):
+        assert (pair.off is None) == (pair.on is None) == bool(pair.why_not)
+        if pair.off is None or pair.on is None:
+            continue
+        for spec in (pair.off, pair.on):
+            assert all(spec.has(need) for name in spec.effects for need in needs(name))
+        extra = set(pair.on.effects) - set(pair.off.effects)
+        if pair.effect == ALL:
+            assert pair.off == silent
+            laws = {"impact_time", "midpoint", "speculative", "newton", "fast_bodies"}
+            laws |= {"impact_energy"}
+            assert bool(laws <= set(pair.on.effects)) == (numerics == "default")
+            assert not laws & set(pair.on.effects) or numerics == "default"
+        elif pair.effect in names_of_effects():
+            assert extra == {pair.effect} | ({"pose_log"} if pair.effect == "step_log" else set())
+
+
+class StepClock:
+    """A clock that gains 1000 ns with every step an engine has done since its initial state."""
+
+    engine: Any = None
+
+    def __call__(self) -> int:
+        return 0 if self.engine is None else 1000 * int(self.engine.counters["step"][0])
+
+
+def test_a_sample_is_the_same_steps_every_time() -> None:
+    cell = load_experiment_text(BALL, "ball.yaml").cells()[0]
+    spec = plan_of(cell.resolved, record=False).spec
+    first, steps = 24, 96  # of 120: the ball lands and bounces in them
+    clock = StepClock()
+    timed = Timed(cell.resolved, spec, first, steps, clock)
+    clock.engine, timed.starts = timed.engine, 3
+    timed.set_back()
+    begin = timed.engine.bodies["z"].tobytes()
+    for _ in range(3):
+        assert timed.sample() == 1000.0  # [ns]: of the timed steps alone, not those before
+        assert int(timed.engine.counters["step"][0]) == first + steps
+        assert timed.engine.bodies["z"].tobytes() != begin
+        timed.set_back()
+        assert timed.engine.bodies["z"].tobytes() == begin
+    assert 0.0 < timed.contacts < 1.0
+    whole = Timed(cell.resolved, spec, 0, first + steps)
+    assert whole.motion == timed.motion  # where an uninterrupted run ends, to the bit
+
+
+def test_intervals_hold_the_median_in_nineteen_of_twenty_cases() -> None:
+    # P(at most k of n fair coins show heads) <= 1/40: by the table of the binomial distribution,
+    # n = 9: 10/512 for k = 1, 46/512 for k = 2; n = 6: 1/64 for k = 0, 7/64 for k = 1; n = 25:
+    # k = 7 gives 0.0216, k = 8 0.0539.
+    assert [prices.samples_beyond(n) for n in (1, 3, 6, 9, 25)] == [0, 0, 0, 1, 7]
+
+
+def test_a_run_leaves_its_prices_in_json_and_csv(tmp_path: Path) -> None:
+    config = tmp_path / "ball.yaml"
+    config.write_text(BALL.replace("repeats: 6", "repeats: 2"))
+    finished = run(config, tmp_path / "runs")
+    assert finished.good
+    table = open_run(finished.run.path).results()["prices"]
+    rows = {row["effect"]: row for row in table["rows"]}
+    assert set(rows) == {"gravity", "drag", "contact_log"}
+    assert (table["bodies"], table["steps"], table["repeats"]) == (1, 120, 2)
+    for row in rows.values():
+        assert row["unit"] == "body"  # the ball is in the air most of the time
+        assert len(row["samples_on"]) == 2
+        assert min(row["samples_off"] + row["samples_on"]) > 0.0
+        assert min(row["compile_s_off"], row["compile_s_on"]) > 0.0
+    assert rows["drag"]["same_motion"]
+    assert not rows["gravity"]["same_motion"]
+    assert rows["contact_log"]["same_motion"]
+    assert (rows["gravity"]["contacts_off"], rows["gravity"]["contacts_on"] > 0.0) == (0.0, True)
+    with (finished.run.path / "prices.csv").open(newline="") as file:
+        written = {row["effect"]: row for row in csv.DictReader(file)}
+    assert {name: float(row["price"]) for name, row in written.items()} == {
+        name: row["price"]["median"] for name, row in rows.items()
+    }
+    json.dumps(table, allow_nan=False)
+    kept = run(config, tmp_path / "runs", prices=False)
+    assert "prices" not in kept.run.results()
+
+
+def test_names_that_are_no_effects_are_refused_at_their_place(tmp_path: Path) -> None:
+    config = tmp_path / "ball.yaml"
+    config.write_text(BALL.replace("gravity, drag", "gravty, drag"))
+    with pytest.raises(ConfigError) as refused:
+        load_all([config])
+    (defect,) = refused.value.defects
+    assert str(defect) == (
+        f'{config}:11:19: price.effects: no effect is called "gravty"; did you mean "gravity"?'
+    )

@@ -1,0 +1,157 @@
+"""The figure of prices: every effect has its place, every number its mark, every gap its reason."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+from matplotlib import style
+from matplotlib.figure import Figure
+
+from lavendersim.figures import draw, draw_prices
+from lavendersim.figures.prices import CALLED, IDLE, MOVES, compose
+from lavendersim.figures.style import STYLE
+
+
+def row(effect: str, price: float, half: float = 0.25, **others: Any) -> dict[str, Any]:
+    """One row of a table of prices, `price` +- `half` ns."""
+    spread = {"median": price, "low": price - half, "high": price + half}
+    return {
+        "effect": effect,
+        "called_for": False,
+        "unit": "body",
+        "why_not": "",
+        "same_motion": True,
+        "within_noise": abs(price) <= half,
+        "price": spread,
+        "compile_s_off": 2.0,
+        "compile_s_on": 3.0,
+    } | others
+
+
+def gap(effect: str, why_not: str) -> dict[str, Any]:
+    return {"effect": effect, "called_for": True, "unit": "body", "why_not": why_not}
+
+
+ROWS = (
+    row("drag", 2.5),
+    row("gravity", 400.0, called_for=True, same_motion=False),
+    row("step_log", 70.0, called_for=True),
+    row("friction", -0.1, unit="contact"),
+    gap("rotation", "friction needs it"),
+)
+
+
+def table(*rows: dict[str, Any]) -> dict[str, Any]:
+    return {
+        "bodies": 1,
+        "contacts_per_step": 24.0,
+        "repeats": 9,
+        "processor": "A processor of the year 2000",
+        "rows": list(rows or ROWS),
+    }
+
+
+def run_of(name: str, prices: dict[str, Any] | None) -> Any:
+    results = {} if prices is None else {"prices": prices}
+    return SimpleNamespace(
+        name=name,
+        results=lambda: results,
+        cells=(),
+        experiment=SimpleNamespace(name=name, figure=None, price=object()),
+    )
+
+
+def page(*tables: tuple[str, dict[str, Any]]) -> Figure:
+    with style.context(STYLE, after_reset=True):
+        figure = compose(tables)
+        figure.canvas.draw()
+    return figure
+
+
+def marks(axes: Any) -> dict[float, Any]:
+    """Markers by their place along the axis of prices."""
+    lines = [line for line in axes.lines if line.get_marker() in ("o", "s")]
+    return {float(line.get_xdata()[0]): line for line in lines}
+
+
+def test_a_price_is_drawn_at_its_number_with_its_interval() -> None:
+    axes = page(("sphere", table())).axes[0]
+    found = marks(axes)
+    assert set(found) == {2.5, 400.0, 70.0, -0.1}
+    bars = [line.get_xdata() for line in axes.lines if len(line.get_xdata()) == 2]
+    assert [2.25, 2.75] in [list(bar) for bar in bars]
+    names = [text.get_text() for text in axes.get_yticklabels()]
+    assert names == ["drag", "gravity", "step log", "friction", "rotation"]
+    places = [found[price].get_ydata()[0] for price in (2.5, 400.0, 70.0, -0.1)]
+    assert places == [0, 1, 2, 3]
+
+
+def test_colour_tells_who_calls_shape_the_unit_and_a_hollow_mark_noise() -> None:
+    found = marks(page(("sphere", table())).axes[0])
+    colours = [found[price].get_color() for price in (2.5, 400.0, 70.0, -0.1)]
+    assert colours == [IDLE, MOVES, CALLED, IDLE]
+    assert [found[price].get_marker() for price in (2.5, 400.0, -0.1)] == ["o", "o", "s"]
+    assert [found[p].get_markerfacecolor() == "white" for p in (2.5, 400.0, -0.1)] == [
+        False,
+        False,
+        True,
+    ]
+
+
+def test_an_effect_without_a_price_says_why_in_its_row() -> None:
+    texts = page(("sphere", table())).axes[0].texts
+    assert [(text.get_text(), text.get_position()[1]) for text in texts] == [
+        ("friction needs it", 4)
+    ]
+
+
+def test_small_and_negative_prices_are_on_the_page_beside_large_ones() -> None:
+    axes = page(("sphere", table())).axes[0]
+    low, high = axes.get_xlim()
+    assert low < -0.35
+    assert high > 400.25
+    assert axes.get_xscale() == "symlog"
+
+
+def test_several_scenes_share_the_names_of_effects() -> None:
+    more = table(row("drag", 1.0), row("newton", 7.0))
+    figure = page(("sphere", table()), ("pile", more))
+    assert len(figure.axes) == 3  # a panel a scene, and compile times
+    places = {price: line.get_ydata()[0] for price, line in marks(figure.axes[1]).items()}
+    assert places == {1.0: 0, 7.0: 5}
+    legend = figure.axes[2].get_legend()
+    assert legend is not None
+    assert {text.get_text() for text in legend.texts} == {"sphere", "pile"}
+
+
+def test_compile_times_stand_beside_the_prices() -> None:
+    axes = page(("sphere", table(row("drag", 1.0, compile_s_on=4.5)))).axes[1]
+    lines = [(list(line.get_xdata()), list(line.get_ydata())) for line in axes.lines]
+    assert ([4.5], [0]) in lines
+    assert any(list(places) == [2.0, 2.0] for places, _ in lines)  # the plan's own
+
+
+def test_the_caption_says_machine_repeats_and_spread() -> None:
+    caption = " ".join(page(("sphere", table())).texts[0].get_text().split())
+    for part in ("A processor of the year 2000", "9 interleaved repeats", "19 of 20"):
+        assert part in caption
+
+
+@pytest.mark.parametrize("prices", [table(), None])
+def test_a_run_without_a_figure_section_draws_its_prices_if_it_has_any(
+    prices: dict[str, Any] | None, tmp_path: Path
+) -> None:
+    written = draw(run_of("sphere", prices), tmp_path)
+    names = [path.name for path in written]
+    assert names == ([] if prices is None else ["sphere_prices.png", "sphere_prices.svg"])
+    assert all(path.stat().st_size > 1000 for path in written)
+
+
+def test_equal_prices_give_equal_files(tmp_path: Path) -> None:
+    runs = [run_of("sphere", table()), run_of("stack", table()), run_of("pile", None)]
+    first, second = (draw_prices(runs, tmp_path / name) for name in ("a", "b"))
+    assert [path.name for path in first] == ["prices.png", "prices.svg"]
+    assert [path.read_bytes() for path in first] == [path.read_bytes() for path in second]
