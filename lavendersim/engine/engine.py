@@ -141,6 +141,7 @@ class Engine:
         self.pairs, self.parameters = pairs, parameters
         self.block_steps = max(block_steps, 1) if spec.has("step_log") else 0
         self.counters = np.zeros(1, dtype(COUNTERS))
+        self._done = self.counters["step"]
         self.counters["residual_contact"] = self.counters["residual_row"] = -1
         self.motion = np.zeros(len(bodies) if keeps_motion(spec) else 0, dtype(MOTION))
         self.pseudo = np.zeros(len(bodies) if spec.has("projection") else 0, velocities.dtype)
@@ -207,13 +208,14 @@ class Engine:
 
     def advance(self, steps: int) -> int:
         """Do up to `steps` steps; return RUNNING, ROWS_FULL (take rows, call again) or DIVERGED."""
-        if len(self._residual_rows) < self._sweep_rows():  # more sweeps are asked for than before
-            if self.counters["step_rows"][0]:
-                return ROWS_FULL
-            self._allocate_rows(len(self.contacts))
-        target = int(self.counters["step"][0]) + steps
+        if self.spec.has("residual_log"):
+            if len(self._residual_rows) < self._sweep_rows():  # more sweeps are asked for
+                if self.counters["step_rows"][0]:
+                    return ROWS_FULL
+                self._allocate_rows(len(self.contacts))
+        target = int(self._done[0]) + steps
         while True:
-            status = self._call(target - int(self.counters["step"][0]))
+            status = self._call(target - int(self._done[0]))
             if status == PAIRS_FULL:
                 self._grow_pairs()
                 continue
@@ -227,16 +229,16 @@ class Engine:
 
     def _call(self, steps: int) -> int:
         if self._entry is not None:
-            return int(self._entry(*self._arguments(steps)))
+            return int(self._entry(*self._arguments(), steps))
         with compiling():
-            status = int(self._kernel(*self._arguments(steps)))
+            status = int(self._kernel(*self._arguments(), steps))
         # Looking up the types of forty arrays costs 6 us a call; they stay what they are.
         compiled = list(self._kernel.overloads.values())
         if len(compiled) == 1:
             self._entry = compiled[0].entry_point
         return status
 
-    def _arguments(self, steps: int) -> tuple[Any, ...]:
+    def _arguments(self) -> tuple[Any, ...]:
         return (
             self.bodies,
             self.velocities,
@@ -251,7 +253,6 @@ class Engine:
             self.counters,
             self._rows,
             self._residual_rows,
-            steps,
         )
 
     def take_rows(self) -> Rows:

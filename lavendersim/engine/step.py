@@ -61,7 +61,9 @@ def make_advance(spec: Spec) -> Any:
     if spec.has("contact_log"):
         log_contacts = contact_log.make(spec, made_by(spec, "make_log"))
     respond: Any = make_respond(spec, log_contacts) if touches else None
-    pass_by: Any = make_pass_by(spec, log_contacts) if touches else None
+    # With residuals recorded a step without contacts has its history, too.
+    passes = touches and not record_residuals
+    pass_by: Any = make_pass_by(spec, log_contacts) if passes else None
     classify: Any = make_classify(spec) if keeps and touches else None
     integrate = make_integrate(spec)
     sleeps, set_pace = spec.made(sleeping, "make_set_pace")
@@ -122,14 +124,16 @@ def make_advance(spec: Spec) -> Any:
                     if bodies[i].inv_m > 0.0:
                         accelerate(bodies[i], velocities[i], params)
             if touches:
-                # With residuals recorded a step without contacts has its history, too.
-                if count > 0 or record_residuals:
+                passed = False
+                if passes:
+                    if count == 0:
+                        pass_by(contacts, velocities, params, counters, rows)
+                        passed = True
+                if not passed:
                     respond(
                         bodies, velocities, motion, pseudo, contacts, count, cache, pairs, work,
                         params, counters, rows, residual_rows,
                     )  # fmt: skip
-                else:
-                    pass_by(contacts, velocities, params, counters, rows)
             if keeps and touches:
                 classify(contacts, count, motion, params)
             moved = counters.projection_sweeps > 0

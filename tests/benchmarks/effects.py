@@ -4,10 +4,12 @@
 
 pruned      the engine that the plan composes for the scene
 full        the same with every effect whose law the numerics have, idle
-by hand     `minimal_drop`, the drop in one function
+by hand     `minimal_scene`, the drop in one function, on the engine's arrays
+registers   `minimal_drop`, one ball that never leaves the registers
 The price of every single effect is `lavender run configs/effects`; here are the bars. All of a
 scene are timed in turn, in alternating order; a ratio is the median of the ratios of one round.
-Times are the processor's own in this thread, where the system counts it finely.
+A drop is timed from fresh arrays in one call, as its hand-written kernels are; a stack again and
+again from one state, in the processor's own time where the system counts it finely.
 With --check the exit code is 1 when a number is above its bar.
 """
 
@@ -19,19 +21,34 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 from statistics import median
+from time import perf_counter_ns
 from typing import Any, NamedTuple
 
+from lavendersim.engine.records import TOUCHING
 from lavendersim.runner.environment import environment
 from lavendersim.runner.price_pairs import ALL, pairs_of
-from lavendersim.runner.price_samples import Timed, clock
+from lavendersim.runner.price_samples import Timed
 
-from .engine import DROP_BAR, MICROSECOND, SETTLE, STACK_BAR, coefficients, same_drop
-from .minimal_drop import Drop, minimal_drop, start
+from .engine import (
+    DROP_BAR,
+    MICROSECOND,
+    SETTLE,
+    STACK_BAR,
+    coefficients,
+    engine_step,
+    minimal_step,
+    same_drop,
+)
+from .minimal_drop import minimal_drop, start
+from .minimal_scene import arrays, minimal_scene
 from .scenes import DROP, STACK, Case, case
 
+STARTS = 20  # of the drop in a sample
 HALF_BAR = 0.5  # pruned by full, of the drop
 HAND_BAR = 1.3  # pruned by hand-written, of the drop
 # Laws that the chapter's numerics leave out are there as well.
+# Twenty seconds of it, or what the call of a kernel costs would drown what its steps cost.
+LONG_DROP = DROP.replace("duration: 1.0", "duration: 20.0").replace("0.8", "1.0")
 DEFAULT_DROP = DROP.replace("preset: chapter, ", "")
 
 
@@ -46,7 +63,8 @@ class Ratio(NamedTuple):
 BARS = {"drop, full": DROP_BAR, "stack, full": STACK_BAR}  # [us/step]
 RATIOS = (
     Ratio("drop, pruned", "drop, full", HALF_BAR),
-    Ratio("drop, pruned", "drop, by hand", HAND_BAR),
+    Ratio("drop of 20 s, pruned", "drop of 20 s, by hand", HAND_BAR),
+    Ratio("drop of 20 s, pruned", "drop of 20 s, registers", None),
     Ratio("drop of the default, pruned", "drop of the default, full", None),
     Ratio("stack, pruned", "stack, full", None),
 )
@@ -63,6 +81,7 @@ def cases() -> dict[str, Case]:
     """Return what is timed, pruned and full."""
     pruned = {
         "drop": case(DROP, record=False),
+        "drop of 20 s": case(LONG_DROP, record=False),
         "drop of the default": case(DEFAULT_DROP, record=False),
         "stack": case(STACK, record=False),
     }
@@ -72,38 +91,54 @@ def cases() -> dict[str, Case]:
     return found
 
 
-def by_hand(timed: Case, drop: Drop, starts: int) -> float:
-    """Return the cost of a step of the hand-written kernel [ns], sampled as `Timed` does."""
-    now, height = clock()[1], float(timed.scene().bodies[1]["z"])
-    spent = []
-    for _ in range(starts):
-        state = start(height)
-        begin = now()
-        minimal_drop(state, drop, timed.steps)
-        spent.append(now() - begin)
-    return median(spent) / timed.steps
+def by_hand(timed: Case) -> float:
+    """Return the cost of a step of the hand-written kernel [us], timed as `engine_step` does."""
+    engines = [timed.engine() for _ in range(STARTS)]
+    (compiled,) = minimal_scene.overloads.values()
+    advance = compiled.entry_point  # as the engine calls its own: without looking up types
+    spent = 0
+    for engine in engines:
+        begin = perf_counter_ns()
+        advance(*arrays(engine), timed.steps, TOUCHING)
+        spent += perf_counter_ns() - begin
+    return spent / MICROSECOND / (timed.steps * STARTS)
 
 
-def engine_of(name: str, timed: Case) -> Timed:
-    """Return the engine of a case, ready to be sampled."""
-    settle = SETTLE if name.startswith("stack") else 0
-    return Timed(timed.resolved, timed.plan.spec, settle, timed.steps - settle)
+def same_scene(timed: Case) -> float:
+    """Return how far apart engine and hand-written kernel leave the ball [m]: one mechanics."""
+    engine, other = timed.engine(), timed.engine()
+    engine.advance(timed.steps)
+    assert minimal_scene(*arrays(other), timed.steps, TOUCHING)
+    apart = abs(float(engine.bodies["z"][1]) - float(other.bodies["z"][1]))
+    assert apart < 1e-9, f"the hand-written kernel leaves the ball {apart} m elsewhere"
+    return apart
+
+
+def engine_of(timed: Case) -> Timed:
+    """Return the engine of a stack that has settled, ready to be sampled."""
+    return Timed(timed.resolved, timed.plan.spec, SETTLE, timed.steps - SETTLE)
 
 
 def measure(repeats: int) -> dict[str, Any]:
     """Time everything `repeats` times, interleaved."""
     timed = cases()
-    drop = timed["drop, pruned"]
+    drop = timed["drop of 20 s, pruned"]
     coefficient = coefficients(drop)
-    minimal_drop(start(1.0), coefficient, 0)  # compiles
-    engines = {name: engine_of(name, each) for name, each in timed.items()}
-    starts = engines["drop, pruned"].starts
-    sample: dict[str, Callable[[], float]] = {name: each.sample for name, each in engines.items()}
-    sample["drop, by hand"] = lambda: by_hand(drop, coefficient, starts)
+    minimal_drop(start(1.0), coefficient, 0)  # compiles, as the comparison does
+    apart = max(same_drop(drop, coefficient), same_scene(drop))
+    sample: dict[str, Callable[[], float]] = {}
+    for name, each in timed.items():
+        if name.startswith("stack"):
+            again = engine_of(each)
+            sample[name] = lambda again=again: again.sample() / MICROSECOND  # type: ignore[misc]
+        else:
+            sample[name] = lambda each=each: engine_step(each, 0, STARTS)  # type: ignore[misc]
+    sample["drop of 20 s, by hand"] = lambda: by_hand(drop)
+    sample["drop of 20 s, registers"] = lambda: minimal_step(drop, coefficient, STARTS)
     samples: dict[str, list[float]] = {name: [] for name in sample}
     for repeat in range(repeats):
         for name in list(sample)[:: -1 if repeat % 2 else 1]:
-            samples[name].append(sample[name]() / MICROSECOND)
+            samples[name].append(sample[name]())
     ratios = [
         {**ratio._asdict(), "samples": divided, "median": median(divided)}
         for ratio in RATIOS
@@ -113,7 +148,7 @@ def measure(repeats: int) -> dict[str, Any]:
         "unit": "us/step",
         "repeats": repeats,
         "effects": {name: list(each.plan.spec.effects) for name, each in timed.items()},
-        "drop_difference_m": same_drop(drop, coefficient),
+        "drop_difference_m": apart,
         "environment": environment(*(each.plan.spec for each in timed.values())),
         "cases": [
             {"name": name, "median": median(found), "bar": BARS.get(name), "samples": found}
