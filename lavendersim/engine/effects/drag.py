@@ -47,12 +47,13 @@ def make(spec):
 
     def drag(body, velocity, params):
         dt = params.dt
-        vx, vy, vz = velocity.vx, velocity.vy, velocity.vz
-        speed = sqrt(vx * vx + vy * vy + vz * vz)
-        h = dt * body.inv_m
-        k = 1.0 + body.drag_linear * h
-        scale = 2.0 / (k + sqrt(k * k + 4.0 * body.drag_quadratic * h * speed))
-        velocity.vx, velocity.vy, velocity.vz = vx * scale, vy * scale, vz * scale
+        if body.drag_linear > 0.0 or body.drag_quadratic > 0.0:
+            vx, vy, vz = velocity.vx, velocity.vy, velocity.vz
+            speed = sqrt(vx * vx + vy * vy + vz * vz)
+            h = dt * body.inv_m
+            k = 1.0 + body.drag_linear * h
+            scale = 2.0 / (k + sqrt(k * k + 4.0 * body.drag_quadratic * h * speed))
+            velocity.vx, velocity.vy, velocity.vz = vx * scale, vy * scale, vz * scale
         if turns:
             if body.drag_angular > 0.0:
                 x, y, z = to_body(body, velocity.wx, velocity.wy, velocity.wz)
