@@ -12,17 +12,17 @@ from collections.abc import Iterable
 from types import ModuleType
 from typing import Any, Final, NamedTuple
 
-from lavendersim.engine.effects import EFFECTS, BodyFacts, Facts, PairFacts
+from lavendersim.engine.effects import EFFECTS, Facts
 from lavendersim.engine.effects import pose_log as poses
 from lavendersim.engine.effects import step_log as steps
 from lavendersim.engine.spec import Spec
 from lavendersim.scene.facts import facts_of
+from lavendersim.scene.laws import BY_NAME, has_law, needs
 from lavendersim.scene.plan import plan_of
 
 ALL: Final = "all effects"
 ALL_RECORDED: Final = "all effects, recorded"
 BODY_STAGES: Final = ("accelerate", "integrate", "collide", "record")
-_BY_NAME = {effect.NAME: effect for effect in EFFECTS}
 
 
 class Pair(NamedTuple):
@@ -48,14 +48,14 @@ class Plans(NamedTuple):
 
 def names_of_effects() -> tuple[str, ...]:
     """Return every effect, in the order of the step."""
-    return tuple(_BY_NAME)
+    return tuple(BY_NAME)
 
 
 def pairs_of(resolved: dict[str, Any], names: Iterable[str] = ()) -> list[Pair]:
     """Return a pair for each named effect, for all without names, and for all effects at once."""
     logged = plan_of(resolved)
     plans = Plans(facts_of(resolved), plan_of(resolved, record=False).spec, logged.spec)
-    asked = set(names) or set(_BY_NAME)
+    asked = set(names) or set(BY_NAME)
     pairs = [
         _pair(effect, logged.decisions[effect.NAME].reason, plans)
         for effect in EFFECTS
@@ -75,11 +75,11 @@ def _pair(effect: ModuleType, reason: str, plans: Plans) -> Pair:
             return pair._replace(why_not="written with the rows of step_log: see there")
         kept = plans.silent.including(name, poses.NAME)
         return pair._replace(off=plans.silent, on=kept)
-    chosen = [each for each in (name, *needs(name)) if not _is_law_of(each, plans.facts)]
+    chosen = [each for each in (name, *needs(name)) if not has_law(each, plans.facts)]
     if on and hasattr(effect, "CHOSEN_BY"):
         return pair._replace(why_not=f"chosen by numerics.{effect.CHOSEN_BY}: another law without")
     if chosen:
-        key = _BY_NAME[chosen[0]].CHOSEN_BY
+        key = BY_NAME[chosen[0]].CHOSEN_BY
         through = "" if chosen[0] == name else f" through {chosen[0]}"
         return pair._replace(why_not=f"numerics.{key} chooses another law{through}")
     base = plans.logged if _is_log(effect) else plans.silent
@@ -99,7 +99,7 @@ def _everything(plans: Plans) -> list[Pair]:
     agreeing = [
         effect
         for effect in EFFECTS
-        if all(_is_law_of(each, plans.facts) for each in (effect.NAME, *needs(effect.NAME)))
+        if all(has_law(each, plans.facts) for each in (effect.NAME, *needs(effect.NAME)))
     ]
     physics = [effect.NAME for effect in agreeing if not _is_log(effect)]
     logs = [effect.NAME for effect in agreeing if _is_log(effect)]
@@ -111,18 +111,6 @@ def _everything(plans: Plans) -> list[Pair]:
     ]
 
 
-def needs(name: str) -> tuple[str, ...]:
-    """Return what an effect needs, and what that needs, each once."""
-    found: dict[str, None] = {}
-    waiting = [name]
-    while waiting:
-        for need in getattr(_BY_NAME[waiting.pop()], "NEEDS", ()):
-            if need not in found:
-                found[need] = None
-                waiting.append(need)
-    return tuple(found)
-
-
 def of_contacts(effect: ModuleType) -> bool:
     """Whether an effect works on contacts; otherwise it works on bodies."""
     return effect.STAGE not in BODY_STAGES or "/contacts" in getattr(effect, "CHANNELS", ())
@@ -130,21 +118,3 @@ def of_contacts(effect: ModuleType) -> bool:
 
 def _is_log(effect: ModuleType) -> bool:
     return hasattr(effect, "CHANNELS")
-
-
-def _is_law_of(name: str, facts: Facts) -> bool:
-    """Whether an effect is no law that the numerics exclude: in some scene they would have it."""
-    effect = _BY_NAME[name]
-    return not hasattr(effect, "CHOSEN_BY") or bool(effect.wanted(_busy(facts)).on)
-
-
-def _busy(facts: Facts) -> Facts:
-    """Return the facts of the same numerics where boxes fall, touch and rub in many places."""
-    bodies = tuple(
-        BodyFacts(name, "box", movable=True, spins=True, round=False, size=1.0, least_size=1.0)
-        for name in ("a", "b")
-    )
-    pair = PairFacts("a", "b", restitution=0.5, compliance=0.0, friction=0.5)
-    return facts._replace(
-        bodies=bodies, pairs=(pair, pair), pair_count=2, gravity=(0.0, 0.0, -9.81)
-    )

@@ -13,27 +13,14 @@ from collections.abc import Iterator, Mapping
 from typing import Any, Literal, NamedTuple, get_args
 
 from lavendersim.engine.collide import SHAPE_PAIRS
-from lavendersim.engine.effects import (
-    EFFECTS,
-    Decision,
-    Facts,
-    PairFacts,
-    contact_log,
-    pose_log,
-    step_log,
-)
+from lavendersim.engine.effects import Decision, Facts, contact_log, pose_log, step_log
 from lavendersim.errors import UsageError
 from lavendersim.experiment.cell_models import Numerics
 from lavendersim.experiment.found import nearest, quoted
 
-_BY_NAME = {effect.NAME: effect for effect in EFFECTS}
+from .laws import BUSY, BY_NAME, has_law, needs
+
 _LOGS = (step_log.NAME, pose_log.NAME)  # without them nothing of a run can be read
-# A scene in which bodies fall, touch and rub: what is off there, the numerics have switched off.
-_BUSY: dict[str, Any] = {
-    "pairs": (PairFacts("", "", restitution=1.0, compliance=0.0, friction=1.0),) * 2,
-    "pair_count": 2,
-    "gravity": (0.0, 0.0, -1.0),
-}
 
 Forced = Literal["forced on", "forced off"]
 
@@ -86,7 +73,7 @@ def _switch(
 ) -> str:
     """Follow one switch; returns why it cannot be, or nothing."""
     if name not in made.effects and name not in made.shape_pairs:
-        hint = nearest(name, [*_BY_NAME, *SHAPE_PAIRS])
+        hint = nearest(name, [*BY_NAME, *SHAPE_PAIRS])
         return f"no effect or shape pair is called {quoted(name)}{hint}"
     decisions = made.effects if name in made.effects else made.shape_pairs
     if decisions[name].on == (switch == "on"):
@@ -100,7 +87,7 @@ def _switch(
         return "a run without its log is no run; leave it on"
     if name == contact_log.NAME:
         return "the sums in /step are those of the contacts that are logged; leave it on"
-    if key := getattr(_BY_NAME[name], "CHOSEN_BY", ""):
+    if key := getattr(BY_NAME[name], "CHOSEN_BY", ""):
         return f"the numerics choose it; write {_choosing(name, key, facts, on=False)} instead"
     if not stated["force"]:
         return (
@@ -120,16 +107,16 @@ def _force_on(
     switches: Mapping[str, str],
 ) -> str:
     """Put an effect or shape pair in, with all that it needs; returns why that cannot be."""
-    for need in (name, *_needs(name)):
-        key = getattr(_BY_NAME.get(need), "CHOSEN_BY", "")
-        if key and not _BY_NAME[need].wanted(facts._replace(**_BUSY)).on:
+    for need in (name, *needs(name)):
+        if not has_law(need, facts):
+            key = BY_NAME[need].CHOSEN_BY
             which = "it" if need == name else f"it needs {need}, which"
             choice = _choosing(need, key, facts, on=True)
             how = f"; write {choice} to choose it" if choice else ""
             return f"{which} is another law, no idle effect{how}"
     decisions[name] = Decision(True, f"forced on; not called for: {decisions[name].reason}")
     made.forced[name] = "forced on"
-    for need in _needs(name):
+    for need in needs(name):
         if not made.effects[need].on and switches.get(need) is None:
             why = f"forced on, needed by {name}; not called for: {made.effects[need].reason}"
             made.effects[need] = Decision(True, why)
@@ -137,23 +124,11 @@ def _force_on(
     return ""
 
 
-def _needs(name: str) -> tuple[str, ...]:
-    """Return what an effect needs, and what that needs, each once."""
-    found: dict[str, None] = {}
-    waiting = [name]
-    while waiting:
-        for need in getattr(_BY_NAME.get(waiting.pop()), "NEEDS", ()):
-            if need not in found:
-                found[need] = None
-                waiting.append(need)
-    return tuple(found)
-
-
 def _unmet(made: Overridden, switches: Mapping[str, str]) -> Iterator[Refusal]:
     """Yield what is switched off although something that is on needs it."""
     for name, switch in switches.items():
         if switch == "off" and name in made.effects:
-            needing = [other for other in made.effects if name in _needs(other)]
+            needing = [other for other in made.effects if name in needs(other)]
             on = [other for other in needing if made.effects[other].on]
             if on:
                 verb, them = ("needs", "that") if len(on) == 1 else ("need", "those")
@@ -170,7 +145,7 @@ def _choosing(name: str, key: str, facts: Facts, on: bool) -> str:
     """
     annotation: Any = Numerics.model_fields[key].annotation
     for value in (False, True) if annotation is bool else get_args(annotation):
-        if _BY_NAME[name].wanted(facts._replace(**_BUSY, **{key: value})).on == on:
+        if BY_NAME[name].wanted(facts._replace(**BUSY, **{key: value})).on == on:
             written = str(value).lower() if isinstance(value, bool) else value
             return f"`numerics: {{{key}: {written}}}`"
     return ""

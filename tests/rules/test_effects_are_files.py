@@ -33,7 +33,7 @@ ELSEWHERE = {
     "gravity": {
         "engine/effects/decision.py": FACT,
         "scene/facts.py": FACT,
-        "scene/overrides.py": FACT,
+        "scene/laws.py": FACT,
         "scene/build.py": "its vector is a parameter of the run, with the other coefficients",
         "engine/effects/fast_bodies.py": "how fast bodies may fall",
     },
@@ -43,7 +43,7 @@ ELSEWHERE = {
     },
     "compliance": {
         "engine/effects/decision.py": FACT,
-        "scene/overrides.py": FACT,
+        "scene/laws.py": FACT,
         "scene/classes.py": SHARED,
         "scene/candidates.py": SHARED,
         "engine/effects/fast_bodies.py": "springs give energy back",
@@ -54,7 +54,7 @@ ELSEWHERE = {
     },
     "restitution": {
         "engine/effects/decision.py": FACT,
-        "scene/overrides.py": FACT,
+        "scene/laws.py": FACT,
         "scene/classes.py": SHARED,
         "scene/candidates.py": SHARED,
         "engine/effects/fast_bodies.py": "more than 1 gives energy",

@@ -14,8 +14,9 @@ from lavendersim.engine.spec import Spec
 from lavendersim.errors import ConfigError
 from lavendersim.experiment import load_experiment_text
 from lavendersim.runner import load_all, open_run, prices, run
-from lavendersim.runner.price_pairs import ALL, names_of_effects, needs, pairs_of
+from lavendersim.runner.price_pairs import ALL, names_of_effects, pairs_of
 from lavendersim.runner.price_samples import Diverged, Timed
+from lavendersim.scene.laws import needs
 from lavendersim.scene.plan import plan_of
 
 BALL = """\
