@@ -118,8 +118,12 @@ def _draw_scene(axes: Any, name: str, table: dict[str, Any], places: dict[str, i
         )
     axes.xaxis.set_major_locator(SymmetricalLogLocator(base=10.0, linthresh=LINEAR))
     axes.xaxis.set_minor_locator(NullLocator())
-    axes.tick_params(axis="x", labelsize=9.5)  # -1000 beside -100
-    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axes.xaxis.set_major_formatter(FuncFormatter(_short))
+
+
+def _short(value: float, _: int) -> str:
+    """Return a tick's label, with k for a thousand: -1000 would not fit beside -100."""
+    return f"{value / 1000.0:g}k" if abs(value) >= 1000.0 else f"{value:g}"
 
 
 def _colour(row: dict[str, Any]) -> str:
