@@ -82,13 +82,13 @@ class Cell:
         return config
 
     def defect(self, path: Path, message: str) -> Defect:
-        """Return a defect at a key of this cell, or at the swept value that stands there."""
+        """Return a defect at a key, an item or a swept value of this cell."""
         swept = {axis.path: node for axis, node in self._point.choices}
         if path in swept:
             mark = swept[path].mark
         else:
-            parent = _deepest(self._point.tree(self._root), path[:-1])
-            mark = key_mark(parent, str(path[-1]))
+            parent, last = _deepest(self._point.tree(self._root), path[:-1]), path[-1]
+            mark = parent.items[last].mark if isinstance(last, int) else key_mark(parent, last)
         return Defect(self._name, mark.line, mark.column, message)
 
     @cached_property

@@ -17,11 +17,10 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from lavendersim.engine.spec import Spec
-from lavendersim.errors import ConfigError, Defect
+from lavendersim.errors import ConfigError
 from lavendersim.experiment import Experiment
 from lavendersim.experiment.cell import Cell
 from lavendersim.experiment.found import nearest, quoted
-from lavendersim.experiment.parse import parse
 from lavendersim.scene.colliders import is_movable
 
 from .environment import processor
@@ -72,21 +71,17 @@ def samples_beyond(count: int) -> int:
 
 def check_price(experiment: Experiment) -> None:
     """Raise ConfigError where the section `price` names what is no effect."""
-    names = () if experiment.price is None else _named(experiment)
-    wrong = [(place, name) for place, name in enumerate(names) if name not in names_of_effects()]
-    if not wrong:
-        return
-    raw = experiment.text.encode()
-    root, _ = parse(raw, experiment.name, len(raw))
-    asked = root.get("price", "effects") if root is not None else None
-    defects = []
-    for place, name in wrong:
-        assert asked is not None
-        mark = asked.items[place].mark
-        sentence = f"price.effects: no effect is called {quoted(name)}"
-        sentence += nearest(name, names_of_effects())
-        defects.append(Defect(str(experiment.path), mark.line, mark.column, sentence))
-    raise ConfigError(defects)
+    known = names_of_effects()
+    defects = [
+        experiment.cells()[0].defect(
+            ("price", "effects", place),
+            f"price.effects: no effect is called {quoted(name)}{nearest(name, known)}",
+        )
+        for place, name in enumerate(_named(experiment))
+        if name not in known
+    ]
+    if defects:
+        raise ConfigError(defects)
 
 
 def _named(experiment: Experiment) -> tuple[str, ...]:

@@ -16,6 +16,7 @@ from lavendersim.engine.solvers import SOLVERS
 from lavendersim.engine.spec import Spec
 from lavendersim.engine.step import kernels_of
 
+from .laws import needs
 from .plan import CHOICES, Plan
 
 _GROUP = "_FIELDS"  # BODY_FIELDS of a module: columns of the body record
@@ -102,30 +103,37 @@ def explain_all(plans: Iterable[Plan]) -> list[Explanation]:
 
 
 def _effect(plan: Plan, effect: Any) -> Part:
-    spec, name = plan.spec, effect.NAME
-    decision = plan.decisions[name]
+    part = _decided(plan, effect.NAME)
     fields = fields_of(effect)
     # Some columns depend on what else is there; that is known where the effect is on.
-    if decision.on and hasattr(effect, "contact_fields"):
-        fields["contact"] = _names(effect.contact_fields(spec))
-    return Part(
-        name=name,
-        on=decision.on,
-        reason=decision.reason,
-        reasons=_reasons(plan, name),
-        forced=plan.forced.get(name),
-        called_for_by=[cell.number for cell in plan.callers[name]],
-        callers=plan.called_for_by(name),
+    if part.on and hasattr(effect, "contact_fields"):
+        fields["contact"] = _names(effect.contact_fields(plan.spec))
+    return part._replace(
         needs=list(getattr(effect, "NEEDS", ())),
         chosen_by=getattr(effect, "CHOSEN_BY", None),
         fields={record: names for record, names in fields.items() if names},
         channels=list(getattr(effect, "CHANNELS", ())),
-        kernels=_brought(spec, effect) if decision.on else {},
+        kernels=_brought(plan.spec, effect) if part.on else {},
     )
 
 
-def _reasons(plan: Plan, name: str) -> dict[str, list[int]]:
-    return {why: [cell.number for cell in cells] for why, cells in plan.reasons_of(name).items()}
+def _decided(plan: Plan, name: str) -> Part:
+    """Return what a plan says of an effect or shape pair, before what that brings."""
+    decision, reasons = plan.decided(name), plan.reasons_of(name)
+    return Part(
+        name=name,
+        on=decision.on,
+        reason=decision.reason,
+        reasons={why: [cell.number for cell in cells] for why, cells in reasons.items()},
+        forced=plan.forced.get(name),
+        called_for_by=[cell.number for cell in plan.callers[name]],
+        callers=plan.called_for_by(name),
+        needs=[],
+        chosen_by=None,
+        fields={},
+        channels=[],
+        kernels={},
+    )
 
 
 def fields_of(module: Any) -> Fields:
@@ -143,7 +151,7 @@ def _brought(spec: Spec, effect: Any) -> Kernels:
     A kernel of another effect's module is that effect's, whatever else it waits for.
     """
     own = effect.__name__.removeprefix(_ENGINE)
-    dependents = [e.NAME for e in EFFECTS if spec.has(e.NAME) and effect.NAME in needs_of(e.NAME)]
+    dependents = [e.NAME for e in EFFECTS if spec.has(e.NAME) and effect.NAME in needs(e.NAME)]
     lean = spec.without(*dependents)
     gone = _without(composed_kernels(lean), composed_kernels(lean.without(effect.NAME)))
     gone = {module: names for module, names in gone.items() if not _of_an_effect(module)}
@@ -155,36 +163,15 @@ def _of_an_effect(module: str) -> bool:
     return module.startswith("effects.")
 
 
-@cache
-def needs_of(name: str) -> frozenset[str]:
-    """Return what an effect needs, and what that needs."""
-    direct = {need for e in EFFECTS if name == e.NAME for need in getattr(e, "NEEDS", ())}
-    return frozenset(direct.union(*(needs_of(need) for need in direct)))
-
-
 def _shape_pair(plan: Plan, name: str) -> Part:
-    decision = plan.shape_pairs[name]
-    kernels: Kernels = {}
-    if decision.on:
+    part = _decided(plan, name)
+    if part.on:
         others = tuple(pair for pair in plan.spec.shape_pairs if pair != name)
         # An engine in which nothing touches lacks more than the pair: compared with another one.
         lean = others or tuple(pair for pair in SHAPE_PAIRS if pair != name)[:1]
         without = composed_kernels(plan.spec._replace(shape_pairs=lean))
-        kernels = _without(composed_kernels(plan.spec), without)
-    return Part(
-        name=name,
-        on=decision.on,
-        reason=decision.reason,
-        reasons=_reasons(plan, name),
-        forced=plan.forced.get(name),
-        called_for_by=[cell.number for cell in plan.callers[name]],
-        callers=plan.called_for_by(name),
-        needs=[],
-        chosen_by=None,
-        fields={},
-        channels=[],
-        kernels=kernels,
-    )
+        part = part._replace(kernels=_without(composed_kernels(plan.spec), without))
+    return part
 
 
 def _solver(plan: Plan, composed: Kernels) -> Part:

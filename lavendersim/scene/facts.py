@@ -57,7 +57,11 @@ def facts_of(resolved: dict[str, Any], record: bool = True) -> Facts:
         bodies=tuple(_body_facts(resolved)),
         pairs=tuple(
             PairFacts(
-                a=names[rows[pair.a].owner], b=names[rows[pair.b].owner], **pair.surface._asdict()
+                a=names[rows[pair.a].owner],
+                b=names[rows[pair.b].owner],
+                shape_pair=pair.shape_pair,
+                row_pairs=pair.row_pairs,
+                **pair.surface._asdict(),
             )
             for pair in pairs
         ),

@@ -6,14 +6,12 @@ from collections.abc import Iterable, Mapping
 from typing import Any, Final, NamedTuple
 
 from lavendersim.engine.collide import SHAPE_PAIRS
-from lavendersim.engine.effects import EFFECTS, Decision
+from lavendersim.engine.effects import EFFECTS, Decision, Facts
 from lavendersim.engine.effects.decision import named
 from lavendersim.engine.spec import Spec
 from lavendersim.errors import ConfigError, UsageError
 from lavendersim.experiment.cell import Cell
 
-from .classes import class_pairs
-from .colliders import colliders
 from .facts import facts_of
 from .overrides import Forced, OverrideError, override
 
@@ -95,7 +93,7 @@ def plan_of(resolved: dict[str, Any], record: bool = True, cell: CellName = ALON
     """
     facts = facts_of(resolved, record)
     derived = {effect.NAME: effect.wanted(facts) for effect in EFFECTS}
-    touching = _shape_pairs(resolved)
+    touching = _shape_pairs(facts)
     made = override(derived, touching, facts, resolved["effects"])
     numerics = resolved["numerics"]
     spec = Spec(
@@ -188,15 +186,12 @@ def _switched(stated: Mapping[str, Any]) -> str:
     return ", ".join(f"{name}: {how}" for name, how in stated["switches"].items()) or DERIVED
 
 
-def _shape_pairs(resolved: dict[str, Any]) -> dict[str, Decision]:
+def _shape_pairs(facts: Facts) -> dict[str, Decision]:
     """Return of every pair of shapes whether two such bodies may touch, and which."""
-    names = list(resolved["scene"]["bodies"])
-    rows = colliders(list(resolved["scene"]["bodies"].values()))
     touching: dict[str, list[str]] = {}
-    for pair in class_pairs(rows):
-        a, b = names[rows[pair.a].owner], names[rows[pair.b].owner]
+    for pair in facts.pairs:
         more = f" ({pair.row_pairs} pairs like it)" if pair.row_pairs > 1 else ""
-        touching.setdefault(pair.shape_pair, []).append(f"{a} and {b}{more}")
+        touching.setdefault(pair.shape_pair, []).append(f"{pair.a} and {pair.b}{more}")
     return {
         name: Decision(True, named(touching[name])) if name in touching else APART[name]
         for name in SHAPE_PAIRS

@@ -3,24 +3,15 @@
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
 from pathlib import Path
 
-ROOT = Path(__file__).parents[2]
+from tests.benchmarks.as_process import benchmark
 
 
 def test_the_engine_benchmark_writes_samples_and_its_proofs(tmp_path: Path) -> None:
     output = tmp_path / "engine.json"
     options = ["--repeats", "1", "--starts", "1"]
-    done = subprocess.run(
-        [sys.executable, "-m", "tests.benchmarks.engine", *options, "--output", str(output)],
-        cwd=ROOT,
-        capture_output=True,
-        text=True,
-        timeout=300,
-        check=False,
-    )
+    done = benchmark("engine", *options, "--output", str(output))
     assert done.returncode == 0, done.stderr
     found = json.loads(output.read_text())
     rows = {row["name"]: row for row in found["cases"]}

@@ -3,24 +3,15 @@
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
 from pathlib import Path
 
-ROOT = Path(__file__).parents[2]
+from tests.benchmarks.as_process import benchmark
 
 
 def test_the_broad_phase_benchmark_writes_samples_and_exponents(tmp_path: Path) -> None:
     output = tmp_path / "broad_phase.json"
     options = ["--repeats", "1", "--counts", "100", "400", "--output", str(output)]
-    done = subprocess.run(
-        [sys.executable, "-m", "tests.benchmarks.broad_phase", *options],
-        cwd=ROOT,
-        capture_output=True,
-        text=True,
-        timeout=300,
-        check=False,
-    )
+    done = benchmark("broad_phase", *options)
     assert done.returncode == 0, done.stderr
     found = json.loads(output.read_text())
     assert {row["bodies"] for row in found["cases"]} == {100, 400}

@@ -3,26 +3,16 @@
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
 from pathlib import Path
 
+from tests.benchmarks.as_process import benchmark
 from tests.benchmarks.first_result import COLD_BAR, WARM_BAR, over
-
-ROOT = Path(__file__).parents[2]
 
 
 def test_it_writes_samples_of_a_cold_and_a_warm_run(drop: Path, tmp_path: Path) -> None:
     output = tmp_path / "first.json"
     options = [str(drop), "--repeats", "1", "--output", str(output)]
-    done = subprocess.run(
-        [sys.executable, "-m", "tests.benchmarks.first_result", *options],
-        cwd=ROOT,
-        capture_output=True,
-        text=True,
-        timeout=300,
-        check=False,
-    )
+    done = benchmark("first_result", *options)
     assert done.returncode == 0, done.stderr
     found = json.loads(output.read_text())
     row = found["medians"]["drop.yaml"]

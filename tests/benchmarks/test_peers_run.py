@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from tests.benchmarks.as_process import benchmark
 from tests.benchmarks.peers.measure import Cost, Timing, read_steps
 from tests.benchmarks.peers.scenes import tower
 from tests.benchmarks.peers.table import as_markdown, spoken
@@ -17,20 +16,10 @@ from tests.benchmarks.peers.table import as_markdown, spoken
 ROOT = Path(__file__).parents[2]
 
 
-def harness(*options: str) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [sys.executable, "-m", "tests.benchmarks.peers", *options],
-        cwd=ROOT,
-        capture_output=True,
-        text=True,
-        timeout=300,
-        check=False,
-    )
-
-
 def test_lavender_alone_is_measured_and_a_missing_engine_is_said(tmp_path: Path) -> None:
     output = tmp_path / "peers.json"
-    done = harness(
+    done = benchmark(
+        "peers",
         *("--engines", "lavender", "nosuch", "--scenes", "tiny"),
         *("--repeats", "2", "--output", str(output)),
     )
@@ -49,7 +38,7 @@ def test_lavender_alone_is_measured_and_a_missing_engine_is_said(tmp_path: Path)
 
 
 def test_without_any_engine_the_harness_says_so() -> None:
-    done = harness("--engines", "nosuch")
+    done = benchmark("peers", "--engines", "nosuch")
     assert done.returncode == 2
     assert done.stderr.count("does not run here") == 1
 

@@ -3,30 +3,18 @@
 from __future__ import annotations
 
 import json
-import os
 import re
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+from command_line import lavender
 
 # Rests on another ball on the floor: one sweep cannot carry both, so its steps stay unsolved.
 ON_THE_BALL = """
     low: {shape: {kind: sphere, radius: 0.1}, mass: 1.0, position: [5, 0, 0.1]}
     high: {shape: {kind: sphere, radius: 0.1}, mass: 1.0, position: [5, 0, 0.3]}"""
-
-
-def lavender(*arguments: object, where: Path) -> subprocess.CompletedProcess[str]:
-    """Run the command line in `where`, in a process of its own."""
-    return subprocess.run(
-        [sys.executable, "-m", "lavender_cli.main", *map(str, arguments)],
-        cwd=where,
-        capture_output=True,
-        text=True,
-        env={**os.environ, "NO_COLOR": "1"},
-        check=False,
-    )
 
 
 def test_a_good_run_exits_0_and_leaves_a_finished_run(drop: Path, tmp_path: Path) -> None:

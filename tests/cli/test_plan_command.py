@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import json
-import os
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+from command_line import lavender
 
 from lavender_cli.plan import write
 from lavendersim.engine.collide import SHAPE_PAIRS
@@ -21,18 +19,6 @@ from lavendersim.scene.explanation import Explanation, explain
 STACK = Path(__file__).parents[2] / "configs" / "scenes" / "stack_of_six.yaml"
 REFUSED = "effects: {restitution: off, drga: on}\n"
 SWEPT = "sweep:\n  e: {path: scene.bodies.ball.surface.restitution, values: [0, 0.5, 0.8]}\n"
-
-
-def lavender(*arguments: object, where: Path) -> subprocess.CompletedProcess[str]:
-    """Run the command line in `where`, in a process of its own."""
-    return subprocess.run(
-        [sys.executable, "-m", "lavender_cli.main", *map(str, arguments)],
-        cwd=where,
-        capture_output=True,
-        text=True,
-        env={**os.environ, "NO_COLOR": "1"},
-        check=False,
-    )
 
 
 @pytest.fixture(scope="module")

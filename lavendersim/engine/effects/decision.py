@@ -41,6 +41,8 @@ class PairFacts(NamedTuple):
     friction: float = 0.0
     torsional_friction: float = 0.0  # [m]
     rolling_friction: float = 0.0  # [m]
+    shape_pair: str = ""  # name of the manifold
+    row_pairs: int = 1  # how many pairs it stands for
 
     @property
     def resists_turning(self) -> bool:
