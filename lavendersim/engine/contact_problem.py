@@ -1,0 +1,48 @@
+"""One step's contacts as a problem of their own: what a solver is asked, and what it answers.
+
+    u = W r + free + target e_n,   w = u + gamma r_n e_n          per contact, frame (n, t1, t2)
+    0 <= r_n  complementary to  w_n >= 0
+    |r_t| <= mu r_n,  and where w_t is not 0:  r_t = -mu r_n w_t / |w_t|
+r are impulses on B, u the velocity of B relative to A. W is the Delassus operator J M^-1 J^T, kept
+by 3x3 blocks, column by column: W of files written by others need not be symmetric to the last
+digit, and is solved as it stands.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+
+class ContactProblem(NamedTuple):
+    """n contacts, m stored blocks of W."""
+
+    begin: np.ndarray  # (n + 1,) int64, where the blocks of a column start
+    row: np.ndarray  # (m,) int64, block row, ascending within a column; the diagonal is stored
+    blocks: np.ndarray  # (m, 3, 3) [1/kg] entry [i, j] maps impulse j of the column to velocity i
+    free: np.ndarray  # (n, 3) [m/s] velocities without any impulse
+    mu: np.ndarray  # (n,) [-]
+    gamma: np.ndarray  # (n,) [1/kg] softness of the normal rows
+    target: np.ndarray  # (n,) [m/s] added to the normal velocity
+
+    @property
+    def contacts(self) -> int:
+        """How many contacts the problem has."""
+        return len(self.mu)
+
+
+class Solution(NamedTuple):
+    """What a solver leaves."""
+
+    impulses: np.ndarray  # (n, 3) [N s]
+    sweeps: int  # sweeps, or steps of methods that make none
+    history: np.ndarray  # (k,) `scaled` residual at the start and after every sweep; or empty
+    status: str  # SOLVED, or why not
+    scaled: float  # residual of `impulses`, see `problems.residual` [-]
+    local: float  # the same with each contact's own scale [-]
+
+
+SOLVED = "solved"
+SPENT = "all sweeps spent"
+NOT_FINITE = "no longer finite"
