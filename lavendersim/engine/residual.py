@@ -17,6 +17,7 @@ from .block import make_relative_velocity
 from .compile import kernel
 from .contact import make_smooth_velocity
 from .effects.smooth_contact import by_roughness
+from .scaled_residual import make_scaled_residual
 from .spec import Spec
 from .spin_block import make_spin_residual, resists_turning
 
@@ -88,7 +89,12 @@ def _make_rough_residual(spec: Spec):
 
 
 def make_residual(spec: Spec):
-    """Return `kernel(contacts, count, velocities) -> (largest residual [m/s], its contact)`."""
+    """Return `kernel(contacts, count, velocities) -> (largest residual [m/s], its contact)`.
+
+    Of a problem stated by its matrix: the residual without units (`scaled_residual`).
+    """
+    if spec.operator == "matrix":
+        return make_scaled_residual(spec)
     row_residual = make_row_residual(spec)
 
     def residual(contacts, count, velocities):

@@ -18,6 +18,7 @@ class Spec(NamedTuple):
     solver: name from `engine.solvers.SOLVERS`.
     tolerance: whether sweeping stops at a residual.
     friction_cone: disc, or pyramid (|lambda_1|, |lambda_2| <= mu lambda_n, for study).
+    operator: what impulses act on: bodies, or the matrix of a problem by itself (`coupling`).
     """
 
     effects: tuple[str, ...] = ()
@@ -25,6 +26,7 @@ class Spec(NamedTuple):
     solver: str = "projected_gauss_seidel"
     tolerance: bool = False
     friction_cone: str = "disc"
+    operator: str = "bodies"
 
     def has(self, effect: str) -> bool:
         """Whether `effect` is part of this engine."""

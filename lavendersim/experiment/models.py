@@ -49,7 +49,13 @@ class Event(ConfigModel):
 
 Count = Annotated[int, Quantity(whole=True, minimum=1, maximum=1_000_000)]
 CountOrNone = Annotated[int, Quantity(whole=True, minimum=0, maximum=1_000_000)]
-Solver = Literal["projected_gauss_seidel", "nonsmooth_conjugate_gradient", "adaptive"]
+Solver = Literal[
+    "projected_gauss_seidel",
+    "nonsmooth_conjugate_gradient",
+    "jacobi",
+    "accelerated_projected_gradient",
+    "adaptive",
+]
 Impacts = Literal["captured", "at_surface"]
 Integrator = Literal["semi_implicit_euler", "midpoint"]
 FrictionCone = Literal["disc", "pyramid"]

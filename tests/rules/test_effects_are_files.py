@@ -51,6 +51,9 @@ ELSEWHERE = {
         "engine/residual.py": ROW,
         "engine/solvers/row_update.py": ROW,
         "engine/solvers/newton_rows.py": ROW,
+        "engine/solvers/jacobi.py": ROW,
+        "engine/solvers/step_bound.py": ROW,
+        "engine/solvers/accelerated_projected_gradient.py": ROW,
     },
     "restitution": {
         "engine/effects/decision.py": FACT,

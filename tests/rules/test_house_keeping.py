@@ -27,6 +27,7 @@ SHARED_BY_PAIRS = {
 }
 SHARED_BY_SOLVERS = {
     "row_update",
+    "step_bound",
     "sweep",
     "newton",
     "newton_minimise",

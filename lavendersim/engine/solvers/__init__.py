@@ -4,10 +4,18 @@ A solver's module has `make(spec) -> kernel` and, where it needs them, CONTACT_F
 (columns per contact) and `allocate(spec, bodies, contacts)` (arrays it works in).
 """
 
-from . import adaptive, nonsmooth_conjugate_gradient, projected_gauss_seidel
+from . import (
+    accelerated_projected_gradient,
+    adaptive,
+    jacobi,
+    nonsmooth_conjugate_gradient,
+    projected_gauss_seidel,
+)
 
 SOLVERS = {
     "projected_gauss_seidel": projected_gauss_seidel,
     "nonsmooth_conjugate_gradient": nonsmooth_conjugate_gradient,
+    "jacobi": jacobi,
+    "accelerated_projected_gradient": accelerated_projected_gradient,
     "adaptive": adaptive,
 }

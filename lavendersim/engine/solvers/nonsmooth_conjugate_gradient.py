@@ -15,7 +15,7 @@ thing done is always a sweep, so impulses end inside their cones.
 from __future__ import annotations
 
 from ..compile import kernel
-from ..contact import make_apply_block
+from ..coupling import make_add_impulse
 from ..residual import make_residual
 from ..spec import Spec
 from .sweep import make_account, make_note, make_sweep
@@ -32,11 +32,14 @@ PLAIN_SWEEPS = 8
 
 
 def make_move_on(spec: Spec):
-    """Return `kernel(contact, va, vb, share)`: lambda += share p, p <- share p + last change."""
-    friction = spec.has("friction")
-    apply_block = make_apply_block(spec)
+    """Return `kernel(contact, contacts, velocities, share)`: a step along the last direction.
 
-    def move_on(contact, va, vb, share):
+    lambda += share p, then p <- share p + last change.
+    """
+    friction = spec.has("friction")
+    add_impulse = make_add_impulse(spec)
+
+    def move_on(contact, contacts, velocities, share):
         step = share * contact.path_n
         contact.path_n = step + contact.lambda_n - contact.start_n
         contact.lambda_n += step
@@ -48,7 +51,7 @@ def make_move_on(spec: Spec):
             contact.lambda_1 += step_1
             contact.lambda_2 += step_2
         if share > 0.0:
-            apply_block(contact, va, vb, step, step_1, step_2)
+            add_impulse(contact, contacts, velocities, step, step_1, step_2)
 
     return kernel(move_on, spec)
 
@@ -116,7 +119,7 @@ def make(spec: Spec):
                             contact.path_n = 0.0
                             if friction:
                                 contact.path_1, contact.path_2 = 0.0, 0.0
-                        move_on(contact, velocities[contact.a], velocities[contact.b], share)
+                        move_on(contact, contacts, velocities, share)
                 previous, fresh = squared, False
         if not measured:
             largest, worst = residual(contacts, count, velocities)

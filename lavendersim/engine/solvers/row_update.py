@@ -14,19 +14,21 @@ from __future__ import annotations
 
 from math import sqrt
 
-from ..block import make_relative_velocity
 from ..compile import kernel
-from ..contact import make_apply_all, make_smooth_impulse, make_smooth_velocity
+from ..contact import make_smooth_impulse, make_smooth_velocity
+from ..coupling import make_add_rough, make_rough_velocity
 from ..effects.smooth_contact import by_roughness
 from ..spec import Spec
 from ..spin_block import make_solve_spin, resists_turning
 
 
 def make_solve_contact_velocity(spec: Spec):
-    """Return `kernel(contact, va, vb) -> change`: one projected, compliant update.
+    """Return `kernel(contact, contacts, velocities) -> change`: one projected, compliant update.
 
     change: the largest change of the contact's velocity that the update makes [m/s].
     """
+    if spec.operator == "matrix":
+        return _make_block(spec)
     return by_roughness(spec, _make_normal, _make_block)
 
 
@@ -35,7 +37,8 @@ def _make_normal(spec: Spec):
     normal_velocity = make_smooth_velocity(spec)
     apply_impulse = make_smooth_impulse(spec)
 
-    def solve_contact_velocity(contact, va, vb):
+    def solve_contact_velocity(contact, contacts, velocities):
+        va, vb = velocities[contact.a], velocities[contact.b]
         w = normal_velocity(contact, va, vb) + contact.target
         lambda_old = contact.lambda_n
         if compliant:
@@ -53,19 +56,11 @@ def _make_normal(spec: Spec):
 def _make_block(spec: Spec):
     compliant = spec.has("compliance")
     pyramid = spec.friction_cone == "pyramid"
-    moving_surface = spec.has("surface_velocity")
     spins, solve_spin = resists_turning(spec), make_solve_spin(spec)
-    relative_velocity = make_relative_velocity(spec)
-    apply_block = make_apply_all(spec)
+    contact_velocity, add_impulse = make_rough_velocity(spec), make_add_rough(spec)
 
-    def solve_contact_block(contact, va, vb):
-        x, y, z = relative_velocity(contact, va, vb)
-        w = contact.nx * x + contact.ny * y + contact.nz * z + contact.target
-        w1 = contact.t1x * x + contact.t1y * y + contact.t1z * z
-        w2 = contact.t2x * x + contact.t2y * y + contact.t2z * z
-        if moving_surface:
-            w1 += contact.surface_1
-            w2 += contact.surface_2
+    def solve_contact_block(contact, contacts, velocities):
+        w, w1, w2 = contact_velocity(contact, velocities)
         old_n, old_1, old_2 = contact.lambda_n, contact.lambda_1, contact.lambda_2
         if compliant:
             w += contact.gamma * old_n
@@ -87,14 +82,14 @@ def _make_block(spec: Spec):
                 new_1, new_2 = new_1 * scale, new_2 * scale
         contact.lambda_n, contact.lambda_1, contact.lambda_2 = new_n, new_1, new_2
         change_1, change_2 = new_1 - old_1, new_2 - old_2
-        apply_block(contact, va, vb, change_n, change_1, change_2)
+        add_impulse(contact, contacts, velocities, change_n, change_1, change_2)
         # In this order a NaN stays.
         change = max(
             max(abs(change_n) * contact.k_n, abs(change_1) * contact.k_t),
             abs(change_2) * contact.k_t,
         )
         if spins:
-            turned = solve_spin(contact, va, vb)
+            turned = solve_spin(contact, velocities[contact.a], velocities[contact.b])
             if turned > change or turned != turned:
                 change = turned
         return change

@@ -15,8 +15,7 @@ def make_sweep(spec: Spec):
         greatest = 0.0
         for c in range(count):
             contact = contacts[order[c]]
-            va, vb = velocities[contact.a], velocities[contact.b]
-            change = solve_contact_velocity(contact, va, vb)
+            change = solve_contact_velocity(contact, contacts, velocities)
             # A NaN is greater than anything.
             if change > greatest or change != change:
                 greatest = change

@@ -1,0 +1,86 @@
+"""A contact problem enters; records that solvers work on, and the kernel that starts one, leave."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from .compile import kernel
+from .contact_problem import ContactProblem
+from .coupling import MATRIX_CONTACT, Coupling
+from .records import dtype
+from .solvers import SOLVERS
+from .spec import Spec
+
+
+def columns_of_blocks(problem: ContactProblem) -> np.ndarray:
+    """Return the block column of every stored block, shape (m,)."""
+    return np.repeat(np.arange(problem.contacts), np.diff(problem.begin))
+
+
+def multiply(problem: ContactProblem, impulses: np.ndarray) -> np.ndarray:
+    """Return W r, shape (n, 3) [m/s]."""
+    product = np.zeros((problem.contacts, 3))
+    parts = np.einsum("kij,kj->ki", problem.blocks, impulses[columns_of_blocks(problem)])
+    np.add.at(product, problem.row, parts)
+    return product
+
+
+def diagonal_blocks(problem: ContactProblem) -> np.ndarray:
+    """Return the contacts' own blocks of W, shape (n, 3, 3) [1/kg]."""
+    blocks: np.ndarray = problem.blocks[problem.row == columns_of_blocks(problem)]
+    return blocks
+
+
+def coupling_of(problem: ContactProblem) -> Coupling:
+    """Return W with the scales of the problem's residual."""
+    contacts = max(problem.contacts, 1)
+    trace = np.trace(diagonal_blocks(problem), axis1=1, axis2=2).sum() + problem.gamma.sum()
+    q = problem.free.copy()
+    q[:, 0] += problem.target
+    norm = float(np.linalg.norm(q))
+    return Coupling(
+        problem.row, problem.blocks, np.array([trace / (3 * contacts), norm if norm > 0.0 else 1.0])
+    )
+
+
+def contacts_of(problem: ContactProblem, spec: Spec, impulses: np.ndarray) -> np.ndarray:
+    """Return the records of a problem's contacts at given impulses (n, 3) [N s]."""
+    contacts = np.zeros(
+        problem.contacts,
+        dtype(MATRIX_CONTACT, getattr(SOLVERS[spec.solver], "CONTACT_FIELDS", [])),
+    )
+    own = diagonal_blocks(problem)
+    w = multiply(problem, impulses) + problem.free
+    w[:, 0] += problem.target
+    for k, axis in enumerate("n12"):
+        contacts[f"lambda_{axis}"], contacts[f"w_{axis}"] = impulses[:, k], w[:, k]
+    contacts["mu"], contacts["gamma"] = problem.mu, problem.gamma
+    contacts["k_n"], contacts["inv_k"] = own[:, 0, 0], 1.0 / (own[:, 0, 0] + problem.gamma)
+    contacts["k_n1"], contacts["k_n2"] = own[:, 1, 0], own[:, 2, 0]
+    k_11, k_22 = own[:, 1, 1], own[:, 2, 2]
+    k_12 = 0.5 * (own[:, 1, 2] + own[:, 2, 1])
+    scale = 1.0 / (k_11 * k_22 - k_12 * k_12)
+    contacts["i_11"], contacts["i_12"], contacts["i_22"] = k_22 * scale, -k_12 * scale, k_11 * scale
+    half_gap = 0.5 * (k_11 - k_22)
+    contacts["k_t"] = 0.5 * (k_11 + k_22) + np.sqrt(half_gap * half_gap + k_12 * k_12)
+    contacts["begin"], contacts["end"] = problem.begin[:-1], problem.begin[1:]
+    # No step against W that is this stiff can overshoot: Gershgorin's bound, by blocks.
+    size = np.linalg.norm(problem.blocks, axis=(1, 2))
+    rows = np.bincount(problem.row, size, problem.contacts)
+    columns = np.bincount(columns_of_blocks(problem), size, problem.contacts)
+    contacts["bound"] = np.maximum(rows, columns) + problem.gamma
+    return contacts
+
+
+def make_solve(spec: Spec) -> Any:
+    """Return `kernel(contacts, order, coupling, space, parameters, counter, rows)`."""
+    solve = SOLVERS[spec.solver].make(spec)
+
+    def solve_matrix(contacts, order, coupling, space, parameters, counter, rows):
+        count = contacts.shape[0]
+        # Bodies are not known: no kernel of this operator looks at them.
+        solve(contacts, order, count, order, coupling, space, parameters[0], counter[0], rows)
+
+    return kernel(solve_matrix, spec)

@@ -1,0 +1,138 @@
+"""Jacobi: all contacts answer the same velocities, then all impulses act at once.
+
+    r_n <- max(0, r_n - w_n / c),    r_t <- proj(r_t - w_t / c),  |r_t| <= mu r_n
+c is so stiff (`step_bound`) that together they cannot overshoot. Nothing depends on the order, and
+machines with thousands of threads pay for that with some times as many sweeps as Gauss-Seidel.
+What resists turning is swept one after the other.
+"""
+
+from __future__ import annotations
+
+from math import sqrt
+from typing import Any
+
+from ..compile import kernel
+from ..coupling import make_add_impulse, make_contact_velocity
+from ..residual import make_residual
+from ..spec import Spec
+from ..spin_block import make_solve_spin, resists_turning
+from . import step_bound
+from .sweep import make_account, make_note
+
+CONTACT_FIELDS = [
+    *step_bound.CONTACT_FIELDS,
+    ("change_n", "f8"),  # of the impulse, in this sweep [N s]
+    ("change_1", "f8"),
+    ("change_2", "f8"),
+]
+allocate = step_bound.allocate
+# Sweeps between two looks at the residual.
+LOOK = 8
+
+
+def make_answer(spec: Spec) -> Any:
+    """Return `kernel(contact, velocities) -> change` [m/s]: the contact's own new impulse."""
+    friction, compliant = spec.has("friction"), spec.has("compliance")
+    pyramid = spec.friction_cone == "pyramid"
+    contact_velocity = make_contact_velocity(spec)
+
+    def answer(contact, velocities):
+        w, w1, w2 = contact_velocity(contact, velocities)
+        if compliant:
+            w += contact.gamma * contact.lambda_n
+        # In this order a NaN stays.
+        new_n = max(contact.lambda_n - w / contact.bound, 0.0)
+        contact.change_n = new_n - contact.lambda_n
+        contact.lambda_n = new_n
+        change = abs(contact.change_n)
+        if friction:
+            limit = contact.mu * new_n
+            new_1 = contact.lambda_1 - w1 / contact.bound
+            new_2 = contact.lambda_2 - w2 / contact.bound
+            if pyramid:
+                new_1 = min(max(new_1, -limit), limit)
+                new_2 = min(max(new_2, -limit), limit)
+            else:
+                squared = new_1 * new_1 + new_2 * new_2
+                if squared > limit * limit:
+                    scale = limit / sqrt(squared)
+                    new_1, new_2 = new_1 * scale, new_2 * scale
+            contact.change_1 = new_1 - contact.lambda_1
+            contact.change_2 = new_2 - contact.lambda_2
+            contact.lambda_1, contact.lambda_2 = new_1, new_2
+            change = max(change, max(abs(contact.change_1), abs(contact.change_2)))
+        return change * contact.bound
+
+    return kernel(answer, spec)
+
+
+def make_act(spec: Spec) -> Any:
+    """Return `kernel(contacts, count, velocities) -> change` [m/s]: all changes reach velocities.
+
+    change: of what resists turning, which follows; 0 without it.
+    """
+    friction = spec.has("friction")
+    add_impulse = make_add_impulse(spec)
+    spins, solve_spin = resists_turning(spec), make_solve_spin(spec)
+
+    def act(contacts, count, velocities):
+        greatest = 0.0
+        for c in range(count):
+            contact = contacts[c]
+            one, two = 0.0, 0.0
+            if friction:
+                one, two = contact.change_1, contact.change_2
+            if contact.change_n != 0.0 or one != 0.0 or two != 0.0:
+                add_impulse(contact, contacts, velocities, contact.change_n, one, two)
+        if spins:
+            for c in range(count):
+                contact = contacts[c]
+                turned = solve_spin(contact, velocities[contact.a], velocities[contact.b])
+                if turned > greatest or turned != turned:
+                    greatest = turned
+        return greatest
+
+    return kernel(act, spec)
+
+
+def make(spec: Spec) -> Any:
+    """Return `kernel(contacts, order, count, bodies, velocities, space, params, counters, rows)`.
+
+    Writes counters.sweeps, .residual [m/s], .residual_contact and .unsolved of this step.
+    """
+    record_residuals = spec.has("residual_log")
+    note, account = make_note(spec), make_account(spec)
+    residual, bound = make_residual(spec), step_bound.make_bound(spec)
+    answer, act = make_answer(spec), make_act(spec)
+
+    def jacobi(contacts, order, count, bodies, velocities, space, params, counters, rows):
+        bound(contacts, count, space)
+        largest, worst = residual(contacts, count, velocities)
+        sweeps, measured = 0, True
+        if record_residuals:
+            note(params, counters, rows, 0, largest)
+        while sweeps < params.sweeps:
+            if measured and largest <= params.tolerance:
+                break
+            greatest = 0.0
+            for c in range(count):
+                change = answer(contacts[c], velocities)
+                # A NaN is greater than anything.
+                if change > greatest or change != change:
+                    greatest = change
+            turned = act(contacts, count, velocities)
+            if turned > greatest or turned != turned:
+                greatest = turned
+            sweeps += 1
+            measured = record_residuals or greatest <= params.tolerance or sweeps % LOOK == 0
+            if measured:
+                largest, worst = residual(contacts, count, velocities)
+            if record_residuals:
+                note(params, counters, rows, sweeps, largest)
+            if greatest == 0.0 or greatest != greatest:
+                break
+        if not measured:
+            largest, worst = residual(contacts, count, velocities)
+        account(params, counters, sweeps, largest, worst)
+
+    return kernel(jacobi, spec)

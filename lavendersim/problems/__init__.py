@@ -1,0 +1,1 @@
+"""Outside problems enter; solutions, judged by their residuals, leave."""

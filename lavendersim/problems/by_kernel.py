@@ -1,0 +1,71 @@
+"""A contact problem enters, a solver's kernel of the engine runs on it, its solution leaves.
+
+The kernels are composed for the operator `matrix` (`engine.coupling`); nothing else differs from
+what they do in a scene.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from lavendersim.engine.compile import compiling
+from lavendersim.engine.contact_problem import NOT_FINITE, SOLVED, SPENT, ContactProblem, Solution
+from lavendersim.engine.effects.residual_log import RESIDUAL_ROW_FIELDS
+from lavendersim.engine.kernel_cache import cached
+from lavendersim.engine.matrix_problem import contacts_of, coupling_of, make_solve
+from lavendersim.engine.records import COUNTERS, PARAMETERS, dtype
+from lavendersim.engine.solvers import SOLVERS
+from lavendersim.engine.spec import Spec
+
+from .residual import residual
+
+
+def spec_of(solver: str, history: bool = False, friction_cone: str = "disc") -> Spec:
+    """Return the structure of a solver that runs by itself."""
+    effects = ("compliance", "friction", *(("residual_log",) if history else ()))
+    return Spec(effects, (), solver, True, friction_cone, "matrix")
+
+
+@cache
+def _kernel(spec: Spec) -> Any:
+    return cached(make_solve, spec)
+
+
+def solve_by_kernel(
+    problem: ContactProblem,
+    solver: str,
+    tolerance: float = 1e-8,
+    sweeps: int = 10_000,
+    start: np.ndarray | None = None,
+    history: bool = False,
+    friction_cone: str = "disc",
+) -> Solution:
+    """Solve a problem by a kernel of `engine.solvers.SOLVERS`.
+
+    tolerance: `scaled` residual at which it stops [-], below 0: never; start: impulses (n, 3) to
+    begin at [N s]; history: keep the residual at the start and after every sweep.
+    The kernel's own residual carries the round-off of all its sweeps; the last word is taken from
+    the impulses alone.
+    """
+    spec = spec_of(solver, history, friction_cone)
+    first = np.zeros((problem.contacts, 3)) if start is None else start
+    contacts = contacts_of(problem, spec, first)
+    params, counters = np.zeros(1, dtype(PARAMETERS)), np.zeros(1, dtype(COUNTERS))
+    params["tolerance"], params["sweeps"] = tolerance, sweeps
+    params["residuals_from"] = params["residuals_to"] = 1
+    rows = np.zeros(sweeps + 1 if history else 0, dtype(RESIDUAL_ROW_FIELDS))
+    order = np.arange(problem.contacts)
+    allocate = getattr(SOLVERS[solver], "allocate", None)
+    space = allocate(spec, 0, problem.contacts) if allocate else ()
+    with compiling():
+        _kernel(spec)(contacts, order, coupling_of(problem), space, params, counters, rows)
+    impulses = np.stack([contacts[f"lambda_{k}"] for k in "n12"], axis=1)
+    judged = residual(problem, impulses)
+    status = SOLVED if judged.scaled <= max(tolerance, 0.0) else SPENT
+    if not np.isfinite(impulses).all():
+        status = NOT_FINITE
+    told = rows["residual"][: int(counters["residual_rows"][0])].copy()
+    return Solution(impulses, int(counters["sweeps"][0]), told, status, judged.scaled, judged.local)
