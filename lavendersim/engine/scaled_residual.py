@@ -2,7 +2,7 @@
 
     | c r - P_K(c r - uh) | / |q|,   uh = w + mu |w_t| e_n,   c = tr W / 3n
 over all rows; P_K projects onto Coulomb's cone. Zero exactly at a solution (De Saxce's form of the
-law), the same for permuted contacts, turned tangents and other units. Where q = 0 it is not divided:
+law), the same for permuted contacts, turned tangents, other units. Where q = 0 it is not divided:
 no impulse solves such a problem.
 """
 
