@@ -40,6 +40,12 @@ class ConfigError(LavenderError):
         super().__init__("\n".join(str(defect) for defect in self.defects))
 
 
+class ProblemError(LavenderError):
+    """A file that states a contact problem is not what its format says, or cannot be read."""
+
+    exit_code = 2
+
+
 class MissingDriverError(LavenderError):
     """Something outside Python (a graphics driver, a viewer) is not installed."""
 

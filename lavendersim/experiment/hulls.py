@@ -35,7 +35,7 @@ class FlatError(ValueError):
 def convex_hull(points: Sequence[Vector3]) -> Polyhedron:
     """Return the hull of points [m]; raises FlatError for points without a volume."""
     # 0.2 s that only scenes with hulls wait for
-    from scipy.spatial import ConvexHull, QhullError  # type: ignore[import-untyped]
+    from scipy.spatial import ConvexHull, QhullError
 
     extent = max(max(column) - min(column) for column in zip(*points, strict=True))
     try:

@@ -17,20 +17,28 @@ ROOMS = {
     "engine": set(),
     "scene": {"errors", "experiment", "engine"},
     "trace": {"errors"},
+    "problems": {"errors", "engine"},
     "measures": {"errors", "experiment", "trace"},
     "figures": {"errors", "experiment", "trace", "measures"},
     "replay": {"errors", "trace", "measures"},
     "simulator": {"errors", "experiment", "scene", "engine"},
     "runner": {"errors", "experiment", "scene", "engine", "trace", "measures"},
     "pytest_plugin": {"errors", "experiment", "trace", "measures", "runner"},
-    "cli": {"errors", "experiment", "scene", "trace", "measures", "figures", "replay", "runner"},
+    "cli": {
+        *("errors", "experiment", "scene", "trace", "measures", "figures", "replay", "runner"),
+        "problems",
+    },
 }
 # Who may import a library of others; what is not listed is imported by nobody.
 LIBRARIES = {
     "numba": {"engine"},
     "llvmlite": {"engine"},
-    "numpy": {"scene", "engine", "trace", "measures", "figures", "replay", "simulator", "runner"},
-    "scipy": {"experiment"},  # hulls, and only where a scene has one
+    "numpy": {
+        *("scene", "engine", "trace", "measures", "figures", "replay", "simulator", "runner"),
+        "problems",
+    },
+    "scipy": {"experiment", "problems"},  # hulls, where a scene has one; sparse matrices
+    "h5py": {"problems"},
     "mcap": {"trace"},
     "google": {"trace"},  # google.protobuf
     "zstandard": {"trace"},
@@ -77,6 +85,12 @@ def test_a_library_is_known_to_its_rooms_only(library: str) -> None:
         if found.target == library and found.room not in LIBRARIES[library]
     ]
     assert strangers == []
+
+
+def test_one_file_knows_the_format_of_fclib() -> None:
+    """h5py is an extra: without it every other file must still work."""
+    files = {str(found.file) for found in IMPORTS if found.target == "h5py"}
+    assert files == {"lavendersim/problems/fclib.py"}
 
 
 def test_no_other_library_is_imported() -> None:

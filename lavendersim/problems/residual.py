@@ -1,0 +1,149 @@
+"""A problem and impulses in; how far they are from a solution, free of units, out.
+
+    u  = W r + q                      with gamma on W's normal diagonal and q = free + target e_n
+    uh = u + mu |u_t| e_n             De Saxce and Feng, 1998: then  K* > uh  perp  r in K
+    natural map, per contact:         c r - P_K(c r - uh)                                   [m/s]
+    scaled = | natural map | / |q|    with c = tr W / 3n, the same for all contacts
+    local  = | natural map | / |q|    with c = tr W_ii / 3, each contact's own
+K is the cone |r_t| <= mu r_n and P_K the nearest point of it. Both are zero exactly at a solution,
+and unchanged when contacts are numbered otherwise, tangents turned or units changed: c r, uh and q
+are velocities. The lengths run over all rows. Where q = 0, no impulse is the solution and there is
+no velocity to compare with: 0 for a natural map of exactly 0, otherwise infinite.
+
+Parts, each as the largest over the contacts, with c the contact's own, all in m/s:
+    natural      | c r - P_K(c r - uh) |
+    signorini    | min(c r_n, u_n) |
+    cone         c | r - P_K(r) |
+    dissipation  | c r_t - P_D(c r_t - u_t) |   D: the disc of radius c mu r_n. It is zero where
+                 friction dissipates the most it can, Moreau's principle
+Numpy alone, no line of the solvers: this judges them.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from lavendersim.engine.contact_problem import ContactProblem
+from lavendersim.problems.matrices import columns_of, velocities_of
+
+
+class Part(NamedTuple):
+    """The largest violation of one law and who has it."""
+
+    largest: float  # [m/s]
+    contact: int
+
+
+class Residual(NamedTuple):
+    """How far impulses are from a solution."""
+
+    scaled: float  # [-]
+    local: float  # [-]
+    natural: Part
+    signorini: Part
+    cone: Part
+    dissipation: Part
+
+
+def residual(problem: ContactProblem, impulses: np.ndarray) -> Residual:
+    """Judge `impulses` (n, 3) [N s]; what is not finite is infinitely far."""
+    own = own_scales(problem)
+    common = np.full(len(own), own.sum() / max(len(own), 1))
+    with np.errstate(over="ignore", invalid="ignore"):
+        u = contact_velocities(problem, impulses)
+        maps = [natural_map(scale, impulses, u, problem.mu) for scale in (common, own)]
+        normal = own * impulses[:, 0]
+        nearest = project_on_cone(impulses, problem.mu)
+        parts = (
+            np.linalg.norm(maps[1], axis=1),
+            np.abs(np.minimum(normal, u[:, 0])),
+            own * np.linalg.norm(impulses - nearest, axis=1),
+            _missing_dissipation(own, impulses, u, problem.mu),
+        )
+        q = _length(velocities_of(problem))
+        scaled, local = (_ratio(_length(each), q) for each in maps)
+        return Residual(scaled, local, *map(_worst, parts))
+
+
+def own_scales(problem: ContactProblem) -> np.ndarray:
+    """Return c = tr W_ii / 3 of every contact, (n,) [1/kg]."""
+    diagonal = problem.blocks[problem.row == columns_of(problem)]
+    scales: np.ndarray = (np.trace(diagonal, axis1=1, axis2=2) + problem.gamma) / 3.0
+    return scales
+
+
+def contact_velocities(problem: ContactProblem, impulses: np.ndarray) -> np.ndarray:
+    """Return u, (n, 3) [m/s], with what softness and targets add to its normal rows."""
+    u = velocities_of(problem)
+    u[:, 0] += problem.gamma * impulses[:, 0]
+    pushed = np.einsum("mij,mj->mi", problem.blocks, impulses[columns_of(problem)])
+    np.add.at(u, problem.row, pushed)
+    return u
+
+
+def natural_map(
+    scales: np.ndarray, impulses: np.ndarray, u: np.ndarray, mu: np.ndarray
+) -> np.ndarray:
+    """Return c r - P_K(c r - uh), (n, 3) [m/s]; `scales` (n,) [1/kg]."""
+    held = scales[:, None] * impulses
+    shifted = u.copy()
+    shifted[:, 0] += mu * np.linalg.norm(u[:, 1:], axis=1)
+    missed: np.ndarray = held - project_on_cone(held - shifted, mu)
+    return missed
+
+
+def project_on_cone(points: np.ndarray, mu: np.ndarray) -> np.ndarray:
+    """Return the nearest points of |x_t| <= mu x_n, (n, 3); `mu` (n,)."""
+    normal, sides = points[:, 0], points[:, 1:]
+    side = np.linalg.norm(sides, axis=1)
+    inside = side <= mu * normal
+    beneath = mu * side <= -normal  # in the polar cone: the apex is nearest
+    # Else on the surface, along its generator (cos, sin) in the plane of normal and side.
+    hypotenuse = np.hypot(1.0, mu)
+    cos, sin = 1.0 / hypotenuse, mu / hypotenuse
+    along = cos * normal + sin * side
+    turned = np.where(side > 0.0, sin * along / np.where(side > 0.0, side, 1.0), 0.0)
+    on_surface = np.column_stack([cos * along, turned[:, None] * sides])
+    projected: np.ndarray = np.where(
+        inside[:, None], points, np.where(beneath[:, None], 0.0, on_surface)
+    )
+    # A NaN fails every comparison and must not come out as a place on the cone.
+    projected[~np.isfinite(points).all(axis=1)] = np.nan
+    return projected
+
+
+def _missing_dissipation(
+    scales: np.ndarray, impulses: np.ndarray, u: np.ndarray, mu: np.ndarray
+) -> np.ndarray:
+    held = scales[:, None] * impulses[:, 1:]
+    radius = mu * scales * np.maximum(impulses[:, 0], 0.0)
+    wanted = held - u[:, 1:]
+    length = np.linalg.norm(wanted, axis=1)
+    shrink = np.where(length > radius, radius / np.where(length > 0.0, length, 1.0), 1.0)
+    missing: np.ndarray = np.linalg.norm(held - shrink[:, None] * wanted, axis=1)
+    return missing
+
+
+def _length(rows: np.ndarray) -> float:
+    """Return the Euclidean length of all numbers; squares of small units would underflow."""
+    largest = float(np.max(np.abs(rows), initial=0.0))
+    if largest == 0.0 or not np.isfinite(largest):
+        return largest
+    return largest * float(np.linalg.norm(rows / largest))
+
+
+def _ratio(length: float, q: float) -> float:
+    if not np.isfinite(length):
+        return float("inf")
+    if q > 0.0:
+        return length / q
+    return 0.0 if length == 0.0 else float("inf")
+
+
+def _worst(violations: np.ndarray) -> Part:
+    if len(violations) == 0:
+        return Part(0.0, -1)
+    contact = int(np.argmax(violations))  # a NaN counts as the largest
+    return Part(float(violations[contact]), contact)
