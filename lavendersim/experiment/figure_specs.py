@@ -83,6 +83,11 @@ class MeasureAgainstAxis(_Panel):
         default=None, description="numbers below are round-off and drawn at this height"
     )
     onsets: tuple[Onset, ...] = Field(default=(), description="crossings to mark")
+    orders: tuple[Annotated[float, Quantity(above=0)], ...] = Field(
+        default=(),
+        description="slopes drawn for comparison: y as this power of x, through the last point of "
+        "the first series [-]",
+    )
 
 
 class RowAgainstIndex(_Panel):
@@ -135,8 +140,42 @@ class FreeRotation(_Panel):
     )
 
 
+class MeasureByName(_Panel):
+    """A measure for every value of an axis, names or numbers one below the other."""
+
+    kind: Literal["measure_by_name"]
+    measure: MeasureName = Field(description="the measure on the x axis; its largest of several")
+    axis: AxisName = Field(description="the swept axis whose values stand on the y axis")
+    floor: Number | None = Field(
+        default=None, description="numbers below are round-off and drawn at this place"
+    )
+    factor: Number = Field(default=1.0, description="multiplies the measure for display")
+    y_scale: Literal["linear"] = Field(default="linear", description="values stand side by side")
+
+
+class StabilityMap(_Panel):
+    """How far one axis can go before a bound breaks, over two others, as colours with numbers."""
+
+    kind: Literal["stability_map"]
+    axis: AxisName = Field(description="the swept axis on the x axis")
+    rows: AxisName = Field(description="the swept axis on the y axis")
+    find: Literal["largest", "least"] = Field(
+        description="largest or least value of `of` up to which, from its other end, every cell "
+        "ran to its end and kept the bound"
+    )
+    of: AxisName = Field(description="the swept axis whose limit is shown")
+    measure: MeasureName = Field(description="the measure that is bounded")
+    at_most: Number = Field(description="the bound, in the measure's unit")
+    default: Selection = Field(
+        default_factory=dict, description="the place to be marked: a value of `axis` or `rows`"
+    )
+    x_scale: Literal["linear"] = Field(default="linear", description="values stand side by side")
+    y_scale: Literal["linear"] = Field(default="linear", description="values stand side by side")
+
+
 PanelSpec = Annotated[
-    MeasureAgainstAxis | RowAgainstIndex | TimeSeries | FreeRotation, Field(discriminator="kind")
+    MeasureAgainstAxis | RowAgainstIndex | TimeSeries | FreeRotation | MeasureByName | StabilityMap,
+    Field(discriminator="kind"),
 ]
 
 

@@ -10,8 +10,8 @@ import numpy as np
 from lavendersim.experiment.figure_specs import MeasureAgainstAxis
 from lavendersim.figures.drawing import draw_band, draw_ideal, ticks_at_values
 from lavendersim.figures.ideal import ideal_line
-from lavendersim.figures.series import band_along, series_of, swept_path
-from lavendersim.figures.style import DARK, look
+from lavendersim.figures.series import Band, band_along, series_of, swept_path
+from lavendersim.figures.style import DARK, GREY, look
 from lavendersim.measures.sweep_judgements import along_axis, first_rise
 from lavendersim.measures.values import Values
 from lavendersim.measures.views import Cell
@@ -28,6 +28,22 @@ def marker_size(index: int, count: int) -> float:
 def _lifted(panel: MeasureAgainstAxis, number: float) -> float:
     """Return a number, or the floor for one that is round-off; NaN stays."""
     return float(number) if panel.floor is None else float(np.maximum(number, panel.floor))
+
+
+def _draw_orders(axes: Any, orders: Sequence[float], band: Band) -> None:
+    """Draw lines of given slopes through the mean at the greatest place."""
+    if not len(band.places):
+        return
+    for index, order in enumerate(orders):
+        axes.plot(
+            band.places,
+            band.mean[-1] * (band.places / band.places[-1]) ** order,
+            color=GREY,
+            linewidth=1.1,
+            linestyle=((0, (1, 1.5)), (0, (6, 2)), (0, (5, 2, 1, 2)))[index % 3],
+            label=f"order {order:g}",
+            zorder=1,
+        )
 
 
 def draw_panel(
@@ -60,6 +76,8 @@ def draw_panel(
                 drawn.add(key)
         draw_band(axes, band, look(index), series.label, size=marker_size(index, len(all_series)))
         ticks_at_values(axes, band.places)
+        if index == 0:
+            _draw_orders(axes, panel.orders, band)
     for index, onset in enumerate(panel.onsets):
         stations = along_axis(shown, values.of(panel.measure), panel.axis, onset.reduce)
         place = first_rise(*stations, onset.level / panel.factor) * panel.x_factor

@@ -11,6 +11,7 @@ from lavendersim.figures.series import Band
 from lavendersim.figures.style import DARK, GREY, Look
 
 FEW_TICKS = 8
+MANY_MARKERS = 50  # on one line: more would hide it, so every so manyth is drawn
 TWO_DECADES = 100.0
 
 
@@ -57,6 +58,7 @@ def draw_band(
         markersize=size,
         markeredgecolor="white",
         markeredgewidth=0.6,
+        markevery=1 + len(band.places) // MANY_MARKERS if joined else None,
         label=label,
         zorder=3,
     )

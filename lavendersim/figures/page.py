@@ -18,8 +18,16 @@ from matplotlib.textpath import TextPath
 
 from lavendersim.errors import TraceError
 from lavendersim.experiment.figure_specs import FigureSpec
-from lavendersim.figures import against_axis, row_against_index, spinning_top, time_series
+from lavendersim.figures import (
+    against_axis,
+    by_name,
+    row_against_index,
+    spinning_top,
+    stability_map,
+    time_series,
+)
 from lavendersim.figures.drawing import dress, legend, limit
+from lavendersim.figures.series import series_of
 from lavendersim.figures.style import DPI, LINE_HEIGHT, PANEL_HEIGHT, PANEL_WIDTH, STYLE
 from lavendersim.measures.selection import select
 from lavendersim.measures.values import Values
@@ -30,10 +38,14 @@ PANELS: Final[dict[str, Callable[..., None]]] = {
     "row_against_index": row_against_index.draw_panel,
     "time_series": time_series.draw_panel,
     "free_rotation": spinning_top.draw_panel,
+    "measure_by_name": by_name.draw_panel,
+    "stability_map": stability_map.draw_panel,
 }
 POINTS_PER_INCH: Final = 72.0
 HINTING: Final = 0.93  # letters placed on whole pixels run wider than their outlines
 MARGIN: Final = 0.12  # [inch]
+FEW_ENTRIES: Final = 4  # of a legend that finds room among the lines
+ENTRY_WIDTH: Final = 3.2  # [inch] of an entry as long as the name of a solver
 NARROWEST: Final = 6.8  # [inch] a single panel is wider, for its caption
 
 
@@ -66,7 +78,10 @@ def compose(experiment: Any, cells: Sequence[Cell]) -> Figure:
     width = max(NARROWEST, PANEL_WIDTH * len(spec.panels))
     caption = wrapped(spec.caption + note, width)
     question = wrapped(experiment.question, width, weight="bold")
-    below = LINE_HEIGHT * (caption.count("\n") + 1) + 2 * MARGIN
+    entries = _shared_entries(spec, readable)
+    rows = -(-entries // _columns(width))
+    beneath = LINE_HEIGHT * (caption.count("\n") + 1) + 2 * MARGIN
+    below = beneath + (LINE_HEIGHT * rows + MARGIN if rows else 0.0)
     above = LINE_HEIGHT * (question.count("\n") + 1) + 2 * MARGIN if question else MARGIN
     height = PANEL_HEIGHT + below + above
     figure = Figure(figsize=(width, height))
@@ -77,11 +92,47 @@ def compose(experiment: Any, cells: Sequence[Cell]) -> Figure:
     left = MARGIN / width
     figure.text(left, 1.0 - MARGIN / height, question, va="top", weight="bold")
     figure.text(left, MARGIN / height, caption, va="bottom", linespacing=1.25)
-    _draw_panels(figure, experiment, readable)
+    _draw_panels(figure, experiment, readable, shared=entries > 0)
+    if entries:
+        _draw_shared_legend(figure, width, beneath / height)
     return figure
 
 
-def _draw_panels(figure: Figure, experiment: Any, cells: Sequence[Cell]) -> None:
+def _shared_entries(spec: FigureSpec, cells: Sequence[Cell]) -> int:
+    """Return how many entries a legend beneath all panels has; 0 where each panel has its own.
+
+    Panels of the same many series would hide their lines behind their legends.
+    """
+    split = {panel.series for panel in spec.panels}
+    if len(split) != 1 or None in split:
+        return 0
+    entries = len(series_of(cells, spec.panels[0].series))
+    return entries if entries > FEW_ENTRIES else 0
+
+
+def _columns(width: float) -> int:
+    return max(1, int(width / ENTRY_WIDTH))
+
+
+def _draw_shared_legend(figure: Figure, width: float, bottom: float) -> None:
+    named: dict[str, Any] = {}
+    for axes in figure.axes:
+        handles, labels = axes.get_legend_handles_labels()
+        for handle, label in zip(handles, labels, strict=True):
+            named.setdefault(label, handle)
+    legend = figure.legend(
+        list(named.values()),
+        list(named),
+        loc="lower center",
+        bbox_to_anchor=(0.5, bottom),
+        ncols=_columns(width),
+        borderaxespad=0.0,
+        borderpad=0.0,
+    )
+    legend.set_in_layout(False)  # its room is part of the page's height
+
+
+def _draw_panels(figure: Figure, experiment: Any, cells: Sequence[Cell], shared: bool) -> None:
     values = Values(experiment.measures)
     panels = experiment.figure.panels
     for axes, panel in zip(figure.subplots(1, len(panels), squeeze=False)[0], panels, strict=True):
@@ -90,7 +141,8 @@ def _draw_panels(figure: Figure, experiment: Any, cells: Sequence[Cell]) -> None
         shown = select(cells, panel.at, measure.at if measure is not None else {})
         PANELS[panel.kind](axes, panel, shown, values, experiment)
         limit(axes, panel)
-        legend(axes)
+        if not shared:
+            legend(axes)
 
 
 def _is_readable(cell: Cell) -> bool:

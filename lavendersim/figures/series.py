@@ -40,11 +40,20 @@ def series_of(cells: Sequence[Cell], axis: str | None, label: str = "") -> list[
     if axis is None:
         return [Series("measured", list(cells))] if cells else []
     template = label or axis.replace("_", " ") + " = {}"
+    split = by_value([cell for cell in cells if axis in cell.coordinates], axis)
+    return [
+        # Names of solvers are read, not typed, in a figure.
+        Series(template.replace("{}", value.replace("_", " ")), members)
+        for value, members in split.items()
+    ]
+
+
+def by_value(cells: Sequence[Cell], axis: str) -> dict[str, list[Cell]]:
+    """Return cells by the written value of an axis that all of them have, in their order."""
     split: dict[str, list[Cell]] = {}
     for cell in cells:
-        if axis in cell.coordinates:
-            split.setdefault(written(cell.coordinates[axis]), []).append(cell)
-    return [Series(template.replace("{}", value), members) for value, members in split.items()]
+        split.setdefault(written(cell.coordinates[axis]), []).append(cell)
+    return split
 
 
 def band_along(
