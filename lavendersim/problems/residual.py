@@ -97,14 +97,15 @@ def natural_map(
 def project_on_cone(points: np.ndarray, mu: np.ndarray) -> np.ndarray:
     """Return the nearest points of |x_t| <= mu x_n, (n, 3); `mu` (n,)."""
     normal, sides = points[:, 0], points[:, 1:]
-    side = np.linalg.norm(sides, axis=1)
-    inside = side <= mu * normal
-    beneath = mu * side <= -normal  # in the polar cone: the apex is nearest
-    # Else on the surface, along its generator (cos, sin) in the plane of normal and side.
-    hypotenuse = np.hypot(1.0, mu)
-    cos, sin = 1.0 / hypotenuse, mu / hypotenuse
-    along = cos * normal + sin * side
-    turned = np.where(side > 0.0, sin * along / np.where(side > 0.0, side, 1.0), 0.0)
+    side = np.hypot(sides[:, 0], sides[:, 1])
+    with np.errstate(over="ignore", invalid="ignore"):
+        inside = side <= mu * normal
+        beneath = mu * side <= -normal  # in the polar cone: the apex is nearest
+        # Else on the surface, along its generator (cos, sin) in the plane of normal and side.
+        hypotenuse = np.hypot(1.0, mu)
+        cos, sin = 1.0 / hypotenuse, mu / hypotenuse
+        along = cos * normal + sin * side
+        turned = sin * along / np.where(side > 0.0, side, 1.0)
     on_surface = np.column_stack([cos * along, turned[:, None] * sides])
     projected: np.ndarray = np.where(
         inside[:, None], points, np.where(beneath[:, None], 0.0, on_surface)
