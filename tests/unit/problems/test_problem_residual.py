@@ -9,7 +9,7 @@ from made_problems import random_problem
 from scipy import sparse
 
 from lavendersim.problems.matrices import problem_of
-from lavendersim.problems.residual import residual
+from lavendersim.problems.residual import distances, residual
 
 EPS = np.finfo(float).eps
 
@@ -83,7 +83,18 @@ def test_without_velocities_only_nothing_is_a_solution() -> None:
     assert residual(problem, np.array([[1e-300, 0.0, 0.0]]))[:2] == (np.inf, np.inf)
 
 
-@pytest.mark.parametrize("bad", [np.nan, np.inf, 1e308])
+def test_the_short_way_gives_the_same_numbers() -> None:
+    problem = random_problem(5)
+    r = np.random.default_rng(5).normal(size=(problem.contacts, 3))
+    assert distances(problem, r) == residual(problem, r)[:2]
+
+
+def test_what_is_too_large_for_squares_is_far() -> None:
+    problem = random_problem(2)
+    assert residual(problem, np.full((problem.contacts, 3), 1e307)).scaled > 1e300
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
 def test_what_is_not_finite_is_infinitely_far(bad: float) -> None:
     problem = random_problem(2)
     impulses = np.zeros((problem.contacts, 3))
