@@ -163,8 +163,8 @@ def _steps(problem: ContactProblem, solver: str, watch: _Stopwatch) -> list[_Cal
         calls.append(_Call(problem, solver, REACHED, 2**doubling))
         watch.ask(calls[-1])
         solution = calls[-1].answer
-        ended = solution.sweeps < 2**doubling or solution.scaled <= REACHED
-        if ended or calls[-1].times[0] > LONGEST_CALL:
+        scaled, _ = distances(problem, solution.impulses)
+        if solution.sweeps < 2**doubling or scaled <= REACHED or calls[-1].times[0] > LONGEST_CALL:
             break
     return calls
 
