@@ -26,3 +26,22 @@ def draw_prices(runs: Sequence[Any], directory: Path) -> list[Path]:
     from lavendersim.figures.prices import draw_prices as draw_page
 
     return draw_page(runs, directory)
+
+
+def draw_comparisons(
+    comparisons: Sequence[Any],
+    ratios: dict[str, list[float]],
+    tolerance: float,
+    processor: str,
+    directory: Path,
+) -> list[Path]:
+    """Draw what solvers reached in what time, and their performance profile; returns the files.
+
+    A comparison has `.name`, `.contacts` and `.attempts`, see `problems.comparison`; `ratios` are
+    times over the best, by solver.
+    """
+    from lavendersim.figures.performance_profile import draw_profile
+    from lavendersim.figures.residual_against_time import draw_curves
+
+    paths = draw_curves(comparisons, tolerance, processor, directory)
+    return paths + draw_profile(ratios, comparisons, tolerance, processor, directory)

@@ -30,6 +30,22 @@ def problem_files(paths: Iterable[Path]) -> list[Path]:
     return list(files)
 
 
+def read_all(paths: Iterable[Path]) -> list[tuple[str, ContactProblem]]:
+    """Read every file among `paths`; returns names without folder, and problems.
+
+    Raises ProblemError with a sentence for every file that is bad.
+    """
+    problems, defects = [], []
+    for file in problem_files(paths):
+        try:
+            problems.append((file.name, read_problem(file)))
+        except ProblemError as error:
+            defects.append(str(error))
+    if defects:
+        raise ProblemError("\n".join(defects))
+    return problems
+
+
 def read_problem(file: Path) -> ContactProblem:
     """Read a problem in Siconos' or FCLIB's format, told apart by the first bytes of the file.
 

@@ -49,28 +49,48 @@ class Residual(NamedTuple):
 
 def residual(problem: ContactProblem, impulses: np.ndarray) -> Residual:
     """Judge `impulses` (n, 3) [N s]; what is not finite is infinitely far."""
-    own = own_scales(problem)
-    common = np.full(len(own), own.sum() / max(len(own), 1))
     with np.errstate(over="ignore", invalid="ignore"):
+        own = own_scales(problem)
         u = contact_velocities(problem, impulses)
-        maps = [natural_map(scale, impulses, u, problem.mu) for scale in (common, own)]
-        normal = own * impulses[:, 0]
+        maps = _natural_maps(own, impulses, u, problem.mu)
+        scaled, local = _distances(problem, maps)
         nearest = project_on_cone(impulses, problem.mu)
         parts = (
             np.linalg.norm(maps[1], axis=1),
-            np.abs(np.minimum(normal, u[:, 0])),
+            np.abs(np.minimum(own * impulses[:, 0], u[:, 0])),
             own * np.linalg.norm(impulses - nearest, axis=1),
             _missing_dissipation(own, impulses, u, problem.mu),
         )
-        q = _length(velocities_of(problem))
-        scaled, local = (_ratio(_length(each), q) for each in maps)
-        return Residual(scaled, local, *map(_worst, parts))
+    return Residual(scaled, local, *map(_worst, parts))
+
+
+def distances(problem: ContactProblem, impulses: np.ndarray) -> tuple[float, float]:
+    """Return `scaled` and `local` of `impulses` alone, at less than half the price."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        u = contact_velocities(problem, impulses)
+        return _distances(problem, _natural_maps(own_scales(problem), impulses, u, problem.mu))
+
+
+def _natural_maps(
+    own: np.ndarray, impulses: np.ndarray, u: np.ndarray, mu: np.ndarray
+) -> np.ndarray:
+    """Return the natural map with the common scale and with each contact's own, (2, n, 3) [m/s]."""
+    common = np.full(len(own), own.sum() / max(len(own), 1))
+    scales = np.concatenate([common, own])
+    twice = (np.concatenate([array, array]) for array in (impulses, u, mu))
+    return natural_map(scales, *twice).reshape(2, len(own), 3)
+
+
+def _distances(problem: ContactProblem, maps: np.ndarray) -> tuple[float, float]:
+    q = _length(velocities_of(problem))
+    return _ratio(_length(maps[0]), q), _ratio(_length(maps[1]), q)
 
 
 def own_scales(problem: ContactProblem) -> np.ndarray:
     """Return c = tr W_ii / 3 of every contact, (n,) [1/kg]."""
-    diagonal = problem.blocks[problem.row == columns_of(problem)]
-    scales: np.ndarray = (np.trace(diagonal, axis1=1, axis2=2) + problem.gamma) / 3.0
+    diagonal = problem.blocks[problem.row == columns_of(problem)].reshape(-1, 9)
+    traces = diagonal[:, 0] + diagonal[:, 4] + diagonal[:, 8]
+    scales: np.ndarray = (traces + problem.gamma) / 3.0
     return scales
 
 
@@ -79,7 +99,8 @@ def contact_velocities(problem: ContactProblem, impulses: np.ndarray) -> np.ndar
     u = velocities_of(problem)
     u[:, 0] += problem.gamma * impulses[:, 0]
     pushed = np.einsum("mij,mj->mi", problem.blocks, impulses[columns_of(problem)])
-    np.add.at(u, problem.row, pushed)
+    for k in range(3):
+        u[:, k] += np.bincount(problem.row, pushed[:, k], problem.contacts)
     return u
 
 
@@ -89,7 +110,7 @@ def natural_map(
     """Return c r - P_K(c r - uh), (n, 3) [m/s]; `scales` (n,) [1/kg]."""
     held = scales[:, None] * impulses
     shifted = u.copy()
-    shifted[:, 0] += mu * np.linalg.norm(u[:, 1:], axis=1)
+    shifted[:, 0] += mu * np.hypot(u[:, 1], u[:, 2])
     missed: np.ndarray = held - project_on_cone(held - shifted, mu)
     return missed
 
@@ -97,14 +118,15 @@ def natural_map(
 def project_on_cone(points: np.ndarray, mu: np.ndarray) -> np.ndarray:
     """Return the nearest points of |x_t| <= mu x_n, (n, 3); `mu` (n,)."""
     normal, sides = points[:, 0], points[:, 1:]
-    side = np.linalg.norm(sides, axis=1)
-    inside = side <= mu * normal
-    beneath = mu * side <= -normal  # in the polar cone: the apex is nearest
-    # Else on the surface, along its generator (cos, sin) in the plane of normal and side.
-    hypotenuse = np.hypot(1.0, mu)
-    cos, sin = 1.0 / hypotenuse, mu / hypotenuse
-    along = cos * normal + sin * side
-    turned = np.where(side > 0.0, sin * along / np.where(side > 0.0, side, 1.0), 0.0)
+    side = np.hypot(sides[:, 0], sides[:, 1])
+    with np.errstate(over="ignore", invalid="ignore"):
+        inside = side <= mu * normal
+        beneath = mu * side <= -normal  # in the polar cone: the apex is nearest
+        # Else on the surface, along its generator (cos, sin) in the plane of normal and side.
+        hypotenuse = np.hypot(1.0, mu)
+        cos, sin = 1.0 / hypotenuse, mu / hypotenuse
+        along = cos * normal + sin * side
+        turned = sin * along / np.where(side > 0.0, side, 1.0)
     on_surface = np.column_stack([cos * along, turned[:, None] * sides])
     projected: np.ndarray = np.where(
         inside[:, None], points, np.where(beneath[:, None], 0.0, on_surface)
@@ -120,7 +142,7 @@ def _missing_dissipation(
     held = scales[:, None] * impulses[:, 1:]
     radius = mu * scales * np.maximum(impulses[:, 0], 0.0)
     wanted = held - u[:, 1:]
-    length = np.linalg.norm(wanted, axis=1)
+    length = np.hypot(wanted[:, 0], wanted[:, 1])
     shrink = np.where(length > radius, radius / np.where(length > 0.0, length, 1.0), 1.0)
     missing: np.ndarray = np.linalg.norm(held - shrink[:, None] * wanted, axis=1)
     return missing

@@ -1,0 +1,202 @@
+"""Comparisons of solvers in; pages of panels, one per problem, as PNG and SVG, out.
+
+scaled residual |  o--o                  one curve per solver, each point a run of its own
+                |  s-s  o--o             with a budget of 1, 2, 4, ... sweeps
+                |     s----s--o
+                +---------------- time of the run
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+from matplotlib import style
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.ticker import LogLocator, NullLocator
+
+from lavendersim.figures.page import MARGIN, wrapped
+from lavendersim.figures.style import DPI, GREY, LINE_HEIGHT, LOOKS, STYLE, look
+
+PANEL: Final = (4.3, 3.1)  # [inch]
+COLUMNS, PANELS_ON_PAGE = 3, 12
+MILLI: Final = 1e-3
+DECADE: Final = 10.0
+FEW_TICKS: Final = 40.0  # the last time over the first, up to which there is room for 1, 2, 5
+LOWEST, HIGHEST = 1e-16, 1e2  # [-] shown; beyond is round-off below and divergence above
+NARROWEST: Final = 8.6  # [inch] for the caption and the legend beside a single panel
+ENTRY: Final = 3.0  # [inch] of the legend, names of solvers are long
+CAPTION: Final = (
+    "What each solver achieved against the time it took: every point is a run of its own from "
+    "nothing with 1, 2, 4, ... sweeps, judged afterwards by the scaled residual of its impulses. "
+    "Dashed: the tolerance {tolerance:g}. {hollow}Wall time of a whole call without compilation, "
+    "median of {repeats}. {processor}."
+)
+HOLLOW: Final = "Hollow: not finite or above 100. "
+
+
+def draw_curves(
+    comparisons: Sequence[Any], tolerance: float, processor: str, directory: Path
+) -> list[Path]:
+    """Write `residual_against_time.png` and `.svg`, numbered where one page does not hold all."""
+    drawn = [each for each in comparisons if any(one.points for one in each.attempts)]
+    pages = [drawn[at : at + PANELS_ON_PAGE] for at in range(0, len(drawn), PANELS_ON_PAGE)]
+    directory = Path(directory)
+    directory.mkdir(parents=True, exist_ok=True)
+    paths = []
+    for number, page in enumerate(pages, start=1):
+        stem = "residual_against_time" + (f"_{number}" if len(pages) > 1 else "")
+        with style.context(STYLE, after_reset=True):
+            figure = compose(page, tolerance, processor)
+            paths += save(figure, directory / stem)
+    return paths
+
+
+def save(figure: Figure, stem: Path) -> list[Path]:
+    """Write a page as PNG and SVG; equal numbers give equal bytes."""
+    paths = [stem.with_name(f"{stem.name}.{suffix}") for suffix in ("png", "svg")]
+    figure.savefig(paths[0], dpi=DPI, metadata={"Software": None})
+    figure.savefig(paths[1], metadata={"Date": None, "Creator": "lavender"})
+    return paths
+
+
+def compose(comparisons: Sequence[Any], tolerance: float, processor: str) -> Figure:
+    """Return the page as a matplotlib Figure."""
+    solvers = names(comparisons)
+    columns = min(COLUMNS, len(comparisons))
+    rows = -(-len(comparisons) // columns)
+    width = max(NARROWEST, PANEL[0] * columns)
+    points = [p for each in comparisons for one in each.attempts for p in one.points]
+    caption = wrapped(
+        CAPTION.format(
+            tolerance=tolerance,
+            hollow=HOLLOW if any(not _is_shown(point.scaled) for point in points) else "",
+            repeats=span([repeats for each in comparisons for repeats in _repeats(each)]),
+            processor=processor,
+        ),
+        width,
+    )
+    figure, axes = sheet(solvers, (rows, columns), width, rows * PANEL[1], caption)
+    for place, panel in enumerate(axes.ravel()):
+        if place >= len(comparisons):
+            panel.set_axis_off()
+            continue
+        _draw_panel(panel, comparisons[place], solvers, tolerance)
+        if place % columns == 0:
+            panel.set_ylabel("scaled residual [-]")
+        if place + columns >= len(comparisons):
+            panel.set_xlabel("time [ms]")
+    return figure
+
+
+def sheet(
+    solvers: Sequence[str], grid: tuple[int, int], width: float, panels: float, caption: str
+) -> tuple[Figure, Any]:
+    """Return a figure with the legend of the solvers above its panels and the caption below.
+
+    Above, since curves of many solvers leave no corner of a panel free.
+    """
+    entries = max(1, int(width / ENTRY))
+    lines = -(-len(solvers) // entries)
+    above = LINE_HEIGHT * lines + 2 * MARGIN
+    below = LINE_HEIGHT * (caption.count("\n") + 1) + 2 * MARGIN
+    height = panels + above + below
+    figure = Figure(figsize=(width, height))
+    FigureCanvasAgg(figure)
+    figure.set_layout_engine(
+        "constrained", rect=(0.0, below / height, 1.0, panels / height), w_pad=0.08, h_pad=0.08
+    )
+    figure.text(MARGIN / width, MARGIN / height, caption, va="bottom", linespacing=1.25)
+    figure.legend(
+        handles=[Line2D([], [], label=plain(name), **marks(solvers, name)) for name in solvers],
+        loc="upper left",
+        bbox_to_anchor=(0.0, 1.0),
+        ncols=entries,
+        handlelength=2.4,
+        borderaxespad=0.3,
+    )
+    return figure, figure.subplots(*grid, squeeze=False)
+
+
+def names(comparisons: Sequence[Any]) -> list[str]:
+    """Return the solvers in the order they were asked for."""
+    return list(dict.fromkeys(one.solver for each in comparisons for one in each.attempts))
+
+
+def plain(name: str) -> str:
+    """Return a solver's name in words."""
+    return name.replace("_", " ")
+
+
+def marks(solvers: Sequence[str], name: str) -> dict[str, Any]:
+    """Return how a solver is drawn on every page; dashed once colours and markers are used up."""
+    index = list(solvers).index(name)
+    shown = look(index)
+    return {
+        "color": shown.colour,
+        "marker": shown.marker,
+        "linestyle": "-" if index < len(LOOKS) else (0, (4, 2)),
+        "linewidth": 1.3,
+        "markersize": 5.0,
+        "markeredgecolor": shown.colour,
+    }
+
+
+def span(values: Sequence[int]) -> str:
+    """Return how many repeats there were, or from how many to how many."""
+    low, high = min(values, default=1), max(values, default=1)
+    return f"{low} repeat{'' if low == 1 else 's'}" if low == high else f"{low} to {high} repeats"
+
+
+def _repeats(comparison: Any) -> list[int]:
+    return [point.repeats for one in comparison.attempts for point in one.points]
+
+
+def _is_shown(scaled: float) -> bool:
+    return bool(scaled <= HIGHEST)  # false for NaN as well
+
+
+def _draw_panel(axes: Any, comparison: Any, solvers: Sequence[str], tolerance: float) -> None:
+    count = comparison.contacts
+    axes.set_title(
+        f"{short(comparison.name)}, {count} contact{'' if count == 1 else 's'}", loc="left"
+    )
+    axes.title.set_fontsize(11)
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    axes.axhline(tolerance, color=GREY, linewidth=1.1, linestyle=(0, (5, 3)))
+    for attempt in comparison.attempts:
+        times = np.array([point.seconds for point in attempt.points]) / MILLI
+        scaled = np.array([point.scaled for point in attempt.points])
+        shown = np.array([_is_shown(value) for value in scaled], dtype=bool)
+        drawn = marks(solvers, attempt.solver)
+        axes.plot(times[shown], np.maximum(scaled[shown], LOWEST), **drawn)
+        lost = np.full((~shown).sum(), HIGHEST)
+        axes.plot(times[~shown], lost, **drawn | {"linestyle": "none", "markerfacecolor": "white"})
+    all_times = [point.seconds for one in comparison.attempts for point in one.points]
+    _limit_times(axes, min(all_times) / MILLI, max(all_times) / MILLI)
+    axes.yaxis.set_major_locator(LogLocator(numticks=7))
+    axes.yaxis.set_minor_locator(NullLocator())
+
+
+def _limit_times(axes: Any, low: float, high: float) -> None:
+    """Show a decade at least, so that what calls differ by chance looks as small as it is."""
+    low, high = low / 1.2, high * 1.2
+    wider = max(1.0, DECADE * low / high)
+    axes.set_xlim(low / wider**0.2, high * wider**0.8)
+    subs = (1.0, 2.0, 5.0) if high * wider < FEW_TICKS * low else (1.0,)
+    axes.xaxis.set_major_locator(LogLocator(subs=subs, numticks=9))
+    axes.xaxis.set_minor_locator(NullLocator())
+    axes.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
+
+
+def short(name: str) -> str:
+    """Return a file's name without what tells its format, cut where a title would not fit."""
+    stem = name
+    for suffix in (".dat", ".hdf5", ".h5"):  # ".hdf5.dat" has two
+        stem = stem.removesuffix(suffix)
+    return stem if len(stem) <= 28 else f"{stem[:27]}…"

@@ -1,0 +1,208 @@
+"""Problems and solvers in; what each solver reached, and in what time, out.
+
+A solver's own word is not taken: solved is what `residual` of the returned impulses says. Time is
+that of a whole call, from the problem to its impulses, on the wall; compilation is in the first
+call, which is told apart. The residual is computed after the clock has stopped.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from statistics import median
+from typing import NamedTuple
+
+from lavendersim.engine.contact_problem import SOLVED, ContactProblem, Solution
+from lavendersim.problems.residual import Residual, distances, residual
+
+Solve = Callable[..., Solution]
+Clock = Callable[[], float]
+
+MISSED = "tolerance missed"  # the solver says solved, the residual does not
+# A call is repeated while that is cheap. Repeats of all calls on a problem take turns: what slows
+# the machine for a while slows every solver.
+MOST_REPEATS = 7
+REPEATING = 0.2  # [s] of all repeats of a call
+# The curve of a solver: calls with 1, 2, 4, ... sweeps, each from nothing.
+REACHED = 1e-13  # scaled residual that ends a curve; beyond is round-off
+LONGEST_CALL = 2.0  # [s] a call that took longer ends its curve
+MOST_DOUBLINGS = 20
+
+
+class Timing(NamedTuple):
+    """The time of a call [s]."""
+
+    median: float
+    low: float
+    high: float
+    repeats: int
+
+
+class Point(NamedTuple):
+    """What a solver reaches from nothing with so many sweeps."""
+
+    budget: int  # sweeps allowed
+    sweeps: int  # sweeps made
+    seconds: float  # median [s]
+    repeats: int
+    scaled: float  # residual [-]
+    local: float
+
+
+class Attempt(NamedTuple):
+    """What a solver made of a problem."""
+
+    solver: str
+    solved: bool  # by the residual
+    status: str
+    residual: Residual
+    sweeps: int
+    timing: Timing
+    first_call: float  # [s], with compilation where there is some
+    points: tuple[Point, ...]
+
+
+class Comparison(NamedTuple):
+    """One problem and what each solver made of it."""
+
+    name: str
+    contacts: int
+    attempts: tuple[Attempt, ...]
+
+    @property
+    def solved(self) -> bool:
+        """Whether any solver did."""
+        return any(attempt.solved for attempt in self.attempts)
+
+
+def compare(
+    problems: Iterable[tuple[str, ContactProblem]],
+    solvers: Sequence[str],
+    tolerance: float,
+    sweeps: int | None = None,
+    curves: bool = False,
+    solve: Solve | None = None,
+    now: Clock = time.perf_counter,
+) -> Iterator[Comparison]:
+    """Yield a comparison per named problem, as soon as it is there.
+
+    `solve(problem, solver, tolerance, sweeps)` is `problems.solve.solve` unless another is given.
+    """
+    call = solve or _solve()
+    for name, problem in problems:
+        yield _compare(name, problem, solvers, tolerance, sweeps, curves, _Stopwatch(call, now))
+
+
+def _solve() -> Solve:
+    from lavendersim.problems.solve import solve  # late: brings numba
+
+    return solve
+
+
+class _Call:
+    """A question to a solver, the last answer, and the times of all."""
+
+    def __init__(self, problem: ContactProblem, solver: str, tolerance: float, sweeps: int | None):
+        self.question = (problem, solver, tolerance, sweeps)
+        self.times: list[float] = []
+        self.answer: Solution
+
+    @property
+    def is_cheap(self) -> bool:
+        """Whether to ask again: rarely what takes long."""
+        spent = sum(self.times)
+        return len(self.times) < MOST_REPEATS and spent + self.times[0] < REPEATING
+
+    @property
+    def timing(self) -> Timing:
+        return Timing(median(self.times), min(self.times), max(self.times), len(self.times))
+
+
+class _Stopwatch(NamedTuple):
+    """Asks a solver between two looks at the clock."""
+
+    solve: Solve
+    now: Clock
+
+    def ask(self, call: _Call) -> None:
+        begin = self.now()
+        call.answer = self.solve(*call.question)
+        call.times.append(self.now() - begin)
+
+
+def _compare(
+    name: str,
+    problem: ContactProblem,
+    solvers: Sequence[str],
+    tolerance: float,
+    sweeps: int | None,
+    curves: bool,
+    watch: _Stopwatch,
+) -> Comparison:
+    """Ask each solver once to compile it, then with the clock, then again in turns."""
+    first = {solver: _Call(problem, solver, tolerance, 1) for solver in solvers}
+    whole = {solver: _Call(problem, solver, tolerance, sweeps) for solver in solvers}
+    for call in (*first.values(), *whole.values()):
+        watch.ask(call)
+    steps = {solver: _steps(problem, solver, watch) if curves else [] for solver in solvers}
+    calls = [*whole.values(), *(call for each in steps.values() for call in each)]
+    while cheap := [call for call in calls if call.is_cheap]:
+        for call in cheap:
+            watch.ask(call)
+    attempts = (
+        _judge(whole[solver], first[solver].times[0], map(_point, steps[solver]))
+        for solver in solvers
+    )
+    return Comparison(name, problem.contacts, tuple(attempts))
+
+
+def _steps(problem: ContactProblem, solver: str, watch: _Stopwatch) -> list[_Call]:
+    """Ask with twice as many sweeps each time, until more of them would be of no use."""
+    calls = []
+    for doubling in range(MOST_DOUBLINGS + 1):
+        calls.append(_Call(problem, solver, REACHED, 2**doubling))
+        watch.ask(calls[-1])
+        solution = calls[-1].answer
+        scaled, _ = distances(problem, solution.impulses)
+        if solution.sweeps < 2**doubling or scaled <= REACHED or calls[-1].times[0] > LONGEST_CALL:
+            break
+    return calls
+
+
+def _point(call: _Call) -> Point:
+    problem, _, _, budget = call.question
+    reached = distances(problem, call.answer.impulses)
+    timing = call.timing
+    return Point(budget or 0, call.answer.sweeps, timing.median, timing.repeats, *reached)
+
+
+def _judge(call: _Call, first_call: float, points: Iterable[Point]) -> Attempt:
+    problem, solver, tolerance, _ = call.question
+    solution = call.answer
+    judged = residual(problem, solution.impulses)
+    solved = judged.scaled <= tolerance
+    status = SOLVED if solved else solution.status
+    if not solved and status == SOLVED:
+        status = MISSED
+    return Attempt(
+        solver, solved, status, judged, solution.sweeps, call.timing, first_call, tuple(points)
+    )
+
+
+def ratios(comparisons: Sequence[Comparison]) -> dict[str, list[float]]:
+    """Return per solver its time over the best time, per problem; infinite where not solved.
+
+    What performance profiles are made of (Dolan and More, 2002). A problem that nobody solved
+    counts as unsolved for everybody.
+    """
+    found: dict[str, list[float]] = {}
+    for comparison in comparisons:
+        times = {
+            one.solver: one.timing.median if one.solved else float("inf")
+            for one in comparison.attempts
+        }
+        best = min(times.values(), default=float("inf"))
+        for solver, seconds in times.items():
+            ratio = seconds / best if best < float("inf") else float("inf")
+            found.setdefault(solver, []).append(ratio)
+    return found
