@@ -20,6 +20,7 @@ from lavendersim.scene.plan import Plan
 from lavendersim.trace import Block, TraceWriter
 
 from .environment import versions
+from .problem_dump import ProblemDump
 
 NANOSECONDS = 10**9
 CAUSES = {
@@ -155,20 +156,23 @@ def run_cell(job: CellJob) -> CellOutcome:
         absent_topics(job.plan),
     )
     events = EventQueue(engine, scene, job.resolved["events"])
+    dump = ProblemDump(job.path, job.resolved)
     accuracy = Accuracy(tolerance=job.resolved["numerics"]["tolerance"])
     status = "complete"
-    done = 0
+    done = stop = 0
     while True:
         events.apply_due(done)
         start = perf_counter_ns()
         outcome = RUNNING
         if done < job.steps:
-            outcome = engine.advance(events.next_stop(job.steps) - done)
+            stop = dump.next_stop(done, events.next_stop(job.steps))
+            outcome = engine.advance(stop - done)
         physics_ns += perf_counter_ns() - start
         done = int(engine.counters["step"][0])
         if outcome == DIVERGED:
             status = divergence(scene, engine)
         start = perf_counter_ns()
+        dump.take(engine, done, stop)
         rows = engine.take_rows()
         if len(rows.step):
             writer.append(block_of(rows, scene.timestep))
