@@ -122,9 +122,7 @@ def _velocity_of(velocities: np.ndarray, body: np.ndarray) -> tuple[np.ndarray, 
     return linear, _vectors(velocities, "w")[body] if turning else np.zeros_like(linear)
 
 
-def _delassus(
-    sides: list[_Side], frames: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _delassus(sides: list[_Side], frames: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return begin, row and blocks of W, see `ContactProblem`."""
     count = len(frames)
     # Every (contact, movable body) once, in the order of the bodies.
@@ -159,4 +157,6 @@ def _delassus(
 def _impulses(spec: Spec, contacts: np.ndarray) -> np.ndarray:
     if spec.has("friction"):
         return _columns(contacts, "lambda_n", "lambda_1", "lambda_2")
-    return contacts["lambda_n"][:, None] * np.array([1.0, 0.0, 0.0])
+    impulses = np.zeros((len(contacts), 3))
+    impulses[:, 0] = contacts["lambda_n"]
+    return impulses

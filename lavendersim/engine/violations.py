@@ -1,7 +1,7 @@
 """Contacts with the impulses of a solve enter; by how much they break each part of the law leaves.
 
-Of one contact, with w_n = v_n + target + gamma lambda_n, w_t the slip of its surfaces and k_n + gamma
-the response of its row, the law of Signorini and Coulomb is broken by
+Of one contact, with w_n = v_n + target + gamma lambda_n, w_t the slip of its surfaces and
+k_n + gamma the response of its row, the law of Signorini and Coulomb is broken by
     Signorini      | min((k_n + gamma) lambda_n, w_n) |                                   [m/s]
     cone           max(0, -lambda_n, |lambda_t| - mu max(lambda_n, 0))                    [N s]
     dissipation    | lambda_t . w_t + mu lambda_n |w_t| |                                 [J]

@@ -1,8 +1,8 @@
 """An engine after certain steps enters; their contact problems as FCLIB files leave.
 
 `record: {problems: every 10}` makes `problems/<cell>/step_000010.hdf5`, `step_000020.hdf5`, ... in
-the run's directory, with the impulses of the step's last solve as the solution. A step without
-contacts has no file.
+the run's directory. The impulses that the step's last solve left are FCLIB's first guess: how
+well they solve the problem is for the residual to say. A step without contacts has no file.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ class ProblemDump:
         self._folder.mkdir(parents=True, exist_ok=True)
         path = self._folder / f"step_{done:06d}.hdf5"
         unfinished = path.with_suffix(".unfinished")
-        write_fclib(unfinished, found.problem, found.impulses)
+        write_fclib(unfinished, found.problem, title=f"step {done}", guess=found.impulses)
         os.replace(unfinished, path)
 
 

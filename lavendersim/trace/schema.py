@@ -71,7 +71,7 @@ STEP_COLUMNS = (
     Column("signorini_contact", "i8", 22, "row of the contact that has it; -1 none"),
     Column("cone", "f8", 23, "largest |lambda_t| - mu lambda_n or -lambda_n of a contact [N s]"),
     Column("cone_contact", "i8", 24, "row of the contact that has it; -1 none"),
-    Column("dissipation", "f8", 25, "largest |lambda_t . w_t + mu lambda_n |w_t|| of a contact [J]"),
+    Column("dissipation", "f8", 25, "largest |lambda_t . w_t + mu lambda_n |w_t||, contacts [J]"),
     Column("dissipation_contact", "i8", 26, "row of the contact that has it; -1 none"),
 )
 
