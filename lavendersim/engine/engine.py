@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from .assemble import StepProblem, step_problem
 from .collide.broad_phase import allocate_broad_phase
 from .collide.hull_geometry import HullGeometry
 from .collide.scratch import allocate_scratch
@@ -142,9 +143,12 @@ class Engine:
         self.block_steps = max(block_steps, 1) if spec.has("step_log") else 0
         self.counters = np.zeros(1, dtype(COUNTERS))
         self._done = self.counters["step"]
-        self.counters["residual_contact"] = self.counters["residual_row"] = -1
+        for name in ("residual", "signorini", "cone", "dissipation"):
+            self.counters[f"{name}_contact"] = -1
+        self.counters["residual_row"] = -1
         self.motion = np.zeros(len(bodies) if keeps_motion(spec) else 0, dtype(MOTION))
         self.pseudo = np.zeros(len(bodies) if spec.has("projection") else 0, velocities.dtype)
+        self.free = np.zeros(len(bodies) if spec.has("problem_log") else 0, velocities.dtype)
         self._velocity_bits = velocities.view(np.uint64).reshape(len(velocities), -1)
         self._initial_pose = poses
         self._kernel = advance_for(spec)
@@ -166,6 +170,7 @@ class Engine:
             np.zeros(capacity, np.int64),
             np.zeros(capacity, np.uint64),
             allocate(self.spec, len(self.bodies), capacity) if allocate else (),
+            self.free,
             self._templates,
             self._near,
         )
@@ -272,6 +277,14 @@ class Engine:
         for name in ("step_rows", "contact_rows", "residual_rows"):
             self.counters[name] = 0
         return rows
+
+    def problem(self) -> StepProblem | None:
+        """Return the contact problem of the last step, None where nothing touched.
+
+        For an engine with `problem_log`, after a call of `advance` that did all its steps.
+        """
+        count = int(self.counters["contacts"][0])
+        return step_problem(self.spec, self.contacts[:count], self.free) if count else None
 
     def wake(self, body: int) -> None:
         """Wake who sleeps beside a body that is about to be changed."""

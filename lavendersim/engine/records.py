@@ -165,6 +165,12 @@ COUNTERS: Final[list[Field]] = [
     ("unsolved", I8),  # 1 when that is above the tolerance asked for
     ("rows", I8),  # contacts of the last step that were recorded
     ("residual_row", I8),  # the one of them with the largest residual
+    ("signorini", F8),  # largest violations of the last step, and the recorded contact, -1: none
+    ("signorini_contact", I8),
+    ("cone", F8),
+    ("cone_contact", I8),
+    ("dissipation", F8),
+    ("dissipation_contact", I8),
     ("body", I8),  # body that diverged
     ("cause", I8),  # NOT_FINITE or TURNS_TOO_FAST
     ("step_rows", I8),  # trace rows written since the caller emptied the columns

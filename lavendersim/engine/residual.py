@@ -27,7 +27,8 @@ def make_row_residual(spec: Spec):
     return by_roughness(spec, _make_smooth_residual, _make_rough_residual)
 
 
-def _make_normal_residual(spec: Spec):
+def make_normal_residual(spec: Spec):
+    """Return `kernel(contact, v_n) -> r` [m/s]: Signorini's law, of the normal alone."""
     compliant = spec.has("compliance")
 
     def normal_residual(contact, v_n):
@@ -41,7 +42,7 @@ def _make_normal_residual(spec: Spec):
 
 
 def _make_smooth_residual(spec: Spec):
-    normal_residual, normal_velocity = _make_normal_residual(spec), make_smooth_velocity(spec)
+    normal_residual, normal_velocity = make_normal_residual(spec), make_smooth_velocity(spec)
 
     def row_residual(contact, va, vb):
         v_n = normal_velocity(contact, va, vb)
@@ -54,7 +55,7 @@ def _make_rough_residual(spec: Spec):
     pyramid = spec.friction_cone == "pyramid"
     moving_surface = spec.has("surface_velocity")
     spins, spin_residual = resists_turning(spec), make_spin_residual(spec)
-    normal_residual = _make_normal_residual(spec)
+    normal_residual = make_normal_residual(spec)
     relative_velocity = make_relative_velocity(spec)
 
     def block_residual(contact, va, vb):

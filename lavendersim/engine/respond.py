@@ -14,7 +14,15 @@ from typing import Any
 from . import ordering
 from .compile import chain, kernel
 from .contact import make_append_contact, make_apply_start
-from .effects import contact_log, impact_energy, impact_time, made_by, projection, warm_start
+from .effects import (
+    contact_log,
+    impact_energy,
+    impact_time,
+    made_by,
+    problem_log,
+    projection,
+    warm_start,
+)
 from .integrate import make_classify
 from .solvers import SOLVERS
 from .spec import Spec
@@ -35,12 +43,13 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
     settle: Any = impact_energy.make_settle(spec, solve, make_classify(spec)) if watched else None
     projects, project_positions = spec.made(projection)
     logs = spec.has(contact_log.NAME)
+    keeps_free, keep_free = spec.made(problem_log)
 
     def respond(
         bodies, velocities, motion, pseudo, contacts, count, cache, pairs, work, params, counters,
         rows, residual_rows,
     ):  # fmt: skip
-        _, _, _, taken, buckets, keys, order, space, _, _ = work
+        _, _, _, taken, buckets, keys, order, space, free, _, _ = work
         for c in range(count):
             contact, pair = contacts[c], pairs[contacts[c].pair]
             append_contact(contact, bodies, velocities, motion, pair, params)
@@ -50,6 +59,8 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
                 note(contact, velocities[contact.a], velocities[contact.b])
         if strikes:
             strike(contacts, count, motion, params)
+        if keeps_free:
+            keep_free(velocities, free)
         if warms:
             match_contacts(contacts, count, bodies, cache, counters, params)
             for c in range(count):

@@ -74,7 +74,7 @@ def make_advance(spec: Spec) -> Any:
         bodies, velocities, motion, pseudo, bits, contacts, cache, pairs, work, parameters,
         counter, rows, residual_rows, steps,
     ):  # fmt: skip
-        points, normal, scratch, taken, _, _, _, _, templates, near = work
+        points, normal, scratch, taken, _, _, _, _, _, templates, near = work
         params, counters = parameters[0], counter[0]
         if records:
             if counters.started == 0:

@@ -143,6 +143,7 @@ class CellRecord(_Resolved):
     """What is logged beyond every step."""
 
     residuals: Literal["none", "all"] | ResidualWindow
+    problems: str  # none, or every N
 
 
 class CellEffects(_Resolved):

@@ -20,7 +20,16 @@ from lavendersim.experiment.selection import Selection
 Scale = Literal["linear", "log"]
 Number = Annotated[float, Quantity()]
 Column = Literal[
-    "penetration", "normal_force", "clearance", "energy", "residual", "drift", "overlap"
+    "penetration",
+    "normal_force",
+    "clearance",
+    "energy",
+    "residual",
+    "signorini",
+    "cone",
+    "dissipation",
+    "drift",
+    "overlap",
 ]
 
 
@@ -110,7 +119,8 @@ class TimeSeries(_Panel):
     kind: Literal["time_series"]
     column: Column = Field(
         description="penetration [m], normal_force [N], clearance [m], energy [J], residual [m/s], "
-        "drift [m] of any centre from its place at 0.5 s, overlap [m] of any two bodies, from poses"
+        "drift [m] of any centre from its place at 0.5 s, overlap [m] of any two bodies, from "
+        "poses, signorini [m/s], cone [N s], dissipation [J]: the worst contact's violation"
     )
     body: BodyName | None = Field(
         default=None, description="the body, for penetration, normal_force and clearance"

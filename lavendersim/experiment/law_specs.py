@@ -101,6 +101,20 @@ class Optimality(Measure):
     kind: Literal["optimality"]
 
 
+class LawViolation(Measure):
+    """Largest violation of one part of the law of contact in any step, as `/step` states it.
+
+    natural_map [m/s] of the law that was solved, the solver's own error; signorini [m/s],
+    cone [N s] and dissipation [J] of Signorini's and Coulomb's law, whichever was solved.
+    """
+
+    kind: Literal["law_violation"]
+    part: Literal["natural_map", "signorini", "cone", "dissipation"] = Field(
+        description="which part of the law"
+    )
+    after: Seconds = Field(default=0.0, description="[s] only steps that end after this time")
+
+
 class UnsolvedSteps(Measure):
     """Number of steps whose residual stayed above the tolerance asked for."""
 
@@ -116,5 +130,6 @@ LawSpec = (
     | AngularVelocityError
     | FlipTimeError
     | Optimality
+    | LawViolation
     | UnsolvedSteps
 )

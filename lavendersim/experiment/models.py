@@ -20,6 +20,7 @@ from lavendersim.experiment.quantities import (
     Velocity,
     either,
 )
+from lavendersim.experiment.record_models import Record
 from lavendersim.experiment.scene_models import Scene
 
 
@@ -136,30 +137,6 @@ NumericsOf = Annotated[
     | Annotated[NumericsChange, Tag("values")],
     either("the name of a preset (chapter, default) or a mapping of values", _numerics_form),
 ]
-
-
-class Window(ConfigModel):
-    """A stretch of simulated time."""
-
-    begin: Annotated[float, Quantity("s", minimum=0)] = Field(alias="from", description="[s]")
-    end: Annotated[float, Quantity("s", minimum=0)] = Field(alias="to", description="[s]")
-
-
-def _residuals_form(value: Any) -> str | None:
-    forms: dict[type, str] = {str: "switch", dict: "window"}
-    return forms.get(type(value))
-
-
-Residuals = Annotated[
-    Annotated[Literal["none", "all"], Tag("switch")] | Annotated[Window, Tag("window")],
-    either("none, all or {from: seconds, to: seconds}", _residuals_form),
-]
-
-
-class Record(ConfigModel):
-    """What is logged beyond every step's state and contacts."""
-
-    residuals: Residuals = Field(default="none", description="[m/s] residual of every sweep")
 
 
 Switch = Literal["on", "off"]

@@ -12,8 +12,9 @@ from lavendersim.experiment.cell_models import (
     Numerics,
     ResidualWindow,
 )
-from lavendersim.experiment.models import CellSource, Event, NumericsChange, Window
+from lavendersim.experiment.models import CellSource, Event, NumericsChange
 from lavendersim.experiment.presets import PRESETS, PresetValue
+from lavendersim.experiment.record_models import Record, Window
 from lavendersim.experiment.resolve_scene import resolve_scene
 
 
@@ -28,7 +29,7 @@ def resolve_cell(source: CellSource) -> CellConfig:
         events=tuple(_event(event) for event in source.events),
         numerics=numerics,
         duration=source.duration,
-        record=CellRecord(residuals=_residuals(source.record.residuals)),
+        record=_record(source.record),
         effects=CellEffects(
             force=source.effects.force, switches=dict(sorted(source.effects.switches.items()))
         ),
@@ -62,10 +63,12 @@ def _event(event: Event) -> CellEvent:
     )
 
 
-def _residuals(residuals: str | Window) -> Any:
+def _record(record: Record) -> CellRecord:
+    residuals: Any = record.residuals
     if isinstance(residuals, Window):
-        return ResidualWindow.model_validate({"from": residuals.begin, "to": residuals.end})
-    return residuals
+        window = {"from": residuals.begin, "to": residuals.end}
+        residuals = ResidualWindow.model_validate(window)
+    return CellRecord(residuals=residuals, problems=record.problems)
 
 
 __all__ = ["CellConfig", "Numerics", "resolve_cell", "resolve_numerics"]

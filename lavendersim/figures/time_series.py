@@ -76,8 +76,10 @@ def quantity_of(panel: TimeSeries, trace: Trace) -> Floats:
         return _of_poses(panel, trace)
     if panel.column == "energy":
         return mechanical_energy(trace)
-    if panel.column == "residual":
-        return np.asarray(trace.step["residual"], dtype=np.float64)
+    if panel.column in ("residual", "signorini", "cone", "dissipation"):
+        if panel.column not in (trace.step.dtype.names or ()):
+            return np.full(len(trace.step), np.nan)  # nothing could touch, or rub
+        return np.asarray(trace.step[panel.column], dtype=np.float64)
     if panel.column == "clearance":
         assert panel.body is not None
         assert panel.above is not None

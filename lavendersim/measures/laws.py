@@ -89,6 +89,18 @@ def angular_momentum(trace: Trace) -> Floats:
     return np.column_stack([trace.step[f"angular_momentum_{axis}"] for axis in "xyz"])
 
 
+def law_violation(spec: specs.LawViolation, trace: Trace) -> float:
+    """Return the largest violation in any step; NaN without a step after the time.
+
+    Also where the log does not state it: nothing could touch, or, of Coulomb's parts, rub.
+    """
+    column = "residual" if spec.part == "natural_map" else spec.part
+    late = trace.step["time"] > spec.after
+    if column not in (trace.step.dtype.names or ()) or not late.any():
+        return NAN
+    return float(np.max(trace.step[column][late]))
+
+
 def unsolved_steps(spec: specs.UnsolvedSteps, trace: Trace) -> float:
     """Return how many steps ended above the tolerance asked for; NaN where none was asked for."""
     if "unsolved" not in (trace.step.dtype.names or ()):

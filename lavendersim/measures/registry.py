@@ -58,6 +58,7 @@ MEASURES: Final[dict[str, Callable[[Any, Trace], Value]]] = {
     "angular_velocity_error": spinning.angular_velocity_error,
     "flip_time_error": spinning.flip_time_error,
     "optimality": optimality.optimality,
+    "law_violation": laws.law_violation,
     "unsolved_steps": laws.unsolved_steps,
 }
 

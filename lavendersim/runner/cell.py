@@ -19,7 +19,9 @@ from lavendersim.scene.events import EventQueue
 from lavendersim.scene.plan import Plan
 from lavendersim.trace import Block, TraceWriter
 
+from .accuracy import Accuracy
 from .environment import versions
+from .problem_dump import ProblemDump
 
 NANOSECONDS = 10**9
 CAUSES = {
@@ -38,22 +40,6 @@ class CellJob(NamedTuple):
     path: Path
     plan: Plan
     seeds: str  # of what was drawn at random, in words
-
-
-class Accuracy(NamedTuple):
-    """How far the steps of a cell were solved."""
-
-    worst_residual: float = 0.0  # [m/s] of any step
-    tolerance: float | None = None  # [m/s] asked for; None: every step takes all its sweeps
-    unsolved: int = 0  # steps that ended above the tolerance
-
-    def after(self, step: np.ndarray) -> Accuracy:
-        """Return the accuracy with more rows of steps counted in; a NaN stays the worst."""
-        missed = self.unsolved
-        if self.tolerance is not None:
-            missed += int(np.count_nonzero(step["unsolved"]))
-        worst = np.max(step["residual"], initial=self.worst_residual)
-        return self._replace(worst_residual=float(worst), unsolved=missed)
 
 
 class CellOutcome(NamedTuple):
@@ -155,24 +141,27 @@ def run_cell(job: CellJob) -> CellOutcome:
         absent_topics(job.plan),
     )
     events = EventQueue(engine, scene, job.resolved["events"])
+    dump = ProblemDump(job.path, job.resolved)
     accuracy = Accuracy(tolerance=job.resolved["numerics"]["tolerance"])
     status = "complete"
-    done = 0
+    done = stop = 0
     while True:
         events.apply_due(done)
         start = perf_counter_ns()
         outcome = RUNNING
         if done < job.steps:
-            outcome = engine.advance(events.next_stop(job.steps) - done)
+            stop = dump.next_stop(done, events.next_stop(job.steps))
+            outcome = engine.advance(stop - done)
         physics_ns += perf_counter_ns() - start
         done = int(engine.counters["step"][0])
         if outcome == DIVERGED:
             status = divergence(scene, engine)
         start = perf_counter_ns()
+        dump.take(engine, done, stop)
         rows = engine.take_rows()
         if len(rows.step):
             writer.append(block_of(rows, scene.timestep))
-            accuracy = accuracy.after(rows.step)
+            accuracy = accuracy.after(rows.step, rows.contact, scene.names)
         logging_ns += perf_counter_ns() - start
         if outcome == DIVERGED or (outcome == RUNNING and done >= job.steps):
             break

@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 
 from lavendersim.errors import ConfigError, Defect, UsageError
 from lavendersim.experiment import Experiment, load_experiment, resolved_yaml
+from lavendersim.experiment.record_models import NONE
 from lavendersim.measures import Values, Verdict, judge
 
 from .environment import environment
@@ -103,6 +104,10 @@ def load_all(paths: list[Path]) -> list[Experiment]:
                 from .prices import check_price  # late: other configs load without numba
 
                 check_price(experiment)
+            if experiment.config.record.problems != NONE:
+                from .problem_dump import check_problems  # late: other configs load without numba
+
+                check_problems(experiment)
             if experiment.switches_effects:
                 from .plans import check_overrides  # late: other configs load without numba
 
@@ -155,10 +160,12 @@ def run(
     from .executor import outcomes_of
     from .plans import distinct, shared_plans
     from .prices import check_price, take_prices, write_prices
+    from .problem_dump import check_problems
 
     if not isinstance(experiment, Experiment):
         experiment = load_experiment(experiment)
     check_price(experiment)
+    check_problems(experiment)
     cells = experiment.cells()
     plans = shared_plans(cells)
     seeds = Seeds(experiment)

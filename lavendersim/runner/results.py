@@ -11,11 +11,15 @@ from lavendersim.errors import LavenderError
 from lavendersim.experiment import Experiment
 from lavendersim.measures import Values, applies
 
+from .accuracy import PARTS, Accuracy
 from .run_directory import RESULTS, TABLE, Run
 
 # Columns of both tables, beside the measures: what a cell cost, and how well it was solved.
 COSTS = ("physics_us_per_step", "logging_us_per_step", "compile_s")
 ACCURACY = ("tolerance", "worst_residual", "unsolved_steps")  # m/s, m/s, number of steps
+# The largest of each in any step, and the bodies of the contact that has it.
+_WORST = [name for part in PARTS for name in (f"worst_{part}", f"worst_{part}_contact")]
+VIOLATIONS = tuple(name for name in _WORST if name not in ACCURACY)
 
 
 def measure_cells(run: Run, experiment: Experiment, values: Values) -> list[dict[str, Any]]:
@@ -72,6 +76,7 @@ def write_results(
                 "tolerance": outcome.accuracy.tolerance,
                 "worst_residual": outcome.accuracy.worst_residual,
                 "unsolved_steps": outcome.accuracy.unsolved,
+                **_violations(outcome.accuracy),
             }
         )
     table = {
@@ -86,6 +91,16 @@ def write_results(
     text = json.dumps(_finite(table), indent=1, allow_nan=False) + "\n"
     (run.path / RESULTS).write_text(text, encoding="utf-8")
     _write_csv(run, rows)
+
+
+def _violations(accuracy: Accuracy) -> dict[str, Any]:
+    """Return the columns VIOLATIONS; None for what the log does not have."""
+    found: dict[str, Any] = {}
+    for part in PARTS:
+        worst = accuracy.worst.get(part)
+        found[f"worst_{part}"] = worst.value if worst else None
+        found[f"worst_{part}_contact"] = worst.bodies or None if worst else None
+    return {name: found[name] for name in VIOLATIONS}
 
 
 def compile_seconds(finished: Any) -> float:
@@ -118,11 +133,11 @@ def _write_csv(run: Run, rows: list[dict[str, Any]]) -> None:
     names, axes = list(run.experiment.measures), list(run.experiment.axes)
     with (run.path / TABLE).open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
-        writer.writerow(["cell", *axes, "status", "steps", *names, *COSTS, *ACCURACY])
+        writer.writerow(["cell", *axes, "status", "steps", *names, *COSTS, *ACCURACY, *VIOLATIONS])
         for cell, row in zip(run.cells, rows, strict=True):
             coordinates = [str(cell.coordinates.get(axis, "")) for axis in axes]
             values = [row["measures"].get(name, "") for name in names]
             writer.writerow(
                 [cell.label, *coordinates, row["status"], row["steps"], *values]
-                + [row[name] for name in (*COSTS, *ACCURACY)]
+                + [row[name] for name in (*COSTS, *ACCURACY, *VIOLATIONS)]
             )

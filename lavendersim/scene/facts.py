@@ -79,6 +79,7 @@ def facts_of(resolved: dict[str, Any], record: bool = True) -> Facts:
         events=bool(resolved["events"]),
         record=record,
         residuals=resolved["record"]["residuals"] != "none",
+        problems=resolved["record"]["problems"] != "none",
         timestep=float(Fraction(numerics["timestep"])),
         duration=float(resolved["duration"]),
     )

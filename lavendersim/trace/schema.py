@@ -67,6 +67,12 @@ STEP_COLUMNS = (
     Column("unsolved", "i8", 18, "1 when the residual stayed above the tolerance asked for"),
     Column("stronge", "i8", 19, "1 when Stronge's law of restitution replaced Newton's"),
     Column("awake", "i8", 20, "number of movable bodies that do not sleep"),
+    Column("signorini", "f8", 21, "largest |min((k_n + gamma) lambda_n, w_n)| of a contact [m/s]"),
+    Column("signorini_contact", "i8", 22, "row of the contact that has it; -1 none"),
+    Column("cone", "f8", 23, "largest |lambda_t| - mu lambda_n or -lambda_n of a contact [N s]"),
+    Column("cone_contact", "i8", 24, "row of the contact that has it; -1 none"),
+    Column("dissipation", "f8", 25, "largest |lambda_t . w_t + mu lambda_n |w_t||, contacts [J]"),
+    Column("dissipation_contact", "i8", 26, "row of the contact that has it; -1 none"),
 )
 
 RESIDUAL_COLUMNS = (

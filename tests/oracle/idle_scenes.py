@@ -187,6 +187,7 @@ CASES: dict[str, tuple[str, ...]] = {
     "pose_log": ("balls",),
     "contact_log": ("balls",),
     "residual_log": ("balls", "adaptive balls"),
+    "problem_log": ("balls",),
 }
 # Whose scenes are not logged.
 UNLOGGED = {"step_log", "pose_log", "contact_log"}

@@ -108,7 +108,7 @@ def resolved(bodies: dict[str, Any], gravity=(0.0, 0.0, 0.0), **numerics: Any) -
         "events": [],
         "duration": 1.0,
         "numerics": {**NUMERICS, **numerics},
-        "record": {"residuals": "all"},
+        "record": {"residuals": "all", "problems": "none"},
         "effects": {"force": False, "switches": {}},
     }
 

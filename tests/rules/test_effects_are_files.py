@@ -48,6 +48,7 @@ ELSEWHERE = {
         "scene/candidates.py": SHARED,
         "engine/effects/fast_bodies.py": "springs give energy back",
         "engine/contact.py": ROW,
+        "engine/assemble.py": ROW,
         "engine/residual.py": ROW,
         "engine/solvers/row_update.py": ROW,
         "engine/solvers/newton_rows.py": ROW,

@@ -15,6 +15,7 @@ UNIT = re.compile(r"\[[^]]+\]")
 WITHOUT_UNIT = {
     "step", "contact_count", "sweeps", "residual_contact", "state_hash", "sweep",
     "awake", "stronge", "unsolved",
+    "signorini_contact", "cone_contact", "dissipation_contact",
     "body_a", "body_b", "feature", "nx", "ny", "nz", "t1x", "t1y", "t1z",
 }  # fmt: skip
 # The step of a contact or a residual is the number of the message that carries it.

@@ -22,7 +22,7 @@ ROOMS = {
     "figures": {"errors", "experiment", "trace", "measures"},
     "replay": {"errors", "trace", "measures"},
     "simulator": {"errors", "experiment", "scene", "engine"},
-    "runner": {"errors", "experiment", "scene", "engine", "trace", "measures"},
+    "runner": {"errors", "experiment", "scene", "engine", "problems", "trace", "measures"},
     "pytest_plugin": {"errors", "experiment", "trace", "measures", "runner"},
     "cli": {
         *("errors", "experiment", "scene", "trace", "measures", "figures", "replay", "runner"),

@@ -14,7 +14,7 @@ from small_configs import write
 
 import lavendersim
 from lavendersim.runner import Finished
-from lavendersim.runner.cell import Accuracy
+from lavendersim.runner.accuracy import Accuracy
 from lavendersim.runner.results import unsolved_notices
 
 # Two balls, one on the other: W = [[1, -1], [-1, 2]]/m. One sweep without an impulse to start from

@@ -43,6 +43,7 @@ from . import (
     midpoint,
     newton,
     pose_log,
+    problem_log,
     projection,
     residual_log,
     restitution,
@@ -91,6 +92,7 @@ EFFECTS = (
     pose_log,
     contact_log,
     residual_log,
+    problem_log,
 )
 
 

@@ -7,6 +7,13 @@ from ..compile import chain, kernel
 from ..records import TOUCHING, Field
 from ..residual import make_row_residual
 from ..spec import Spec
+from ..violations import (
+    SIGNORINI_ROW,
+    make_forget,
+    make_log_signorini,
+    make_watch_coulomb,
+    make_watch_signorini,
+)
 from .decision import Decision, Facts
 
 NAME = "contact_log"
@@ -26,6 +33,7 @@ CONTACT_ROW_FIELDS: list[Field] = [
     ("target", "f8"),  # b + b_rest: the row asked v_n + target + gamma lambda_n >= 0 [m/s]
     ("residual", "f8"),  # of the row [m/s]
 ]
+STEP_ROW_FIELDS = SIGNORINI_ROW
 
 
 def wanted(facts: Facts) -> Decision:
@@ -45,7 +53,9 @@ def make(spec: Spec, loggers):
     rows: (step rows, pose rows, contact rows); the caller guarantees room.
     """
     ahead = spec.has("speculative")
-    row_residual = make_row_residual(spec)
+    rubs, moving_surface = spec.has("friction"), spec.has("surface_velocity")
+    row_residual, forget = make_row_residual(spec), make_forget(spec)
+    watch_signorini, watch_coulomb = make_watch_signorini(spec), make_watch_coulomb(spec)
     log_more = chain(loggers, spec)
 
     def log_contacts(contacts, count, velocities, params, counters, rows):
@@ -54,17 +64,20 @@ def make(spec: Spec, loggers):
         force, deepest = 0.0, 0.0
         written = 0
         counters.residual_row = -1
+        forget(counters)
         for c in range(count):
             contact, out = contacts[c], contact_rows[counters.contact_rows + written]
+            va, vb = velocities[contact.a], velocities[contact.b]
+            residual, v_n = row_residual(contact, va, vb)
             if ahead:
                 # Rows made ahead that neither touch nor push are the solver's, not the scene's.
                 if contact.phi > TOUCHING and contact.lambda_n == 0.0:
+                    watch_signorini(counters, -1, contact, v_n)
                     continue
+            watch_signorini(counters, written, contact, v_n)
             if c == counters.residual_contact:
                 counters.residual_row = written
             written += 1
-            va, vb = velocities[contact.a], velocities[contact.b]
-            residual, v_n = row_residual(contact, va, vb)
             out.step = counters.step + 1
             out.body_a, out.body_b, out.feature = contact.a, contact.b, contact.feature
             out.x, out.y, out.z = contact.x, contact.y, contact.z
@@ -79,6 +92,12 @@ def make(spec: Spec, loggers):
             out.target = contact.target
             out.residual = residual
             log_more(out, contact, va, vb)
+            if rubs:
+                w_1, w_2 = out.slip_t1, out.slip_t2
+                if moving_surface:
+                    w_1 += contact.surface_1
+                    w_2 += contact.surface_2
+                watch_coulomb(counters, written - 1, contact, w_1, w_2)
             force += out.force_n
             # A NaN is deeper than anything, or it would not be seen.
             if out.penetration > deepest or out.penetration != out.penetration:
@@ -88,3 +107,6 @@ def make(spec: Spec, loggers):
         row.max_penetration = deepest
 
     return kernel(log_contacts, spec)
+
+
+make_step_log = make_log_signorini

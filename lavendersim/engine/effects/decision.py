@@ -69,6 +69,7 @@ class Facts(NamedTuple):
     events: bool = False  # something is changed during the run
     record: bool = True  # the run is logged
     residuals: bool = False  # and the residual of every sweep, for some steps
+    problems: bool = False  # contact problems of some steps are dumped
     timestep: float = 0.0  # [s]
     duration: float = 0.0  # [s]
 

@@ -8,6 +8,7 @@ a sweep needs both and nothing else of a body.
 
 from ..block import make_relative_velocity
 from ..compile import kernel
+from ..violations import COULOMB_ROW, make_log_coulomb
 from .decision import Decision, Facts, PairFacts, by_pair
 
 NAME = "friction"
@@ -38,6 +39,7 @@ CONTACT_ROW_FIELDS = [
     *[(f"t1{axis}", "f8") for axis in "xyz"],  # t2 = n x t1 [-]
     ("friction", "f8"),  # mu [-]
 ]
+STEP_ROW_FIELDS = COULOMB_ROW
 CACHE_FIELDS = [("px", "f8"), ("py", "f8"), ("pz", "f8")]  # tangential impulse, world axes [N s]
 
 
@@ -94,3 +96,6 @@ def make_log(spec):
         out.friction = contact.mu
 
     return kernel(log_friction, spec)
+
+
+make_step_log = make_log_coulomb

@@ -142,3 +142,21 @@ def test_unsolved_steps_are_counted_and_unknown_where_no_tolerance_was_asked_for
     assert math.isnan(evaluate(spec, log))
     log.step = recfunctions.append_fields(log.step, "unsolved", [0, 1, 0, 1], usemask=False)
     assert evaluate(spec, log) == 2.0
+
+
+def test_a_violation_is_the_worst_of_the_steps_after_a_time() -> None:
+    log = trace_of([0.0] * 5)  # steps of 10 ms
+    parts = {"signorini": [0, 9, 3, 1, 2], "dissipation": [0, 0, 0, 7, 1]}
+    log.step["residual"] = [0.0, 0.5, 0.0, 0.25, 0.0]
+    values = [np.array(column, float) for column in parts.values()]
+    log.step = recfunctions.append_fields(log.step, list(parts), values, usemask=False)
+
+    def worst(part: Any, after: float = 0.0) -> Any:
+        return evaluate(specs.LawViolation(kind="law_violation", part=part, after=after), log)
+
+    assert worst("natural_map") == 0.5
+    assert worst("natural_map", 0.02) == 0.25
+    assert (worst("signorini"), worst("signorini", 0.01)) == (9.0, 3.0)
+    assert worst("dissipation") == 7.0
+    assert math.isnan(worst("cone"))  # this log has none
+    assert math.isnan(worst("signorini", 0.04))  # no step ends later

@@ -52,10 +52,10 @@ def test_the_bytes_do_not_depend_on_how_steps_are_split(tmp_path: Path, sizes: l
 
 def test_extra_columns_pass_through(tmp_path: Path) -> None:
     block = run(50, extra=("slip_speed", "heat"))
-    wider = np.zeros(50, [*block.step.dtype.descr, ("dissipation", "f8"), ("flags", "i8")])
+    wider = np.zeros(50, [*block.step.dtype.descr, ("wear", "f8"), ("flags", "i8")])
     for name in block.step.dtype.names or ():
         wider[name] = block.step[name]
-    wider["dissipation"], wider["flags"] = np.pi, -(2**60)
+    wider["wear"], wider["flags"] = np.pi, -(2**60)
     block = block._replace(step=wider)
     assert_holds(open_trace(write(tmp_path / "run.mcap", [block])), block)
 

@@ -1,0 +1,67 @@
+"""Rows of a cell's steps enter; how far they were solved, and who was worst, leaves."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
+from typing import Final, NamedTuple
+
+import numpy as np
+
+# What a step states the largest of, beside the logged contact that has it: columns of /step.
+PARTS: Final = ("residual", "signorini", "cone", "dissipation")
+
+
+class Worst(NamedTuple):
+    """The largest number of a kind in any step."""
+
+    value: float = 0.0  # [m/s], of `cone` [N s], of `dissipation` [J]
+    bodies: str = ""  # "floor and ball"; nothing where the contact is not logged
+
+
+class Accuracy(NamedTuple):
+    """How far the steps of a cell were solved, and how far they keep the law."""
+
+    worst_residual: float = 0.0  # [m/s] of any step
+    tolerance: float | None = None  # [m/s] asked for; None: every step takes all its sweeps
+    unsolved: int = 0  # steps that ended above the tolerance
+    worst: Mapping[str, Worst] = MappingProxyType({})  # by PARTS, those that the log has
+
+    def after(
+        self, step: np.ndarray, contact: np.ndarray | None = None, names: Sequence[str] = ()
+    ) -> Accuracy:
+        """Return the accuracy with more rows of steps counted in; a NaN stays the worst.
+
+        contact: rows of their contacts, names: of the bodies that these speak of.
+        """
+        missed = self.unsolved
+        if self.tolerance is not None:
+            missed += int(np.count_nonzero(step["unsolved"]))
+        worst = np.max(step["residual"], initial=self.worst_residual)
+        return self._replace(
+            worst_residual=float(worst),
+            unsolved=missed,
+            worst={} if contact is None else self._worst(step, contact, names),
+        )
+
+    def _worst(
+        self, step: np.ndarray, contact: np.ndarray, names: Sequence[str]
+    ) -> Mapping[str, Worst]:
+        found = dict(self.worst)
+        for part in PARTS:
+            if f"{part}_contact" not in (step.dtype.names or ()) or len(step) == 0:
+                continue
+            row = step[int(np.argmax(step[part]))]  # the first NaN, where there is one
+            value, before = float(row[part]), found.get(part)
+            if before is None or value > before.value or np.isnan(value):
+                bodies = _pair(contact, int(row["step"]), int(row[f"{part}_contact"]), names)
+                found[part] = Worst(value, bodies)
+        return found
+
+
+def _pair(contact: np.ndarray, step: int, index: int, names: Sequence[str]) -> str:
+    """Return the names of the bodies of a step's logged contact."""
+    if index < 0:
+        return ""
+    row = contact[np.searchsorted(contact["step"], step) + index]
+    return f"{names[row['body_a']]} and {names[row['body_b']]}"
