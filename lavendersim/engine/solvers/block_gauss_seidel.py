@@ -10,10 +10,10 @@ from __future__ import annotations
 from typing import Any
 
 from ..spec import Spec
+from . import projected_gauss_seidel
 from .lanes import WIDTH
 from .packed_rows import allocate_packed
 from .packed_sweep import can_pack, make_solve_packed
-from . import projected_gauss_seidel
 
 
 def allocate(spec: Spec, bodies: int, contacts: int) -> Any:

@@ -9,8 +9,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from . import projected_gauss_seidel
 from ..spec import Spec
+from . import projected_gauss_seidel
 from .packed_rows import allocate_packed
 from .packed_sweep import can_pack, make_solve_packed
 

@@ -56,7 +56,6 @@ from .packed_rows import (
     LAMBDA_2,
     LAMBDA_N,
     MU,
-    N,
     T1,
     T2,
     TURN_A,
@@ -64,6 +63,7 @@ from .packed_rows import (
     W_1,
     W_2,
     W_N,
+    N,
     make_pack,
     make_unpack,
 )
