@@ -26,6 +26,7 @@ from lavendersim.experiment import load_experiment_text
 from lavendersim.scene.build import build
 from lavendersim.scene.plan import plan_of
 
+EVERY_SOLVER = tuple(SOLVERS)  # by name
 SCENES = Path(__file__).parents[2] / "configs" / "scenes"
 ORDER = 6  # of an engine's working arrays: the order of sweeps
 
