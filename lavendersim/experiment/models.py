@@ -52,6 +52,8 @@ Count = Annotated[int, Quantity(whole=True, minimum=1, maximum=1_000_000)]
 CountOrNone = Annotated[int, Quantity(whole=True, minimum=0, maximum=1_000_000)]
 Solver = Literal[
     "projected_gauss_seidel",
+    "block_gauss_seidel",
+    "coloured_gauss_seidel",
     "nonsmooth_conjugate_gradient",
     "jacobi",
     "accelerated_projected_gradient",

@@ -7,6 +7,8 @@ A solver's module has `make(spec) -> kernel` and, where it needs them, CONTACT_F
 from . import (
     accelerated_projected_gradient,
     adaptive,
+    block_gauss_seidel,
+    coloured_gauss_seidel,
     jacobi,
     nonsmooth_conjugate_gradient,
     projected_gauss_seidel,
@@ -14,6 +16,8 @@ from . import (
 
 SOLVERS = {
     "projected_gauss_seidel": projected_gauss_seidel,
+    "block_gauss_seidel": block_gauss_seidel,
+    "coloured_gauss_seidel": coloured_gauss_seidel,
     "nonsmooth_conjugate_gradient": nonsmooth_conjugate_gradient,
     "jacobi": jacobi,
     "accelerated_projected_gradient": accelerated_projected_gradient,

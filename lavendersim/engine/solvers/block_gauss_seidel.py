@@ -1,0 +1,33 @@
+"""Projected Gauss-Seidel by contact blocks: a contact's normal and disc in one packed visit.
+
+The sweeps of `projected_gauss_seidel`, to round-off, on contacts that are packed once a solve
+(`packed_rows`). That pays from some three sweeps on. Engines whose contacts are no such blocks
+(no friction at all, the pyramid, what resists turning) sweep over the records.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ..spec import Spec
+from . import projected_gauss_seidel
+from .lanes import WIDTH
+from .packed_rows import allocate_packed
+from .packed_sweep import can_pack, make_solve_packed
+
+
+def allocate(spec: Spec, bodies: int, contacts: int) -> Any:
+    """Return the arrays this solver works in."""
+    if not can_pack(spec):
+        return ()
+    return allocate_packed(bodies, contacts, -(-contacts // WIDTH))
+
+
+def make(spec: Spec) -> Any:
+    """Return `kernel(contacts, order, count, bodies, velocities, space, params, counters, rows)`.
+
+    Writes counters.sweeps, .residual [m/s], .residual_contact and .unsolved of this step.
+    """
+    if can_pack(spec):
+        return make_solve_packed(spec, eight=False)
+    return projected_gauss_seidel.make(spec)

@@ -1,0 +1,30 @@
+"""Projected Gauss-Seidel that visits eight independent contacts at a time.
+
+The order of sweeps colours the contacts (`ordering`): most of any eight that follow each other
+share no movable body, and visiting them at once is visiting them in turn. So it gives the bits of
+`block_gauss_seidel`, its scalar loop, and what that says of other engines holds here.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ..spec import Spec
+from . import projected_gauss_seidel
+from .packed_rows import allocate_packed
+from .packed_sweep import can_pack, make_solve_packed
+
+
+def allocate(spec: Spec, bodies: int, contacts: int) -> Any:
+    """Return the arrays this solver works in: at worst each contact is alone in its group."""
+    return allocate_packed(bodies, contacts, contacts) if can_pack(spec) else ()
+
+
+def make(spec: Spec) -> Any:
+    """Return `kernel(contacts, order, count, bodies, velocities, space, params, counters, rows)`.
+
+    Writes counters.sweeps, .residual [m/s], .residual_contact and .unsolved of this step.
+    """
+    if can_pack(spec):
+        return make_solve_packed(spec, eight=True)
+    return projected_gauss_seidel.make(spec)
