@@ -1,0 +1,150 @@
+"""Impulses enter, and leave nearer to a solution: rounds of a convex problem, solved by Newton.
+
+De Saxce's shift s = mu |v_t| is held for a round, and soft springs hold the impulses x^k:
+    G(y) = A (P(y) - x^k) + softness (y - x^k) + v^k + s e_n = 0,     x^k+1 = P(y)
+With y = x^k - (v^k + s e_n) / softness + A h, A-times the gradient of a convex function of h is G
+(for symmetric A; of others only the slope along a step is used). So Newton's method with an exact
+search along each step finds y however redundant the contacts are:
+    (softness I + L^T A L) z = -L^T G,   dh = -(P(y) - x^k + softness h + L z) / softness
+This is the engine's `solvers.newton` with A for the bodies. Rounds begin stiff, where a solution
+may be one round away; where that fails, soft, and stiffen.
+"""
+
+from __future__ import annotations
+
+from math import sqrt
+from typing import NamedTuple
+
+import numpy as np
+
+from lavendersim.problems.account import Account
+from lavendersim.problems.factorise import factorise
+from lavendersim.problems.friction_cone import derivative_root, project
+from lavendersim.problems.scaled_problem import ScaledProblem, multiply, scaled_residual, velocities
+from lavendersim.problems.semismooth_newton import newton_steps
+
+# Softness of the first round, of the second where the first failed, and the least [-].
+BOLD, SOFTEST, STIFFEST = 1e-3, 1e-2, 1e-8
+# Softness falls by this factor from round to round, by its root after one that failed [-].
+CUT = 0.03
+FAILURES = 6
+# A round may leave the residual this much above the least so far; the first has to bring it below
+# this share of it [-].
+WORSE, FIRST = 10.0, 0.1
+# Newton steps of a round; by this one the gain has fallen to this share, or it is given up.
+MOST, LOOK_BACK, LOOKED_FOR = 24, 8, 0.1
+# A round ends when a step gains this share of what the residual is worth, or nothing but round-off.
+EXACTNESS, ROUND_OFF = 0.01, 1e-20
+# A length is good that leaves this share of the slope [-]; trials, and the longest [-].
+SLOPE_LEFT, TRIALS, LONGEST = 0.2, 40, 64.0
+# Below this residual a few full Newton steps may end it.
+NEAR, FINISHING = 3e-2, 8
+
+
+class Line(NamedTuple):
+    """A step in y and h from where a round is."""
+
+    y: np.ndarray
+    h: np.ndarray
+    dy: np.ndarray
+    dh: np.ndarray
+    held: np.ndarray
+    mu: np.ndarray
+    softness: float
+
+    def slope(self, length: float) -> float:
+        """Return the derivative of the convex function along the step; it grows with the length."""
+        answer = project(self.y + length * self.dy, self.mu) - self.held
+        return float(np.vdot(self.dy, answer + self.softness * (self.h + length * self.dh)))
+
+
+def newton_rounds(
+    p: ScaledProblem, x: np.ndarray, account: Account, most: int = 60
+) -> tuple[np.ndarray, float]:
+    """Return impulses and their residual after rounds of at most so many steps in all."""
+    least = residual = scaled_residual(p, x, velocities(p, x))
+    softness, good, cut, failed, first = BOLD, SOFTEST / CUT, CUT, 0, True
+    begun = account.steps
+    while residual > account.tolerance and account.steps - begun < most and not account.spent:
+        v = velocities(p, x)
+        worth = max(least, account.tolerance)
+        found, answer = _round(p, x, v, softness, EXACTNESS * softness * worth * worth, account)
+        reached = scaled_residual(p, answer, velocities(p, answer))
+        if found and reached < (FIRST if first else WORSE) * least:
+            x, residual, good = answer, reached, softness
+            if residual < NEAR:
+                x, residual = newton_steps(p, x, account, softness, FINISHING)
+            least = min(least, residual)
+            softness = max(softness * cut, STIFFEST)
+        else:
+            failed += 1
+            if failed > FAILURES:
+                break
+            if failed > 1:
+                cut = sqrt(cut)
+            softness = good * cut
+        first = False
+    return x, residual
+
+
+def _round(
+    p: ScaledProblem,
+    held: np.ndarray,
+    v: np.ndarray,
+    softness: float,
+    enough: float,
+    account: Account,
+) -> tuple[bool, np.ndarray]:
+    pushed = v.copy()
+    pushed[:, 0] += p.mu * np.hypot(v[:, 1], v[:, 2])
+    y, h = held - pushed / softness, np.zeros_like(held)
+    soft = np.full(held.shape, softness)
+    answer, first = project(y, p.mu), 0.0
+    for step in range(MOST):
+        gradient = answer - held + softness * h
+        root = derivative_root(y, p.mu)
+        reduced = np.matmul(np.matmul(root[p.rows].transpose(0, 2, 1), p.blocks), root[p.columns])
+        factor = factorise(p, reduced, (root != 0.0).any(axis=1), soft)
+        z = factor.solve(-np.einsum("nji,nj->ni", root, multiply(p, gradient)))
+        dh = -(gradient + np.einsum("nij,nj->ni", root, z)) / softness
+        dy = multiply(p, dh)
+        residual = scaled_residual(p, answer, velocities(p, answer))
+        account.step(factor.cost, residual)
+        if not np.isfinite(dy).all():
+            return False, held
+        line = Line(y, h, dy, dh, held, p.mu, softness)
+        gain = -0.5 * line.slope(0.0)
+        first = first or gain
+        if gain <= max(enough, ROUND_OFF * first):
+            return True, project(y + dy, p.mu)
+        if step == LOOK_BACK and gain > LOOKED_FOR * first:
+            return False, answer
+        length = _search(line, -2.0 * gain)
+        y, h = y + length * dy, h + length * dh
+        answer = project(y, p.mu)
+    return False, answer
+
+
+def _search(line: Line, slope: float) -> float:
+    """Return a length at which next to nothing of the slope at 0 is left."""
+    goal = SLOPE_LEFT * abs(slope)
+    low, high, at_low, at_high = 0.0, 1.0, slope, line.slope(1.0)
+    if abs(at_high) <= goal:
+        return high
+    while at_high < 0.0 and high < LONGEST:
+        low, high, at_low = high, 2.0 * high, at_high
+        at_high = line.slope(high)
+    length = high
+    for trial in range(TRIALS):
+        if trial % 3 == 2 or not at_high > at_low:
+            length = 0.5 * (low + high)
+        else:
+            length = low - (high - low) * at_low / (at_high - at_low)
+        slope = line.slope(length)
+        if abs(slope) <= goal:
+            break
+        if slope < 0.0:
+            low, at_low = length, slope
+        else:
+            high, at_high = length, slope
+    return length

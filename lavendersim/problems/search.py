@@ -1,0 +1,111 @@
+"""A contact problem enters; methods take turns at the best impulses so far, and that leaves.
+
+Sweeps of projected Gauss-Seidel find which contacts open, slide and stick; `semismooth_newton` ends
+it in a few steps once most are known, `newton_rounds` get on where neither does, `interior_point`
+where sweeps are slow: tall stacks, light below heavy. Each has problems that only it solves.
+What is spent is counted (`account`), so equal calls take equal turns.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from lavendersim.engine.contact_problem import NOT_FINITE, SOLVED, SPENT, ContactProblem, Solution
+from lavendersim.problems.account import Account
+from lavendersim.problems.by_kernel import solve_by_kernel
+from lavendersim.problems.interior_point import interior_point
+from lavendersim.problems.newton_rounds import newton_rounds
+from lavendersim.problems.residual import residual
+from lavendersim.problems.scaled_problem import from_impulses, scale, to_impulses
+from lavendersim.problems.semismooth_newton import newton_steps
+
+SWEEPER = "projected_gauss_seidel"
+# Sweeps before the first Newton steps, doubled every time; times before something else is tried.
+FIRST_SWEEPS, OPENING = 50, 4
+# Sweeps between rounds, doubled every time.
+LATER_SWEEPS, LATER = 1000, 2
+# Multiplications of a sweep per block of W.
+SWEEP_COST = 30.0
+# A method aims below the tolerance by this: the judge rounds otherwise [-].
+MARGIN = 0.5
+
+
+class Search:
+    """The best impulses so far, and what the methods may still spend."""
+
+    def __init__(
+        self, problem: ContactProblem, account: Account, start: np.ndarray | None, history: bool
+    ) -> None:
+        self.problem, self.account, self.history = problem, account, history
+        self.best = np.zeros((problem.contacts, 3)) if start is None else start.copy()
+        self.least = residual(problem, self.best).scaled
+        self.trivial = self.least <= account.tolerance
+        account.history.append(self.least)
+        if not self.trivial:
+            self.p = scale(problem)
+
+    @property
+    def over(self) -> bool:
+        """Whether it is solved or everything is spent."""
+        return self.least <= self.account.tolerance or self.account.spent
+
+    def offer(self, impulses: np.ndarray, reached: float) -> None:
+        """Keep the better one."""
+        if reached < self.least:
+            self.best, self.least = impulses, reached
+
+    def sweep(self, sweeps: int) -> np.ndarray:
+        """Sweep from the best, and go on from where that ends even if it is no better."""
+        cost = SWEEP_COST * len(self.problem.row)
+        within = min(sweeps, self.account.steps_left, self.account.operations_left / cost)
+        most = max(1, int(within))
+        solution = solve_by_kernel(
+            self.problem, SWEEPER, self.account.tolerance, most, self.best, self.history
+        )
+        done = solution.sweeps
+        told = list(solution.history[1:]) if self.history else []
+        self.account.spend(done, cost * done, told)
+        self.offer(solution.impulses, solution.scaled)
+        return solution.impulses if solution.scaled < float("inf") else self.best
+
+    def sweep_and_step(self, sweeps: int) -> None:
+        """Sweep, then Newton."""
+        swept = self.sweep(sweeps)
+        if not self.over:
+            x, reached = newton_steps(self.p, from_impulses(self.p, swept), self.account)
+            self.offer(to_impulses(self.p, x), reached)
+
+    def rounds(self) -> None:
+        """Make rounds from the best."""
+        x, reached = newton_rounds(self.p, from_impulses(self.p, self.best), self.account)
+        self.offer(to_impulses(self.p, x), reached)
+
+    def interior(self) -> None:
+        """Begin again, from inside the cones."""
+        x, reached = interior_point(self.p, self.account)
+        self.offer(to_impulses(self.p, x), reached)
+
+    def open(self) -> None:
+        """Sweep and step a few times: most problems end here."""
+        for k in range(OPENING):
+            if not self.over:
+                self.sweep_and_step(FIRST_SWEEPS * 2**k)
+
+    def go_on(self) -> None:
+        """Make rounds, sweep and step until everything is spent."""
+        sweeps = LATER_SWEEPS
+        while not self.over:
+            self.rounds()
+            for _ in range(LATER):
+                if not self.over:
+                    self.sweep_and_step(sweeps)
+                sweeps *= 2
+
+    def solution(self) -> Solution:
+        """Return the best, judged from its impulses alone."""
+        judged = residual(self.problem, self.best)
+        status = SPENT if np.isfinite(self.best).all() else NOT_FINITE
+        if judged.scaled <= self.account.tolerance / MARGIN:
+            status = SOLVED
+        history = np.array(self.account.history if self.history else [])
+        return Solution(self.best, self.account.steps, history, status, judged.scaled, judged.local)

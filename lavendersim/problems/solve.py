@@ -1,0 +1,181 @@
+"""A contact problem and a solver's name enter; a solution leaves whose status can be believed.
+
+Whatever a solver says of itself, `solved` is said of impulses alone, by `residual`. Contacts that
+no impulse can move (both bodies fixed, an empty row of W) are left out of what solvers see.
+"""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Callable
+from functools import partial
+
+import numpy as np
+
+import lavendersim.engine.effects  # noqa: F401  before solvers: they need each other
+from lavendersim.engine.contact_problem import NOT_FINITE, SOLVED, SPENT, ContactProblem, Solution
+from lavendersim.engine.solvers import SOLVERS as KERNELS
+from lavendersim.errors import UsageError
+from lavendersim.problems.account import Account
+from lavendersim.problems.by_kernel import solve_by_kernel
+from lavendersim.problems.matrices import columns_of, velocities_of
+from lavendersim.problems.residual import own_scales, residual
+from lavendersim.problems.search import Search
+
+Solver = Callable[[ContactProblem, float, int, "np.ndarray | None", bool], Solution]
+
+# Sweeps, or steps, at most where none are asked for. `auto` is limited by `AUTO` instead.
+SWEEPS = 10_000
+AUTO_SWEEPS = 1_000_000
+# What `auto` may spend [multiplications]: some four seconds.
+AUTO = 2.5e9
+# Methods that mix sweeps and steps aim below the tolerance by this: the judge rounds otherwise [-].
+MARGIN = 0.5
+
+
+def solve_by_newton(
+    problem: ContactProblem,
+    tolerance: float,
+    sweeps: int,
+    start: np.ndarray | None = None,
+    history: bool = False,
+) -> Solution:
+    """Solve by sweeps, semismooth Newton steps and rounds; `sweeps` counts all of them."""
+    search = Search(problem, Account(MARGIN * tolerance, sweeps), start, history)
+    search.open()
+    search.go_on()
+    return search.solution()
+
+
+def solve_by_interior_point(
+    problem: ContactProblem,
+    tolerance: float,
+    sweeps: int,
+    start: np.ndarray | None = None,
+    history: bool = False,
+) -> Solution:
+    """Solve by `interior_point`; `start` is what to return where nothing better is found."""
+    search = Search(problem, Account(MARGIN * tolerance, sweeps), start, history)
+    if not search.over:
+        search.interior()
+    return search.solution()
+
+
+def solve_by_all(
+    problem: ContactProblem,
+    tolerance: float,
+    sweeps: int,
+    start: np.ndarray | None = None,
+    history: bool = False,
+) -> Solution:
+    """Solve by whatever does it, in turn, within `AUTO` multiplications."""
+    search = Search(problem, Account(MARGIN * tolerance, sweeps, AUTO), start, history)
+    search.open()
+    if not search.over:
+        search.interior()
+    search.go_on()
+    return search.solution()
+
+
+def _by_kernel(
+    solver: str,
+    problem: ContactProblem,
+    tolerance: float,
+    sweeps: int,
+    start: np.ndarray | None = None,
+    history: bool = False,
+) -> Solution:
+    return solve_by_kernel(problem, solver, tolerance, sweeps, start, history)
+
+
+SOLVERS: dict[str, Solver] = {
+    **{name: partial(_by_kernel, name) for name in KERNELS if name != "adaptive"},
+    "semismooth_newton": solve_by_newton,
+    "interior_point": solve_by_interior_point,
+    "auto": solve_by_all,
+}
+
+
+def solve(
+    problem: ContactProblem,
+    solver: str = "auto",
+    tolerance: float = 1e-8,
+    sweeps: int | None = None,
+    start: np.ndarray | None = None,
+    history: bool = False,
+) -> Solution:
+    """Return the impulses a solver finds, judged by their residual.
+
+    tolerance: `scaled` residual (`residual`) of what is called solved [-]; sweeps: sweeps, and
+    steps of other methods, at most; start: impulses (n, 3) to begin at [N s]; history: keep the
+    residual at the start and after every sweep and step.
+    Raises UsageError for an unknown solver, with the nearest name.
+    """
+    if solver not in SOLVERS:
+        near = difflib.get_close_matches(solver, SOLVERS, 1)
+        hint = f", did you mean {near[0]!r}?" if near else f"; there are {', '.join(SOLVERS)}"
+        raise UsageError(f"no solver is called {solver!r}{hint}")
+    begin = np.zeros((problem.contacts, 3)) if start is None else np.asarray(start, dtype=float)
+    if not all(np.isfinite(numbers).all() for numbers in problem):
+        return Solution(begin, 0, np.empty(0), NOT_FINITE, float("inf"), float("inf"))
+    moved = own_scales(problem) > 0.0
+    if moved.all():
+        return judged(problem, _run(problem, solver, tolerance, sweeps, begin, history), tolerance)
+    part = _only(problem, moved)
+    found = _run(part, solver, tolerance, sweeps, begin[moved], history)
+    impulses = np.zeros((problem.contacts, 3))
+    impulses[moved] = found.impulses
+    solution = judged(problem, found._replace(impulses=impulses), tolerance)
+    if solution.status == SOLVED:
+        return solution
+    closing = np.where(moved, 0.0, velocities_of(problem)[:, 0])
+    worst = int(np.argmin(closing))
+    if closing[worst] < 0.0:
+        return solution._replace(
+            status=f"no solution: contact {worst} closes at {-closing[worst]:.3g} m/s "
+            "and no impulse can move it"
+        )
+    return solution
+
+
+def judged(problem: ContactProblem, solution: Solution, tolerance: float) -> Solution:
+    """Return the solution with its residual and whether it is one, from its impulses alone."""
+    found = residual(problem, solution.impulses)
+    status = solution.status
+    if found.scaled <= tolerance:
+        status = SOLVED
+    elif status == SOLVED:
+        status = SPENT
+    if not np.isfinite(solution.impulses).all():
+        status = NOT_FINITE
+    return solution._replace(status=status, scaled=found.scaled, local=found.local)
+
+
+def _run(
+    problem: ContactProblem,
+    solver: str,
+    tolerance: float,
+    sweeps: int | None,
+    start: np.ndarray,
+    history: bool,
+) -> Solution:
+    if problem.contacts == 0:
+        told = np.zeros(1 if history else 0)
+        return Solution(np.zeros((0, 3)), 0, told, SOLVED, 0.0, 0.0)
+    if sweeps is None:
+        sweeps = AUTO_SWEEPS if solver == "auto" else SWEEPS
+    return SOLVERS[solver](problem, tolerance, sweeps, start, history)
+
+
+def _only(problem: ContactProblem, kept: np.ndarray) -> ContactProblem:
+    """Return the problem of some of its contacts; the others push nothing."""
+    columns = columns_of(problem)
+    stays = kept[columns] & kept[problem.row]
+    number = np.cumsum(kept) - 1
+    counts = np.bincount(number[columns[stays]], minlength=int(kept.sum()))
+    return ContactProblem(
+        np.concatenate([[0], np.cumsum(counts)]).astype(np.int64),
+        number[problem.row[stays]],
+        problem.blocks[stays],
+        *(part[kept] for part in (problem.free, problem.mu, problem.gamma, problem.target)),
+    )
