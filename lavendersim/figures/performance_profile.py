@@ -24,6 +24,7 @@ from lavendersim.figures.style import STYLE
 
 WIDTH, HEIGHT = 8.6, 4.0  # [inch]
 LEAST_RANGE: Final = 10.0  # tau shown at least
+WIDEST: Final = 3.0  # [point] by which the first line is wider than the last
 ROOM: Final = 1.5  # tau shown beyond the largest ratio
 CAPTION: Final = (
     "Share of {problems} that a solver brings to a scaled residual of {tolerance:g} within tau "
@@ -69,7 +70,7 @@ def compose(ratios: dict[str, list[float]], caption: str) -> Figure:
     for order, solver in enumerate(solvers):
         taus, shares = profile(ratios[solver], end)
         # Curves that lie on each other stay visible: earlier ones are wider and beneath.
-        width = 1.3 + 0.55 * (len(solvers) - 1 - order)
+        width = 1.3 + WIDEST * (1.0 - (order + 1) / len(solvers))
         drawn = marks(solvers, solver) | {"linewidth": width, "zorder": 2.0 + 0.01 * order}
         axes.plot(taus, shares, drawstyle="steps-post", clip_on=False, **drawn)
     axes.set_xscale("log")

@@ -21,8 +21,9 @@ Clock = Callable[[], float]
 MISSED = "tolerance missed"  # the solver says solved, the residual does not
 # A call is repeated while that is cheap. Repeats of all calls on a problem take turns: what slows
 # the machine for a while slows every solver.
-MOST_REPEATS = 7
-REPEATING = 0.2  # [s] of all repeats of a call
+MOST_REPEATS = 9
+REPEATING = 0.8  # [s] of all repeats of a call that is reported
+REPEATING_STEP = 0.2  # [s] and of one on a curve, where there are many
 # The curve of a solver: calls with 1, 2, 4, ... sweeps, each from nothing.
 REACHED = 1e-13  # scaled residual that ends a curve; beyond is round-off
 LONGEST_CALL = 2.0  # [s] a call that took longer ends its curve
@@ -102,8 +103,16 @@ def _solve() -> Solve:
 class _Call:
     """A question to a solver, the last answer, and the times of all."""
 
-    def __init__(self, problem: ContactProblem, solver: str, tolerance: float, sweeps: int | None):
+    def __init__(
+        self,
+        problem: ContactProblem,
+        solver: str,
+        tolerance: float,
+        sweeps: int | None,
+        repeating: float = REPEATING,
+    ) -> None:
         self.question = (problem, solver, tolerance, sweeps)
+        self._repeating = repeating  # [s]
         self.times: list[float] = []
         self.answer: Solution
 
@@ -111,7 +120,7 @@ class _Call:
     def is_cheap(self) -> bool:
         """Whether to ask again: rarely what takes long."""
         spent = sum(self.times)
-        return len(self.times) < MOST_REPEATS and spent + self.times[0] < REPEATING
+        return len(self.times) < MOST_REPEATS and spent + self.times[0] < self._repeating
 
     @property
     def timing(self) -> Timing:
@@ -160,7 +169,7 @@ def _steps(problem: ContactProblem, solver: str, watch: _Stopwatch) -> list[_Cal
     """Ask with twice as many sweeps each time, until more of them would be of no use."""
     calls = []
     for doubling in range(MOST_DOUBLINGS + 1):
-        calls.append(_Call(problem, solver, REACHED, 2**doubling))
+        calls.append(_Call(problem, solver, REACHED, 2**doubling, REPEATING_STEP))
         watch.ask(calls[-1])
         solution = calls[-1].answer
         scaled, _ = distances(problem, solution.impulses)

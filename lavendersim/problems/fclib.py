@@ -26,6 +26,8 @@ SIGNATURE = b"\x89HDF\r\n\x1a\n"  # the first bytes of every HDF5 file
 LOCAL, GLOBAL = "fclib_local", "fclib_global"
 BILATERAL = {LOCAL: ("V", "R"), GLOBAL: ("G",)}  # matrices of joints beside the contacts
 BY_COLUMNS, BY_ROWS = -1, -2
+# What h5py raises where bytes within a file are wrong, depending on which.
+DAMAGED = (OSError, RuntimeError, KeyError, TypeError, ValueError)
 
 
 def _h5py(file: Path) -> Any:
@@ -43,14 +45,14 @@ def read_fclib(file: Path) -> ContactProblem:
     h5py = _h5py(file)
     try:
         with h5py.File(file, "r") as opened:
-            return _read(file, opened)
-    except OSError as error:
-        if error.errno is not None and not file.is_file():
-            raise
-        raise ProblemError(f"{file}: not a whole HDF5 file") from None
+            form, parts = _read(file, opened)
+    except DAMAGED:
+        raise ProblemError(f"{file}: not a whole HDF5 file, it is cut off or damaged") from None
+    return problem_of(*parts) if form == LOCAL else reduce_to_contacts(file, *parts)
 
 
-def _read(file: Path, opened: Any) -> ContactProblem:
+def _read(file: Path, opened: Any) -> tuple[str, tuple[Any, ...]]:
+    """Return the form, and what `problem_of` or `reduce_to_contacts` take."""
     form = next((name for name in (LOCAL, GLOBAL) if name in opened), None)
     if form is None:
         there = ", ".join(sorted(opened)) or "nothing"
@@ -75,11 +77,11 @@ def _read(file: Path, opened: Any) -> ContactProblem:
                 f"{file}: expected W with {rows} rows and columns for {len(mu)} contacts, "
                 f"it is {matrix.shape[0]} by {matrix.shape[1]}"
             )
-        return problem_of(matrix, _vector(file, group, "vectors/q", rows), mu)
+        return form, (matrix, _vector(file, group, "vectors/q", rows), mu)
     mass, directions = _matrix(file, group, "M"), _matrix(file, group, "H")
     f = _vector(file, group, "vectors/f", mass.shape[0])
     w = _vector(file, group, "vectors/w", rows)
-    return reduce_to_contacts(file, mass, directions, f, w, mu)
+    return form, (mass, directions, f, w, mu)
 
 
 def _dataset(file: Path, group: Any, name: str) -> np.ndarray:

@@ -210,20 +210,21 @@ def _take_header(tokens: Tokens, name: str, shape: tuple[int, int], origin: int)
 def _take_triplets(
     tokens: Tokens, name: str, count: int
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    table = tokens.numbers(3 * count, f"the {count} entries of {name}, row, column, value")
-    table = table.reshape(count, 3)
-    return table[:, 0].astype(np.int64), table[:, 1].astype(np.int64), table[:, 2]
+    places, values = tokens.entries(count, 2, f"the {count} entries of {name}, row, column, value")
+    return places[:, 0], places[:, 1], values
 
 
 def _take_listing(
     tokens: Tokens, name: str, count: int
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Take `col j : locations a to b` and the entries below it, until all were taken."""
-    minor, major, values = [], [], []
+    minor, major = [np.zeros(0, np.int64)], [np.zeros(0, np.int64)]
+    values = [np.zeros(0)]
+    column = -1
     taken = 0
     while tokens.peek(1) in (["col"], ["row"]):
         tokens.word()
-        column = tokens.whole(f"a column of {name}")
+        column = tokens.whole(f"a column of {name} after column {column}", least=column + 1)
         tokens.word()
         first = tokens.whole(f"the first entry of column {column} of {name}")
         tokens.word()
@@ -232,17 +233,12 @@ def _take_listing(
             raise tokens.wrong(
                 f"expected entries of {name} that follow {taken} and stay below {count}", -1
             )
-        entries = tokens.numbers(2 * (past - first), f"column {column} of {name}, row and value")
-        entries = entries.reshape(-1, 2)
-        minor.append(entries[:, 0].astype(np.int64))
+        what = f"the entries of column {column} of {name}, row and value"
+        places, found = tokens.entries(past - first, 1, what)
+        minor.append(places[:, 0])
         major.append(np.full(past - first, column, dtype=np.int64))
-        values.append(entries[:, 1])
+        values.append(found)
         taken = past
     if taken != count:
         raise tokens.wrong(f"expected {count} entries of {name}, {taken} are listed")
-    none = [np.zeros(0)]
-    return (
-        np.concatenate(minor or none).astype(np.int64),
-        np.concatenate(major or none).astype(np.int64),
-        np.concatenate(values or none),
-    )
+    return np.concatenate(minor), np.concatenate(major), np.concatenate(values)

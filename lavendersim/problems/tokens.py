@@ -14,6 +14,7 @@ import numpy as np
 from lavendersim.errors import ProblemError
 
 LONGEST_QUOTE = 40
+LARGEST_PLACE = 2.0**31
 
 
 class Tokens:
@@ -74,6 +75,22 @@ class Tokens:
             raise self.wrong(f"expected {what}, finite", bad)
         self._next += count
         return values
+
+    def entries(self, count: int, places: int, what: str) -> tuple[np.ndarray, np.ndarray]:
+        """Take lines of whole numbers from 0 and a value; returns (count, places), (count,).
+
+        Whole by their value: a listing may print them in any way.
+        """
+        start = self._next
+        table = self.numbers((places + 1) * count, what).reshape(count, places + 1)
+        found = table[:, :-1]
+        bad = (found < 0.0) | (found > LARGEST_PLACE) | (found != np.floor(found))
+        if bad.any():
+            line, place = np.argwhere(bad)[0]
+            self._next = start
+            ahead = int(line) * (places + 1) + int(place)
+            raise self.wrong(f"expected {what}, each place a whole number from 0", ahead)
+        return found.astype(np.int64), table[:, -1]
 
     def wrong(self, sentence: str, ahead: int = 0) -> ProblemError:
         """Return the error that the word `ahead` of this place is not what was expected."""

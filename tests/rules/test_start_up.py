@@ -9,7 +9,7 @@ import sys
 import pytest
 from sources import files, module_of, room_of
 
-HEAVY = {"numba", "llvmlite", "matplotlib", "rerun", "numpy"}
+HEAVY = {"numba", "llvmlite", "matplotlib", "rerun", "numpy", "scipy", "h5py"}
 VERSION = """
 from lavender_cli.main import main
 sys.argv = ["lavender", "--version"]
@@ -42,6 +42,17 @@ def test_the_front_doors_load_nothing_heavy(code: str) -> None:
 def test_reading_an_experiment_loads_no_engine() -> None:
     loaded = loaded_after("from lavendersim import load_experiment")
     assert loaded & (HEAVY | {"mcap", "lavendersim.engine", "lavendersim.scene"}) == set()
+
+
+def test_reading_a_problem_loads_no_numba() -> None:
+    loaded = loaded_after(
+        "from pathlib import Path\n"
+        "from lavendersim.errors import ProblemError\n"
+        "from lavendersim.problems.read import read_problem\n"
+        f"try:\n    read_problem(Path({__file__!r}))\nexcept ProblemError:\n    pass"
+    )
+    assert "lavendersim.problems.siconos" in loaded
+    assert loaded & {"numba", "llvmlite", "matplotlib", "rerun"} == set()
 
 
 @pytest.mark.parametrize("room", ["trace", "measures", "figures", "replay"])

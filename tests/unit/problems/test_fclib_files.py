@@ -183,6 +183,26 @@ def test_a_truncated_file_is_told(tmp_path: Path) -> None:
             read_problem(path)
 
 
+def test_a_damaged_file_is_told_or_read(tmp_path: Path) -> None:
+    """Bytes changed anywhere: some change a number only, no other may end in anything else."""
+    path = tmp_path / "p.hdf5"
+    write_fclib(path, PROBLEM)
+    whole = path.read_bytes()
+    rng = np.random.default_rng(3)
+    told = []
+    for _ in range(200):
+        damaged = bytearray(whole)
+        for place in rng.integers(8, len(whole), 5):
+            damaged[place] = rng.integers(256)
+        path.write_bytes(damaged)
+        try:
+            read_problem(path)
+        except ProblemError as error:
+            told.append(str(error))
+    assert len(told) > 20
+    assert not any("\n" in sentence for sentence in told)
+
+
 def test_without_h5py_a_sentence_says_what_to_install(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

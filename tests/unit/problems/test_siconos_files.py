@@ -127,6 +127,10 @@ WRONG = {
     "3\n1\n2 3 3 1\ntriplet: 3-by-4, nzmax: 1 nnz: 1\n0 0 : 1": ("3-by-3", 4),
     "3\n1\n2 3 3 1\ntriplet: 3-by-3, nzmax: 1\n0 0 : 1": ("as nnz", 5),
     "3\n1\n2 3 3 1\ntriplet: 3-by-3, nnz: 1\n0 5 : 1\n1 0 0 0.5": ("columns of W or M below 3", 6),
+    "3\n1\n2 3 3 1\ntriplet: 3-by-3, nnz: 1\n0 0.5 : 1\n": ("a whole number from 0", 5),
+    "3\n1\n2 3 3 1\ntriplet: 3-by-3, nnz: 1\n\n0 -1 : 1\n": ("a whole number from 0", 6),
+    "3\n1\n2 3 3 2\n3-by-3, nnz: 2\ncol 1 : locations 0 to 0\n0 : 1\ncol 1 : locations 1 to 1\n"
+    "1 : 1": ("after column 1, at least 2", 7),
     "3\n1\n2 3 3 2\n3-by-3, nnz: 2\ncol 0 : locations 0 to 0\n0 : 1\n1 0 0 0.5": ("2 entries", 7),
     "3\n1\n2 3 3 2\n3-by-3, nnz: 1\ncol 0 : locations 4 to 4\n0 : 1\n1 0 0 0.5": ("follow 0", 5),
 }
