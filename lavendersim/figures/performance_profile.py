@@ -30,7 +30,8 @@ CAPTION: Final = (
     "Share of {problems} that a solver brings to a scaled residual of {tolerance:g} within tau "
     "times the time of the fastest solver on the same problem. Left: how often it is the fastest; "
     "right: how many it solves at all; what it does not solve counts as infinite. Wall time of a "
-    "whole call without compilation, median of {repeats}. {processor}."
+    "whole call without compilation, median of {repeats} that no other program interrupted, where "
+    "there are such. {processor}."
 )
 
 

@@ -34,7 +34,7 @@ CAPTION: Final = (
     "What each solver achieved against the time it took: every point is a run of its own from "
     "nothing with 1, 2, 4, ... sweeps, judged afterwards by the scaled residual of its impulses. "
     "Dashed: the tolerance {tolerance:g}. {hollow}Wall time of a whole call without compilation, "
-    "median of {repeats}. {processor}."
+    "median of {repeats} that no other program interrupted, where there are such. {processor}."
 )
 HOLLOW: Final = "Hollow: not finite or above 100. "
 

@@ -1,8 +1,9 @@
 """Problems and solvers in; what each solver reached, and in what time, out.
 
 A solver's own word is not taken: solved is what `residual` of the returned impulses says. Time is
-that of a whole call, from the problem to its impulses, on the wall; compilation is in the first
-call, which is told apart. The residual is computed after the clock has stopped.
+that of a whole call, from the problem to its solution, on the wall; compilation is in the first
+call, which is told apart. The residual that is reported is computed after the clock has stopped.
+Calls that other programs interrupted, as the processor's own time tells, count only where all are.
 """
 
 from __future__ import annotations
@@ -22,6 +23,9 @@ MISSED = "tolerance missed"  # the solver says solved, the residual does not
 # A call is repeated while that is cheap. Repeats of all calls on a problem take turns: what slows
 # the machine for a while slows every solver.
 MOST_REPEATS = 9
+MOST_CALLS = 3 * MOST_REPEATS  # with those that were interrupted
+UNDISTURBED = 0.9  # of its wall time the process had the processor, in all its threads
+FINE = 1e-6  # [s] resolution of a clock of the processor that can tell
 REPEATING = 0.8  # [s] of all repeats of a call that is reported
 REPEATING_STEP = 0.2  # [s] and of one on a curve, where there are many
 # The curve of a solver: calls with 1, 2, 4, ... sweeps, each from nothing.
@@ -84,14 +88,18 @@ def compare(
     curves: bool = False,
     solve: Solve | None = None,
     now: Clock = time.perf_counter,
+    busy: Clock = time.process_time,
 ) -> Iterator[Comparison]:
     """Yield a comparison per named problem, as soon as it is there.
 
     `solve(problem, solver, tolerance, sweeps)` is `problems.solve.solve` unless another is given.
     """
     call = solve or _solve()
+    if busy is time.process_time and time.get_clock_info("process_time").resolution > FINE:
+        busy = now  # a clock of ticks cannot tell: no call passes for interrupted
     for name, problem in problems:
-        yield _compare(name, problem, solvers, tolerance, sweeps, curves, _Stopwatch(call, now))
+        watch = _Stopwatch(call, now, busy)
+        yield _compare(name, problem, solvers, tolerance, sweeps, curves, watch)
 
 
 def _solve() -> Solve:
@@ -113,30 +121,36 @@ class _Call:
     ) -> None:
         self.question = (problem, solver, tolerance, sweeps)
         self._repeating = repeating  # [s]
-        self.times: list[float] = []
+        self.times: list[float] = []  # of all calls
+        self.undisturbed: list[float] = []  # of those that nothing interrupted
         self.answer: Solution
 
     @property
     def is_cheap(self) -> bool:
         """Whether to ask again: rarely what takes long."""
-        spent = sum(self.times)
-        return len(self.times) < MOST_REPEATS and spent + self.times[0] < self._repeating
+        enough = len(self.undisturbed) >= MOST_REPEATS or len(self.times) >= MOST_CALLS
+        return not enough and sum(self.times) + self.times[0] < self._repeating
 
     @property
     def timing(self) -> Timing:
-        return Timing(median(self.times), min(self.times), max(self.times), len(self.times))
+        times = self.undisturbed or self.times
+        return Timing(median(times), min(times), max(times), len(times))
 
 
 class _Stopwatch(NamedTuple):
-    """Asks a solver between two looks at the clock."""
+    """Asks a solver between two looks at the clocks."""
 
     solve: Solve
     now: Clock
+    busy: Clock
 
     def ask(self, call: _Call) -> None:
-        begin = self.now()
+        begin, begin_busy = self.now(), self.busy()
         call.answer = self.solve(*call.question)
-        call.times.append(self.now() - begin)
+        seconds, busy = self.now() - begin, self.busy() - begin_busy
+        call.times.append(seconds)
+        if busy >= UNDISTURBED * seconds:
+            call.undisturbed.append(seconds)
 
 
 def _compare(

@@ -49,7 +49,8 @@ class World:
         return self.answer(solver, sweeps)
 
     def compare(self, *solvers: str, curves: bool = False):
-        (found,) = compare([("made", PROBLEM)], solvers, 1e-10, None, curves, self.solve, self.now)
+        clocks = (self.now, self.now)
+        (found,) = compare([("made", PROBLEM)], solvers, 1e-10, None, curves, self.solve, *clocks)
         return found
 
 
@@ -71,6 +72,31 @@ def test_the_clock_sees_a_slow_solver() -> None:
     slow, fast = found.attempts
     assert slow.timing.low >= 0.05
     assert fast.timing.median < 0.05
+
+
+def test_calls_that_others_interrupted_do_not_count_while_there_are_better() -> None:
+    def compare_with(interrupted: Callable[[int], bool]):
+        world, stolen = World(lambda *_: 1e-3), [0.0]
+        solve = world.solve
+
+        def interrupting(*question) -> Solution:
+            answer = solve(*question)
+            if interrupted(len(world.asked)):
+                world.clock += 0.004  # another program has the processor
+                stolen[0] += 0.004
+            return answer
+
+        (found,) = compare(
+            [("made", PROBLEM)], ["one"], 1e-10, solve=interrupting, now=world.now,
+            busy=lambda: world.clock - stolen[0],
+        )  # fmt: skip
+        return found.attempts[0].timing
+
+    seldom = compare_with(lambda call: call % 3 == 0)
+    assert seldom.high == pytest.approx(1e-3)
+    assert seldom.repeats == MOST_REPEATS
+    always = compare_with(lambda call: True)
+    assert always.low == pytest.approx(5e-3)
 
 
 def test_judging_is_not_in_the_time(monkeypatch: pytest.MonkeyPatch) -> None:
