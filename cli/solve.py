@@ -20,7 +20,9 @@ Files = Annotated[
 Names = Annotated[
     list[str],
     typer.Option(
-        "--solver", "-s", metavar="NAME", help="Solver; may be repeated. `all` is every one."
+        *("--solver", "-s"),
+        metavar="NAME",
+        help="Solvers, with commas between or the option repeated; `all` is every one.",
     ),
 ]
 Tolerance = Annotated[float, typer.Option(help="Scaled residual at which a problem is solved.")]
@@ -84,7 +86,7 @@ def _chosen(names: list[str]) -> list[str]:
 
     valid = ["auto", *SOLVERS]
     chosen: dict[str, None] = {}
-    for name in names:
+    for name in (part.strip() for text in names for part in text.split(",")):
         if name != "all" and name not in valid:
             raise UsageError(f"no solver is called {quoted(name)}{nearest(name, [*valid, 'all'])}")
         chosen.update(dict.fromkeys(valid if name == "all" else [name]))

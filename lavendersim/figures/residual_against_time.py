@@ -196,7 +196,7 @@ def _limit_times(axes: Any, low: float, high: float) -> None:
 
 def short(name: str) -> str:
     """Return a file's name without what tells its format, cut where a title would not fit."""
-    stem = name
+    stem = Path(name).name
     for suffix in (".dat", ".hdf5", ".h5"):  # ".hdf5.dat" has two
         stem = stem.removesuffix(suffix)
     return stem if len(stem) <= 28 else f"{stem[:27]}…"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable
 from pathlib import Path
 
@@ -31,14 +32,17 @@ def problem_files(paths: Iterable[Path]) -> list[Path]:
 
 
 def read_all(paths: Iterable[Path]) -> list[tuple[str, ContactProblem]]:
-    """Read every file among `paths`; returns names without folder, and problems.
+    """Read every file among `paths`; returns problems by name, without folder where that is clear.
 
     Raises ProblemError with a sentence for every file that is bad.
     """
+    files = problem_files(paths)
+    alike = Counter(file.name for file in files)
     problems, defects = [], []
-    for file in problem_files(paths):
+    for file in files:
         try:
-            problems.append((file.name, read_problem(file)))
+            name = file.name if alike[file.name] == 1 else str(file)
+            problems.append((name, read_problem(file)))
         except ProblemError as error:
             defects.append(str(error))
     if defects:

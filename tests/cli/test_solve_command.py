@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import json
+import os
 from pathlib import Path
 
 import pytest
 from command_line import lavender
 
+OUTSIDE = os.environ.get("LAVENDER_CONTACT_PROBLEMS", "")
 IDENTITY = "0 3 3 3 3\n1 0 0 0 1 0 0 0 1\n"
 # A unit mass that closes at 2 m/s and slides at 5 m/s: r = (2, -0.6, -0.8) at mu = 0.5.
 SLIDES = f"3 1\n{IDENTITY}-2 3 4\n0.5\n"
@@ -50,8 +52,8 @@ def test_a_solved_problem_is_told_in_a_table(where: Path) -> None:
 def test_a_folder_stands_for_its_files_and_figures_are_drawn(where: Path) -> None:
     (where / "notes.txt").write_text("no problem")
     done = lavender(
-        "solve", ".", "--solver", "auto", "-s", "projected_gauss_seidel", "--plot", "drawn",
-        "--json", where=where,
+        "solve", ".", "--solver", "auto, projected_gauss_seidel", "--plot", "drawn", "--json",
+        where=where,
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
     told = strict(done.stdout)
@@ -80,6 +82,26 @@ def test_an_unsolved_problem_exits_1_and_says_what_is_missed(where: Path) -> Non
     assert "projected_gauss_seidel misses: " in coupled
     assert " m/s at contact " in coupled
     assert " solved " in slides
+
+
+def test_files_of_one_name_are_told_apart(where: Path) -> None:
+    (where / "other").mkdir()
+    (where / "other" / "slides.dat").write_text(SLIDES)
+    done = lavender("solve", "slides.dat", "other", "-s", "projected_gauss_seidel", where=where)
+    titles = [line for line in done.stdout.splitlines() if not line.startswith(" ")]
+    assert [title.partition(":")[0] for title in titles] == ["slides.dat", "other/slides.dat"]
+
+
+@pytest.mark.skipif(
+    not OUTSIDE, reason="LAVENDER_CONTACT_PROBLEMS does not say where problems of others are"
+)
+def test_every_problem_of_others_is_solved_unasked_how(tmp_path: Path) -> None:
+    done = lavender("solve", OUTSIDE, "--json", where=tmp_path)
+    assert done.returncode == 0, done.stderr
+    for problem in strict(done.stdout)["problems"]:
+        (attempt,) = problem["attempts"]
+        assert (attempt["solver"], attempt["solved"]) == ("auto", True)
+        assert attempt["residual"]["scaled"] <= 1e-8
 
 
 def test_every_bad_file_is_told_before_anything_is_solved(where: Path) -> None:
