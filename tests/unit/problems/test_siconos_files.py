@@ -99,7 +99,7 @@ def test_rows_of_blocks_after_the_last_may_be_left_out(tmp_path: Path) -> None:
 def test_no_part_of_a_file_passes_for_a_whole_one(form, storage: str, tmp_path: Path) -> None:
     words = form(storage).split()
     # Cuts everywhere near the ends, where parts meet, and some between.
-    cuts = {*range(60), *range(len(words) - 60, len(words)), *range(60, len(words), 37)}
+    cuts = {*range(40), *range(len(words) - 40, len(words)), *range(40, len(words), 97)}
     for cut in cuts:
         with pytest.raises(ProblemError, match=r"problem\.dat:1"):
             read(" ".join(words[:cut]), tmp_path)
