@@ -141,6 +141,21 @@ def test_what_is_not_a_number_is_reported(solver: str) -> None:
 
 
 @pytest.mark.parametrize("solver", PACKED)
+def test_what_an_earlier_solve_left_in_the_arrays_does_not_matter(solver: str) -> None:
+    clean, dirty = (Solve(found("mixed"), solver) for _ in range(2))
+    for name, array in dirty.space._asdict().items():
+        if name not in ("slot", "first", "second"):
+            array[...] = 7
+    clean.run(3)
+    dirty.run(3)
+    assert left(clean) == left(dirty)
+    # the greatest change of any lane ends the sweeps: lanes of nothing must not change
+    clean.run(100_000)
+    dirty.run(100_000)
+    assert (clean.sweeps, left(clean)) == (dirty.sweeps, left(dirty))
+
+
+@pytest.mark.parametrize("solver", PACKED)
 def test_kept_machine_code_gives_the_bits_of_fresh_machine_code(solver: str) -> None:
     fresh = Solve(found("mixed"), solver, anew=True)
     kept = Solve(found("mixed"), solver)
