@@ -68,10 +68,10 @@ class Timed(NamedTuple):
         }
 
 
-def timed_on(scene: str, text: str, step: int) -> list[Timed]:
-    """Return every solver, compiled, on the contacts of a scene."""
+def timed_on(scene: str, text: str, step: int, solvers: Sequence[str]) -> list[Timed]:
+    """Return solvers, compiled, on the contacts of a scene."""
     prepared = prepare(text, step)
-    return [Timed(scene, Solve(prepared, solver), [], []) for solver in EVERY_SOLVER]
+    return [Timed(scene, Solve(prepared, solver), [], []) for solver in solvers]
 
 
 def measure(
@@ -80,13 +80,16 @@ def measure(
     base: int = BASE,
     layers: int = LAYERS,
     growth: Sequence[int] = GROWTH,
+    solvers: Sequence[str] = EVERY_SOLVER,
 ) -> dict[str, Any]:
-    """Time all solvers, interleaved, on a pyramid, a pile, and on pyramids of several sizes."""
+    """Time solvers, interleaved, on a pyramid, a pile, and on pyramids of several sizes."""
     pyramids = {
-        rows: timed_on(f"pyramid of {rows * (rows + 1) // 2}", pyramid(rows), RESTS["pyramid"])
+        rows: timed_on(
+            f"pyramid of {rows * (rows + 1) // 2}", pyramid(rows), RESTS["pyramid"], solvers
+        )
         for rows in sorted({base, *growth})
     }
-    piles = timed_on(f"pile of {40 * layers}", pile(layers), RESTS["pile"])
+    piles = timed_on(f"pile of {40 * layers}", pile(layers), RESTS["pile"], solvers)
     every = [*(timed for one in pyramids.values() for timed in one), *piles]
     for timed in every:
         timed.sample(sweeps)  # warms caches and clocks
@@ -101,9 +104,7 @@ def measure(
         "sweeps": sweeps,
         "clock": clock()[0],
         "environment": environment(),
-        "cases": [
-            timed.told(BARS.get(timed.solve.name)) for timed in (*pyramids[base], *piles)
-        ],
+        "cases": [timed.told(BARS.get(timed.solve.name)) for timed in (*pyramids[base], *piles)],
         "growth": [timed.told(None) for rows in growth for timed in pyramids[rows]],
     }
 
@@ -148,12 +149,18 @@ def main() -> int:
     parser.add_argument("--base", type=int, default=BASE, help="boxes in the lowest row")
     parser.add_argument("--layers", type=int, default=LAYERS, help="of forty spheres in the pile")
     parser.add_argument("--growth", type=int, nargs="*", default=GROWTH, help="other lowest rows")
+    parser.add_argument("--solvers", nargs="+", choices=EVERY_SOLVER, default=EVERY_SOLVER)
     parser.add_argument("--json", action="store_true", help="print everything as JSON")
     parser.add_argument("--output", type=Path, help="JSON file for medians and all samples")
     parser.add_argument("--check", action="store_true", help="exit 1 above a bar")
     arguments = parser.parse_args()
     found = measure(
-        arguments.repeats, arguments.sweeps, arguments.base, arguments.layers, arguments.growth
+        arguments.repeats,
+        arguments.sweeps,
+        arguments.base,
+        arguments.layers,
+        arguments.growth,
+        arguments.solvers,
     )
     print(json.dumps(found) if arguments.json else table(found))
     if arguments.output:

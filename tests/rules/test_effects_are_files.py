@@ -52,6 +52,8 @@ ELSEWHERE = {
         "engine/residual.py": ROW,
         "engine/solvers/row_update.py": ROW,
         "engine/solvers/newton_rows.py": ROW,
+        "engine/solvers/packing.py": ROW,
+        "engine/solvers/packed_sweep.py": ROW,
         "engine/solvers/jacobi.py": ROW,
         "engine/solvers/step_bound.py": ROW,
         "engine/solvers/accelerated_projected_gradient.py": ROW,

@@ -11,16 +11,13 @@ from typing import Any
 
 from ..spec import Spec
 from . import projected_gauss_seidel
-from .lanes import WIDTH
 from .packed_rows import allocate_packed
 from .packed_sweep import can_pack, make_solve_packed
 
 
 def allocate(spec: Spec, bodies: int, contacts: int) -> Any:
     """Return the arrays this solver works in."""
-    if not can_pack(spec):
-        return ()
-    return allocate_packed(bodies, contacts, -(-contacts // WIDTH))
+    return allocate_packed(bodies, contacts, eight=False) if can_pack(spec) else ()
 
 
 def make(spec: Spec) -> Any:

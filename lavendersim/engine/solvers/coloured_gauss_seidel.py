@@ -16,8 +16,8 @@ from .packed_sweep import can_pack, make_solve_packed
 
 
 def allocate(spec: Spec, bodies: int, contacts: int) -> Any:
-    """Return the arrays this solver works in: at worst each contact is alone in its group."""
-    return allocate_packed(bodies, contacts, contacts) if can_pack(spec) else ()
+    """Return the arrays this solver works in."""
+    return allocate_packed(bodies, contacts, eight=True) if can_pack(spec) else ()
 
 
 def make(spec: Spec) -> Any:

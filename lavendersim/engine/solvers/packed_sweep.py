@@ -18,6 +18,18 @@ from ..compile import kernel
 from ..residual import make_residual
 from ..spec import Spec
 from ..spin_block import resists_turning
+from .lane_memory import (
+    put_bodies,
+    put_body,
+    put_eight,
+    put_one,
+    take_bodies,
+    take_body,
+    take_eight,
+    take_one,
+    take_triple,
+    take_triples,
+)
 from .lanes import (
     WIDTH,
     any_greater,
@@ -25,19 +37,13 @@ from .lanes import (
     lane,
     magnitude,
     positive,
-    put_bodies_eight,
-    put_bodies_one,
-    put_eight,
-    put_one,
     root,
-    take_bodies_eight,
-    take_bodies_one,
-    take_eight,
-    take_one,
+    total,
     where_greater,
     zeros,
 )
 from .packed_rows import (
+    ALONE,
     AXIS,
     GAMMA,
     GROUP,
@@ -56,17 +62,14 @@ from .packed_rows import (
     LAMBDA_2,
     LAMBDA_N,
     MU,
-    T1,
-    T2,
     TURN_A,
     TURN_B,
     W_1,
     W_2,
     W_N,
     N,
-    make_pack,
-    make_unpack,
 )
+from .packing import make_pack, make_unpack
 from .sweep import make_account, make_note
 
 
@@ -79,50 +82,55 @@ def can_pack(spec: Spec) -> bool:
 def _make_visit(spec: Spec, eight: bool) -> Any:
     """Return `kernel(rows, at, state, first, second, slot, most) -> most`.
 
-    One projected update of the contact or group at `at`; most: the greatest change so far [m/s].
+    One projected update of the contact, or of the group, whose fields begin at `at`; most: the
+    greatest change so far [m/s].
     """
     compliant = spec.has("compliance")
-    take, put = (take_eight, put_eight) if eight else (take_one, put_one)
-    take_bodies = take_bodies_eight if eight else take_bodies_one
-    put_bodies = put_bodies_eight if eight else put_bodies_one
+    step = WIDTH if eight else 1
+    take_number, take_axis = (take_eight, take_triples) if eight else (take_one, take_triple)
+    put_number = put_eight if eight else put_one
+    take_state, put_state = (take_bodies, put_bodies) if eight else (take_body, put_body)
 
-    def along(rows, at, x, y, z):
-        return take(rows, at) * x + take(rows, at + WIDTH) * y + take(rows, at + 2 * WIDTH) * z
+    def take(rows, at, field):
+        return take_number(rows, at + field * step)
 
-    along = kernel(along, spec)
+    take = kernel(take, spec)
 
-    def across(rows, at, n, one, two):
-        # The same component of three axes: n, t1, t2.
-        return take(rows, at) * n + take(rows, at + AXIS) * one + take(rows, at + 2 * AXIS) * two
+    def axes(rows, at, field):
+        # n, t1, t2, or what a body does about each
+        return (
+            take_axis(rows, at + field * step),
+            take_axis(rows, at + (field + AXIS) * step),
+            take_axis(rows, at + (field + 2 * AXIS) * step),
+        )
 
-    across = kernel(across, spec)
+    axes = kernel(axes, spec)
 
     def visit(rows, at, state, first, second, slot, most):
-        ax, ay, az, ai, aj, ak = take_bodies(state, first, slot)
-        bx, by, bz, bi, bj, bk = take_bodies(state, second, slot)
-        x, y, z = bx - ax, by - ay, bz - az
-        turn_a, turn_b = at + TURN_A, at + TURN_B
-        w_n = along(rows, at + N, x, y, z) + along(rows, turn_a, ai, aj, ak)
-        w_n = w_n + along(rows, turn_b, bi, bj, bk) + take(rows, at + W_N)
-        w_1 = along(rows, at + T1, x, y, z) + along(rows, turn_a + AXIS, ai, aj, ak)
-        w_1 = w_1 + along(rows, turn_b + AXIS, bi, bj, bk) + take(rows, at + W_1)
-        w_2 = along(rows, at + T2, x, y, z) + along(rows, turn_a + 2 * AXIS, ai, aj, ak)
-        w_2 = w_2 + along(rows, turn_b + 2 * AXIS, bi, bj, bk) + take(rows, at + W_2)
-        old_n = take(rows, at + LAMBDA_N)
-        old_1, old_2 = take(rows, at + LAMBDA_1), take(rows, at + LAMBDA_2)
+        va, ya = take_state(state, first, slot)
+        vb, yb = take_state(state, second, slot)
+        n, t1, t2 = axes(rows, at, N)
+        a_n, a_1, a_2 = axes(rows, at, TURN_A)
+        b_n, b_1, b_2 = axes(rows, at, TURN_B)
+        v = vb - va
+        w_n = total(n * v + a_n * ya + b_n * yb) + take(rows, at, W_N)
+        w_1 = total(t1 * v + a_1 * ya + b_1 * yb) + take(rows, at, W_1)
+        w_2 = total(t2 * v + a_2 * ya + b_2 * yb) + take(rows, at, W_2)
+        old_n = take(rows, at, LAMBDA_N)
+        old_1, old_2 = take(rows, at, LAMBDA_1), take(rows, at, LAMBDA_2)
         if compliant:
-            w_n = w_n + take(rows, at + GAMMA) * old_n
-        new_n = positive(old_n - w_n * take(rows, at + INV_K))
-        n = new_n - old_n
-        w_1 = w_1 + take(rows, at + K_N1) * n
-        w_2 = w_2 + take(rows, at + K_N2) * n
-        i_12 = take(rows, at + I_12)
-        new_1 = old_1 - take(rows, at + I_11) * w_1 - i_12 * w_2
-        new_2 = old_2 - i_12 * w_1 - take(rows, at + I_22) * w_2
-        limit = take(rows, at + MU) * new_n
+            w_n = w_n + take(rows, at, GAMMA) * old_n
+        new_n = positive(old_n - w_n * take(rows, at, INV_K))
+        change_n = new_n - old_n
+        w_1 = w_1 + take(rows, at, K_N1) * change_n
+        w_2 = w_2 + take(rows, at, K_N2) * change_n
+        i_12 = take(rows, at, I_12)
+        new_1 = old_1 - take(rows, at, I_11) * w_1 - i_12 * w_2
+        new_2 = old_2 - i_12 * w_1 - take(rows, at, I_22) * w_2
+        limit = take(rows, at, MU) * new_n
         stick, disc = new_1 * new_1 + new_2 * new_2, limit * limit
         if any_greater(stick, disc):
-            inv_k_t = take(rows, at + INV_K_T)
+            inv_k_t = take(rows, at, INV_K_T)
             slid_1, slid_2 = old_1 - w_1 * inv_k_t, old_2 - w_2 * inv_k_t
             squared = slid_1 * slid_1 + slid_2 * slid_2
             scale = limit / root(squared)
@@ -130,46 +138,37 @@ def _make_visit(spec: Spec, eight: bool) -> Any:
             slid_2 = where_greater(squared, disc, slid_2 * scale, slid_2)
             new_1 = where_greater(stick, disc, slid_1, new_1)
             new_2 = where_greater(stick, disc, slid_2, new_2)
-        one, two = new_1 - old_1, new_2 - old_2
-        put(rows, at + LAMBDA_N, new_n)
-        put(rows, at + LAMBDA_1, new_1)
-        put(rows, at + LAMBDA_2, new_2)
-        x = across(rows, at, n, one, two)
-        y = across(rows, at + WIDTH, n, one, two)
-        z = across(rows, at + 2 * WIDTH, n, one, two)
-        inv_m_a, inv_m_b = take(rows, at + INV_M_A), take(rows, at + INV_M_B)
-        ax, ay, az = ax - x * inv_m_a, ay - y * inv_m_a, az - z * inv_m_a
-        bx, by, bz = bx + x * inv_m_b, by + y * inv_m_b, bz + z * inv_m_b
-        ai = ai + across(rows, turn_a, n, one, two)
-        aj = aj + across(rows, turn_a + WIDTH, n, one, two)
-        ak = ak + across(rows, turn_a + 2 * WIDTH, n, one, two)
-        bi = bi + across(rows, turn_b, n, one, two)
-        bj = bj + across(rows, turn_b + WIDTH, n, one, two)
-        bk = bk + across(rows, turn_b + 2 * WIDTH, n, one, two)
-        put_bodies(state, first, slot, (ax, ay, az, ai, aj, ak))
-        put_bodies(state, second, slot, (bx, by, bz, bi, bj, bk))
-        k_t = take(rows, at + K_T)
-        most = greater(magnitude(n) * take(rows, at + K_N), most)
-        most = greater(magnitude(one) * k_t, most)
-        return greater(magnitude(two) * k_t, most)
+        change_1, change_2 = new_1 - old_1, new_2 - old_2
+        put_number(rows, at + LAMBDA_N * step, new_n)
+        put_number(rows, at + LAMBDA_1 * step, new_1)
+        put_number(rows, at + LAMBDA_2 * step, new_2)
+        p = n * change_n + t1 * change_1 + t2 * change_2
+        va = va - p * take(rows, at, INV_M_A)
+        vb = vb + p * take(rows, at, INV_M_B)
+        ya = ya + (a_n * change_n + a_1 * change_1 + a_2 * change_2)
+        yb = yb + (b_n * change_n + b_1 * change_1 + b_2 * change_2)
+        put_state(state, first, slot, va, ya)
+        put_state(state, second, slot, vb, yb)
+        most = greater(magnitude(change_n) * take(rows, at, K_N), most)
+        across = greater(magnitude(change_1), magnitude(change_2))
+        return greater(across * take(rows, at, K_T), most)
 
     return kernel(visit, spec)
 
 
 def make_sweep_packed(spec: Spec, eight: bool) -> Any:
-    """Return `kernel(packed, groups, count) -> greatest change` [m/s]."""
+    """Return `kernel(packed, slots) -> greatest change` [m/s]."""
     visit = _make_visit(spec, eight)
 
-    def sweep_singly(packed, groups, count):
+    def sweep_singly(packed, slots):
         most = 0.0
-        for k in range(count):
-            at = k // WIDTH * GROUP + k % WIDTH
-            most = visit(packed.rows, at, packed.state, packed.first, packed.second, k, most)
+        for k in range(slots):
+            most = visit(packed.rows, k * ALONE, packed.state, packed.first, packed.second, k, most)
         return most
 
-    def sweep_by_eight(packed, groups, count):
+    def sweep_by_eight(packed, slots):
         most = zeros()
-        for g in range(groups):
+        for g in range(slots // WIDTH):
             most = visit(
                 packed.rows, g * GROUP, packed.state, packed.first, packed.second, g * WIDTH, most
             )
@@ -184,7 +183,7 @@ def make_sweep_packed(spec: Spec, eight: bool) -> Any:
 def make_solve_packed(spec: Spec, eight: bool) -> Any:
     """Return the solver's kernel, see `solvers`; for a `spec` that `can_pack`."""
     record_residuals, stop_early = spec.has("residual_log"), spec.tolerance
-    pack, unpack = make_pack(spec, apart=eight), make_unpack(spec)
+    pack, unpack = make_pack(spec, eight), make_unpack(spec, eight)
     sweep = make_sweep_packed(spec, eight)
     residual, note, account = make_residual(spec), make_note(spec), make_account(spec)
 
@@ -195,10 +194,10 @@ def make_solve_packed(spec: Spec, eight: bool) -> Any:
         if record_residuals:
             largest, worst = residual(contacts, count, velocities)
             note(params, counters, residual_rows, 0, largest)
-        groups = pack(contacts, order, count, bodies, velocities, space)
+        slots = pack(contacts, order, count, bodies, velocities, space)
         sweeps, measured = 0, False
         while sweeps < params.sweeps:
-            greatest = sweep(space, groups, count)
+            greatest = sweep(space, slots)
             sweeps += 1
             measured = record_residuals
             if record_residuals:

@@ -1,0 +1,245 @@
+"""Contacts and bodies enter, packed rows leave (`packed_rows`); and back, when sweeps are done."""
+
+from __future__ import annotations
+
+from math import sqrt
+from typing import Any
+
+from ..block import make_relative_velocity
+from ..compile import inner, kernel
+from ..effects.smooth_contact import has_smooth
+from ..spec import Spec
+from .lane_memory import STRIDE, put_one, take_one
+from .lanes import WIDTH
+from .packed_rows import (
+    AXIS,
+    FIELDS,
+    GAMMA,
+    I_11,
+    I_12,
+    I_22,
+    INV_K,
+    INV_K_T,
+    INV_M_A,
+    INV_M_B,
+    K_N,
+    K_N1,
+    K_N2,
+    K_T,
+    LAMBDA_1,
+    LAMBDA_2,
+    LAMBDA_N,
+    MU,
+    T1,
+    T2,
+    TURN_A,
+    TURN_B,
+    W_1,
+    W_2,
+    W_N,
+    N,
+    make_place,
+)
+
+
+@inner
+def _factorise(v, factor):
+    """L of a body's world inverse inertia, I^-1 = L L^T; 0 where a pivot is."""
+    xx = sqrt(v.jxx)
+    inverse = 1.0 / xx if xx > 0.0 else 0.0
+    yx, zx = v.jxy * inverse, v.jxz * inverse
+    yy = sqrt(max(v.jyy - yx * yx, 0.0))
+    inverse = 1.0 / yy if yy > 0.0 else 0.0
+    zy = (v.jyz - zx * yx) * inverse
+    zz = sqrt(max(v.jzz - zx * zx - zy * zy, 0.0))
+    factor[0], factor[1], factor[2], factor[3], factor[4], factor[5] = xx, yx, yy, zx, zy, zz
+
+
+def _make_put_geometry(spec: Spec, eight: bool) -> Any:
+    """Return kernels that write axes, and one side of the turns."""
+    step = WIDTH if eight else 1
+
+    def put_axis(rows, at, x, y, z):
+        put_one(rows, at, x)
+        put_one(rows, at + step, y)
+        put_one(rows, at + 2 * step, z)
+
+    put_axis = kernel(put_axis, spec)
+
+    def put_turn(rows, at, factor, i, side, x, y, z):
+        # side L^T (x, y, z) of body i
+        put_axis(
+            rows,
+            at,
+            side * (factor[i, 0] * x + factor[i, 1] * y + factor[i, 3] * z),
+            side * (factor[i, 2] * y + factor[i, 4] * z),
+            side * (factor[i, 5] * z),
+        )
+
+    put_turn = kernel(put_turn, spec)
+
+    def put_turns(rows, at, factor, i, side, contact, rx, ry, rz):
+        # side L^T (r x axis) of body i for n, t1, t2
+        x, y, z = contact.nx, contact.ny, contact.nz
+        put_turn(rows, at, factor, i, side, ry * z - rz * y, rz * x - rx * z, rx * y - ry * x)
+        x, y, z = contact.t1x, contact.t1y, contact.t1z
+        at += AXIS * step
+        put_turn(rows, at, factor, i, side, ry * z - rz * y, rz * x - rx * z, rx * y - ry * x)
+        x, y, z = contact.t2x, contact.t2y, contact.t2z
+        at += AXIS * step
+        put_turn(rows, at, factor, i, side, ry * z - rz * y, rz * x - rx * z, rx * y - ry * x)
+
+    return put_axis, put_turn, kernel(put_turns, spec)
+
+
+def _make_pack_contact(spec: Spec, eight: bool) -> Any:
+    """Return `kernel(contact, velocities, rows, at, factor)`: every field of a contact."""
+    compliant, smooth = spec.has("compliance"), has_smooth(spec)
+    moving_surface = spec.has("surface_velocity")
+    relative_velocity = make_relative_velocity(spec)
+    put_axis, put_turn, put_turns = _make_put_geometry(spec, eight)
+    step = WIDTH if eight else 1
+
+    def put(rows, at, field, value):
+        put_one(rows, at + field * step, value)
+
+    put = kernel(put, spec)
+
+    def pack_contact(contact, velocities, rows, at, factor):
+        a, b = contact.a, contact.b
+        put_axis(rows, at + N * step, contact.nx, contact.ny, contact.nz)
+        put_axis(rows, at + T1 * step, contact.t1x, contact.t1y, contact.t1z)
+        put_axis(rows, at + T2 * step, contact.t2x, contact.t2y, contact.t2z)
+        turn_a, turn_b = at + TURN_A * step, at + TURN_B * step
+        put_turns(rows, turn_a, factor, a, -1.0, contact, contact.rax, contact.ray, contact.raz)
+        put_turns(rows, turn_b, factor, b, 1.0, contact, contact.rbx, contact.rby, contact.rbz)
+        put(rows, at, INV_M_A, contact.inv_m_a)
+        put(rows, at, INV_M_B, contact.inv_m_b)
+        x, y, z = relative_velocity(contact, velocities[a], velocities[b])
+        w_n = contact.nx * x + contact.ny * y + contact.nz * z + contact.target
+        w_1 = contact.t1x * x + contact.t1y * y + contact.t1z * z
+        w_2 = contact.t2x * x + contact.t2y * y + contact.t2z * z
+        if moving_surface:
+            w_1 += contact.surface_1
+            w_2 += contact.surface_2
+        put(rows, at, W_N, w_n)
+        put(rows, at, W_1, w_1)
+        put(rows, at, W_2, w_2)
+        put(rows, at, INV_K, contact.inv_k)
+        put(rows, at, K_N1, contact.k_n1)
+        put(rows, at, K_N2, contact.k_n2)
+        put(rows, at, I_11, contact.i_11)
+        put(rows, at, I_12, contact.i_12)
+        put(rows, at, I_22, contact.i_22)
+        put(rows, at, INV_K_T, 1.0 / contact.k_t)
+        put(rows, at, K_N, contact.k_n)
+        put(rows, at, K_T, contact.k_t)
+        put(rows, at, MU, contact.mu)
+        if compliant:
+            put(rows, at, GAMMA, contact.gamma)
+        put(rows, at, LAMBDA_N, contact.lambda_n)
+        put(rows, at, LAMBDA_1, contact.lambda_1)
+        put(rows, at, LAMBDA_2, contact.lambda_2)
+        if smooth:
+            if contact.rough == 0:
+                # It has a normal alone, and levers that leave out round-off: no answer across.
+                put(rows, at, I_11, 0.0)
+                put(rows, at, I_12, 0.0)
+                put(rows, at, I_22, 0.0)
+                x, y, z = contact.lever_ax, contact.lever_ay, contact.lever_az
+                put_turn(rows, turn_a, factor, a, -1.0, x, y, z)
+                x, y, z = contact.lever_bx, contact.lever_by, contact.lever_bz
+                put_turn(rows, turn_b, factor, b, 1.0, x, y, z)
+
+    return kernel(pack_contact, spec)
+
+
+def _make_pack_bodies(spec: Spec) -> Any:
+    """Return `kernel(bodies, velocities, packed)`: what the solve begins with."""
+
+    def pack_bodies(bodies, velocities, packed):
+        for i in range(bodies.shape[0]):
+            v, start = velocities[i], packed.start
+            start[i, 0], start[i, 1], start[i, 2] = v.vx, v.vy, v.vz
+            start[i, 3], start[i, 4], start[i, 5] = v.wx, v.wy, v.wz
+            for k in range(6):
+                packed.factor[i, k] = 0.0
+            if bodies[i].inv_m > 0.0:
+                _factorise(v, packed.factor[i])
+            packed.group_of[i] = -1
+            for k in range(STRIDE):
+                packed.state[i * STRIDE + k] = 0.0
+
+    return kernel(pack_bodies, spec)
+
+
+def make_pack(spec: Spec, eight: bool) -> Any:
+    """Return `kernel(contacts, order, count, bodies, velocities, packed) -> slots`."""
+    pack_bodies, pack_contact = _make_pack_bodies(spec), _make_pack_contact(spec, eight)
+    place = make_place(spec, eight)
+
+    def fill(packed, begin, end, spare):
+        for slot in range(begin, end):
+            at = place(slot)
+            for field in range(FIELDS):
+                put_one(packed.rows, at + field * WIDTH, 0.0)
+            packed.first[slot], packed.second[slot] = spare, spare
+
+    fill_up: Any = kernel(fill, spec) if eight else None
+
+    def pack(contacts, order, count, bodies, velocities, packed):
+        pack_bodies(bodies, velocities, packed)
+        spare = bodies.shape[0] * STRIDE
+        slot = 0
+        for k in range(count):
+            contact = contacts[order[k]]
+            a, b = contact.a, contact.b
+            if eight:
+                group = slot // WIDTH
+                shares = contact.inv_m_a > 0.0 and packed.group_of[a] == group
+                shares = shares or (contact.inv_m_b > 0.0 and packed.group_of[b] == group)
+                if shares:
+                    group += 1
+                    fill_up(packed, slot, group * WIDTH, spare)
+                    slot = group * WIDTH
+                packed.group_of[a], packed.group_of[b] = group, group
+            packed.slot[k] = slot
+            packed.first[slot], packed.second[slot] = a * STRIDE, b * STRIDE
+            pack_contact(contact, velocities, packed.rows, place(slot), packed.factor)
+            slot += 1
+        if eight:
+            end = (slot + WIDTH - 1) // WIDTH * WIDTH
+            fill_up(packed, slot, end, spare)
+            slot = end
+        return slot
+
+    return kernel(pack, spec)
+
+
+def make_unpack(spec: Spec, eight: bool) -> Any:
+    """Return `kernel(contacts, order, count, bodies, velocities, packed)`: as the sweeps left them.
+
+    Impulses and velocities of the records; what is packed stays as it is.
+    """
+    place, step = make_place(spec, eight), WIDTH if eight else 1
+
+    def unpack(contacts, order, count, bodies, velocities, packed):
+        for k in range(count):
+            contact, at = contacts[order[k]], place(packed.slot[k])
+            contact.lambda_n = take_one(packed.rows, at + LAMBDA_N * step)
+            contact.lambda_1 = take_one(packed.rows, at + LAMBDA_1 * step)
+            contact.lambda_2 = take_one(packed.rows, at + LAMBDA_2 * step)
+        for i in range(bodies.shape[0]):
+            if bodies[i].inv_m > 0.0:
+                v, at, start, factor = velocities[i], i * STRIDE, packed.start, packed.factor
+                v.vx = start[i, 0] + take_one(packed.state, at)
+                v.vy = start[i, 1] + take_one(packed.state, at + 1)
+                v.vz = start[i, 2] + take_one(packed.state, at + 2)
+                x = take_one(packed.state, at + 4)
+                y = take_one(packed.state, at + 5)
+                z = take_one(packed.state, at + 6)
+                v.wx = start[i, 3] + factor[i, 0] * x
+                v.wy = start[i, 4] + factor[i, 1] * x + factor[i, 2] * y
+                v.wz = start[i, 5] + factor[i, 3] * x + factor[i, 4] * y + factor[i, 5] * z
+
+    return kernel(unpack, spec)
