@@ -13,7 +13,7 @@ import numpy as np
 from lavendersim.engine.contact_problem import NOT_FINITE, SOLVED, SPENT, ContactProblem, Solution
 from lavendersim.problems.account import Account
 from lavendersim.problems.by_kernel import solve_by_kernel
-from lavendersim.problems.interior_point import interior_point
+from lavendersim.problems.interior_point import BOLD, Way, interior_point
 from lavendersim.problems.newton_rounds import newton_rounds
 from lavendersim.problems.residual import residual
 from lavendersim.problems.scaled_problem import from_impulses, scale, to_impulses
@@ -22,8 +22,8 @@ from lavendersim.problems.semismooth_newton import newton_steps
 SWEEPER = "projected_gauss_seidel"
 # Sweeps before the first Newton steps, doubled every time; times before something else is tried.
 FIRST_SWEEPS, OPENING = 50, 4
-# Sweeps between rounds, doubled every time.
-LATER_SWEEPS, LATER = 1000, 2
+# Sweeps between rounds, how often, and how they grow.
+LATER_SWEEPS, LATER, GROWTH = 1000, 2, 2
 # Multiplications of a sweep per block of W.
 SWEEP_COST = 30.0
 # A method aims below the tolerance by this: the judge rounds otherwise [-].
@@ -80,9 +80,9 @@ class Search:
         x, reached = newton_rounds(self.p, from_impulses(self.p, self.best), self.account)
         self.offer(to_impulses(self.p, x), reached)
 
-    def interior(self) -> None:
+    def interior(self, way: Way = BOLD) -> None:
         """Begin again, from inside the cones."""
-        x, reached = interior_point(self.p, self.account)
+        x, reached = interior_point(self.p, self.account, way)
         self.offer(to_impulses(self.p, x), reached)
 
     def open(self) -> None:
@@ -91,15 +91,18 @@ class Search:
             if not self.over:
                 self.sweep_and_step(FIRST_SWEEPS * 2**k)
 
-    def go_on(self) -> None:
-        """Make rounds, sweep and step until everything is spent."""
-        sweeps = LATER_SWEEPS
+    def go_on(self, ways: tuple[Way, ...] = ()) -> None:
+        """Make rounds, sweep and step until everything is spent; first by the ways given."""
+        sweeps, left = LATER_SWEEPS, list(ways)
         while not self.over:
-            self.rounds()
+            if left:
+                self.interior(left.pop(0))
+            if not self.over:
+                self.rounds()
             for _ in range(LATER):
                 if not self.over:
                     self.sweep_and_step(sweeps)
-                sweeps *= 2
+            sweeps *= GROWTH
 
     def solution(self) -> Solution:
         """Return the best, judged from its impulses alone."""
