@@ -75,8 +75,8 @@ def interior_point(p: ScaledProblem, account: Account, way: Way = BOLD) -> tuple
             best, least = answer, residual
         if least <= account.tolerance or account.spent or stuck > PATIENCE:
             break
-        there, length, cost = _advance(p, cones, x, z, unit, held, way)
-        account.step(cost, least)
+        there, length, price = _advance(p, cones, x, z, unit, held, way)
+        account.step(price, least)
         if there is None:
             break
         x, z = there
@@ -121,7 +121,7 @@ def _advance(
 
     straight, centred = direction(0.0), direction(1.0)
     if not all(np.isfinite(d).all() for d in (*straight, *centred)):
-        return None, 0.0, factor.cost
+        return None, 0.0, factor.price
     # Mehrotra's rule: centre by as much as the straight step would leave.
     length = min(1.0, _to_boundary(x, straight[0]), _to_boundary(z, straight[1]))
     left = ((x + length * straight[0]) * (z + length * straight[1])).sum(axis=1).mean()
@@ -140,7 +140,7 @@ def _advance(
             best, there = length, new
         if length > JAMMED:
             break
-    return there, best, factor.cost
+    return there, best, factor.price
 
 
 def _determinant(x: np.ndarray) -> np.ndarray:

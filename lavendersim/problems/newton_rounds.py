@@ -109,7 +109,7 @@ def _round(
         dh = -(gradient + np.einsum("nij,nj->ni", root, z)) / softness
         dy = multiply(p, dh)
         residual = scaled_residual(p, answer, velocities(p, answer))
-        account.step(factor.cost, residual)
+        account.step(factor.price, residual)
         if not np.isfinite(dy).all():
             return False, held
         line = Line(y, h, dy, dh, held, p.mu, softness)

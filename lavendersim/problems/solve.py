@@ -28,8 +28,8 @@ Solver = Callable[[ContactProblem, float, int, "np.ndarray | None", bool], Solut
 # Sweeps, or steps, at most where none are asked for. `auto` is limited by `AUTO` instead.
 SWEEPS = 10_000
 AUTO_SWEEPS = 1_000_000
-# What `auto` may spend [multiplications]: some four seconds.
-AUTO = 7e9
+# What `auto` may spend [ns], `account`.
+AUTO = 3e9
 # Methods that mix sweeps and steps aim below the tolerance by this: the judge rounds otherwise [-].
 MARGIN = 0.5
 
@@ -72,7 +72,7 @@ def solve_by_all(
     start: np.ndarray | None = None,
     history: bool = False,
 ) -> Solution:
-    """Solve by whatever does it, in turn, within `AUTO` multiplications."""
+    """Solve by whatever does it, in turn, within the price `AUTO`."""
     search = Search(problem, Account(MARGIN * tolerance, sweeps, AUTO), start, history)
     search.open()
     search.go_on(WAYS)
