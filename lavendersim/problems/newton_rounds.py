@@ -112,6 +112,8 @@ def _round(
         account.step(factor.price, residual)
         if not np.isfinite(dy).all():
             return False, held
+        if account.spent:
+            return False, answer
         line = Line(y, h, dy, dh, held, p.mu, softness)
         gain = -0.5 * line.slope(0.0)
         first = first or gain

@@ -20,12 +20,13 @@ import numpy as np
 
 from lavendersim.engine.contact_problem import SOLVED, ContactProblem, Solution
 from lavendersim.problems.matrices import velocities_of
-from lavendersim.problems.residual import contact_velocities
+from lavendersim.problems.residual import contact_velocities, own_scales
 from lavendersim.problems.solve import solve
 
 TOLERANCE = 1e-10
 AGREEMENT = 1e-6
-# Solvers of each family, in the order they are tried, and their sweeps or steps.
+# Solvers of each family, in the order they are tried, and their sweeps or steps. The first begins
+# with no impulses, which may be one of several solutions; the others do not.
 FAMILIES = (
     (
         ("projected_gauss_seidel", 10_000),
@@ -52,7 +53,11 @@ class Reference(NamedTuple):
 
 def reference(problem: ContactProblem, tolerance: float = TOLERANCE) -> Reference:
     """Solve a problem by every family; `tolerance` is what `scaled` residuals have to reach."""
-    solutions = dict(_best(problem, family, tolerance) for family in FAMILIES)
+    starts = (None, *[_along_the_normals(problem)] * (len(FAMILIES) - 1))
+    solutions = dict(
+        _best(problem, family, tolerance, start)
+        for family, start in zip(FAMILIES, starts, strict=True)
+    )
     velocities = {s: contact_velocities(problem, f.impulses) for s, f in solutions.items()}
     reached = [name for name, found in solutions.items() if found.status == SOLVED]
     apart = [
@@ -81,13 +86,24 @@ def relative_difference(problem: ContactProblem, first: np.ndarray, second: np.n
     return apart / longest if longest > 0.0 else 0.0
 
 
+def _along_the_normals(problem: ContactProblem) -> np.ndarray:
+    """Return normal impulses, (n, 3), that would change each contact's velocity by |q| alone."""
+    own = own_scales(problem)
+    impulses = np.zeros((problem.contacts, 3))
+    impulses[:, 0] = np.linalg.norm(velocities_of(problem)) / np.where(own > 0.0, own, np.inf)
+    return impulses
+
+
 def _best(
-    problem: ContactProblem, family: tuple[tuple[str, int], ...], tolerance: float
+    problem: ContactProblem,
+    family: tuple[tuple[str, int], ...],
+    tolerance: float,
+    start: np.ndarray | None,
 ) -> tuple[str, Solution]:
     """Return the first of a family that solves it, or the one that came nearest."""
     tried: dict[str, Solution] = {}
     for solver, sweeps in family:
-        tried[solver] = solve(problem, solver, tolerance, sweeps)
+        tried[solver] = solve(problem, solver, tolerance, sweeps, start)
         if tried[solver].status == SOLVED:
             return solver, tried[solver]
     nearest = min(tried, key=lambda name: tried[name].scaled)
