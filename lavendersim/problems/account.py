@@ -1,32 +1,36 @@
-"""What a method may spend and has spent: counted, never timed, so that equal runs are equal."""
+"""What a method may spend and has spent: counted, never timed, so that equal runs are equal.
+
+Prices are nominal nanoseconds: what an operation took when it was measured, on one core of 2.5 GHz
+or so. They are fixed, and a limit in them is a limit in seconds only roughly.
+"""
 
 from __future__ import annotations
 
-# What a step of a method in numpy costs beside its factorisation [multiplications].
+# What a step of a method in numpy costs beside its factorisation [ns].
 OVERHEAD = 500_000.0
 
 
 class Account:
-    """Steps and multiplications left, and the residual after each step."""
+    """Steps and nanoseconds left, and the residual after each step."""
 
-    def __init__(self, tolerance: float, steps: float, operations: float = float("inf")) -> None:
+    def __init__(self, tolerance: float, steps: float, price: float = float("inf")) -> None:
         self.tolerance = tolerance
-        self.steps_left, self.operations_left = steps, operations
+        self.steps_left, self.price_left = steps, price
         self.steps = 0
         self.history: list[float] = []
 
-    def spend(self, steps: int, operations: float, residuals: list[float]) -> None:
-        """Count steps, the multiplications of all of them and the residual after each."""
+    def spend(self, steps: int, price: float, residuals: list[float]) -> None:
+        """Count steps, the price of all of them and the residual after each."""
         self.steps += steps
         self.steps_left -= steps
-        self.operations_left -= operations
+        self.price_left -= price
         self.history += residuals
 
-    def step(self, operations: float, residual: float) -> None:
+    def step(self, price: float, residual: float) -> None:
         """Count one step of a method in numpy."""
-        self.spend(1, operations + OVERHEAD, [residual])
+        self.spend(1, price + OVERHEAD, [residual])
 
     @property
     def spent(self) -> bool:
         """Whether nothing is left."""
-        return self.steps_left <= 0 or self.operations_left <= 0
+        return self.steps_left <= 0 or self.price_left <= 0

@@ -1,4 +1,4 @@
-"""Blocks of a scaled problem enter, a solver of their linear system leaves; and what it cost.
+"""Blocks of a scaled problem enter, a solver of their linear system leaves; and its price.
 
     (diagonal + S^T M S) z = right,    S picks the rows that are kept
 By scipy's LU decompositions: a full one for small and full systems, SuperLU for sparse ones.
@@ -18,6 +18,8 @@ from lavendersim.problems.scaled_problem import ScaledProblem
 
 # Up to this size [rows], or from this share of entries on [-], a full decomposition is faster.
 SMALL, FULL = 120, 0.25
+# Price of a multiplication in each decomposition, and of an entry when filling [ns].
+IN_FULL, IN_SPARSE, ENTRY = 0.1, 0.3, 10.0
 AXES = np.arange(3)
 
 
@@ -25,7 +27,7 @@ class Factor(NamedTuple):
     """A factorised system."""
 
     solve: Callable[[np.ndarray], np.ndarray]  # right side (n, 3) -> (n, 3), 0 where not kept
-    cost: float  # [multiplications], roughly
+    price: float  # [ns], `account`
 
 
 def factorise(
@@ -48,9 +50,9 @@ def factorise(
         i, j = np.concatenate([i, own]), np.concatenate([j, own])
         values = np.concatenate([values, diagonal.ravel()[kept]])
     if size <= SMALL or len(values) > FULL * size * size:
-        answer, cost = _full(size, i, j, values)
+        answer, price = _full(size, i, j, values)
     else:
-        answer, cost = _sparse(size, i, j, values)
+        answer, price = _sparse(size, i, j, values)
 
     def solve(right: np.ndarray) -> np.ndarray:
         z = np.zeros(keep.size)
@@ -58,7 +60,7 @@ def factorise(
             z[kept] = answer(right.ravel()[kept])
         return z.reshape(-1, 3)
 
-    return Factor(solve, cost + 10.0 * blocks.size)
+    return Factor(solve, price + ENTRY * blocks.size)
 
 
 Answer = Callable[[np.ndarray], np.ndarray]
@@ -78,7 +80,7 @@ def _full(size: int, i: np.ndarray, j: np.ndarray, values: np.ndarray) -> tuple[
             z: np.ndarray = linalg.lu_solve(factors, right, check_finite=False)
         return z
 
-    return answer, size**3 / 3.0
+    return answer, IN_FULL * size**3 / 3.0
 
 
 def _sparse(size: int, i: np.ndarray, j: np.ndarray, values: np.ndarray) -> tuple[Answer, float]:
@@ -93,7 +95,7 @@ def _sparse(size: int, i: np.ndarray, j: np.ndarray, values: np.ndarray) -> tupl
         )
     except RuntimeError:  # exactly singular
         return _nothing, float(len(values))
-    return factors.solve, factors.nnz**2 / size
+    return factors.solve, IN_SPARSE * factors.nnz**2 / size
 
 
 def _nothing(right: np.ndarray) -> np.ndarray:

@@ -22,9 +22,7 @@ from lavendersim.problems.scaled_problem import ScaledProblem, multiply, scaled_
 from lavendersim.problems.semismooth_newton import newton_steps
 
 MOST = 80
-# Share of the way to the boundary [-]; and the least determinant of a contact's product, against
-# the mean, that a step may leave: none runs ahead to the boundary [-].
-THE_WAY, CENTRED = 0.995, 0.02
+# A step that leaves a contact too near the boundary is shortened by this, so often.
 BACK, TRIALS = 0.8, 12
 # A step shorter than this has jammed, and centring by these shares is tried instead [-].
 JAMMED, CENTRING = 0.1, (0.5, 1.0, 2.0)
@@ -37,6 +35,19 @@ MIRROR = np.array([1.0, -1.0, -1.0])
 TINY = 1e-300
 
 
+class Way(NamedTuple):
+    """How a run goes: where friction slides none of them always arrives."""
+
+    begin: float  # x and z at first, against the largest free velocity
+    share: float  # of the way to the boundary that a step may go [-]
+    centred: float  # least product x o z of a contact, against the mean [-]
+    power: int  # of what a straight step leaves: the centring, Mehrotra's rule
+
+
+BOLD, CAREFUL = Way(1.0, 0.995, 0.02, 3), Way(1.0, 0.9, 0.1, 1)
+WAYS = (BOLD, CAREFUL, BOLD._replace(begin=1e4), CAREFUL._replace(begin=1e3))
+
+
 class Cones(NamedTuple):
     """The problem on circular cones, and a place on the way."""
 
@@ -47,27 +58,25 @@ class Cones(NamedTuple):
     own: np.ndarray  # indices of the diagonal blocks
 
 
-def interior_point(
-    p: ScaledProblem, account: Account, most: int = MOST
-) -> tuple[np.ndarray, float]:
-    """Return impulses and their residual after at most so many steps and a few of Newton's."""
+def interior_point(p: ScaledProblem, account: Account, way: Way = BOLD) -> tuple[np.ndarray, float]:
+    """Return impulses and their residual after at most `MOST` steps and a few of Newton's."""
     rubs = p.mu > 0.0
     cones = _on_circular_cones(p, rubs)
     x, z = np.zeros_like(p.b), np.zeros_like(p.b)
-    x[:, 0] = z[:, 0] = 1.0
+    x[:, 0] = z[:, 0] = way.begin
     x[:, 0] *= np.where(rubs, p.mu, 1.0)
     unit = float(np.sqrt((p.b * p.b).sum(axis=1).max()))
     best, least = np.zeros_like(p.b), float("inf")
     held, stuck = False, 0
-    for _ in range(most):
+    for _ in range(MOST):
         answer = unit * cones.to_impulse * x
         residual = scaled_residual(p, answer, velocities(p, answer))
         if residual < least:
             best, least = answer, residual
         if least <= account.tolerance or account.spent or stuck > PATIENCE:
             break
-        there, length, cost = _advance(p, cones, x, z, unit, held)
-        account.step(cost, least)
+        there, length, price = _advance(p, cones, x, z, unit, held, way)
+        account.step(price, least)
         if there is None:
             break
         x, z = there
@@ -88,7 +97,7 @@ def _on_circular_cones(p: ScaledProblem, rubs: np.ndarray) -> Cones:
 
 
 def _advance(
-    p: ScaledProblem, cones: Cones, x: np.ndarray, z: np.ndarray, unit: float, held: bool
+    p: ScaledProblem, cones: Cones, x: np.ndarray, z: np.ndarray, unit: float, held: bool, way: Way
 ) -> tuple[tuple[np.ndarray, np.ndarray] | None, float, float]:
     mean = 0.5 * float((x * z).sum(axis=1).mean())
     side = np.hypot(z[:, 1], z[:, 2])
@@ -112,26 +121,26 @@ def _advance(
 
     straight, centred = direction(0.0), direction(1.0)
     if not all(np.isfinite(d).all() for d in (*straight, *centred)):
-        return None, 0.0, factor.cost
+        return None, 0.0, factor.price
     # Mehrotra's rule: centre by as much as the straight step would leave.
     length = min(1.0, _to_boundary(x, straight[0]), _to_boundary(z, straight[1]))
     left = ((x + length * straight[0]) * (z + length * straight[1])).sum(axis=1).mean()
-    centring = min(1.0, max((0.5 * float(left) / mean) ** 3, LEAST_CENTRING))
+    centring = min(1.0, max((0.5 * float(left) / mean) ** way.power, LEAST_CENTRING))
     best, there = -1.0, (x, z)
     for share in (centring, *CENTRING):
         centring = max(centring, share)
         dx, dz = (s + centring * (c - s) for s, c in zip(straight, centred, strict=True))
-        length = min(1.0, THE_WAY * _to_boundary(x, dx), THE_WAY * _to_boundary(z, dz))
+        length = min(1.0, way.share * _to_boundary(x, dx), way.share * _to_boundary(z, dz))
         for _ in range(TRIALS):
             new = x + length * dx, z + length * dz
-            if _is_centred(*new):
+            if _is_centred(*new, way.centred):
                 break
             length *= BACK
         if length > 1.5 * best:
             best, there = length, new
         if length > JAMMED:
             break
-    return there, best, factor.cost
+    return there, best, factor.price
 
 
 def _determinant(x: np.ndarray) -> np.ndarray:
@@ -140,9 +149,9 @@ def _determinant(x: np.ndarray) -> np.ndarray:
     return product
 
 
-def _is_centred(x: np.ndarray, z: np.ndarray) -> bool:
+def _is_centred(x: np.ndarray, z: np.ndarray, centred: float) -> bool:
     products = np.sqrt(np.maximum(_determinant(x) * _determinant(z), 0.0))
-    return bool(products.min() >= CENTRED * 0.5 * (x * z).sum(axis=1).mean())
+    return bool(products.min() >= centred * 0.5 * (x * z).sum(axis=1).mean())
 
 
 def _scaling(x: np.ndarray, z: np.ndarray) -> np.ndarray:

@@ -109,9 +109,11 @@ def _round(
         dh = -(gradient + np.einsum("nij,nj->ni", root, z)) / softness
         dy = multiply(p, dh)
         residual = scaled_residual(p, answer, velocities(p, answer))
-        account.step(factor.cost, residual)
+        account.step(factor.price, residual)
         if not np.isfinite(dy).all():
             return False, held
+        if account.spent:
+            return False, answer
         line = Line(y, h, dy, dh, held, p.mu, softness)
         gain = -0.5 * line.slope(0.0)
         first = first or gain

@@ -8,12 +8,15 @@ What is spent is counted (`account`), so equal calls take equal turns.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
+
 import numpy as np
 
 from lavendersim.engine.contact_problem import NOT_FINITE, SOLVED, SPENT, ContactProblem, Solution
 from lavendersim.problems.account import Account
 from lavendersim.problems.by_kernel import solve_by_kernel
-from lavendersim.problems.interior_point import interior_point
+from lavendersim.problems.interior_point import BOLD, Way, interior_point
 from lavendersim.problems.newton_rounds import newton_rounds
 from lavendersim.problems.residual import residual
 from lavendersim.problems.scaled_problem import from_impulses, scale, to_impulses
@@ -22,10 +25,10 @@ from lavendersim.problems.semismooth_newton import newton_steps
 SWEEPER = "projected_gauss_seidel"
 # Sweeps before the first Newton steps, doubled every time; times before something else is tried.
 FIRST_SWEEPS, OPENING = 50, 4
-# Sweeps between rounds, doubled every time.
-LATER_SWEEPS, LATER = 1000, 2
-# Multiplications of a sweep per block of W.
-SWEEP_COST = 30.0
+# Sweeps between rounds, how often, and how they grow.
+LATER_SWEEPS, LATER, GROWTH = 1000, 2, 2
+# Price of a sweep per block of W [ns].
+SWEEP_PRICE = 6.0
 # A method aims below the tolerance by this: the judge rounds otherwise [-].
 MARGIN = 0.5
 
@@ -37,7 +40,7 @@ class Search:
         self, problem: ContactProblem, account: Account, start: np.ndarray | None, history: bool
     ) -> None:
         self.problem, self.account, self.history = problem, account, history
-        self.best = np.zeros((problem.contacts, 3)) if start is None else start.copy()
+        self.best = self.here = np.zeros((problem.contacts, 3)) if start is None else start.copy()
         self.least = residual(problem, self.best).scaled
         self.trivial = self.least <= account.tolerance
         account.history.append(self.least)
@@ -49,41 +52,45 @@ class Search:
         """Whether it is solved or everything is spent."""
         return self.least <= self.account.tolerance or self.account.spent
 
-    def offer(self, impulses: np.ndarray, reached: float) -> None:
-        """Keep the better one."""
+    def move(self, impulses: np.ndarray, reached: float) -> None:
+        """Go on from these impulses; remember them where they are the best."""
+        if np.isfinite(reached):
+            self.here = impulses
         if reached < self.least:
             self.best, self.least = impulses, reached
 
-    def sweep(self, sweeps: int) -> np.ndarray:
-        """Sweep from the best, and go on from where that ends even if it is no better."""
-        cost = SWEEP_COST * len(self.problem.row)
-        within = min(sweeps, self.account.steps_left, self.account.operations_left / cost)
-        most = max(1, int(within))
-        solution = solve_by_kernel(
-            self.problem, SWEEPER, self.account.tolerance, most, self.best, self.history
-        )
-        done = solution.sweeps
-        told = list(solution.history[1:]) if self.history else []
-        self.account.spend(done, cost * done, told)
-        self.offer(solution.impulses, solution.scaled)
-        return solution.impulses if solution.scaled < float("inf") else self.best
-
     def sweep_and_step(self, sweeps: int) -> None:
-        """Sweep, then Newton."""
-        swept = self.sweep(sweeps)
+        """Sweep from here, then Newton; where that is no better, go on from the sweeps' end.
+
+        Not from the best: that would end where it did before.
+        """
+        price = SWEEP_PRICE * len(self.problem.row)
+        within = min(sweeps, self.account.steps_left, self.account.price_left / price)
+        swept = solve_by_kernel(
+            self.problem,
+            SWEEPER,
+            self.account.tolerance,
+            max(1, int(within)),
+            self.here,
+            self.history,
+        )
+        told = list(swept.history[1:]) if self.history else []
+        self.account.spend(swept.sweeps, price * swept.sweeps, told)
+        self.move(swept.impulses, swept.scaled)
         if not self.over:
-            x, reached = newton_steps(self.p, from_impulses(self.p, swept), self.account)
-            self.offer(to_impulses(self.p, x), reached)
+            x, reached = newton_steps(self.p, from_impulses(self.p, self.here), self.account)
+            if reached < swept.scaled:
+                self.move(to_impulses(self.p, x), reached)
 
     def rounds(self) -> None:
         """Make rounds from the best."""
         x, reached = newton_rounds(self.p, from_impulses(self.p, self.best), self.account)
-        self.offer(to_impulses(self.p, x), reached)
+        self.move(to_impulses(self.p, x), reached)
 
-    def interior(self) -> None:
+    def interior(self, way: Way = BOLD) -> None:
         """Begin again, from inside the cones."""
-        x, reached = interior_point(self.p, self.account)
-        self.offer(to_impulses(self.p, x), reached)
+        x, reached = interior_point(self.p, self.account, way)
+        self.move(to_impulses(self.p, x), reached)
 
     def open(self) -> None:
         """Sweep and step a few times: most problems end here."""
@@ -91,15 +98,18 @@ class Search:
             if not self.over:
                 self.sweep_and_step(FIRST_SWEEPS * 2**k)
 
-    def go_on(self) -> None:
-        """Make rounds, sweep and step until everything is spent."""
-        sweeps = LATER_SWEEPS
+    def go_on(self, ways: tuple[Way, ...] = ()) -> None:
+        """Take turns until everything is spent, first with an interior point by the ways given."""
+        sweeps, left = LATER_SWEEPS, list(ways)
         while not self.over:
-            self.rounds()
-            for _ in range(LATER):
+            turns: list[Callable[[], None]] = [self.rounds]
+            turns += [partial(self.sweep_and_step, sweeps)] * LATER
+            if left:
+                turns.insert(0, partial(self.interior, left.pop(0)))
+            for turn in turns:
                 if not self.over:
-                    self.sweep_and_step(sweeps)
-                sweeps *= 2
+                    turn()
+            sweeps *= GROWTH
 
     def solution(self) -> Solution:
         """Return the best, judged from its impulses alone."""

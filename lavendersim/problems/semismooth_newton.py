@@ -60,7 +60,7 @@ def newton_steps(
     for _ in range(most):
         if residual <= account.tolerance or account.spent or eps > LARGEST:
             break
-        d, cost = _direction(p, here, eps)
+        d, price = _direction(p, here, eps)
         for length in LENGTHS:
             there = look(p, here.x + length * d)
             if there.size < here.size * (1.0 - ENOUGH * length):
@@ -72,7 +72,7 @@ def newton_steps(
                 break
         else:  # a NaN ends here too
             eps *= GROWS
-        account.step(cost, residual)
+        account.step(price, residual)
     return here.x, residual
 
 
@@ -90,4 +90,4 @@ def _direction(p: ScaledProblem, here: Place, eps: float) -> tuple[np.ndarray, f
     factor = factorise(p, reduced, eigenvalues > 0.0, 1.0 - (1.0 - eps) * eigenvalues)
     right = np.einsum("nji,nj->ni", root, pushed - (1.0 - eps) * here.F)
     z = factor.solve(right)
-    return np.einsum("nij,nj->ni", root, z) - here.F, factor.cost
+    return np.einsum("nij,nj->ni", root, z) - here.F, factor.price

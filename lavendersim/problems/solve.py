@@ -18,6 +18,7 @@ from lavendersim.engine.solvers import SOLVERS as KERNELS
 from lavendersim.errors import UsageError
 from lavendersim.problems.account import Account
 from lavendersim.problems.by_kernel import solve_by_kernel
+from lavendersim.problems.interior_point import WAYS
 from lavendersim.problems.matrices import columns_of, velocities_of
 from lavendersim.problems.residual import own_scales, residual
 from lavendersim.problems.search import Search
@@ -27,8 +28,8 @@ Solver = Callable[[ContactProblem, float, int, "np.ndarray | None", bool], Solut
 # Sweeps, or steps, at most where none are asked for. `auto` is limited by `AUTO` instead.
 SWEEPS = 10_000
 AUTO_SWEEPS = 1_000_000
-# What `auto` may spend [multiplications]: some four seconds.
-AUTO = 2.5e9
+# What `auto` may spend [ns], `account`.
+AUTO = 3e9
 # Methods that mix sweeps and steps aim below the tolerance by this: the judge rounds otherwise [-].
 MARGIN = 0.5
 
@@ -56,8 +57,11 @@ def solve_by_interior_point(
 ) -> Solution:
     """Solve by `interior_point`; `start` is what to return where nothing better is found."""
     search = Search(problem, Account(MARGIN * tolerance, sweeps), start, history)
-    if not search.over:
-        search.interior()
+    for way in WAYS:
+        if not search.over:
+            search.interior(way)
+        if not search.over:
+            search.rounds()
     return search.solution()
 
 
@@ -68,12 +72,10 @@ def solve_by_all(
     start: np.ndarray | None = None,
     history: bool = False,
 ) -> Solution:
-    """Solve by whatever does it, in turn, within `AUTO` multiplications."""
+    """Solve by whatever does it, in turn, within the price `AUTO`."""
     search = Search(problem, Account(MARGIN * tolerance, sweeps, AUTO), start, history)
     search.open()
-    if not search.over:
-        search.interior()
-    search.go_on()
+    search.go_on(WAYS)
     return search.solution()
 
 
