@@ -10,7 +10,7 @@ from typing import Annotated
 
 import typer
 
-from lavender_cli import check, doctor, ls, plan, plot, recover, replay, run, schema, show
+from lavender_cli import check, cost, doctor, ls, plan, plot, recover, replay, run, schema, show
 
 INTERRUPTED = 130  # typer ends with it after Ctrl-C
 
@@ -27,7 +27,7 @@ app = typer.Typer(
 )
 for verb in (run.run, plot.plot, replay.replay, check.check, plan.plan, ls.ls, show.show):
     app.command()(verb)
-for verb in (recover.recover, schema.schema, doctor.doctor):
+for verb in (cost.cost, recover.recover, schema.schema, doctor.doctor):
     app.command()(verb)
 
 

@@ -1,0 +1,7 @@
+"""The names of the solvers, as a config states them."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+Solver = Literal["projected_gauss_seidel", "nonsmooth_conjugate_gradient", "adaptive"]
