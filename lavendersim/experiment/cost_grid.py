@@ -59,7 +59,8 @@ class Setting(NamedTuple):
     @property
     def curve(self) -> tuple[Any, ...]:
         """What settings share that differ in their timestep alone."""
-        return (self.preset, self.solver, self.sweeps, self.tolerance, self.warm_start)
+        own = self.role == "chapter"  # whatever else the config states, it has the preset's numbers
+        return (own, self.preset, self.solver, self.sweeps, self.tolerance, self.warm_start)
 
     @property
     def coordinates(self) -> dict[str, Any]:

@@ -24,7 +24,11 @@ def draw_timestep_errors(axes: Any, table: dict[str, Any], looks: Any) -> None:
     axes.set_yscale("log")
     axes.set_xlabel("timestep [ms]")
     rows = [row for row in table["rows"] if row["error"] is not None and row["role"] != "chapter"]
-    for curve in best_solved(rows):
+    if not rows:
+        axes.text(0.5, 0.5, "no setting has an error", transform=axes.transAxes, ha="center")
+        return
+    curves = best_solved(rows)
+    for curve in curves:
         steps = [MS * float(Fraction(row["timestep"])) for row in curve]
         errors = [max(row["error"], FLOOR) for row in curve]
         look = looks.solvers[curve[0]["solver"]]
@@ -32,7 +36,7 @@ def draw_timestep_errors(axes: Any, table: dict[str, Any], looks: Any) -> None:
         axes.plot(steps, errors, color=look.colour, linestyle=line, linewidth=1.2, alpha=0.8)
         for row, step, error in zip(curve, steps, errors, strict=True):
             axes.plot(step, error, **looks.mark(row), zorder=3)
-    _draw_slopes(axes, rows)
+    _draw_slopes(axes, [row for curve in curves for row in curve])
     ticks_at_values(axes, [MS * float(Fraction(row["timestep"])) for row in rows])
     axes.xaxis.set_minor_locator(NullLocator())
     axes.xaxis.set_minor_formatter(NullFormatter())

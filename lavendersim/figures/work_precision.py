@@ -35,8 +35,9 @@ CAPTION: Final = (
     "Error of {measure}{truth}, against the processor's time for a simulated second of physics: "
     "left is cheap, down is accurate. Medians of {repeats} interleaved repeats; the bars, most of "
     "them shorter than a marker is wide, hold the median in 19 of 20 cases. Crossed: the setting "
-    "failed (it diverged, was not solved as asked, or broke a claim of the experiment). The dark "
-    "line is the front: no setting is cheaper and as good. Neither compilation nor logging is in "
+    "failed (it diverged, was not solved as asked, or broke a claim of the experiment). Thin lines "
+    "join settings that differ in one knob; the dark line is the front: no setting is cheaper and "
+    "as good. Neither compilation nor logging is in "
     "any time. {processor}, clock {clock}. {answers}"
 )
 
@@ -166,12 +167,12 @@ def draw_settings(axes: Any, table: dict[str, Any], looks: Looks) -> None:
     for answer in table["targets"]:
         axes.axhline(answer["target"], color=GREY, linewidth=1.1, linestyle=(0, (5, 3)), zorder=1)
         axes.text(
-            0.995,
+            1.01,
             answer["target"],
             f"{100.0 * answer['target']:.3g} %",
             transform=axes.get_yaxis_transform(),
-            ha="right",
-            va="bottom",
+            ha="left",
+            va="center",
             fontsize=10,
             color=GREY,
         )
