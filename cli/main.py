@@ -10,7 +10,20 @@ from typing import Annotated
 
 import typer
 
-from lavender_cli import check, doctor, ls, plan, plot, recover, replay, run, schema, show, solve
+from lavender_cli import (
+    check,
+    cost,
+    doctor,
+    ls,
+    plan,
+    plot,
+    recover,
+    replay,
+    run,
+    schema,
+    show,
+    solve,
+)
 
 INTERRUPTED = 130  # typer ends with it after Ctrl-C
 
@@ -27,7 +40,7 @@ app = typer.Typer(
 )
 for verb in (run.run, plot.plot, replay.replay, check.check, plan.plan, ls.ls, show.show):
     app.command()(verb)
-for verb in (solve.solve, recover.recover, schema.schema, doctor.doctor):
+for verb in (cost.cost, solve.solve, recover.recover, schema.schema, doctor.doctor):
     app.command()(verb)
 
 

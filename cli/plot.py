@@ -28,7 +28,7 @@ def plot(
 
     chosen = [open_run(path, root) for path in runs] if runs else [open_run(None, root)]
     for run in chosen:
-        if not run.experiment.is_drawn:
+        if not run.experiment.is_drawn and run.cost() is None:
             raise UsageError(f"{run.path}: its config has no figure section")
         for figure in draw(run, output or run.path / "figures"):
             typer.echo(figure)

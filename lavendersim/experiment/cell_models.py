@@ -14,10 +14,11 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 from lavendersim.experiment.body_models import Drag, Release, Surface
-from lavendersim.experiment.models import FrictionCone, Impacts, Integrator, Solver, Switch
+from lavendersim.experiment.models import FrictionCone, Impacts, Integrator, Switch
 from lavendersim.experiment.quantities import Quantity, Vector3
 from lavendersim.experiment.run_checks import whole_steps
 from lavendersim.experiment.shape_models import Box, Capsule, Cylinder, Plane, Sphere
+from lavendersim.experiment.solver_names import Solver
 
 Quaternion = tuple[float, float, float, float]
 

@@ -9,6 +9,7 @@ from typing import Any
 import yaml
 
 from lavendersim.experiment.cell import Cell
+from lavendersim.experiment.cost_specs import CostSpec
 from lavendersim.experiment.expect_specs import ExpectSpec
 from lavendersim.experiment.figure_specs import FigureSpec
 from lavendersim.experiment.measure_specs import MeasureSpec
@@ -56,6 +57,11 @@ class Experiment:
     def price(self) -> PriceSpec | None:
         """How the price of every effect is taken, if it is."""
         return self.config.price
+
+    @property
+    def cost(self) -> CostSpec | None:
+        """How it is found what accuracy costs, where it can be."""
+        return self.config.cost
 
     @property
     def is_drawn(self) -> bool:

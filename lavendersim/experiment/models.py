@@ -8,6 +8,7 @@ from typing import Annotated, Any, Literal
 from pydantic import ConfigDict, Field, Tag
 
 from lavendersim.experiment.base import ConfigModel
+from lavendersim.experiment.cost_specs import CostSpec
 from lavendersim.experiment.expect_specs import ExpectSpec
 from lavendersim.experiment.figure_specs import FigureSpec
 from lavendersim.experiment.measure_specs import MeasureSpec
@@ -22,6 +23,7 @@ from lavendersim.experiment.quantities import (
 )
 from lavendersim.experiment.record_models import Record
 from lavendersim.experiment.scene_models import Scene
+from lavendersim.experiment.solver_names import Solver
 
 
 class Event(ConfigModel):
@@ -50,15 +52,6 @@ class Event(ConfigModel):
 
 Count = Annotated[int, Quantity(whole=True, minimum=1, maximum=1_000_000)]
 CountOrNone = Annotated[int, Quantity(whole=True, minimum=0, maximum=1_000_000)]
-Solver = Literal[
-    "projected_gauss_seidel",
-    "block_gauss_seidel",
-    "coloured_gauss_seidel",
-    "nonsmooth_conjugate_gradient",
-    "jacobi",
-    "accelerated_projected_gradient",
-    "adaptive",
-]
 Impacts = Literal["captured", "at_surface"]
 Integrator = Literal["semi_implicit_euler", "midpoint"]
 FrictionCone = Literal["disc", "pyramid"]
@@ -213,3 +206,7 @@ class ExperimentConfig(CellSource):
     expect: tuple[ExpectSpec, ...] = Field(default=(), description="the claims that pytest checks")
     figure: FigureSpec | None = Field(default=None, description="what `lavender plot` draws")
     price: PriceSpec | None = Field(default=None, description="what each effect costs is taken")
+    cost: CostSpec | None = Field(
+        default=None,
+        description="what accuracy costs, for `lavender cost`: a grid, an error, a truth",
+    )

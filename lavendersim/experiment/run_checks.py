@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 
+from lavendersim.experiment.cost_checks import check_cost
 from lavendersim.experiment.messages import place_of
 from lavendersim.experiment.node import Node, key_mark
 from lavendersim.experiment.population import body_node
@@ -37,6 +38,7 @@ def check_run(root: Node, report: Report) -> None:
     if window is not None and window.entries:
         _check_window(window, length, report)
     _check_price(root, length, report)
+    check_cost(root, length, report)
 
 
 def timestep_of(root: Node) -> Fraction | None:

@@ -137,15 +137,16 @@ def _axis(name: str, node: Node, root: Node, report: Report) -> Axis | None:
     if path_node is None or path_node.text is None or values is None or not values.items:
         return None  # refused by the model
     path = find_path(path_node, root, report)
-    usable = _usable(name, values, report)
+    usable = _usable(name, values, report, nullable=path == ("numerics", "tolerance"))
     return Axis(name, path, usable) if path is not None and usable else None
 
 
-def _usable(name: str, values: Node, report: Report) -> tuple[Node, ...]:
+def _usable(name: str, values: Node, report: Report, nullable: bool) -> tuple[Node, ...]:
+    """nullable: null means something, and no value that is missing."""
     usable: dict[object, Node] = {}
     labels: set[str] = set()
     for value in values.items:
-        if value.content is None or isinstance(value.content, dict):
+        if (value.content is None and not nullable) or isinstance(value.content, dict):
             sentence = f"{name}: expected a number, a text, true, false or a list"
             report.add(value.mark, f"{sentence}, found {found(value.data)}")
             continue

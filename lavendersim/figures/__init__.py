@@ -8,7 +8,7 @@ from typing import Any
 
 
 def draw(run: Any, directory: Path) -> list[Path]:
-    """Draw the figure of a run (`.experiment`, `.cells`), and that of its prices where it has some.
+    """Draw the figures of a run (`.experiment`, `.cells`): its own, its prices', its cost's.
 
     Returns the files written. matplotlib is imported here and not before: it takes a quarter of a
     second.
@@ -18,6 +18,10 @@ def draw(run: Any, directory: Path) -> list[Path]:
     paths = draw_page(run, directory)
     if getattr(run.experiment, "price", None) is not None:
         paths += draw_prices([run], directory)
+    if callable(getattr(run, "cost", None)) and run.cost() is not None:
+        from lavendersim.figures.work_precision import draw_work_precision
+
+        paths += draw_work_precision(run, directory)
     return paths
 
 

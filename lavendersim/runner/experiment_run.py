@@ -67,6 +67,10 @@ class Progress(NamedTuple):
     pricing: Callable[[str, int, int], None] = lambda what, done, total: None
 
 
+# What adds to a run's directory: it is given the run and the measures of its cells.
+Closing = Callable[[Finished, list[dict[str, Any]]], None]
+
+
 def find_configs(paths: list[Path]) -> list[Path]:
     """Return the config files among `paths`; a folder stands for its *.yaml files, in order.
 
@@ -147,12 +151,14 @@ def run(
     jobs: int = 1,
     progress: Progress = Progress(),  # noqa: B008 - immutable
     prices: bool = True,
+    closing: Closing = lambda finished, measured: None,
 ) -> Finished:
     """Run every cell of an experiment and judge its expectations; take prices where it asks.
 
     root: where run directories are made. jobs: processes; the logs are the same for any number.
-    prices: false leaves out what a section `price` asks for. A cell that diverges ends there, with
-    a readable log; the others go on.
+    prices: false leaves out what a section `price` asks for. closing: called with the results
+    before the run counts as finished. A cell that diverges ends there, with a readable log; the
+    others go on.
     """
     from lavendersim.engine.kernel_cache import source_hash
 
@@ -212,6 +218,7 @@ def run(
         write_prices(directory / PRICES, priced)
     write_results(result, measured, priced)
     _write_json(directory / ENVIRONMENT, environment(*(plan.spec for plan in distinct(plans))))
+    closing(result, measured)
     (directory / DONE).write_text("")
     point_latest(directory, root)
     return result

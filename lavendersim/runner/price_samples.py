@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator
+from functools import cached_property
 from math import ceil
 from statistics import median
 from typing import Any
@@ -47,8 +48,12 @@ class Timed:
         first: int,
         steps: int,
         now: Callable[[], int] | None = None,
+        shortest: int = SAMPLE_NS,
     ) -> None:
-        """Take the engine to step `first`; `steps` after it are timed. Raises Diverged."""
+        """Take the engine to step `first`; `steps` after it are timed. Raises Diverged.
+
+        shortest: a sample repeats the steps for so long, at least [ns].
+        """
         self.spec, self.steps = spec, steps
         self._now = now or clock()[1]
         self.engine = build(resolved, spec).engine(spec, min(steps, BLOCK_STEPS))
@@ -61,8 +66,7 @@ class Timed:
             if name not in _ROWS
             for array in _arrays(value)
         ]
-        self.contacts, self.motion = self._observe()
-        self.starts = max(1, ceil(SAMPLE_NS / max(1, self._once())))
+        self.starts = max(1, ceil(shortest / max(1, self._once())))
 
     def set_back(self) -> None:
         """Return to the state in which the timed steps begin."""
@@ -90,8 +94,18 @@ class Timed:
                 raise Diverged
             self.engine.take_rows()
 
-    def _observe(self) -> tuple[float, bytes]:
-        """Return the mean number of contacts a step, and the bits of where bodies end."""
+    @property
+    def contacts(self) -> float:
+        """The mean number of contacts a step."""
+        return self._observed[0]
+
+    @property
+    def motion(self) -> bytes:
+        """The bits of where bodies end."""
+        return self._observed[1]
+
+    @cached_property
+    def _observed(self) -> tuple[float, bytes]:
         self.set_back()
         contacts = 0
         for _ in range(self.steps):

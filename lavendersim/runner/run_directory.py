@@ -18,6 +18,7 @@ from lavendersim.trace import Trace, open_trace
 CONFIG, RESOLVED = "config.yaml", "resolved.yaml"
 CELLS, RESULTS, TABLE = "cells.json", "results.json", "results.csv"
 PRICES = "prices.csv"
+COST, COST_TABLE = "cost.json", "cost.csv"
 ENVIRONMENT, DONE, LATEST = "env.json", "DONE", "latest"
 RUNS = Path("runs")
 
@@ -90,6 +91,11 @@ class Run:
         if not self.finished:
             raise UsageError(f"{self.path}: this run did not finish; its logs are in cells/")
         return _read_json(self.path / RESULTS)
+
+    def cost(self) -> dict[str, Any] | None:
+        """Return what accuracy costs, where it was taken; UsageError while it is not finished."""
+        self.results()
+        return _read_json(self.path / COST) if (self.path / COST).exists() else None
 
 
 def _read_json(path: Path) -> dict[str, Any]:

@@ -1,0 +1,153 @@
+"""`lavender cost`: configs in; what accuracy costs in each, as figure, table and sentences, out."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from lavender_cli import printing
+from lavender_cli.run import Configs, Jobs, Runs
+
+HEADER = ("setting", "error", "worst at", "order", "residual m/s", "per simulated s", "quartiles")
+MARKS = {"stated": "stated", "chapter": "the chapter's", "grid": ""}
+
+
+def cost(
+    configs: Configs,
+    targets: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--target",
+            metavar="PERCENT",
+            help="Print the cheapest setting with this error as YAML, such as 0.1%.",
+        ),
+    ] = None,
+    repeats: Annotated[
+        int | None, typer.Option("--repeats", help="Rounds in place of the config's; 7 or more.")
+    ] = None,
+    plot: Annotated[bool, typer.Option("--plot/--no-plot", help="Draw the figure.")] = True,
+    jobs: Jobs = 1,
+    runs: Runs = Path("runs"),
+    as_json: Annotated[bool, typer.Option("--json", help="Print the tables as JSON.")] = False,
+) -> None:
+    """Measure what accuracy costs: error and time over timestep, solver, sweeps and warm start.
+
+    Exits 1 when a target that was asked for is not reached.
+    """
+    from lavendersim.runner import load_all
+    from lavendersim.runner.cost import check_cost, take_cost
+    from lavendersim.runner.cost_targets import percentage
+
+    asked = [percentage(target) for target in targets or ()]
+    experiments = load_all(configs)
+    for experiment in experiments:
+        check_cost(experiment, repeats)
+    tables = []
+    for experiment in experiments:
+        with printing.reporting(experiment.name) as progress:
+            costed = take_cost(experiment, runs, jobs, progress, asked, repeats)
+        run = costed.finished.run
+        figures = []
+        if plot:
+            from lavendersim.figures import draw
+
+            figures = draw(run, run.path / "figures")
+        tables.append({**costed.table, "run": run.path, "figures": figures})
+        if as_json:
+            continue
+        # With targets asked for, stdout is what is to be pasted, and nothing else.
+        print_table(costed.table, aside=bool(asked))
+        for figure in figures:
+            typer.echo(f"  figure {figure}", err=bool(asked))
+        typer.echo(f"  run    {run.path}", err=bool(asked))
+        if asked:
+            _print_fragments(costed.table, several=len(experiments) * len(asked) > 1)
+    if as_json:
+        printing.as_json(tables)
+    if asked and not all(answer["reached"] for table in tables for answer in table["targets"]):
+        raise typer.Exit(1)
+
+
+def _print_fragments(table: dict[str, Any], several: bool) -> None:
+    for answer in table["targets"]:
+        if answer["reached"]:
+            if several:
+                typer.echo(f"# {table['experiment']}: {answer['sentence']}")
+            typer.echo(answer["fragment"], nl=False)
+
+
+def print_table(table: dict[str, Any], aside: bool = False) -> None:
+    """Print a row a setting and a sentence a target; aside: to stderr."""
+    for line in lines_of(table):
+        typer.echo(line, err=aside)
+
+
+def lines_of(table: dict[str, Any]) -> list[str]:
+    """Return the table and the sentences as lines."""
+    from lavendersim.runner.cost_targets import percent
+
+    rows = table["rows"]
+    cells = [HEADER, *(_cells(row) for row in rows)]
+    # a column that says nothing is left out
+    shown = [column for column in range(len(HEADER)) if any(row[column] for row in cells[1:])]
+    widths = {column: max(len(row[column]) for row in cells) for column in shown}
+    lines = [
+        f"{typer.style(table['experiment'], bold=True)}: error of {table['error']['measure']}, "
+        f"{_truth(table)}; physics per simulated second, medians of {table['repeats']} interleaved "
+        f"repeats with quartiles; {table['machine']['processor']}"
+    ]
+    for text, row in zip(cells, [None, *rows], strict=True):
+        columns = [
+            f"{text[column]:{'<' if column in (0, 2) else '>'}{widths[column]}}" for column in shown
+        ]
+        notes = ", ".join(_notes(row)) if row is not None else ""
+        lines.append(f"  {'  '.join(columns)}  {notes}".rstrip())
+    lines.append("  * none is cheaper and as good")
+    for law in dict.fromkeys(row["law"] for row in rows):
+        which = [row for row in rows if row["law"] == law]
+        least = min((row["error"] for row in which if row["error"] is not None), default=None)
+        best = "" if least is None else f", at best {percent(least)}"
+        lines.append(f"  law: {law} ({len(which)} settings{best})")
+    compiled = sorted({row["compile_s"] for row in rows})
+    lines.append(
+        f"  compile time, once and in no cost: {compiled[0]:.1f} to {compiled[-1]:.1f} s an engine"
+    )
+    return lines + [f"{answer['sentence']}" for answer in table["targets"]]
+
+
+def _truth(table: dict[str, Any]) -> str:
+    from lavendersim.runner.cost_targets import rate_of
+
+    if table["truth"] is None:
+        return "against its truth"
+    truth = table["truth"]
+    return (
+        f"against itself at {rate_of(truth['timestep'])}, solved to "
+        f"{truth['worst_residual']:.1g} m/s"
+    )
+
+
+def _cells(row: dict[str, Any]) -> tuple[str, ...]:
+    from lavendersim.runner.cost_targets import effort_of, percent, rate_of, short_time
+
+    spread = row["ns_per_second"]
+    name, start = f"{row['solver']:28} {row['preset']:7}", "warm" if row["warm_start"] else "cold"
+    return (
+        f"{name} {rate_of(row['timestep']):>8} {effort_of(row):>12} {start}",
+        "none" if row["error"] is None else percent(row["error"]),
+        row["worst_at"],
+        "" if row["order"] is None else f"{row['order']:.1f}",
+        f"{row['worst_residual']:.1e}" if row["worst_residual"] is not None else "not finite",
+        "" if spread is None else short_time(spread["median"]),
+        ""
+        if spread is None
+        else f"{short_time(spread['lower_quartile'])} to {short_time(spread['upper_quartile'])}",
+    )
+
+
+def _notes(row: dict[str, Any]) -> list[str]:
+    notes = ["*"] if row["front"] else []
+    notes += [MARKS[row["role"]]] if MARKS[row["role"]] else []
+    return notes + ([f"FAILED: {row['failed']}"] if row["failed"] else [])

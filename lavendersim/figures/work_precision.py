@@ -1,0 +1,282 @@
+"""What accuracy costs in; a page with error against cost and error against timestep out.
+
+    error |  x x x  failed, no error      error |        /
+          |  o--o                               |      o/   slope 1
+          |   \\  `-o   curves: one knob         |    o /
+          |    `--o--- front                    |  o  /
+          +------------------ cost              +---------- timestep
+Numbers are those of `cost.json`; nothing is timed or measured here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from fractions import Fraction
+from itertools import groupby
+from pathlib import Path
+from typing import Any, Final, NamedTuple
+
+from matplotlib import style
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+from lavendersim.figures.page import MARGIN, wrapped
+from lavendersim.figures.style import DARK, DPI, GREY, LINE_HEIGHT, LOOKS, STYLE, Look
+from lavendersim.figures.timestep_errors import draw_timestep_errors
+
+WIDTH, LEGEND_WIDTH, HEIGHT = 5.6, 2.9, 5.0  # [inch] of a panel, of the legend
+SECOND_WIDTH: Final = 4.2  # [inch]
+FLOOR: Final = 1e-15  # [-] smaller errors are round-off
+BAND: Final = 0.94  # share of the axis from which on settings without an error stand
+MARKERS: Final = ("o", "s", "^", "D", "v", "P", "X", "*")  # of timesteps, the coarsest first
+CAPTION: Final = (
+    "Error of {measure}{truth}, against the processor's time for a simulated second of physics: "
+    "left is cheap, down is accurate. Medians of {repeats} interleaved repeats; the bars, most of "
+    "them shorter than a marker is wide, hold the median in 19 of 20 cases. Crossed: the setting "
+    "failed (it diverged, was not solved as asked, or broke a claim of the experiment). Thin lines "
+    "join settings that differ in one knob; the dark line is the front: no setting is cheaper and "
+    "as good. Neither compilation nor logging is in "
+    "any time. {processor}, clock {clock}. {answers}"
+)
+
+Row = dict[str, Any]
+Key = Callable[[Row], Any]
+
+
+class Looks(NamedTuple):
+    """What colours, markers and lines stand for."""
+
+    solvers: dict[str, Look]
+    timesteps: dict[str, str]  # marker by timestep
+    presets: dict[str, Any]  # line by preset
+
+    @classmethod
+    def of(cls, rows: Sequence[Row]) -> Looks:
+        """Give every solver, timestep and preset its look, in the order of the grid."""
+        solvers = list(dict.fromkeys(row["solver"] for row in rows))
+        steps = sorted({row["timestep"] for row in rows}, key=lambda step: -Fraction(step))
+        presets = list(dict.fromkeys(row["preset"] for row in rows if row["role"] != "chapter"))
+        lines = ("-", (0, (4, 2)))
+        return cls(
+            {name: LOOKS[place % len(LOOKS)] for place, name in enumerate(sorted(solvers))},
+            {step: MARKERS[place % len(MARKERS)] for place, step in enumerate(steps)},
+            {name: lines[place % len(lines)] for place, name in enumerate(presets)},
+        )
+
+    def mark(self, row: Row) -> dict[str, Any]:
+        """Return the marker of a setting: full where it starts warm, hollow where cold."""
+        colour = self.solvers[row["solver"]].colour
+        return {
+            "marker": self.timesteps[row["timestep"]],
+            "markersize": 6.5,
+            "markerfacecolor": colour if row["warm_start"] else "white",
+            "markeredgecolor": colour,
+            "markeredgewidth": 1.1,
+            "linestyle": "none",
+        }
+
+
+def draw_work_precision(run: Any, directory: Path) -> list[Path]:
+    """Write `<experiment>_cost.png` and `.svg` of a run that has `.name` and `.cost()`.
+
+    Returns the files; none where the run took no cost.
+    """
+    table = run.cost()
+    if table is None:
+        return []
+    directory = Path(directory)
+    directory.mkdir(parents=True, exist_ok=True)
+    paths = [directory / f"{run.name}_cost.{suffix}" for suffix in ("png", "svg")]
+    with style.context(STYLE, after_reset=True):
+        figure = compose(table)
+        figure.savefig(paths[0], dpi=DPI, metadata={"Software": None})
+        figure.savefig(paths[1], metadata={"Date": None, "Creator": "lavender"})
+    return paths
+
+
+def compose(table: dict[str, Any]) -> Figure:
+    """Return the page as a matplotlib Figure."""
+    width = WIDTH + SECOND_WIDTH + LEGEND_WIDTH
+    caption, question = wrapped(_caption(table), width), wrapped(table["question"], width, "bold")
+    below = LINE_HEIGHT * (caption.count("\n") + 1) + 2 * MARGIN
+    above = LINE_HEIGHT * (question.count("\n") + 1) + 2 * MARGIN if question else MARGIN
+    height = HEIGHT + below + above
+    figure = Figure(figsize=(width, height))
+    FigureCanvasAgg(figure)
+    figure.set_layout_engine(
+        "constrained", rect=(0.0, below / height, 1.0, HEIGHT / height), w_pad=0.1
+    )
+    left = MARGIN / width
+    figure.text(left, 1.0 - MARGIN / height, question, va="top", weight="bold")
+    figure.text(left, MARGIN / height, caption, va="bottom", linespacing=1.25)
+    widths = [WIDTH, SECOND_WIDTH, LEGEND_WIDTH]
+    work, orders, legend = figure.subplots(1, 3, width_ratios=widths)
+    looks = Looks.of(table["rows"])
+    draw_settings(work, table, looks)
+    draw_timestep_errors(orders, table, looks)
+    limits = [*work.get_ylim(), *orders.get_ylim()]
+    for axes in (work, orders):
+        axes.set_ylim(min(limits), max(limits))
+    legend.set_axis_off()
+    legend.legend(handles=_handles(table, looks), loc="upper left", borderaxespad=0.0)
+    return figure
+
+
+def _caption(table: dict[str, Any]) -> str:
+    truth = table["truth"]
+    held = ""
+    if truth is not None:
+        held = f", against the same run at a timestep of {truth['timestep']} s"
+    if table["axes"]:
+        held += f" (the worst of {table['cells_per_setting']} cells of {', '.join(table['axes'])})"
+    return CAPTION.format(
+        measure=table["error"]["measure"],
+        truth=held,
+        repeats=table["repeats"],
+        processor=table["machine"]["processor"],
+        clock=table["clock"],
+        answers=". ".join(answer["sentence"] for answer in table["targets"]).replace(" us ", " µs ")
+        + ".",
+    )
+
+
+def draw_settings(axes: Any, table: dict[str, Any], looks: Looks) -> None:
+    """Draw every setting, the curves between neighbours, the front and the targets."""
+    axes.set_title("error against cost", loc="left")
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    axes.set_xlabel(f"cost [{unit_of(table)[0]} per simulated second]")
+    axes.set_ylabel(f"relative error of {table['error']['measure']} [-]")
+    size = unit_of(table)[1]
+    timed = [row for row in table["rows"] if row["ns_per_second"] is not None]
+    for curve in curves_of(timed):
+        shown = [row for row in curve if row["error"] is not None]
+        axes.plot(
+            [_cost(row) / size for row in shown],
+            [drawn(row) for row in shown],
+            color=looks.solvers[curve[0]["solver"]].colour,
+            linestyle=looks.presets.get(curve[0]["preset"], "-"),
+            linewidth=0.9,
+            alpha=0.55,
+        )
+    for row in timed:
+        _draw_setting(axes, row, size, looks)
+    _draw_front(axes, timed, size)
+    for answer in table["targets"]:
+        axes.axhline(answer["target"], color=GREY, linewidth=1.1, linestyle=(0, (5, 3)), zorder=1)
+        axes.text(
+            1.01,
+            answer["target"],
+            f"{100.0 * answer['target']:.3g} %",
+            transform=axes.get_yaxis_transform(),
+            ha="left",
+            va="center",
+            fontsize=10,
+            color=GREY,
+        )
+    axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axes.xaxis.set_minor_formatter(NullFormatter())
+    low, high = axes.get_ylim()
+    if any(row["error"] is None for row in timed):
+        axes.axhspan(BAND, 1.0, transform=axes.transAxes, color="#eeeeee", zorder=0)
+        axes.text(0.01, 0.97, "no error", transform=axes.transAxes, va="center", fontsize=9)
+        high *= (high / low) ** 0.12
+    axes.set_ylim(low, high)
+
+
+def _draw_setting(axes: Any, row: Row, size: float, looks: Looks) -> None:
+    place: dict[str, Any] = {}
+    level = drawn(row) if row["error"] is not None else 0.5 * (1.0 + BAND)
+    if row["error"] is None:
+        place["transform"] = axes.get_xaxis_transform()
+    spread = row["ns_per_second"]
+    colour = looks.solvers[row["solver"]].colour
+    ends = [spread["low"] / size, spread["high"] / size]
+    axes.plot(ends, [level, level], color=colour, linewidth=1.4, **place)
+    axes.plot(_cost(row) / size, level, **looks.mark(row), **place, zorder=3)
+    if row["failed"]:
+        crossed = {"marker": "x", "markersize": 9, "color": DARK, "markeredgewidth": 1.2}
+        axes.plot(_cost(row) / size, level, linestyle="none", **crossed, **place, zorder=5)
+    if row["role"] in RINGS:
+        ring = {"markerfacecolor": "none", "markeredgecolor": DARK, "linestyle": "none"}
+        axes.plot(_cost(row) / size, level, **ring, **RINGS[row["role"]], **place, zorder=4)
+
+
+RINGS: Final = {
+    "stated": {"marker": "o", "markersize": 14, "markeredgewidth": 1.6},
+    "chapter": {"marker": "s", "markersize": 14, "markeredgewidth": 1.6},
+}
+
+
+def _draw_front(axes: Any, rows: Sequence[Row], size: float) -> None:
+    """Draw the front as a stair: what the cheapest setting of at most this cost reaches."""
+    front = sorted((row for row in rows if row["front"]), key=_cost)
+    costs, errors = [_cost(row) / size for row in front], [drawn(row) for row in front]
+    axes.step(costs, errors, where="post", color=DARK, linewidth=1.6, zorder=2)
+
+
+def curves_of(rows: Sequence[Row]) -> Iterator[list[Row]]:
+    """Yield the settings that one knob joins: the one that a solver has most values of."""
+    knobs: dict[str, Key] = {
+        "timestep": lambda row: -Fraction(row["timestep"]),
+        "effort": lambda row: (row["sweeps"], -(row["tolerance"] or 0.0)),
+    }
+    grid = [row for row in rows if row["role"] != "chapter"]
+    for family in _grouped(grid, lambda row: (row["preset"], row["solver"], row["warm_start"])):
+        counts = {name: len({knob(row) for row in family}) for name, knob in knobs.items()}
+        along, across = sorted(knobs, key=lambda name: -counts[name])
+        for curve in _grouped(family, knobs[across]):
+            yield sorted(curve, key=knobs[along])
+
+
+def _grouped(rows: Sequence[Row], key: Key) -> Iterator[list[Row]]:
+    for _, group in groupby(sorted(rows, key=key), key):
+        yield list(group)
+
+
+def drawn(row: Row) -> float:
+    """Return where an error is drawn: round-off at the floor."""
+    return max(float(row["error"]), FLOOR)
+
+
+def unit_of(table: dict[str, Any]) -> tuple[str, float]:
+    """Return the unit of costs and its size [ns]: what most settings take some of."""
+    costs = sorted(_cost(row) for row in table["rows"] if row["ns_per_second"] is not None)
+    middle = costs[len(costs) // 2] if costs else 1e6
+    return ("ms", 1e6) if middle >= 5e5 else ("µs", 1e3)
+
+
+def _cost(row: Row) -> float:
+    return float(row["ns_per_second"]["median"])
+
+
+def _handles(table: dict[str, Any], looks: Looks) -> list[Line2D]:
+    """Return the legend: solvers, presets, timesteps, and what marks mean."""
+
+    def dot(marker: str, label: str, **more: Any) -> Line2D:
+        plain = {"color": DARK, "linestyle": "none", "markersize": 6.5, "markeredgewidth": 1.1}
+        return Line2D([], [], marker=marker, label=label, **{**plain, **more})
+
+    rows = table["rows"]
+    handles = [
+        Line2D([], [], color=look.colour, linewidth=5, label=name.replace("_", " "))
+        for name, look in looks.solvers.items()
+    ]
+    if len(looks.presets) > 1:
+        handles += [
+            Line2D([], [], color=DARK, linewidth=1.1, linestyle=line, label=f"laws of {name}")
+            for name, line in looks.presets.items()
+        ]
+    handles += [dot(marker, f"{step} s") for step, marker in looks.timesteps.items()]
+    if not all(row["warm_start"] for row in rows):
+        handles.append(dot("o", "cold start", markerfacecolor="white"))
+    rings = {row["role"]: row for row in rows if row["role"] in RINGS}
+    names = {"stated": "what the config states", "chapter": "the chapter's setting"}
+    hollow = {"markerfacecolor": "none", "markeredgewidth": 1.6, "markersize": 11}
+    handles += [dot(str(RINGS[role]["marker"]), names[role], **hollow) for role in rings]
+    if any(row["failed"] for row in rows):
+        handles.append(dot("x", "failed", markersize=8))
+    return [*handles, Line2D([], [], color=DARK, linewidth=1.6, label="front")]

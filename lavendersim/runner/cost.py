@@ -1,0 +1,186 @@
+"""An experiment with a `cost` section enters; a run of its grid leaves, with what accuracy costs.
+
+settings -> one run of all of them -> errors against the truth -> times -> front -> targets
+Errors come from logs, times from engines that keep none. `cost.json` has every number and every
+sample, `cost.csv` a row a setting.
+"""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, Final, NamedTuple
+
+from lavendersim.errors import ConfigError, UsageError
+from lavendersim.experiment import Experiment
+from lavendersim.experiment.cost_grid import Setting, fragment_of, over_the_grid, settings_of
+from lavendersim.experiment.cost_specs import FEW, FEWEST_REPEATS
+
+from .cost_errors import SettingError, errors_of, law_of, orders_of, runs_of
+from .cost_targets import answers, front_of
+from .cost_times import Clocked, Times, times_of
+from .environment import machine
+from .experiment_run import Finished, Progress, run
+from .price_samples import clock
+from .prices import Spread
+from .run_directory import COST, COST_TABLE, RUNS
+
+
+class Costed(NamedTuple):
+    """A run of a grid, and what accuracy costs in it."""
+
+    finished: Finished
+    table: dict[str, Any]  # as in `cost.json`
+
+
+def check_cost(experiment: Experiment, repeats: int | None = None) -> None:
+    """Raise ConfigError without a section `cost`, UsageError for too few repeats."""
+    if experiment.cost is None:
+        sentence = "no section cost: it says which measure is held against which truth"
+        raise ConfigError([experiment.cells()[0].defect(("cost",), sentence)])
+    if repeats is not None and repeats < FEWEST_REPEATS:
+        raise UsageError(f"--repeats: expected {FEWEST_REPEATS} or more, found {repeats}; {FEW}")
+
+
+def take_cost(
+    experiment: Experiment,
+    root: Path | str = RUNS,
+    jobs: int = 1,
+    progress: Progress = Progress(),  # noqa: B008 - immutable
+    targets: Sequence[float] = (),
+    repeats: int | None = None,
+) -> Costed:
+    """Run the grid of an experiment's `cost` section and time it.
+
+    jobs: processes that run and compile; times are taken in this one. targets, repeats: in place of
+    those of the config. The run is finished, and `latest`, when all of it is.
+    """
+    check_cost(experiment, repeats)
+    assert experiment.cost is not None
+    settings = settings_of(experiment)
+    grid = over_the_grid(experiment, settings)
+    tables: list[dict[str, Any]] = []
+
+    def closing(finished: Finished, measured: list[dict[str, Any]]) -> None:
+        runs = runs_of(settings, finished, measured)
+        errors = errors_of(experiment, runs)
+        each = len(experiment.cells())
+        clocked = [
+            Clocked(
+                grid.cells()[place * each : (place + 1) * each],
+                [outcome.steps for outcome in one.outcomes],
+            )
+            for place, one in enumerate(runs)
+            if one.setting.role != "truth"
+        ]
+        spec = experiment.cost
+        assert spec is not None
+        rounds = repeats or spec.repeats
+        times = times_of(clocked, spec.begin, rounds, jobs, progress.pricing)
+        laws = [law_of(one.cells[0].resolved) for one in clocked]
+        rows = _rows(experiment, settings, errors, times, laws)
+        table = {
+            "experiment": experiment.name,
+            "config": str(experiment.path),
+            "question": experiment.question,
+            "error": spec.error.model_dump(mode="json"),
+            "axes": list(experiment.axes),
+            "cells_per_setting": each,
+            "clock": clock()[0],
+            "machine": machine(),
+            "repeats": rounds,
+            "from": spec.begin,
+            "duration": experiment.cells()[0].config.duration,
+            "truth": _truth(settings, errors),
+            "rows": rows,
+            "targets": answers(rows, targets or spec.targets),
+        }
+        tables.append(_finite(table))
+        text = json.dumps(tables[0], indent=1, allow_nan=False) + "\n"
+        (finished.run.path / COST).write_text(text, encoding="utf-8")
+        _write_csv(finished.run.path / COST_TABLE, tables[0]["rows"])
+
+    finished = run(grid, root, jobs, progress, prices=False, closing=closing)
+    return Costed(finished, tables[0])
+
+
+def _rows(
+    experiment: Experiment,
+    settings: Sequence[Setting],
+    errors: Sequence[SettingError],
+    times: Sequence[Times],
+    laws: Sequence[str],
+) -> list[dict[str, Any]]:
+    orders = orders_of(settings, [error.error for error in errors])
+    rows = []
+    # the truth stands last, and is not timed
+    for setting, error, order, time, law in zip(
+        settings, errors, orders, times, laws, strict=False
+    ):
+        spread = Spread.of(time.samples)._asdict() if time.samples else None
+        rows.append(
+            {
+                "role": setting.role,
+                "preset": setting.preset,
+                **{**setting.knobs, "timestep": str(setting.timestep)},
+                "error": error.error,
+                "worst_at": error.worst_at,
+                "order": order,
+                "law": law,
+                "worst_residual": error.residual,  # [m/s]
+                "unsolved_steps": error.unsolved,
+                "steps": error.steps,
+                "failed": error.failed or ("" if spread else "it ends before timing begins"),
+                "ns_per_second": spread,  # of physics per simulated second
+                "samples": time.samples,
+                "timed_seconds": time.seconds,
+                "compile_s": time.compile_s,
+                "fragment": fragment_of(experiment, setting),
+            }
+        )
+    front = front_of(rows)
+    return [{**row, "front": place in front} for place, row in enumerate(rows)]
+
+
+def _truth(settings: Sequence[Setting], errors: Sequence[SettingError]) -> dict[str, Any] | None:
+    """Return what was taken for the truth, where it is a run of its own."""
+    for setting, error in zip(settings, errors, strict=True):
+        if setting.role == "truth":
+            return {
+                **{**setting.knobs, "timestep": str(setting.timestep)},
+                "worst_residual": error.residual,
+                "unsolved_steps": error.unsolved,
+                "steps": error.steps,
+                "failed": error.failed,
+            }
+    return None
+
+
+def _finite(value: Any) -> Any:
+    """Return `value` with null for what JSON has no number for."""
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    if isinstance(value, list):
+        return [_finite(item) for item in value]
+    if isinstance(value, dict):
+        return {key: _finite(item) for key, item in value.items()}
+    return value
+
+
+COLUMNS: Final = (
+    *("role", "preset", "timestep", "solver", "sweeps", "tolerance", "warm_start"),
+    *("error", "worst_at", "order", "worst_residual", "unsolved_steps", "failed", "front"),
+    *("median", "lower_quartile", "upper_quartile", "low", "high", "compile_s", "law"),
+)
+
+
+def _write_csv(path: Path, rows: Sequence[dict[str, Any]]) -> None:
+    """Write a row a setting; times in ns per simulated second."""
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.DictWriter(file, COLUMNS, restval="", extrasaction="ignore")
+        writer.writeheader()
+        for row in rows:
+            writer.writerow({**row, **(row["ns_per_second"] or {})})

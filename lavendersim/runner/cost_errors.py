@@ -1,0 +1,209 @@
+"""The settings of a grid and what was measured in their cells enter; how wrong each is leaves.
+
+Three errors stand apart, none hides another:
+    timestep   |measure - truth| / scale, and the order p of error ~ timestep^p between neighbours
+    solver     the worst residual of any step [m/s]
+    model      which law is solved: the cone, where restitution acts, rigid or compliant
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from lavendersim.experiment import Experiment
+from lavendersim.experiment.cost_grid import Setting
+from lavendersim.experiment.measure_base import ClosedForm
+from lavendersim.measures import Values, judge
+from lavendersim.measures.closed_forms import evaluate_form
+
+from .cell import CellOutcome
+from .run_directory import RunCell
+
+NAN = float("nan")
+ROUND_OFF = 1e-13  # [-] some hundred operations of 2^-52 each
+CONES = {"disc": "Coulomb's cone", "pyramid": "a pyramid of friction"}
+IMPACTS = {"captured": "at the step's start", "at_surface": "at the surface"}
+INTEGRATORS = {"midpoint": "midpoint rule", "semi_implicit_euler": "semi-implicit Euler"}
+
+
+class SettingRun(NamedTuple):
+    """The cells of one setting, one for each cell of the experiment's own sweep."""
+
+    setting: Setting
+    cells: Sequence[RunCell]
+    outcomes: Sequence[CellOutcome]
+    measured: Sequence[Mapping[str, Any]]
+
+
+class SettingError(NamedTuple):
+    """How wrong a setting is."""
+
+    error: float  # relative, of the worst cell; NaN where there is none
+    worst_at: str  # the coordinates of that cell; "" without a sweep
+    residual: float  # [m/s] the worst of any step of any cell
+    unsolved: int  # steps above the tolerance asked for
+    steps: int  # of all cells
+    failed: str  # why the setting is no answer; "" where it is one
+
+
+def runs_of(settings: Sequence[Setting], finished: Any, measured: Any) -> list[SettingRun]:
+    """Return the cells of every setting: they follow each other in the sweep."""
+    cells = finished.run.cells
+    each = len(cells) // len(settings)
+    return [
+        SettingRun(setting, cells[begin:end], finished.outcomes[begin:end], measured[begin:end])
+        for setting, begin, end in (
+            (setting, place * each, (place + 1) * each) for place, setting in enumerate(settings)
+        )
+    ]
+
+
+def errors_of(experiment: Experiment, runs: Sequence[SettingRun]) -> list[SettingError]:
+    """Return how wrong each setting is."""
+    truth = next((run for run in runs if run.setting.role == "truth"), None)
+    return [_error_of(experiment, run, truth) for run in runs]
+
+
+def _error_of(experiment: Experiment, run: SettingRun, truth: SettingRun | None) -> SettingError:
+    labels = [cell.label for cell in experiment.cells()]
+    found = [_cell_error(experiment, run, place, truth) for place in range(len(run.cells))]
+    taken = [place for place, error in enumerate(found) if error is not None]
+    errors = [NAN if (error := found[place]) is None else error for place in taken]
+    # NaN first: a cell without an answer is worse than any other
+    worst = int(np.argmax([math.inf if math.isnan(error) else error for error in errors] or [0]))
+    return SettingError(
+        error=errors[worst] if errors else NAN,
+        worst_at=labels[taken[worst]] if errors else "",
+        residual=max(outcome.accuracy.worst_residual for outcome in run.outcomes),
+        unsolved=sum(outcome.accuracy.unsolved for outcome in run.outcomes),
+        steps=sum(outcome.steps for outcome in run.outcomes),
+        failed=_failure(experiment, run, errors),
+    )
+
+
+def _cell_error(
+    experiment: Experiment, run: SettingRun, place: int, truth: SettingRun | None
+) -> float | None:
+    """Return the relative error of one cell; None where the measure is not taken, NaN without."""
+    assert experiment.cost is not None
+    spec = experiment.cost.error
+    value = run.measured[place].get(spec.measure)
+    if value is None:
+        return None
+    true: Any = spec.truth
+    if truth is not None:
+        true = truth.measured[place].get(spec.measure)
+    elif isinstance(true, ClosedForm):
+        true = evaluate_form(true, run.cells[place].trace().resolved)
+    if isinstance(value, str) or isinstance(true, str):
+        return NAN  # the log could not answer
+    return relative_error(value, true, spec.scale)
+
+
+def relative_error(value: Any, truth: Any, scale: float | None) -> float:
+    """Return the largest |value - truth| / scale; NaN where rows differ in length.
+
+    scale: the largest |truth| where it is None, and 1 where that is 0.
+    """
+    row, true = np.atleast_1d(value).astype(float), np.atleast_1d(truth).astype(float)
+    if len(true) not in (1, len(row)):
+        return NAN
+    whole = scale if scale is not None else float(np.max(np.abs(true))) or 1.0
+    return float(np.max(np.abs(row - true)) / whole)
+
+
+def _failure(experiment: Experiment, run: SettingRun, errors: Sequence[float]) -> str:
+    """Say why a setting is no answer, whatever its error: the first reason there is."""
+    for cell, outcome in zip(experiment.cells(), run.outcomes, strict=True):
+        if outcome.status != "complete":
+            return f"{cell.label}: {outcome.status}" if cell.label else outcome.status
+    unsolved = sum(outcome.accuracy.unsolved for outcome in run.outcomes)
+    if unsolved:
+        steps = sum(outcome.steps for outcome in run.outcomes)
+        return f"{unsolved} of {steps} steps above {run.setting.tolerance:g} m/s"
+    if not errors or any(math.isnan(error) for error in errors):
+        return "its log has no answer"
+    unmet = _unmet(experiment, run)
+    return f"not met: {unmet[0]}" if unmet else ""
+
+
+@dataclass(frozen=True)
+class _OwnCell:
+    """A cell of the grid as the experiment's expectations know it: without the grid's axes."""
+
+    index: int
+    label: str
+    coordinates: Mapping[str, Any]
+    path: Path
+    inside: RunCell
+
+    def trace(self) -> Any:
+        return self.inside.trace()
+
+
+class _Taken(Values):
+    """Measures that were taken already, by the index of a cell."""
+
+    def __init__(self, experiment: Experiment, measured: Sequence[Mapping[str, Any]]) -> None:
+        super().__init__(experiment.measures)
+        self._taken = measured
+
+    def row(self, measure: str, cell: Any) -> np.ndarray:
+        """Return the numbers of one cell; NaN where the log had no answer."""
+        value = self._taken[cell.index].get(measure, NAN)
+        return np.atleast_1d(NAN if isinstance(value, str) else value).astype(np.float64)
+
+
+def _unmet(experiment: Experiment, run: SettingRun) -> list[str]:
+    """Return the claims a setting does not keep, but for those on the error itself."""
+    assert experiment.cost is not None
+    error = experiment.cost.error.measure
+    claims = [each for each in experiment.expectations if each.measure != error]
+    own = [
+        _OwnCell(place, cell.label, cell.coordinates, inside.path, inside)
+        for place, (cell, inside) in enumerate(zip(experiment.cells(), run.cells, strict=True))
+    ]
+    verdicts = judge(experiment.measures, claims, own, _Taken(experiment, run.measured))
+    for cell in run.cells:
+        cell.release()
+    return [verdict.node for verdict in verdicts if not verdict.passed]
+
+
+def orders_of(settings: Sequence[Setting], errors: Sequence[float]) -> list[float | None]:
+    """Return the observed order of each setting against the next coarser timestep of its curve."""
+    places: dict[tuple[Any, ...], list[int]] = {}
+    for place, setting in enumerate(settings):
+        if setting.role != "truth":
+            places.setdefault(setting.curve, []).append(place)
+    orders: list[float | None] = [None] * len(settings)
+    for curve in places.values():
+        curve.sort(key=lambda place: -settings[place].timestep)
+        for coarse, fine in pairwise(curve):
+            ratio = float(settings[coarse].timestep / settings[fine].timestep)
+            # false for NaN; what is left of an error at round-off has no order
+            if min(errors[coarse], errors[fine]) > ROUND_OFF:
+                orders[fine] = math.log(errors[coarse] / errors[fine]) / math.log(ratio)
+    return orders
+
+
+def law_of(resolved: Mapping[str, Any]) -> str:
+    """Name the law whose problem is solved: what no timestep and no sweep can mend."""
+    numerics, bodies = resolved["numerics"], resolved["scene"]["bodies"].values()
+    said = ["compliant contacts" if _any(bodies, "compliance") else "rigid contacts"]
+    if _any(bodies, "friction"):
+        said.append(CONES.get(numerics["friction_cone"], numerics["friction_cone"]))
+    if _any(bodies, "restitution"):
+        said.append(f"restitution {IMPACTS.get(numerics['impacts'], numerics['impacts'])}")
+    said.append(INTEGRATORS.get(numerics["integrator"], numerics["integrator"]))
+    return ", ".join(said)
+
+
+def _any(bodies: Iterable[Mapping[str, Any]], coefficient: str) -> bool:
+    return any(body["surface"][coefficient] for body in bodies)

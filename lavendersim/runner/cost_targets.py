@@ -1,0 +1,128 @@
+"""Timed settings enter; the front of the cheapest, and a sentence for every target, leave."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from fractions import Fraction
+from typing import Any
+
+from lavendersim.errors import UsageError
+
+Row = Mapping[str, Any]
+
+
+def percentage(text: str) -> float:
+    """Return the fraction that a text such as 0.1% stands for; raises UsageError."""
+    number = text.strip().removesuffix("%").strip()
+    try:
+        share = float(number) / 100.0
+    except ValueError:
+        share = math.nan
+    if not text.strip().endswith("%") or not 0.0 < share < math.inf:
+        raise UsageError(f'--target: expected a percentage above 0, such as 0.1%, found "{text}"')
+    return share
+
+
+def front_of(rows: Sequence[Row]) -> list[int]:
+    """Return the settings than which none is cheaper and as good, from the cheapest on."""
+    good = [place for place, row in enumerate(rows) if is_answer(row)]
+    good.sort(key=lambda place: (cost_of(rows[place]), rows[place]["error"]))
+    front: list[int] = []
+    for place in good:
+        if not front or rows[place]["error"] < rows[front[-1]]["error"]:
+            front.append(place)
+    return front
+
+
+def is_answer(row: Row) -> bool:
+    """Whether a setting did not fail and was timed."""
+    return not row["failed"] and row["ns_per_second"] is not None
+
+
+def cost_of(row: Row) -> float:
+    """Return the median cost of a simulated second [ns]."""
+    return float(row["ns_per_second"]["median"])
+
+
+def answers(rows: Sequence[Row], targets: Iterable[float]) -> list[dict[str, Any]]:
+    """Return the cheapest setting that reaches each target, in words and as a fragment."""
+    return [_answer(rows, target) for target in targets]
+
+
+def _answer(rows: Sequence[Row], target: float) -> dict[str, Any]:
+    front = front_of(rows)
+    reaching = [place for place in front if rows[place]["error"] <= target]
+    if reaching:
+        row = rows[reaching[0]]
+        sentence = f"{percent(target)} costs {time_of(row)}: {name_of(row)}"
+        if alike := _as_cheap(rows, reaching[0], target):
+            sentence += f" ({alike} other{'s are' if alike > 1 else ' is'} as cheap, by the spread)"
+        return {
+            "target": target,
+            "reached": True,
+            "row": reaching[0],
+            "sentence": sentence,
+            "fragment": row["fragment"],
+        }
+    sentence = f"no setting of the grid reaches {percent(target)}"
+    if front:
+        row = rows[front[-1]]
+        nearest = f"{percent(row['error'])} at {time_of(row)}: {name_of(row)}"
+        sentence += f": the nearest is {nearest}"
+    else:
+        sentence += ": all of them failed"
+    return {"target": target, "reached": False, "row": None, "sentence": sentence, "fragment": None}
+
+
+def _as_cheap(rows: Sequence[Row], best: int, target: float) -> int:
+    """Count the other settings that reach a target and whose times cannot be told from the best."""
+    most = rows[best]["ns_per_second"]["high"]
+    return sum(
+        row["ns_per_second"]["low"] <= most
+        for place, row in enumerate(rows)
+        if place != best and is_answer(row) and row["error"] <= target
+    )
+
+
+def percent(share: float) -> str:
+    """Return a fraction as people say it: `0.1 %`."""
+    return f"{100.0 * share:.3g} %"
+
+
+def time_of(row: Row) -> str:
+    """Return the cost of a setting in words."""
+    return f"{short_time(cost_of(row))} per simulated second"
+
+
+def short_time(nanoseconds: float) -> str:
+    """Return a time with two or three digits and the unit that suits it."""
+    for unit, size in (("s", 1e9), ("ms", 1e6), ("us", 1e3)):
+        if nanoseconds >= size:
+            return f"{nanoseconds / size:.3g} {unit}"
+    return f"{nanoseconds:.3g} ns"
+
+
+def name_of(row: Row) -> str:
+    """Return a setting in words: `projected_gauss_seidel, 240 Hz, 8 sweeps, warm`."""
+    if row["role"] == "chapter":
+        return f"the chapter's setting ({_knobs(row)})"
+    return _knobs(row) if row["preset"] == "default" else f"{_knobs(row)}, laws of {row['preset']}"
+
+
+def _knobs(row: Row) -> str:
+    start = "warm" if row["warm_start"] else "cold"
+    return f"{row['solver']}, {rate_of(row['timestep'])}, {effort_of(row)}, {start}"
+
+
+def rate_of(timestep: str) -> str:
+    """Return a timestep as its rate: `240 Hz`; as it is where that is no whole number."""
+    rate = 1 / Fraction(timestep)
+    return f"{rate.numerator} Hz" if rate.denominator == 1 else f"timestep {timestep} s"
+
+
+def effort_of(row: Row) -> str:
+    """Return how far a step is solved: its sweeps, or the tolerance that ends them."""
+    if row["tolerance"] is not None:
+        return f"to {row['tolerance']:.0e} m/s".replace("e-0", "e-")
+    return f"{row['sweeps']} sweep{'' if row['sweeps'] == 1 else 's'}"

@@ -1,0 +1,92 @@
+"""The cells of some settings enter; what a simulated second costs in each leaves, repeat by repeat.
+
+    compile all -> an engine a cell, at the step where timing begins -> rounds, forwards and back
+Every round visits every setting, so that a slow minute of the machine falls on all of them. An
+engine is that of the setting alone, without records: what is timed is physics. Compilation is done
+before the first sample and has a number of its own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from math import ceil
+from typing import NamedTuple
+
+from lavendersim.engine.spec import Spec
+from lavendersim.experiment.cell import Cell
+from lavendersim.scene.plan import plan_of_cell, union
+
+from .price_compile import compile_times
+from .price_samples import SAMPLE_NS, Diverged, Timed
+
+Report = Callable[[str, int, int], None]
+
+
+class Clocked(NamedTuple):
+    """One setting to be timed: its cells, and how many steps each of them got."""
+
+    cells: Sequence[Cell]
+    steps: Sequence[int]
+
+
+class Times(NamedTuple):
+    """What a setting costs."""
+
+    samples: list[float]  # [ns per simulated second], mean over its cells; one a repeat
+    compile_s: float  # of its engine, once
+    seconds: float  # [s] simulated time that is timed, of all its cells
+
+
+def times_of(
+    settings: Sequence[Clocked], begin: float, repeats: int, workers: int, report: Report
+) -> list[Times]:
+    """Return the times of every setting; begin: the simulated time [s] at which timing begins."""
+    specs = [union([plan_of_cell(cell, False) for cell in each.cells]).spec for each in settings]
+    seconds = compile_times(
+        settings[0].cells[0].resolved,
+        list(dict.fromkeys(specs)),
+        workers,
+        lambda done, total: report("compiling engines to time", done, total),
+    )
+    engines = []
+    for done, (each, spec) in enumerate(zip(settings, specs, strict=True)):
+        report("settings made ready", done, len(settings))
+        engines.append(_engines(each, spec, begin))
+    samples: list[list[float]] = [[] for _ in settings]
+    order = [place for place, timed in enumerate(engines) if timed]
+    for repeat in range(repeats):
+        report("rounds of all settings", repeat, repeats)
+        for place in order if repeat % 2 == 0 else reversed(order):
+            samples[place].append(_sample(engines[place]))
+    report("rounds of all settings", repeats, repeats)
+    return [
+        Times(taken, seconds[spec], sum(float(engine.steps * step) for engine, step in timed))
+        for taken, spec, timed in zip(samples, specs, engines, strict=True)
+    ]
+
+
+def _engines(each: Clocked, spec: Spec, begin: float) -> list[tuple[Timed, Fraction]]:
+    """Return an engine a cell, with its timestep [s]; none of cells that end before timing begins.
+
+    A cell that diverged is timed up to the step before it did.
+    """
+    engines = []
+    for cell, steps in zip(each.cells, each.steps, strict=True):
+        timestep = Fraction(cell.resolved["numerics"]["timestep"])
+        first = ceil(Fraction(repr(begin)) / timestep)
+        last = steps if steps >= cell.config.steps else steps - 1
+        if last <= first:
+            continue
+        shortest = SAMPLE_NS // len(each.cells)
+        try:
+            timed = Timed(cell.resolved, spec, first, last - first, shortest=shortest)
+        except Diverged:  # without its records an engine takes the same steps: never
+            continue
+        engines.append((timed, timestep))
+    return engines
+
+
+def _sample(engines: Sequence[tuple[Timed, Fraction]]) -> float:
+    """Return what a simulated second costs [ns], the mean over cells."""
+    return sum(timed.sample() / float(step) for timed, step in engines) / len(engines)

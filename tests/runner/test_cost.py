@@ -1,0 +1,297 @@
+"""What accuracy costs: errors are the logs' own, failures stay, and a fragment gives its error."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from lavendersim.experiment import load_experiment, load_experiment_text
+from lavendersim.experiment.cost_grid import fragment_of, over_the_grid, settings_of
+from lavendersim.figures.work_precision import compose, curves_of, draw_work_precision
+from lavendersim.runner import open_run, run
+from lavendersim.runner.cost import Costed, take_cost
+from lavendersim.runner.cost_errors import orders_of, relative_error
+from lavendersim.runner.cost_targets import answers, front_of
+
+BALL = """\
+question: What does a bounce cost?
+expected: Finer steps come closer to e^2 h.
+scene:
+  bodies:
+    floor: {shape: {kind: plane}}
+    ball:
+      shape: {kind: sphere, radius: 0.1}
+      mass: 1.0
+      surface: {restitution: 0.8}
+      release: {above: floor, clearance: 0.2}
+numerics: {preset: chapter, slop: 0.002}
+duration: 0.6
+sweep:
+  phase: {path: scene.bodies.ball.release.phase, values: [0, 1/3, 2/3]}
+measure:
+  apex: {kind: apex_error, body: ball, above: floor}
+  sinking: {kind: max_penetration, body: ball}
+expect:
+  - {name: the apex is exact, measure: apex, at_most: 0}
+  # a step at 2 m/s is 33 mm at 60 Hz and 8 mm at 240 Hz
+  - {name: it hardly sinks in, measure: sinking, at_most: 0.01}
+cost:
+  error: {measure: apex}
+  solvers: [projected_gauss_seidel]
+  timesteps: [1/60, 1/240]
+  sweeps: [4]
+  warm_start: [true]
+  targets: [0.5, 1e-9]
+  repeats: 7
+"""
+GRID = BALL.replace("[projected_gauss_seidel]", "all").replace("[4]", "[2, 8]")
+
+
+@pytest.fixture(scope="module")
+def costed(tmp_path_factory: pytest.TempPathFactory) -> Costed:
+    folder = tmp_path_factory.mktemp("cost")
+    config = folder / "ball.yaml"
+    config.write_text(BALL)
+    return take_cost(load_experiment(config), folder / "runs")
+
+
+def rows_of(costed: Costed) -> dict[tuple[str, str], dict[str, Any]]:
+    return {(row["role"], row["timestep"]): row for row in costed.table["rows"]}
+
+
+def test_the_grid_is_the_product_of_its_lists_with_what_the_config_states_first() -> None:
+    experiment = load_experiment_text(GRID, "ball.yaml")
+    settings = settings_of(experiment)
+    assert settings[0].role == "stated"
+    assert settings[0].timestep == Fraction(1, 240)
+    assert [one.role for one in settings].count("stated") == 1
+    assert settings[-1].role == "chapter"  # the config's slop is another
+    grid = [one for one in settings if one.role == "grid"]
+    assert len(set(grid)) == len(grid)
+    for one in grid:
+        # adaptive ends at its tolerance; every other solver takes the sweeps it is given
+        assert (one.tolerance is None) == (one.solver != "adaptive")
+        assert one.sweeps in (2, 8) or one.solver == "adaptive"
+        assert one.preset == "chapter"
+    assert {one.timestep for one in grid} == {Fraction(1, 60), Fraction(1, 240)}
+    swept = over_the_grid(experiment, settings)
+    assert len(swept.cells()) == 3 * len(settings)
+    for place, cell in enumerate(swept.cells()):
+        setting, numerics = settings[place // 3], cell.config.numerics
+        assert {name: getattr(numerics, name) for name in setting.knobs} == setting.knobs
+        assert numerics.slop == (0.001 if setting.role == "chapter" else 0.002)
+
+
+def test_a_fragment_gives_its_setting_and_states_no_more_than_it_must() -> None:
+    for numerics in ("{preset: chapter, slop: 0.002}", "chapter", "default", "{timestep: 1/60}"):
+        text = GRID.replace("{preset: chapter, slop: 0.002}", numerics)
+        experiment = load_experiment_text(text, "ball.yaml")
+        settings = settings_of(experiment)
+        swept = over_the_grid(experiment, settings)
+        for place, setting in enumerate(settings):
+            fragment = fragment_of(experiment, setting)
+            pasted = load_experiment_text(
+                text.replace(f"numerics: {numerics}\n", fragment), "ball.yaml"
+            )
+            # the whole config of a cell, to the last digit
+            assert [cell.digest for cell in pasted.cells()] == [
+                cell.digest for cell in swept.cells()[3 * place : 3 * place + 3]
+            ], fragment
+            if setting.role == "chapter":
+                assert fragment == "numerics: chapter\n"
+
+
+def test_errors_are_those_of_the_logs_the_worst_over_the_experiments_own_cells(
+    costed: Costed,
+) -> None:
+    results = costed.finished.run.results()["cells"]
+    for place, row in enumerate(costed.table["rows"]):
+        cells = results[3 * place : 3 * place + 3]
+        apexes = [cell["measures"]["apex"] for cell in cells]
+        assert row["error"] == max(apexes)
+        worst = cells[int(np.argmax(apexes))]["label"]
+        assert row["worst_at"] in worst
+        assert row["worst_residual"] == max(cell["worst_residual"] for cell in cells)
+        # captured restitution is off by a share of what is fallen in a step: percents, not zero
+        assert 1e-4 < row["error"] < 1.0
+
+
+def test_a_setting_that_breaks_a_claim_has_failed_and_stays(costed: Costed) -> None:
+    rows = rows_of(costed)
+    coarse, fine = rows["grid", "1/60"], rows["grid", "1/240"]
+    assert "it hardly sinks in" in coarse["failed"]
+    assert coarse["error"] is not None
+    assert coarse["ns_per_second"]["median"] > 0.0
+    assert not coarse["front"]
+    # the claim on the error itself is the axis of errors: all of them break it, none fails by it
+    assert fine["failed"] == ""
+
+
+def test_times_are_kept_sample_by_sample_and_their_spread_is_that_of_the_samples(
+    costed: Costed,
+) -> None:
+    for row in costed.table["rows"]:
+        samples, spread = row["samples"], row["ns_per_second"]
+        assert len(samples) == 7 == costed.table["repeats"]
+        assert spread["median"] == sorted(samples)[3]
+        # P(all of seven lie on one side) = 2/128 < 1/20; of six or more on one side, 16/128
+        assert (spread["low"], spread["high"]) == (min(samples), max(samples))
+        assert row["timed_seconds"] == pytest.approx(3 * 0.6)
+        assert row["compile_s"] > 0.0
+    assert costed.table["machine"]["processor"]
+
+
+def test_a_run_of_a_grid_is_finished_and_holds_its_tables(costed: Costed) -> None:
+    run_directory = costed.finished.run
+    assert run_directory.finished
+    assert open_run(None, run_directory.path.parent).path.name == run_directory.path.name
+    assert run_directory.cost() == json.loads((run_directory.path / "cost.json").read_text())
+    assert run_directory.cost() == costed.table
+    with (run_directory.path / "cost.csv").open(newline="") as file:
+        written = list(csv.DictReader(file))
+    assert [float(row["error"]) for row in written] == [
+        row["error"] for row in costed.table["rows"]
+    ]
+    assert [float(row["median"]) for row in written] == [
+        row["ns_per_second"]["median"] for row in costed.table["rows"]
+    ]
+
+
+def test_the_answer_to_a_target_pasted_into_the_config_gives_that_error_again(
+    costed: Costed, tmp_path: Path
+) -> None:
+    reached, missed = costed.table["targets"]
+    assert reached["reached"]
+    assert reached["sentence"].startswith("50 % costs ")
+    row = costed.table["rows"][reached["row"]]
+    config = tmp_path / "pasted.yaml"
+    config.write_text(BALL.replace("numerics: {preset: chapter, slop: 0.002}\n", row["fragment"]))
+    results = run(config, tmp_path / "runs").run.results()["cells"]
+    assert max(cell["measures"]["apex"] for cell in results) == row["error"]
+    assert (missed["reached"], missed["fragment"]) == (False, None)
+    assert missed["sentence"].startswith("no setting of the grid reaches 1e-07 %: the nearest is ")
+
+
+def test_the_figure_is_drawn_from_the_run_alone(costed: Costed, tmp_path: Path) -> None:
+    written = draw_work_precision(costed.finished.run, tmp_path)
+    assert [path.name for path in written] == ["ball_cost.png", "ball_cost.svg"]
+    assert all(path.stat().st_size > 10_000 for path in written)
+    again = draw_work_precision(open_run(costed.finished.run.path), tmp_path / "again")
+    assert [path.read_bytes() for path in written] == [path.read_bytes() for path in again]
+
+
+def test_against_itself_the_truth_is_an_eighth_of_the_finest_step(tmp_path: Path) -> None:
+    text = BALL.replace("{measure: apex}", "{measure: sinking, truth: finest, scale: 0.1}")
+    config = tmp_path / "ball.yaml"
+    config.write_text(text)
+    costed = take_cost(load_experiment(config), tmp_path / "runs")
+    truth = costed.table["truth"]
+    assert (truth["timestep"], truth["tolerance"]) == ("1/1920", 1e-12)
+    cells = costed.finished.run.results()["cells"]
+    true = [cell["measures"]["sinking"] for cell in cells[-3:]]
+    assert "timestep=1/1920" in cells[-1]["label"]
+    for place, row in enumerate(costed.table["rows"]):  # the truth itself is no row
+        values = [cell["measures"]["sinking"] for cell in cells[3 * place : 3 * place + 3]]
+        errors = [abs(value - one) / 0.1 for value, one in zip(values, true, strict=True)]
+        assert row["error"] == pytest.approx(max(errors), rel=1e-12)
+    assert len(costed.table["rows"]) == len(cells) // 3 - 1
+
+
+def test_a_setting_that_flies_apart_is_timed_up_to_there_and_stays(tmp_path: Path) -> None:
+    # At 1e155 m/s^2 the square of the speed is infinite after 1.34e154 m/s: 0.134 s.
+    text = BALL.replace("scene:\n", "scene:\n  gravity: [0, 0, 1e155]\n")
+    text = text.replace("phase: {path: scene.bodies.ball.release.phase, values: [0,", "m: {}")
+    text = text.replace("m: {} 1/3, 2/3]}", "m: {path: scene.bodies.ball.mass, values: [1, 2, 3]}")
+    config = tmp_path / "ball.yaml"
+    config.write_text(text)
+    costed = take_cost(load_experiment(config), tmp_path / "runs")
+    for row in costed.table["rows"]:
+        assert "diverged: body ball" in row["failed"]
+        assert row["error"] is None
+        assert row["ns_per_second"]["median"] > 0.0
+        step = float(Fraction(row["timestep"]))
+        # whole steps before the one that diverged, in each of three cells
+        assert row["timed_seconds"] <= 3 * 0.1341
+        assert row["timed_seconds"] >= 3 * (0.1341 - 2.0 * step)
+    assert "all of them failed" in costed.table["targets"][0]["sentence"]
+    assert "no error" in [text.get_text() for text in compose(costed.table).axes[0].texts]
+
+
+def test_an_error_is_relative_to_its_scale_and_the_worst_of_a_row() -> None:
+    assert relative_error(1.5, 1.0, None) == 0.5
+    assert relative_error(-1.0, -4.0, None) == 0.75  # of |truth|
+    assert relative_error(0.25, 0.0, None) == 0.25  # nothing to be relative to
+    assert relative_error(0.25, 0.0, 0.5) == 0.5
+    assert relative_error([1.0, 4.0], [1.0, 2.0], 2.0) == 1.0
+    assert relative_error([1.0, 4.0], 2.0, 1.0) == 2.0
+    assert math.isnan(relative_error([1.0, 4.0], [1.0, 2.0, 3.0], 1.0))
+    assert math.isnan(relative_error([1.0, math.nan], 1.0, 1.0))
+
+
+def test_the_order_is_the_slope_between_neighbouring_timesteps_of_a_curve() -> None:
+    settings = settings_of(load_experiment_text(GRID.replace("1/60", "1/960, 1/60"), "ball.yaml"))
+    # error = timestep^2 of the one number of sweeps, timestep^1 of the other
+    errors = [float(one.timestep) ** (2 if one.sweeps == 2 else 1) for one in settings]
+    orders = orders_of(settings, errors)
+    for one, order in zip(settings, orders, strict=True):
+        if one.role == "grid" and one.tolerance is None:
+            expected = None if one.timestep == Fraction(1, 60) else 2 if one.sweeps == 2 else 1
+            assert order == (expected if expected is None else pytest.approx(expected, rel=1e-12))
+
+
+def row(cost: float, error: float | None, failed: str = "", **more: Any) -> dict[str, Any]:
+    spread = {"median": cost, "low": cost - 1.0, "high": cost + 1.0}
+    return {
+        **{"role": "grid", "preset": "default", "solver": "adaptive", "timestep": "1/240"},
+        **{"sweeps": 8, "tolerance": None, "warm_start": True, "fragment": f"numerics: {cost}\n"},
+        **{"ns_per_second": spread, "error": error, "failed": failed},
+        **more,
+    }
+
+
+def test_nothing_on_the_front_failed_or_is_dearer_and_no_better_than_another() -> None:
+    rows = [
+        row(50.0, 0.2),
+        row(10.0, 0.1, failed="diverged"),
+        row(20.0, 0.5),
+        row(60.0, 0.2),
+        row(70.0, 0.01),
+        row(15.0, None, failed="its log has no answer"),
+        row(20.0, 0.6),
+    ]
+    assert front_of(rows) == [2, 0, 4]
+    two, one = answers(rows, [0.2, 0.001])
+    assert two["sentence"] == (
+        "20 % costs 50 ns per simulated second: adaptive, 240 Hz, 8 sweeps, warm"
+    )
+    assert two["fragment"] == "numerics: 50.0\n"
+    assert one["sentence"] == (
+        "no setting of the grid reaches 0.1 %: the nearest is 1 % at 70 ns per simulated second: "
+        "adaptive, 240 Hz, 8 sweeps, warm"
+    )
+
+
+def test_a_target_is_reached_by_what_is_just_as_good_but_by_no_failure() -> None:
+    rows = [row(2e6, 0.01, failed="not met: it stands"), row(3.1e6, 0.01, warm_start=False)]
+    (answer,) = answers(rows, [0.01])
+    assert answer["row"] == 1
+    assert answer["sentence"].startswith("1 % costs 3.1 ms per simulated second: ")
+    assert answer["sentence"].endswith("8 sweeps, cold")
+
+
+def test_curves_join_what_differs_in_the_knob_of_which_there_are_most() -> None:
+    rows = [
+        row(1.0, 0.1, timestep=step, sweeps=sweeps)
+        for step in ("1/60", "1/120")
+        for sweeps in (8, 2, 4)
+    ]
+    curves = list(curves_of(rows))
+    assert [[one["sweeps"] for one in curve] for curve in curves] == [[2, 4, 8], [2, 4, 8]]
+    assert [{one["timestep"] for one in curve} for curve in curves] == [{"1/60"}, {"1/120"}]
