@@ -101,9 +101,7 @@ def measure(
         "sweeps": sweeps,
         "clock": clock()[0],
         "environment": environment(),
-        "cases": [
-            timed.told(BARS.get(timed.solve.name)) for timed in (*pyramids[base], *piles)
-        ],
+        "cases": [timed.told(BARS.get(timed.solve.name)) for timed in (*pyramids[base], *piles)],
         "growth": [timed.told(None) for rows in growth for timed in pyramids[rows]],
     }
 
