@@ -58,6 +58,18 @@ def block_response(contact, va, vb, x, y, z):
     return ax + bx, ay + by, az + bz
 
 
+@inner
+def largest_response(contact):
+    """Return a bound on the largest eigenvalue of the contact's 3x3 of W, gamma included [1/kg].
+
+    That of [[k_n + gamma, c], [c, k_t]], c the length of the column between normal and tangents.
+    """
+    k_n, k_t = 1.0 / contact.inv_k, contact.k_t
+    half_gap = 0.5 * (k_n - k_t)
+    across = contact.k_n1 * contact.k_n1 + contact.k_n2 * contact.k_n2
+    return 0.5 * (k_n + k_t) + sqrt(half_gap * half_gap + across)
+
+
 def make_relative_velocity(spec: Spec):
     """Return `kernel(contact, va, vb) -> (x, y, z)`, of B's surface relative to A's [m/s]."""
     if not spec.has("friction"):

@@ -1,7 +1,12 @@
 """Contacts enter, the order in which sweeps visit them leaves.
 
+    coloured    what the processor does best, see below; the default
+    forward     as the contacts were found: by bodies, in the order of the file
+    backward    the other way round
+    symmetric   forward and backward in turn, sweep by sweep (`sweep`)
+    random      shuffled anew in every step, by the number of the step alone
 A sweep is sequential: a row needs the velocities its predecessor wrote. Rows of one manifold share
-both bodies, so visiting them in a run makes the processor wait for each. The order here colours
+both bodies, so visiting them in a run makes the processor wait for each. The coloured order colours
 the manifolds greedily, such that no two of one colour share a movable body, and takes one row of
 each manifold in turn:
 
@@ -21,6 +26,9 @@ MANIFOLD_ROWS = 4
 # Below this many rows the order costs more than it saves.
 FEWEST = 8
 BUCKETS = COLOURS * MANIFOLD_ROWS
+# Random numbers by Park and Miller 1988, with the multiplier of their 1993 revision: every product
+# fits into 63 bits.
+MODULUS, MULTIPLIER = 2147483647, 48271
 
 
 def make(spec: Spec):
@@ -28,6 +36,8 @@ def make(spec: Spec):
 
     taken: per body a bit set of colours in use; buckets: BUCKETS + 1 counts; keys, order: per row.
     """
+    if spec.order != "coloured":
+        return _make_listed(spec)
 
     def order_contacts(bodies, contacts, count, taken, buckets, keys, order):
         if count < FEWEST:
@@ -66,3 +76,38 @@ def make(spec: Spec):
             buckets[key] += 1
 
     return kernel(order_contacts, spec)
+
+
+def _make_listed(spec: Spec):
+    backward = spec.order == "backward"
+
+    def list_contacts(bodies, contacts, count, taken, buckets, keys, order):
+        for c in range(count):
+            order[c] = count - 1 - c if backward else c
+
+    return kernel(list_contacts, spec)
+
+
+def make_shuffle(spec: Spec):
+    """Return `kernel(order, count, step)`: by Fisher and Yates, the same for the same step."""
+
+    def shuffle(order, count, step):
+        state = (step % MODULUS) * MULTIPLIER % MODULUS + 1
+        for _ in range(2):  # or steps that follow each other would begin alike
+            state = state * MULTIPLIER % MODULUS
+        for c in range(count - 1, 0, -1):
+            state = state * MULTIPLIER % MODULUS
+            k = state * (c + 1) // MODULUS  # the high bits: 0 to c
+            order[c], order[k] = order[k], order[c]
+
+    return kernel(shuffle, spec)
+
+
+def make_turn_round(spec: Spec):
+    """Return `kernel(order, count)`: last first."""
+
+    def turn_round(order, count):
+        for c in range(count // 2):
+            order[c], order[count - 1 - c] = order[count - 1 - c], order[c]
+
+    return kernel(turn_round, spec)

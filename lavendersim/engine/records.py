@@ -146,6 +146,7 @@ PARAMETERS: Final[list[Field]] = [
     ("residuals_from", I8),  # first and last step whose sweeps are written
     ("residuals_to", I8),
     ("sweeps", I8),
+    ("over_relaxation", F8),  # factor on the changes that sweeps make, 0 to 2 [-]
     ("projection_sweeps", I8),
 ]
 

@@ -5,6 +5,8 @@ Natural map of the complementarity 0 <= lambda_n, 0 <= w with w = v_n + target +
 zero exactly at a solution, continuous, and in velocity units because lambda is scaled by the row's
 own inverse mass. Of friction, with the disc (or the pyramid's square) of radius mu lambda_n:
     r_t = | k_t lambda_t - proj(k_t lambda_t - v_t) |
+Of the convex relaxation (`row_update`), with w = (w_n, v_t), k >= |K| and P_K onto the cone itself:
+    r = | k lambda - P_K(k lambda - w) |
 Of what resists turning, the same maps in rad/s times a lever (`spin_block`). A contact's residual
 is the largest of them, the step's the largest over its contacts.
 """
@@ -13,8 +15,9 @@ from __future__ import annotations
 
 from math import sqrt
 
-from .block import make_relative_velocity
+from .block import largest_response, make_relative_velocity
 from .compile import kernel
+from .cone import project_cone
 from .contact import make_smooth_velocity
 from .effects.smooth_contact import by_roughness
 from .scaled_residual import make_scaled_residual
@@ -51,14 +54,11 @@ def _make_smooth_residual(spec: Spec):
     return kernel(row_residual, spec)
 
 
-def _make_rough_residual(spec: Spec):
-    pyramid = spec.friction_cone == "pyramid"
+def _make_slip_velocity(spec: Spec):
     moving_surface = spec.has("surface_velocity")
-    spins, spin_residual = resists_turning(spec), make_spin_residual(spec)
-    normal_residual = make_normal_residual(spec)
     relative_velocity = make_relative_velocity(spec)
 
-    def block_residual(contact, va, vb):
+    def slip_velocity(contact, va, vb):
         x, y, z = relative_velocity(contact, va, vb)
         v_n = contact.nx * x + contact.ny * y + contact.nz * z
         v_1 = contact.t1x * x + contact.t1y * y + contact.t1z * z
@@ -66,6 +66,21 @@ def _make_rough_residual(spec: Spec):
         if moving_surface:
             v_1 += contact.surface_1
             v_2 += contact.surface_2
+        return v_n, v_1, v_2
+
+    return kernel(slip_velocity, spec)
+
+
+def _make_rough_residual(spec: Spec):
+    if spec.friction_cone == "convex":
+        return _make_convex_residual(spec)
+    pyramid = spec.friction_cone == "pyramid"
+    spins, spin_residual = resists_turning(spec), make_spin_residual(spec)
+    normal_residual = make_normal_residual(spec)
+    slip_velocity = _make_slip_velocity(spec)
+
+    def block_residual(contact, va, vb):
+        v_n, v_1, v_2 = slip_velocity(contact, va, vb)
         held_1, held_2 = contact.k_t * contact.lambda_1, contact.k_t * contact.lambda_2
         limit = contact.k_t * contact.mu * contact.lambda_n
         new_1, new_2 = held_1 - v_1, held_2 - v_2
@@ -87,6 +102,30 @@ def _make_rough_residual(spec: Spec):
         return (r_t if r_t > r_n or r_t != r_t else r_n), v_n
 
     return kernel(block_residual, spec)
+
+
+def _make_convex_residual(spec: Spec):
+    compliant = spec.has("compliance")
+    spins, spin_residual = resists_turning(spec), make_spin_residual(spec)
+    slip_velocity = _make_slip_velocity(spec)
+
+    def convex_residual(contact, va, vb):
+        v_n, w_1, w_2 = slip_velocity(contact, va, vb)
+        w = v_n + contact.target
+        if compliant:
+            w += contact.gamma * contact.lambda_n
+        k = largest_response(contact)
+        n, one, two = k * contact.lambda_n, k * contact.lambda_1, k * contact.lambda_2
+        x, y, z = project_cone(n - w, one - w_1, two - w_2, contact.mu)
+        x, y, z = x - n, y - one, z - two
+        r = sqrt(x * x + y * y + z * z)
+        if spins:
+            r_s = spin_residual(contact, va, vb)
+            if r_s > r or r_s != r_s:
+                r = r_s
+        return r, v_n
+
+    return kernel(convex_residual, spec)
 
 
 def make_residual(spec: Spec):

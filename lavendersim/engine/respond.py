@@ -34,6 +34,8 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
     """
     append_contact = make_append_contact(spec, chain(made_by(spec, "make", "capture"), spec))
     order_contacts = ordering.make(spec)
+    shuffles = spec.order == "random"
+    shuffle: Any = ordering.make_shuffle(spec) if shuffles else None
     solve = SOLVERS[spec.solver].make(spec)
     strikes, strike = spec.made(impact_time, "make_strike")
     warms, match_contacts = spec.made(warm_start)
@@ -69,6 +71,8 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
                     va, vb = velocities[contact.a], velocities[contact.b]
                     apply_start(contact, va, vb)
         order_contacts(bodies, contacts, count, taken, buckets, keys, order)
+        if shuffles:
+            shuffle(order, count, counters.step)
         solve(contacts, order, count, bodies, velocities, space, params, counters, residual_rows)
         if watched:
             settle(

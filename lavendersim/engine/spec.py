@@ -17,8 +17,11 @@ class Spec(NamedTuple):
     shape_pairs: names from `engine.collide.SHAPE_PAIRS`, sorted.
     solver: name from `engine.solvers.SOLVERS`.
     tolerance: whether sweeping stops at a residual.
-    friction_cone: disc, or pyramid (|lambda_1|, |lambda_2| <= mu lambda_n, for study).
+    friction_cone: disc; for study pyramid (|lambda_1|, |lambda_2| <= mu lambda_n) or convex (no
+        De Saxce's shift: what slides is lifted).
     operator: what impulses act on: bodies, or the matrix of a problem by itself (`coupling`).
+    over_relaxation: whether sweeps scale their changes, by a factor other than 1.
+    order: in which sweeps visit contacts, see `ordering`.
     """
 
     effects: tuple[str, ...] = ()
@@ -27,6 +30,8 @@ class Spec(NamedTuple):
     tolerance: bool = False
     friction_cone: str = "disc"
     operator: str = "bodies"
+    over_relaxation: bool = False
+    order: str = "coloured"
 
     def has(self, effect: str) -> bool:
         """Whether `effect` is part of this engine."""

@@ -14,7 +14,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 from lavendersim.experiment.body_models import Drag, Release, Surface
-from lavendersim.experiment.models import FrictionCone, Impacts, Integrator, Switch
+from lavendersim.experiment.models import FrictionCone, Impacts, Integrator, Order, Switch
 from lavendersim.experiment.quantities import Quantity, Vector3
 from lavendersim.experiment.run_checks import whole_steps
 from lavendersim.experiment.shape_models import Box, Capsule, Cylinder, Plane, Sphere
@@ -115,6 +115,8 @@ class Numerics(_Resolved):
     timestep: Annotated[Fraction, Quantity("s", above=0, exact=True)]  # [s]
     solver: Solver
     sweeps: int
+    over_relaxation: float
+    order: Order
     tolerance: float | None  # [m/s]
     warm_start: bool
     stabilisation_gain: float

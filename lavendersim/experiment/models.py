@@ -54,7 +54,8 @@ Count = Annotated[int, Quantity(whole=True, minimum=1, maximum=1_000_000)]
 CountOrNone = Annotated[int, Quantity(whole=True, minimum=0, maximum=1_000_000)]
 Impacts = Literal["captured", "at_surface"]
 Integrator = Literal["semi_implicit_euler", "midpoint"]
-FrictionCone = Literal["disc", "pyramid"]
+FrictionCone = Literal["disc", "pyramid", "convex"]
+Order = Literal["coloured", "forward", "backward", "symmetric", "random"]
 
 
 class NumericsChange(ConfigModel):
@@ -68,6 +69,10 @@ class NumericsChange(ConfigModel):
     )
     solver: Solver | None = Field(default=None, description="the solver of the contact problem")
     sweeps: Count | None = Field(default=None, description="most velocity sweeps per step")
+    over_relaxation: Annotated[float, Quantity(above=0, below=2)] | None = Field(
+        default=None, description="factor on the changes that velocity sweeps make; 1: none"
+    )
+    order: Order | None = Field(default=None, description="in which sweeps visit contacts")
     tolerance: Annotated[float, Quantity("m/s", above=0)] | None = Field(
         default=None, description="[m/s] residual at which sweeping stops early; null: never"
     )
@@ -109,7 +114,9 @@ class NumericsChange(ConfigModel):
         default=None, description="how poses follow from velocities between contacts"
     )
     friction_cone: FrictionCone | None = Field(
-        default=None, description="disc: Coulomb's; pyramid: each tangent on its own, for study"
+        default=None,
+        description="disc: Coulomb's law; for study pyramid: each tangent on its own; convex: the "
+        "relaxation that lifts what slides",
     )
     sleeping: bool | None = Field(
         default=None, description="bodies that have come to rest are left out until touched"

@@ -19,6 +19,8 @@ CHAPTER: Final[dict[str, PresetValue]] = {
     "timestep": Fraction(1, 240),  # [s]
     "solver": "projected_gauss_seidel",
     "sweeps": 22,
+    "over_relaxation": 1.0,
+    "order": "coloured",
     "tolerance": None,  # [m/s]
     "warm_start": True,
     "stabilisation_gain": 0.02,

@@ -17,6 +17,8 @@ from lavendersim.experiment.scalars import exact
 from lavendersim.experiment.scene_checks import is_kinematic, is_static, kind_of
 
 _CHANGES = ("scale_mass", "teleport", "velocity", "angular_velocity", "contact_cache")
+# Solvers that no sweep visits contact by contact.
+_WITHOUT_SWEEPS = ("jacobi", "accelerated_projected_gradient")
 MOST_STEPS = 100_000_000  # 1e8 steps of a small scene take minutes and log tens of gigabytes
 
 
@@ -37,6 +39,7 @@ def check_run(root: Node, report: Report) -> None:
     window = root.get("record", "residuals")
     if window is not None and window.entries:
         _check_window(window, length, report)
+    _check_sweeps(root, report)
     _check_price(root, length, report)
     check_cost(root, length, report)
 
@@ -135,6 +138,20 @@ def _check_window(window: Node, length: float | None, report: Report) -> None:
     elif length is not None and begin.number > length:
         sentence = f"from: {begin.number:g} s is after the end of the run, duration {length:g} s"
         report.add(begin.mark, sentence)
+
+
+def _check_sweeps(root: Node, report: Report) -> None:
+    """What is said of sweeps must be said to a solver that makes some."""
+    solver = root.get("numerics", "solver")
+    if solver is None or solver.text not in _WITHOUT_SWEEPS:
+        return
+    for key, idle in (("over_relaxation", "1"), ("order", "coloured")):
+        stated = root.get("numerics", key)
+        if stated is None or stated.text == idle or stated.number == 1:
+            continue
+        mark = max(solver.mark, stated.mark)  # swept values stand below what they replace
+        sentence = f"{key}: {solver.text} treats all contacts at once; expected {idle}"
+        report.add(mark, sentence)
 
 
 def _check_price(root: Node, length: float | None, report: Report) -> None:

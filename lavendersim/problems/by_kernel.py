@@ -42,19 +42,23 @@ def solve_by_kernel(
     start: np.ndarray | None = None,
     history: bool = False,
     friction_cone: str = "disc",
+    over_relaxation: float = 1.0,
 ) -> Solution:
     """Solve a problem by a kernel of `engine.solvers.SOLVERS`.
 
     tolerance: `scaled` residual at which it stops [-], below 0: never; start: impulses (n, 3) to
-    begin at [N s]; history: keep the residual at the start and after every sweep.
+    begin at [N s]; history: keep the residual at the start and after every sweep; over_relaxation:
+    factor on the changes that sweeps make, 0 to 2 [-].
     The kernel's own residual carries the round-off of all its sweeps; the last word is taken from
     the impulses alone.
     """
     spec = spec_of(solver, history, friction_cone)
+    spec = spec._replace(over_relaxation=over_relaxation != 1.0)
     first = np.zeros((problem.contacts, 3)) if start is None else start
     contacts = contacts_of(problem, spec, first)
     params, counters = np.zeros(1, dtype(PARAMETERS)), np.zeros(1, dtype(COUNTERS))
     params["tolerance"], params["sweeps"] = tolerance, sweeps
+    params["over_relaxation"] = over_relaxation
     params["residuals_from"] = params["residuals_to"] = 1
     rows = np.zeros(sweeps + 1 if history else 0, dtype(RESIDUAL_ROW_FIELDS))
     order = np.arange(problem.contacts)

@@ -23,6 +23,7 @@ CHOICES: Final = (
     "impacts",
     "integrator",
     "friction_cone",
+    "order",
     "sleeping",
     "effects",
 )
@@ -102,6 +103,8 @@ def plan_of(resolved: dict[str, Any], record: bool = True, cell: CellName = ALON
         solver=numerics["solver"],
         tolerance=numerics["tolerance"] is not None,
         friction_cone=numerics["friction_cone"],
+        over_relaxation=numerics["over_relaxation"] != 1.0,
+        order=numerics["order"],
     )
     called = {name: decision.on for name, decision in (derived | touching).items()}
     return Plan(
@@ -142,6 +145,7 @@ def union(plans: Iterable[Plan]) -> Plan:
         effects=_on(effects),
         shape_pairs=_on(shape_pairs),
         tolerance=any(plan.spec.tolerance for plan in plans),
+        over_relaxation=any(plan.spec.over_relaxation for plan in plans),
     )
     callers = {
         name: tuple(cell for plan in plans for cell in plan.callers[name]) for name in first.callers

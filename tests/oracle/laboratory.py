@@ -36,6 +36,8 @@ NUMERICS: dict[str, Any] = {
     "timestep": "1/240",
     "solver": "projected_gauss_seidel",
     "sweeps": 22,
+    "over_relaxation": 1.0,
+    "order": "coloured",
     "tolerance": None,
     "warm_start": True,
     "stabilisation_gain": 0.0,

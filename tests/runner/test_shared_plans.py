@@ -20,7 +20,8 @@ VALUES = {
     "speculative": "[false, true]",
     "impacts": "[captured, at_surface]",
     "integrator": "[semi_implicit_euler, midpoint]",
-    "friction_cone": "[disc, pyramid]",
+    "friction_cone": "[disc, convex]",
+    "order": "[coloured, random]",
     "sleeping": "[false, true]",
     "effects": "[on, off]",
 }

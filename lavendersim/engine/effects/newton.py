@@ -30,6 +30,8 @@ def wanted(facts: Facts) -> Decision:
         return Decision(False, f"the solver is {facts.solver}")
     if facts.friction_cone == "pyramid":
         return Decision(False, "a pyramid of friction is no cone of revolution: sweeps solve it")
+    if facts.friction_cone == "convex":
+        return Decision(False, "the convex relaxation has no De Saxce's shift: sweeps solve it")
     if not facts.pairs:
         return Decision(False, "nothing can touch")
     shapes = {body.name: body.shape for body in facts.bodies}

@@ -68,7 +68,7 @@ def make(spec: Spec):
         measured = False
         earlier = 0.0
         while sweeps < params.sweeps:
-            greatest = sweep(contacts, order, count, velocities)
+            greatest = sweep(contacts, order, count, velocities, params)
             sweeps += 1
             measured = False
             if record_residuals:

@@ -12,6 +12,7 @@ from math import sqrt
 from typing import Any
 
 from ..compile import kernel
+from ..cone import project_cone
 from ..coupling import make_add_impulse, make_contact_velocity
 from ..residual import make_residual
 from ..spec import Spec
@@ -34,22 +35,25 @@ def make_answer(spec: Spec) -> Any:
     """Return `kernel(contact, velocities) -> change` [m/s]: the contact's own new impulse."""
     friction, compliant = spec.has("friction"), spec.has("compliance")
     pyramid = spec.friction_cone == "pyramid"
+    convex = friction and spec.friction_cone == "convex"
     contact_velocity = make_contact_velocity(spec)
 
     def answer(contact, velocities):
         w, w1, w2 = contact_velocity(contact, velocities)
         if compliant:
             w += contact.gamma * contact.lambda_n
-        # In this order a NaN stays.
-        new_n = max(contact.lambda_n - w / contact.bound, 0.0)
-        contact.change_n = new_n - contact.lambda_n
-        contact.lambda_n = new_n
-        change = abs(contact.change_n)
+        change = 0.0
+        new_n = contact.lambda_n - w / contact.bound
+        if not convex:
+            # In this order a NaN stays.
+            new_n = max(new_n, 0.0)
         if friction:
             limit = contact.mu * new_n
             new_1 = contact.lambda_1 - w1 / contact.bound
             new_2 = contact.lambda_2 - w2 / contact.bound
-            if pyramid:
+            if convex:
+                new_n, new_1, new_2 = project_cone(new_n, new_1, new_2, contact.mu)
+            elif pyramid:
                 new_1 = min(max(new_1, -limit), limit)
                 new_2 = min(max(new_2, -limit), limit)
             else:
@@ -60,8 +64,11 @@ def make_answer(spec: Spec) -> Any:
             contact.change_1 = new_1 - contact.lambda_1
             contact.change_2 = new_2 - contact.lambda_2
             contact.lambda_1, contact.lambda_2 = new_1, new_2
-            change = max(change, max(abs(contact.change_1), abs(contact.change_2)))
-        return change * contact.bound
+            change = max(abs(contact.change_1), abs(contact.change_2))
+        contact.change_n = new_n - contact.lambda_n
+        contact.lambda_n = new_n
+        # In this order a NaN stays.
+        return max(abs(contact.change_n), change) * contact.bound
 
     return kernel(answer, spec)
 

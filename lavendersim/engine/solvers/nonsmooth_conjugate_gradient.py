@@ -85,7 +85,7 @@ def make(spec: Spec):
                     contact.start_n = contact.lambda_n
                     if friction:
                         contact.start_1, contact.start_2 = contact.lambda_1, contact.lambda_2
-            greatest = sweep(contacts, order, count, velocities)
+            greatest = sweep(contacts, order, count, velocities, params)
             sweeps += 1
             measured = False
             if record_residuals:

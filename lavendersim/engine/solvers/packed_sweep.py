@@ -76,7 +76,8 @@ from .sweep import make_account, make_note
 def can_pack(spec: Spec) -> bool:
     """Whether contacts of this engine are blocks of a normal and a disc, and nothing else."""
     rubs = spec.has("friction") and not resists_turning(spec)
-    return rubs and spec.friction_cone == "disc" and spec.operator == "bodies"
+    plain = not spec.over_relaxation and spec.order != "symmetric"
+    return rubs and plain and spec.friction_cone == "disc" and spec.operator == "bodies"
 
 
 def _make_visit(spec: Spec, eight: bool) -> Any:

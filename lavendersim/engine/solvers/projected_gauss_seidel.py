@@ -40,7 +40,7 @@ def make(spec: Spec):
             if stop_early:
                 if largest <= params.tolerance:
                     break
-            greatest = sweep(contacts, order, count, velocities)
+            greatest = sweep(contacts, order, count, velocities, params)
             sweeps += 1
             if not record_residuals:
                 # Nothing changed, so nothing would change in the sweeps that are left.

@@ -8,13 +8,24 @@ Friction, with v_t after the normal's change:
 Both tangential forms have the same fixed point, Coulomb's law with maximal dissipation; k_t, the
 largest eigenvalue of K_tt, makes the second one a descent step. What resists turning follows with
 the new lambda_n (`spin_block`).
+
+The convex relaxation (`friction_cone: convex`) is the law w in K*, lambda in K, w . lambda = 0
+without De Saxce's shift: a quadratic program over the cones K = {|lambda_t| <= mu lambda_n}.
+    lambda <- lambda - K^-1 w                               where that is in the cone: stick
+              P_K(lambda - w / k),  k >= |K|                otherwise
+Under it a contact that slides opens with w_n = mu |w_t|.
+
+Over-relaxed, v and w above are multiplied by a factor between 0 and 2; impulses are projected
+afterwards. A factor of 1 gives the bits of none.
 """
 
 from __future__ import annotations
 
 from math import sqrt
 
+from ..block import largest_response
 from ..compile import kernel
+from ..cone import project_cone
 from ..contact import make_smooth_impulse, make_smooth_velocity
 from ..coupling import make_add_rough, make_rough_velocity
 from ..effects.smooth_contact import by_roughness
@@ -23,26 +34,29 @@ from ..spin_block import make_solve_spin, resists_turning
 
 
 def make_solve_contact_velocity(spec: Spec):
-    """Return `kernel(contact, contacts, velocities) -> change`: one projected, compliant update.
+    """Return `kernel(contact, contacts, velocities, params) -> change`: one projected update.
 
     change: the largest change of the contact's velocity that the update makes [m/s].
     """
+    make_rough = _make_convex if spec.friction_cone == "convex" else _make_block
     if spec.operator == "matrix":
-        return _make_block(spec)
-    return by_roughness(spec, _make_normal, _make_block)
+        return make_rough(spec)
+    return by_roughness(spec, _make_normal, make_rough)
 
 
 def _make_normal(spec: Spec):
-    compliant = spec.has("compliance")
+    compliant, relaxed = spec.has("compliance"), spec.over_relaxation
     normal_velocity = make_smooth_velocity(spec)
     apply_impulse = make_smooth_impulse(spec)
 
-    def solve_contact_velocity(contact, contacts, velocities):
+    def solve_contact_velocity(contact, contacts, velocities, params):
         va, vb = velocities[contact.a], velocities[contact.b]
         w = normal_velocity(contact, va, vb) + contact.target
         lambda_old = contact.lambda_n
         if compliant:
             w += contact.gamma * lambda_old
+        if relaxed:
+            w *= params.over_relaxation
         # In this order a NaN stays and is reported; max(0.0, NaN) would be 0.
         lambda_new = max(lambda_old - w * contact.inv_k, 0.0)
         contact.lambda_n = lambda_new
@@ -54,20 +68,25 @@ def _make_normal(spec: Spec):
 
 
 def _make_block(spec: Spec):
-    compliant = spec.has("compliance")
+    compliant, relaxed = spec.has("compliance"), spec.over_relaxation
     pyramid = spec.friction_cone == "pyramid"
     spins, solve_spin = resists_turning(spec), make_solve_spin(spec)
     contact_velocity, add_impulse = make_rough_velocity(spec), make_add_rough(spec)
 
-    def solve_contact_block(contact, contacts, velocities):
+    def solve_contact_block(contact, contacts, velocities, params):
         w, w1, w2 = contact_velocity(contact, velocities)
         old_n, old_1, old_2 = contact.lambda_n, contact.lambda_1, contact.lambda_2
         if compliant:
             w += contact.gamma * old_n
+        if relaxed:
+            w *= params.over_relaxation
         new_n = max(old_n - w * contact.inv_k, 0.0)
         change_n = new_n - old_n
         w1 += contact.k_n1 * change_n
         w2 += contact.k_n2 * change_n
+        if relaxed:
+            w1 *= params.over_relaxation
+            w2 *= params.over_relaxation
         limit = contact.mu * new_n
         new_1 = old_1 - contact.i_11 * w1 - contact.i_12 * w2
         new_2 = old_2 - contact.i_12 * w1 - contact.i_22 * w2
@@ -95,3 +114,48 @@ def _make_block(spec: Spec):
         return change
 
     return kernel(solve_contact_block, spec)
+
+
+def _make_convex(spec: Spec):
+    compliant, relaxed = spec.has("compliance"), spec.over_relaxation
+    spins, solve_spin = resists_turning(spec), make_solve_spin(spec)
+    contact_velocity, add_impulse = make_rough_velocity(spec), make_add_rough(spec)
+
+    def solve_contact_convex(contact, contacts, velocities, params):
+        w, w1, w2 = contact_velocity(contact, velocities)
+        old_n, old_1, old_2 = contact.lambda_n, contact.lambda_1, contact.lambda_2
+        mu, k_n1, k_n2 = contact.mu, contact.k_n1, contact.k_n2
+        if compliant:
+            w += contact.gamma * old_n
+        if relaxed:
+            w *= params.over_relaxation
+            w1 *= params.over_relaxation
+            w2 *= params.over_relaxation
+        # The block's own solution, by elimination of the tangents.
+        held_1 = contact.i_11 * k_n1 + contact.i_12 * k_n2
+        held_2 = contact.i_12 * k_n1 + contact.i_22 * k_n2
+        left = 1.0 / contact.inv_k - held_1 * k_n1 - held_2 * k_n2
+        change_n = (held_1 * w1 + held_2 * w2 - w) / left
+        new_n = old_n + change_n
+        new_1 = old_1 - contact.i_11 * w1 - contact.i_12 * w2 - held_1 * change_n
+        new_2 = old_2 - contact.i_12 * w1 - contact.i_22 * w2 - held_2 * change_n
+        if not (new_n >= 0.0 and new_1 * new_1 + new_2 * new_2 <= mu * mu * new_n * new_n):
+            step = 1.0 / largest_response(contact)
+            new_n, new_1, new_2 = project_cone(
+                old_n - step * w, old_1 - step * w1, old_2 - step * w2, mu
+            )
+        contact.lambda_n, contact.lambda_1, contact.lambda_2 = new_n, new_1, new_2
+        change_n, change_1, change_2 = new_n - old_n, new_1 - old_1, new_2 - old_2
+        add_impulse(contact, contacts, velocities, change_n, change_1, change_2)
+        # In this order a NaN stays.
+        change = max(
+            max(abs(change_n) * contact.k_n, abs(change_1) * contact.k_t),
+            abs(change_2) * contact.k_t,
+        )
+        if spins:
+            turned = solve_spin(contact, velocities[contact.a], velocities[contact.b])
+            if turned > change or turned != turned:
+                change = turned
+        return change
+
+    return kernel(solve_contact_convex, spec)

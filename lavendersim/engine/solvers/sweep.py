@@ -2,23 +2,33 @@
 
 from __future__ import annotations
 
+from typing import Any
+
+from .. import ordering
 from ..compile import kernel
 from ..spec import Spec
 from .row_update import make_solve_contact_velocity
 
 
 def make_sweep(spec: Spec):
-    """Return `kernel(contacts, order, count, velocities) -> greatest change` [m/s]."""
-    solve_contact_velocity = make_solve_contact_velocity(spec)
+    """Return `kernel(contacts, order, count, velocities, params) -> greatest change` [m/s].
 
-    def sweep(contacts, order, count, velocities):
+    Symmetric sweeps go there and back: each leaves the order of the next one turned round.
+    """
+    solve_contact_velocity = make_solve_contact_velocity(spec)
+    symmetric = spec.order == "symmetric"
+    turn_round: Any = ordering.make_turn_round(spec) if symmetric else None
+
+    def sweep(contacts, order, count, velocities, params):
         greatest = 0.0
         for c in range(count):
             contact = contacts[order[c]]
-            change = solve_contact_velocity(contact, contacts, velocities)
+            change = solve_contact_velocity(contact, contacts, velocities, params)
             # A NaN is greater than anything.
             if change > greatest or change != change:
                 greatest = change
+        if symmetric:
+            turn_round(order, count)
         return greatest
 
     return kernel(sweep, spec)

@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from idle_scenes import CUBE, boxes, cell, mixed
-from laboratory import EVERYTHING, Bench
+from idle_scenes import CUBE, balls, boxes, cell
+from laboratory import EVERYTHING, Bench, box, plane, sphere
 
 from lavendersim.engine.contact_problem import ContactProblem
 from lavendersim.engine.spec import Spec
@@ -30,6 +30,19 @@ def soft_conveyor() -> dict[str, Any]:
     return cell(bodies)
 
 
+def mixed_balls() -> dict[str, Any]:
+    """Rough balls and a smooth one; contacts are made ahead of touching."""
+    bodies = balls(friction=0.4)
+    bodies["high"]["surface"] = dict.fromkeys(bodies["high"]["surface"], 0.0)
+    return cell(bodies, speculative=True, sweeps=200, tolerance=1e-9)
+
+
+def smooth_box() -> dict[str, Any]:
+    """A ball rests off centre on a box, which it tilts."""
+    top = sphere(0.1, (0.05, 0.02, 0.3), mass=3.0)
+    return cell({"floor": plane(), "box": box((0.3, 0.3, 0.2), (0.0, 0.0, 0.1)), "ball": top})
+
+
 def asking(made: dict[str, Any]) -> dict[str, Any]:
     made["record"]["problems"] = "every 1"
     return made
@@ -38,11 +51,8 @@ def asking(made: dict[str, Any]) -> dict[str, Any]:
 # At so many steps both have contacts that stick, slide and land.
 SCENES = {
     "a soft conveyor": (lambda: asking(soft_conveyor()), EVERYTHING),
-    "smooth and rough contacts, some made ahead": (
-        lambda: asking(cell(mixed(friction=0.4, restitution=0.3), preset="default")),
-        None,
-    ),
-    "smooth boxes": (lambda: asking(cell(boxes())), None),
+    "smooth and rough balls, some not yet there": (lambda: asking(mixed_balls()), None),
+    "a smooth box": (lambda: asking(smooth_box()), None),
 }
 
 
@@ -132,7 +142,7 @@ def test_columns_are_what_unit_impulses_do(solved: Solved) -> None:
     rubs = solved.problem.mu > 0.0
     directions = [(c, j) for c in range(len(rubs)) for j in range(3 if rubs[c] else 1)]
     rows = [3 * c + j for c, j in directions]
-    assert len(directions) > 8
+    assert len(directions) > 4
     for c, j in directions:
         seen = solved.answer(c, frames[c, j]).ravel()
         np.testing.assert_allclose(w[rows, 3 * c + j], seen[rows], atol=ROUND_OFF)
@@ -140,7 +150,7 @@ def test_columns_are_what_unit_impulses_do(solved: Solved) -> None:
 
 def test_the_step_ends_with_the_velocities_of_its_impulses(solved: Solved) -> None:
     u, logged = solved.after()[solved.shown], solved.rows.contact
-    assert len(logged) > 4
+    assert len(logged) > 2
     np.testing.assert_allclose(u[:, 0], logged["normal_velocity"], atol=ROUND_OFF)
     rubs = solved.problem.mu[solved.shown] > 0.0
     if not rubs.any():

@@ -16,6 +16,8 @@ def test_chapter_is_frozen() -> None:
         "timestep": Fraction(1, 240),
         "solver": "projected_gauss_seidel",
         "sweeps": 22,
+        "over_relaxation": 1.0,
+        "order": "coloured",
         "tolerance": None,
         "warm_start": True,
         "stabilisation_gain": 0.02,

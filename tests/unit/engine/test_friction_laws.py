@@ -1,0 +1,122 @@
+"""What the laws that are there for study do to what slides and what sticks, by closed forms.
+
+Convex relaxation: friction is had at the price of lifting, w_n = mu |w_t|. A block that slides with
+v and touches with its whole face does not turn: all its corners have one velocity, and
+    m (v_x - v) = -mu P,    m (v_z + g dt) = P,    v_z = mu v_x
+    v_x = (v - mu g dt) / (1 + mu^2)
+Coulomb's law leaves v_x = v - mu g dt and v_z = 0.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+from laboratory import Bench, box, plane, resolved, sphere
+
+from lavendersim.engine.contact_problem import ContactProblem
+from lavendersim.problems.by_kernel import solve_by_kernel
+from lavendersim.problems.residual import contact_velocities
+from lavendersim.scene.plan import plan_of
+
+G, DT, MU = 9.81, 1.0 / 240.0, 0.5
+SPEED = 1.0
+TOLERANCE = 1e-11
+LIFTED = (SPEED - MU * G * DT) / (1.0 + MU * MU)
+# A residual of so much in each of four corners, over the least eigenvalue of their W, some 0.1 of
+# its diagonal where they are redundant.
+ALLOWED = 100 * TOLERANCE
+
+
+def block(cone: str, velocity: Any = (0.0, 0.0, 0.0), slope: float = 0.0) -> Bench:
+    """A flat block on a plane, to be solved to the end."""
+    angle = np.arctan(slope)
+    bodies = {
+        "floor": plane(friction=MU),
+        "block": box((0.6, 0.6, 0.1), (0.0, 0.0, 0.05), velocity=velocity, friction=MU),
+    }
+    gravity = (G * np.sin(angle), 0.0, -G * np.cos(angle))
+    numerics = {"sweeps": 20_000, "tolerance": TOLERANCE, "friction_cone": cone}
+    cell = resolved(bodies, gravity, **numerics)
+    cell["record"] = {"residuals": "none", "problems": "every 1"}
+    return Bench(cell, plan_of(cell).spec)
+
+
+@cache
+def slid(cone: str) -> tuple[Bench, Any]:
+    bench = block(cone, (SPEED, 0.0, 0.0))
+    return bench, bench.run(1)
+
+
+def test_the_convex_relaxation_lifts_what_slides() -> None:
+    bench, rows = slid("convex")
+    assert rows.step["unsolved"][-1] == 0
+    np.testing.assert_allclose(bench.velocity[1], [LIFTED, 0.0, MU * LIFTED], atol=ALLOWED)
+    np.testing.assert_allclose(bench.spin[1], 0.0, atol=ALLOWED / 0.05)
+
+
+def test_coulombs_law_does_not() -> None:
+    bench, rows = slid("disc")
+    assert rows.step["unsolved"][-1] == 0
+    np.testing.assert_allclose(bench.velocity[1], [SPEED - MU * G * DT, 0.0, 0.0], atol=ALLOWED)
+
+
+def test_the_relaxations_error_is_the_models_and_not_the_solvers() -> None:
+    """Solved to its end, it pushes contacts that open: Signorini's law, by all that they open."""
+    _, rows = slid("convex")
+    step = rows.step[-1]
+    assert step["residual"] <= TOLERANCE
+    assert step["signorini"] == pytest.approx(MU * LIFTED, abs=ALLOWED)
+    # friction is as large as it may be, and against the motion
+    assert step["cone"] <= 1e-15
+    assert step["dissipation"] <= ALLOWED
+    _, rows = slid("disc")
+    for part in ("signorini", "dissipation"):
+        assert rows.step[-1][part] <= ALLOWED
+
+
+def test_what_sticks_sticks_under_both() -> None:
+    for cone in ("convex", "disc"):
+        bench = block(cone, slope=0.4)
+        rows = bench.run(3)
+        assert (rows.step["unsolved"][1:] == 0).all()
+        np.testing.assert_allclose(bench.velocity[1], 0.0, atol=3 * ALLOWED)
+        pull = np.hypot(rows.contact["impulse_t1"], rows.contact["impulse_t2"])
+        last = rows.contact["step"] == 3
+        slope = 0.4 / np.hypot(1.0, 0.4)
+        assert rows.contact["impulse_n"][last].sum() == pytest.approx(G * DT * slope / 0.4)
+        assert pull[last].sum() >= G * DT * slope * (1.0 - 1e-9)
+
+
+@pytest.mark.parametrize("solver", ["projected_gauss_seidel", "jacobi"])
+def test_a_solver_by_itself_finds_the_same_velocities(solver: str) -> None:
+    bench, _ = slid("convex")
+    found = bench.engine.problem()
+    assert found is not None
+    problem: ContactProblem = found.problem
+    made = solve_by_kernel(problem, solver, 1e-12, 200_000, friction_cone="convex")
+    u = contact_velocities(problem, made.impulses)
+    np.testing.assert_allclose(u[:, 0], MU * LIFTED, atol=ALLOWED)
+    np.testing.assert_allclose(np.linalg.norm(u[:, 1:], axis=1), LIFTED, atol=ALLOWED)
+
+
+def test_the_pyramid_leaves_the_disc_where_a_ball_slides_across_its_edges() -> None:
+    """Both tangents of a level floor, x and y, take mu lambda_n: (sqrt 2 - 1) mu lambda_n too much.
+
+    The slip loses k_t mu lambda_n along each, k_t = 7/2 1/kg of a solid ball of 1 kg.
+    """
+    bodies = {
+        "floor": plane(friction=MU),
+        "ball": sphere(0.1, (0.0, 0.0, 0.1), velocity=(1.0, 1.0, 0.0), friction=MU),
+    }
+    cell = resolved(bodies, (0.0, 0.0, -G), friction_cone="pyramid")
+    cell["record"]["residuals"] = "none"
+    step = Bench(cell, plan_of(cell).spec).run(1).step[-1]
+    carried = G * DT
+    excess = (np.sqrt(2.0) - 1.0) * MU * carried
+    slip = np.sqrt(2.0) * (1.0 - 3.5 * MU * carried)
+    assert step["residual"] <= 1e-15
+    assert step["cone"] == pytest.approx(excess, rel=1e-12)
+    assert step["dissipation"] == pytest.approx(excess * slip, rel=1e-12)
