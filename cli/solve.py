@@ -10,7 +10,8 @@ import typer
 
 from lavender_cli import printing
 
-HEADER = ("solver", "status", "scaled", "local", "sweeps", "time", "")
+HEADER = ("solver", "status", "scaled", "local", "error", "sweeps", "time", "")
+ERROR = HEADER.index("error")
 MICRO, MILLI = 1e-6, 1e-3
 COMPILING = 0.05  # [s] a first call that took so much longer than the others has compiled
 Files = Annotated[
@@ -38,6 +39,12 @@ def solve(
     tolerance: Tolerance = 1e-8,
     sweeps: Sweeps = None,
     plot: Plot = None,
+    reference: Annotated[
+        bool,
+        typer.Option(
+            "--reference", help="Find what is true by two methods; tell errors of velocities."
+        ),
+    ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print the results as JSON.")] = False,
 ) -> None:
     """Solve contact problems of files. Exits 1 when one is solved by none of the solvers."""
@@ -51,7 +58,9 @@ def solve(
     # Every file is read before the first is solved, so a bad one leaves nothing half done.
     problems = read_all(files)
     comparisons = []
-    for comparison in compare(problems, solvers, tolerance, sweeps, curves=plot is not None):
+    for comparison in compare(
+        problems, solvers, tolerance, sweeps, curves=plot is not None, referenced=reference
+    ):
         comparisons.append(comparison)
         if not as_json:
             _print(comparison, tolerance)
@@ -106,14 +115,19 @@ def _print(comparison: Any, tolerance: float) -> None:
         f"{typer.style(comparison.name, bold=True)}: {comparison.contacts} "
         f"contact{'' if comparison.contacts == 1 else 's'}, tolerance {tolerance:g}"
     )
+    if comparison.reference:
+        typer.echo(f"  reference {comparison.reference}")
     rows = [HEADER, *(_cells(attempt) for attempt in comparison.attempts)]
-    widths = [max(len(row[column]) for row in rows) for column in range(len(HEADER))]
+    if comparison.truth != "referenced":
+        rows = [row[:ERROR] + row[ERROR + 1 :] for row in rows]
+    last = len(rows[0]) - 1
+    widths = [max(len(row[column]) for row in rows) for column in range(last + 1)]
     for row in rows:
         left = "  ".join(f"{cell:{width}}" for cell, width in zip(row[:2], widths, strict=False))
         right = "  ".join(
-            f"{cell:>{width}}" for cell, width in zip(row[2:6], widths[2:6], strict=True)
+            f"{cell:>{width}}" for cell, width in zip(row[2:last], widths[2:last], strict=True)
         )
-        typer.echo(f"  {left}  {right}  {row[6]}".rstrip())
+        typer.echo(f"  {left}  {right}  {row[last]}".rstrip())
     for attempt in comparison.attempts:
         if not attempt.solved:
             typer.echo(f"  {attempt.solver} misses: {_parts(attempt.residual)}")
@@ -127,6 +141,7 @@ def _cells(attempt: Any) -> tuple[str, ...]:
         attempt.status,
         f"{attempt.residual.scaled:.1e}",
         f"{attempt.residual.local:.1e}",
+        f"{attempt.error:.1e}",
         str(attempt.sweeps),
         _time(timing.median),
         spread if timing.repeats > 1 else "1 call",

@@ -48,4 +48,6 @@ def draw_comparisons(
     from lavendersim.figures.residual_against_time import draw_curves
 
     paths = draw_curves(comparisons, tolerance, processor, directory)
+    if any(comparison.truth for comparison in comparisons):
+        paths += draw_curves(comparisons, tolerance, processor, directory, "error")
     return paths + draw_profile(ratios, comparisons, tolerance, processor, directory)

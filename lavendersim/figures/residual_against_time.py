@@ -36,22 +36,39 @@ CAPTION: Final = (
     "Dashed: the tolerance {tolerance:g}. {hollow}Wall time of a whole call without compilation, "
     "median of {repeats} that no other program interrupted, where there are such. {processor}."
 )
+ERRORS: Final = (
+    "How far velocities are from the reference, |u - u*| / max(|u|, |u*|, |q|), against the time a "
+    "solver took: every point is a run of its own from nothing with 1, 2, 4, ... sweeps. The "
+    "reference is what two independent methods agree on, so that one of these ends at it; where "
+    "methods do not agree, nothing is drawn. "
+    "{hollow}Wall time of a whole call without compilation, median of {repeats}. {processor}."
+)
 HOLLOW: Final = "Hollow: not finite or above 100. "
+REFERENCED: Final = "referenced"
+LABELS: Final = {"scaled": "scaled residual [-]", "error": "velocity error [-]"}
 
 
 def draw_curves(
-    comparisons: Sequence[Any], tolerance: float, processor: str, directory: Path
+    comparisons: Sequence[Any],
+    tolerance: float,
+    processor: str,
+    directory: Path,
+    quantity: str = "scaled",
 ) -> list[Path]:
-    """Write `residual_against_time.png` and `.svg`, numbered where one page does not hold all."""
+    """Write `residual_against_time.png` and `.svg`, numbered where one page does not hold all.
+
+    quantity: `scaled`, or `error` against the reference, which makes `error_against_time`.
+    """
     drawn = [each for each in comparisons if any(one.points for one in each.attempts)]
     pages = [drawn[at : at + PANELS_ON_PAGE] for at in range(0, len(drawn), PANELS_ON_PAGE)]
     directory = Path(directory)
     directory.mkdir(parents=True, exist_ok=True)
     paths = []
     for number, page in enumerate(pages, start=1):
-        stem = "residual_against_time" + (f"_{number}" if len(pages) > 1 else "")
+        stem = "residual_against_time" if quantity == "scaled" else "error_against_time"
+        stem += f"_{number}" if len(pages) > 1 else ""
         with style.context(STYLE, after_reset=True):
-            figure = compose(page, tolerance, processor)
+            figure = compose(page, tolerance, processor, quantity)
             paths += save(figure, directory / stem)
     return paths
 
@@ -64,7 +81,9 @@ def save(figure: Figure, stem: Path) -> list[Path]:
     return paths
 
 
-def compose(comparisons: Sequence[Any], tolerance: float, processor: str) -> Figure:
+def compose(
+    comparisons: Sequence[Any], tolerance: float, processor: str, quantity: str = "scaled"
+) -> Figure:
     """Return the page as a matplotlib Figure."""
     solvers = names(comparisons)
     columns = min(COLUMNS, len(comparisons))
@@ -72,7 +91,7 @@ def compose(comparisons: Sequence[Any], tolerance: float, processor: str) -> Fig
     width = max(NARROWEST, PANEL[0] * columns)
     points = [p for each in comparisons for one in each.attempts for p in one.points]
     caption = wrapped(
-        CAPTION.format(
+        (CAPTION if quantity == "scaled" else ERRORS).format(
             tolerance=tolerance,
             hollow=HOLLOW if any(not _is_shown(point.scaled) for point in points) else "",
             repeats=span([repeats for each in comparisons for repeats in _repeats(each)]),
@@ -85,9 +104,11 @@ def compose(comparisons: Sequence[Any], tolerance: float, processor: str) -> Fig
         if place >= len(comparisons):
             panel.set_axis_off()
             continue
-        _draw_panel(panel, comparisons[place], solvers, tolerance)
+        _draw_panel(panel, comparisons[place], solvers, tolerance, quantity)
         if place % columns == 0:
-            panel.set_ylabel("scaled residual [-]")
+            panel.set_ylabel(
+                "scaled residual [-]" if quantity == "scaled" else "velocity error [-]"
+            )
         if place + columns >= len(comparisons):
             panel.set_xlabel("time [ms]")
     return figure
@@ -160,18 +181,28 @@ def _is_shown(scaled: float) -> bool:
     return bool(scaled <= HIGHEST)  # false for NaN as well
 
 
-def _draw_panel(axes: Any, comparison: Any, solvers: Sequence[str], tolerance: float) -> None:
+def _draw_panel(
+    axes: Any, comparison: Any, solvers: Sequence[str], tolerance: float, quantity: str
+) -> None:
     count = comparison.contacts
+    unsure = "" if comparison.truth in ("", REFERENCED) else f"\n{comparison.truth}"
     axes.set_title(
-        f"{short(comparison.name)}, {count} contact{'' if count == 1 else 's'}", loc="left"
+        f"{short(comparison.name)}, {count} contact{'' if count == 1 else 's'}{unsure}", loc="left"
     )
     axes.title.set_fontsize(11)
     axes.set_xscale("log")
     axes.set_yscale("log")
-    axes.axhline(tolerance, color=GREY, linewidth=1.1, linestyle=(0, (5, 3)))
+    if quantity == "scaled":
+        axes.axhline(tolerance, color=GREY, linewidth=1.1, linestyle=(0, (5, 3)))
+    elif comparison.truth != REFERENCED:
+        axes.text(0.5, 0.5, "residuals only", transform=axes.transAxes, ha="center", color=GREY)
+        for axis in (axes.xaxis, axes.yaxis):
+            axis.set_major_locator(NullLocator())
+            axis.set_minor_locator(NullLocator())
+        return
     for attempt in comparison.attempts:
         times = np.array([point.seconds for point in attempt.points]) / MILLI
-        scaled = np.array([point.scaled for point in attempt.points])
+        scaled = np.array([getattr(point, quantity) for point in attempt.points])
         shown = np.array([_is_shown(value) for value in scaled], dtype=bool)
         drawn = marks(solvers, attempt.solver)
         axes.plot(times[shown], np.maximum(scaled[shown], LOWEST), **drawn)

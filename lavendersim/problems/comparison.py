@@ -11,10 +11,13 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from statistics import median
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from lavendersim.engine.contact_problem import SOLVED, ContactProblem, Solution
-from lavendersim.problems.residual import Residual, distances, residual
+from lavendersim.problems.residual import Residual, contact_velocities, distances, residual
+
+if TYPE_CHECKING:
+    from lavendersim.problems.reference import Reference
 
 Solve = Callable[..., Solution]
 Clock = Callable[[], float]
@@ -52,6 +55,7 @@ class Point(NamedTuple):
     repeats: int
     scaled: float  # residual [-]
     local: float
+    error: float  # of the velocities against the reference, relative [-]; NaN where there is none
 
 
 class Attempt(NamedTuple):
@@ -61,6 +65,7 @@ class Attempt(NamedTuple):
     solved: bool  # by the residual
     status: str
     residual: Residual
+    error: float  # of the velocities against the reference, relative [-]; NaN where there is none
     sweeps: int
     timing: Timing
     first_call: float  # [s], with compilation where there is some
@@ -73,6 +78,8 @@ class Comparison(NamedTuple):
     name: str
     contacts: int
     attempts: tuple[Attempt, ...]
+    reference: str = ""  # one sentence: how sure the reference is; empty where none was asked for
+    truth: str = ""  # its kind
 
     @property
     def solved(self) -> bool:
@@ -89,23 +96,43 @@ def compare(
     solve: Solve | None = None,
     now: Clock = time.perf_counter,
     busy: Clock = time.process_time,
+    referenced: bool = False,
 ) -> Iterator[Comparison]:
     """Yield a comparison per named problem, as soon as it is there.
 
-    `solve(problem, solver, tolerance, sweeps)` is `problems.solve.solve` unless another is given.
+    `solve(problem, solver, tolerance, sweeps)` is `problems.solve.solve` unless another is given;
+    referenced: hold velocities against those of `reference`, where it can say what is true.
     """
     call = solve or _solve()
     if busy is time.process_time and time.get_clock_info("process_time").resolution > FINE:
         busy = now  # a clock of ticks cannot tell: no call passes for interrupted
     for name, problem in problems:
         watch = _Stopwatch(call, now, busy)
-        yield _compare(name, problem, solvers, tolerance, sweeps, curves, watch)
+        truth = _reference(problem) if referenced else None
+        yield _compare(name, problem, solvers, tolerance, sweeps, curves, watch, truth)
 
 
 def _solve() -> Solve:
     from lavendersim.problems.solve import solve  # late: brings numba
 
     return solve
+
+
+def _reference(problem: ContactProblem) -> Reference:
+    from lavendersim.problems.reference import reference
+
+    return reference(problem)
+
+
+def _error(truth: Reference | None, problem: ContactProblem, solution: Solution) -> float:
+    """Return the relative error of the velocities; NaN where nothing is known to be true."""
+    if truth is None or truth.kind != "referenced":
+        return float("nan")
+    from lavendersim.problems.reference import relative_difference
+
+    return relative_difference(
+        problem, contact_velocities(problem, solution.impulses), truth.velocities
+    )
 
 
 class _Call:
@@ -161,6 +188,7 @@ def _compare(
     sweeps: int | None,
     curves: bool,
     watch: _Stopwatch,
+    truth: Reference | None,
 ) -> Comparison:
     """Ask each solver once to compile it, then with the clock, then again in turns."""
     first = {solver: _Call(problem, solver, tolerance, 1) for solver in solvers}
@@ -173,10 +201,16 @@ def _compare(
         for call in cheap:
             watch.ask(call)
     attempts = (
-        _judge(whole[solver], first[solver].times[0], map(_point, steps[solver]))
+        _judge(
+            whole[solver],
+            first[solver].times[0],
+            [_point(step, truth) for step in steps[solver]],
+            truth,
+        )
         for solver in solvers
     )
-    return Comparison(name, problem.contacts, tuple(attempts))
+    said = ("", "") if truth is None else (truth.status, truth.kind)
+    return Comparison(name, problem.contacts, tuple(attempts), *said)
 
 
 def _steps(problem: ContactProblem, solver: str, watch: _Stopwatch) -> list[_Call]:
@@ -192,14 +226,17 @@ def _steps(problem: ContactProblem, solver: str, watch: _Stopwatch) -> list[_Cal
     return calls
 
 
-def _point(call: _Call) -> Point:
+def _point(call: _Call, truth: Reference | None) -> Point:
     problem, _, _, budget = call.question
     reached = distances(problem, call.answer.impulses)
+    error = _error(truth, problem, call.answer)
     timing = call.timing
-    return Point(budget or 0, call.answer.sweeps, timing.median, timing.repeats, *reached)
+    return Point(budget or 0, call.answer.sweeps, timing.median, timing.repeats, *reached, error)
 
 
-def _judge(call: _Call, first_call: float, points: Iterable[Point]) -> Attempt:
+def _judge(
+    call: _Call, first_call: float, points: Sequence[Point], truth: Reference | None
+) -> Attempt:
     problem, solver, tolerance, _ = call.question
     solution = call.answer
     judged = residual(problem, solution.impulses)
@@ -208,7 +245,15 @@ def _judge(call: _Call, first_call: float, points: Iterable[Point]) -> Attempt:
     if not solved and status == SOLVED:
         status = MISSED
     return Attempt(
-        solver, solved, status, judged, solution.sweeps, call.timing, first_call, tuple(points)
+        solver,
+        solved,
+        status,
+        judged,
+        _error(truth, problem, solution),
+        solution.sweeps,
+        call.timing,
+        first_call,
+        tuple(points),
     )
 
 

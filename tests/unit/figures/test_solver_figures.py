@@ -27,7 +27,7 @@ def attempt(solver: str, points: tuple = CURVE) -> Any:
 
 
 def problem(name: str, *attempts: Any, contacts: int = 5) -> Any:
-    return SimpleNamespace(name=name, contacts=contacts, attempts=attempts)
+    return SimpleNamespace(name=name, contacts=contacts, attempts=attempts, truth="")
 
 
 def page(*problems: Any) -> Figure:
