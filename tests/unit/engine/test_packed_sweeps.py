@@ -175,6 +175,9 @@ def test_contacts_that_are_no_such_blocks_are_swept_as_records(solver: str) -> N
         BLOCKS.including("rolling_friction"),
         BLOCKS.without("friction", "surface_velocity"),
         BLOCKS._replace(friction_cone="pyramid"),
+        BLOCKS._replace(friction_cone="convex"),
+        BLOCKS._replace(over_relaxation=True),
+        BLOCKS._replace(order="symmetric"),
         BLOCKS._replace(operator="matrix"),
     ):
         module = SOLVERS[solver]
