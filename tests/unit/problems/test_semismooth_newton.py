@@ -150,7 +150,7 @@ def test_an_interior_point_comes_down_from_inside_the_cones(way) -> None:
 def test_rounds_hold_the_shift_of_what_slides(monkeypatch: pytest.MonkeyPatch) -> None:
     """With no full Newton steps to end it; without the shift a cone would lift what slides.
 
-    Rounds shrink the shift's error by mu or so; they end where G's round-off is softness times 1e-8.
+    Rounds shrink the shift's error by mu or so; they end where round-off is all of G.
     """
     monkeypatch.setattr(rounds, "FINISHING", 0)
     p = scale(cube(BY_HAND["slides"][0]))
