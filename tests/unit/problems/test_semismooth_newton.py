@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from closed_forms import BY_HAND, cube
 from contact_problems import HARD, heap, in_units, stack
 from gauss_seidel import dense
 from made_problems import random_problem
 
+from lavendersim.problems import newton_rounds as rounds
 from lavendersim.problems.account import Account
 from lavendersim.problems.factorise import factorise
 from lavendersim.problems.friction_cone import derivative_root, project
@@ -143,6 +145,17 @@ def test_an_interior_point_comes_down_from_inside_the_cones(way) -> None:
     assert reached <= 1e-9
     # What gets there by the path pushes within its cones.
     assert (np.hypot(x[:, 1], x[:, 2]) <= p.mu * x[:, 0] + 1e-9 * np.abs(x).max()).all()
+
+
+def test_rounds_hold_the_shift_of_what_slides(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With no full Newton steps to end it; without the shift a cone would lift what slides.
+
+    Rounds shrink the shift's error by mu or so; they end where round-off is all of G.
+    """
+    monkeypatch.setattr(rounds, "FINISHING", 0)
+    p = scale(cube(BY_HAND["slides"][0]))
+    _, reached = newton_rounds(p, np.zeros_like(p.b), Account(1e-7, 200), 200)
+    assert reached <= 1e-7
 
 
 def test_methods_stop_when_everything_is_spent() -> None:
