@@ -150,4 +150,10 @@ def _cells(row: dict[str, Any]) -> tuple[str, ...]:
 def _notes(row: dict[str, Any]) -> list[str]:
     notes = ["*"] if row["front"] else []
     notes += [MARKS[row["role"]]] if MARKS[row["role"]] else []
-    return notes + ([f"FAILED: {row['failed']}"] if row["failed"] else [])
+    if row["failed"]:
+        return [*notes, f"FAILED: {row['failed']}"]
+    if row["unsolved_steps"]:
+        from lavendersim.runner.cost_errors import unsolved_steps
+
+        notes.append(unsolved_steps(row["unsolved_steps"], row["steps"], row["tolerance"]))
+    return notes
