@@ -36,12 +36,16 @@ def cost(
 
     Exits 1 when a target that was asked for is not reached.
     """
+    from lavendersim.errors import UsageError
     from lavendersim.runner import load_all
     from lavendersim.runner.cost import check_cost, take_cost
     from lavendersim.runner.cost_targets import percentage
 
     asked = [percentage(target) for target in targets or ()]
-    experiments = load_all(configs)
+    # In a folder those with a section `cost` are meant; a file that is named must have one.
+    experiments = [one for one in load_all(configs) if one.cost is not None or one.path in configs]
+    if not experiments:
+        raise UsageError(f"{configs[0]}: no config in this folder has a section cost")
     for experiment in experiments:
         check_cost(experiment, repeats)
     tables = []
