@@ -36,12 +36,16 @@ def cost(
 
     Exits 1 when a target that was asked for is not reached.
     """
+    from lavendersim.errors import UsageError
     from lavendersim.runner import load_all
     from lavendersim.runner.cost import check_cost, take_cost
     from lavendersim.runner.cost_targets import percentage
 
     asked = [percentage(target) for target in targets or ()]
-    experiments = load_all(configs)
+    # In a folder those with a section `cost` are meant; a file that is named must have one.
+    experiments = [one for one in load_all(configs) if one.cost is not None or one.path in configs]
+    if not experiments:
+        raise UsageError(f"{configs[0]}: no config in this folder has a section cost")
     for experiment in experiments:
         check_cost(experiment, repeats)
     tables = []
@@ -150,4 +154,10 @@ def _cells(row: dict[str, Any]) -> tuple[str, ...]:
 def _notes(row: dict[str, Any]) -> list[str]:
     notes = ["*"] if row["front"] else []
     notes += [MARKS[row["role"]]] if MARKS[row["role"]] else []
-    return notes + ([f"FAILED: {row['failed']}"] if row["failed"] else [])
+    if row["failed"]:
+        return [*notes, f"FAILED: {row['failed']}"]
+    if row["unsolved_steps"]:
+        from lavendersim.runner.cost_errors import unsolved_steps
+
+        notes.append(unsolved_steps(row["unsolved_steps"], row["steps"], row["tolerance"]))
+    return notes

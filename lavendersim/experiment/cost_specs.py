@@ -98,6 +98,10 @@ class CostSpec(ConfigModel):
     warm_start: Annotated[tuple[bool, ...], Field(min_length=1)] = Field(
         default=(True, False), description="true, false or both"
     )
+    unsolved: Annotated[float, Quantity(minimum=0, maximum=1)] = Field(
+        default=0.01,
+        description="share of steps that may end above the tolerance before a setting has failed",
+    )
     targets: Annotated[tuple[Share, ...], Field(min_length=1)] = Field(
         default=(0.01, 0.001), description="errors whose cheapest setting is told; 0.01 is 1 %"
     )

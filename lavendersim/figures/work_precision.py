@@ -10,27 +10,24 @@ Numbers are those of `cost.json`; nothing is timed or measured here.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from fractions import Fraction
-from itertools import groupby
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, Final, NamedTuple
+from typing import Any, Final
 
 from matplotlib import style
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
+from lavendersim.figures.cost_looks import RINGS, Looks, curves_of, handles_of
 from lavendersim.figures.page import MARGIN, wrapped
-from lavendersim.figures.style import DARK, DPI, GREY, LINE_HEIGHT, LOOKS, STYLE, Look
+from lavendersim.figures.style import DARK, DPI, GREY, LINE_HEIGHT, STYLE
 from lavendersim.figures.timestep_errors import draw_timestep_errors
 
 WIDTH, LEGEND_WIDTH, HEIGHT = 5.6, 2.9, 5.0  # [inch] of a panel, of the legend
 SECOND_WIDTH: Final = 4.2  # [inch]
 FLOOR: Final = 1e-15  # [-] smaller errors are round-off
 BAND: Final = 0.94  # share of the axis from which on settings without an error stand
-MARKERS: Final = ("o", "s", "^", "D", "v", "P", "X", "*")  # of timesteps, the coarsest first
 CAPTION: Final = (
     "Error of {measure}{truth}, against the processor's time for a simulated second of physics: "
     "left is cheap, down is accurate. Medians of {repeats} interleaved repeats; the bars, most of "
@@ -42,40 +39,6 @@ CAPTION: Final = (
 )
 
 Row = dict[str, Any]
-Key = Callable[[Row], Any]
-
-
-class Looks(NamedTuple):
-    """What colours, markers and lines stand for."""
-
-    solvers: dict[str, Look]
-    timesteps: dict[str, str]  # marker by timestep
-    presets: dict[str, Any]  # line by preset
-
-    @classmethod
-    def of(cls, rows: Sequence[Row]) -> Looks:
-        """Give every solver, timestep and preset its look, in the order of the grid."""
-        solvers = list(dict.fromkeys(row["solver"] for row in rows))
-        steps = sorted({row["timestep"] for row in rows}, key=lambda step: -Fraction(step))
-        presets = list(dict.fromkeys(row["preset"] for row in rows if row["role"] != "chapter"))
-        lines = ("-", (0, (4, 2)))
-        return cls(
-            {name: LOOKS[place % len(LOOKS)] for place, name in enumerate(sorted(solvers))},
-            {step: MARKERS[place % len(MARKERS)] for place, step in enumerate(steps)},
-            {name: lines[place % len(lines)] for place, name in enumerate(presets)},
-        )
-
-    def mark(self, row: Row) -> dict[str, Any]:
-        """Return the marker of a setting: full where it starts warm, hollow where cold."""
-        colour = self.solvers[row["solver"]].colour
-        return {
-            "marker": self.timesteps[row["timestep"]],
-            "markersize": 6.5,
-            "markerfacecolor": colour if row["warm_start"] else "white",
-            "markeredgecolor": colour,
-            "markeredgewidth": 1.1,
-            "linestyle": "none",
-        }
 
 
 def draw_work_precision(run: Any, directory: Path) -> list[Path]:
@@ -120,7 +83,7 @@ def compose(table: dict[str, Any]) -> Figure:
     for axes in (work, orders):
         axes.set_ylim(min(limits), max(limits))
     legend.set_axis_off()
-    legend.legend(handles=_handles(table, looks), loc="upper left", borderaxespad=0.0)
+    legend.legend(handles=handles_of(table, looks), loc="upper left", borderaxespad=0.0)
     return figure
 
 
@@ -205,36 +168,11 @@ def _draw_setting(axes: Any, row: Row, size: float, looks: Looks) -> None:
         axes.plot(_cost(row) / size, level, **ring, **RINGS[row["role"]], **place, zorder=4)
 
 
-RINGS: Final = {
-    "stated": {"marker": "o", "markersize": 14, "markeredgewidth": 1.6},
-    "chapter": {"marker": "s", "markersize": 14, "markeredgewidth": 1.6},
-}
-
-
 def _draw_front(axes: Any, rows: Sequence[Row], size: float) -> None:
     """Draw the front as a stair: what the cheapest setting of at most this cost reaches."""
     front = sorted((row for row in rows if row["front"]), key=_cost)
     costs, errors = [_cost(row) / size for row in front], [drawn(row) for row in front]
     axes.step(costs, errors, where="post", color=DARK, linewidth=1.6, zorder=2)
-
-
-def curves_of(rows: Sequence[Row]) -> Iterator[list[Row]]:
-    """Yield the settings that one knob joins: the one that a solver has most values of."""
-    knobs: dict[str, Key] = {
-        "timestep": lambda row: -Fraction(row["timestep"]),
-        "effort": lambda row: (row["sweeps"], -(row["tolerance"] or 0.0)),
-    }
-    grid = [row for row in rows if row["role"] != "chapter"]
-    for family in _grouped(grid, lambda row: (row["preset"], row["solver"], row["warm_start"])):
-        counts = {name: len({knob(row) for row in family}) for name, knob in knobs.items()}
-        along, across = sorted(knobs, key=lambda name: -counts[name])
-        for curve in _grouped(family, knobs[across]):
-            yield sorted(curve, key=knobs[along])
-
-
-def _grouped(rows: Sequence[Row], key: Key) -> Iterator[list[Row]]:
-    for _, group in groupby(sorted(rows, key=key), key):
-        yield list(group)
 
 
 def drawn(row: Row) -> float:
@@ -251,32 +189,3 @@ def unit_of(table: dict[str, Any]) -> tuple[str, float]:
 
 def _cost(row: Row) -> float:
     return float(row["ns_per_second"]["median"])
-
-
-def _handles(table: dict[str, Any], looks: Looks) -> list[Line2D]:
-    """Return the legend: solvers, presets, timesteps, and what marks mean."""
-
-    def dot(marker: str, label: str, **more: Any) -> Line2D:
-        plain = {"color": DARK, "linestyle": "none", "markersize": 6.5, "markeredgewidth": 1.1}
-        return Line2D([], [], marker=marker, label=label, **{**plain, **more})
-
-    rows = table["rows"]
-    handles = [
-        Line2D([], [], color=look.colour, linewidth=5, label=name.replace("_", " "))
-        for name, look in looks.solvers.items()
-    ]
-    if len(looks.presets) > 1:
-        handles += [
-            Line2D([], [], color=DARK, linewidth=1.1, linestyle=line, label=f"laws of {name}")
-            for name, line in looks.presets.items()
-        ]
-    handles += [dot(marker, f"{step} s") for step, marker in looks.timesteps.items()]
-    if not all(row["warm_start"] for row in rows):
-        handles.append(dot("o", "cold start", markerfacecolor="white"))
-    rings = {row["role"]: row for row in rows if row["role"] in RINGS}
-    names = {"stated": "what the config states", "chapter": "the chapter's setting"}
-    hollow = {"markerfacecolor": "none", "markeredgewidth": 1.6, "markersize": 11}
-    handles += [dot(str(RINGS[role]["marker"]), names[role], **hollow) for role in rings]
-    if any(row["failed"] for row in rows):
-        handles.append(dot("x", "failed", markersize=8))
-    return [*handles, Line2D([], [], color=DARK, linewidth=1.6, label="front")]

@@ -24,10 +24,10 @@ from lavendersim.measures import Values, judge
 from lavendersim.measures.closed_forms import evaluate_form
 
 from .cell import CellOutcome
+from .cost_targets import ROUND_OFF
 from .run_directory import RunCell
 
 NAN = float("nan")
-ROUND_OFF = 1e-13  # [-] some hundred operations of 2^-52 each
 CONES = {"disc": "Coulomb's cone", "pyramid": "a pyramid of friction"}
 IMPACTS = {"captured": "at the step's start", "at_surface": "at the surface"}
 INTEGRATORS = {"midpoint": "midpoint rule", "semi_implicit_euler": "semi-implicit Euler"}
@@ -124,14 +124,20 @@ def _failure(experiment: Experiment, run: SettingRun, errors: Sequence[float]) -
     for cell, outcome in zip(experiment.cells(), run.outcomes, strict=True):
         if outcome.status != "complete":
             return f"{cell.label}: {outcome.status}" if cell.label else outcome.status
+    assert experiment.cost is not None
     unsolved = sum(outcome.accuracy.unsolved for outcome in run.outcomes)
-    if unsolved:
-        steps = sum(outcome.steps for outcome in run.outcomes)
-        return f"{unsolved} of {steps} steps above {run.setting.tolerance:g} m/s"
+    steps = sum(outcome.steps for outcome in run.outcomes)
+    if unsolved > experiment.cost.unsolved * steps:
+        return unsolved_steps(unsolved, steps, run.setting.tolerance)
     if not errors or any(math.isnan(error) for error in errors):
         return "its log has no answer"
     unmet = _unmet(experiment, run)
     return f"not met: {unmet[0]}" if unmet else ""
+
+
+def unsolved_steps(unsolved: int, steps: int, tolerance: float | None) -> str:
+    """Say how many steps ended above the tolerance they asked for."""
+    return f"{unsolved} of {steps} steps above {tolerance:g} m/s"
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ from typing import Any
 from lavendersim.errors import UsageError
 
 Row = Mapping[str, Any]
+ROUND_OFF = 1e-13  # [-] some hundred operations of 2^-52 each; of two such errors none is better
 
 
 def percentage(text: str) -> float:
@@ -27,10 +28,11 @@ def percentage(text: str) -> float:
 def front_of(rows: Sequence[Row]) -> list[int]:
     """Return the settings than which none is cheaper and as good, from the cheapest on."""
     good = [place for place, row in enumerate(rows) if is_answer(row)]
-    good.sort(key=lambda place: (cost_of(rows[place]), rows[place]["error"]))
+    errors = {place: max(rows[place]["error"], ROUND_OFF) for place in good}
+    good.sort(key=lambda place: (cost_of(rows[place]), errors[place]))
     front: list[int] = []
     for place in good:
-        if not front or rows[place]["error"] < rows[front[-1]]["error"]:
+        if not front or errors[place] < errors[front[-1]]:
             front.append(place)
     return front
 

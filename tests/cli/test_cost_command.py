@@ -63,6 +63,22 @@ def test_a_target_prints_what_is_to_be_pasted_and_nothing_else(
     assert not (tmp_path / "runs" / "latest" / "figures").exists()
 
 
+def test_in_a_folder_those_with_a_section_are_meant(drop: Path, tmp_path: Path) -> None:
+    folder = tmp_path / "configs"
+    folder.mkdir()
+    drop.rename(folder / "drop.yaml")
+    done = lavender("cost", folder, where=tmp_path)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr == f"{folder}: no config in this folder has a section cost\n"
+    priced = (folder / "drop.yaml").read_text() + COST
+    (folder / "priced.yaml").write_text(priced)
+    done = lavender("cost", folder, "--target", "50%", "--no-plot", where=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.count("\n") == 1
+    assert "priced: " in done.stderr
+    assert "drop: " not in done.stderr
+
+
 def test_json_has_every_sample_and_the_answers(priced: Path, tmp_path: Path) -> None:
     done = lavender(
         "cost", priced, "--json", "--no-plot", "--repeats", "8", "--target", "50 %", where=tmp_path

@@ -1,0 +1,103 @@
+"""Timed settings in; what colours, markers and lines stand for, the curves, and the legend out."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from fractions import Fraction
+from itertools import groupby
+from typing import Any, Final, NamedTuple
+
+from matplotlib.lines import Line2D
+
+from lavendersim.figures.style import DARK, LOOKS, Look
+
+MARKERS: Final = ("o", "s", "^", "D", "v", "P", "X", "*")  # of timesteps, the coarsest first
+RINGS: Final = {
+    "stated": {"marker": "o", "markersize": 14, "markeredgewidth": 1.6},
+    "chapter": {"marker": "s", "markersize": 14, "markeredgewidth": 1.6},
+}
+
+
+Row = dict[str, Any]
+Key = Callable[[Row], Any]
+
+
+class Looks(NamedTuple):
+    """What colours, markers and lines stand for."""
+
+    solvers: dict[str, Look]
+    timesteps: dict[str, str]  # marker by timestep
+    presets: dict[str, Any]  # line by preset
+
+    @classmethod
+    def of(cls, rows: Sequence[Row]) -> Looks:
+        """Give every solver, timestep and preset its look, in the order of the grid."""
+        solvers = list(dict.fromkeys(row["solver"] for row in rows))
+        steps = sorted({row["timestep"] for row in rows}, key=lambda step: -Fraction(step))
+        presets = list(dict.fromkeys(row["preset"] for row in rows if row["role"] != "chapter"))
+        lines = ("-", (0, (4, 2)))
+        return cls(
+            {name: LOOKS[place % len(LOOKS)] for place, name in enumerate(sorted(solvers))},
+            {step: MARKERS[place % len(MARKERS)] for place, step in enumerate(steps)},
+            {name: lines[place % len(lines)] for place, name in enumerate(presets)},
+        )
+
+    def mark(self, row: Row) -> dict[str, Any]:
+        """Return the marker of a setting: full where it starts warm, hollow where cold."""
+        colour = self.solvers[row["solver"]].colour
+        return {
+            "marker": self.timesteps[row["timestep"]],
+            "markersize": 6.5,
+            "markerfacecolor": colour if row["warm_start"] else "white",
+            "markeredgecolor": colour,
+            "markeredgewidth": 1.1,
+            "linestyle": "none",
+        }
+
+
+def curves_of(rows: Sequence[Row]) -> Iterator[list[Row]]:
+    """Yield the settings that one knob joins: the one that a solver has most values of."""
+    knobs: dict[str, Key] = {
+        "timestep": lambda row: -Fraction(row["timestep"]),
+        "effort": lambda row: (row["sweeps"], -(row["tolerance"] or 0.0)),
+    }
+    grid = [row for row in rows if row["role"] != "chapter"]
+    for family in _grouped(grid, lambda row: (row["preset"], row["solver"], row["warm_start"])):
+        counts = {name: len({knob(row) for row in family}) for name, knob in knobs.items()}
+        along, across = sorted(knobs, key=lambda name: -counts[name])
+        for curve in _grouped(family, knobs[across]):
+            yield sorted(curve, key=knobs[along])
+
+
+def _grouped(rows: Sequence[Row], key: Key) -> Iterator[list[Row]]:
+    for _, group in groupby(sorted(rows, key=key), key):
+        yield list(group)
+
+
+def handles_of(table: dict[str, Any], looks: Looks) -> list[Line2D]:
+    """Return the legend: solvers, presets, timesteps, and what marks mean."""
+
+    def dot(marker: str, label: str, **more: Any) -> Line2D:
+        plain = {"color": DARK, "linestyle": "none", "markersize": 6.5, "markeredgewidth": 1.1}
+        return Line2D([], [], marker=marker, label=label, **{**plain, **more})
+
+    rows = table["rows"]
+    handles = [
+        Line2D([], [], color=look.colour, linewidth=5, label=name.replace("_", " "))
+        for name, look in looks.solvers.items()
+    ]
+    if len(looks.presets) > 1:
+        handles += [
+            Line2D([], [], color=DARK, linewidth=1.1, linestyle=line, label=f"laws of {name}")
+            for name, line in looks.presets.items()
+        ]
+    handles += [dot(marker, f"{step} s") for step, marker in looks.timesteps.items()]
+    if not all(row["warm_start"] for row in rows):
+        handles.append(dot("o", "cold start", markerfacecolor="white"))
+    rings = {row["role"]: row for row in rows if row["role"] in RINGS}
+    names = {"stated": "what the config states", "chapter": "the chapter's setting"}
+    hollow = {"markerfacecolor": "none", "markeredgewidth": 1.6, "markersize": 11}
+    handles += [dot(str(RINGS[role]["marker"]), names[role], **hollow) for role in rings]
+    if any(row["failed"] for row in rows):
+        handles.append(dot("x", "failed", markersize=8))
+    return [*handles, Line2D([], [], color=DARK, linewidth=1.6, label="front")]
