@@ -193,4 +193,6 @@ class FigureSpec(ConfigModel):
     """Panels and the caption beneath them."""
 
     caption: str = Field(min_length=1, description="what to see, in one or two sentences")
-    panels: tuple[PanelSpec, ...] = Field(min_length=1, max_length=6, description="left to right")
+    panels: tuple[PanelSpec, ...] = Field(
+        min_length=1, max_length=6, description="left to right; more than three in two rows"
+    )

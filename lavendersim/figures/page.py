@@ -44,6 +44,7 @@ PANELS: Final[dict[str, Callable[..., None]]] = {
 POINTS_PER_INCH: Final = 72.0
 HINTING: Final = 0.93  # letters placed on whole pixels run wider than their outlines
 MARGIN: Final = 0.12  # [inch]
+SIDE_BY_SIDE: Final = 3  # panels in one row
 FEW_ENTRIES: Final = 4  # of a legend that finds room among the lines
 ENTRY_WIDTH: Final = 3.2  # [inch] of an entry as long as the name of a solver
 NARROWEST: Final = 6.8  # [inch] a single panel is wider, for its caption
@@ -75,7 +76,8 @@ def compose(experiment: Any, cells: Sequence[Cell]) -> Figure:
     readable = [cell for cell in cells if _is_readable(cell)]
     missing = len(cells) - len(readable)
     note = f" Left out: {missing} of {len(cells)} cells have no readable log." if missing else ""
-    width = max(NARROWEST, PANEL_WIDTH * len(spec.panels))
+    lines, columns = _grid(len(spec.panels))
+    width = max(NARROWEST, PANEL_WIDTH * columns)
     caption = wrapped(spec.caption + note, width)
     question = wrapped(experiment.question, width, weight="bold")
     entries = _shared_entries(spec, readable)
@@ -83,11 +85,15 @@ def compose(experiment: Any, cells: Sequence[Cell]) -> Figure:
     beneath = LINE_HEIGHT * (caption.count("\n") + 1) + 2 * MARGIN
     below = beneath + (LINE_HEIGHT * rows + MARGIN if rows else 0.0)
     above = LINE_HEIGHT * (question.count("\n") + 1) + 2 * MARGIN if question else MARGIN
-    height = PANEL_HEIGHT + below + above
+    height = PANEL_HEIGHT * lines + below + above
     figure = Figure(figsize=(width, height))
     FigureCanvasAgg(figure)
     figure.set_layout_engine(
-        "constrained", rect=(0.0, below / height, 1.0, PANEL_HEIGHT / height), w_pad=0.12
+        "constrained",
+        rect=(0.0, below / height, 1.0, PANEL_HEIGHT * lines / height),
+        w_pad=0.12,
+        h_pad=0.1,
+        h_pad=0.08,
     )
     left = MARGIN / width
     figure.text(left, 1.0 - MARGIN / height, question, va="top", weight="bold")
@@ -108,6 +114,12 @@ def _shared_entries(spec: FigureSpec, cells: Sequence[Cell]) -> int:
         return 0
     entries = len(series_of(cells, spec.panels[0].series))
     return entries if entries > FEW_ENTRIES else 0
+
+
+def _grid(panels: int) -> tuple[int, int]:
+    """Return rows and columns: up to three panels side by side, more in two rows."""
+    rows = 1 if panels <= SIDE_BY_SIDE else 2
+    return rows, -(-panels // rows)
 
 
 def _columns(width: float) -> int:
@@ -135,7 +147,10 @@ def _draw_shared_legend(figure: Figure, width: float, bottom: float) -> None:
 def _draw_panels(figure: Figure, experiment: Any, cells: Sequence[Cell], shared: bool) -> None:
     values = Values(experiment.measures)
     panels = experiment.figure.panels
-    for axes, panel in zip(figure.subplots(1, len(panels), squeeze=False)[0], panels, strict=True):
+    places = figure.subplots(*_grid(len(panels)), squeeze=False).ravel()
+    for axes in places[len(panels) :]:
+        axes.set_axis_off()
+    for axes, panel in zip(places, panels, strict=False):
         dress(axes, panel)
         measure = experiment.measures.get(getattr(panel, "measure", ""))
         shown = select(cells, panel.at, measure.at if measure is not None else {})
