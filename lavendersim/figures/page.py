@@ -93,7 +93,6 @@ def compose(experiment: Any, cells: Sequence[Cell]) -> Figure:
         rect=(0.0, below / height, 1.0, PANEL_HEIGHT * lines / height),
         w_pad=0.12,
         h_pad=0.1,
-        h_pad=0.08,
     )
     left = MARGIN / width
     figure.text(left, 1.0 - MARGIN / height, question, va="top", weight="bold")
