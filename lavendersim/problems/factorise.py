@@ -1,7 +1,7 @@
 """Blocks of a scaled problem enter, a solver of their linear system leaves; and its price.
 
     (diagonal + S^T M S) z = right,    S picks the rows that are kept
-By scipy's LU decompositions: a full one for small and full systems, SuperLU for sparse ones.
+By scipy's LU decompositions: a full one for small systems, SuperLU for the others.
 """
 
 from __future__ import annotations
@@ -16,8 +16,9 @@ from scipy.sparse.linalg import splu
 
 from lavendersim.problems.scaled_problem import ScaledProblem
 
-# Up to this size [rows], or from this share of entries on [-], a full decomposition is faster.
-SMALL, FULL = 120, 0.25
+# Up to this size [rows] a full decomposition is faster. Of larger ones, however full, the library
+# makes several threads, which wait for each other actively: on a busy machine 20 times as long.
+SMALL = 100
 # Price of a multiplication in each decomposition, and of an entry when filling [ns].
 IN_FULL, IN_SPARSE, ENTRY = 0.1, 0.3, 10.0
 AXES = np.arange(3)
@@ -49,7 +50,7 @@ def factorise(
         own = np.arange(size)
         i, j = np.concatenate([i, own]), np.concatenate([j, own])
         values = np.concatenate([values, diagonal.ravel()[kept]])
-    if size <= SMALL or len(values) > FULL * size * size:
+    if size <= SMALL:
         answer, price = _full(size, i, j, values)
     else:
         answer, price = _sparse(size, i, j, values)

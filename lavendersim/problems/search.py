@@ -24,7 +24,7 @@ from lavendersim.problems.semismooth_newton import newton_steps
 
 SWEEPER = "projected_gauss_seidel"
 # Sweeps before the first Newton steps, doubled every time; times before something else is tried.
-FIRST_SWEEPS, OPENING = 50, 4
+FIRST_SWEEPS, OPENING = 100, 3
 # Sweeps between rounds, how often, and how they grow.
 LATER_SWEEPS, LATER, GROWTH = 1000, 2, 2
 # Price of a sweep per block of W [ns].

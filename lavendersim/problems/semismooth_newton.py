@@ -28,6 +28,8 @@ GROWS, FALLS, FALLS_FAST = 10.0, 0.5, 0.1
 LENGTHS = (1.0, 0.5, 0.25)
 # A step of length t has to shrink |F| by this share of t [-].
 ENOUGH = 1e-3
+# So many steps have to bring |F| down to this share, or others may do better.
+LOOK_BACK, LOOKED_FOR = 5, 0.5
 
 
 class Place(NamedTuple):
@@ -57,7 +59,11 @@ def newton_steps(
     """Return impulses and their residual after at most so many steps; |F| never grows."""
     here = look(p, x)
     residual = scaled_residual(p, x, here.v)
-    for _ in range(most):
+    sizes: list[float] = []
+    for step in range(most):
+        sizes.append(here.size)
+        if step >= LOOK_BACK and here.size > LOOKED_FOR * sizes[step - LOOK_BACK]:
+            break
         if residual <= account.tolerance or account.spent or eps > LARGEST:
             break
         d, price = _direction(p, here, eps)
