@@ -28,7 +28,11 @@ from .cost_targets import ROUND_OFF
 from .run_directory import RunCell
 
 NAN = float("nan")
-CONES = {"disc": "Coulomb's cone", "pyramid": "a pyramid of friction"}
+CONES = {
+    "disc": "Coulomb's cone",
+    "pyramid": "a pyramid of friction",
+    "convex": "the convex relaxation of Coulomb's law",
+}
 IMPACTS = {"captured": "at the step's start", "at_surface": "at the surface"}
 INTEGRATORS = {"midpoint": "midpoint rule", "semi_implicit_euler": "semi-implicit Euler"}
 
