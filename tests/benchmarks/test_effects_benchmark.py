@@ -9,7 +9,7 @@ from tests.benchmarks import effects
 
 # Laws that the chapter's numerics exclude, and what needs them.
 OTHER_LAWS = {"midpoint", "impact_time", "speculative", "newton", "fast_bodies", "impact_energy"}
-LOGS = {"step_log", "pose_log", "contact_log", "residual_log"}
+LOGS = {"step_log", "pose_log", "contact_log", "residual_log", "problem_log"}
 
 
 def test_full_engines_have_every_effect_whose_law_the_numerics_have() -> None:

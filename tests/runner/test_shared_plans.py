@@ -44,6 +44,15 @@ def test_cells_are_grouped_by_the_choice(choice: str) -> None:
     assert len(values) == 2
 
 
+def test_cells_that_differ_in_over_relaxation_share_an_engine() -> None:
+    """A factor, no law: where no cell has one, no code has it."""
+    for values, relaxed in (("[1]", False), ("[1, 1.5]", True)):
+        text = SWEPT % ("numerics.over_relaxation", values)
+        plans = shared_plans(load_experiment_text(text, "swept.yaml").cells())
+        assert len(distinct(plans)) == 1
+        assert plans[0].spec.over_relaxation == relaxed
+
+
 def test_an_effect_of_one_group_stays_out_of_the_other() -> None:
     cells = load_experiment_text(
         SWEPT % ("numerics.speculative", "[false, true]"), "swept.yaml"

@@ -10,7 +10,8 @@ from ..compile import kernel
 from .decision import Decision, Facts
 
 NAME = "problem_log"
-STAGE = "solve"
+STAGE = "record"
+CHANNELS = ()  # its files stand beside the log
 
 
 def wanted(facts: Facts) -> Decision:
