@@ -60,7 +60,7 @@ class Slow:
 
     name, count, sweeps = "slow", 10, 0
 
-    def run(self, sweeps, now):
+    def run(self, sweeps, now=None):
         self.sweeps = sweeps
         return self.count * (7 + 5 * sweeps)
 
