@@ -14,8 +14,9 @@ from functools import partial
 import numpy as np
 
 from lavendersim.engine.contact_problem import NOT_FINITE, SOLVED, SPENT, ContactProblem, Solution
-from lavendersim.problems.account import Account
+from lavendersim.problems.account import OVERHEAD, Account
 from lavendersim.problems.by_kernel import solve_by_kernel
+from lavendersim.problems.factorise import ENTRY
 from lavendersim.problems.interior_point import BOLD, Way, interior_point
 from lavendersim.problems.newton_rounds import newton_rounds
 from lavendersim.problems.residual import residual
@@ -23,8 +24,9 @@ from lavendersim.problems.scaled_problem import from_impulses, scale, to_impulse
 from lavendersim.problems.semismooth_newton import newton_steps
 
 SWEEPER = "projected_gauss_seidel"
-# Sweeps before the first Newton steps, doubled every time; times before something else is tried.
-FIRST_SWEEPS, OPENING = 100, 3
+# Sweeps before Newton steps cost what so many of those do, within these numbers; twice as many the
+# second time, and then something else is tried.
+WORTH, FEWEST_SWEEPS, MOST_SWEEPS, OPENING = 20, 100, 2000, 2
 # Sweeps between rounds, how often, and how they grow.
 LATER_SWEEPS, LATER, GROWTH = 1000, 2, 2
 # Price of a sweep per block of W [ns].
@@ -94,9 +96,13 @@ class Search:
 
     def open(self) -> None:
         """Sweep and step a few times: most problems end here."""
+        blocks = len(self.problem.row)
+        step = OVERHEAD + ENTRY * self.problem.blocks.size
+        sweeps = int(WORTH * step / (SWEEP_PRICE * blocks))
+        sweeps = min(max(sweeps, FEWEST_SWEEPS), MOST_SWEEPS)
         for k in range(OPENING):
             if not self.over:
-                self.sweep_and_step(FIRST_SWEEPS * 2**k)
+                self.sweep_and_step(sweeps * 2**k)
 
     def go_on(self, ways: tuple[Way, ...] = ()) -> None:
         """Take turns until everything is spent, first with an interior point by the ways given."""
