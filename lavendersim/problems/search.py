@@ -39,14 +39,20 @@ class Search:
     """The best impulses so far, and what the methods may still spend."""
 
     def __init__(
-        self, problem: ContactProblem, account: Account, start: np.ndarray | None, history: bool
+        self,
+        problem: ContactProblem,
+        tolerance: float,
+        steps: int,
+        start: np.ndarray | None,
+        history: bool,
+        price: float = float("inf"),
     ) -> None:
-        self.problem, self.account, self.history = problem, account, history
+        self.problem, self.tolerance, self.history = problem, tolerance, history
+        self.account = Account(MARGIN * tolerance, steps, price)
         self.best = self.here = np.zeros((problem.contacts, 3)) if start is None else start.copy()
         self.least = residual(problem, self.best).scaled
-        self.trivial = self.least <= account.tolerance
-        account.history.append(self.least)
-        if not self.trivial:
+        self.account.history.append(self.least)
+        if not self.over:  # what needs no impulses may have no scale
             self.p = scale(problem)
 
     @property
@@ -121,7 +127,7 @@ class Search:
         """Return the best, judged from its impulses alone."""
         judged = residual(self.problem, self.best)
         status = SPENT if np.isfinite(self.best).all() else NOT_FINITE
-        if judged.scaled <= self.account.tolerance / MARGIN:
+        if judged.scaled <= self.tolerance:
             status = SOLVED
         history = np.array(self.account.history if self.history else [])
         return Solution(self.best, self.account.steps, history, status, judged.scaled, judged.local)
