@@ -87,6 +87,8 @@ def _by_kernel(
     return solve_by_kernel(problem, solver, tolerance, sweeps, start, history)
 
 
+# `adaptive` chooses by what a scene's bodies allow. The block and coloured variants differ from
+# `projected_gauss_seidel` in how they visit bodies: through W all three are the same sweeps.
 SOLVERS: dict[str, Solver] = {
     **{name: partial(_by_kernel, name) for name in KERNELS if name != "adaptive"},
     "semismooth_newton": solve_by_newton,
