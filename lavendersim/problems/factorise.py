@@ -20,7 +20,7 @@ from lavendersim.problems.scaled_problem import ScaledProblem
 # makes several threads, which wait for each other actively: on a busy machine 20 times as long.
 SMALL = 100
 # Price of a multiplication in each decomposition, and of an entry when filling [ns].
-IN_FULL, IN_SPARSE, ENTRY = 0.1, 0.3, 10.0
+IN_FULL, IN_SPARSE, ENTRY = 0.1, 0.2, 10.0
 AXES = np.arange(3)
 
 

@@ -49,7 +49,7 @@ WAYS = (BOLD, CAREFUL, BOLD._replace(begin=1e4), CAREFUL._replace(begin=1e3))
 
 
 class Cones(NamedTuple):
-    """The problem on circular cones, and a place on the way."""
+    """The problem on circular cones."""
 
     blocks: np.ndarray
     b: np.ndarray

@@ -14,8 +14,9 @@ from functools import partial
 import numpy as np
 
 from lavendersim.engine.contact_problem import NOT_FINITE, SOLVED, SPENT, ContactProblem, Solution
-from lavendersim.problems.account import Account
+from lavendersim.problems.account import OVERHEAD, Account
 from lavendersim.problems.by_kernel import solve_by_kernel
+from lavendersim.problems.factorise import ENTRY
 from lavendersim.problems.interior_point import BOLD, Way, interior_point
 from lavendersim.problems.newton_rounds import newton_rounds
 from lavendersim.problems.residual import residual
@@ -23,8 +24,9 @@ from lavendersim.problems.scaled_problem import from_impulses, scale, to_impulse
 from lavendersim.problems.semismooth_newton import newton_steps
 
 SWEEPER = "projected_gauss_seidel"
-# Sweeps before the first Newton steps, doubled every time; times before something else is tried.
-FIRST_SWEEPS, OPENING = 100, 3
+# Sweeps before Newton steps cost what so many of those do, within these numbers; twice as many the
+# second time, and then something else is tried.
+WORTH, FEWEST_SWEEPS, MOST_SWEEPS, OPENING = 20, 100, 2000, 2
 # Sweeps between rounds, how often, and how they grow.
 LATER_SWEEPS, LATER, GROWTH = 1000, 2, 2
 # Price of a sweep per block of W [ns].
@@ -37,14 +39,20 @@ class Search:
     """The best impulses so far, and what the methods may still spend."""
 
     def __init__(
-        self, problem: ContactProblem, account: Account, start: np.ndarray | None, history: bool
+        self,
+        problem: ContactProblem,
+        tolerance: float,
+        steps: int,
+        start: np.ndarray | None,
+        history: bool,
+        price: float = float("inf"),
     ) -> None:
-        self.problem, self.account, self.history = problem, account, history
+        self.problem, self.tolerance, self.history = problem, tolerance, history
+        self.account = Account(MARGIN * tolerance, steps, price)
         self.best = self.here = np.zeros((problem.contacts, 3)) if start is None else start.copy()
         self.least = residual(problem, self.best).scaled
-        self.trivial = self.least <= account.tolerance
-        account.history.append(self.least)
-        if not self.trivial:
+        self.account.history.append(self.least)
+        if not self.over:  # what needs no impulses may have no scale
             self.p = scale(problem)
 
     @property
@@ -94,9 +102,13 @@ class Search:
 
     def open(self) -> None:
         """Sweep and step a few times: most problems end here."""
+        blocks = len(self.problem.row)
+        step = OVERHEAD + ENTRY * self.problem.blocks.size
+        sweeps = int(WORTH * step / (SWEEP_PRICE * blocks))
+        sweeps = min(max(sweeps, FEWEST_SWEEPS), MOST_SWEEPS)
         for k in range(OPENING):
             if not self.over:
-                self.sweep_and_step(FIRST_SWEEPS * 2**k)
+                self.sweep_and_step(sweeps * 2**k)
 
     def go_on(self, ways: tuple[Way, ...] = ()) -> None:
         """Take turns until everything is spent, first with an interior point by the ways given."""
@@ -115,7 +127,7 @@ class Search:
         """Return the best, judged from its impulses alone."""
         judged = residual(self.problem, self.best)
         status = SPENT if np.isfinite(self.best).all() else NOT_FINITE
-        if judged.scaled <= self.account.tolerance / MARGIN:
+        if judged.scaled <= self.tolerance:
             status = SOLVED
         history = np.array(self.account.history if self.history else [])
         return Solution(self.best, self.account.steps, history, status, judged.scaled, judged.local)

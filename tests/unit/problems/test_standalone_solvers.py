@@ -76,6 +76,13 @@ def test_no_contacts_are_solved(solver: str) -> None:
 
 
 @pytest.mark.parametrize("solver", ALL)
+def test_contacts_at_rest_get_nothing_whatever_the_start(solver: str) -> None:
+    found = solve(cube((0.0, 0.0, 0.0)), solver, start=np.ones((4, 3)))
+    assert (found.status, found.sweeps) == (SOLVED, 0)
+    assert not found.impulses.any()
+
+
+@pytest.mark.parametrize("solver", ALL)
 def test_separating_contacts_get_exactly_nothing(solver: str) -> None:
     found = solve(cube((0.3, 0.2, 0.5)), solver)
     assert found.status == SOLVED
