@@ -5,12 +5,19 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
 from itertools import groupby
-from typing import Any, Final, NamedTuple
+from typing import Any, Final, NamedTuple, get_args
 
 from matplotlib.lines import Line2D
 
+from lavendersim.experiment.solver_names import Solver
 from lavendersim.figures.style import DARK, LOOKS, Look
 
+# Every solver has its colour in every figure; black is that of the front and of what failed.
+COLOURED: Final = [one for one in LOOKS if one.colour != "#000000"]
+SOLVER_LOOKS: Final = {
+    name: COLOURED[place % len(COLOURED)]
+    for place, name in enumerate(sorted(get_args(Solver), key=lambda name: name != "adaptive"))
+}
 MARKERS: Final = ("o", "s", "^", "D", "v", "P", "X", "*")  # of timesteps, the coarsest first
 RINGS: Final = {
     "stated": {"marker": "o", "markersize": 14, "markeredgewidth": 1.6},
@@ -32,12 +39,12 @@ class Looks(NamedTuple):
     @classmethod
     def of(cls, rows: Sequence[Row]) -> Looks:
         """Give every solver, timestep and preset its look, in the order of the grid."""
-        solvers = list(dict.fromkeys(row["solver"] for row in rows))
+        shown = {row["solver"] for row in rows}
         steps = sorted({row["timestep"] for row in rows}, key=lambda step: -Fraction(step))
         presets = list(dict.fromkeys(row["preset"] for row in rows if row["role"] != "chapter"))
         lines = ("-", (0, (4, 2)))
         return cls(
-            {name: LOOKS[place % len(LOOKS)] for place, name in enumerate(sorted(solvers))},
+            {name: one for name, one in SOLVER_LOOKS.items() if name in shown},
             {step: MARKERS[place % len(MARKERS)] for place, step in enumerate(steps)},
             {name: lines[place % len(lines)] for place, name in enumerate(presets)},
         )
@@ -83,8 +90,8 @@ def handles_of(table: dict[str, Any], looks: Looks) -> list[Line2D]:
 
     rows = table["rows"]
     handles = [
-        Line2D([], [], color=look.colour, linewidth=5, label=name.replace("_", " "))
-        for name, look in looks.solvers.items()
+        Line2D([], [], color=one.colour, linewidth=5, label=name.replace("_", " "))
+        for name, one in looks.solvers.items()
     ]
     if len(looks.presets) > 1:
         handles += [

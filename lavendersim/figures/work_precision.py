@@ -17,6 +17,7 @@ from typing import Any, Final
 from matplotlib import style
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from lavendersim.figures.cost_looks import RINGS, Looks, curves_of, handles_of
@@ -144,7 +145,8 @@ def draw_settings(axes: Any, table: dict[str, Any], looks: Looks) -> None:
     axes.xaxis.set_minor_formatter(NullFormatter())
     low, high = axes.get_ylim()
     if any(row["error"] is None for row in timed):
-        axes.axhspan(BAND, 1.0, transform=axes.transAxes, color="#eeeeee", zorder=0)
+        band = Rectangle((0.0, BAND), 1.0, 1.0 - BAND, transform=axes.transAxes, color="#ececec")
+        axes.add_patch(band)
         axes.text(0.01, 0.97, "no error", transform=axes.transAxes, va="center", fontsize=9)
         high *= (high / low) ** 0.12
     axes.set_ylim(low, high)
