@@ -1,6 +1,7 @@
 """Solvers enter; what a contact costs each of them in a sweep leaves, on real contacts.
 
     python -m tests.benchmarks.contact_sweep [--repeats 15] [--check] [--json] [--output FILE.json]
+        [--plot DIR]
 
 The scene runs to where it rests; the contacts of its next step, with impulses of the step before,
 are what every solver gets (`prepared_contacts`). A sample is one solve with `--sweeps` sweeps less
@@ -24,6 +25,7 @@ from pathlib import Path
 from statistics import median
 from typing import Any, NamedTuple
 
+from lavendersim.figures.contact_cost import draw_contact_cost
 from lavendersim.runner.environment import environment
 from lavendersim.runner.price_samples import clock
 
@@ -154,6 +156,7 @@ def main() -> int:
     parser.add_argument("--solvers", nargs="+", choices=EVERY_SOLVER, default=EVERY_SOLVER)
     parser.add_argument("--json", action="store_true", help="print everything as JSON")
     parser.add_argument("--output", type=Path, help="JSON file for medians and all samples")
+    parser.add_argument("--plot", type=Path, help="folder for cost against contact count")
     parser.add_argument("--check", action="store_true", help="exit 1 above a bar")
     arguments = parser.parse_args()
     found = measure(
@@ -167,6 +170,9 @@ def main() -> int:
     print(json.dumps(found) if arguments.json else table(found))
     if arguments.output:
         arguments.output.write_text(json.dumps(found, indent=1) + "\n")
+    if arguments.plot:
+        for figure in draw_contact_cost(found, arguments.plot):
+            print(figure, file=sys.stderr)
     over = [row for row in found["cases"] if row["bar"] is not None and row["median"] > row["bar"]]
     return 1 if arguments.check and over else 0
 
