@@ -35,8 +35,8 @@ CAPTION: Final = (
     "them shorter than a marker is wide, hold the median in 19 of 20 cases. Crossed: the setting "
     "failed (it diverged, was not solved as asked, or broke a claim of the experiment). Thin lines "
     "join settings that differ in one knob; the dark line is the front: no setting is cheaper and "
-    "as good. Neither compilation nor logging is in "
-    "any time. {processor}, clock {clock}. {answers}"
+    "as good. Errors below 1e-15 are round-off and drawn there. Neither compilation nor logging "
+    "is in any time. {processor}, clock {clock}. {answers}"
 )
 
 Row = dict[str, Any]
