@@ -15,12 +15,15 @@ def check(
     configs: Configs,
     jobs: Jobs = 1,
     runs: Runs = Path("runs"),
+    full: Annotated[
+        bool, typer.Option("--full", help="Run slow experiments in full, not reduced.")
+    ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print the verdicts as JSON.")] = False,
 ) -> None:
     """Run experiments and print every verdict, cell by cell. Exits 1 when one fails."""
     from lavendersim.runner import load_all, run
 
-    experiments = load_all(configs)
+    experiments = load_all(configs, reduced=not full)
     good, verdicts, cells = True, [], []
     for experiment in experiments:
         with printing.reporting(experiment.name) as progress:

@@ -64,7 +64,7 @@ def print_summary(finished: Any) -> None:
 
 def print_costs(finished: Any) -> None:
     """Print what a run cost: physics by cell, logging and compilation once."""
-    outcomes = finished.outcomes
+    outcomes, reduced = finished.outcomes, finished.run.experiment.reduced
     steps = sum(outcome.steps for outcome in outcomes)
     logging = sum(outcome.logging_ns for outcome in outcomes) / max(steps, 1) / 1000
     physics = [outcome.physics_ns / max(outcome.steps, 1) / 1000 for outcome in outcomes]
@@ -74,7 +74,7 @@ def print_costs(finished: Any) -> None:
         "" if listed else f"physics {low:.2f}{f' to {high:.2f}' if high > low else ''} us/step, "
     )
     typer.echo(
-        f"{typer.style(finished.run.name, bold=True)}: "
+        f"{typer.style(finished.run.name, bold=True)}{' (reduced)' if reduced else ''}: "
         f"{len(outcomes)} cell{'s' if len(outcomes) > 1 else ''}, {steps} steps; {spread}"
         f"logging {logging:.2f} us/step, compile {finished.compile_s:.1f} s"
     )
@@ -93,9 +93,8 @@ def warn_of_unsolved(finished: Any) -> None:
 
 def print_failures(finished: Any) -> None:
     """Print cells that ended early and the failed verdicts, the first few in full."""
-    for cell, outcome in zip(finished.run.cells, finished.outcomes, strict=True):
-        if outcome.status != "complete":
-            typer.echo(f"  {mark(False)}  {cell.label or 'the cell'}: {outcome.status}")
+    for cell in finished.ended_early:
+        typer.echo(f"  {mark(False)}  {cell.label or 'the cell'}: {cell.status}")
     failed = [verdict for verdict in finished.verdicts if not verdict.passed]
     for verdict in failed[:FAILURES_SHOWN]:
         typer.echo("\n".join(f"  {line}" for line in verdict.message.splitlines()))

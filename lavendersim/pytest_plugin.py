@@ -17,6 +17,7 @@ import pytest
 if TYPE_CHECKING:
     from lavendersim.runner import Finished
 
+FULL = "--lavender-full"
 _EXPERIMENT = re.compile(rb"^scene[ \t]*:", re.MULTILINE)
 # Experiments are small; a larger YAML file is somebody's data.
 _LARGEST_FILE = 1 << 20
@@ -31,6 +32,17 @@ def _is_experiment(path: Path) -> bool:
     if (path.parent / "cells.json").exists():  # a copy in the directory of a run
         return False
     return _EXPERIMENT.search(path.read_bytes()) is not None
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Add the option that runs slow experiments in full."""
+    group = parser.getgroup("lavender")
+    group.addoption(FULL, action="store_true", help="run slow experiments at their full length")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Make the marker known by which slow experiments can be chosen or left out."""
+    config.addinivalue_line("markers", "slow: a config that says `slow: true`")
 
 
 def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> pytest.Collector | None:
@@ -62,7 +74,7 @@ class ExperimentFile(pytest.File):
         from lavendersim.measures import judge_nodes
 
         try:
-            experiment = load_experiment(self.path)
+            experiment = load_experiment(self.path, self._reduced)
             if experiment.switches_effects:
                 from lavendersim.runner.plans import check_overrides
 
@@ -70,16 +82,25 @@ class ExperimentFile(pytest.File):
         except LavenderError as error:
             raise self.CollectError(str(error)) from None
         for number, node in enumerate([COMPLETES, *judge_nodes(experiment)]):
-            yield ExpectationItem.from_parent(self, name=node, number=number - 1)
+            item = ExpectationItem.from_parent(self, name=node, number=number - 1)
+            if experiment.config.slow:
+                item.add_marker(pytest.mark.slow)
+            yield item
+
+    @property
+    def _reduced(self) -> bool:
+        return not self.config.getoption(FULL)
 
     def finished(self) -> Finished:
         """Run the experiment, the first time it is asked for."""
         if self._finished is None:
+            from lavendersim.experiment import load_experiment
             from lavendersim.runner import run
 
+            experiment = load_experiment(self.path, self._reduced)
             factory: pytest.TempPathFactory = self.config._tmp_path_factory  # type: ignore[attr-defined]
             # Prices are read by people, on a quiet machine; nothing is expected of them.
-            self._finished = run(self.path, factory.mktemp(self.path.stem), prices=False)
+            self._finished = run(experiment, factory.mktemp(self.path.stem), prices=False)
             self.config.stash.setdefault(_UNSOLVED, []).extend(self._finished.unsolved)
         return self._finished
 
@@ -102,8 +123,7 @@ class ExpectationItem(pytest.Item):
         if self.number < 0:
             ended = [
                 f"{cell.label or 'the cell'}: {cell.status}\n  log        {cell.path}"
-                for cell in finished.run.cells
-                if cell.status != "complete"
+                for cell in finished.ended_early
             ]
             if ended:
                 raise Unmet("\n".join(ended))

@@ -11,6 +11,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from lavendersim.errors import ConfigError, Defect
+from lavendersim.experiment.always_checks import check_always
 from lavendersim.experiment.messages import report_errors
 from lavendersim.experiment.models import CellSource
 from lavendersim.experiment.node import Node, Path, key_mark
@@ -27,6 +28,7 @@ def check_cell(tree: Node, report: Report) -> None:
     """Note what is wrong between the values of one cell, beyond the types of its values."""
     check_scene(tree, report)
     check_run(tree, report)
+    check_always(tree, report)
     check_names(tree, CellSource, frozenset(), report)
 
 

@@ -9,6 +9,13 @@ Judged cell by cell: `between`, `at_most`, `at_least`, `exactly`, `equals`, `row
 Judged across cells: `increasing`, `decreasing`, `ratio`, `order`, `crosses`.
 An expectation that selects no cell fails, and so does NaN: a check that cannot fail is none.
 
+A negative control says `fails` instead of a measure and a judgement:
+
+    - {name: a gain above 1 wins energy, fails: energy}
+
+It names an expectation of the file, a check of `always`, or `completes` (a cell that diverges), and
+passes when exactly that fails, and nothing else does, in every cell that it selects.
+
 What this asks of the loader: `sweep` is one mapping of axes or a list of such mappings. A list is
 the union of the products, in order; an axis absent from a product keeps the config's own value
 and is absent from the coordinates of its cells. An axis with a single value is allowed.
@@ -112,10 +119,15 @@ class Crosses(ConfigModel):
 
 
 class ExpectSpec(ConfigModel):
-    """One claim about a measure; exactly one judgement."""
+    """One claim about a measure with exactly one judgement, or what must fail."""
 
     name: str = Field(min_length=1, description="what is claimed, in words; the name of the test")
-    measure: MeasureName = Field(description="the measure the claim is about")
+    measure: MeasureName = Field(default="", description="the measure the claim is about")
+    fails: str | None = Field(
+        default=None,
+        description="instead of a measure: the expectation, check of `always` or `completes` that "
+        "must fail, and nothing else",
+    )
     at: Selection = Field(
         default_factory=dict,
         description="the cells it is about; all that have the measure, if absent",
@@ -141,6 +153,13 @@ class ExpectSpec(ConfigModel):
         given = [
             key for key in (*CELL_JUDGEMENTS, *SWEEP_JUDGEMENTS) if getattr(self, key) is not None
         ]
+        if self.fails is not None:
+            if given or self.measure:
+                besides = ", ".join([*(["measure"] if self.measure else []), *given])
+                raise _refusal(f"expected nothing beside fails but name and at; found {besides}")
+            return self
+        if not self.measure:
+            raise _refusal('missing key "measure": the measure the claim is about')
         if len(given) != 1:
             kinds = ", ".join((*CELL_JUDGEMENTS, *SWEEP_JUDGEMENTS))
             found = ", ".join(given) if given else "none"

@@ -8,6 +8,7 @@ from typing import Any
 
 import yaml
 
+from lavendersim.experiment.always_specs import Always
 from lavendersim.experiment.cell import Cell
 from lavendersim.experiment.cost_specs import CostSpec
 from lavendersim.experiment.expect_specs import ExpectSpec
@@ -27,6 +28,7 @@ class Experiment:
     config: ExperimentConfig  # as written, with the first value of every axis
     axes: dict[str, tuple[Any, ...]]  # axis -> its values, over all products of the sweep
     _cells: tuple[Cell, ...] = field(repr=False)
+    reduced: bool = False  # a slow one, at its reduced length
 
     @property
     def question(self) -> str:
@@ -46,7 +48,17 @@ class Experiment:
     @property
     def expectations(self) -> tuple[ExpectSpec, ...]:
         """The claims that are checked, in the order of the file."""
-        return self.config.expect
+        return tuple(claim for claim in self.config.expect if claim.fails is None)
+
+    @property
+    def controls(self) -> tuple[ExpectSpec, ...]:
+        """What must fail, in the order of the file."""
+        return tuple(claim for claim in self.config.expect if claim.fails is not None)
+
+    @property
+    def always(self) -> Always | None:
+        """What every step of every cell must keep."""
+        return self.config.always
 
     @property
     def figure(self) -> FigureSpec | None:

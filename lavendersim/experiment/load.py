@@ -21,6 +21,7 @@ from lavendersim.experiment.messages import report_errors
 from lavendersim.experiment.models import ExperimentConfig
 from lavendersim.experiment.node import Node, key_mark
 from lavendersim.experiment.parse import LARGEST_FILE, decode, parse
+from lavendersim.experiment.reduction import check_reduction, reduce
 from lavendersim.experiment.references import check_references, swept_values
 from lavendersim.experiment.report import Report
 
@@ -29,8 +30,8 @@ from lavendersim.experiment.report import Report
 MOST_CELLS_CHECKED = 1000
 
 
-def load_experiment(path: str | os.PathLike[str]) -> Experiment:
-    """Read and validate one config file.
+def load_experiment(path: str | os.PathLike[str], reduced: bool = False) -> Experiment:
+    """Read and validate one config file; reduced: a slow experiment at its reduced length.
 
     Raises ConfigError with all defects of the file, UsageError when it cannot be read.
     """
@@ -41,16 +42,16 @@ def load_experiment(path: str | os.PathLike[str]) -> Experiment:
             size = os.fstat(stream.fileno()).st_size
     except OSError as error:
         raise UsageError(f"{file}: {(error.strerror or str(error)).lower()}") from None
-    return _load(raw, file, str(file), max(size, len(raw)))
+    return _load(raw, file, str(file), max(size, len(raw)), reduced)
 
 
-def load_experiment_text(text: str | bytes, name: str) -> Experiment:
+def load_experiment_text(text: str | bytes, name: str, reduced: bool = False) -> Experiment:
     """Validate a config given as text; `name` stands for the file in messages."""
     raw = text.encode("utf-8", "surrogatepass") if isinstance(text, str) else text
-    return _load(raw, Path(name), name, len(raw))
+    return _load(raw, Path(name), name, len(raw), reduced)
 
 
-def _load(raw: bytes, path: Path, name: str, size: int) -> Experiment:
+def _load(raw: bytes, path: Path, name: str, size: int, reduced: bool) -> Experiment:
     root, defects = parse(raw, name, size)
     report = Report(name, defects)
     if root is None:
@@ -58,6 +59,8 @@ def _load(raw: bytes, path: Path, name: str, size: int) -> Experiment:
     if not isinstance(root.content, dict):
         report.add(root.mark, f"expected a mapping with scene and duration, {_found(root)}")
         raise ConfigError(report.defects)
+    check_reduction(root, report)
+    root, shortened = reduce(root) if reduced else (root, False)
     axes = sweep.axes_of(root, report)
     config = _check_first(root, axes, report)
     cells = sweep.count(axes)
@@ -73,7 +76,7 @@ def _load(raw: bytes, path: Path, name: str, size: int) -> Experiment:
         axis: tuple(dict.fromkeys(sweep.swept_value(node.data) for node in nodes))
         for axis, nodes in swept_values(root).items()
     }
-    return Experiment(path.stem, path, decode(raw), config, values, made)
+    return Experiment(path.stem, path, decode(raw), config, values, made, shortened)
 
 
 def _check_first(

@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field, Tag
 
+from lavendersim.experiment.always_specs import Always
 from lavendersim.experiment.base import ConfigModel
 from lavendersim.experiment.cost_specs import CostSpec
 from lavendersim.experiment.expect_specs import ExpectSpec
@@ -199,6 +200,14 @@ class CellSource(ConfigModel):
     )
 
 
+class Reduced(ConfigModel):
+    """What of a slow experiment is run where time is short: its beginning."""
+
+    duration: Annotated[float, Quantity("s", above=0)] = Field(
+        description="[s] simulated time of a reduced run"
+    )
+
+
 class ExperimentConfig(CellSource):
     """One experiment: a question, a scene, what is varied, measured, expected and drawn."""
 
@@ -211,6 +220,15 @@ class ExperimentConfig(CellSource):
     )
     measure: dict[NewName, MeasureSpec] = Field(default={}, description="name: what each log gives")
     expect: tuple[ExpectSpec, ...] = Field(default=(), description="the claims that pytest checks")
+    always: Always | None = Field(
+        default=None, description="what every step of every cell must keep; not judged if absent"
+    )
+    slow: bool = Field(
+        default=False,
+        description="true: `lavender check` and pytest run it at its reduced length, unless asked "
+        "for all of it",
+    )
+    reduced: Reduced | None = Field(default=None, description="of a slow experiment: what is run")
     figure: FigureSpec | None = Field(default=None, description="what `lavender plot` draws")
     price: PriceSpec | None = Field(default=None, description="what each effect costs is taken")
     cost: CostSpec | None = Field(

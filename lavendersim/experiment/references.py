@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping
 
+from lavendersim.experiment.always_specs import CHECKS, COMPLETES, DIVERGES, NONE
 from lavendersim.experiment.found import nearest, quoted
 from lavendersim.experiment.messages import name_of
 from lavendersim.experiment.names import NamedKind
@@ -123,6 +124,32 @@ def _check_expectation_names(root: Node, report: Report) -> None:
             sentence = f"name: {quoted(name.text)} is the name of another expectation, line {line}"
             report.add(name.mark, sentence)
         first.setdefault(name.text, name.mark)
+    _check_controls(root, report)
+
+
+def _check_controls(root: Node, report: Report) -> None:
+    """Note what must fail but does not exist, or is the name of two."""
+    expect, always = root.get("expect"), root.get("always")
+    items = expect.items if expect is not None else ()
+    names = [item.get("name") for item in items if item.get("fails") is None]
+    claims = [name.text for name in names if name is not None and name.text is not None]
+    checks = [COMPLETES, DIVERGES]
+    for check in CHECKS if always is not None else ():
+        stated = always.get(check) if always is not None else None
+        checks += [check] if stated is None or stated.text != NONE else []
+    for item in items:
+        fails = item.get("fails")
+        if fails is None or fails.text is None:
+            continue
+        if fails.text in claims and fails.text in checks:
+            sentence = (
+                f"fails: {quoted(fails.text)} is an expectation and a check; rename the first"
+            )
+            report.add(fails.mark, sentence)
+        elif fails.text not in claims and fails.text not in checks:
+            hint = nearest(fails.text, [*checks, *claims])
+            sentence = f"fails: no expectation or check is called {quoted(fails.text)}{hint}"
+            report.add(fails.mark, sentence)
 
 
 def _entries(root: Node, *path: str) -> Mapping[str, Node]:

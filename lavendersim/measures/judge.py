@@ -1,25 +1,32 @@
-"""The expectations of an experiment and the logs of its cells in; one Verdict per claim out.
+"""An experiment's claims and the logs of its cells in; one Verdict per claim out.
 
-`judge_nodes` gives the same claims from the config alone, so a test runner can list them before
-anything has run. An expectation that selects no cell is one claim that fails.
+A claim is an expectation in one cell or across cells, a check of `always` in one cell, or a
+negative control. `judge_nodes` gives the same claims from the config alone, so a test runner can
+list them before anything has run. An expectation that selects no cell is one claim that fails.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from typing import Any, Protocol
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple, Protocol
 
 from lavendersim.errors import LavenderError
+from lavendersim.experiment.always_specs import Always
 from lavendersim.experiment.expect_specs import ExpectSpec
 from lavendersim.experiment.measure_specs import MeasureSpec
+from lavendersim.measures import controls
+from lavendersim.measures.always import COMPLETE, PREFIX
 from lavendersim.measures.cell_judgements import judge_cell
 from lavendersim.measures.selection import coordinates_text, select, telling_axes
 from lavendersim.measures.sweep_judgements import judge_sweep
 from lavendersim.measures.values import Values
 from lavendersim.measures.verdict import Outcome, Verdict, failure
 from lavendersim.measures.views import Cell
+from lavendersim.measures.watch import checks_of
 
 Measures = Mapping[str, MeasureSpec]
+# By the cell's index: the outcome of each of its checks.
+AlwaysOutcomes = Mapping[int, Mapping[str, Outcome]]
 
 
 class _Planned(Protocol):
@@ -29,13 +36,30 @@ class _Planned(Protocol):
     def measures(self) -> Measures: ...
     @property
     def expectations(self) -> Sequence[ExpectSpec]: ...
+    @property
+    def controls(self) -> Sequence[ExpectSpec]: ...
+    @property
+    def always(self) -> Always | None: ...
     def cells(self) -> Sequence[Any]: ...
+
+
+class Claim(NamedTuple):
+    """Something to be judged once."""
+
+    name: str  # of the expectation or the check, as a negative control names it
+    node: str  # `rebound at e=0.8`, unique in the experiment
+    cells: tuple[Any, ...]
+    expectation: ExpectSpec | None = None  # None: a check of `always`
 
 
 def judge_nodes(experiment: _Planned) -> list[str]:
     """Return the names of all verdicts of an experiment, in the order of `judge`."""
-    claims = _claims(experiment.measures, experiment.expectations, experiment.cells())
-    return [node for _, node, _ in claims]
+    cells = experiment.cells()
+    claims = _claims(experiment.measures, experiment.expectations, cells)
+    claims += _checks(experiment.always, cells)
+    left = controls.uncontrolled(claims, experiment.controls, cells)
+    judged = controls.trials(claims, experiment.controls, cells)
+    return [claim.node for claim in left] + [trial.node for trial in judged]
 
 
 def judge(
@@ -43,37 +67,70 @@ def judge(
     expectations: Sequence[ExpectSpec],
     cells: Sequence[Cell],
     values: Values | None = None,
+    always: Always | None = None,
+    outcomes: AlwaysOutcomes | None = None,
+    meant_to_fail: Sequence[ExpectSpec] = (),
 ) -> list[Verdict]:
-    """Return one verdict per claim, in the order of the expectations and of the cells.
+    """Return one verdict per claim: expectations, checks of every step, negative controls.
 
-    values: measures of these cells that were taken already.
+    values: measures of these cells that were taken already; outcomes: of the checks of `always`.
     """
     values = values or Values(measures)
-    verdicts = []
-    for expectation, node, chosen in _claims(measures, expectations, cells):
-        outcome = _outcome(expectation, chosen, values)
-        verdicts.append(_verdict(expectation, node, outcome, _path(chosen)))
-    return verdicts
+    claims = _claims(measures, expectations, cells) + _checks(always, cells)
+    raw = {claim.node: _judged(claim, values, outcomes or {}) for claim in claims}
+    left = controls.uncontrolled(claims, meant_to_fail, cells)
+    judged = controls.trials(claims, meant_to_fail, cells)
+    return [raw[claim.node] for claim in left] + [
+        controls.verdict_of(trial, claims, raw) for trial in judged
+    ]
 
 
 def _claims(
     measures: Measures, expectations: Sequence[ExpectSpec], cells: Sequence[Any]
-) -> Iterator[tuple[ExpectSpec, str, list[Any]]]:
-    """Yield (expectation, node, cells to judge) of every claim."""
+) -> list[Claim]:
+    """Return the claims of the expectations, in their order and that of the cells."""
+    claims: list[Claim] = []
     for expectation in expectations:
+        name = expectation.name
         chosen = select(cells, measures[expectation.measure].at, expectation.at)
         if not expectation.per_cell or not chosen:
-            yield expectation, expectation.name, chosen
+            claims.append(Claim(name, name, tuple(chosen), expectation))
             continue
-        axes = telling_axes(chosen, expectation.at)
-        for cell in chosen:
-            told = [axis for axis in cell.coordinates if axis in axes]
-            where = coordinates_text(cell.coordinates, told)
-            yield (
-                expectation,
-                f"{expectation.name} at {where}" if where else expectation.name,
-                [cell],
-            )
+        nodes = nodes_of(name, chosen, expectation.at)
+        claims += [
+            Claim(name, node, (cell,), expectation)
+            for node, cell in zip(nodes, chosen, strict=True)
+        ]
+    return claims
+
+
+def _checks(always: Always | None, cells: Sequence[Any]) -> list[Claim]:
+    """Return the checks of every step: cell by cell, in the order of CHECKS."""
+    names = checks_of(always)
+    nodes = {name: nodes_of(f"{PREFIX}{name}", cells, {}) for name in names}
+    return [
+        Claim(name, nodes[name][index], (cell,))
+        for index, cell in enumerate(cells)
+        for name in names
+    ]
+
+
+def nodes_of(name: str, cells: Sequence[Any], selection: Mapping[str, Any]) -> list[str]:
+    """Return the node of a claim in each of some cells: what tells them apart behind its name."""
+    axes = telling_axes(cells, selection)
+    places = [
+        coordinates_text(cell.coordinates, [axis for axis in cell.coordinates if axis in axes])
+        for cell in cells
+    ]
+    return [f"{name} at {place}" if place else name for place in places]
+
+
+def _judged(claim: Claim, values: Values, outcomes: AlwaysOutcomes) -> Verdict:
+    if claim.expectation is None:
+        outcome = outcomes[claim.cells[0].index][claim.name]
+        return _verdict(f"{PREFIX}{claim.name}", claim, outcome, "")
+    outcome = _outcome(claim.expectation, claim.cells, values)
+    return _verdict(claim.name, claim, outcome, f" ({claim.expectation.measure})")
 
 
 def _outcome(expectation: ExpectSpec, cells: Sequence[Cell], values: Values) -> Outcome:
@@ -81,8 +138,9 @@ def _outcome(expectation: ExpectSpec, cells: Sequence[Cell], values: Values) -> 
         return failure(expectation.judgement, "the expectation selects no cell of the sweep")
     try:
         for cell in cells:
-            if (status := cell.trace().status) != "complete":
-                return failure("a complete run", f"{cell.label or 'the cell'}: {status}")
+            if (status := cell.trace().status) != COMPLETE:
+                said = f"{cell.label or 'the cell'}: {status}"
+                return failure("a complete run", said, follows=True)
         if expectation.per_cell:
             row = values.row(expectation.measure, cells[0])
             return judge_cell(expectation, row, cells[0].trace())
@@ -97,22 +155,25 @@ def _path(cells: Sequence[Cell]) -> str:
     return str(cells[0].path if len(cells) == 1 else cells[0].path.parent)
 
 
-def _verdict(expectation: ExpectSpec, node: str, outcome: Outcome, path: str) -> Verdict:
+def _verdict(name: str, claim: Claim, outcome: Outcome, of_what: str) -> Verdict:
+    path = _path(claim.cells)
     lines = [
-        f"{node}: {'passed' if outcome.passed else 'FAILED'}",
-        f"  measured   {outcome.measured!r} ({expectation.measure})",
+        f"{claim.node}: {'passed' if outcome.passed else 'FAILED'}",
+        f"  measured   {outcome.measured!r}{of_what}",
         f"  expected   {outcome.expected}",
         f"  tolerance  {outcome.tolerance}",
     ]
     lines += [f"  because    {outcome.reason}"] if outcome.reason else []
     lines += [f"  log        {path}"] if path else []
     return Verdict(
-        name=expectation.name,
-        node=node,
+        name=name,
+        node=claim.node,
         passed=outcome.passed,
         measured=outcome.measured,
         expected=outcome.expected,
         tolerance=outcome.tolerance,
         message="\n".join(lines),
         path=path,
+        follows=outcome.follows,
+        margin=outcome.margin,
     )

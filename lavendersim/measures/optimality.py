@@ -46,7 +46,7 @@ def optimality(spec: Optimality, trace: Trace) -> Floats:
         np.maximum(np.abs(np.minimum(pushed, away)) - residual, 0.0),
     ]
     if "impulse_t1" in (contacts.dtype.names or ()):
-        mu = _friction_of(contacts, [one.friction for one in configs])
+        mu = friction_of(contacts, [one.friction for one in configs])
         cone, sliding = _friction(trace, contacts, least, mu)
         violations += [cone, np.maximum(sliding - residual, 0.0)]
     return np.array([float(np.max(one)) for one in violations])
@@ -59,7 +59,7 @@ def _summed(contacts: Rows, of_bodies: list[float]) -> Floats:
     return total
 
 
-def _friction_of(contacts: Rows, of_bodies: list[float]) -> Floats:
+def friction_of(contacts: Rows, of_bodies: list[float]) -> Floats:
     """Return mu of each contact by the config: the geometric mean of its two surfaces."""
     values = np.array(of_bodies)
     mu: Floats = np.sqrt(values[contacts["body_a"]] * values[contacts["body_b"]])

@@ -13,6 +13,8 @@ class Outcome(NamedTuple):
     expected: str
     tolerance: str
     reason: str = ""  # where it failed, when the numbers do not say it
+    follows: bool = False  # failed because the cell did not complete
+    margin: float = float("nan")  # share of the bound that is left; below 0 outside [-]
 
 
 class Verdict(NamedTuple):
@@ -26,8 +28,10 @@ class Verdict(NamedTuple):
     tolerance: str
     message: str
     path: str  # of the log, or of the logs' directory when several are compared
+    follows: bool = False  # failed because the cell did not complete
+    margin: float = float("nan")  # share of the bound that is left; NaN where there is no such
 
 
-def failure(expected: str, reason: str) -> Outcome:
+def failure(expected: str, reason: str, follows: bool = False) -> Outcome:
     """Return the outcome of an expectation for which there is nothing to measure."""
-    return Outcome(False, float("nan"), expected, "none", reason)
+    return Outcome(False, float("nan"), expected, "none", reason, follows)

@@ -51,12 +51,20 @@ class Trace(Protocol):
         """Length of a step [s]."""
 
     @property
+    def absent(self) -> Mapping[str, str]:
+        """Topics that the log does without, and why."""
+
+    @property
     def status(self) -> str:
         """`complete`, or why the run stopped."""
 
 
 class Cell(Protocol):
     """One cell of a sweep that has been run."""
+
+    @property
+    def index(self) -> int:
+        """Its place in the sweep, from 0."""
 
     @property
     def label(self) -> str:

@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 from lavendersim.errors import ConfigError, Defect, UsageError
 from lavendersim.experiment import Experiment, load_experiment, resolved_yaml
 from lavendersim.experiment.record_models import NONE
-from lavendersim.measures import Values, Verdict, judge
+from lavendersim.measures import Values, Verdict, judge, meant_to_end_early
 
 from .environment import environment
 from .results import compile_seconds, measure_cells, unsolved_notices, write_results
@@ -29,6 +29,7 @@ from .run_directory import (
     RESOLVED,
     RUNS,
     Run,
+    RunCell,
     is_run_directory,
     point_latest,
 )
@@ -44,9 +45,15 @@ class Finished(NamedTuple):
 
     @property
     def good(self) -> bool:
-        """Whether every cell completed and every expectation was met."""
-        complete = all(outcome.status == "complete" for outcome in self.outcomes)
-        return complete and all(verdict.passed for verdict in self.verdicts)
+        """Whether every cell completed that should, and every claim was met."""
+        return not self.ended_early and all(verdict.passed for verdict in self.verdicts)
+
+    @property
+    def ended_early(self) -> list[RunCell]:
+        """The cells that did not complete, but for those that a negative control wants so."""
+        wanted = meant_to_end_early(self.run.experiment.controls, self.run.cells)
+        ended = [cell for cell in self.run.cells if cell.status != "complete"]
+        return [cell for cell in ended if cell.index not in wanted]
 
     @property
     def compile_s(self) -> float:
@@ -94,8 +101,10 @@ def find_configs(paths: list[Path]) -> list[Path]:
     return list(dict.fromkeys(found))
 
 
-def load_all(paths: list[Path]) -> list[Experiment]:
+def load_all(paths: list[Path], reduced: bool = False) -> list[Experiment]:
     """Load every config among `paths`; raises ConfigError with the defects of all files.
+
+    reduced: slow experiments at their reduced length.
 
     Effects that are switched by hand are among them: whether they can be, the scene's plan tells.
     """
@@ -103,7 +112,7 @@ def load_all(paths: list[Path]) -> list[Experiment]:
     defects: list[Defect] = []
     for path in find_configs(paths):
         try:
-            experiment = load_experiment(path)
+            experiment = load_experiment(path, reduced)
             if experiment.price is not None:
                 from .prices import check_price  # late: other configs load without numba
 
@@ -209,8 +218,16 @@ def run(
     outcomes = [ended[job.path]._replace(cell=job.cell) for job in pending]
     finished = Run(directory)
     values = Values(experiment.measures)
-    measured = measure_cells(finished, experiment, values)
-    verdicts = judge(experiment.measures, experiment.expectations, finished.cells, values)
+    measured, always = measure_cells(finished, experiment, values)
+    verdicts = judge(
+        experiment.measures,
+        experiment.expectations,
+        finished.cells,
+        values,
+        experiment.always,
+        always,
+        experiment.controls,
+    )
     result = Finished(finished, outcomes, verdicts)
     priced = None
     if prices and experiment.price is not None:
@@ -238,7 +255,8 @@ def _write_index(
         }
         for cell, job in zip(experiment.cells(), jobs, strict=True)
     ]
-    _write_json(directory / CELLS, {"experiment": experiment.name, "cells": rows})
+    table = {"experiment": experiment.name, "reduced": experiment.reduced, "cells": rows}
+    _write_json(directory / CELLS, table)
 
 
 def _write_json(path: Path, table: dict[str, Any]) -> None:

@@ -55,7 +55,9 @@ class Run:
     def experiment(self) -> Experiment:
         """The experiment as it was run."""
         text = (self.path / CONFIG).read_bytes()
-        return replace(load_experiment_text(text, str(self.path / CONFIG)), name=self.name)
+        reduced = bool(self._index.get("reduced", False))
+        experiment = load_experiment_text(text, str(self.path / CONFIG), reduced)
+        return replace(experiment, name=self.name)
 
     @cached_property
     def name(self) -> str:

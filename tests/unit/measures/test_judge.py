@@ -235,7 +235,9 @@ def test_a_measure_is_judged_only_where_it_is_taken() -> None:
 def test_nodes_name_the_axes_that_tell_cells_apart_and_match_the_verdicts() -> None:
     cells = [cell(0.0, e=0.8, dt=1, p=p) for p in (0, 1)]
     claims = [expect(at={"e": 0.8}, at_most=1.0), expect(increasing={"along": "p"})]
-    experiment = SimpleNamespace(measures=MEASURES, expectations=claims, cells=lambda: cells)
+    experiment = SimpleNamespace(
+        measures=MEASURES, expectations=claims, controls=(), always=None, cells=lambda: cells
+    )
     nodes = judge_nodes(experiment)
     assert nodes == ["claim at e=0.8, p=0", "claim at e=0.8, p=1", "claim"]
     assert [verdict.node for verdict in judge(MEASURES, claims, cells)] == nodes

@@ -1,0 +1,128 @@
+"""A log in; for every step what of its energy and of its momentum nothing accounts for, out.
+
+Energy. Let a step take velocities v' to v = v' + (g + F/m) dt + j/m and places by v dt. With the
+potential -m g . x and the work F . v dt of the forces of the config, the energy it creates is
+    v . j - m |v - v'|^2 / 2,  summed over bodies,
+and sum v . j = sum over contacts w . lambda, w their relative velocities after the solve. That is 0
+along a normal that neither rebounds nor is pushed by stabilisation (complementarity), below 0 under
+friction: no step creates energy. A body in free flight moves by the mean of v' and v (`midpoint`),
+which conserves it exactly; one that rebounds at the surface with e <= 1 loses (1 - e^2) of what it
+brings; compliance takes energy. What can create some without being wrong is the projection, which
+lifts what sank: at most M |g| times the sum over contacts of what it opens,
+    projection * max(d - v_n dt - slop, 0),   d the penetration, v_n after the solve.
+So energy less work, less what events and the projection gave, never rises above its first value,
+and it is counted relative to what is at play: the first kinetic energy, M |g| times the radius of
+each body, what the potential energy has fallen by so far and the work of the forces. A step solved
+to the residual r creates at most r times the sum of its impulses: at 1e-9 m/s a ball of 0.1 m at
+rest needs 100 s to reach 1e-6 of its weight times its radius, at the worst.
+A gain (`stabilisation_gain`) turns penetration into velocity and does create energy; restitution
+captured at the start of a step (`impacts: captured`) creates up to m |g| dt times the speed, since
+the body moves off from where it began the step. Both are errors of those laws, and are counted.
+
+Momentum. p - p' = M g dt + sum F dt + J, J the impulses between movable and other bodies, friction
+included; impulses between movable bodies cancel. All of it is exact but for round-off: every
+impulse is added to two velocities in each sweep, so a thousand roundings of 1e-16 of what enters.
+It is counted relative to that: the impulses of all contacts, M |g| dt, |F| dt, and sqrt(2 M K),
+which no sum m |v| exceeds (Cauchy and Schwarz), before and after the step.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from lavendersim.measures import cell_config, changes
+from lavendersim.measures.columns import mechanical_energy
+from lavendersim.measures.extent import bounding_radius
+from lavendersim.measures.laws import impulses
+from lavendersim.measures.views import Floats, Rows, Trace
+
+
+def contacts_of_log(trace: Trace) -> Rows | None:
+    """Return the contact rows; None where nothing can touch."""
+    return None if "/contacts" in trace.absent else trace.contact
+
+
+def by_step(trace: Trace, contacts: Rows, numbers: Floats) -> Floats:
+    """Return the sum of a number of each contact in every logged step."""
+    positions = np.searchsorted(trace.step["step"], contacts["step"])
+    sums: Floats = np.bincount(positions, numbers, minlength=len(trace.step)).astype(np.float64)
+    return sums
+
+
+def energy_created(trace: Trace) -> Floats:
+    """Return, in every state, the energy created since the start over that at play [-]."""
+    energy = mechanical_energy(trace)
+    work = changes.work_of_forces(trace)
+    given = np.cumsum(work + changes.given_by_events(trace) + _lifted(trace))
+    created = energy - energy[0] - given
+    potential = trace.step["potential_energy"]
+    at_play = (
+        float(trace.step["kinetic_energy"][0])
+        + _own_weight(trace)
+        + np.maximum(potential[0] - np.minimum.accumulate(potential), 0.0)
+        + np.cumsum(np.abs(work))
+        + np.cumsum(np.maximum(changes.given_by_events(trace), 0.0))
+    )
+    with np.errstate(invalid="ignore", divide="ignore"):
+        share = np.where(at_play > 0.0, created / at_play, np.where(created > 0.0, np.inf, 0.0))
+    # nothing that is not finite may pass
+    result: Floats = np.where(np.isfinite(created), share, np.nan)
+    return result
+
+
+def momentum_gap(trace: Trace) -> Floats:
+    """Return what each step's change of momentum lacks, over what enters its balance [-]."""
+    gaps = np.zeros(len(trace.step))
+    momentum = np.column_stack([trace.step[f"momentum_{axis}"] for axis in "xyz"])
+    # counted in steps: logged times are whole nanoseconds
+    dt = np.diff(trace.step["step"]) * float(trace.timestep)
+    gravity, mass = cell_config.gravity(trace.resolved), changes.masses(trace)
+    forces = changes.forces(trace)
+    outer, size = _impulses(trace)
+    expected = (mass[1:, None] * gravity + forces[1:]) * dt[:, None] + outer[1:]
+    lack = np.diff(momentum, axis=0) - expected
+    carried = np.sqrt(2.0 * mass * trace.step["kinetic_energy"])
+    enters = size[1:] + carried[1:] + carried[:-1]
+    enters += (mass[1:] * math.hypot(*gravity) + np.sqrt((forces[1:] ** 2).sum(axis=1))) * dt
+    lengths = np.sqrt((lack**2).sum(axis=1))
+    with np.errstate(invalid="ignore", divide="ignore"):
+        gaps[1:] = np.where(lengths == 0.0, 0.0, lengths / enters)
+    gaps[changes.unknown_momentum(trace)] = 0.0
+    return gaps
+
+
+def _impulses(trace: Trace) -> tuple[Floats, Floats]:
+    """Return the impulse on everything movable (n, 3), and the sum of sizes, of each step [N s]."""
+    contacts = contacts_of_log(trace)
+    outer, size = np.zeros((len(trace.step), 3)), np.zeros(len(trace.step))
+    if contacts is None or len(contacts) == 0:
+        return outer, size
+    configs = {one.name: one for one in cell_config.bodies(trace.resolved)}
+    movable = np.array([configs[name].movable for name in trace.bodies], dtype=float)
+    vectors = impulses(contacts)
+    sign = movable[contacts["body_b"]] - movable[contacts["body_a"]]  # 0 between two movable ones
+    for axis in range(3):
+        outer[:, axis] = by_step(trace, contacts, sign * vectors[:, axis])
+    return outer, by_step(trace, contacts, np.sqrt((vectors**2).sum(axis=1)))
+
+
+def _own_weight(trace: Trace) -> float:
+    """Return the sum of m |g| times the radius of each movable body [J]."""
+    pull = math.hypot(*cell_config.gravity(trace.resolved))
+    bodies = [one for one in cell_config.bodies(trace.resolved) if one.movable]
+    return pull * sum(one.mass * bounding_radius(one.shape) for one in bodies)
+
+
+def _lifted(trace: Trace) -> Floats:
+    """Return the most that the projection can lift in each step [J]."""
+    contacts = contacts_of_log(trace)
+    share = cell_config.numerics(trace.resolved, "projection")
+    pull = math.hypot(*cell_config.gravity(trace.resolved))
+    if contacts is None or len(contacts) == 0 or share == 0.0 or pull == 0.0:
+        return np.zeros(len(trace.step))
+    deep = -(contacts["separation"] + contacts["normal_velocity"] * float(trace.timestep))
+    opened = share * np.maximum(deep - cell_config.numerics(trace.resolved, "slop"), 0.0)
+    lifted: Floats = pull * changes.masses(trace) * by_step(trace, contacts, opened)
+    return lifted

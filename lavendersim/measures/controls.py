@@ -1,0 +1,118 @@
+"""Negative controls (`fails`) and the verdicts on everything else in; their own verdicts out.
+
+A control passes when exactly what it names fails, in each of its cells, and nothing else does
+there. What it names is then judged by the control alone and stands in no list of its own: a failure
+that is asked for is no failure. A cell that must not complete has nothing else to judge. What fails
+only because its cell did not complete is that one failure, not another.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+from lavendersim.experiment.always_specs import COMPLETES, DIVERGES
+from lavendersim.experiment.expect_specs import ExpectSpec
+from lavendersim.measures.always import COMPLETE
+from lavendersim.measures.selection import coordinates_text, select, telling_axes
+from lavendersim.measures.verdict import Verdict
+
+
+class Trial(NamedTuple):
+    """A control in one cell, or once where what it names is judged across cells."""
+
+    control: ExpectSpec
+    node: str
+    cells: tuple[Any, ...]
+
+
+def of_completion(control: ExpectSpec) -> bool:
+    """Tell whether the control asks for a cell that does not complete."""
+    return control.fails in (COMPLETES, DIVERGES)
+
+
+def meant_to_end_early(controls: Sequence[ExpectSpec], cells: Sequence[Any]) -> frozenset[int]:
+    """Return the indices of the cells that must not complete."""
+    chosen = [select(cells, control.at) for control in controls if of_completion(control)]
+    return frozenset(cell.index for some in chosen for cell in some)
+
+
+def uncontrolled(
+    claims: Sequence[Any], controls: Sequence[ExpectSpec], cells: Sequence[Any]
+) -> list[Any]:
+    """Return the claims that no control has taken over."""
+    taken = [(control, _indices(select(cells, control.at))) for control in controls]
+    return [
+        claim
+        for claim in claims
+        if not any(_takes(control, indices, claim) for control, indices in taken)
+    ]
+
+
+def _takes(control: ExpectSpec, indices: frozenset[int], claim: Any) -> bool:
+    if not of_completion(control) and claim.name != control.fails:
+        return False
+    across = len(claim.cells) != 1
+    if across and claim.name == control.fails:
+        return True
+    return bool(claim.cells) and _indices(claim.cells) <= indices
+
+
+def trials(
+    claims: Sequence[Any], controls: Sequence[ExpectSpec], cells: Sequence[Any]
+) -> list[Trial]:
+    """Return what is judged of each control; one that selects no cell is one that fails."""
+    made: list[Trial] = []
+    for control in controls:
+        named = [claim for claim in claims if claim.name == control.fails]
+        across = any(len(claim.cells) > 1 for claim in named)
+        chosen = select(cells, control.at)
+        if across or not chosen:
+            made.append(Trial(control, control.name, tuple(chosen)))
+            continue
+        axes = telling_axes(chosen, control.at)
+        for cell in chosen:
+            told = [axis for axis in cell.coordinates if axis in axes]
+            where = coordinates_text(cell.coordinates, told)
+            node = f"{control.name} at {where}" if where else control.name
+            made.append(Trial(control, node, (cell,)))
+    return made
+
+
+def verdict_of(trial: Trial, claims: Sequence[Any], raw: Mapping[str, Verdict]) -> Verdict:
+    """Return the verdict on a control in its cells."""
+    failed = trial.control.fails or ""
+    here = _indices(trial.cells)
+    mine = [claim for claim in claims if claim.cells and _indices(claim.cells) <= here]
+    named = [raw[claim.node] for claim in mine if claim.name == failed]
+    others = [raw[claim.node] for claim in mine if claim.name != failed]
+    ended = [cell.trace().status for cell in trial.cells]
+    early = [status for status in ended if status != COMPLETE]
+    also = [verdict.node for verdict in others if not verdict.passed and not verdict.follows]
+    if of_completion(trial.control):
+        bites, shown = bool(ended) and len(early) == len(ended), ended[0] if ended else ""
+    else:
+        bites = bool(named) and all(not one.passed and not one.follows for one in named)
+        shown = named[0].message.replace("\n", "\n    ") if named else ""
+        also = [COMPLETES, *also] if early else also
+    if not trial.cells:
+        reason = "the control selects no cell of the sweep"
+    elif not bites:
+        reason = f"{failed} did not fail" + ("" if named or early else f": {shown}")
+    else:
+        reason = f"it failed, and so did {', '.join(also)}" if also else ""
+    passed = bites and not also and bool(trial.cells)
+    path = str(trial.cells[0].path) if len(trial.cells) == 1 else ""
+    expected = f"{failed} fails, and nothing else"
+    lines = [f"{trial.node}: {'passed' if passed else 'FAILED'}", f"  expected   {expected}"]
+    lines += [f"  because    {reason}"] if reason else []
+    lines += [f"  which is   {shown}"] if shown else []
+    lines += [f"  log        {path}"] if path else []
+    measured = named[0].measured if named else float("nan")
+    return Verdict(
+        trial.control.name, trial.node, passed, measured, expected, "none", "\n".join(lines), path
+    )
+
+
+def _indices(cells: Sequence[Any]) -> frozenset[int]:
+    return frozenset(cell.index for cell in cells)

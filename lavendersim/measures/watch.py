@@ -1,0 +1,220 @@
+"""The log of a cell and its `always` section in; for every check a number in every state out.
+
+finite       how many numbers of a state or its contacts are not finite
+energy       created since the start, of what is at play (`account`)
+penetration  the deepest of the step [m]
+impulses     the largest of -lambda_n and |lambda_t| - mu lambda_n of a contact, |psi_n| and |psi_t|
+             against their own limits likewise, over the largest normal impulse of the step
+momentum     what of its change nothing accounts for (`account`)
+residual     of the step [m/s]
+speed        way of a body's centre over the step's time, the largest [m/s]
+
+mu is the config's; the limits of torsional and rolling friction are those of the contact's row.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from typing import Final, NamedTuple
+
+import numpy as np
+
+from lavendersim.experiment.always_specs import CHECKS, DERIVED, FINITE, NONE, Always
+from lavendersim.measures import cell_config
+from lavendersim.measures.account import contacts_of_log, energy_created, momentum_gap
+from lavendersim.measures.extent import thickness
+from lavendersim.measures.optimality import friction_of
+from lavendersim.measures.views import Floats, Rows, Trace
+
+SHARE_OF_THICKNESS = 0.1  # a body that sank by a tenth of itself has left the place it stood in
+
+
+class Watched(NamedTuple):
+    """One check of a log."""
+
+    check: str
+    unit: str  # behind a number, with a blank before it where there is one
+    bound: float
+    numbers: Floats  # in every state; above the bound, or NaN, where it is broken
+    bodies: Callable[[int], str]  # row of the log -> whose it is, nothing where nobody's
+
+
+def watched(always: Always, trace: Trace) -> Iterator[Watched]:
+    """Yield the checks that are made, in the order of CHECKS."""
+    for check in checks_of(always):
+        numbers, bodies = NUMBERS[check](trace)
+        yield Watched(check, UNITS[check], bound_of(check, always, trace), numbers, bodies)
+
+
+def checks_of(always: Always | None) -> tuple[str, ...]:
+    """Return the checks that a config asks for, from the config alone."""
+    if always is None:
+        return ()
+    stated = {name: getattr(always, name) for name in CHECKS if name != FINITE}
+    return tuple(name for name in CHECKS if name == FINITE or stated[name] != NONE)
+
+
+def bound_of(check: str, always: Always, trace: Trace) -> float:
+    """Return the bound of a check in a cell."""
+    if check == FINITE:
+        return 0.0
+    stated = getattr(always, check)
+    if stated != DERIVED:
+        return float(stated)
+    bodies = [one for one in cell_config.bodies(trace.resolved) if one.movable]
+    return SHARE_OF_THICKNESS * min((thickness(one.shape) for one in bodies), default=math.inf)
+
+
+Numbers = tuple[Floats, Callable[[int], str]]
+
+
+def _nobody(row: int) -> str:
+    return ""
+
+
+def _finite(trace: Trace) -> Numbers:
+    step, pose = trace.step, trace.pose
+    wrong = np.zeros(len(step))
+    for name in step.dtype.names or ():
+        wrong += ~np.isfinite(step[name])
+    of_body = ~np.isfinite(pose).all(axis=2)
+    wrong += of_body.sum(axis=1)
+    contacts = contacts_of_log(trace)
+    if contacts is not None and len(contacts):
+        rows = np.searchsorted(step["step"], contacts["step"])
+        for name in contacts.dtype.names or ():
+            wrong += np.bincount(rows[~np.isfinite(contacts[name])], minlength=len(step))
+
+    def first(row: int) -> str:
+        return trace.bodies[int(np.argmax(of_body[row]))] if of_body[row].any() else ""
+
+    return wrong, first
+
+
+def _energy(trace: Trace) -> Numbers:
+    return energy_created(trace), _nobody
+
+
+def _momentum(trace: Trace) -> Numbers:
+    return momentum_gap(trace), _nobody
+
+
+def _penetration(trace: Trace) -> Numbers:
+    contacts = contacts_of_log(trace)
+    if contacts is None:
+        return np.zeros(len(trace.step)), _nobody
+    return _of_contacts(trace, contacts, contacts["penetration"])
+
+
+def _residual(trace: Trace) -> Numbers:
+    residual = np.asarray(trace.step["residual"], dtype=float)
+
+    def worst(row: int) -> str:
+        index = int(trace.step["residual_contact"][row])
+        if index < 0:
+            return ""
+        first = np.searchsorted(trace.contact["step"], trace.step["step"][row])
+        return _pair(trace, trace.contact[int(first) + index])
+
+    return residual, worst
+
+
+def _speed(trace: Trace) -> Numbers:
+    pose, step = trace.pose, trace.step["step"]
+    fastest, who = np.zeros(len(step)), np.zeros(len(step), dtype=int)
+    dt = np.diff(step) * float(trace.timestep)
+    jumps = {event["body"] for event in trace.resolved.get("events") or () if event["teleport"]}
+    for body, name in enumerate(trace.bodies):
+        speed = np.sqrt((np.diff(pose[:, body, :3], axis=0) ** 2).sum(axis=1)) / dt
+        if name in jumps:
+            speed = _without_jumps(trace, name, speed)
+        above = ~(speed <= fastest[1:])  # NaN is faster than anything
+        fastest[1:][above], who[1:][above] = speed[above], body
+    return fastest, lambda row: trace.bodies[int(who[row])]
+
+
+def _without_jumps(trace: Trace, name: str, speed: Floats) -> Floats:
+    """Return speeds without those of steps in which the config moved the body."""
+    from lavendersim.measures.changes import row_after
+
+    for event in trace.resolved["events"]:
+        row = row_after(trace, event["at"])
+        if event["body"] == name and event["teleport"] and 0 < row <= len(speed):
+            speed[row - 1] = 0.0
+    return speed
+
+
+def _impulses(trace: Trace) -> Numbers:
+    contacts = contacts_of_log(trace)
+    if contacts is None or len(contacts) == 0:
+        return np.zeros(len(trace.step)), _nobody
+    pushed = contacts["impulse_n"]
+    names = contacts.dtype.names or ()
+    excess = np.maximum(-pushed, 0.0)
+    held = np.maximum(pushed, 0.0)
+    if "impulse_t1" in names:
+        mu = friction_of(
+            contacts, [cell_config.body(trace.resolved, b).friction for b in trace.bodies]
+        )
+        first, second = contacts["impulse_t1"], contacts["impulse_t2"]
+        pyramid = trace.resolved["numerics"].get("friction_cone") == "pyramid"
+        size = np.maximum(abs(first), abs(second)) if pyramid else np.hypot(first, second)
+        excess = np.maximum(excess, size - mu * held)
+    # divided by its arm [m], an angular impulse is compared with the normal one
+    for name, parts in (
+        ("torsional_friction", ("angular_impulse_n",)),
+        ("rolling_friction", ("angular_impulse_t1", "angular_impulse_t2")),
+    ):
+        if name in names:
+            size = np.hypot.reduce([contacts[part] for part in parts])
+            arm = contacts[name]
+            with np.errstate(invalid="ignore", divide="ignore"):
+                beyond = np.where(size > 0.0, size / arm - held, 0.0)
+            excess = np.maximum(excess, beyond)
+    rows = np.searchsorted(trace.step["step"], contacts["step"])
+    largest = np.zeros(len(trace.step))
+    np.maximum.at(largest, rows, np.abs(pushed))
+    with np.errstate(invalid="ignore", divide="ignore"):
+        share = np.where(excess == 0.0, 0.0, excess / largest[rows])
+    return _of_contacts(trace, contacts, share)
+
+
+def _of_contacts(trace: Trace, contacts: Rows, numbers: Floats) -> Numbers:
+    """Return the largest number of the contacts of each step, and whose it is."""
+    rows = np.searchsorted(trace.step["step"], contacts["step"])
+    largest = np.zeros(len(trace.step))
+    np.maximum.at(largest, rows, numbers)  # NaN stays
+
+    def worst(row: int) -> str:
+        mine = np.flatnonzero(rows == row)
+        if len(mine) == 0:
+            return ""
+        ranked = np.where(np.isnan(numbers[mine]), np.inf, numbers[mine])
+        return _pair(trace, contacts[mine[int(np.argmax(ranked))]])
+
+    return largest, worst
+
+
+def _pair(trace: Trace, contact: np.void) -> str:
+    return f"{trace.bodies[contact['body_a']]} and {trace.bodies[contact['body_b']]}"
+
+
+NUMBERS: Final[dict[str, Callable[[Trace], Numbers]]] = {
+    "finite": _finite,
+    "energy": _energy,
+    "penetration": _penetration,
+    "impulses": _impulses,
+    "momentum": _momentum,
+    "residual": _residual,
+    "speed": _speed,
+}
+UNITS: Final = {
+    "finite": " numbers that are not finite",
+    "energy": " of the energy at play",
+    "penetration": " m",
+    "impulses": " of the step's largest normal impulse",
+    "momentum": " of what enters the balance",
+    "residual": " m/s",
+    "speed": " m/s",
+}
