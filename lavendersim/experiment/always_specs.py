@@ -5,8 +5,9 @@
       penetration: 0.001
       speed: none
 
-A key that is not stated has a default; `none` leaves a check out. That the state is finite is always checked. How each number is taken, and why it stays
-within round-off where a run is right, stands in `lavendersim/measures`: `account` and `watch`.
+A key that is not stated has a default; `none` leaves a check out. That the state is finite is
+always checked. How each number is taken, and why it stays within round-off where a run is right,
+stands in `lavendersim/measures`: `account` and `watch`.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ DIVERGES: Final = "diverges"
 
 def _form(value: Any) -> str | None:
     if isinstance(value, str):
-        return "off"
+        return "off" if value in (NONE, DERIVED) else None
     return None if value is None or isinstance(value, bool | dict | list | tuple) else "bound"
 
 
@@ -53,7 +54,7 @@ class Always(ConfigModel):
 
     energy: Share = Field(
         default=1e-6,
-        description="most mechanical energy created since the start, as a share of what is at play",
+        description="most mechanical energy won after any state, as a share of what is at play",
     )
     penetration: Depth = Field(
         default=DERIVED,

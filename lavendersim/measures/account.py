@@ -10,14 +10,16 @@ which conserves it exactly; one that rebounds at the surface with e <= 1 loses (
 brings; compliance takes energy. What can create some without being wrong is the projection, which
 lifts what sank: at most M |g| times the sum over contacts of what it opens,
     projection * max(d - v_n dt - slop, 0),   d the penetration, v_n after the solve.
-So energy less work, less what events and the projection gave, never rises above its first value,
-and it is counted relative to what is at play: the first kinetic energy, M |g| times the radius of
-each body, what the potential energy has fallen by so far and the work of the forces. A step solved
+So energy less work, less what events and the projection gave, never rises. What it rises above its
+lowest value so far is counted, relative to what is at play: the first kinetic energy, the weight of
+each body times its radius, what the potential energy has fallen by, the work of the forces and what
+events gave, so far. A step solved
 to the residual r creates at most r times the sum of its impulses: at 1e-9 m/s a ball of 0.1 m at
 rest needs 100 s to reach 1e-6 of its weight times its radius, at the worst.
 A gain (`stabilisation_gain`) turns penetration into velocity and does create energy; restitution
 captured at the start of a step (`impacts: captured`) creates up to m |g| dt times the speed, since
-the body moves off from where it began the step. Both are errors of those laws, and are counted.
+the body moves off from where it began the step; a gain together with compliance stores energy and
+gives it back. All are counted.
 
 Momentum. p - p' = M g dt + sum F dt + J, J the impulses between movable and other bodies, friction
 included; impulses between movable bodies cancel. All of it is exact but for round-off: every
@@ -52,18 +54,17 @@ def by_step(trace: Trace, contacts: Rows, numbers: Floats) -> Floats:
 
 
 def energy_created(trace: Trace) -> Floats:
-    """Return, in every state, the energy created since the start over that at play [-]."""
-    energy = mechanical_energy(trace)
-    work = changes.work_of_forces(trace)
-    given = np.cumsum(work + changes.given_by_events(trace) + _lifted(trace))
-    created = energy - energy[0] - given
+    """Return, in every state, the energy won since it was lowest over that at play [-]."""
+    work, events = changes.work_of_forces(trace), changes.given_by_events(trace)
+    own = mechanical_energy(trace) - np.cumsum(work + events + _lifted(trace))
+    created = own - np.minimum.accumulate(own)
     potential = trace.step["potential_energy"]
     at_play = (
         float(trace.step["kinetic_energy"][0])
         + _own_weight(trace)
         + np.maximum(potential[0] - np.minimum.accumulate(potential), 0.0)
         + np.cumsum(np.abs(work))
-        + np.cumsum(np.maximum(changes.given_by_events(trace), 0.0))
+        + np.cumsum(np.maximum(events, 0.0))
     )
     with np.errstate(invalid="ignore", divide="ignore"):
         share = np.where(at_play > 0.0, created / at_play, np.where(created > 0.0, np.inf, 0.0))

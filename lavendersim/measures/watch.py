@@ -1,7 +1,7 @@
 """The log of a cell and its `always` section in; for every check a number in every state out.
 
 finite       how many numbers of a state or its contacts are not finite
-energy       created since the start, of what is at play (`account`)
+energy       won since it was lowest, of what is at play (`account`)
 penetration  the deepest of the step [m]
 impulses     the largest of -lambda_n and |lambda_t| - mu lambda_n of a contact, |psi_n| and |psi_t|
              against their own limits likewise, over the largest normal impulse of the step
@@ -129,7 +129,8 @@ def _speed(trace: Trace) -> Numbers:
         speed = np.sqrt((np.diff(pose[:, body, :3], axis=0) ** 2).sum(axis=1)) / dt
         if name in jumps:
             speed = _without_jumps(trace, name, speed)
-        above = ~(speed <= fastest[1:])  # NaN is faster than anything
+        # NaN is faster than anything, and stays
+        above = ~((speed <= fastest[1:]) | np.isnan(fastest[1:]))
         fastest[1:][above], who[1:][above] = speed[above], body
     return fastest, lambda row: trace.bodies[int(who[row])]
 
@@ -174,8 +175,8 @@ def _impulses(trace: Trace) -> Numbers:
             excess = np.maximum(excess, beyond)
     rows = np.searchsorted(trace.step["step"], contacts["step"])
     largest = np.zeros(len(trace.step))
-    np.maximum.at(largest, rows, np.abs(pushed))
     with np.errstate(invalid="ignore", divide="ignore"):
+        np.maximum.at(largest, rows, np.abs(pushed))
         share = np.where(excess == 0.0, 0.0, excess / largest[rows])
     return _of_contacts(trace, contacts, share)
 
@@ -184,7 +185,8 @@ def _of_contacts(trace: Trace, contacts: Rows, numbers: Floats) -> Numbers:
     """Return the largest number of the contacts of each step, and whose it is."""
     rows = np.searchsorted(trace.step["step"], contacts["step"])
     largest = np.zeros(len(trace.step))
-    np.maximum.at(largest, rows, numbers)  # NaN stays
+    with np.errstate(invalid="ignore"):
+        np.maximum.at(largest, rows, numbers)  # NaN stays
 
     def worst(row: int) -> str:
         mine = np.flatnonzero(rows == row)
@@ -210,7 +212,7 @@ NUMBERS: Final[dict[str, Callable[[Trace], Numbers]]] = {
     "speed": _speed,
 }
 UNITS: Final = {
-    "finite": " numbers that are not finite",
+    "finite": " numbers not finite",
     "energy": " of the energy at play",
     "penetration": " m",
     "impulses": " of the step's largest normal impulse",

@@ -76,7 +76,7 @@ MADE: dict[str, tuple[bytes, tuple[str, ...]]] = {
 }
 TOP_KEYS = (
     "valid here: scene, events, numerics, duration, record, effects, question, expected, sweep, "
-    "measure, expect, figure, price, cost"
+    "measure, expect, always, slow, reduced, figure, price, cost"
 )
 
 
