@@ -18,17 +18,25 @@ def check(
     full: Annotated[
         bool, typer.Option("--full", help="Run slow experiments in full, not reduced.")
     ] = False,
+    report: Annotated[
+        Path | None,
+        typer.Option("--report", metavar="FILE.html", help="Write a page: a row per case."),
+    ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the verdicts as JSON.")] = False,
 ) -> None:
     """Run experiments and print every verdict, cell by cell. Exits 1 when one fails."""
+    from lavendersim.errors import UsageError
     from lavendersim.runner import load_all, run
 
+    if report is not None and report.suffix not in (".html", ".htm"):
+        raise UsageError(f"{report}: the name of this file ends in .html")
     experiments = load_all(configs, reduced=not full)
-    good, verdicts, cells = True, [], []
+    good, verdicts, cells, results = True, [], [], []
     for experiment in experiments:
         with printing.reporting(experiment.name) as progress:
             finished = run(experiment, runs, jobs, progress, prices=False)
         good = good and finished.good
+        results.append(finished)
         printing.warn_of_unsolved(finished)
         cells += [
             {"experiment": experiment.name, "cell": cell.label, "status": cell.status}
@@ -45,13 +53,20 @@ def check(
                 f"{printing.digits(verdict.measured)}, expected {verdict.expected}"
             )
         printing.print_failures(finished)
+    if report is not None:
+        from lavendersim.figures import write_report
+
+        write_report(results, report)
+        typer.echo(f"report {report}", err=True)
     if as_json:
         printing.as_json({"passed": good, "cells": cells, "verdicts": verdicts})
     else:
         passed = sum(bool(verdict["passed"]) for verdict in verdicts)
         ended = sum(cell["status"] == "complete" for cell in cells)
+        short = sum(experiment.reduced for experiment in experiments)
         typer.echo(
             f"{passed} of {len(verdicts)} expectations met, {ended} of {len(cells)} cells complete"
+            + (f"; {short} experiments reduced, --full runs all of them" if short else "")
         )
     if not good:
         raise typer.Exit(1)

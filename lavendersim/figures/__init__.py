@@ -1,4 +1,4 @@
-"""A finished run in; its figure as PNG and SVG out. The only room that imports matplotlib."""
+"""Finished runs in; figures as PNG and SVG, or a page of them, out. Only here is matplotlib."""
 
 from __future__ import annotations
 
@@ -51,3 +51,10 @@ def draw_comparisons(
     if any(comparison.truth for comparison in comparisons):
         paths += draw_curves(comparisons, tolerance, processor, directory, "error")
     return paths + draw_profile(ratios, comparisons, tolerance, processor, directory)
+
+
+def write_report(results: Sequence[Any], path: Path) -> None:
+    """Write one self-contained HTML page of finished runs (`runner.Finished`): a row per case."""
+    from lavendersim.figures.report import write_report as write_page
+
+    write_page(results, path)

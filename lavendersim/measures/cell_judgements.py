@@ -25,20 +25,27 @@ def judge_cell(expectation: ExpectSpec, value: Value, trace: Trace) -> Outcome:
     return JUDGES[expectation.judgement](expectation, numbers, trace)
 
 
-def _worst(numbers: Floats, excess: Floats, expected: str, tolerance: str) -> Outcome:
-    """Pass when no excess is above 0; show the number with the largest excess, NaN first."""
+def _worst(
+    numbers: Floats, excess: Floats, expected: str, tolerance: str, room: float = 0.0
+) -> Outcome:
+    """Pass when no excess is above 0; show the number with the largest excess, NaN first.
+
+    room: what the bound leaves at most, of which the margin is a share; 0 where there is no such.
+    """
     ranked = np.where(np.isnan(excess), np.inf, excess)
     index = int(np.argmax(ranked))
     passed = bool(np.all(excess <= 0.0))
     where = f"number {index} of the row" if len(numbers) > 1 and not passed else ""
-    return Outcome(passed, float(numbers[index]), expected, tolerance, where)
+    margin = -float(np.max(excess)) / room if room > 0.0 else float("nan")
+    return Outcome(passed, float(numbers[index]), expected, tolerance, where, margin=margin)
 
 
 def _between(expectation: ExpectSpec, numbers: Floats, trace: Trace) -> Outcome:
     assert expectation.between is not None
     low, high = expectation.between
     excess = np.maximum(low - numbers, numbers - high)
-    return _worst(numbers, excess, f"between {low!r} and {high!r}", NO_TOLERANCE)
+    expected = f"between {low!r} and {high!r}"
+    return _worst(numbers, excess, expected, NO_TOLERANCE, 0.5 * (high - low))
 
 
 def _at_most(expectation: ExpectSpec, numbers: Floats, trace: Trace) -> Outcome:
@@ -48,6 +55,7 @@ def _at_most(expectation: ExpectSpec, numbers: Floats, trace: Trace) -> Outcome:
         numbers - expectation.at_most,
         f"at most {expectation.at_most!r}",
         NO_TOLERANCE,
+        abs(expectation.at_most),
     )
 
 
@@ -58,6 +66,7 @@ def _at_least(expectation: ExpectSpec, numbers: Floats, trace: Trace) -> Outcome
         expectation.at_least - numbers,
         f"at least {expectation.at_least!r}",
         NO_TOLERANCE,
+        abs(expectation.at_least),
     )
 
 
@@ -83,7 +92,7 @@ def _equals(expectation: ExpectSpec, numbers: Floats, trace: Trace) -> Outcome:
         expected = repr(target)
     allowed = max(spec.absolute, spec.relative * abs(target))
     excess = np.abs(numbers - target) - allowed
-    return _worst(numbers, excess, expected, _tolerance_text(spec))
+    return _worst(numbers, excess, expected, _tolerance_text(spec), allowed)
 
 
 def _tolerance_text(spec: Equals) -> str:

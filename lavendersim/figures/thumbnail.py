@@ -1,0 +1,174 @@
+"""The log of a cell in; a small side view of where its bodies began and ended out, as a PNG.
+
+Outlines are the convex hulls of projected corners, so no renderer is needed. Up is against gravity;
+sideways is the level direction in which the bodies spread most; what is farther is drawn first.
+"""
+
+from __future__ import annotations
+
+import io
+import math
+from collections.abc import Mapping
+from typing import Any, Final
+
+import numpy as np
+
+from lavendersim.figures.style import DARK, GREY, LOOKS
+from lavendersim.measures.solids import rotations
+
+WIDTH, HEIGHT, DPI = 1.6, 1.1, 100  # inch, inch, dots per inch: 160 x 110 dots
+MARGIN = 0.08  # of the picture, on every side
+ROUND: Final = 20  # corners of a circle: at this size none can be told
+BEFORE, FIXED = "#e8e8e8", "#bbbbbb"  # where bodies began; what never moves
+NOTHING: Final = np.array([[-1.0, 0.0], [1.0, 1.0]])  # a picture without bodies
+MOST_BODIES = 3000  # of a larger scene the first ones; more are less than a dot each
+
+
+def thumbnail(trace: Any) -> bytes:
+    """Return the picture [PNG] of the last state of a log whose numbers are all finite."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.collections import PolyCollection
+    from matplotlib.figure import Figure
+
+    view = _view(trace)
+    outlines, colours, seen = _outlines(trace, *view)
+    figure = Figure(figsize=(WIDTH, HEIGHT), dpi=DPI)
+    FigureCanvasAgg(figure)  # without pyplot, nothing else gives the figure one
+    axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
+    axes.set_axis_off()
+    low, high = seen.min(axis=0), seen.max(axis=0)
+    size = max(float((high - low)[0]), float((high - low)[1]) * WIDTH / HEIGHT, 1e-9)
+    middle, half = (low + high) / 2, size * (0.5 + MARGIN)
+    axes.set_xlim(middle[0] - half, middle[0] + half)
+    axes.set_ylim(middle[1] - half * HEIGHT / WIDTH, middle[1] + half * HEIGHT / WIDTH)
+    for start, along in _grounds(trace, *view):
+        ends = (
+            start + np.outer((-3 * half, 3 * half), along) + np.dot(middle - start, along) * along
+        )
+        axes.plot(ends[:, 0], ends[:, 1], color=GREY, linewidth=1.0)
+    drawn = PolyCollection(outlines, facecolors=colours, edgecolors=DARK, linewidths=0.3)
+    axes.add_collection(drawn)
+    file = io.BytesIO()
+    # no date and no version in the file: equal logs give equal pictures
+    figure.savefig(file, format="png", dpi=DPI, metadata={"Software": None})
+    return file.getvalue()
+
+
+def _view(trace: Any) -> tuple[np.ndarray, np.ndarray]:
+    """Return the directions of the picture's right and of its up."""
+    bodies = trace.resolved["scene"]["bodies"]
+    movable = [i for i, name in enumerate(trace.bodies) if not bodies[name]["fixed"]]
+    centres = trace.pose[0, movable, :3]
+    gravity = np.asarray(trace.resolved["scene"]["gravity"], dtype=float)
+    pull = math.hypot(*gravity)
+    up = -gravity / pull if pull > 0.0 else np.array([0.0, 0.0, 1.0])
+    level = np.array([1.0, 0.0, 0.0]) - up[0] * up
+    if math.hypot(*level) < 0.1:
+        level = np.array([0.0, 1.0, 0.0]) - up[1] * up
+    level /= math.hypot(*level)
+    other = np.cross(up, level)
+    spread = np.ptp(centres, axis=0) if len(centres) else np.zeros(3)
+    # only where it is plainly more: a scene along x is seen from the side, as it is written
+    wider = abs(spread @ np.abs(other)) > 1.5 * abs(spread @ np.abs(level))
+    return (other if wider else level), up
+
+
+def _outlines(
+    trace: Any, right: np.ndarray, up: np.ndarray
+) -> tuple[list[np.ndarray], list[str], np.ndarray]:
+    """Return outlines, those of the start first, then the farthest, their colours, what is seen."""
+    poses = trace.pose
+    whole = np.flatnonzero(np.isfinite(poses).all(axis=(1, 2)))
+    shapes = [trace.resolved["scene"]["bodies"][name] for name in trace.bodies]
+    solid = [i for i, body in enumerate(shapes) if body["shape"]["kind"] != "plane"][:MOST_BODIES]
+    movable = {i for i in solid if not shapes[i]["fixed"]}
+    outlines: list[np.ndarray] = []
+    colours: list[str] = []
+    if len(whole) == 0:
+        return outlines, colours, NOTHING
+    start, end = poses[whole[0]], poses[whole[-1]]
+    far = np.cross(up, right)
+    for pose, is_end in ((start, False), (end, True)):
+        turns = rotations(pose[:, 3:])
+        for i in sorted(solid, key=lambda i: -float(pose[i, :3] @ far)):
+            if i in movable or is_end:
+                corners = pose[i, :3] + _corners(shapes[i]["shape"]) @ turns[i].T
+                outlines.append(_hull(np.column_stack([corners @ right, corners @ up])))
+                own = LOOKS[i % len(LOOKS)].colour if is_end else BEFORE
+                colours.append(own if i in movable else FIXED)
+    return outlines, colours, np.concatenate(_seen(outlines, colours) or [NOTHING])
+
+
+def _seen(outlines: list[np.ndarray], colours: list[str]) -> list[np.ndarray]:
+    """Return what must lie in the picture: all that can move, where it began and where it ended."""
+    return [one for one, colour in zip(outlines, colours, strict=True) if colour != FIXED]
+
+
+def _grounds(trace: Any, right: np.ndarray, up: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Return a point and a direction of every plane that is seen edge on."""
+    found = []
+    for name in trace.bodies:
+        shape = trace.resolved["scene"]["bodies"][name]["shape"]
+        if shape["kind"] != "plane":
+            continue
+        normal = np.asarray(shape["normal"], dtype=float)
+        normal /= math.hypot(*normal)
+        flat = np.array([normal @ right, normal @ up])
+        if math.hypot(*flat) > 0.99:
+            found.append((flat * float(shape["offset"]), np.array([-flat[1], flat[0]])))
+    return found
+
+
+def _corners(shape: Mapping[str, Any]) -> np.ndarray:
+    """Return points (n, 3) in the body's frame [m] whose convex hull is the shape, or nearly."""
+    kind = shape["kind"]
+    if kind == "box":
+        signs = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
+        return np.asarray(0.5 * signs * np.asarray(shape["size"], dtype=float))
+    if kind == "hull":
+        return np.asarray(shape["points"], dtype=float)
+    if kind == "compound":
+        parts = []
+        for part in shape["parts"]:
+            turn = rotations(np.asarray([part["orientation"]], dtype=float))[0]
+            parts.append(np.asarray(part["position"]) + _corners(part["shape"]) @ turn.T)
+        return np.concatenate(parts)
+    radius, half = float(shape["radius"]), 0.5 * float(shape.get("length", 0.0))
+    angles = 2.0 * np.pi * np.arange(ROUND) / ROUND
+    circle = radius * np.column_stack([np.cos(angles), np.sin(angles), np.zeros(ROUND)])
+    end = np.array([0.0, 0.0, half])
+    if kind == "cylinder":
+        return np.concatenate([circle + end, circle - end])
+    # three great circles of a ball look round from everywhere at this size
+    rings = [np.roll(circle, shift, axis=1) for shift in range(3)]
+    tilted = [circle @ turn for turn in _TILTS]
+    ball = np.concatenate(rings + tilted)
+    return np.concatenate([ball + end, ball - end])
+
+
+_HALF = math.sqrt(0.5)
+_TILTS: Final = (
+    np.array([[_HALF, 0, _HALF], [0, 1, 0], [-_HALF, 0, _HALF]]),
+    np.array([[_HALF, 0, -_HALF], [0, 1, 0], [_HALF, 0, _HALF]]),
+    np.array([[1, 0, 0], [0, _HALF, _HALF], [0, -_HALF, _HALF]]),
+    np.array([[1, 0, 0], [0, _HALF, -_HALF], [0, _HALF, _HALF]]),
+)
+
+
+def _hull(points: np.ndarray) -> np.ndarray:
+    """Return the corners of the convex hull of points in a plane, in order (monotone chain)."""
+    ordered = points[np.lexsort((points[:, 1], points[:, 0]))]
+
+    def chain(rows: np.ndarray) -> list[np.ndarray]:
+        kept: list[np.ndarray] = []
+        for row in rows:
+            while len(kept) > 1 and _turn(kept[-2], kept[-1], row) <= 0.0:
+                kept.pop()
+            kept.append(row)
+        return kept[:-1]
+
+    return np.array(chain(ordered) + chain(ordered[::-1]) or ordered[:1])
+
+
+def _turn(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> float:
+    return float((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]))
