@@ -19,6 +19,10 @@ def replay(
         int | None,
         typer.Option("--cell", metavar="K", help="Which cell of the sweep, counted from 0."),
     ] = None,
+    at: Annotated[
+        float | None,
+        typer.Option("--at", metavar="SECONDS", help="Stop at this simulated time."),
+    ] = None,
     runs: Runs = Path("runs"),
     save_to: Annotated[
         Path | None,
@@ -29,7 +33,7 @@ def replay(
         typer.Option(
             "--screenshot",
             metavar="FILE.png",
-            help="Write a picture of the viewer at the last contact; needs no display.",
+            help="Write a picture of the viewer at --at or the last contact; needs no display.",
         ),
     ] = None,
 ) -> None:
@@ -41,6 +45,8 @@ def replay(
     for path, suffix in ((save_to, ".rrd"), (screenshot_to, ".png")):
         if path is not None and path.suffix != suffix:
             raise UsageError(f"{path}: the name of this file ends in {suffix}")
+    if save_to is not None and at is not None and screenshot_to is None:
+        raise UsageError("--at: an .rrd file has no place for it; leave out --save or --at")
     opened = open_run(run, runs)
     cells = opened.cells
     if not 0 <= (cell or 0) < len(cells):
@@ -56,8 +62,8 @@ def replay(
         room.save(trace, save_to, title)
         typer.echo(save_to)
     if screenshot_to is not None:
-        for complaint in room.screenshot(trace, screenshot_to, title):
+        for complaint in room.screenshot(trace, screenshot_to, title, at):
             typer.echo(f"rerun's viewer: {complaint}", err=True)
         typer.echo(screenshot_to)
     if save_to is None and screenshot_to is None:
-        room.open_viewer(trace, title)
+        room.open_viewer(trace, title, at)

@@ -108,7 +108,8 @@ def _case(result: Any, folder: Path) -> str:
     )
     below = f'<br><span class="small">{escape(whose)}</span>' if whose else ""
     return (
-        f'<tr class="case" data-case="{escape(run.name, quote=True)}"><td class="picture">{_picture(shown)}</td>'
+        f'<tr class="case" data-case="{escape(run.name, quote=True)}">'
+        f'<td class="picture">{_picture(shown)}</td>'
         f"<td>{name}{question}{_details(result, folder)}{failed}</td>"
         f"<td>{_mark(result.good)}<br>"
         f'<span class="small">{met} of {len(verdicts)} claims</span></td>'

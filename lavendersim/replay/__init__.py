@@ -16,15 +16,17 @@ if TYPE_CHECKING:
 __all__ = ["open_viewer", "save", "screenshot"]
 
 
-def open_viewer(trace: Trace, title: str | None = None) -> None:
+def open_viewer(trace: Trace, title: str | None = None, at: float | None = None) -> None:
     """Show `trace` in a rerun window, which stays open after this process ends.
 
     A viewer that is already open is used. `title` names the recording; by default the log's name.
-    Raises MissingDriverError where there is no display to open a window on.
+    at: time [s] at which it stands still, instead of playing.
+    Raises MissingDriverError where there is no display to open a window on, UsageError for a time
+    that the log does not reach.
     """
     from lavendersim.replay.viewer import show_in_window
 
-    show_in_window(trace, title or Path(trace.path).stem)
+    show_in_window(trace, title or Path(trace.path).stem, at)
 
 
 def save(trace: Trace, path: str | Path, title: str | None = None) -> None:
@@ -34,12 +36,15 @@ def save(trace: Trace, path: str | Path, title: str | None = None) -> None:
     write_rrd(trace, Path(path), title or Path(trace.path).stem)
 
 
-def screenshot(trace: Trace, path: str | Path, title: str | None = None) -> list[str]:
-    """Write a picture (.png) of the viewer at the trace's last loaded contact; needs no display.
+def screenshot(
+    trace: Trace, path: str | Path, title: str | None = None, at: float | None = None
+) -> list[str]:
+    """Write a picture (.png) of the viewer; needs no display.
 
+    at: the time [s] it shows; by default that of the trace's last loaded contact.
     Returns what the viewer complained about, one sentence each; empty when all is well.
     Raises MissingDriverError where no Vulkan driver is installed.
     """
     from lavendersim.replay.headless import take_screenshot
 
-    return take_screenshot(trace, Path(path), title or Path(trace.path).stem)
+    return take_screenshot(trace, Path(path), title or Path(trace.path).stem, at)

@@ -46,8 +46,9 @@ NOTICE_SECONDS = 4.5  # for 4 s after the start the viewer's notices lie over th
 HARMLESS = ("Software rasterizer detected",)
 
 
-def take_screenshot(trace: Trace, path: Path, title: str) -> list[str]:
+def take_screenshot(trace: Trace, path: Path, title: str, at: float | None = None) -> list[str]:
     """Write the picture to `path`; return the viewer's complaints."""
+    moment = moment_to_show(trace, at)
     require_vulkan()
     program = viewer_program()
     with tempfile.TemporaryDirectory(prefix="lavender-replay-") as folder:
@@ -55,7 +56,7 @@ def take_screenshot(trace: Trace, path: Path, title: str) -> list[str]:
         write_rrd(trace, recording, title)
         with _headless_viewer(program, recording, Path(folder) / "stderr.txt") as viewer:
             viewer.wait_for(_is_loaded, "load the recording")
-            picture, complaints = viewer.ask(lambda client: _shoot(client, moment_to_show(trace)))
+            picture, complaints = viewer.ask(lambda client: _shoot(client, moment))
     _replace(path, picture)
     return complaints
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import rerun as rr
 
+from lavendersim.errors import UsageError
 from lavendersim.replay import columns, scene
 from lavendersim.replay.blueprint import blueprint
 from lavendersim.replay.force_scale import force_scale
@@ -59,9 +60,19 @@ def write_rrd(trace: Trace, path: Path, title: str) -> None:
         unfinished.unlink(missing_ok=True)
 
 
-def moment_to_show(trace: Trace) -> np.timedelta64:
-    """The last step that carries a contact force, else the middle: a still picture needs one."""
+def moment_to_show(trace: Trace, at: float | None = None) -> np.timedelta64:
+    """The step nearest to `at` [s]; without one the last with a contact force, or the middle.
+
+    Raises UsageError for a time that the log does not reach.
+    """
     times = columns.time_in_nanoseconds(trace)
+    if at is not None:
+        first, last = (float(times[row]) * 1e-9 for row in (0, -1))
+        half = 0.5 * float(trace.timestep)
+        if not first - half <= at <= last + half:
+            raise UsageError(f"{at:.9g} s: this log goes from {first:g} to {last:.9g} s")
+        nearest = int(np.argmin(np.abs(times - at * 1e9)))
+        return np.timedelta64(int(times[nearest]), "ns")
     contact = columns.contacts_of(trace)
     loaded = contact["step"][np.isfinite(contact["force_n"]) & (contact["force_n"] > 0)]
     row = np.searchsorted(trace.step["step"], loaded[-1]) if len(loaded) else len(times) // 2

@@ -48,14 +48,15 @@ def invoke(*arguments):
 
 def test_without_options_the_first_cell_opens_and_the_others_are_named(calls):
     result = invoke()
-    assert calls == [("open_viewer", "trace of e=0.1", "20260101T000000Z-drop-0123abcd e=0.1")]
+    title = "20260101T000000Z-drop-0123abcd e=0.1"
+    assert calls == [("open_viewer", "trace of e=0.1", title, None)]
     assert "--cell K" in result.stderr
     assert result.stdout == ""
 
 
 def test_save_and_screenshot_open_nothing_and_print_their_paths(calls):
     result = invoke("--cell", "1", "--save", "a.rrd", "--screenshot", "a.png")
-    assert [(name, trace, str(path)) for name, trace, path, _ in calls] == [
+    assert [(name, trace, str(path)) for name, trace, path, *_ in calls] == [
         ("save", "trace of e=0.8", "a.rrd"),
         ("screenshot", "trace of e=0.8", "a.png"),
     ]
@@ -68,4 +69,16 @@ def test_cell_that_does_not_exist_is_refused_with_the_range(calls, cell):
     result = invoke("--cell", cell)
     assert isinstance(result.exception, UsageError)
     assert "cells 0 to 1" in str(result.exception)
+    assert calls == []
+
+
+def test_a_moment_is_given_to_the_window_and_to_the_picture(calls):
+    invoke("--cell", "1", "--at", "1.234")
+    invoke("--cell", "1", "--at", "1.234", "--screenshot", "a.png")
+    assert [(name, at) for name, *_, at in calls] == [("open_viewer", 1.234), ("screenshot", 1.234)]
+
+
+def test_a_recording_that_cannot_hold_a_moment_is_refused(calls):
+    result = invoke("--at", "1.234", "--save", "a.rrd")
+    assert isinstance(result.exception, UsageError)
     assert calls == []
