@@ -230,3 +230,18 @@ def test_a_sweep_over_solvers_has_a_plan_for_each(drop: Path, tmp_path: Path) ->
     assert (
         "\ndrop: solver: nonsmooth_conjugate_gradient (s=nonsmooth_conjugate_gradient)\n" in printed
     )
+
+
+def test_a_cell_that_diverges_exits_1_and_the_others_complete(drop: Path, tmp_path: Path) -> None:
+    text = drop.read_text().replace("scene:\n", "scene:\n  gravity: [0, 0, -9.81]\n", 1)
+    text += "sweep:\n  pull: {path: scene.gravity.2, values: [-9.81, 1e155, -9.8]}\n"
+    drop.write_text(text.replace("expect:\n", "always: {energy: none, residual: none}\nexpect:\n"))
+    done = lavender("check", drop, "--json", where=tmp_path)
+    assert done.returncode == 1
+    table = json.loads(done.stdout)
+    ended = [cell["status"] for cell in table["cells"]]
+    assert ended[0] == ended[2] == "complete"
+    assert ended[1].startswith("diverged: body ball is no longer finite after step ")
+    whole = [one for one in table["verdicts"] if "1e+155" not in one["node"]]
+    assert len(whole) == 2 * (1 + 4)
+    assert all(one["passed"] for one in whole)

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from small_configs import write
 
 import lavendersim
+from lavendersim.figures import write_report
 from lavendersim.runner import Finished
 
 # At 1e155 m/s^2 a step adds 4.2e152 m/s; from 1.34e154 m/s on, the square of the speed is infinite
@@ -85,3 +88,26 @@ duration: 2.0
     assert outcome.status.startswith(
         "diverged: body brick turns too far in one timestep for its rotation to be solved after "
     )
+
+
+def test_the_log_up_to_there_is_that_of_a_run_that_ends_before(
+    finished: Finished, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    folder = tmp_path_factory.mktemp("before")
+    short = RUNAWAY.replace("duration: 2.0", f"duration: {LAST_STEP - 1}/240")
+    before = lavendersim.run(write(folder, short, "runaway.yaml"), root=folder)
+    assert before.good
+    ended, whole = finished.run.cells[1].trace(), before.run.cells[1].trace()
+    assert ended.step[:LAST_STEP].tobytes() == whole.step.tobytes()
+    assert np.array_equal(ended.pose[:LAST_STEP], whole.pose)
+
+
+def test_a_diverged_cell_has_its_row_and_picture_in_a_report(
+    finished: Finished, tmp_path: Path
+) -> None:
+    page = tmp_path / "report.html"
+    write_report([finished], page)
+    text = page.read_text(encoding="utf-8")
+    assert "0 of 1 cases pass" in text
+    assert f"after step {LAST_STEP} (t = 0.1375 s)" in text
+    assert "data:image/png;base64," in text
