@@ -52,9 +52,6 @@ def uncontrolled(
 def _takes(control: ExpectSpec, indices: frozenset[int], claim: Any) -> bool:
     if not of_completion(control) and claim.name != control.fails:
         return False
-    across = len(claim.cells) != 1
-    if across and claim.name == control.fails:
-        return True
     return bool(claim.cells) and _indices(claim.cells) <= indices
 
 
@@ -92,13 +89,14 @@ def verdict_of(trial: Trial, claims: Sequence[Any], raw: Mapping[str, Verdict]) 
     if of_completion(trial.control):
         bites, shown = bool(ended) and len(early) == len(ended), ended[0] if ended else ""
     else:
-        bites = bool(named) and all(not one.passed and not one.follows for one in named)
+        bites = bool(named) and not early and all(not one.passed for one in named)
         shown = named[0].message.replace("\n", "\n    ") if named else ""
-        also = [COMPLETES, *also] if early else also
     if not trial.cells:
         reason = "the control selects no cell of the sweep"
+    elif early and not of_completion(trial.control):
+        reason = f"a cell did not complete: {early[0]}"
     elif not bites:
-        reason = f"{failed} did not fail" + ("" if named or early else f": {shown}")
+        reason = f"{failed} did not fail"
     else:
         reason = f"it failed, and so did {', '.join(also)}" if also else ""
     passed = bites and not also and bool(trial.cells)

@@ -37,9 +37,10 @@ scene:
       surface: rough
       position: [0.3, 0, 0.5]
   forces:
-    - {body: high, from: 0.1, to: 0.7, force: [2, 1, 3], torque: [0.1, 0, 0.2]}
+    - {body: high, from: 0.1, to: 0.7, force: [-4, 1, 1], torque: [0.1, 0, 0.2]}
 events:
-  - {at: 0.4, body: high, teleport: [0.5, 0, 0.7], velocity: [0, 0, -2]}
+  - {at: 0.4, body: high, teleport: [0.5, 0, 0.7]}
+  - {at: 0.42, body: high, velocity: [0, 0, -2]}
   - {at: 0.45, body: low, scale_mass: 3}
   - {at: 0.8, body: low, velocity: [-1, 0, 0], angular_velocity: [0, 5, 0]}
 duration: 1.0

@@ -248,3 +248,20 @@ def test_the_message_shows_measured_expected_tolerance_and_log() -> None:
     (verdict,) = verdicts(claim, cell(5.5))
     for text in ("5.5", "4.0", "0.25 relative", "some-cell.mcap", "FAILED"):
         assert text in verdict.message
+
+
+@pytest.mark.parametrize(
+    ("claim", "value", "margin"),
+    [
+        ({"at_most": 2.0}, 0.5, 0.75),
+        ({"at_most": 2.0}, 3.0, -0.5),
+        ({"at_least": 2.0}, 3.0, 0.5),
+        ({"between": (0.0, 4.0)}, 1.0, 0.5),
+        ({"equals": {"value": 4.0, "relative": 0.25}}, 4.5, 0.5),
+    ],
+)
+def test_the_margin_is_the_share_of_the_bound_that_is_left(
+    claim: dict[str, object], value: float, margin: float
+) -> None:
+    (verdict,) = verdicts(expect(**claim), cell(value))
+    assert verdict.margin == pytest.approx(margin)
