@@ -86,6 +86,7 @@ def write_results(
         )
     table = {
         "experiment": run.name,
+        "reduced": run.experiment.reduced,
         "cells": rows,
         # Cells share kernels, so what compiling costs is a number of the run.
         "compile_s": compile_seconds(finished),
