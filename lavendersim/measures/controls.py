@@ -107,6 +107,9 @@ def verdict_of(trial: Trial, claims: Sequence[Any], raw: Mapping[str, Verdict]) 
     lines += [f"  which is   {shown}"] if shown else []
     lines += [f"  log        {path}"] if path else []
     measured = named[0].measured if named else float("nan")
+    if of_completion(trial.control) and trial.cells:
+        measured = float(trial.cells[0].trace().step["step"][-1])  # the last there is
+        expected += f" (after step {measured:.0f})" if passed else ""
     return Verdict(
         trial.control.name, trial.node, passed, measured, expected, "none", "\n".join(lines), path
     )
