@@ -2,8 +2,8 @@
 
 A measure turns the log of one cell into one number (or one row of numbers). What each kind
 computes stands in `lavendersim/measures`, one function per kind. What all kinds may carry stands in
-`measure_base`; kinds that read motion from the logged poses in `motion_specs`, kinds that hold a
-log against a law of mechanics in `law_specs`.
+`measure_base`; kinds that read the logged poses in `motion_specs` and `kinematic_specs`, kinds that
+hold a log against a law of mechanics in `law_specs`.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
+from lavendersim.experiment.kinematic_specs import KinematicSpec
 from lavendersim.experiment.law_specs import LawSpec
 from lavendersim.experiment.measure_base import Measure, PairMeasure, Seconds
 from lavendersim.experiment.motion_specs import MotionSpec
@@ -183,6 +184,7 @@ MeasureSpec = Annotated[
     | EnergyAfterBounces
     | SimulatedDuration
     | MotionSpec
+    | KinematicSpec
     | LawSpec,
     Field(discriminator="kind"),
 ]

@@ -1,0 +1,118 @@
+"""Logged poses in; ways, speeds, turns and times of rest out. No solver's word is taken.
+
+Times are counted in steps: logged times are whole nanoseconds, rounded down.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from lavendersim.experiment import kinematic_specs as specs
+from lavendersim.measures import cell_config
+from lavendersim.measures.views import Floats, Trace
+
+NAN = float("nan")
+ROUNDED = 2e-9  # [s] logged times are rounded down to nanoseconds
+
+
+def displacement(spec: specs.Displacement, trace: Trace) -> float:
+    """Return the way [m] of the centre along the direction; NaN when the run ends before."""
+    rows = _rows(trace, spec.begin, spec.end)
+    return _way(trace, spec, rows) if rows else NAN
+
+
+def mean_velocity(spec: specs.MeanVelocity, trace: Trace) -> float:
+    """Return that way over its time [m/s]."""
+    rows = _rows(trace, spec.begin, spec.end)
+    return _way(trace, spec, rows) / _seconds(trace, *rows) if rows else NAN
+
+
+def mean_angular_velocity(spec: specs.MeanAngularVelocity, trace: Trace) -> float:
+    """Return the sum of the turns between neighbouring states, along the direction, over time.
+
+    q' q^-1 = (cos(a/2), u sin(a/2)) is a turn by a about u; its vector is a u.
+    """
+    rows = _rows(trace, spec.begin, spec.end)
+    if not rows:
+        return NAN
+    turns = trace.pose[rows[0] : rows[1] + 1, list(trace.bodies).index(spec.body), 3:]
+    w, vector = _between(turns[:-1], turns[1:])
+    size = np.sqrt((vector**2).sum(axis=1))
+    # sin(a/2) -> a/2, so a/sin(a/2) -> 2 as the turn goes to zero
+    angle = 2.0 * np.arctan2(size, w)
+    stretch = np.where(size > 0.0, angle / np.where(size > 0.0, size, 1.0), 2.0)
+    along = _unit(spec.along)
+    return float((stretch * (vector @ along)).sum()) / _seconds(trace, *rows)
+
+
+def top_speed(spec: specs.TopSpeed, trace: Trace) -> float:
+    """Return the greatest speed [m/s]; NaN when the run ends before `after`."""
+    speeds, ends = _speeds(trace, spec.bodies)
+    later = speeds[ends > spec.after + ROUNDED]
+    return float(np.max(later)) if later.size else NAN
+
+
+def rest_time(spec: specs.RestTime, trace: Trace) -> float:
+    """Return the end [s] of the last step in which a centre was as fast as the threshold."""
+    speeds, ends = _speeds(trace, spec.bodies)
+    fast = np.flatnonzero(~(speeds < spec.slower_than))
+    if len(fast) == 0:
+        return 0.0
+    return float(ends[fast[-1]]) if fast[-1] < len(speeds) - 1 else NAN
+
+
+def tilt(spec: specs.Tilt, trace: Trace) -> float:
+    """Return the angle [degree] between both directions of the axis, good for small ones too."""
+    turns = trace.pose[:, list(trace.bodies).index(spec.body), 3:]
+    axis = _unit(spec.axis)
+    first, last = (cell_config.rotation_matrix(turns[row]) @ axis for row in (0, -1))
+    across = np.cross(first, last)
+    return math.degrees(math.atan2(math.sqrt(float(across @ across)), float(first @ last)))
+
+
+def _rows(trace: Trace, begin: float, end: float | None) -> tuple[int, int] | None:
+    """Return the first state at or after `begin` and that at or after `end`, where there are."""
+    time = np.asarray(trace.step["time"])
+    first = int(np.searchsorted(time, begin - ROUNDED))
+    last = len(time) - 1 if end is None else int(np.searchsorted(time, end - ROUNDED))
+    return (first, last) if first < last < len(time) else None
+
+
+def _seconds(trace: Trace, first: int, last: int) -> float:
+    steps = int(trace.step["step"][last] - trace.step["step"][first])
+    return steps * float(trace.timestep)
+
+
+def _way(
+    trace: Trace, spec: specs.Displacement | specs.MeanVelocity, rows: tuple[int, int]
+) -> float:
+    centres = trace.pose[list(rows), list(trace.bodies).index(spec.body), :3]
+    return float((centres[1] - centres[0]) @ _unit(spec.along))
+
+
+def _speeds(trace: Trace, bodies: tuple[str, ...]) -> tuple[Floats, Floats]:
+    """Return the fastest centre's speed [m/s] between neighbouring states, and when they end."""
+    names = bodies or [one.name for one in cell_config.bodies(trace.resolved) if one.movable]
+    columns = [list(trace.bodies).index(name) for name in names]
+    ways = np.diff(trace.pose[:, columns, :3], axis=0)
+    seconds = np.diff(np.asarray(trace.step["step"])) * float(trace.timestep)
+    speeds: Floats = np.sqrt((ways**2).sum(axis=2)).max(axis=1) / seconds
+    return speeds, np.asarray(trace.step["time"])[1:]
+
+
+def _between(before: Floats, after: Floats) -> tuple[Floats, Floats]:
+    """Return the scalar and the vector of after * before^-1, the shorter way round."""
+    w0, u0 = before[:, 0], before[:, 1:]
+    w1, u1 = after[:, 0], after[:, 1:]
+    w = w0 * w1 + (u0 * u1).sum(axis=1)
+    vector = w0[:, None] * u1 - w1[:, None] * u0 - np.cross(u1, u0)
+    sign = np.where(w < 0.0, -1.0, 1.0)
+    return sign * w, sign[:, None] * vector
+
+
+def _unit(direction: tuple[float, float, float]) -> Floats:
+    vector = np.asarray(direction, dtype=float)
+    unit: Floats = vector / math.sqrt(float(vector @ vector))
+    return unit
