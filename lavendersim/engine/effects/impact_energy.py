@@ -68,6 +68,7 @@ def make_settle(spec: Spec, solve: Any, classify: Any) -> Any:
     relative_velocity = make_relative_velocity(spec)
     leave = make_leave(spec)
     some_smooth = spec.has("smooth_contact")
+    records = spec.has("residual_log")
 
     def work_of(contacts, count, velocities, motion, params):
         # Of all impulses, at each body's time of impact: before and after it forces work alone.
@@ -106,6 +107,16 @@ def make_settle(spec: Spec, solve: Any, classify: Any) -> Any:
 
     aim = kernel(aim, spec)
 
+    def forget_sweeps(counters, rows):
+        # A step has room for the sweeps of one solve: those of the solve that counts, the last.
+        if records:
+            while counters.residual_rows > 0:
+                if rows[counters.residual_rows - 1].step != counters.step + 1:
+                    break
+                counters.residual_rows -= 1
+
+    forget_sweeps = kernel(forget_sweeps, spec)
+
     def settle(contacts, order, count, bodies, velocities, motion, space, params, counters, rows):
         counters.stronge = 0
         if some_smooth:
@@ -128,6 +139,7 @@ def make_settle(spec: Spec, solve: Any, classify: Any) -> Any:
             return
         counters.stronge = 1
         aim(contacts, count, 1.0)
+        forget_sweeps(counters, rows)
         solve(contacts, order, count, bodies, velocities, space, params, counters, rows)
         total, size = work_of(contacts, count, velocities, motion, params)
         if total <= ROUND_OFF * size:
@@ -136,6 +148,7 @@ def make_settle(spec: Spec, solve: Any, classify: Any) -> Any:
         for _ in range(HALVINGS):
             share = 0.5 * (low + high)
             aim(contacts, count, share)
+            forget_sweeps(counters, rows)
             solve(contacts, order, count, bodies, velocities, space, params, counters, rows)
             total, size = work_of(contacts, count, velocities, motion, params)
             if total <= ROUND_OFF * size:
@@ -143,6 +156,7 @@ def make_settle(spec: Spec, solve: Any, classify: Any) -> Any:
             else:
                 high = share
         aim(contacts, count, low)
+        forget_sweeps(counters, rows)
         solve(contacts, order, count, bodies, velocities, space, params, counters, rows)
 
     return kernel(settle, spec)

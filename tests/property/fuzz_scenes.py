@@ -1,0 +1,276 @@
+"""A plan enters; random configs that it can run leave, as the trees of their YAML files.
+
+Sizes are drawn over four decades, masses over six, and a body stands somewhere within reach of one
+before it, down to the same place: most overlap, many deeply. Nothing here is meant to be sensible;
+all of it is legal.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Any, NamedTuple
+
+import numpy as np
+from hypothesis import strategies as st
+
+from lavendersim.engine.collide import SHAPE_PAIRS
+from lavendersim.engine.effects import EFFECTS
+from lavendersim.scene.laws import needs
+
+SOLIDS = ("sphere", "box", "capsule", "cylinder", "hull", "compound")
+SOLVERS = (
+    "adaptive",
+    "projected_gauss_seidel",
+    "block_gauss_seidel",
+    "coloured_gauss_seidel",
+    "nonsmooth_conjugate_gradient",
+    "jacobi",
+    "accelerated_projected_gradient",
+)
+WITHOUT_SWEEPS = ("jacobi", "accelerated_projected_gradient")  # they know no order of contacts
+CHOSEN = {  # effects that are there by the numerics alone
+    "impact_time": ("impacts", "at_surface"),
+    "midpoint": ("integrator", "midpoint"),
+    "speculative": ("speculative", True),
+}
+# Effects that a drawn plan may leave out: of each it is known what calls for it.
+SPARED = (
+    *("broad_phase", "compliance", "compound", "drag", "external_force", "friction", "gravity"),
+    *("kinematic", "problem_log", "projection", "residual_log", "restitution", "rolling_friction"),
+    *("sleeping", "stabilisation", "surface_velocity", "torsional_friction", "warm_start"),
+)
+HULL = ((0.6, 0, -0.4), (-0.3, 0.5, -0.4), (-0.3, -0.5, -0.4), (0.1, 0.1, 0.7), (0.2, 0.3, 0.4))
+EDGES = (0.0, 1.0)  # of shares: hypothesis is fond of them, and so are defects
+
+unit = st.floats(-1.0, 1.0, allow_subnormal=False, width=32)
+share = st.floats(*EDGES, allow_subnormal=False, width=32)
+vector = st.tuples(unit, unit, unit)
+
+
+class Drawn(NamedTuple):
+    """What all scenes of one engine agree in: what is compiled in, and which laws."""
+
+    effects: tuple[str, ...]
+    shapes: tuple[str, ...]
+    numerics: dict[str, Any]  # those that choose an engine
+    tolerance: bool
+    over_relaxation: bool
+
+    def switches(self) -> dict[str, str]:
+        """Return the section `effects` that forces all of it on."""
+        shapes = {*self.shapes, "plane"} - {"compound"}
+        pairs = [name for name, (_, pair, _) in SHAPE_PAIRS.items() if {*pair} <= shapes]
+        return dict.fromkeys((*self.effects, *pairs), "on")
+
+
+def _closed(names: set[str], numerics: dict[str, Any]) -> tuple[str, ...]:
+    """Return the effects of these that numerics allow and that have all that they need."""
+    barred = {name for name, (key, law) in CHOSEN.items() if numerics[key] != law}
+    if (numerics["solver"], numerics["friction_cone"]) != ("adaptive", "disc"):
+        barred.add("newton")
+    names = names - barred
+    return tuple(sorted(name for name in names if {*needs(name)} <= names))
+
+
+EVERY = {effect.NAME for effect in EFFECTS}
+LAWS: dict[str, Any] = {
+    "solver": "adaptive",
+    "friction_cone": "disc",
+    "order": "coloured",
+    "impacts": "at_surface",
+    "integrator": "midpoint",
+    "speculative": True,
+}
+FULL = Drawn(_closed(EVERY, LAWS), SOLIDS, LAWS, tolerance=True, over_relaxation=False)
+
+
+@st.composite
+def plans(draw: Any) -> Drawn:
+    """Subsets of effects and of shapes, with a solver and the laws that numerics choose."""
+    solver = draw(st.sampled_from(SOLVERS))
+    ordered = solver not in WITHOUT_SWEEPS
+    orders = ("coloured", "forward", "backward", "symmetric", "random")
+    numerics = {
+        "solver": solver,
+        "friction_cone": draw(st.sampled_from(("disc", "disc", "pyramid", "convex"))),
+        "order": draw(st.sampled_from(orders)) if ordered else "coloured",
+        "impacts": draw(st.sampled_from(("captured", "at_surface"))),
+        "integrator": draw(st.sampled_from(("semi_implicit_euler", "midpoint"))),
+        "speculative": draw(st.booleans()),
+    }
+    spared = {name for name in SPARED if draw(st.booleans())}
+    shapes = draw(st.sets(st.sampled_from(SOLIDS[:-1]), min_size=1, max_size=3))
+    compound = () if "compound" in spared else ("compound",)
+    return Drawn(
+        _closed(EVERY - spared, numerics),
+        (*sorted(shapes), *compound),
+        numerics,
+        tolerance=draw(st.booleans()),
+        over_relaxation=ordered and draw(st.booleans()),
+    )
+
+
+class _Pen:
+    """Draws the parts of one config."""
+
+    def __init__(self, draw: Any, plan: Drawn) -> None:
+        self.draw, self.plan = draw, plan
+
+    def has(self, effect: str) -> bool:
+        """Whether the plan has an effect, and this time it is called for."""
+        return effect in self.plan.effects and bool(self.draw(st.booleans()))
+
+    def power(self, low: float, high: float) -> float:
+        """Return ten to the power of something between."""
+        return float(10.0 ** self.draw(st.floats(low, high, allow_subnormal=False, width=32)))
+
+    def vector(self, size: float) -> list[float]:
+        """Return a vector no longer than sqrt(3) sizes."""
+        return [size * x for x in self.draw(vector)]
+
+    def share(self, low: float = 0.0) -> float:
+        """Return something from `low` to 1."""
+        return low + (1.0 - low) * float(self.draw(share))
+
+    def turn(self) -> list[float]:
+        """Return no rotation, or any but those by half a turn."""
+        return [1.0, *(self.vector(1.0) if self.draw(st.booleans()) else (0.0, 0.0, 0.0))]
+
+    def shape(self, kind: str, size: float) -> dict[str, Any]:
+        """Return a shape of which no point is much farther from its centre than `size`."""
+        if kind == "sphere":
+            return {"kind": kind, "radius": size}
+        if kind == "box":
+            return {"kind": kind, "size": [size * self.share(0.01) for _ in range(3)]}
+        if kind in ("capsule", "cylinder"):
+            radius, length = 0.5 * size * self.share(0.02), size * self.share(0.02)
+            return {"kind": kind, "radius": radius, "length": length}
+        if kind == "hull":
+            points = [[size * (c + 0.1 * self.draw(unit)) for c in point] for point in HULL]
+            return {"kind": kind, "points": points}
+        simple = st.sampled_from(tuple(k for k in self.plan.shapes if k != "compound"))
+        parts = [
+            {
+                "shape": self.shape(self.draw(simple), 0.5 * size),
+                "position": self.vector(0.4 * size),
+                "orientation": self.turn(),
+            }
+            for _ in range(self.draw(st.integers(1, 3)))
+        ]
+        return {"kind": kind, "parts": parts}
+
+    def surface(self, size: float) -> dict[str, float]:
+        """Return what a surface of a body so large may do."""
+        made = {}
+        if self.has("friction"):
+            made["friction"] = self.draw(st.sampled_from((0.5, 1.0, 10.0))) * self.share()
+        if self.has("torsional_friction"):
+            made["torsional_friction"] = size * self.share()
+        if self.has("rolling_friction"):
+            made["rolling_friction"] = size * self.share()
+        if self.has("restitution"):
+            made["restitution"] = self.share()
+        if self.has("compliance"):
+            made["compliance"] = self.power(-9.0, -2.0)
+        return made
+
+    def body(self, first: bool, near: tuple[np.ndarray, float]) -> tuple[dict[str, Any], float]:
+        """Return a body within reach of another one (its centre and size), and its size."""
+        size = self.power(-2.0, 2.0)
+        place = near[0] + (near[1] + size) * np.array(self.draw(vector)) * self.share()
+        body: dict[str, Any] = {
+            "shape": self.shape(self.draw(st.sampled_from(self.plan.shapes)), size),
+            "position": place.tolist(),
+            "orientation": self.turn(),
+            "surface": self.surface(size),
+        }
+        if self.has("surface_velocity"):
+            body["surface_velocity"] = self.vector(self.power(-2.0, 1.0))
+        way = self.draw(st.integers(0, 7))
+        if way == 0 and not first:
+            return {**body, "fixed": True}, size
+        body["velocity"] = self.vector(self.power(-2.0, 2.0))
+        body["angular_velocity"] = self.vector(self.power(-2.0, 2.0))
+        if way == 1 and not first and "kinematic" in self.plan.effects:
+            return {**body, "kinematic": True}, size
+        body["mass"] = self.power(-3.0, 3.0)
+        if self.has("drag"):
+            names = ("linear", "quadratic", "angular")
+            body["drag"] = {name: self.power(-3.0, 1.0) * self.share() for name in names}
+        return body, size
+
+    def numerics(self) -> dict[str, Any]:
+        """Return all of the numerics."""
+        plan, draw = self.plan, self.draw
+        rate = draw(st.one_of(st.sampled_from((30, 60, 240, 10_000)), st.integers(30, 10_000)))
+        relaxed = 0.02 + 1.96 * self.share() if plan.over_relaxation else 1.0
+        return {
+            **plan.numerics,
+            "timestep": f"1/{rate}",
+            "sweeps": draw(st.integers(1, 60)),
+            "over_relaxation": 0.5 if plan.over_relaxation and relaxed == 1.0 else relaxed,
+            "tolerance": self.power(-14.0, 0.0) if plan.tolerance else None,
+            "warm_start": self.has("warm_start"),
+            "stabilisation_gain": 2.0 * self.share() if self.has("stabilisation") else 0.0,
+            "slop": self.power(-9.0, -2.0) * self.share(),
+            "projection": self.share() if self.has("projection") else 0.0,
+            "projection_sweeps": draw(st.integers(0, 30)),
+            "restitution_threshold": 10.0 * self.share(),
+            "cache_distance": self.power(-4.0, 1.0) * self.share(),
+            "cache_normal_cosine": draw(unit),
+            "sleeping": self.has("sleeping"),
+            "sleep_speed": self.power(-4.0, 1.0),
+            "sleep_time": 0.2 * self.share(),
+        }
+
+    def forces(self, movable: list[str], duration: float) -> list[dict[str, Any]]:
+        """Return what pushes and twists for a while."""
+        if not self.has("external_force"):
+            return []
+        body, begin = self.draw(st.sampled_from(movable)), 0.5 * duration * self.share()
+        push, twist = self.vector(self.power(-3.0, 4.0)), self.vector(self.power(-3.0, 3.0))
+        return [{"body": body, "from": begin, "to": duration, "force": push, "torque": twist}]
+
+    def events(self, movable: list[str], duration: float) -> list[dict[str, Any]]:
+        """Return a sudden change of one body."""
+        body, kind = self.draw(st.sampled_from(movable)), self.draw(st.integers(0, 7))
+        change: dict[str, Any] = {
+            0: {"scale_mass": self.power(-3.0, 3.0)},
+            1: {"teleport": self.vector(1.0)},
+            2: {"velocity": self.vector(10.0), "contact_cache": "clear"},
+        }.get(kind, {})
+        return [{"at": duration * self.share(), "body": body, **change}] if change else []
+
+
+@st.composite
+def configs(draw: Any, plan: Drawn) -> dict[str, Any]:
+    """Two to eight bodies, for 20 to 60 steps, as the tree of a config."""
+    pen = _Pen(draw, plan)
+    bodies: dict[str, Any] = {}
+    places = [(np.zeros(3), 0.0)]
+    for k in range(draw(st.integers(2, 8))):
+        body, size = pen.body(k == 0, places[draw(st.integers(0, len(places) - 1))])
+        bodies[f"body_{k}"] = body
+        places.append((np.array(body["position"]), size))
+    if draw(st.booleans()):
+        shape = {"kind": "plane", "offset": -pen.power(-2.0, 1.0)}
+        bodies["floor"] = {"shape": shape, "surface": pen.surface(1.0)}
+    numerics = pen.numerics()
+    duration = float(draw(st.integers(20, 60)) * Fraction(numerics["timestep"]))
+    movable = [name for name, body in bodies.items() if "mass" in body]
+    gravity = pen.vector(pen.power(-1.0, 2.0)) if pen.has("gravity") else [0.0, 0.0, 0.0]
+    return {
+        "scene": {
+            "gravity": gravity,
+            "bodies": bodies,
+            "forces": pen.forces(movable, duration),
+        },
+        "events": pen.events(movable, duration),
+        "numerics": numerics,
+        "duration": duration,
+        "record": {
+            "residuals": "all" if pen.has("residual_log") else "none",
+            "problems": "every 7" if pen.has("problem_log") else "none",
+        },
+        "effects": plan.switches(),
+    }
