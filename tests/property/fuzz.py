@@ -5,7 +5,8 @@
 Every run is one of `fuzz_laws.broken`: on the plan with every effect and pair of shapes for as many
 `--runs`, then on so many drawn `--plans` for a share of them each. Each config that breaks a law is
 written to the directory `--keep`, as a config that replays it. The config that runs stands there as
-`running.yaml`, so that it is known where the process itself ends. Exit 1 where anything broke.
+`running.yaml`, so that it is known where the process itself ends. Exit 1 where anything
+broke that is not known (`fuzz_laws.KNOWN`).
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from fuzz_laws import broken, loaded, run, text_of
+from fuzz_laws import KNOWN, broken, loaded, run, text_of, unknown
 from fuzz_scenes import FULL, Drawn, configs, plans
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import seed as seeded
@@ -116,11 +117,14 @@ def main(arguments: list[str]) -> int:
     for name, (plan, count) in engines.items():
         begin = time.perf_counter()
         done, found = finds(plan, count, asked.keep, asked.seed)
-        broke += len(found)
+        known = [find for find in found if not unknown(find.laws)]
+        broke += len(found) - len(known)
         took = f"{time.perf_counter() - begin:.0f} s"
         laws = ", ".join(f"{value}" for value in plan.numerics.values())
         print(f"{name} ({laws}; {len(plan.effects)} effects; {'/'.join(plan.shapes)}): "
               f"{done - len(found)} of {done} runs broke nothing, {took}")  # fmt: skip
+        if known:
+            print(f"  {len(known)} of the others broke no more than is known ({', '.join(KNOWN)})")
         for line in _kept(f"{name}_{asked.seed}", found, asked.keep):
             print(line)
         sys.stdout.flush()

@@ -1,0 +1,112 @@
+"""Random configs break no law, on the engine with everything and on drawn ones; nor do old finds.
+
+`LAVENDER_TEST_FUZZ` draws more than 300 configs; `tests/property/fuzz.py` draws them on more plans.
+"""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import yaml
+from fuzz import drawn_plans, finds, first_config
+from fuzz_laws import KNOWN, broken, loaded, run, unknown
+from fuzz_scenes import FULL, SOLIDS, Drawn
+from idle import compile_together
+
+from lavendersim.engine.collide import SHAPE_PAIRS
+from lavendersim.engine.effects import EFFECTS
+
+CONFIGS = int(os.environ.get("LAVENDER_TEST_FUZZ", "300"))
+ENGINES = {"everything": FULL, **{f"drawn {k}": plan for k, plan in enumerate(drawn_plans(2))}}
+SHARE = {"everything": 8, "drawn 0": 1, "drawn 1": 1}  # tenths of the configs
+# Finds that still break a law, by the law.
+BROKEN = {"torque_beyond_its_cone": "torque"}
+FOUND = sorted((Path(__file__).parents[2] / "configs" / "hard" / "found").glob("*.yaml"))
+
+
+@pytest.fixture(scope="module", autouse=True)
+def compiled() -> None:
+    """Compile the engines on both cores."""
+    engines = []
+    for plan in ENGINES.values():
+        experiment, spec = loaded(first_config(plan))
+        engines.append((experiment.cells()[0].resolved, spec))
+    compile_together(engines)
+
+
+@pytest.mark.parametrize("name", ENGINES)
+def test_random_configs_break_no_law(name: str) -> None:
+    done, found = finds(ENGINES[name], CONFIGS * SHARE[name] // 10)
+    assert done == CONFIGS * SHARE[name] // 10
+    assert [find.laws for find in found if unknown(find.laws)] == []
+
+
+def _marked(path: Path) -> Any:
+    law = BROKEN.get(path.stem)
+    marks = [pytest.mark.xfail(reason=KNOWN[law], strict=True)] if law else []
+    return pytest.param(path, marks=marks, id=path.stem)
+
+
+@pytest.mark.parametrize("path", [_marked(path) for path in FOUND])
+def test_what_was_found_once_breaks_no_law(path: Path) -> None:
+    tree: dict[str, Any] = yaml.safe_load(path.read_text(encoding="utf-8"))
+    assert broken(tree) == []
+
+
+def test_the_fullest_engine_has_every_effect_and_pair_of_shapes() -> None:
+    spec = loaded(first_config(FULL))[1]
+    assert {*spec.effects} == {effect.NAME for effect in EFFECTS}
+    assert {*spec.shape_pairs} == {*SHAPE_PAIRS}
+    assert FULL.shapes == SOLIDS
+
+
+def test_drawn_engines_differ_in_what_they_leave_out() -> None:
+    plans: list[Drawn] = drawn_plans(20)
+    assert len({repr(plan) for plan in plans}) == 20
+    assert len({plan.numerics["solver"] for plan in plans}) >= 5
+    assert all(set(plan.effects) < set(FULL.effects) for plan in plans)
+
+
+def _fall() -> dict[str, Any]:
+    """Return a ball that rolls into a wall, on the engine with everything."""
+    tree = first_config(FULL)
+    ball = {"shape": {"kind": "sphere", "radius": 0.1}, "mass": 1.0, "position": [0.0, 0.0, 0.1],
+            "velocity": [1.0, 0.0, 0.0], "surface": {"friction": 0.5}}  # fmt: skip
+    floor = {"shape": {"kind": "plane"}, "surface": {"friction": 0.5}}
+    tree["scene"] = {"gravity": [0.0, 0.0, -9.81], "bodies": {"ball": ball, "floor": floor}}
+    tree["numerics"]["timestep"] = "1/240"
+    return {**tree, "events": [], "duration": 0.1}
+
+
+BREAKS = {  # a change of a log, and the law that it breaks
+    "push": lambda rows: rows.contact["impulse_n"].__imul__(-1.0),
+    "cone": lambda rows: rows.contact["impulse_t1"].__iadd__(1.0),
+    "counts": lambda rows: rows.step["contact_count"].__iadd__(1),
+    "unit": lambda rows: rows.contact["nz"].__imul__(1.1),
+    "finite": lambda rows: rows.step["kinetic_energy"].fill(np.nan),
+}
+
+
+@pytest.mark.parametrize("law", BREAKS)
+def test_each_law_bites(law: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    def bent(*arguments: Any) -> Any:
+        ended = run(*arguments)
+        BREAKS[law](ended.rows)
+        return ended
+
+    assert broken(_fall()) == []
+    monkeypatch.setattr("fuzz_laws.run", bent)
+    assert law in {said.split(":")[0] for said in broken(_fall())}
+
+
+def test_a_state_that_is_no_number_is_told_as_a_divergence() -> None:
+    tree = _fall()
+    tree["scene"]["bodies"]["ball"]["velocity"] = [1e200, 0.0, 0.0]
+    assert broken(tree) == []
+    experiment, spec = loaded(tree)
+    ended = run(experiment.cells()[0].resolved, spec, 24)
+    assert ended.said.startswith("diverged: body ball is no longer finite after step 1")
