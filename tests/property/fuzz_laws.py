@@ -36,6 +36,7 @@ KNOWN = {
     "torque": "Newton's method gives contacts new normal impulses and leaves their torques, which "
     "the sweeps that remain may be too few to bring back within c lambda_n",
 }
+SQUARES = ("kinetic_energy", "dissipation")  # columns that are products of two velocities
 BLOCK = 16  # steps that rows are held for: some blocks end within each run
 
 
@@ -124,12 +125,10 @@ def _broken(tree: dict[str, Any], shared: Spec | None) -> list[str]:
     return found
 
 
-def _whole(rows: np.ndarray) -> np.ndarray:
-    """Return which rows of a table are finite in every column."""
-    fine = np.ones(len(rows), bool)
-    for name in rows.dtype.names or ():
-        fine &= np.isfinite(rows[name].astype(float))
-    return fine
+def _odd(rows: np.ndarray, but: tuple[str, ...]) -> list[str]:
+    """Return the columns of a table that are not finite everywhere."""
+    names = [name for name in rows.dtype.names or () if name not in but]
+    return [name for name in names if not np.isfinite(rows[name].astype(float)).all()]
 
 
 def _ending(run: Ended, steps: int) -> list[str]:
@@ -146,10 +145,10 @@ def _ending(run: Ended, steps: int) -> list[str]:
     last = run.steps if run.said else run.steps + 1  # the step that diverged may be no number
     for name in ("step", "contact", "residual"):
         table = getattr(rows, name)
-        odd = table[~_whole(table) & (table["step"] < last)]
-        if len(odd):
-            columns = [c for c in odd.dtype.names if not np.isfinite(float(odd[0][c]))]
-            found.append(f"finite: {columns} of {name} in step {odd[0]['step']}")
+        # What grows beyond all numbers does so in its square first, and is told a step later.
+        columns = _odd(table[table["step"] < last], SQUARES if run.said else ())
+        if columns:
+            found.append(f"finite: {', '.join(columns)} of {name}")
     kept = rows.pose[: last if run.said else None]
     if not np.isfinite(kept).all():
         found.append("finite: a pose is no number")
