@@ -270,7 +270,7 @@ def configs(draw: Any, plan: Drawn) -> dict[str, Any]:
         "duration": duration,
         "record": {
             "residuals": "all" if pen.has("residual_log") else "none",
-            "problems": "every 7" if pen.has("problem_log") else "none",
+            "problems": "none",  # few scenes can be written as FCLIB files
         },
         "effects": plan.switches(),
     }
