@@ -14,7 +14,7 @@ from __future__ import annotations
 import argparse
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -22,6 +22,9 @@ from fuzz_laws import KNOWN, broken, loaded, run, text_of, unknown
 from fuzz_scenes import FULL, Drawn, configs, plans
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import seed as seeded
+
+
+PROGRESS = 500  # runs between two lines that tell how far it is
 
 
 class Find(NamedTuple):
@@ -75,7 +78,8 @@ def finds(
 ) -> tuple[int, list[Find]]:
     """Run so many configs on the engine of one plan; returns their number, and what broke.
 
-    A plan's configs share an engine: one that calls for another is a find, too.
+    A plan's configs share an engine: one that calls for another is a find, too. keep: a file for
+    the config that runs, and the beginning of the names of finds.
     """
     compiled(plan)
     shared = loaded(first_config(plan))[1]
@@ -83,22 +87,21 @@ def finds(
 
     def take(tree: dict[str, Any]) -> None:
         nonlocal done
-        done += 1
         if keep is not None:
-            (keep / "running.yaml").write_text(text_of(tree))
+            keep.with_name("running.yaml").write_text(text_of(tree))
         laws = broken(tree, shared)
+        done += 1
         if laws:
             found.append(Find(tree, laws))
+            if keep is not None:
+                path = keep.with_name(f"{keep.name}_{done}.yaml")
+                path.write_text("".join(f"# {law}\n" for law in laws) + text_of(tree))
+                print(f"  {path}: {'; '.join(laws)}", flush=True)
+        if keep is not None and done % PROGRESS == 0:
+            print(f"  {done} of {count} runs", flush=True)
 
     drawn(configs(plan), count, take, seed)
     return done, found
-
-
-def _kept(name: str, found: list[Find], keep: Path) -> Iterator[str]:
-    for number, find in enumerate(found):
-        path = keep / f"{name}_{number}.yaml"
-        path.write_text("".join(f"# {law}\n" for law in find.laws) + text_of(find.tree))
-        yield f"  {path}: {'; '.join(find.laws)}"
 
 
 def main(arguments: list[str]) -> int:
@@ -116,7 +119,7 @@ def main(arguments: list[str]) -> int:
     broke = 0
     for name, (plan, count) in engines.items():
         begin = time.perf_counter()
-        done, found = finds(plan, count, asked.keep, asked.seed)
+        done, found = finds(plan, count, asked.keep / f"{name}_{asked.seed}", asked.seed)
         known = [find for find in found if not unknown(find.laws)]
         broke += len(found) - len(known)
         took = f"{time.perf_counter() - begin:.0f} s"
@@ -125,8 +128,6 @@ def main(arguments: list[str]) -> int:
               f"{done - len(found)} of {done} runs broke nothing, {took}")  # fmt: skip
         if known:
             print(f"  {len(known)} of the others broke no more than is known ({', '.join(KNOWN)})")
-        for line in _kept(f"{name}_{asked.seed}", found, asked.keep):
-            print(line)
         sys.stdout.flush()
     (asked.keep / "running.yaml").unlink(missing_ok=True)
     return 1 if broke else 0

@@ -234,11 +234,12 @@ class _Pen:
     def events(self, movable: list[str], duration: float) -> list[dict[str, Any]]:
         """Return a sudden change of one body."""
         body, kind = self.draw(st.sampled_from(movable)), self.draw(st.integers(0, 7))
-        change: dict[str, Any] = {
+        changes: dict[int, dict[str, Any]] = {
             0: {"scale_mass": self.power(-3.0, 3.0)},
             1: {"teleport": self.vector(1.0)},
             2: {"velocity": self.vector(10.0), "contact_cache": "clear"},
-        }.get(kind, {})
+        }
+        change = changes.get(kind, {})
         return [{"at": duration * self.share(), "body": body, **change}] if change else []
 
 
