@@ -23,7 +23,6 @@ from fuzz_scenes import FULL, Drawn, configs, plans
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import seed as seeded
 
-
 PROGRESS = 500  # runs between two lines that tell how far it is
 
 
