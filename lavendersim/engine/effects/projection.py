@@ -3,7 +3,10 @@
 Pseudo-velocities u (metres and radians per step, zero at the start) are solved for by projected
 Gauss-Seidel on the rows of the step:
     n . u  >=  projection * max(d_1 - slop, 0),   d_1 = -(phi + v_n dt)
-d_1 is the penetration after the velocity step, to first order. u is added to the poses and dropped.
+d_1 is the penetration after the velocity step, to first order. A pair that does not push moves by
+the mean of its old and new velocity where the integrator is `midpoint`, and v_n is that mean's: by
+the new one alone it would be moved out of an overlap that it never reaches. u is added to the poses
+and dropped.
 With every target at zero the solution is u = 0, and the pass ends before it begins.
 """
 
@@ -32,13 +35,16 @@ def make(spec):
     normal_velocity = make_normal_velocity(spec)
     apply_impulse = make_apply_impulse(spec)
     torque = spec.has("contact_torque")
-    friction = spec.has("friction")
+    friction, midpoint = spec.has("friction"), spec.has("midpoint")
 
     def project_positions(contacts, order, count, velocities, pseudo, params):
         asked = False
         for c in range(count):
             contact = contacts[c]
             v_n = normal_velocity(contact, velocities[contact.a], velocities[contact.b])
+            if midpoint:
+                if contact.lambda_n == 0.0:
+                    v_n -= 0.5 * contact.dv_n
             excess = -(contact.phi + v_n * params.dt) - params.slop
             contact.correction = params.projection * max(excess, 0.0)
             contact.push = 0.0
