@@ -6,8 +6,9 @@
       speed: none
 
 A key that is not stated has a default; `none` leaves a check out. That the state is finite is
-always checked. How each number is taken, and why it stays within round-off where a run is right,
-stands in `lavendersim/measures`: `account` and `watch`.
+always checked. A cell ends with the first step that breaks a bound (`stop`). How each number is
+taken, and why it stays within round-off where a run is right, stands in `lavendersim/measures`:
+`account` and `watch`.
 """
 
 from __future__ import annotations
@@ -25,6 +26,8 @@ FINITE: Final = "finite"
 # That a cell ends where its config says; `diverges` is what it does instead.
 COMPLETES: Final = "completes"
 DIVERGES: Final = "diverges"
+# Begins the status of a cell that was stopped at a bound; the name of the check follows.
+BEYOND_BOUNDS: Final = "beyond bounds: "
 
 
 def _form(value: Any) -> str | None:
@@ -73,7 +76,14 @@ class Always(ConfigModel):
     # A thousand times the tolerance of the default numerics: such a step was not solved at all.
     residual: Speed = Field(default=1e-6, description="[m/s] largest residual of any step")
     speed: Speed = Field(default=NONE, description="[m/s] greatest speed of any body")
+    stop: bool = Field(
+        default=True,
+        description="whether a cell ends with the first step that breaks a bound; false: it goes "
+        "on to its end, and the check fails all the same",
+    )
 
 
 # The names of the checks, in the order in which they are judged.
-CHECKS: Final = (FINITE, *Always.model_fields)
+CHECKS: Final = (FINITE, *(name for name in Always.model_fields if name != "stop"))
+# Those that a run is stopped by; one that is no longer finite ends by itself.
+STOPPING: Final = tuple(name for name in CHECKS if name != FINITE)

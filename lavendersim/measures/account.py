@@ -53,24 +53,56 @@ def by_step(trace: Trace, contacts: Rows, numbers: Floats) -> Floats:
     return sums
 
 
-def energy_created(trace: Trace) -> Floats:
-    """Return, in every state, the energy won since it was lowest over that at play [-]."""
-    work, events = changes.work_of_forces(trace), changes.given_by_events(trace)
-    own = mechanical_energy(trace) - np.cumsum(work + events + _lifted(trace))
-    created = own - np.minimum.accumulate(own)
-    potential = trace.step["potential_energy"]
-    at_play = (
-        float(trace.step["kinetic_energy"][0])
-        + _own_weight(trace)
-        + np.maximum(potential[0] - np.minimum.accumulate(potential), 0.0)
-        + np.cumsum(np.abs(work))
-        + np.cumsum(np.maximum(events, 0.0))
-    )
-    with np.errstate(invalid="ignore", divide="ignore"):
-        share = np.where(at_play > 0.0, created / at_play, np.where(created > 0.0, np.inf, 0.0))
-    # nothing that is not finite may pass
-    result: Floats = np.where(np.isfinite(created), share, np.nan)
-    return result
+class EnergyAccount:
+    """What a run has won, state by state; the states of a log may come in several parts."""
+
+    def __init__(self) -> None:
+        self._begun = False
+        self._given = self._lowest = self._lowest_potential = self._worked = self._put_in = 0.0
+        self._own_weight = self._first_potential = self._first_kinetic = 0.0
+
+    def created(self, trace: Trace) -> Floats:
+        """Return, in every state, the energy won since it was lowest over that at play [-].
+
+        trace: a log, or the next part of one: the last state that was counted, without its
+        contacts, and what follows.
+        """
+        potential = trace.step["potential_energy"]
+        if not self._begun:
+            self._begun = True
+            self._lowest = math.inf
+            self._lowest_potential = self._first_potential = float(potential[0])
+            self._first_kinetic = float(trace.step["kinetic_energy"][0])
+            self._own_weight = _own_weight(trace)
+        work, events = changes.work_of_forces(trace), changes.given_by_events(trace)
+        given = _summed(self._given, work + events + _lifted(trace))
+        own = mechanical_energy(trace) - given
+        lowest = np.minimum(np.minimum.accumulate(own), self._lowest)
+        lowest_potential = np.minimum(np.minimum.accumulate(potential), self._lowest_potential)
+        worked = _summed(self._worked, np.abs(work))
+        put_in = _summed(self._put_in, np.maximum(events, 0.0))
+        self._given, self._lowest = float(given[-1]), float(lowest[-1])
+        self._lowest_potential = float(lowest_potential[-1])
+        self._worked, self._put_in = float(worked[-1]), float(put_in[-1])
+        created = own - lowest
+        at_play = (
+            self._first_kinetic
+            + self._own_weight
+            + np.maximum(self._first_potential - lowest_potential, 0.0)
+            + worked
+            + put_in
+        )
+        with np.errstate(invalid="ignore", divide="ignore"):
+            share = np.where(at_play > 0.0, created / at_play, np.where(created > 0.0, np.inf, 0.0))
+        # nothing that is not finite may pass
+        result: Floats = np.where(np.isfinite(created), share, np.nan)
+        return result
+
+
+def _summed(before: float, numbers: Floats) -> Floats:
+    """Return the running sum behind what was summed before, rounded as if it were one."""
+    sums: Floats = np.cumsum(np.concatenate(([before], numbers)))[1:]
+    return sums
 
 
 def momentum_gap(trace: Trace) -> Floats:

@@ -1,7 +1,8 @@
 """A cell that was run and its experiment's `always` section in; one Outcome per check out.
 
 A check is broken by the first state whose number is above its bound, or is not a number. What is
-told is that state: step, time, whose it is, and the command that shows it.
+told is that state: step, time, whose it is, and the command that shows it. A cell that broke a
+bound was stopped there: it is the last state of its log.
 """
 
 from __future__ import annotations
@@ -9,11 +10,11 @@ from __future__ import annotations
 import numpy as np
 
 from lavendersim.errors import LavenderError
-from lavendersim.experiment.always_specs import Always
+from lavendersim.experiment.always_specs import BEYOND_BOUNDS, Always
 from lavendersim.measures.values import Part
 from lavendersim.measures.verdict import Outcome, failure
 from lavendersim.measures.views import Cell, Trace
-from lavendersim.measures.watch import Watched, checks_of, watched
+from lavendersim.measures.watch import Watch, Watched, checks_of
 
 COMPLETE = "complete"
 PREFIX = "always: "
@@ -22,17 +23,18 @@ PREFIX = "always: "
 def outcomes_of(always: Always, cell: Cell) -> dict[str, Outcome]:
     """Return the outcome of every check of a cell.
 
-    A cell that did not complete is judged up to the last state that was whole; what breaks a check
-    there follows from how it ended, and says so.
+    A cell that diverged is judged up to the last state that was whole; what breaks a check there
+    follows from how it ended, and says so.
     """
     try:
         trace: Trace = cell.trace()
         ended = trace.status
-        judged = trace if ended == COMPLETE else Part(trace, len(trace.step) - 1)
+        whole = ended == COMPLETE or ended.startswith(BEYOND_BOUNDS)
+        judged = trace if whole else Part(trace, len(trace.step) - 1)
         if len(judged.step) == 0:
-            gone = failure("a complete run", ended, follows=ended != COMPLETE)
-            return dict.fromkeys(checks_of(always), gone)
-        found = {one.check: _outcome(one, judged, ended, cell) for one in watched(always, judged)}
+            return dict.fromkeys(checks_of(always), failure("a complete run", ended, not whole))
+        why = "" if whole else ended
+        found = {one.check: _outcome(one, judged, why, cell) for one in Watch(always).over(judged)}
     except LavenderError as error:  # a log that is damaged
         return {check: failure("a log that can answer", str(error)) for check in checks_of(always)}
     return found
@@ -54,8 +56,8 @@ def _outcome(one: Watched, trace: Trace, ended: str, cell: Cell) -> Outcome:
         f"\n  cell       {cell.label or 'the only one'}"
         f"\n  replay     {replay_command(cell, time)}"
     )
-    reason += "" if ended == COMPLETE else f"\n  ended      {ended}"
-    return Outcome(False, worst, expected, "none", reason, ended != COMPLETE, margin)
+    reason += f"\n  ended      {ended}" if ended else ""
+    return Outcome(False, worst, expected, "none", reason, bool(ended), margin)
 
 
 def replay_command(cell: Cell, time: float) -> str:

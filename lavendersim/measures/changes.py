@@ -78,6 +78,8 @@ def given_by_events(trace: Trace) -> Floats:
     for event in _in_order(trace):
         name, row = event["body"], row_after(trace, event["at"])
         config, scale = configs[name], event.get("scale_mass")
+        if row == 0 and scale is not None:  # in a part of the log before this one
+            scaled[name] *= scale
         if not config.movable or not 0 < row < len(given):
             continue
         place = moved.get((name, row), trace.pose[row - 1, list(trace.bodies).index(name), :3])
@@ -120,16 +122,17 @@ def _acting(trace: Trace, force: dict[str, Any]) -> slice:
 
 
 def _turns(quaternions: Floats) -> Floats:
-    """Return the turn of each step [rad] as a vector in world axes (n, 3); w x y z in."""
+    """Return angular velocity times dt of each step as a vector in world axes (n, 3); w x y z in.
+
+    A step turns by Cayley's map: the tangent of half the angle is half of what is returned.
+    """
     old, new = quaternions[:-1], quaternions[1:]
     real = (old * new).sum(axis=1)
     # the vector part of new * conj(old)
     vector = (
         old[:, :1] * new[:, 1:] - new[:, :1] * old[:, 1:] - np.cross(new[:, 1:], old[:, 1:])
     ) * np.where(real < 0.0, -1.0, 1.0)[:, None]
-    sine = np.sqrt((vector**2).sum(axis=1))
-    with np.errstate(invalid="ignore", divide="ignore"):
-        angle = 2.0 * np.arctan2(sine, np.abs(real)) / sine
     turns = np.zeros((len(quaternions), 3))
-    turns[1:] = vector * np.where(sine > 0.0, angle, 0.0)[:, None]
+    with np.errstate(invalid="ignore", divide="ignore"):
+        turns[1:] = 2.0 * vector / np.abs(real)[:, None]
     return turns

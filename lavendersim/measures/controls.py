@@ -2,8 +2,9 @@
 
 A control passes when exactly what it names fails, in each of its cells, and nothing else does
 there. What it names is then judged by the control alone and stands in no list of its own: a failure
-that is asked for is no failure. A cell that must not complete has nothing else to judge. What fails
-only because its cell did not complete is that one failure, not another.
+that is asked for is no failure. A cell that must not complete has nothing else to judge; one that a
+check of `always` must end has only the other checks, up to there. What fails only because its cell
+did not complete is that one failure, not another.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
-from lavendersim.experiment.always_specs import COMPLETES, DIVERGES
+from lavendersim.experiment.always_specs import BEYOND_BOUNDS, COMPLETES, DIVERGES, STOPPING
 from lavendersim.experiment.expect_specs import ExpectSpec
 from lavendersim.measures.always import COMPLETE
 from lavendersim.measures.selection import coordinates_text, select, telling_axes
@@ -32,27 +33,33 @@ def of_completion(control: ExpectSpec) -> bool:
 
 
 def meant_to_end_early(controls: Sequence[ExpectSpec], cells: Sequence[Any]) -> frozenset[int]:
-    """Return the indices of the cells that must not complete."""
-    chosen = [select(cells, control.at) for control in controls if of_completion(control)]
-    return frozenset(cell.index for some in chosen for cell in some)
+    """Return the indices of the cells that must not complete, or were to break a bound and did."""
+    return frozenset(
+        cell.index
+        for control in controls
+        for cell in select(cells, control.at)
+        if of_completion(control) or cell.status.startswith(f"{BEYOND_BOUNDS}{control.fails} ")
+    )
 
 
 def uncontrolled(
-    claims: Sequence[Any], controls: Sequence[ExpectSpec], cells: Sequence[Any]
+    claims: Sequence[Any], controls: Sequence[ExpectSpec], cells: Sequence[Any], stops: bool
 ) -> list[Any]:
-    """Return the claims that no control has taken over."""
+    """Return the claims that no control has taken over; stops: a broken bound ends a cell."""
     taken = [(control, _indices(select(cells, control.at))) for control in controls]
     return [
         claim
         for claim in claims
-        if not any(_takes(control, indices, claim) for control, indices in taken)
+        if not any(_takes(control, indices, claim, stops) for control, indices in taken)
     ]
 
 
-def _takes(control: ExpectSpec, indices: frozenset[int], claim: Any) -> bool:
-    if not of_completion(control) and claim.name != control.fails:
+def _takes(control: ExpectSpec, indices: frozenset[int], claim: Any, stops: bool) -> bool:
+    if not claim.cells or not _indices(claim.cells) <= indices:
         return False
-    return bool(claim.cells) and _indices(claim.cells) <= indices
+    if stops and control.fails in STOPPING and claim.expectation is not None:
+        return True  # the bound is to end the cell before there is anything to measure
+    return of_completion(control) or bool(claim.name == control.fails)
 
 
 def trials(
@@ -84,12 +91,16 @@ def verdict_of(trial: Trial, claims: Sequence[Any], raw: Mapping[str, Verdict]) 
     named = [raw[claim.node] for claim in mine if claim.name == failed]
     others = [raw[claim.node] for claim in mine if claim.name != failed]
     ended = [cell.trace().status for cell in trial.cells]
-    early = [status for status in ended if status != COMPLETE]
+    # a cell that a bound stopped is judged as far as it went
+    early = [
+        status for status in ended if status != COMPLETE and not status.startswith(BEYOND_BOUNDS)
+    ]
     also = [verdict.node for verdict in others if not verdict.passed and not verdict.follows]
     if of_completion(trial.control):
         bites, shown = bool(ended) and len(early) == len(ended), ended[0] if ended else ""
     else:
-        bites = bool(named) and not early and all(not one.passed for one in named)
+        failing = [one for one in named if not one.passed and not one.follows]
+        bites = bool(named) and not early and len(failing) == len(named)
         shown = named[0].message.replace("\n", "\n    ") if named else ""
     if not trial.cells:
         reason = "the control selects no cell of the sweep"

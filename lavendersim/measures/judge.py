@@ -57,7 +57,8 @@ def judge_nodes(experiment: _Planned) -> list[str]:
     cells = experiment.cells()
     claims = _claims(experiment.measures, experiment.expectations, cells)
     claims += _checks(experiment.always, cells)
-    left = controls.uncontrolled(claims, experiment.controls, cells)
+    stops = experiment.always is not None and experiment.always.stop
+    left = controls.uncontrolled(claims, experiment.controls, cells, stops)
     judged = controls.trials(claims, experiment.controls, cells)
     return [claim.node for claim in left] + [trial.node for trial in judged]
 
@@ -78,7 +79,8 @@ def judge(
     values = values or Values(measures)
     claims = _claims(measures, expectations, cells) + _checks(always, cells)
     raw = {claim.node: _judged(claim, values, outcomes or {}) for claim in claims}
-    left = controls.uncontrolled(claims, meant_to_fail, cells)
+    stops = always is not None and always.stop
+    left = controls.uncontrolled(claims, meant_to_fail, cells, stops)
     judged = controls.trials(claims, meant_to_fail, cells)
     return [raw[claim.node] for claim in left] + [
         controls.verdict_of(trial, claims, raw) for trial in judged

@@ -22,11 +22,12 @@ import numpy as np
 
 from lavendersim.experiment.always_specs import CHECKS, DERIVED, FINITE, NONE, Always
 from lavendersim.measures import cell_config
-from lavendersim.measures.account import contacts_of_log, energy_created, momentum_gap
+from lavendersim.measures.account import EnergyAccount, contacts_of_log, momentum_gap
 from lavendersim.measures.extent import thickness
 from lavendersim.measures.optimality import friction_of
 from lavendersim.measures.views import Floats, Rows, Trace
 
+ENERGY: Final = "energy"  # the one check that needs what went before
 SHARE_OF_THICKNESS = 0.1  # a body that sank by a tenth of itself has left the place it stood in
 
 
@@ -40,11 +41,28 @@ class Watched(NamedTuple):
     bodies: Callable[[int], str]  # row of the log -> whose it is, nothing where nobody's
 
 
-def watched(always: Always, trace: Trace) -> Iterator[Watched]:
-    """Yield the checks that are made, in the order of CHECKS."""
-    for check in checks_of(always):
-        numbers, bodies = NUMBERS[check](trace)
-        yield Watched(check, UNITS[check], bound_of(check, always, trace), numbers, bodies)
+class Watch:
+    """The checks of a run; the states of its log may come in several parts.
+
+    A part after the first begins with the last state of the one before, without its contacts.
+    """
+
+    def __init__(self, always: Always) -> None:
+        self._always, self._account = always, EnergyAccount()
+        self._bounds: dict[str, float] = {}
+
+    def over(self, trace: Trace) -> Iterator[Watched]:
+        """Yield the checks that are made of a log or its next part, in the order of CHECKS."""
+        for check in checks_of(self._always):
+            if check not in self._bounds:
+                self._bounds[check] = bound_of(check, self._always, trace)
+            numbers, bodies = self._numbers(check, trace)
+            yield Watched(check, UNITS[check], self._bounds[check], numbers, bodies)
+
+    def _numbers(self, check: str, trace: Trace) -> Numbers:
+        if check == ENERGY:
+            return self._account.created(trace), _nobody
+        return NUMBERS[check](trace)
 
 
 def checks_of(always: Always | None) -> tuple[str, ...]:
@@ -90,10 +108,6 @@ def _finite(trace: Trace) -> Numbers:
         return trace.bodies[int(np.argmax(of_body[row]))] if of_body[row].any() else ""
 
     return wrong, first
-
-
-def _energy(trace: Trace) -> Numbers:
-    return energy_created(trace), _nobody
 
 
 def _momentum(trace: Trace) -> Numbers:
@@ -204,7 +218,6 @@ def _pair(trace: Trace, contact: np.void) -> str:
 
 NUMBERS: Final[dict[str, Callable[[Trace], Numbers]]] = {
     "finite": _finite,
-    "energy": _energy,
     "penetration": _penetration,
     "impulses": _impulses,
     "momentum": _momentum,

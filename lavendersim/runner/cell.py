@@ -5,7 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 from pathlib import Path
 from time import perf_counter_ns
-from typing import Any, NamedTuple
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 import numpy.lib.recfunctions as recfunctions
@@ -14,16 +14,19 @@ from lavendersim.engine.effects import EFFECTS
 from lavendersim.engine.engine import Engine, Rows
 from lavendersim.engine.kernel_cache import source_hash
 from lavendersim.engine.records import DIVERGED, NOT_FINITE, RUNNING, TURNS_TOO_FAST
+from lavendersim.experiment.always_specs import Always
 from lavendersim.scene.build import Scene, build
 from lavendersim.scene.events import EventQueue
 from lavendersim.scene.plan import Plan
 from lavendersim.trace import Block, TraceWriter
 
 from .accuracy import Accuracy
+from .bounds import Bounds
 from .environment import versions
 from .problem_dump import ProblemDump
 
 NANOSECONDS = 10**9
+STOPPED: Final = -1  # beside the engine's own outcomes: a bound ended the cell
 CAUSES = {
     NOT_FINITE: "is no longer finite",
     TURNS_TOO_FAST: "turns too far in one timestep for its rotation to be solved",
@@ -40,13 +43,14 @@ class CellJob(NamedTuple):
     path: Path
     plan: Plan
     seeds: str  # of what was drawn at random, in words
+    always: Always | None = None  # the bounds that end the cell
 
 
 class CellOutcome(NamedTuple):
     """How a cell ended and what it cost. Times never enter the log."""
 
     cell: int  # index in the sweep
-    status: str  # `complete` or `diverged: ...`
+    status: str  # `complete`, `diverged: ...` or `beyond bounds: ...`
     steps: int
     compile_ns: int  # composing, compiling or loading the kernel
     physics_ns: int  # inside the kernel
@@ -131,6 +135,7 @@ def run_cell(job: CellJob) -> CellOutcome:
     physics_ns = logging_ns = 0
     scene = build(job.resolved, job.plan.spec)
     engine, compile_ns = started(scene, job.plan)
+    absent = absent_topics(job.plan)
     writer = TraceWriter(
         job.path,
         scene.names,
@@ -138,8 +143,9 @@ def run_cell(job: CellJob) -> CellOutcome:
         job.as_written,
         scene.timestep,
         metadata_of(job.plan, job.seeds),
-        absent_topics(job.plan),
+        absent,
     )
+    bounds = Bounds(job.always, scene.names, job.resolved, scene.timestep, absent)
     events = EventQueue(engine, scene, job.resolved["events"])
     dump = ProblemDump(job.path, job.resolved)
     accuracy = Accuracy(tolerance=job.resolved["numerics"]["tolerance"])
@@ -152,18 +158,25 @@ def run_cell(job: CellJob) -> CellOutcome:
         if done < job.steps:
             stop = dump.next_stop(done, events.next_stop(job.steps))
             outcome = engine.advance(stop - done)
-        physics_ns += perf_counter_ns() - start
+        spent = perf_counter_ns() - start
         done = int(engine.counters["step"][0])
         if outcome == DIVERGED:
             status = divergence(scene, engine)
         start = perf_counter_ns()
-        dump.take(engine, done, stop)
         rows = engine.take_rows()
         if len(rows.step):
-            writer.append(block_of(rows, scene.timestep))
-            accuracy = accuracy.after(rows.step, rows.contact, scene.names)
+            block, broken = bounds.within(block_of(rows, scene.timestep))
+            if broken:
+                spent = spent * len(block.step) // len(rows.step)
+                last = int(block.step["step"][-1])
+                if last < done or outcome != DIVERGED:
+                    outcome, status, done = STOPPED, broken, last
+            writer.append(block)
+            accuracy = accuracy.after(block.step, block.contact, scene.names)
+        dump.take(engine, done, stop)
+        physics_ns += spent
         logging_ns += perf_counter_ns() - start
-        if outcome == DIVERGED or (outcome == RUNNING and done >= job.steps):
+        if outcome in (DIVERGED, STOPPED) or (outcome == RUNNING and done >= job.steps):
             break
     start = perf_counter_ns()
     writer.close(status)

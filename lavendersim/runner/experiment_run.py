@@ -166,8 +166,8 @@ def run(
 
     root: where run directories are made. jobs: processes; the logs are the same for any number.
     prices: false leaves out what a section `price` asks for. closing: called with the results
-    before the run counts as finished. A cell that diverges ends there, with a readable log; the
-    others go on.
+    before the run counts as finished. A cell that diverges or breaks a bound of `always` ends
+    there, with a readable log; the others go on.
     """
     from lavendersim.engine.kernel_cache import source_hash
 
@@ -201,6 +201,7 @@ def run(
             directory / "cells" / _file_of(cell, source_hash()),
             plan,
             seeds.of(cell.coordinates),
+            experiment.always,
         )
         for cell, plan in zip(cells, plans, strict=True)
     ]

@@ -191,3 +191,29 @@ def test_a_log_that_ends_early_is_judged_up_to_its_last_whole_state(finished: Fi
     outcome = outcomes_of(Always(), log)["energy"]
     assert not outcome.passed
     assert outcome.follows
+
+
+def test_the_work_of_a_torque_is_that_of_the_turn(tmp_path: Path) -> None:
+    """A torque spins a ball from 60 to 87.5 rad/s and back: no step wins energy."""
+    config = tmp_path / "spun.yaml"
+    config.write_text("""\
+scene:
+  gravity: [0, 0, 0]
+  bodies:
+    ball:
+      shape: {kind: sphere, radius: 0.1}
+      mass: 1.0
+      position: [0, 0, 0]
+      angular_velocity: [0, 60, 0]
+  forces:
+    - {body: ball, from: 0.0, to: 0.5, torque: [0, 0.22, 0]}
+    - {body: ball, from: 0.5, to: 1.0, torque: [0, -0.22, 0]}
+duration: 1.0
+# 240 sums of at most 15.4 J, each rounded by 2^-53, over at least the 7.2 J of the beginning
+always: {energy: 6e-14}
+""")
+    finished = lavendersim.run(config, root=tmp_path)
+    assert finished.good
+    (cell,) = finished.run.cells
+    # 0.22 N m / (0.4 * 1 kg * 0.01 m^2) * 0.5 s, exactly as many steps forth as back
+    assert cell.trace().step["kinetic_energy"].max() == pytest.approx(0.5 * 0.004 * 87.5**2)

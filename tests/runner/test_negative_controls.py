@@ -132,8 +132,8 @@ def test_a_cell_that_completes_fails_the_control_of_divergence(tmp_path: Path) -
 
 
 def test_a_control_of_another_check_does_not_excuse_divergence(tmp_path: Path) -> None:
-    # what the control names does fail there, long before the end
-    control = """always: {penetration: none, speed: 1e-9}
+    # the ball is never as fast as what it is asked to exceed
+    control = """always: {penetration: none, speed: 1e200}
 expect:
   - {name: fast, fails: speed, at: {pull: 1e155}}
 """
@@ -143,3 +143,28 @@ expect:
     assert not verdict.passed
     assert "a cell did not complete: diverged: body ball" in verdict.message
     assert [cell.label for cell in finished.ended_early] == ["pull=1e+155"]
+
+
+def test_a_bound_that_a_control_wants_broken_ends_its_cell_there(tmp_path: Path) -> None:
+    # 1e155 m/s^2 * dt / 2 in the first step, long before anything is infinite
+    control = """always: {penetration: none, speed: 100}
+expect:
+  - {name: lasts, measure: duration, at_least: 0.5}
+  - {name: fast, fails: speed, at: {pull: 1e155}}
+"""
+    finished = run(tmp_path, RUNAWAY + control)
+    assert finished.good
+    assert [outcome.steps for outcome in finished.outcomes] == [120, 1]
+    assert finished.ended_early == []
+
+
+def test_a_bound_is_no_divergence_to_a_control(tmp_path: Path) -> None:
+    control = """always: {penetration: none, speed: 100}
+expect:
+  - {name: runs away, fails: diverges, at: {pull: 1e155}}
+"""
+    finished = run(tmp_path, RUNAWAY + control)
+    assert not finished.good
+    (verdict,) = [one for one in finished.verdicts if not one.passed]
+    assert verdict.node == "runs away at pull=1e+155"
+    assert "diverges did not fail" in verdict.message

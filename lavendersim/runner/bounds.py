@@ -1,0 +1,94 @@
+"""Blocks of a running cell enter, its `always` section beside them; where it must stop leaves.
+
+A cell stops with the first step that breaks a bound. What the engine did beyond is dropped, so the
+log ends with that step, whatever the size of a block. A state that is no number breaks no bound
+here: the engine itself ends the run there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from fractions import Fraction
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from lavendersim.experiment.always_specs import BEYOND_BOUNDS, STOPPING, Always
+from lavendersim.measures.views import Floats, Rows
+from lavendersim.measures.watch import Watch, Watched
+from lavendersim.trace import Block
+
+
+class Part(NamedTuple):
+    """Some states of a running cell as measures read them; see `measures.views.Trace`."""
+
+    step: Rows
+    contact: Rows
+    pose: Floats
+    residual: Rows
+    bodies: list[str]
+    resolved: Mapping[str, Any]
+    timestep: Fraction
+    absent: Mapping[str, str]
+    status: str = "complete"
+
+
+class Bounds:
+    """Holds every step of one cell to the bounds of its config."""
+
+    def __init__(
+        self,
+        always: Always | None,
+        bodies: list[str],
+        resolved: Mapping[str, Any],
+        timestep: Fraction,
+        absent: Mapping[str, str],
+    ) -> None:
+        self._watch = Watch(always) if always is not None and always.stop else None
+        self._cell = (bodies, resolved, timestep, absent)
+        self._last: tuple[Rows, Floats] | None = None  # the state before the block's
+
+    def within(self, block: Block) -> tuple[Block, str]:
+        """Return the block up to the first step beyond a bound, and a sentence if there is one."""
+        if self._watch is None or len(block.step) == 0:
+            return block, ""
+        step, pose = block.step, block.pose
+        again = 0
+        if self._last is not None:
+            again = 1
+            step = np.concatenate([self._last[0], step])
+            pose = np.concatenate([self._last[1], pose])
+        part = Part(step, block.contact, pose, block.residual, *self._cell)
+        self._last = step[-1:].copy(), pose[-1:].copy()
+        first: tuple[int, Watched] | None = None
+        for check in self._watch.over(part):
+            if check.check not in STOPPING:
+                continue
+            beyond = np.flatnonzero(check.numbers[again:] > check.bound)
+            if len(beyond) and (first is None or beyond[0] + again < first[0]):
+                first = int(beyond[0]) + again, check
+        if first is None:
+            return block, ""
+        row, check = first
+        return _cut(block, row + 1 - again), _sentence(check, row, part)
+
+
+def _cut(block: Block, states: int) -> Block:
+    """Return the first states of a block."""
+    last = block.step["step"][states - 1]
+    contact, residual = (
+        rows[: np.searchsorted(rows["step"], last, "right")]
+        for rows in (block.contact, block.residual)
+    )
+    return Block(block.step[:states], contact, block.pose[:states], residual)
+
+
+def _sentence(check: Watched, row: int, part: Part) -> str:
+    """Say which bound was broken, by how much, where and when."""
+    step = int(part.step["step"][row])
+    whose = check.bodies(row)
+    return (
+        f"{BEYOND_BOUNDS}{check.check} {float(check.numbers[row]):.6g}{check.unit}, at most "
+        f"{check.bound:g}{f', {whose}' if whose else ''}, in step {step} "
+        f"(t = {float(step * part.timestep):.9g} s)"
+    )
