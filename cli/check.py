@@ -1,4 +1,4 @@
-"""`lavender check`: configs in, one line per judged expectation and cell out."""
+"""`lavender check`: configs in, one line per judged expectation and cell out, or a matrix."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from lavender_cli import printing
+from lavender_cli import printing, solver_matrix
 from lavender_cli.run import Configs, Jobs, Runs
 
 
@@ -22,15 +22,36 @@ def check(
         Path | None,
         typer.Option("--report", metavar="FILE.html", help="Write a page: a row per case."),
     ] = None,
+    solver: Annotated[
+        list[str] | None,
+        typer.Option(
+            *("--solver", "-s"),
+            metavar="NAME",
+            help="A matrix: every case by each of these instead of the config's solver, with "
+            "commas between; `all` is every one.",
+        ),
+    ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the verdicts as JSON.")] = False,
 ) -> None:
-    """Run experiments and print every verdict, cell by cell. Exits 1 when one fails."""
+    """Run experiments and print every verdict, cell by cell. Exits 1 when one fails.
+
+    With --solver: a matrix of verdicts, case by solver. Exits 1 when a solver fails a case in more
+    than what the case says of itself; a known failure is no pass, but no news either.
+    """
     from lavendersim.errors import UsageError
     from lavendersim.runner import load_all, run
 
     if report is not None and report.suffix not in (".html", ".htm"):
         raise UsageError(f"{report}: the name of this file ends in .html")
+    if solver:
+        from lavendersim.runner.solver_matrix import chosen
+
+        chosen(solver)  # a wrong name is told before any file is read
     experiments = load_all(configs, reduced=not full)
+    if solver:
+        if not solver_matrix.check_solvers(experiments, solver, runs, jobs, report, as_json):
+            raise typer.Exit(1)
+        return
     good, verdicts, cells, results = True, [], [], []
     for experiment in experiments:
         with printing.reporting(experiment.name) as progress:

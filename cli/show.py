@@ -39,6 +39,8 @@ def show(
     for name, text in (("question", experiment.question), ("expected", experiment.expected)):
         if text:
             typer.echo(f"{name}  {text}")
+    if experiment.solver is not None:
+        typer.echo(f"solver  {experiment.solver}, instead of what the config says")
     for cells, metadata in plans_of(opened.cells):
         print_plan(cells, metadata, len(opened.cells))
     steps = sum(row["steps"] for row in results["cells"])

@@ -14,7 +14,8 @@ A negative control says `fails` instead of a measure and a judgement:
     - {name: a gain above 1 wins energy, fails: energy}
 
 It names an expectation of the file, a check of `always`, or `completes` (a cell that diverges), and
-passes when exactly that fails, and nothing else does, in every cell that it selects.
+passes when exactly that fails, and nothing else does, in every cell that it selects. One whose name
+begins with `known failure` says what is not held yet, and would rather not pass.
 
 What this asks of the loader: `sweep` is one mapping of axes or a list of such mappings. A list is
 the union of the products, in order; an axis absent from a product keeps the config's own value
@@ -24,7 +25,7 @@ Names of expectations are unique within a file (they become test ids).
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Final, Literal
 
 from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
@@ -35,6 +36,8 @@ from lavendersim.experiment.names import AxisName, MeasureName
 from lavendersim.experiment.quantities import Quantity
 from lavendersim.experiment.selection import Selection
 
+# How the name of a `fails` begins that says what lavender does not hold, but should.
+KNOWN_FAILURE: Final = "known failure"
 Number = Annotated[float, Quantity()]
 Tolerance = Annotated[float, Quantity(minimum=0)]
 Reduction = Literal["max", "min", "mean"]
@@ -168,6 +171,11 @@ class ExpectSpec(ConfigModel):
             if bounds and bounds[0] > bounds[1]:
                 raise _refusal("expected the lower bound first in `between`")
         return self
+
+    @property
+    def known_failure(self) -> bool:
+        """Whether this tells of what is not held, not of what must not be: by its name."""
+        return self.fails is not None and self.name.startswith(KNOWN_FAILURE)
 
     @property
     def judgement(self) -> str:

@@ -29,6 +29,7 @@ class Experiment:
     axes: dict[str, tuple[Any, ...]]  # axis -> its values, over all products of the sweep
     _cells: tuple[Cell, ...] = field(repr=False)
     reduced: bool = False  # a slow one, at its reduced length
+    solver: str | None = None  # of every cell, instead of what the config says
 
     @property
     def question(self) -> str:

@@ -24,14 +24,19 @@ from lavendersim.experiment.parse import LARGEST_FILE, decode, parse
 from lavendersim.experiment.reduction import check_reduction, reduce
 from lavendersim.experiment.references import check_references, swept_values
 from lavendersim.experiment.report import Report
+from lavendersim.experiment.solver_override import with_solver
 
 # Checking a cell takes 0.3 ms. Of larger sweeps every axis is checked value by value up to as many
 # cells; what is left is checked when its cell is built.
 MOST_CELLS_CHECKED = 1000
 
 
-def load_experiment(path: str | os.PathLike[str], reduced: bool = False) -> Experiment:
+def load_experiment(
+    path: str | os.PathLike[str], reduced: bool = False, solver: str | None = None
+) -> Experiment:
     """Read and validate one config file; reduced: a slow experiment at its reduced length.
+
+    solver: in every cell, instead of what the config says; None leaves it as it stands.
 
     Raises ConfigError with all defects of the file, UsageError when it cannot be read.
     """
@@ -42,16 +47,20 @@ def load_experiment(path: str | os.PathLike[str], reduced: bool = False) -> Expe
             size = os.fstat(stream.fileno()).st_size
     except OSError as error:
         raise UsageError(f"{file}: {(error.strerror or str(error)).lower()}") from None
-    return _load(raw, file, str(file), max(size, len(raw)), reduced)
+    return _load(raw, file, str(file), max(size, len(raw)), reduced, solver)
 
 
-def load_experiment_text(text: str | bytes, name: str, reduced: bool = False) -> Experiment:
+def load_experiment_text(
+    text: str | bytes, name: str, reduced: bool = False, solver: str | None = None
+) -> Experiment:
     """Validate a config given as text; `name` stands for the file in messages."""
     raw = text.encode("utf-8", "surrogatepass") if isinstance(text, str) else text
-    return _load(raw, Path(name), name, len(raw), reduced)
+    return _load(raw, Path(name), name, len(raw), reduced, solver)
 
 
-def _load(raw: bytes, path: Path, name: str, size: int, reduced: bool) -> Experiment:
+def _load(
+    raw: bytes, path: Path, name: str, size: int, reduced: bool, solver: str | None
+) -> Experiment:
     root, defects = parse(raw, name, size)
     report = Report(name, defects)
     if root is None:
@@ -61,6 +70,7 @@ def _load(raw: bytes, path: Path, name: str, size: int, reduced: bool) -> Experi
         raise ConfigError(report.defects)
     check_reduction(root, report)
     root, shortened = reduce(root) if reduced else (root, False)
+    root = with_solver(root, solver) if solver is not None else root
     axes = sweep.axes_of(root, report)
     config = _check_first(root, axes, report)
     cells = sweep.count(axes)
@@ -76,7 +86,7 @@ def _load(raw: bytes, path: Path, name: str, size: int, reduced: bool) -> Experi
         axis: tuple(dict.fromkeys(sweep.swept_value(node.data) for node in nodes))
         for axis, nodes in swept_values(root).items()
     }
-    return Experiment(path.stem, path, decode(raw), config, values, made, shortened)
+    return Experiment(path.stem, path, decode(raw), config, values, made, shortened, solver)
 
 
 def _check_first(

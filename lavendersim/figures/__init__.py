@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -58,3 +58,23 @@ def write_report(results: Sequence[Any], path: Path) -> None:
     from lavendersim.figures.report import write_report as write_page
 
     write_page(results, path)
+
+
+def write_matrix(
+    cases: Sequence[Any],
+    solvers: Sequence[str],
+    squares: Sequence[Any],
+    left_out: Mapping[str, str],
+    shown: Mapping[str, Any],
+    processor: str,
+    path: Path,
+) -> None:
+    """Write one self-contained HTML page: a matrix of cases and solvers.
+
+    cases: `runner.solver_matrix.Case`; squares: `runner.matrix_square.Square`, those there are;
+    left_out: case -> why; shown: case -> the cell whose last state is drawn.
+    """
+    from lavendersim.figures.report_matrix import Matrix
+    from lavendersim.figures.report_matrix import write_matrix as write_page
+
+    write_page(Matrix(cases, solvers, squares, left_out, shown, processor), path)

@@ -1,40 +1,15 @@
-"""Finished runs in; one self-contained HTML page out: a row per case, its cells folded below.
-
-No script, no network, no other file: pictures are data, styles stand in the page. The only links
-are those to the logs, relative to the page, so that page and runs can be moved together.
-"""
+"""Finished runs in; one self-contained HTML page out: a row per case, its cells folded below."""
 
 from __future__ import annotations
 
-import base64
 import math
-import os
 from collections.abc import Sequence
 from html import escape
 from pathlib import Path
 from typing import Any
-from urllib.parse import quote
 
-from lavendersim.errors import LavenderError
-from lavendersim.figures.thumbnail import thumbnail
+from lavendersim.figures.html_page import address, document, picture, write_whole
 
-STYLE = """
-body { font: 15px/1.45 sans-serif; color: #222; background: #fff; margin: 2em auto;
-  max-width: 80em; padding: 0 1em; }
-h1 { font-size: 1.5em; margin-bottom: 0.2em; }
-table { border-collapse: collapse; width: 100%; }
-th { text-align: left; font-weight: normal; color: #666; }
-th, td { padding: 0.4em 0.8em 0.4em 0; vertical-align: top; border-bottom: 1px solid #ddd; }
-td.number, th.number { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
-td.picture { width: 160px; }
-.pass { color: #00694c; font-weight: bold; }
-.fail { color: #b04a00; font-weight: bold; }
-.small { color: #666; font-size: 0.87em; }
-pre { background: #f5f5f5; padding: 0.6em; overflow-x: auto; font-size: 0.87em; }
-details table { margin: 0.4em 0; font-size: 0.93em; }
-summary { cursor: pointer; }
-img { background: #fff; border: 1px solid #ddd; }
-"""
 LEGEND = (
     "Margin: the least share of a bound that is left over all claims that have one; below 0 it is "
     "broken. Residual: the worst of any step. Cost: physics alone, one processor, no logging."
@@ -43,14 +18,7 @@ LEGEND = (
 
 def write_report(results: Sequence[Any], path: Path) -> None:
     """Write the page of finished runs (`.run`, `.outcomes`, `.verdicts`, `.good`), whole or not."""
-    text = report(results, path.parent)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    unfinished = path.with_name(f".{path.name}.{os.getpid()}.unfinished")
-    try:
-        unfinished.write_text(text, encoding="utf-8")
-        os.replace(unfinished, path)
-    finally:
-        unfinished.unlink(missing_ok=True)
+    write_whole(report(results, path.parent), path)
 
 
 def report(results: Sequence[Any], folder: Path) -> str:
@@ -68,25 +36,15 @@ def report(results: Sequence[Any], folder: Path) -> str:
         )
     )
     rows = "\n".join(_case(result, folder) for result in results)
-    return f"""<!DOCTYPE html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<title>lavender: {good} of {len(results)} cases pass</title>
-<style>{STYLE}</style>
-</head>
-<body>
-<h1>{mark}</h1>
+    body = f"""<h1>{mark}</h1>
 <p>{met} of {len(claims)} claims met in {cells} cells. <span class="small">{LEGEND}</span></p>
 <table>
 <thead><tr>{heads}</tr></thead>
 <tbody>
 {rows}
 </tbody>
-</table>
-</body>
-</html>
-"""
+</table>"""
+    return document(f"lavender: {good} of {len(results)} cases pass", body)
 
 
 def _case(result: Any, folder: Path) -> str:
@@ -109,7 +67,7 @@ def _case(result: Any, folder: Path) -> str:
     below = f'<br><span class="small">{escape(whose)}</span>' if whose else ""
     return (
         f'<tr class="case" data-case="{escape(run.name, quote=True)}">'
-        f'<td class="picture">{_picture(shown)}</td>'
+        f'<td class="picture">{picture(shown)}</td>'
         f"<td>{name}{question}{_details(result, folder)}{failed}</td>"
         f"<td>{_mark(result.good)}<br>"
         f'<span class="small">{met} of {len(verdicts)} claims</span></td>'
@@ -152,20 +110,8 @@ def _shown(result: Any) -> Any:
     return next((c for c in result.run.cells if str(c.path) in failed), result.run.cells[0])
 
 
-def _picture(cell: Any) -> str:
-    try:
-        data = base64.b64encode(thumbnail(cell.trace())).decode()
-    except LavenderError as error:  # a log that is damaged has no picture, but still a row
-        return f'<span class="small">{escape(str(error))}</span>'
-    finally:
-        cell.release()
-    said = escape(f"final poses {cell.label}".strip(), quote=True)
-    return f'<img width="160" height="110" alt="{said}" src="data:image/png;base64,{data}">'
-
-
 def _link(cell: Any, folder: Path) -> str:
-    relative = os.path.relpath(cell.path.resolve(), folder.resolve())
-    return f'<a href="{escape(quote(Path(relative).as_posix()), quote=True)}">log</a>'
+    return f'<a href="{address(cell.path, folder)}">log</a>'
 
 
 def _margin(verdicts: Sequence[Any]) -> tuple[float, str]:

@@ -42,6 +42,7 @@ class Finished(NamedTuple):
     run: Run
     outcomes: list[Any]  # CellOutcome, in the order of the cells
     verdicts: list[Verdict]
+    raw: list[Verdict]  # on every claim, as if nothing were named by a negative control
 
     @property
     def good(self) -> bool:
@@ -137,11 +138,12 @@ def make_directory(experiment: Experiment, root: Path) -> Path:
     """Make a new directory for a run; never an existing one."""
     now = datetime.now(UTC).strftime("%Y%m%dT%H%M%SZ")
     digest = hashlib.sha256(experiment.text.encode()).hexdigest()[:8]
+    name = "-".join(filter(None, (experiment.name, experiment.solver)))
     root.mkdir(parents=True, exist_ok=True)
     # A name that sorts by age even when several runs start within one second.
     for attempt in range(1000):
         stamp = now if attempt == 0 else f"{now}.{attempt:03d}"
-        path = root / f"{stamp}-{experiment.name}-{digest}"
+        path = root / f"{stamp}-{name}-{digest}"
         try:
             path.mkdir()
         except FileExistsError:
@@ -220,16 +222,10 @@ def run(
     finished = Run(directory)
     values = Values(experiment.measures)
     measured, always = measure_cells(finished, experiment, values)
-    verdicts = judge(
-        experiment.measures,
-        experiment.expectations,
-        finished.cells,
-        values,
-        experiment.always,
-        always,
-        experiment.controls,
-    )
-    result = Finished(finished, outcomes, verdicts)
+    claims = (experiment.measures, experiment.expectations, finished.cells, values)
+    verdicts = judge(*claims, experiment.always, always, experiment.controls)
+    raw = judge(*claims, experiment.always, always) if experiment.controls else verdicts
+    result = Finished(finished, outcomes, verdicts, raw)
     priced = None
     if prices and experiment.price is not None:
         priced = take_prices(experiment, jobs, progress.pricing)
@@ -256,7 +252,12 @@ def _write_index(
         }
         for cell, job in zip(experiment.cells(), jobs, strict=True)
     ]
-    table = {"experiment": experiment.name, "reduced": experiment.reduced, "cells": rows}
+    table = {
+        "experiment": experiment.name,
+        "reduced": experiment.reduced,
+        "solver": experiment.solver,
+        "cells": rows,
+    }
     _write_json(directory / CELLS, table)
 
 

@@ -87,6 +87,7 @@ def write_results(
     table = {
         "experiment": run.name,
         "reduced": run.experiment.reduced,
+        "solver": run.experiment.solver,  # instead of the config's; none where it is that
         "cells": rows,
         # Cells share kernels, so what compiling costs is a number of the run.
         "compile_s": compile_seconds(finished),

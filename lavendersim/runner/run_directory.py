@@ -56,7 +56,8 @@ class Run:
         """The experiment as it was run."""
         text = (self.path / CONFIG).read_bytes()
         reduced = bool(self._index.get("reduced", False))
-        experiment = load_experiment_text(text, str(self.path / CONFIG), reduced)
+        solver = self._index.get("solver")
+        experiment = load_experiment_text(text, str(self.path / CONFIG), reduced, solver)
         return replace(experiment, name=self.name)
 
     @cached_property

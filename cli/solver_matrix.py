@@ -1,0 +1,178 @@
+"""`lavender check --solver`: cases and solvers in; a matrix of verdicts out, and what failed."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import typer
+
+from lavender_cli import printing
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+    from lavendersim.runner.matrix_square import Square
+    from lavendersim.runner.solver_matrix import Case
+
+# What stands in a square: a word as well as a colour, capitals where it is no pass.
+WORDS = {
+    "passes": ("pass", "green"),
+    "known failure": ("known", "yellow"),
+    "fails": ("FAIL", "bold red"),
+    "ended": ("ENDED", "bold red"),
+    "refused": ("REFUSED", "bold red"),
+    "died": ("DIED", "bold red"),
+}
+UNWRAPPED = 200  # columns of a pipe
+
+
+def check_solvers(
+    experiments: Sequence[Any],
+    names: Sequence[str],
+    runs: Path,
+    jobs: int,
+    report: Path | None,
+    as_json: bool,
+) -> bool:
+    """Run every case by every solver and print the matrix; False where more than known fails."""
+    from lavendersim.errors import UsageError
+    from lavendersim.runner.solver_matrix import cases_of, chosen, squares
+
+    solvers = chosen(names)
+    cases, left_out = cases_of(experiments)
+    if not cases:
+        name, why = next(iter(left_out.items()))
+        raise UsageError(f"nothing here is put to several solvers: {name} {why}")
+    made: list[Square] = []
+    try:
+        for square in squares(cases, solvers, runs, jobs):
+            made.append(square)
+            total = len(cases) * len(solvers)
+            said = f": {square.why}" if square.why else ""
+            progress = f"{len(made)} of {total}  {square.solver}  {square.case}"
+            typer.echo(f"{progress}  {square.verdict}{said}", err=True)
+    finally:
+        # what an interrupted matrix has is shown; what it has not stands as not run
+        if report is not None:
+            _write(report, cases, solvers, made, left_out)
+        if as_json:
+            printing.as_json(as_data(cases, solvers, made, left_out))
+        else:
+            print_matrix(cases, solvers, made, left_out)
+    return all(square.fine for square in made)
+
+
+def as_data(
+    cases: Sequence[Case],
+    solvers: Sequence[str],
+    made: Sequence[Square],
+    left_out: dict[str, str],
+) -> dict[str, Any]:
+    """Return the matrix as plain data; JSON has no number for what is not one."""
+    from lavendersim.runner.environment import processor
+    from lavendersim.runner.matrix_square import passed
+
+    return {
+        "passed": all(square.fine for square in made),
+        "processor": processor(),
+        "cases": [case.name for case in cases],
+        "reduced": [case.name for case in cases if case.reduced],
+        "left_out": left_out,
+        "solvers": {solver: passed(made, solver) for solver in solvers},
+        "squares": [
+            {name: None if value != value else value for name, value in square._asdict().items()}
+            for square in made
+        ],
+    }
+
+
+def _write(
+    report: Path,
+    cases: Sequence[Case],
+    solvers: Sequence[str],
+    made: Sequence[Square],
+    left_out: dict[str, str],
+) -> None:
+    from lavendersim.figures import write_matrix
+    from lavendersim.runner import open_run
+    from lavendersim.runner.environment import processor
+
+    pictured = {square.case: square for square in reversed(made) if square.run is not None}
+    shown = {name: open_run(square.run).cells[0] for name, square in pictured.items()}
+    write_matrix(cases, solvers, made, left_out, shown, processor(), report)
+    typer.echo(f"report {report}", err=True)
+
+
+def print_matrix(
+    cases: Sequence[Case],
+    solvers: Sequence[str],
+    made: Sequence[Square],
+    left_out: dict[str, str],
+    width: int | None = None,
+) -> None:
+    """Print the matrix, what failed below it, and what is not in it, wrapped to the terminal."""
+    from rich.console import Console
+
+    wrapped = sys.stdout.isatty() or width is not None
+    console = Console(width=width if wrapped else UNWRAPPED, highlight=False, markup=False)
+    with console.capture() as captured:
+        console.print(_matrix(cases, solvers, made))
+        for solver in solvers:
+            bad = [one for one in made if one.solver == solver and one.verdict != "passes"]
+            if bad:
+                console.print()
+                console.print(solver, style="bold")
+                console.print(_failures(bad))
+        if left_out:
+            console.print("\nnot in the matrix", style="bold")
+            for why in dict.fromkeys(left_out.values()):
+                names = [name for name, said in left_out.items() if said == why]
+                console.print(f"{why}: {', '.join(names)}")
+        if reduced := [case.name for case in cases if case.reduced]:
+            console.print(f"\nreduced, --full runs all of them: {', '.join(reduced)}")
+    for line in captured.get().splitlines():
+        typer.echo(line.rstrip())
+
+
+def _matrix(cases: Sequence[Case], solvers: Sequence[str], made: Sequence[Square]) -> Table:
+    from rich.table import Table
+    from rich.text import Text
+
+    from lavendersim.runner.matrix_square import passed
+
+    table = Table(
+        box=None, padding=(0, 2, 0, 0), header_style="bold", pad_edge=False, show_footer=True
+    )
+    table.add_column("case", footer="passed", no_wrap=True)
+    for solver in solvers:
+        # a word a line: names of three words would take the room of the squares
+        foot = f"{passed(made, solver)} of {len(cases)}"
+        table.add_column(solver.replace("_", "\n"), footer=foot, vertical="bottom")
+    places = {(square.case, square.solver): square for square in made}
+    family = ""
+    for case in cases:
+        before, family = family, case.name.rpartition("/")[0]
+        if before and before != family:
+            table.add_row()
+        found = [places.get((case.name, solver)) for solver in solvers]
+        words = [WORDS[one.verdict] if one is not None else ("-", "dim") for one in found]
+        table.add_row(case.name, *(Text(word, style) for word, style in words))
+    table.add_row()
+    return table
+
+
+def _failures(bad: Sequence[Square]) -> Table:
+    from rich.table import Table
+    from rich.text import Text
+
+    table = Table.grid(padding=(0, 2, 0, 0))
+    table.add_column(no_wrap=True)
+    table.add_column(no_wrap=True)
+    table.add_column()
+    for square in bad:
+        word, style = WORDS[square.verdict]
+        table.add_row(f"  {square.case}", Text(word, style), square.why)
+    return table

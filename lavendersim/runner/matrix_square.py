@@ -1,0 +1,102 @@
+"""A finished run of a case by one solver in; its square of the matrix out, as plain data.
+
+passes         every claim is met, declared failures too: what fails elsewhere is held here
+known failure  nothing fails but what the case declares; it is no pass
+fails          something else does; told is the first, in the order of the file
+ended          a cell did not complete: it diverged, or a bound of every step stopped it
+refused        the case cannot be put to this solver
+died           the run itself broke off, which is a defect of lavender
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from fractions import Fraction
+from pathlib import Path
+from typing import Any, Final, Literal, NamedTuple
+
+PASSES: Final = "passes"
+KNOWN: Final = "known failure"
+FAILS: Final = "fails"
+ENDED: Final = "ended"
+REFUSED: Final = "refused"
+DIED: Final = "died"
+Word = Literal["passes", "known failure", "fails", "ended", "refused", "died"]
+FINE: Final = frozenset({PASSES, KNOWN})
+
+
+class Square(NamedTuple):
+    """What became of one case by one solver."""
+
+    case: str  # `tall/jenga`
+    solver: str
+    verdict: Word
+    why: str = ""  # one line: what failed, its number against its bound, or how it ended
+    detail: str = ""  # the whole message
+    margin: float = math.nan  # the least share of a bound that is left over all claims [-]
+    cost: float = math.nan  # physics per simulated second, one processor [s/s]
+    run: Path | None = None  # its directory
+    log: Path | None = None  # of the first cell that failed, or of the first
+
+    @property
+    def fine(self) -> bool:
+        """Whether nothing failed that the case does not declare."""
+        return self.verdict in FINE
+
+
+def square_of(case: str, solver: str, finished: Any) -> Square:
+    """Return the square of a `Finished` run."""
+    failed = [verdict for verdict in finished.raw if not verdict.passed]
+    # what a declared failure names is judged by it, and stands in no list of its own
+    judged = {verdict.node for verdict in finished.verdicts}
+    undeclared = [verdict for verdict in failed if verdict.node in judged and not verdict.follows]
+    ended = finished.ended_early
+    word: Word = PASSES
+    why = detail = ""
+    if undeclared:
+        word, why, detail = FAILS, _line(undeclared[0]), undeclared[0].message
+    if ended:
+        word, why = ENDED, f"{ended[0].label or 'the cell'}: {ended[0].status}"
+        detail = "\n".join([why, *([detail] if detail else [])])
+    elif not undeclared and failed:
+        word, why = KNOWN, _line(failed[0])
+        detail = "\n".join(verdict.message for verdict in failed)
+    shown = {verdict.path for verdict in undeclared or failed} | {str(one.path) for one in ended}
+    cells = finished.run.cells
+    first = next((cell for cell in cells if str(cell.path) in shown), cells[0])
+    known = [one.margin for one in finished.raw if not math.isnan(one.margin)]
+    margin = min(known, default=math.nan)
+    run = finished.run.path
+    return Square(case, solver, word, why, detail, margin, _cost(finished), run, first.path)
+
+
+def without_run(case: str, solver: str, word: Word, why: str) -> Square:
+    """Return the square of a case that left no run."""
+    return Square(case, solver, word, why, why)
+
+
+def passed(squares: Iterable[Square], solver: str) -> int:
+    """Return how many cases a solver passes; declared failures are none."""
+    return sum(one.solver == solver and one.verdict == PASSES for one in squares)
+
+
+def _line(verdict: Any) -> str:
+    return f"{verdict.node}: {verdict.measured:.3g}, expected {verdict.expected}"
+
+
+def _cost(finished: Any) -> float:
+    """Return the physics of all cells over the time they simulated [s/s]."""
+    # cells that are the same simulation share one outcome
+    spent = {
+        cell.path: (outcome.physics_ns / 1e9, outcome.steps * _timestep(whole))
+        for cell, whole, outcome in zip(
+            finished.run.cells, finished.run.experiment.cells(), finished.outcomes, strict=True
+        )
+    }
+    simulated = sum(time for _, time in spent.values())
+    return sum(physics for physics, _ in spent.values()) / simulated if simulated else math.nan
+
+
+def _timestep(cell: Any) -> float:
+    return float(Fraction(cell.config.numerics.timestep))

@@ -1,0 +1,143 @@
+"""Cases and solvers in; a square for every case and solver out, as they finish.
+
+Every square is a run of its own, in a directory of its own, made in another process: a case that
+breaks its process off loses nothing else. Solver by solver, so that what an interrupted matrix
+leaves are whole columns.
+"""
+
+from __future__ import annotations
+
+import traceback
+from collections.abc import Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
+from multiprocessing import get_context
+from pathlib import Path
+from typing import NamedTuple, get_args
+
+from lavendersim.errors import ConfigError, LavenderError, UsageError
+from lavendersim.experiment import Experiment, load_experiment
+from lavendersim.experiment.found import nearest, quoted
+from lavendersim.experiment.solver_names import Solver
+from lavendersim.experiment.solver_override import about_something_else
+
+from .experiment_run import run
+from .matrix_square import DIED, REFUSED, Square, square_of, without_run
+from .run_directory import RUNS
+
+ALL = "all"
+
+
+class Case(NamedTuple):
+    """A config that is put to every solver."""
+
+    name: str  # `tall/jenga`: its folder and its file
+    path: Path
+    reduced: bool  # a slow one, at its reduced length
+    question: str
+
+
+class Pair(NamedTuple):
+    """What one process does at a time."""
+
+    case: Case
+    solver: str
+    root: Path  # where run directories are made
+
+
+def chosen(names: Sequence[str]) -> tuple[str, ...]:
+    """Return the solvers that are meant, each once, `all` with the default's first.
+
+    names: with commas between, or several. UsageError with the nearest name for one unknown.
+    """
+    valid = sorted(get_args(Solver), key=lambda name: name != "adaptive")
+    found: dict[str, None] = {}
+    for name in (part.strip() for text in names for part in text.split(",")):
+        if name != ALL and name not in valid:
+            raise UsageError(f"no solver is called {quoted(name)}{nearest(name, [*valid, ALL])}")
+        found.update(dict.fromkeys(valid if name == ALL else [name]))
+    return tuple(found)
+
+
+def cases_of(experiments: Sequence[Experiment]) -> tuple[list[Case], dict[str, str]]:
+    """Return what is put to every solver, and of every other config why it is not."""
+    cases: list[Case] = []
+    left_out: dict[str, str] = {}
+    for experiment in experiments:
+        name = _name(experiment.path)
+        if why := about_something_else(experiment):
+            left_out[name] = why
+            continue
+        if any(case.name == name for case in cases):
+            name = str(experiment.path)
+        cases.append(Case(name, experiment.path, experiment.reduced, experiment.question))
+    return cases, left_out
+
+
+def squares(
+    cases: Sequence[Case], solvers: Sequence[str], root: Path = RUNS, jobs: int = 1
+) -> Iterator[Square]:
+    """Yield the square of every case and solver when it is done, solver by solver.
+
+    jobs: squares that are made at once, each in a process; their logs are the same for any number.
+    """
+    for solver in solvers:
+        # a process for each solver holds its kernels and no others
+        yield from _made([Pair(case, solver, root) for case in cases], jobs)
+
+
+def _made(pairs: list[Pair], jobs: int) -> Iterator[Square]:
+    lost: list[Pair] = []
+    with ProcessPoolExecutor(jobs, get_context("spawn")) as pool:
+        waiting = list(reversed(pairs))
+        running: dict[Future[Square], Pair] = {}
+        while waiting or running:
+            while waiting and len(running) < jobs:
+                pair = waiting.pop()
+                try:
+                    running[pool.submit(make_square, pair)] = pair
+                except BrokenProcessPool:  # it broke between two squares
+                    lost.append(pair)
+            for future in wait(running, return_when=FIRST_COMPLETED).done:
+                pair = running.pop(future)
+                try:
+                    yield future.result()
+                except BrokenProcessPool:
+                    lost.append(pair)
+            if lost:
+                lost += running.values()
+                break
+    if not lost:
+        return
+    for pair in lost:  # each alone tells which of them it was
+        yield from _made_alone(pair)
+    yield from _made(list(reversed(waiting)), jobs)
+
+
+def _made_alone(pair: Pair) -> Iterator[Square]:
+    with ProcessPoolExecutor(1, get_context("spawn")) as pool:
+        try:
+            yield pool.submit(make_square, pair).result()
+        except BrokenProcessPool:
+            said = "its process ended without a word"
+            yield without_run(pair.case.name, pair.solver, DIED, said)
+
+
+def make_square(pair: Pair) -> Square:
+    """Run a case by a solver and return its square; whatever happens there is its verdict."""
+    case, solver = pair.case.name, pair.solver
+    try:
+        experiment = load_experiment(pair.case.path, pair.case.reduced, solver)
+        return square_of(case, solver, run(experiment, pair.root, prices=False))
+    except ConfigError as error:
+        return without_run(case, solver, REFUSED, error.defects[0].message)
+    except LavenderError as error:
+        return without_run(case, solver, REFUSED, str(error))
+    except Exception as error:
+        # a defect of lavender; the other squares are still worth having
+        died = without_run(case, solver, DIED, f"{type(error).__name__}: {error}")
+        return died._replace(detail=traceback.format_exc())
+
+
+def _name(path: Path) -> str:
+    return f"{path.absolute().parent.name}/{path.stem}"
