@@ -52,7 +52,7 @@ thead th { position: sticky; top: 0; background: #fff; vertical-align: bottom; c
 th.solver, td.square { text-align: center; padding: 0.4em 0.2em; width: 6em; font-size: 0.93em; }
 th.solver b { font-size: 1.15em; }
 th.family { padding-top: 1.2em; font-weight: bold; color: #222; }
-td.picture { width: 96px; }
+td.name img { float: left; margin-right: 1em; }
 td.square { vertical-align: middle; border-left: 2px solid #fff; white-space: nowrap; }
 td.square a { display: block; color: inherit; text-decoration: none; }
 td.square a:hover, td.square a:focus { outline: 2px solid #222; }
@@ -62,7 +62,7 @@ td.square a:hover, td.square a:focus { outline: 2px solid #222; }
 .fails { background: #f9d9c8; color: #8a3300; }
 .other { background: #eee; color: #555; }
 .key span.sign { padding: 0 0.4em; margin-left: 0.8em; }
-@media (max-width: 60em) { td.picture { display: none; } .question { display: none; } }
+@media (max-width: 60em) { td.name img, .question { display: none; } }
 """
 
 
@@ -88,7 +88,7 @@ per simulated second, no logging, one core of {escape(matrix.processor)}. Square
 and tell more when pointed at.</p>
 <p class="key">{key}</p>
 <table class="matrix">
-<thead><tr><th colspan="2">case</th>{"".join(_heads(matrix))}</tr></thead>
+<thead><tr><th>case</th>{"".join(_heads(matrix))}</tr></thead>
 {"".join(_families(matrix, folder))}
 </table>
 <h2>What failed</h2>
@@ -117,7 +117,7 @@ def _families(matrix: Matrix, folder: Path) -> Iterator[str]:
     for case in matrix.cases:
         families.setdefault(case.name.rpartition("/")[0], []).append(case)
     for family, cases in families.items():
-        wide = 2 + len(matrix.solvers)
+        wide = 1 + len(matrix.solvers)
         yield f'<tbody><tr><th class="family" colspan="{wide}">{escape(family)}</th></tr>\n'
         for case in cases:
             squares = "".join(
@@ -127,7 +127,7 @@ def _families(matrix: Matrix, folder: Path) -> Iterator[str]:
             image = picture(cell, SMALLER) if cell is not None else ""
             yield (
                 f'<tr class="case" data-case="{escape(case.name, quote=True)}">'
-                f'<td class="picture">{image}</td><td>{_name(case)}</td>{squares}</tr>\n'
+                f'<td class="name">{image}{_name(case)}</td>{squares}</tr>\n'
             )
         yield "</tbody>\n"
 
@@ -162,9 +162,13 @@ def _failures(matrix: Matrix, folder: Path) -> Iterator[str]:
             f" {one.verdict}</td><td><pre>{escape(one.detail or one.why)}</pre></td></tr>"
             for one in bad
         )
-        names = ", ".join(escape(one.case) for one in bad)
+        said = "; ".join(
+            f"{verdict}: {', '.join(escape(one.case) for one in bad if one.verdict == verdict)}"
+            for verdict in LOOKS
+            if any(one.verdict == verdict for one in bad)
+        )
         yield (
-            f"<details><summary><b>{escape(solver)}</b>: {names}</summary>"
+            f"<details><summary><b>{escape(solver)}</b> {said}</summary>"
             f"<table><tbody>{rows}</tbody></table></details>\n"
         )
 
@@ -172,10 +176,12 @@ def _failures(matrix: Matrix, folder: Path) -> Iterator[str]:
 def _left_out(left_out: Mapping[str, str]) -> str:
     if not left_out:
         return ""
-    rows = "".join(
-        f"<tr><td>{escape(name)}</td><td>{escape(why)}</td></tr>" for name, why in left_out.items()
+    lines = "".join(
+        f"<p><b>{escape(why)}</b>: "
+        f"{', '.join(escape(name) for name, said in left_out.items() if said == why)}</p>"
+        for why in dict.fromkeys(left_out.values())
     )
-    return f"<h2>Not in the matrix</h2>\n<table><tbody>{rows}</tbody></table>"
+    return f"<h2>Not in the matrix</h2>\n{lines}"
 
 
 def _time(seconds: float) -> str:

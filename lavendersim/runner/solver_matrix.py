@@ -8,14 +8,14 @@ leaves are whole columns.
 from __future__ import annotations
 
 import traceback
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from multiprocessing import get_context
 from pathlib import Path
 from typing import NamedTuple, get_args
 
-from lavendersim.errors import ConfigError, LavenderError, UsageError
+from lavendersim.errors import ConfigError, UsageError
 from lavendersim.experiment import Experiment, load_experiment
 from lavendersim.experiment.found import nearest, quoted
 from lavendersim.experiment.solver_names import Solver
@@ -74,19 +74,40 @@ def cases_of(experiments: Sequence[Experiment]) -> tuple[list[Case], dict[str, s
     return cases, left_out
 
 
+def make_square(pair: Pair) -> Square:
+    """Run a case by a solver and return its square; whatever happens there is its verdict."""
+    case, solver = pair.case.name, pair.solver
+    try:
+        experiment = load_experiment(pair.case.path, pair.case.reduced, solver)
+        return square_of(case, solver, run(experiment, pair.root, prices=False))
+    except ConfigError as error:
+        return without_run(case, solver, REFUSED, error.defects[0].message)
+    except UsageError:
+        raise  # true of every square
+    except Exception as error:
+        # a defect of lavender; the other squares are still worth having
+        died = without_run(case, solver, DIED, f"{type(error).__name__}: {error}")
+        return died._replace(detail=traceback.format_exc())
+
+
 def squares(
-    cases: Sequence[Case], solvers: Sequence[str], root: Path = RUNS, jobs: int = 1
+    cases: Sequence[Case],
+    solvers: Sequence[str],
+    root: Path = RUNS,
+    jobs: int = 1,
+    make: Callable[[Pair], Square] = make_square,
 ) -> Iterator[Square]:
     """Yield the square of every case and solver when it is done, solver by solver.
 
     jobs: squares that are made at once, each in a process; their logs are the same for any number.
+    make: what one process does.
     """
     for solver in solvers:
         # a process for each solver holds its kernels and no others
-        yield from _made([Pair(case, solver, root) for case in cases], jobs)
+        yield from _made([Pair(case, solver, root) for case in cases], jobs, make)
 
 
-def _made(pairs: list[Pair], jobs: int) -> Iterator[Square]:
+def _made(pairs: list[Pair], jobs: int, make: Callable[[Pair], Square]) -> Iterator[Square]:
     lost: list[Pair] = []
     with ProcessPoolExecutor(jobs, get_context("spawn")) as pool:
         waiting = list(reversed(pairs))
@@ -95,7 +116,7 @@ def _made(pairs: list[Pair], jobs: int) -> Iterator[Square]:
             while waiting and len(running) < jobs:
                 pair = waiting.pop()
                 try:
-                    running[pool.submit(make_square, pair)] = pair
+                    running[pool.submit(make, pair)] = pair
                 except BrokenProcessPool:  # it broke between two squares
                     lost.append(pair)
             for future in wait(running, return_when=FIRST_COMPLETED).done:
@@ -110,33 +131,17 @@ def _made(pairs: list[Pair], jobs: int) -> Iterator[Square]:
     if not lost:
         return
     for pair in lost:  # each alone tells which of them it was
-        yield from _made_alone(pair)
-    yield from _made(list(reversed(waiting)), jobs)
+        yield from _made_alone(pair, make)
+    yield from _made(list(reversed(waiting)), jobs, make)
 
 
-def _made_alone(pair: Pair) -> Iterator[Square]:
+def _made_alone(pair: Pair, make: Callable[[Pair], Square]) -> Iterator[Square]:
     with ProcessPoolExecutor(1, get_context("spawn")) as pool:
         try:
-            yield pool.submit(make_square, pair).result()
+            yield pool.submit(make, pair).result()
         except BrokenProcessPool:
             said = "its process ended without a word"
             yield without_run(pair.case.name, pair.solver, DIED, said)
-
-
-def make_square(pair: Pair) -> Square:
-    """Run a case by a solver and return its square; whatever happens there is its verdict."""
-    case, solver = pair.case.name, pair.solver
-    try:
-        experiment = load_experiment(pair.case.path, pair.case.reduced, solver)
-        return square_of(case, solver, run(experiment, pair.root, prices=False))
-    except ConfigError as error:
-        return without_run(case, solver, REFUSED, error.defects[0].message)
-    except LavenderError as error:
-        return without_run(case, solver, REFUSED, str(error))
-    except Exception as error:
-        # a defect of lavender; the other squares are still worth having
-        died = without_run(case, solver, DIED, f"{type(error).__name__}: {error}")
-        return died._replace(detail=traceback.format_exc())
 
 
 def _name(path: Path) -> str:

@@ -1,0 +1,173 @@
+"""What a square of the solver matrix says of a run, and that one case's end is not the others'."""
+
+from __future__ import annotations
+
+import math
+import os
+from dataclasses import dataclass, field
+from fractions import Fraction
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from lavendersim.errors import UsageError
+from lavendersim.experiment import load_experiment_text
+from lavendersim.measures import Verdict
+from lavendersim.runner.matrix_square import Square, passed, square_of
+from lavendersim.runner.solver_matrix import Case, Pair, cases_of, chosen, make_square, squares
+
+SCENE = """\
+scene: {bodies: {ball: {shape: {kind: sphere, radius: 0.1}, mass: 1.0, position: [0, 0, 1]}}}
+"""
+DIVERGED = "diverged: body ball is no longer finite after step 3 (t = 0.0125 s)"
+
+
+def verdict(node: str, good: bool, follows: bool = False, margin: float = math.nan) -> Verdict:
+    text = f"{node}: measured 2.0"
+    path = "run/cells/b.mcap" if node.endswith("b") else "run/cells/a.mcap"
+    return Verdict(node, node, good, 2.0, "at most 1", "none", text, path, follows, margin)
+
+
+@dataclass
+class Ran:
+    """A finished run of two cells, a and b, of 10 and 30 steps of 1/100 s."""
+
+    raw: list[Verdict]
+    controlled: tuple[str, ...] = ()  # nodes that a declared failure has taken over
+    ended: str = ""  # status of cell b
+    outcomes: list[Any] = field(
+        default_factory=lambda: [
+            SimpleNamespace(physics_ns=1_000_000, steps=10),
+            SimpleNamespace(physics_ns=3_000_000, steps=30),
+        ]
+    )
+
+    @property
+    def verdicts(self) -> list[Verdict]:
+        return [one for one in self.raw if one.node not in self.controlled]
+
+    @property
+    def run(self) -> Any:
+        numerics = SimpleNamespace(timestep=Fraction(1, 100))
+        whole = SimpleNamespace(config=SimpleNamespace(numerics=numerics))
+        cells = [
+            SimpleNamespace(path=Path("run/cells/a.mcap"), label="cell a", status="complete"),
+            SimpleNamespace(path=Path("run/cells/b.mcap"), label="cell b", status=self.ended),
+        ]
+        experiment = SimpleNamespace(cells=lambda: [whole, whole])
+        return SimpleNamespace(path=Path("run"), cells=cells, experiment=experiment)
+
+    @property
+    def ended_early(self) -> list[Any]:
+        return [cell for cell in self.run.cells if cell.status == self.ended and self.ended]
+
+
+def square(*raw: Verdict, controlled: tuple[str, ...] = (), ended: str = "") -> Square:
+    return square_of("family/case", "jacobi", Ran(list(raw), controlled, ended))
+
+
+def test_a_case_of_which_every_claim_is_met_passes() -> None:
+    one = square(verdict("stands a", True, margin=0.5), verdict("stands b", True, margin=0.25))
+    assert (one.verdict, one.why, one.margin, one.fine) == ("passes", "", 0.25, True)
+    assert one.log == Path("run/cells/a.mcap")
+
+
+def test_a_failure_says_what_failed_first_with_its_number_and_its_bound() -> None:
+    one = square(verdict("stands a", True), verdict("force b", False), verdict("sinks a", False))
+    assert (one.verdict, one.why, one.fine) == ("fails", "force b: 2, expected at most 1", False)
+    assert one.detail == "force b: measured 2.0"
+    # the first log of one that failed, in the order of the cells
+    assert one.log == Path("run/cells/a.mcap")
+
+
+def test_a_declared_failure_is_no_pass_and_no_news() -> None:
+    one = square(verdict("stands a", True), verdict("force b", False), controlled=("force b",))
+    assert (one.verdict, one.fine) == ("known failure", True)
+    assert one.why == "force b: 2, expected at most 1"
+    assert passed([one], "jacobi") == 0
+
+
+def test_a_solver_that_holds_what_is_declared_to_fail_passes() -> None:
+    one = square(verdict("stands a", True), verdict("force b", True), controlled=("force b",))
+    assert one.verdict == "passes"
+    assert passed([one], "jacobi") == 1
+
+
+def test_a_declared_failure_hides_no_other() -> None:
+    one = square(verdict("force b", False), verdict("stands a", False), controlled=("force b",))
+    assert (one.verdict, one.fine) == ("fails", False)
+    assert one.why == "stands a: 2, expected at most 1"
+
+
+def test_a_cell_that_ended_early_says_how() -> None:
+    one = square(verdict("stands a", True), verdict("force b", False, True), ended=DIVERGED)
+    assert (one.verdict, one.why, one.fine) == ("ended", f"cell b: {DIVERGED}", False)
+    assert one.log == Path("run/cells/b.mcap")
+
+
+def test_the_cost_is_the_physics_of_all_cells_over_their_simulated_time() -> None:
+    # 4 ms for (10 + 30) / 100 s
+    assert square(verdict("stands a", True)).cost == pytest.approx(0.004 / 0.4, rel=1e-12)
+
+
+def case(name: str, path: Path = Path("none.yaml")) -> Case:
+    return Case(name, path, False, "")
+
+
+def dies_of_two(pair: Pair) -> Square:
+    """Stand in for `make_square`: the second case kills its process, as memory that is full may."""
+    if pair.case.name == "two":
+        os._exit(3)
+    return Square(pair.case.name, pair.solver, "passes")
+
+
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_a_case_whose_process_dies_loses_no_other(jobs: int) -> None:
+    cases = [case(name) for name in ("one", "two", "three", "four")]
+    made = list(squares(cases, ["jacobi"], jobs=jobs, make=dies_of_two))
+    assert len(made) == 4
+    assert {one.case: one.verdict for one in made} == {
+        **{"one": "passes", "two": "died", "three": "passes", "four": "passes"}
+    }
+
+
+def test_a_case_that_a_solver_cannot_take_is_refused_with_the_reason(tmp_path: Path) -> None:
+    config = tmp_path / "relaxed.yaml"
+    config.write_text(f"{SCENE}duration: 0.1\nalways: {{}}\nnumerics: {{over_relaxation: 1.5}}\n")
+    one = make_square(Pair(case("relaxed", config), "jacobi", tmp_path / "runs"))
+    assert (one.verdict, one.run, one.fine) == ("refused", None, False)
+    assert one.why == "over_relaxation: jacobi treats all contacts at once; expected 1"
+    assert not (tmp_path / "runs").exists()
+
+
+def test_solvers_are_named_once_each_and_all_begins_with_the_default() -> None:
+    everyone = chosen(["all"])
+    assert everyone[0] == "adaptive"
+    assert len(set(everyone)) == len(everyone) > 5
+    assert chosen(["jacobi, adaptive", "jacobi"]) == ("jacobi", "adaptive")
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("jacoby", 'no solver is called "jacoby"; did you mean "jacobi"?'),
+        ("gauss", 'no solver is called "gauss"; did you mean'),
+        ("", 'no solver is called ""; valid here: adaptive,'),
+    ],
+)
+def test_an_unknown_solver_is_told_with_the_nearest(name: str, said: str) -> None:
+    with pytest.raises(UsageError) as error:
+        chosen([name])
+    assert str(error.value).startswith(said)
+    assert error.value.exit_code == 2
+
+
+def test_a_case_is_called_by_its_folder_and_its_file() -> None:
+    text = f"{SCENE}duration: 0.1\n"
+    judged = load_experiment_text(text + "always: {}\n", "tall/tower.yaml")
+    silent = load_experiment_text(text, "maps/height.yaml")
+    cases, left_out = cases_of([judged, silent])
+    assert [one.name for one in cases] == ["tall/tower"]
+    assert left_out == {"maps/height": "judges nothing"}
