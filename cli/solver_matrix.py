@@ -22,7 +22,8 @@ WORDS = {
     "passes": ("pass", "green"),
     "known failure": ("known", "yellow"),
     "fails": ("FAIL", "bold red"),
-    "ended": ("ENDED", "bold red"),
+    "beyond bounds": ("BOUNDS", "bold red"),
+    "diverged": ("DIVERGED", "bold red"),
     "refused": ("REFUSED", "bold red"),
     "died": ("DIED", "bold red"),
 }

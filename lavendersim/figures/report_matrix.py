@@ -39,12 +39,13 @@ LOOKS: Final = {
     "passes": Look("\u2713", "passes", "passes"),
     "known failure": Look("~", "known", "known failure: the case declares it; no pass"),
     "fails": Look("\u2717", "fails", "fails"),
-    "ended": Look("\u25a0", "fails", "ended before its time: diverged or out of bounds"),
+    "beyond bounds": Look("\u25a0", "fails", "stopped at the first step beyond a bound"),
+    "diverged": Look("\u221e", "fails", "diverged: its numbers ended"),
     "refused": Look("\u2205", "other", "refused: the case cannot be put to this solver"),
     "died": Look("\u2020", "fails", "the run broke off: a defect of lavender"),
 }
 NOT_RUN: Final = Look("\u2013", "other", "not run")
-ALWAYS_TOLD: Final = ("passes", "known failure", "fails", "ended")
+ALWAYS_TOLD: Final = ("passes", "known failure", "fails", "beyond bounds")
 SMALLER: Final = 0.6  # of a picture's size: rows low enough to see a family at once
 STYLE: Final = """
 body { max-width: 90em; }

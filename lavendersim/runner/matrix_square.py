@@ -3,7 +3,8 @@
 passes         every claim is met, declared failures too: what fails elsewhere is held here
 known failure  nothing fails but what the case declares; it is no pass
 fails          something else does; told is the first, in the order of the file
-ended          a cell did not complete: it diverged, or a bound of every step stopped it
+beyond bounds  a cell was stopped at the first step that broke a bound of `always`
+diverged       a cell ended where its numbers did
 refused        the case cannot be put to this solver
 died           the run itself broke off, which is a defect of lavender
 """
@@ -16,13 +17,18 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any, Final, Literal, NamedTuple
 
+from lavendersim.experiment.always_specs import BEYOND_BOUNDS
+from lavendersim.measures.always import PREFIX
+from lavendersim.measures.controls import of_completion
+
 PASSES: Final = "passes"
 KNOWN: Final = "known failure"
 FAILS: Final = "fails"
-ENDED: Final = "ended"
+BEYOND: Final = "beyond bounds"
+DIVERGED: Final = "diverged"
 REFUSED: Final = "refused"
 DIED: Final = "died"
-Word = Literal["passes", "known failure", "fails", "ended", "refused", "died"]
+Word = Literal["passes", "known failure", "fails", "beyond bounds", "diverged", "refused", "died"]
 FINE: Final = frozenset({PASSES, KNOWN})
 
 
@@ -48,16 +54,17 @@ class Square(NamedTuple):
 def square_of(case: str, solver: str, finished: Any) -> Square:
     """Return the square of a `Finished` run."""
     failed = [verdict for verdict in finished.raw if not verdict.passed]
-    # what a declared failure names is judged by it, and stands in no list of its own
-    judged = {verdict.node for verdict in finished.verdicts}
-    undeclared = [verdict for verdict in failed if verdict.node in judged and not verdict.follows]
+    declared = _declared(finished)
+    undeclared = [one for one in failed if one.node not in declared and not one.follows]
     ended = finished.ended_early
     word: Word = PASSES
     why = detail = ""
     if undeclared:
         word, why, detail = FAILS, _line(undeclared[0]), undeclared[0].message
     if ended:
-        word, why = ENDED, f"{ended[0].label or 'the cell'}: {ended[0].status}"
+        stopped = ended[0].status.startswith(BEYOND_BOUNDS)
+        word, why = BEYOND if stopped else DIVERGED, ended[0].status
+        why = f"{ended[0].label}: {why}" if ended[0].label else why
         detail = "\n".join([why, *([detail] if detail else [])])
     elif not undeclared and failed:
         word, why = KNOWN, _line(failed[0])
@@ -79,6 +86,17 @@ def without_run(case: str, solver: str, word: Word, why: str) -> Square:
 def passed(squares: Iterable[Square], solver: str) -> int:
     """Return how many cases a solver passes; declared failures are none."""
     return sum(one.solver == solver and one.verdict == PASSES for one in squares)
+
+
+def _declared(finished: Any) -> set[str]:
+    """Return the nodes of the claims that the case says will fail."""
+    controls = finished.run.experiment.controls
+    named = {text for one in controls for text in (one.fails, f"{PREFIX}{one.fails}")}
+    # what a control names in its cells is judged by it alone, and stands in no list of its own
+    judged = {verdict.node for verdict in finished.verdicts}
+    taken = [verdict for verdict in finished.raw if verdict.node not in judged]
+    whole = any(of_completion(one) for one in controls)
+    return {verdict.node for verdict in taken if whole or verdict.name in named}
 
 
 def _line(verdict: Any) -> str:

@@ -18,6 +18,7 @@ from lavendersim.measures import Verdict
 from lavendersim.runner.matrix_square import Square, passed, square_of
 from lavendersim.runner.solver_matrix import Case, Pair, cases_of, chosen, make_square, squares
 
+BEYOND = "beyond bounds: residual 0.1 m/s, at most 1e-06, ball, in step 3 (t = 0.0125 s)"
 SCENE = """\
 scene: {bodies: {ball: {shape: {kind: sphere, radius: 0.1}, mass: 1.0, position: [0, 0, 1]}}}
 """
@@ -25,9 +26,11 @@ DIVERGED = "diverged: body ball is no longer finite after step 3 (t = 0.0125 s)"
 
 
 def verdict(node: str, good: bool, follows: bool = False, margin: float = math.nan) -> Verdict:
-    text = f"{node}: measured 2.0"
+    name, text = node.split()[0], f"{node}: measured 2.0"
     path = "run/cells/b.mcap" if node.endswith("b") else "run/cells/a.mcap"
-    return Verdict(node, node, good, 2.0, "at most 1", "none", text, path, follows, margin)
+    return Verdict(
+        node.split()[0], node, good, 2.0, "at most 1", "none", text, path, follows, margin
+    )
 
 
 @dataclass
@@ -37,6 +40,7 @@ class Ran:
     raw: list[Verdict]
     controlled: tuple[str, ...] = ()  # nodes that a declared failure has taken over
     ended: str = ""  # status of cell b
+    declared: tuple[str, ...] = ()  # names of claims that are; of those in `controlled`, if none
     outcomes: list[Any] = field(
         default_factory=lambda: [
             SimpleNamespace(physics_ns=1_000_000, steps=10),
@@ -56,7 +60,11 @@ class Ran:
             SimpleNamespace(path=Path("run/cells/a.mcap"), label="cell a", status="complete"),
             SimpleNamespace(path=Path("run/cells/b.mcap"), label="cell b", status=self.ended),
         ]
-        experiment = SimpleNamespace(cells=lambda: [whole, whole])
+        controls = self.declared or {node.split()[0] for node in self.controlled}
+        experiment = SimpleNamespace(
+            cells=lambda: [whole, whole],
+            controls=[SimpleNamespace(fails=name) for name in controls],
+        )
         return SimpleNamespace(path=Path("run"), cells=cells, experiment=experiment)
 
     @property
@@ -101,9 +109,18 @@ def test_a_declared_failure_hides_no_other() -> None:
     assert one.why == "stands a: 2, expected at most 1"
 
 
-def test_a_cell_that_ended_early_says_how() -> None:
-    one = square(verdict("stands a", True), verdict("force b", False, True), ended=DIVERGED)
-    assert (one.verdict, one.why, one.fine) == ("ended", f"cell b: {DIVERGED}", False)
+def test_what_a_declared_bound_keeps_from_being_judged_is_not_declared() -> None:
+    # a control of a check of `always` takes the expectations of its cells too, as it may stop them
+    ran = Ran([verdict("depth b", True), verdict("stands b", False)], ("depth b", "stands b"))
+    ran.declared = ("depth",)
+    one = square_of("family/case", "jacobi", ran)
+    assert (one.verdict, one.why) == ("fails", "stands b: 2, expected at most 1")
+
+
+@pytest.mark.parametrize(("status", "word"), [(DIVERGED, "diverged"), (BEYOND, "beyond bounds")])
+def test_a_cell_that_ended_early_says_how(status: str, word: str) -> None:
+    one = square(verdict("stands a", True), verdict("force b", False, True), ended=status)
+    assert (one.verdict, one.why, one.fine) == (word, f"cell b: {status}", False)
     assert one.log == Path("run/cells/b.mcap")
 
 
