@@ -28,9 +28,7 @@ DIVERGED = "diverged: body ball is no longer finite after step 3 (t = 0.0125 s)"
 def verdict(node: str, good: bool, follows: bool = False, margin: float = math.nan) -> Verdict:
     name, text = node.split()[0], f"{node}: measured 2.0"
     path = "run/cells/b.mcap" if node.endswith("b") else "run/cells/a.mcap"
-    return Verdict(
-        node.split()[0], node, good, 2.0, "at most 1", "none", text, path, follows, margin
-    )
+    return Verdict(name, node, good, 2.0, "at most 1", "none", text, path, follows, margin)
 
 
 @dataclass
