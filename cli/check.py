@@ -54,6 +54,7 @@ def check(
         return
     good, verdicts, cells, results = True, [], [], []
     for experiment in experiments:
+        printing.warn_of_mistakes(experiment)
         with printing.reporting(experiment.name) as progress:
             finished = run(experiment, runs, jobs, progress, prices=False)
         good = good and finished.good

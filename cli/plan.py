@@ -57,6 +57,9 @@ def write(explained: Explanation, title: str, width: int | None = None) -> None:
     console = Console(width=width if wrapped else UNWRAPPED, highlight=False, markup=False)
     with console.capture() as captured:
         console.print(title, style="bold")
+        if (mistake := explained.choices["mistake"]) in explained.spec["effects"]:
+            said = f"study-only: {mistake}, a known mistake, is made on purpose"
+            console.print(said, style="bold yellow")
         console.print(_table(explained.effects, "effect"))
         console.print(_table([one for one in explained.shape_pairs if one.on], "shape pair"))
         if others := [one.name for one in explained.shape_pairs if not one.on]:

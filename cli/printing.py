@@ -82,6 +82,15 @@ def print_costs(finished: Any) -> None:
         typer.echo(f"  physics {cost:10.2f} us/step  {cell.label}")
 
 
+def warn_of_mistakes(experiment: Any) -> None:
+    """Say on stderr which known mistakes an experiment makes on purpose, and in how many cells."""
+    for mistake, cells in experiment.mistakes.items():
+        total = len(experiment.cells())
+        where = "" if total == 1 else f" in {len(cells)} of {total} cells"
+        said = f"study-only: {mistake}, a known mistake, is made on purpose{where}"
+        typer.echo(f"{experiment.name}: {typer.style(said, fg=typer.colors.YELLOW)}", err=True)
+
+
 def warn_of_unsolved(finished: Any) -> None:
     """Say on stderr which cells missed the accuracy asked for, the first few by name."""
     for notice in finished.unsolved[:FAILURES_SHOWN]:

@@ -32,6 +32,7 @@ def run(
     experiments = load_all(configs)
     good, tables, priced = True, [], []
     for experiment in experiments:
+        printing.warn_of_mistakes(experiment)
         with printing.reporting(experiment.name) as progress:
             finished = run(experiment, runs, jobs, progress)
         good = good and finished.good

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from lavendersim.runner import RunCell
 
 Metadata = dict[str, dict[str, str]]
-SECTIONS = ("plan", "shape pairs", "forced")  # of a log's metadata
+SECTIONS = ("plan", "shape pairs", "forced", "study-only")  # of a log's metadata
 
 
 def show(
@@ -81,6 +81,8 @@ def print_plan(cells: list[RunCell], metadata: Metadata, count: int) -> None:
     if forced:
         changes = "; ".join(f"{name} {how}" for name, how in forced.items())
         typer.echo(typer.style(f"  overridden by hand: {changes}", fg=typer.colors.YELLOW))
+    for mistake, said in metadata["study-only"].items():
+        typer.echo(typer.style(f"  study-only: {mistake}, {said}", fg=typer.colors.YELLOW))
     parts = {**metadata["plan"], **metadata["shape pairs"]}
     width = max(map(len, parts), default=0)
     off = []

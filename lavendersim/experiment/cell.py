@@ -21,6 +21,7 @@ from lavendersim.experiment.report import Report
 from lavendersim.experiment.resolved import CellConfig, resolve_cell
 from lavendersim.experiment.run_checks import check_run
 from lavendersim.experiment.scene_checks import check_scene
+from lavendersim.experiment.study_checks import check_study
 from lavendersim.experiment.sweep import Point
 
 
@@ -28,6 +29,7 @@ def check_cell(tree: Node, report: Report) -> None:
     """Note what is wrong between the values of one cell, beyond the types of its values."""
     check_scene(tree, report)
     check_run(tree, report)
+    check_study(tree, report)
     check_always(tree, report)
     check_names(tree, CellSource, frozenset(), report)
 

@@ -19,6 +19,7 @@ from lavendersim.experiment.quantities import Quantity, Vector3
 from lavendersim.experiment.run_checks import whole_steps
 from lavendersim.experiment.shape_models import Box, Capsule, Cylinder, Plane, Sphere
 from lavendersim.experiment.solver_names import Solver
+from lavendersim.experiment.study_specs import Mistake
 
 Quaternion = tuple[float, float, float, float]
 
@@ -156,6 +157,12 @@ class CellEffects(_Resolved):
     switches: dict[str, Switch]  # by the name of an effect or a shape pair, sorted
 
 
+class CellStudy(_Resolved):
+    """What is done wrong on purpose."""
+
+    mistake: Mistake
+
+
 class CellConfig(_Resolved):
     """One cell of an experiment, complete."""
 
@@ -165,6 +172,7 @@ class CellConfig(_Resolved):
     duration: float  # [s]
     record: CellRecord
     effects: CellEffects
+    study: CellStudy
 
     @property
     def steps(self) -> int:

@@ -16,6 +16,7 @@ from lavendersim.experiment.figure_specs import FigureSpec
 from lavendersim.experiment.measure_specs import MeasureSpec
 from lavendersim.experiment.models import ExperimentConfig
 from lavendersim.experiment.price_specs import PriceSpec
+from lavendersim.experiment.study_specs import NO_MISTAKE
 
 
 @dataclass(frozen=True)
@@ -84,12 +85,30 @@ class Experiment:
     @property
     def switches_effects(self) -> bool:
         """Whether some cell switches an effect by hand, so that its plan may be refused."""
+        return bool(self.config.effects.switches) or any(
+            path.startswith("effects.") for path in self._swept
+        )
+
+    @property
+    def mistakes(self) -> dict[str, list[Cell]]:
+        """Each mistake that is made on purpose, and the cells that make it."""
+        found: dict[str, list[Cell]] = {}
+        for cell in self._cells if self._may_be_wrong else ():
+            if cell.config.study.mistake != NO_MISTAKE:
+                found.setdefault(cell.config.study.mistake, []).append(cell)
+        return found
+
+    @property
+    def _may_be_wrong(self) -> bool:
+        """Whether the file says anything of mistakes, so that not every cell need be looked at."""
+        return self.config.study.mistake != NO_MISTAKE or "study.mistake" in self._swept
+
+    @property
+    def _swept(self) -> set[str]:
+        """The paths of all axes."""
         sweep = self.config.sweep
         products = (sweep,) if isinstance(sweep, dict) else sweep
-        swept = (axis.path for product in products for axis in product.values())
-        return bool(self.config.effects.switches) or any(
-            path.startswith("effects.") for path in swept
-        )
+        return {axis.path for product in products for axis in product.values()}
 
     def cells(self) -> tuple[Cell, ...]:
         """All cells of the sweep, the first axis slowest; one cell without a sweep."""

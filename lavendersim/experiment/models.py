@@ -25,6 +25,7 @@ from lavendersim.experiment.quantities import (
 from lavendersim.experiment.record_models import Record
 from lavendersim.experiment.scene_models import Scene
 from lavendersim.experiment.solver_names import Solver
+from lavendersim.experiment.study_specs import Study
 
 
 class Event(ConfigModel):
@@ -197,6 +198,9 @@ class CellSource(ConfigModel):
     record: Record = Field(default=Record(), description="what is logged beyond every step")
     effects: Effects = Field(
         default=Effects(), description="effect or shape pair: on or off, against the plan"
+    )
+    study: Study = Field(
+        default=Study(), description="a known mistake, made on purpose; every run with one says so"
     )
 
 

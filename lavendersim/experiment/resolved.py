@@ -9,6 +9,7 @@ from lavendersim.experiment.cell_models import (
     CellEffects,
     CellEvent,
     CellRecord,
+    CellStudy,
     Numerics,
     ResidualWindow,
 )
@@ -33,6 +34,7 @@ def resolve_cell(source: CellSource) -> CellConfig:
         effects=CellEffects(
             force=source.effects.force, switches=dict(sorted(source.effects.switches.items()))
         ),
+        study=CellStudy(mistake=source.study.mistake),
     )
 
 

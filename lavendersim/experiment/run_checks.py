@@ -5,13 +5,14 @@ Works on the tree, and says nothing about values of a wrong type: those are refu
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from fractions import Fraction
 
 from lavendersim.experiment.cost_checks import check_cost
 from lavendersim.experiment.messages import place_of
 from lavendersim.experiment.node import Node, key_mark
 from lavendersim.experiment.population import body_node
-from lavendersim.experiment.presets import PRESETS
+from lavendersim.experiment.presets import PRESETS, PresetValue
 from lavendersim.experiment.report import Report
 from lavendersim.experiment.scalars import exact
 from lavendersim.experiment.scene_checks import is_kinematic, is_static, kind_of
@@ -46,15 +47,20 @@ def check_run(root: Node, report: Report) -> None:
 
 def timestep_of(root: Node) -> Fraction | None:
     """Return the timestep [s] that holds for this tree, None where it is no positive number."""
-    numerics = root.get("numerics")
-    preset = numerics if numerics is None or numerics.text else numerics.get("preset")
-    name = preset.text if preset is not None and preset.text else "default"
-    stated = numerics.get("timestep") if numerics is not None else None
+    stated = root.get("numerics", "timestep")
     if stated is not None and stated.content is not None:
         number = stated.number
         return exact(number) if number is not None and number > 0 else None
-    timestep = PRESETS.get(name, PRESETS["default"])["timestep"]
+    timestep = preset_of(root)["timestep"]
     return timestep if isinstance(timestep, Fraction) else None
+
+
+def preset_of(root: Node) -> Mapping[str, PresetValue]:
+    """Return the preset that holds for this tree where its numerics state nothing else."""
+    numerics = root.get("numerics")
+    preset = numerics if numerics is None or numerics.text else numerics.get("preset")
+    name = preset.text if preset is not None and preset.text else "default"
+    return PRESETS.get(name, PRESETS["default"])
 
 
 def whole_steps(duration: float, timestep: Fraction) -> int:

@@ -19,7 +19,7 @@ from lavendersim.experiment.walk import (
     names_of,
 )
 
-SWEPT_SECTIONS = ("scene", "events", "numerics", "duration", "effects")
+SWEPT_SECTIONS = ("scene", "events", "numerics", "duration", "effects", "study")
 
 
 class _NoPath(Exception):  # noqa: N818 - carries the sentence; never leaves this module

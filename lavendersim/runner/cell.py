@@ -79,6 +79,12 @@ def block_of(rows: Rows, timestep: Fraction) -> Block:
 def metadata_of(plan: Plan, seeds: str) -> dict[str, dict[str, str]]:
     """Return what the log says about the engine that made it, and where it was overridden."""
     forced: dict[str, dict[str, str]] = {"forced": {**plan.forced}} if plan.forced else {}
+    mistakes = {
+        effect.NAME: f"a known mistake on purpose: {effect.STUDY_ONLY}"
+        for effect in EFFECTS
+        if plan.spec.has(effect.NAME) and hasattr(effect, "STUDY_ONLY")
+    }
+    study: dict[str, dict[str, str]] = {"study-only": mistakes} if mistakes else {}
     return {
         "versions": versions(),
         "engine": {
@@ -93,6 +99,7 @@ def metadata_of(plan: Plan, seeds: str) -> dict[str, dict[str, str]]:
         },
         "shape pairs": {name: f"on: {plan.said(name)}" for name in plan.spec.shape_pairs},
         **forced,
+        **study,
     }
 
 

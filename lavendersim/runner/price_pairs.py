@@ -17,7 +17,7 @@ from lavendersim.engine.effects import pose_log as poses
 from lavendersim.engine.effects import step_log as steps
 from lavendersim.engine.spec import Spec
 from lavendersim.scene.facts import facts_of
-from lavendersim.scene.laws import BY_NAME, has_law, needs
+from lavendersim.scene.laws import BY_NAME, choice, has_law, is_law, needs
 from lavendersim.scene.plan import plan_of
 
 ALL: Final = "all effects"
@@ -76,12 +76,13 @@ def _pair(effect: ModuleType, reason: str, plans: Plans) -> Pair:
         kept = plans.silent.including(name, poses.NAME)
         return pair._replace(off=plans.silent, on=kept)
     chosen = [each for each in (name, *needs(name)) if not has_law(each, plans.facts)]
-    if on and hasattr(effect, "CHOSEN_BY"):
-        return pair._replace(why_not=f"chosen by numerics.{effect.CHOSEN_BY}: another law without")
+    if on and is_law(name):
+        section, key = choice(name)
+        return pair._replace(why_not=f"chosen by {section}.{key}: another law without")
     if chosen:
-        key = BY_NAME[chosen[0]].CHOSEN_BY
+        section, key = choice(chosen[0])
         through = "" if chosen[0] == name else f" through {chosen[0]}"
-        return pair._replace(why_not=f"numerics.{key} chooses another law{through}")
+        return pair._replace(why_not=f"{section}.{key} chooses another law{through}")
     base = plans.logged if _is_log(effect) else plans.silent
     if not on:
         off = base.including(*needs(name))

@@ -38,7 +38,7 @@ class Part(NamedTuple):
     called_for_by: list[int]  # cells, by their place in the sweep
     callers: str  # in words, where some cells call for it and others do not
     needs: list[str]  # effects without which it cannot be
-    chosen_by: str | None  # key of the numerics
+    chosen_by: str | None  # key of the numerics, or of the study
     fields: Fields  # of records that it brings, and of log rows
     channels: list[str]  # of the log
     kernels: Kernels  # that are there because of it; none where it is off

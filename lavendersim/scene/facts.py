@@ -72,6 +72,7 @@ def facts_of(resolved: dict[str, Any], record: bool = True) -> Facts:
         pair_count=sum(pair.row_pairs for pair in pairs),
         speculative=bool(numerics["speculative"]),
         impacts=numerics["impacts"],
+        mistake=resolved["study"]["mistake"],
         integrator=numerics["integrator"],
         solver=numerics["solver"],
         friction_cone=numerics["friction_cone"],

@@ -1,4 +1,4 @@
-"""An effect's name enters; what it needs, and whether the numerics have its law, leaves."""
+"""An effect's name enters; what it needs, and what chooses its law where one does, leaves."""
 
 from __future__ import annotations
 
@@ -31,9 +31,19 @@ def needs(name: str) -> tuple[str, ...]:
     return tuple(found)
 
 
+def choice(name: str) -> tuple[str, str]:
+    """Return the section and the key of a config that choose an effect; it is a law."""
+    effect = BY_NAME[name]
+    return getattr(effect, "CHOSEN_IN", "numerics"), effect.CHOSEN_BY
+
+
+def is_law(name: str) -> bool:
+    """Whether a key of the config chooses an effect, and no coefficient turns it off."""
+    return hasattr(BY_NAME.get(name), "CHOSEN_BY")
+
+
 def has_law(name: str, facts: Facts) -> bool:
     """Whether an effect is no law that the numerics exclude: in some scene they would have it."""
-    effect = BY_NAME.get(name)
-    if effect is None or not hasattr(effect, "CHOSEN_BY"):
+    if not is_law(name):
         return True
-    return bool(effect.wanted(facts._replace(**BUSY)).on)
+    return bool(BY_NAME[name].wanted(facts._replace(**BUSY)).on)

@@ -4,23 +4,29 @@
           states, and so is whatever it needs
     off   where the scene does not call for it: nothing changes, the file asserts the pruning;
           where it does: refused, unless the file says `force: true`
-An effect that the numerics choose is another law, no idle effect: only they switch it.
+An effect that a key of the numerics chooses, or of `study`, is another law, no idle effect: only
+that key switches it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Any, Literal, NamedTuple, get_args
+from typing import Any, Final, Literal, NamedTuple, get_args
+
+from pydantic import BaseModel
 
 from lavendersim.engine.collide import SHAPE_PAIRS
 from lavendersim.engine.effects import Decision, Facts, contact_log, pose_log, step_log
 from lavendersim.errors import UsageError
-from lavendersim.experiment.cell_models import Numerics
+from lavendersim.experiment.cell_models import CellStudy, Numerics
 from lavendersim.experiment.found import nearest, quoted
 
-from .laws import BUSY, BY_NAME, has_law, needs
+from .laws import BUSY, BY_NAME, choice, has_law, is_law, needs
 
 _LOGS = (step_log.NAME, pose_log.NAME)  # without them nothing of a run can be read
+
+# Sections of a config whose keys choose laws.
+SECTIONS: Final[dict[str, type[BaseModel]]] = {"numerics": Numerics, "study": CellStudy}
 
 Forced = Literal["forced on", "forced off"]
 
@@ -87,8 +93,9 @@ def _switch(
         return "a run without its log is no run; leave it on"
     if name == contact_log.NAME:
         return "the sums in /step are those of the contacts that are logged; leave it on"
-    if key := getattr(BY_NAME[name], "CHOSEN_BY", ""):
-        return f"the numerics choose it; write {_choosing(name, key, facts, on=False)} instead"
+    if is_law(name):
+        chooser = "the numerics choose" if choice(name)[0] == "numerics" else "the study chooses"
+        return f"{chooser} it; write {_choosing(name, facts, on=False)} instead"
     if not stated["force"]:
         return (
             f"the scene calls for it: {reason}; add `force: true` beside it to leave it out "
@@ -109,10 +116,9 @@ def _force_on(
     """Put an effect or shape pair in, with all that it needs; returns why that cannot be."""
     for need in (name, *needs(name)):
         if not has_law(need, facts):
-            key = BY_NAME[need].CHOSEN_BY
             which = "it" if need == name else f"it needs {need}, which"
-            choice = _choosing(need, key, facts, on=True)
-            how = f"; write {choice} to choose it" if choice else ""
+            chosen = _choosing(need, facts, on=True)
+            how = f"; write {chosen} to choose it" if chosen else ""
             return f"{which} is another law, no idle effect{how}"
     decisions[name] = Decision(True, f"forced on; not called for: {decisions[name].reason}")
     made.forced[name] = "forced on"
@@ -138,14 +144,15 @@ def _unmet(made: Overridden, switches: Mapping[str, str]) -> Iterator[Refusal]:
                 )
 
 
-def _choosing(name: str, key: str, facts: Facts, on: bool) -> str:
-    """Return what the numerics must say for an effect to be on or off, as a config states it.
+def _choosing(name: str, facts: Facts, on: bool) -> str:
+    """Return what a config must state for an effect to be on or off.
 
     Nothing where that key alone does not do it.
     """
-    annotation: Any = Numerics.model_fields[key].annotation
+    section, key = choice(name)
+    annotation: Any = SECTIONS[section].model_fields[key].annotation
     for value in (False, True) if annotation is bool else get_args(annotation):
         if BY_NAME[name].wanted(facts._replace(**BUSY, **{key: value})).on == on:
             written = str(value).lower() if isinstance(value, bool) else value
-            return f"`numerics: {{{key}: {written}}}`"
+            return f"`{section}: {{{key}: {written}}}`"
     return ""

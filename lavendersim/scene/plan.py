@@ -16,7 +16,8 @@ from .facts import facts_of
 from .overrides import Forced, OverrideError, override
 
 # What cells of one engine agree in. Numerics that choose between laws: no coefficient turns one
-# engine into another's. Effects switched by hand: a union would undo what they leave out.
+# engine into another's; what the section `study` asks for is one more. Effects switched by hand: a
+# union would undo what they leave out.
 CHOICES: Final = (
     "solver",
     "speculative",
@@ -25,6 +26,7 @@ CHOICES: Final = (
     "friction_cone",
     "order",
     "sleeping",
+    "mistake",
     "effects",
 )
 APART: Final = {
@@ -110,7 +112,7 @@ def plan_of(resolved: dict[str, Any], record: bool = True, cell: CellName = ALON
     return Plan(
         spec,
         made.effects,
-        (*(numerics[name] for name in CHOICES[:-1]), _switched(resolved["effects"])),
+        _choices(resolved),
         made.shape_pairs,
         made.forced,
         (cell,),
@@ -183,6 +185,13 @@ def _reasons(plans: list[Plan], name: str) -> Reasons:
 
 def _on(decisions: Mapping[str, Decision]) -> tuple[str, ...]:
     return tuple(sorted(name for name, decision in decisions.items() if decision.on))
+
+
+def _choices(resolved: Mapping[str, Any]) -> tuple[Any, ...]:
+    stated = {**resolved["numerics"], **resolved["study"]}
+    return tuple(
+        _switched(resolved["effects"]) if name == "effects" else stated[name] for name in CHOICES
+    )
 
 
 def _switched(stated: Mapping[str, Any]) -> str:

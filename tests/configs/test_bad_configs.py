@@ -75,8 +75,8 @@ MADE: dict[str, tuple[bytes, tuple[str, ...]]] = {
     ),
 }
 TOP_KEYS = (
-    "valid here: scene, events, numerics, duration, record, effects, question, expected, sweep, "
-    "measure, expect, always, slow, reduced, figure, price, cost"
+    "valid here: scene, events, numerics, duration, record, effects, study, question, expected, "
+    "sweep, measure, expect, always, slow, reduced, figure, price, cost"
 )
 
 

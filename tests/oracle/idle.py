@@ -22,12 +22,13 @@ from lavendersim.engine.step import is_compiled
 from lavendersim.scene.plan import plan_of
 
 MODULES = {effect.NAME: effect for effect in EFFECTS}
-# What lets a law in that the numerics choose, by the key that its module names.
+# What lets a law in that the numerics or the study choose, by the key that its module names.
 LETS_IN = {
     "impacts": "at_surface",
     "integrator": "midpoint",
     "speculative": True,
     "solver": "adaptive",
+    "mistake": "capture_in_sweeps",
 }
 LOGS = {  # tables of `Rows`, and the effect that fills each
     "step": "step_log",
@@ -55,7 +56,7 @@ def may_idle(cell: dict[str, Any], name: str, record: bool = True) -> bool:
 
 def _is_let_in(cell: dict[str, Any], name: str) -> bool:
     key = getattr(MODULES[name], "CHOSEN_BY", None)
-    return key is None or bool(cell["numerics"][key] == LETS_IN[key])
+    return key is None or bool((cell["numerics"] | cell["study"])[key] == LETS_IN[key])
 
 
 class Run:

@@ -41,6 +41,12 @@ def cell(bodies: dict[str, Any], gravity: Any = GRAVITY, preset: str = "bare", *
     return made
 
 
+def mistaken(made: dict[str, Any]) -> dict[str, Any]:
+    """Return a cell whose restitution, if it had any, would be captured in the sweeps."""
+    made["study"]["mistake"] = "capture_in_sweeps"
+    return made
+
+
 def balls(**surface: float) -> dict[str, Any]:
     """A ball at rest, one that falls on it off centre, one that runs into both, one of 8 kg."""
     return {
@@ -125,6 +131,7 @@ def others(**surface: float) -> dict[str, Any]:
 SCENES: dict[str, Callable[[], dict[str, Any]]] = {
     "balls": lambda: cell(balls(restitution=0.5)),
     "plastic balls": lambda: cell(balls()),
+    "plastic balls, mistaken": lambda: mistaken(cell(balls())),
     "cold balls": lambda: cell(balls(), warm_start=False),
     "spinning balls": lambda: cell(spinning()),
     "rough balls": lambda: cell(balls(friction=0.4)),
@@ -176,6 +183,7 @@ CASES: dict[str, tuple[str, ...]] = {
     "speculative": ("flying brick",),
     "fast_bodies": ("slow balls",),
     "restitution": ("plastic balls",),
+    "capture_in_sweeps": ("plastic balls, mistaken",),
     "impact_energy": ("slow smooth impacts", "slow rough impacts"),
     "stabilisation": ("balls",),
     "compliance": ("balls", "conjugate balls"),

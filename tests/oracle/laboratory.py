@@ -22,8 +22,8 @@ from lavendersim.scene.plan import plan_of
 
 # Effects that put another law in a law's place: no coefficient of theirs takes them away.
 OTHER_LAWS = {
-    *("broad_phase", "fast_bodies", "impact_energy", "impact_time", "midpoint", "newton"),
-    *("sleeping", "speculative"),
+    *("broad_phase", "capture_in_sweeps", "fast_bodies", "impact_energy", "impact_time"),
+    *("midpoint", "newton", "sleeping", "speculative"),
 }
 # Every other effect and the shapes of most tests: one compilation serves them.
 EVERYTHING = Spec(
@@ -112,6 +112,7 @@ def resolved(bodies: dict[str, Any], gravity=(0.0, 0.0, 0.0), **numerics: Any) -
         "numerics": {**NUMERICS, **numerics},
         "record": {"residuals": "all", "problems": "none"},
         "effects": {"force": False, "switches": {}},
+        "study": {"mistake": "none"},
     }
 
 

@@ -9,9 +9,9 @@ import numpy as np
 
 from lavendersim.engine.records import DIVERGED, RUNNING
 from lavendersim.experiment import load_experiment_text
+from lavendersim.runner.plans import shared_plans
 from lavendersim.scene.build import build
 from lavendersim.scene.events import EventQueue
-from lavendersim.scene.plan import plan_of, union
 
 GRAVITY = 9.81  # [m/s^2], what a config has that states none
 
@@ -38,13 +38,12 @@ class Course(NamedTuple):
 
 
 def run_config(text: str) -> list[Course]:
-    """Run every cell of a config as a run does: one plan for all, each from its own start."""
+    """Run every cell of a config as a run does: one plan for all that can share it."""
     cells = load_experiment_text(text, "test.yaml").cells()
-    spec = union(plan_of(cell.resolved) for cell in cells).spec
     courses = []
-    for cell in cells:
-        scene = build(cell.resolved, spec)
-        engine = scene.engine(spec)
+    for cell, plan in zip(cells, shared_plans(cells), strict=True):
+        scene = build(cell.resolved, plan.spec)
+        engine = scene.engine(plan.spec)
         changes = EventQueue(engine, scene, cell.resolved["events"])
         blocks, done, last = [], 0, cell.config.steps
         while True:

@@ -23,9 +23,13 @@ VALUES = {
     "friction_cone": "[disc, convex]",
     "order": "[coloured, random]",
     "sleeping": "[false, true]",
+    "mistake": "[none, capture_in_sweeps]",
     "effects": "[on, off]",
 }
-PATHS = {name: f"numerics.{name}" for name in VALUES} | {"effects": "effects.friction"}
+PATHS = {name: f"numerics.{name}" for name in VALUES} | {
+    "mistake": "study.mistake",
+    "effects": "effects.friction",
+}
 
 
 def test_every_choice_can_be_swept() -> None:

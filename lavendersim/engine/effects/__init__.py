@@ -7,6 +7,8 @@ An effect's module has
 and, where there is need,
     NEEDS              effects without which it cannot be
     CHOSEN_BY          the key of the numerics that chooses it: a law, no coefficient turns it off
+    CHOSEN_IN          the section of that key, where it is another one
+    STUDY_ONLY         of a mistake on purpose, what it does: every run that has it says so
     BODY_FIELDS, VELOCITY_FIELDS, PAIR_FIELDS, CONTACT_FIELDS, CACHE_FIELDS   columns it brings
     contact_fields(spec)   columns of contacts that depend on other effects
     body_values(body)  values of its BODY_FIELDS for one body of a resolved config, by name
@@ -27,6 +29,7 @@ from ..records import Field
 from ..spec import Spec
 from . import (
     broad_phase,
+    capture_in_sweeps,
     compliance,
     compound,
     contact_log,
@@ -81,6 +84,7 @@ EFFECTS = (
     speculative,
     fast_bodies,
     restitution,
+    capture_in_sweeps,
     impact_energy,
     stabilisation,
     compliance,

@@ -62,6 +62,7 @@ class Facts(NamedTuple):
     pair_count: int = 0  # pairs of bodies that may touch
     speculative: bool = False
     impacts: str = "captured"
+    mistake: str = "none"  # made on purpose, for study
     integrator: str = "semi_implicit_euler"
     friction_cone: str = "disc"
     solver: str = "adaptive"

@@ -2,7 +2,8 @@
 
 Captured at the start of the step: gravity alone gives a resting body the approach speed g dt in
 every step, so the law applies above `restitution_speed` only, or resting contact would bounce for
-ever. At the surface, `impact_time` applies the law itself and only takes the coefficient from here.
+ever. At the surface, `impact_time` applies the law itself and only takes the coefficient from here,
+and so does the mistake of `capture_in_sweeps`.
 """
 
 from ..compile import kernel
@@ -33,4 +34,5 @@ def make(spec):
     def noted(contact, pair, params):
         contact.e = pair.restitution
 
-    return kernel(noted if spec.has("impact_time") else captured, spec)
+    elsewhere = spec.has("impact_time") or spec.has("capture_in_sweeps")
+    return kernel(noted if elsewhere else captured, spec)

@@ -28,6 +28,7 @@ from ..compile import kernel
 from ..cone import project_cone
 from ..contact import make_smooth_impulse, make_smooth_velocity
 from ..coupling import make_add_rough, make_rough_velocity
+from ..effects import capture_in_sweeps
 from ..effects.smooth_contact import by_roughness
 from ..spec import Spec
 from ..spin_block import make_solve_spin, resists_turning
@@ -46,6 +47,7 @@ def make_solve_contact_velocity(spec: Spec):
 
 def _make_normal(spec: Spec):
     compliant, relaxed = spec.has("compliance"), spec.over_relaxation
+    recaptures, capture_again = spec.made(capture_in_sweeps)
     normal_velocity = make_smooth_velocity(spec)
     apply_impulse = make_smooth_impulse(spec)
 
@@ -53,6 +55,8 @@ def _make_normal(spec: Spec):
         va, vb = velocities[contact.a], velocities[contact.b]
         w = normal_velocity(contact, va, vb) + contact.target
         lambda_old = contact.lambda_n
+        if recaptures:
+            w = capture_again(contact, w, params)
         if compliant:
             w += contact.gamma * lambda_old
         if relaxed:
@@ -69,6 +73,7 @@ def _make_normal(spec: Spec):
 
 def _make_block(spec: Spec):
     compliant, relaxed = spec.has("compliance"), spec.over_relaxation
+    recaptures, capture_again = spec.made(capture_in_sweeps)
     pyramid = spec.friction_cone == "pyramid"
     spins, solve_spin = resists_turning(spec), make_solve_spin(spec)
     contact_velocity, add_impulse = make_rough_velocity(spec), make_add_rough(spec)
@@ -76,6 +81,8 @@ def _make_block(spec: Spec):
     def solve_contact_block(contact, contacts, velocities, params):
         w, w1, w2 = contact_velocity(contact, velocities)
         old_n, old_1, old_2 = contact.lambda_n, contact.lambda_1, contact.lambda_2
+        if recaptures:
+            w = capture_again(contact, w, params)
         if compliant:
             w += contact.gamma * old_n
         if relaxed:
@@ -118,6 +125,7 @@ def _make_block(spec: Spec):
 
 def _make_convex(spec: Spec):
     compliant, relaxed = spec.has("compliance"), spec.over_relaxation
+    recaptures, capture_again = spec.made(capture_in_sweeps)
     spins, solve_spin = resists_turning(spec), make_solve_spin(spec)
     contact_velocity, add_impulse = make_rough_velocity(spec), make_add_rough(spec)
 
@@ -125,6 +133,8 @@ def _make_convex(spec: Spec):
         w, w1, w2 = contact_velocity(contact, velocities)
         old_n, old_1, old_2 = contact.lambda_n, contact.lambda_1, contact.lambda_2
         mu, k_n1, k_n2 = contact.mu, contact.k_n1, contact.k_n2
+        if recaptures:
+            w = capture_again(contact, w, params)
         if compliant:
             w += contact.gamma * old_n
         if relaxed:

@@ -30,12 +30,14 @@ LAWS = {
     "speculative": ("true", "false"),
     "solver": ("adaptive", "projected_gauss_seidel"),
 }
-CHOSEN = [effect.NAME for effect in EFFECTS if hasattr(effect, "CHOSEN_BY")]
+LAWFUL = [effect.NAME for effect in EFFECTS if hasattr(effect, "CHOSEN_BY")]
+MISTAKE = "capture_in_sweeps"  # chosen by the study; all others by the numerics
+CHOSEN = [name for name in LAWFUL if name != MISTAKE]
 # Those of which something needs a law are refused with it, see below.
 IDLE = [
     name
     for name in (*BY_NAME, *SHAPE_PAIRS)
-    if not {name, *getattr(BY_NAME.get(name), "NEEDS", ())} & set(CHOSEN)
+    if not {name, *getattr(BY_NAME.get(name), "NEEDS", ())} & set(LAWFUL)
 ]
 
 
@@ -166,6 +168,26 @@ def test_a_law_that_the_numerics_chose_can_be_had_idle(name: str) -> None:
     )
     assert not planned(alone.replace(f"effects: {{{name}: on}}\n", "")).spec.has(name)
     assert planned(alone).forced == {name: "forced on"}
+
+
+def test_a_mistake_is_chosen_by_the_study_alone() -> None:
+    text = config(f"{MISTAKE}: on")
+    assert refused(text) == [
+        f"{where(text, MISTAKE)}: effects.{MISTAKE}: it is another law, no idle effect; "
+        f"write `study: {{mistake: {MISTAKE}}}` to choose it"
+    ]
+    study = f"study: {{mistake: {MISTAKE}}}\n"
+    assert planned(study + config()).spec == planned(config()).spec.including(MISTAKE)
+    text = study + config(f"{MISTAKE}: off, force: true")
+    assert refused(text) == [
+        f"{where(text, MISTAKE)}: effects.{MISTAKE}: the study chooses it; "
+        "write `study: {mistake: none}` instead"
+    ]
+
+
+def test_a_mistake_that_has_nothing_to_spoil_is_not_made() -> None:
+    study = f"study: {{mistake: {MISTAKE}}}\n"
+    assert planned(study + config(e=0.0)).spec == planned(config(e=0.0)).spec
 
 
 def test_what_needs_another_law_names_its_key() -> None:
