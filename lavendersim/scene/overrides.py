@@ -13,8 +13,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any, Final, Literal, NamedTuple, get_args
 
-from pydantic import BaseModel
-
 from lavendersim.engine.collide import SHAPE_PAIRS
 from lavendersim.engine.effects import Decision, Facts, contact_log, pose_log, step_log
 from lavendersim.errors import UsageError
@@ -26,7 +24,7 @@ from .laws import BUSY, BY_NAME, choice, has_law, is_law, needs
 _LOGS = (step_log.NAME, pose_log.NAME)  # without them nothing of a run can be read
 
 # Sections of a config whose keys choose laws.
-SECTIONS: Final[dict[str, type[BaseModel]]] = {"numerics": Numerics, "study": CellStudy}
+SECTIONS: Final[dict[str, Any]] = {"numerics": Numerics, "study": CellStudy}
 
 Forced = Literal["forced on", "forced off"]
 

@@ -63,6 +63,7 @@ ELSEWHERE = {
         "scene/laws.py": FACT,
         "scene/classes.py": SHARED,
         "scene/candidates.py": SHARED,
+        "engine/effects/capture_in_sweeps.py": "makes a mistake with it",
         "engine/effects/fast_bodies.py": "more than 1 gives energy",
         "engine/effects/impact_energy.py": "takes the place of its law",
     },
