@@ -76,8 +76,8 @@ class Simulator:
 
     @property
     def timestep(self) -> float:
-        """Length of a step [s]."""
-        return float(self._scene.timestep)
+        """Length of the last step [s]; before the first, that of the first."""
+        return float(self._scene.clock.length(self.steps_done))
 
     @property
     def body_names(self) -> list[str]:
@@ -171,5 +171,5 @@ class Simulator:
     def _info(self) -> dict[str, Any]:
         row = self._rows.step[-1]
         info: dict[str, Any] = {name: row[name].item() for name in row.dtype.names}
-        info["time"] = float(self.steps_done * self._scene.timestep)
+        info["time"] = float(self._scene.clock.time(self.steps_done))
         return info

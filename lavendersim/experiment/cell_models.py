@@ -13,10 +13,10 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from lavendersim.clock import Clock, written
 from lavendersim.experiment.body_models import Drag, Release, Surface
 from lavendersim.experiment.models import FrictionCone, Impacts, Integrator, Order, Switch
 from lavendersim.experiment.quantities import Quantity, Vector3
-from lavendersim.experiment.run_checks import whole_steps
 from lavendersim.experiment.shape_models import Box, Capsule, Cylinder, Plane, Sphere
 from lavendersim.experiment.solver_names import Solver
 from lavendersim.experiment.study_specs import Mistake
@@ -110,6 +110,13 @@ class CellEvent(_Resolved):
     contact_cache: Literal["keep", "clear"]
 
 
+class CellTimestep(_Resolved):
+    """A timestep that holds from the first step that starts at `at` or later."""
+
+    at: float  # [s]
+    timestep: Annotated[Fraction, Quantity("s", above=0, exact=True)]  # [s]
+
+
 class Numerics(_Resolved):
     """Every number of the numerics; see `docs/config.md` for their meaning."""
 
@@ -167,7 +174,7 @@ class CellConfig(_Resolved):
     """One cell of an experiment, complete."""
 
     scene: CellScene
-    events: tuple[CellEvent, ...]
+    events: tuple[CellEvent | CellTimestep, ...]
     numerics: Numerics
     duration: float  # [s]
     record: CellRecord
@@ -175,9 +182,15 @@ class CellConfig(_Resolved):
     study: CellStudy
 
     @property
+    def clock(self) -> Clock:
+        """The times of its steps."""
+        changes = [one for one in self.events if isinstance(one, CellTimestep)]
+        return Clock(self.numerics.timestep, [(written(one.at), one.timestep) for one in changes])
+
+    @property
     def steps(self) -> int:
-        """The whole number of steps nearest to duration / timestep."""
-        return whole_steps(self.duration, self.numerics.timestep)
+        """How many steps the duration has, see `Clock.steps_of`."""
+        return self.clock.steps_of(written(self.duration))
 
     def as_dict(self) -> dict[str, Any]:
         """Return plain JSON-able data: ratios as `1/480`, vectors as lists."""

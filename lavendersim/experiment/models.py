@@ -29,10 +29,15 @@ from lavendersim.experiment.study_specs import Study
 
 
 class Event(ConfigModel):
-    """A change to one body during the run, applied before the first step that starts at `at`."""
+    """A change to one body, or of the timestep, before the first step that starts at `at`."""
 
     at: Annotated[float, Quantity("s", minimum=0)] = Field(description="[s] simulated time")
-    body: BodyName = Field(description="name of a body that is not fixed")
+    body: BodyName | None = Field(
+        default=None, description="name of a body that is not fixed; required but for a timestep"
+    )
+    timestep: Annotated[Fraction, Quantity("s", above=0, exact=True)] | None = Field(
+        default=None, description="[s] length of the steps from then on; stands without a body"
+    )
     scale_mass: Annotated[float, Quantity(above=0)] | None = Field(
         default=None, description="factor on mass and inertia"
     )

@@ -10,6 +10,7 @@ from lavendersim.experiment.cell_models import (
     CellEvent,
     CellRecord,
     CellStudy,
+    CellTimestep,
     Numerics,
     ResidualWindow,
 )
@@ -52,7 +53,10 @@ def _numerics(values: dict[str, PresetValue]) -> Numerics:
     return Numerics.model_validate(values)
 
 
-def _event(event: Event) -> CellEvent:
+def _event(event: Event) -> CellEvent | CellTimestep:
+    if event.body is None:  # `run_checks` let no other event stand without one
+        assert event.timestep is not None
+        return CellTimestep(at=event.at, timestep=event.timestep)
     kept = event.contact_cache or ("keep" if event.teleport is None else "clear")
     return CellEvent(
         at=event.at,

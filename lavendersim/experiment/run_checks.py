@@ -8,8 +8,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from fractions import Fraction
 
+from lavendersim.clock import Clock
 from lavendersim.experiment.cost_checks import check_cost
-from lavendersim.experiment.messages import place_of
+from lavendersim.experiment.found import near
+from lavendersim.experiment.messages import missing_key, place_of
 from lavendersim.experiment.node import Node, key_mark
 from lavendersim.experiment.population import body_node
 from lavendersim.experiment.presets import PRESETS, PresetValue
@@ -63,21 +65,34 @@ def preset_of(root: Node) -> Mapping[str, PresetValue]:
     return PRESETS.get(name, PRESETS["default"])
 
 
-def whole_steps(duration: float, timestep: Fraction) -> int:
-    """Return the whole number of steps nearest to a duration [s]."""
-    return round(exact(duration) / timestep)
+def clock_of(root: Node) -> Clock | None:
+    """Return the clock that holds for this tree, None where a time or a timestep is wrong."""
+    timestep = timestep_of(root)
+    events = root.get("events")
+    changes = []
+    for event in events.items if events is not None else ():
+        stated = event.get("timestep")
+        if stated is not None and stated.content is not None:
+            at = event.get("at")
+            numbers = (at.number if at is not None else None, stated.number)
+            if numbers[0] is None or numbers[0] < 0 or numbers[1] is None or numbers[1] <= 0:
+                return None
+            changes.append((exact(numbers[0]), exact(numbers[1])))
+    return Clock(timestep, changes) if timestep is not None else None
 
 
 def _check_steps(root: Node, duration: Node, length: Fraction, report: Report) -> None:
-    timestep = timestep_of(root)
-    if timestep is None:
+    clock = clock_of(root)
+    if clock is None:
         return
+    timestep = clock.timestep
     stated = root.get("numerics", "timestep") or duration
     mark = max(duration.mark, stated.mark)  # swept values stand below what they replace
-    steps = length / timestep
+    steps = Fraction(clock.steps_until(length)) if clock.changes else length / timestep
     step = str(timestep) if timestep.denominator < 10_000 else _short(timestep)
     if steps > MOST_STEPS:
-        counted = f"{_short(length)} s in steps of {step} s are {_short(steps)} steps"
+        lengths = "of changing length" if clock.changes else f"of {step} s"
+        counted = f"{_short(length)} s in steps {lengths} are {_short(steps)} steps"
         report.add(mark, f"{counted}, expected at most {_short(Fraction(MOST_STEPS))}")
     elif round(steps) < 1:
         report.add(mark, f"a duration of {_short(length)} s is less than one step of {step} s")
@@ -95,7 +110,14 @@ def _check_event(event: Node, index: int, root: Node, length: float | None, repo
     if at is not None and at.number is not None and length is not None and at.number > length > 0:
         sentence = f"at: {at.number:g} s is after the end of the run, duration {length:g} s"
         report.add(at.mark, sentence)
-    if body is not None and body.text is not None:
+    timestep = event.get("timestep")
+    if timestep is not None and timestep.content is not None:
+        _check_timestep(event, index, report)
+        return
+    if body is None or body.content is None:
+        _check_lacks_body(event, index, report)
+        return
+    if body.text is not None:
         target = body_node(root, body.text)
         if target is not None and is_static(target):
             what = "a plane" if kind_of(target) == "plane" else "fixed"
@@ -112,6 +134,27 @@ def _check_event(event: Node, index: int, root: Node, length: float | None, repo
     if cache is not None and cache.text == "keep" and "teleport" in stated:
         sentence = "contact_cache: a teleport always clears the body's cached contacts"
         report.add(cache.mark, sentence)
+
+
+def _check_lacks_body(event: Node, index: int, report: Report) -> None:
+    """Without a body there is only a timestep to change; a misspelt key is told elsewhere."""
+    unknown = event.entries.keys() - {"at", "body", "timestep", *_CHANGES}
+    if event.torn or any(near(key, ("body", "timestep")) for key in unknown):
+        return
+    meaning = "name of a body that is not fixed, or else a timestep"
+    report.add(event.mark, missing_key("body", ("events", index), meaning))
+
+
+def _check_timestep(event: Node, index: int, report: Report) -> None:
+    """An event of the timestep is of nothing else."""
+    for key in ("body", *_CHANGES):
+        if event.get(key):
+            sentence = (
+                f"{key}: {place_of(('events', index))} changes the timestep; what happens to a body"
+                " is an event of its own"
+            )
+            report.add(key_mark(event, key), sentence)
+            return
 
 
 def _check_force(force: Node, index: int, root: Node, length: float | None, report: Report) -> None:

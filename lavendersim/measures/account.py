@@ -110,7 +110,7 @@ def momentum_gap(trace: Trace) -> Floats:
     gaps = np.zeros(len(trace.step))
     momentum = np.column_stack([trace.step[f"momentum_{axis}"] for axis in "xyz"])
     # counted in steps: logged times are whole nanoseconds
-    dt = np.diff(trace.step["step"]) * float(trace.timestep)
+    dt = trace.clock.elapsed(trace.step["step"][:-1], trace.step["step"][1:])
     gravity, mass = cell_config.gravity(trace.resolved), changes.masses(trace)
     forces = changes.forces(trace)
     outer, size = _impulses(trace)
@@ -155,7 +155,8 @@ def _lifted(trace: Trace) -> Floats:
     pull = math.hypot(*cell_config.gravity(trace.resolved))
     if contacts is None or len(contacts) == 0 or share == 0.0 or pull == 0.0:
         return np.zeros(len(trace.step))
-    deep = -(contacts["separation"] + contacts["normal_velocity"] * float(trace.timestep))
+    dt = trace.clock.lengths(contacts["step"])
+    deep = -(contacts["separation"] + contacts["normal_velocity"] * dt)
     opened = share * np.maximum(deep - cell_config.numerics(trace.resolved, "slop"), 0.0)
     lifted: Floats = pull * changes.masses(trace) * by_step(trace, contacts, opened)
     return lifted

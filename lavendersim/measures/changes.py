@@ -6,20 +6,25 @@ none. Forces and events act before the first step that starts at their time or l
 
 from __future__ import annotations
 
-from fractions import Fraction
-from math import ceil
 from typing import Any
 
 import numpy as np
 
+from lavendersim.clock import written
 from lavendersim.measures import cell_config
 from lavendersim.measures.views import Floats, Trace
 
 
 def row_after(trace: Trace, time: float) -> int:
     """Return the row of the first step that starts at a time [s] as written, or later."""
-    done = ceil(Fraction(repr(float(time))) / trace.timestep)
+    done = trace.clock.steps_until(written(time))
     return int(np.searchsorted(trace.step["step"], done + 1))
+
+
+def events_of_bodies(trace: Trace) -> list[dict[str, Any]]:
+    """Return the events that change a body, as they are written."""
+    events = trace.resolved.get("events") or ()
+    return [event for event in events if event.get("timestep") is None]
 
 
 def masses(trace: Trace) -> Floats:
@@ -113,8 +118,8 @@ def unknown_momentum(trace: Trace) -> np.ndarray:
 
 
 def _in_order(trace: Trace) -> list[dict[str, Any]]:
-    """Return the events by their time; those of one time as they are written."""
-    return sorted(trace.resolved.get("events") or (), key=lambda event: event["at"])
+    """Return the events of bodies by their time; those of one time as they are written."""
+    return sorted(events_of_bodies(trace), key=lambda event: event["at"])
 
 
 def _acting(trace: Trace, force: dict[str, Any]) -> slice:

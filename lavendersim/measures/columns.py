@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from lavendersim.errors import UsageError
 from lavendersim.measures import cell_config
 from lavendersim.measures.views import Floats, Rows, Trace
 
@@ -66,6 +67,18 @@ def last_window(trace: Trace, seconds: float) -> np.ndarray:
         return np.zeros(len(time), dtype=bool)
     window: np.ndarray = time > time[-1] - seconds * (1.0 - 1e-12)
     return window
+
+
+def one_timestep(trace: Trace, first: int, last: int, measure: str) -> float:
+    """Return the length [s] of the steps between two rows; UsageError where it changes."""
+    lengths = set(trace.clock.lengths(trace.step["step"][first + 1 : last + 1]).tolist())
+    if len(lengths) > 1:
+        begin, end = (float(trace.step["time"][row]) for row in (first, last))
+        raise UsageError(
+            f"{measure} takes samples at equal distances, and the timestep changes among those it"
+            f" needs, from {begin:.9g} to {end:.9g} s"
+        )
+    return float(lengths.pop())
 
 
 def row_after(trace: Trace, seconds: float) -> int | None:

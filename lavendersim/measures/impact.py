@@ -11,9 +11,11 @@ import numpy as np
 
 from lavendersim.experiment import measure_specs as specs
 from lavendersim.measures import cell_config
+from lavendersim.measures.changes import events_of_bodies
 from lavendersim.measures.columns import (
     clearance_by_step,
     contacts_of,
+    one_timestep,
     pushing_runs,
     runs_of,
     summed_by_step,
@@ -37,15 +39,17 @@ def first_apex(spec: specs.FirstApex, trace: Trace) -> float:
     The apex is the vertex of the parabola through the highest sample and its neighbours: free
     flight with a constant step is exactly such a parabola, so the apex does not depend on where
     the samples fall. A body that stays on the surface rebounds 0 m; NaN if it never touches, or
-    is still rising at the end.
+    is still rising at the end. UsageError where the timestep changes among the three samples.
     """
     runs = pushing_runs(trace, contacts_of(trace, spec.body, spec.above))
     if not runs:
         return NAN
-    heights = clearance_by_step(trace, spec.body, spec.above)[runs[0][0] :]
+    begin = runs[0][0]
+    heights = clearance_by_step(trace, spec.body, spec.above)[begin:]
     inner = heights[1:-1]
     peaks = np.flatnonzero((inner > 0.0) & (inner >= heights[:-2]) & (inner > heights[2:]))
     if len(peaks):
+        one_timestep(trace, begin + int(peaks[0]), begin + int(peaks[0]) + 2, "first_apex")
         return parabola_vertex(*(float(height) for height in heights[peaks[0] : peaks[0] + 3]))
     return 0.0 if heights[-1] <= 0.0 else NAN
 
@@ -111,7 +115,7 @@ def impulse_balance(spec: specs.ImpulseBalance, trace: Trace) -> float:
     movable bodies cancel), M the movable mass, p the logged momentum. NaN without any impulse,
     and where an event changes a mass.
     """
-    if any(event.get("scale_mass") is not None for event in trace.resolved.get("events") or ()):
+    if any(event.get("scale_mass") is not None for event in events_of_bodies(trace)):
         return NAN
     configs = {one.name: one for one in cell_config.bodies(trace.resolved)}
     movable = np.array([configs[name].movable for name in trace.bodies])
@@ -130,7 +134,8 @@ def impulse_balance(spec: specs.ImpulseBalance, trace: Trace) -> float:
     mass = sum(one.mass for one in configs.values())
     momentum = _momentum(trace)
     # counted in steps: logged times are whole nanoseconds, 1e-7 of a step
-    time = float(int(trace.step["step"][last] - trace.step["step"][first - 1]) * trace.timestep)
+    steps = trace.step["step"]
+    time = float(trace.clock.elapsed(steps[first - 1], steps[last]))
     gained = momentum[last] - momentum[first - 1]
     gap = impulse + mass * time * cell_config.gravity(trace.resolved) - gained
     return math.sqrt(float(gap @ gap)) / size

@@ -81,8 +81,7 @@ def _rows(trace: Trace, begin: float, end: float | None) -> tuple[int, int] | No
 
 
 def _seconds(trace: Trace, first: int, last: int) -> float:
-    steps = int(trace.step["step"][last] - trace.step["step"][first])
-    return steps * float(trace.timestep)
+    return float(trace.clock.elapsed(trace.step["step"][first], trace.step["step"][last]))
 
 
 def _way(
@@ -97,7 +96,8 @@ def _speeds(trace: Trace, bodies: tuple[str, ...]) -> tuple[Floats, Floats]:
     names = bodies or [one.name for one in cell_config.bodies(trace.resolved) if one.movable]
     columns = [list(trace.bodies).index(name) for name in names]
     ways = np.diff(trace.pose[:, columns, :3], axis=0)
-    seconds = np.diff(np.asarray(trace.step["step"])) * float(trace.timestep)
+    steps = np.asarray(trace.step["step"])
+    seconds = trace.clock.elapsed(steps[:-1], steps[1:])
     speeds: Floats = np.sqrt((ways**2).sum(axis=2)).max(axis=1) / seconds
     return speeds, np.asarray(trace.step["time"])[1:]
 

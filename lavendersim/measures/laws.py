@@ -34,7 +34,7 @@ def force_error(spec: specs.ForceError, trace: Trace) -> float:
     contacts = contacts[first:]
     contacts = contacts[carried[contacts["body_a"]] != carried[contacts["body_b"]]]
     sign = np.where(carried[contacts["body_b"]], 1.0, -1.0)
-    lift = sign * (impulses(contacts) @ (-gravity / pull)) / float(trace.timestep)
+    lift = sign * (impulses(contacts) @ (-gravity / pull)) / trace.clock.lengths(contacts["step"])
     forces = np.zeros(len(trace.step))
     np.add.at(forces, np.searchsorted(trace.step["step"], contacts["step"]), lift)
     return float(np.max(np.abs(forces[rows] / weight - 1.0)))

@@ -9,7 +9,7 @@ import numpy as np
 from lavendersim.experiment import motion_specs as specs
 from lavendersim.measures import cell_config
 from lavendersim.measures.closed_forms import clearance, pair_restitution
-from lavendersim.measures.columns import clearance_by_step, last_window
+from lavendersim.measures.columns import clearance_by_step, last_window, one_timestep
 from lavendersim.measures.impact import parabola_vertex
 from lavendersim.measures.views import Floats, Trace
 
@@ -20,7 +20,8 @@ def apex_error(spec: specs.ApexError, trace: Trace) -> float:
     """Return |apex / (e^(2 k) h) - 1| after bounce k; NaN if the run does not reach it.
 
     The apex is the vertex of the parabola through the highest sample of a flight and its
-    neighbours. A flight begins where the sampled clearance has a valley.
+    neighbours, UsageError where the timestep changes among them. A flight begins where the sampled
+    clearance has a valley.
     """
     heights = clearance_by_step(trace, spec.body, spec.above)
     falls, rises = heights[1:-1] < heights[:-2], heights[1:-1] <= heights[2:]
@@ -32,6 +33,7 @@ def apex_error(spec: specs.ApexError, trace: Trace) -> float:
     top = int(start + np.argmax(heights[start : end + 1]))
     if top in (start, end):  # still rising at the end of the run, or at rest
         return NAN
+    one_timestep(trace, top - 1, top + 1, "apex_error")
     apex = parabola_vertex(*(float(height) for height in heights[top - 1 : top + 2]))
     moving = cell_config.body(trace.resolved, spec.body)
     plane = cell_config.body(trace.resolved, spec.above)
@@ -84,7 +86,8 @@ def effective_friction(spec: specs.EffectiveFriction, trace: Trace) -> float:
     """Return (g_t - a)/g_n from the mean acceleration a down the slope in the last window.
 
     a is the second difference of the positions at beginning, middle and end of the window, which
-    is exact for a constant acceleration. NaN when gravity does not pull towards the plane.
+    is exact for a constant acceleration. NaN when gravity does not pull towards the plane,
+    UsageError where the timestep changes within the window.
     """
     window = _window(trace, spec.last)
     plane = cell_config.body(trace.resolved, spec.on)
@@ -99,7 +102,7 @@ def effective_friction(spec: specs.EffectiveFriction, trace: Trace) -> float:
     half = (window[1] - window[0]) // 2
     rows = [window[1] - 2 * half, window[1] - half, window[1]]
     places = trace.pose[rows, list(trace.bodies).index(spec.body), :3] @ (along / size)
-    interval = half * float(trace.timestep)
+    interval = half * one_timestep(trace, rows[0], rows[2], "effective_friction")
     acceleration = float(places[0] - 2.0 * places[1] + places[2]) / interval**2
     return (size - acceleration) / into
 
@@ -132,6 +135,6 @@ def _ends(trace: Trace, body: str, window: tuple[int, int]) -> tuple[tuple[Float
     """
     first, last = window
     column = list(trace.bodies).index(body)
-    steps = int(trace.step["step"][last] - trace.step["step"][first])
+    steps = trace.step["step"]
     places = (trace.pose[first, column, :3], trace.pose[last, column, :3])
-    return places, steps * float(trace.timestep)
+    return places, float(trace.clock.elapsed(steps[first], steps[last]))

@@ -35,7 +35,7 @@ def optimality(spec: Optimality, trace: Trace) -> Floats:
     if len(steps) == 0 or "target" not in contacts.dtype.names:
         return np.array([NAN])
     configs = [cell_config.body(trace.resolved, name) for name in trace.bodies]
-    dt = float(trace.timestep)
+    dt = trace.clock.lengths(steps)
     residual = np.asarray(trace.step["residual"])[np.searchsorted(trace.step["step"], steps)]
     gamma = _summed(contacts, [one.compliance for one in configs]) / dt**2
     least = _summed(contacts, [one.inverse_mass for one in configs])

@@ -9,6 +9,7 @@ import numpy as np
 from lavendersim.experiment import law_specs as specs
 from lavendersim.measures import cell_config
 from lavendersim.measures.cell_config import BodyConfig
+from lavendersim.measures.columns import one_timestep
 from lavendersim.measures.free_rotation import FreeRotation, free_rotation
 from lavendersim.measures.impact_forms import velocities_after
 from lavendersim.measures.laws import angular_momentum
@@ -25,8 +26,7 @@ def velocity_error(spec: specs.VelocityError, trace: Trace) -> float:
     impact has no closed form.
     """
     moving = cell_config.body(trace.resolved, spec.body)
-    steps = int(trace.step["step"][-1] - trace.step["step"][0])
-    time = steps * float(trace.timestep)
+    time = float(times(trace)[-1])
     ideal = velocities_after(trace.resolved, spec.body, spec.other, time)
     if ideal is None or not _alone(trace, moving):
         return NAN
@@ -58,7 +58,7 @@ def flip_time_error(spec: specs.FlipTimeError, trace: Trace) -> float:
     """Return the largest |t - t*| [s] of the first flips; NaN if the run has fewer.
 
     Between two samples of opposite sign the middle component of omega is the cubic through them and
-    their neighbours, whose root is found by bisection.
+    their neighbours, whose root is found by bisection. UsageError where the timestep changes.
     """
     moving = cell_config.body(trace.resolved, spec.body)
     if not _alone(trace, moving) or not np.any(moving.angular_velocity):
@@ -66,7 +66,8 @@ def flip_time_error(spec: specs.FlipTimeError, trace: Trace) -> float:
     exact = exact_rotation(moving)
     rate = body_rates(trace, moving)[:, exact.middle_axis]
     ideal = exact.flip_times(spec.flips)
-    found = crossings(rate)[: spec.flips] * float(trace.timestep)
+    length = one_timestep(trace, 0, len(rate) - 1, "flip_time_error")
+    found = crossings(rate)[: spec.flips] * length
     if len(found) < spec.flips or len(ideal) < spec.flips:
         return NAN
     return float(np.max(np.abs(found - ideal)))
@@ -99,8 +100,7 @@ def exact_rotation(moving: BodyConfig) -> FreeRotation:
 
 def times(trace: Trace) -> Floats:
     """Return the time [s] of every state, counted in steps (logged times are whole nanoseconds)."""
-    steps = trace.step["step"] - trace.step["step"][0]
-    return np.asarray(steps * float(trace.timestep), dtype=np.float64)
+    return trace.clock.elapsed(trace.step["step"][0], trace.step["step"])
 
 
 def body_rates(trace: Trace, moving: BodyConfig) -> Floats:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from fractions import Fraction
 from pathlib import Path
 from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
+
+from lavendersim.clock import Clock
 
 Floats = NDArray[np.float64]
 Rows = NDArray[np.void]  # structured array, one row per step or contact
@@ -47,8 +48,8 @@ class Trace(Protocol):
         """The cell's config with every default filled in."""
 
     @property
-    def timestep(self) -> Fraction:
-        """Length of a step [s]."""
+    def clock(self) -> Clock:
+        """Exact times and lengths of its steps; logged times are whole nanoseconds."""
 
     @property
     def absent(self) -> Mapping[str, str]:

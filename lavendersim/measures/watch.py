@@ -23,6 +23,7 @@ import numpy as np
 from lavendersim.experiment.always_specs import CHECKS, DERIVED, FINITE, NONE, Always
 from lavendersim.measures import cell_config
 from lavendersim.measures.account import EnergyAccount, contacts_of_log, momentum_gap
+from lavendersim.measures.changes import events_of_bodies, row_after
 from lavendersim.measures.extent import thickness
 from lavendersim.measures.optimality import friction_of
 from lavendersim.measures.views import Floats, Rows, Trace
@@ -137,8 +138,8 @@ def _residual(trace: Trace) -> Numbers:
 def _speed(trace: Trace) -> Numbers:
     pose, step = trace.pose, trace.step["step"]
     fastest, who = np.zeros(len(step)), np.zeros(len(step), dtype=int)
-    dt = np.diff(step) * float(trace.timestep)
-    jumps = {event["body"] for event in trace.resolved.get("events") or () if event["teleport"]}
+    dt = trace.clock.elapsed(step[:-1], step[1:])
+    jumps = {event["body"] for event in events_of_bodies(trace) if event["teleport"]}
     for body, name in enumerate(trace.bodies):
         speed = np.sqrt((np.diff(pose[:, body, :3], axis=0) ** 2).sum(axis=1)) / dt
         if name in jumps:
@@ -151,9 +152,7 @@ def _speed(trace: Trace) -> Numbers:
 
 def _without_jumps(trace: Trace, name: str, speed: Floats) -> Floats:
     """Return speeds without those of steps in which the config moved the body."""
-    from lavendersim.measures.changes import row_after
-
-    for event in trace.resolved["events"]:
+    for event in events_of_bodies(trace):
         row = row_after(trace, event["at"])
         if event["body"] == name and event["teleport"] and 0 < row <= len(speed):
             speed[row - 1] = 0.0

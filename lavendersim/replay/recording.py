@@ -68,7 +68,7 @@ def moment_to_show(trace: Trace, at: float | None = None) -> np.timedelta64:
     times = columns.time_in_nanoseconds(trace)
     if at is not None:
         first, last = (float(times[row]) * 1e-9 for row in (0, -1))
-        half = 0.5 * float(trace.timestep)
+        half = 0.5 * float(trace.clock.longest)
         if not first - half <= at <= last + half:
             raise UsageError(f"{at:.9g} s: this log goes from {first:g} to {last:.9g} s")
         nearest = int(np.argmin(np.abs(times - at * 1e9)))

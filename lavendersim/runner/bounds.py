@@ -8,11 +8,11 @@ here: the engine itself ends the run there.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from fractions import Fraction
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from lavendersim.clock import Clock
 from lavendersim.experiment.always_specs import BEYOND_BOUNDS, STOPPING, Always
 from lavendersim.measures.views import Floats, Rows
 from lavendersim.measures.watch import Watch, Watched
@@ -28,7 +28,7 @@ class Part(NamedTuple):
     residual: Rows
     bodies: list[str]
     resolved: Mapping[str, Any]
-    timestep: Fraction
+    clock: Clock
     absent: Mapping[str, str]
     status: str = "complete"
 
@@ -41,11 +41,11 @@ class Bounds:
         always: Always | None,
         bodies: list[str],
         resolved: Mapping[str, Any],
-        timestep: Fraction,
+        clock: Clock,
         absent: Mapping[str, str],
     ) -> None:
         self._watch = Watch(always) if always is not None and always.stop else None
-        self._cell = (bodies, resolved, timestep, absent)
+        self._cell = (bodies, resolved, clock, absent)
         self._last: tuple[Rows, Floats] | None = None  # the state before the block's
 
     def within(self, block: Block) -> tuple[Block, str]:
@@ -90,5 +90,5 @@ def _sentence(check: Watched, row: int, part: Part) -> str:
     return (
         f"{BEYOND_BOUNDS}{check.check} {float(check.numbers[row]):.6g}{check.unit}, at most "
         f"{check.bound:g}{f', {whose}' if whose else ''}, in step {step} "
-        f"(t = {float(step * part.timestep):.9g} s)"
+        f"(t = {float(part.clock.time(step)):.9g} s)"
     )

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from fractions import Fraction
 from pathlib import Path
 from time import perf_counter_ns
 from typing import Any, Final, NamedTuple
 
-import numpy as np
 import numpy.lib.recfunctions as recfunctions
 
+from lavendersim.clock import Clock
 from lavendersim.engine.effects import EFFECTS
 from lavendersim.engine.engine import Engine, Rows
 from lavendersim.engine.kernel_cache import source_hash
@@ -25,7 +24,6 @@ from .bounds import Bounds
 from .environment import versions
 from .problem_dump import ProblemDump
 
-NANOSECONDS = 10**9
 STOPPED: Final = -1  # beside the engine's own outcomes: a bound ended the cell
 CAUSES = {
     NOT_FINITE: "is no longer finite",
@@ -58,20 +56,9 @@ class CellOutcome(NamedTuple):
     accuracy: Accuracy
 
 
-def time_ns(steps: np.ndarray, timestep: Fraction) -> np.ndarray:
-    """Return the simulated time of `steps` in whole nanoseconds, rounded down, without drift."""
-    numerator, denominator = timestep.numerator * NANOSECONDS, timestep.denominator
-    whole, rest = np.divmod(steps, denominator)
-    if denominator * numerator < 2**62:
-        return np.asarray(whole * numerator + rest * numerator // denominator, np.int64)
-    # Timesteps such as 0.0041666666 have denominators beyond 64-bit products.
-    exact = [int(step) * numerator // denominator for step in steps]
-    return np.array(exact, np.int64)
-
-
-def block_of(rows: Rows, timestep: Fraction) -> Block:
+def block_of(rows: Rows, clock: Clock) -> Block:
     """Return the rows of some steps as the log takes them, with their time."""
-    times = time_ns(rows.step["step"], timestep)
+    times = clock.nanoseconds(rows.step["step"])
     step = recfunctions.append_fields(rows.step, "time_ns", times, usemask=False)
     return Block(step=step, contact=rows.contact, pose=rows.pose, residual=rows.residual)
 
@@ -119,9 +106,8 @@ def divergence(scene: Scene, engine: Engine) -> str:
     step = int(counters["step"])
     name = scene.names[int(counters["body"])]
     what = CAUSES[int(counters["cause"])]
-    return (
-        f"diverged: body {name} {what} after step {step} (t = {float(step * scene.timestep):.9g} s)"
-    )
+    time = float(scene.clock.time(step))
+    return f"diverged: body {name} {what} after step {step} (t = {time:.9g} s)"
 
 
 def started(scene: Scene, plan: Plan) -> tuple[Engine, int]:
@@ -148,11 +134,11 @@ def run_cell(job: CellJob) -> CellOutcome:
         scene.names,
         job.resolved,
         job.as_written,
-        scene.timestep,
+        scene.clock,
         metadata_of(job.plan, job.seeds),
         absent,
     )
-    bounds = Bounds(job.always, scene.names, job.resolved, scene.timestep, absent)
+    bounds = Bounds(job.always, scene.names, job.resolved, scene.clock, absent)
     events = EventQueue(engine, scene, job.resolved["events"])
     dump = ProblemDump(job.path, job.resolved)
     accuracy = Accuracy(tolerance=job.resolved["numerics"]["tolerance"])
@@ -172,7 +158,7 @@ def run_cell(job: CellJob) -> CellOutcome:
         start = perf_counter_ns()
         rows = engine.take_rows()
         if len(rows.step):
-            block, broken = bounds.within(block_of(rows, scene.timestep))
+            block, broken = bounds.within(block_of(rows, scene.clock))
             if broken:
                 spent = spent * len(block.step) // len(rows.step)
                 last = int(block.step["step"][-1])

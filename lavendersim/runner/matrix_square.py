@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from fractions import Fraction
 from pathlib import Path
 from typing import Any, Final, Literal, NamedTuple
 
@@ -107,14 +106,10 @@ def _cost(finished: Any) -> float:
     """Return the physics of all cells over the time they simulated [s/s]."""
     # cells that are the same simulation share one outcome
     spent = {
-        cell.path: (outcome.physics_ns / 1e9, outcome.steps * _timestep(whole))
+        cell.path: (outcome.physics_ns / 1e9, float(whole.config.clock.time(outcome.steps)))
         for cell, whole, outcome in zip(
             finished.run.cells, finished.run.experiment.cells(), finished.outcomes, strict=True
         )
     }
     simulated = sum(time for _, time in spent.values())
     return sum(physics for physics, _ in spent.values()) / simulated if simulated else math.nan
-
-
-def _timestep(cell: Any) -> float:
-    return float(Fraction(cell.config.numerics.timestep))

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from math import ceil, inf, sqrt
+from math import inf, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from lavendersim.clock import Clock, written
 from lavendersim.engine.collide.hull_geometry import HullGeometry
 from lavendersim.engine.engine import Engine, allocate_parameters, allocate_velocities
 from lavendersim.engine.spec import Spec
@@ -33,10 +34,11 @@ class Scene(NamedTuple):
     pairs: np.ndarray
     parameters: np.ndarray
     poses: np.ndarray  # (bodies, 7) initial x y z qw qx qy qz
-    timestep: Fraction  # [s], exact
+    clock: Clock  # exact times of its steps
     templates: np.ndarray  # (classes, classes) what their pairs have in common; see `pair_tables`
     hulls: HullGeometry
     forces: list[dict[str, Any]]  # resolved; `events` lets them act
+    numerics: dict[str, Any]  # resolved
 
     def engine(self, spec: Spec, block_steps: int | None = None) -> Engine:
         """Return an engine at the scene's initial state."""
@@ -54,12 +56,10 @@ class Scene(NamedTuple):
         )
 
 
-def _parameters(resolved: dict[str, Any], timestep: Fraction) -> np.ndarray:
+def _parameters(resolved: dict[str, Any], clock: Clock) -> np.ndarray:
     numerics = resolved["numerics"]
-    dt = float(timestep)
     parameters = allocate_parameters()
     p = parameters[0]
-    p["dt"] = dt
     gravity = [float(g) for g in resolved["scene"]["gravity"]]
     p["gx"], p["gy"], p["gz"] = gravity
     for name in p.dtype.names or ():
@@ -72,15 +72,25 @@ def _parameters(resolved: dict[str, Any], timestep: Fraction) -> np.ndarray:
         p["projection"] = 0.0
     if not numerics["sleeping"]:
         p["sleep_time"] = inf
-    magnitude = sqrt(sum(g * g for g in gravity))
-    p["restitution_speed"] = float(numerics["restitution_threshold"]) * magnitude * dt
+    set_timestep(parameters, numerics, clock.timestep)
     # A residual is never negative, so this tolerance never stops a cell that states none.
     p["tolerance"] = -1.0 if numerics["tolerance"] is None else float(numerics["tolerance"])
-    p["residuals_from"], p["residuals_to"] = residual_window(resolved, timestep)
+    p["residuals_from"], p["residuals_to"] = residual_window(resolved, clock)
     return parameters
 
 
-def residual_window(resolved: dict[str, Any], timestep: Fraction) -> tuple[int, int]:
+def set_timestep(parameters: np.ndarray, numerics: dict[str, Any], timestep: Fraction) -> None:
+    """Write a timestep [s] and what is made of it into parameters that have their gravity.
+
+    Kernels make the rest of `dt` in each step; cached impulses know the step they belong to.
+    """
+    p = parameters[0]
+    p["dt"] = float(timestep)
+    magnitude = sqrt(sum(float(p[f"g{axis}"]) ** 2 for axis in "xyz"))
+    p["restitution_speed"] = float(numerics["restitution_threshold"]) * magnitude * p["dt"]
+
+
+def residual_window(resolved: dict[str, Any], clock: Clock) -> tuple[int, int]:
     """Return the first and last step whose sweeps are recorded, by the time a step ends at."""
     asked = resolved["record"]["residuals"]
     if asked == "none":
@@ -88,8 +98,8 @@ def residual_window(resolved: dict[str, Any], timestep: Fraction) -> tuple[int, 
     if asked == "all":
         return 1, np.iinfo(np.int64).max
     # By the number as written: 0.1 s is a step of 1/10 s, its binary value lies beside it.
-    begin, end = (Fraction(repr(float(asked[side]))) for side in ("from", "to"))
-    return max(1, ceil(begin / timestep)), int(end / timestep)
+    begin, end = (written(asked[side]) for side in ("from", "to"))
+    return max(1, clock.steps_until(begin)), clock.steps_within(end)
 
 
 def build(resolved: dict[str, Any], spec: Spec) -> Scene:
@@ -105,16 +115,17 @@ def build(resolved: dict[str, Any], spec: Spec) -> Scene:
         if turns:
             velocity["wx"], velocity["wy"], velocity["wz"] = body["angular_velocity"]
     pairs, templates = pair_tables(spec, rows, bodies)
-    timestep = Fraction(resolved["numerics"]["timestep"])
+    clock = Clock.of(resolved)
     return Scene(
         names=list(config),
         bodies=bodies,
         velocities=velocities,
         pairs=pairs,
-        parameters=_parameters(resolved, timestep),
+        parameters=_parameters(resolved, clock),
         poses=poses,
-        timestep=timestep,
+        clock=clock,
         templates=templates,
         hulls=hulls,
         forces=resolved["scene"]["forces"],
+        numerics=resolved["numerics"],
     )

@@ -8,12 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from fractions import Fraction
-from math import ceil, fsum
+from math import fsum
 from typing import Any, NamedTuple
 
+from lavendersim.clock import written
 from lavendersim.engine.engine import Engine
 
-from .build import Scene
+from .build import Scene, set_timestep
 
 
 class Change(NamedTuple):
@@ -44,10 +45,14 @@ class EventQueue:
 
     def _after(self, time: float) -> int:
         """Return how many steps are done when a time [s], as written, is reached."""
-        return ceil(Fraction(repr(time)) / self._scene.timestep)
+        return self._scene.clock.steps_until(written(time))
 
     def _event_changes(self, events: list[dict[str, Any]]) -> Iterator[Change]:
+        for done, timestep in self._scene.clock.changes:
+            yield Change(done, 0, lambda timestep=timestep: self._pace(timestep))  # type: ignore[misc]
         for order, event in enumerate(events, start=1):
+            if event.get("timestep") is not None:
+                continue
             yield Change(
                 self._after(event["at"]),
                 order,
@@ -62,6 +67,9 @@ class EventQueue:
             if begin < end:
                 yield Change(begin, 0, lambda force=force: self._begin(force))  # type: ignore[misc]
                 yield Change(end, 0, lambda force=force: self._end(force))  # type: ignore[misc]
+
+    def _pace(self, timestep: Fraction) -> None:
+        set_timestep(self._engine.parameters, self._scene.numerics, timestep)
 
     def _begin(self, force: dict[str, Any]) -> None:
         self._acting.append(force)

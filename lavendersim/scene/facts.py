@@ -3,19 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from fractions import Fraction
 from math import hypot
 from typing import Any
 
+from lavendersim.clock import Clock
 from lavendersim.engine.effects import BodyFacts, Facts, PairFacts
 
 from .classes import class_pairs
 from .colliders import bounding_radius, colliders, is_movable
 
 
+def changes_of_bodies(resolved: dict[str, Any]) -> list[dict[str, Any]]:
+    """Return the events that change a body."""
+    return [event for event in resolved["events"] if event.get("timestep") is None]
+
+
 def _body_facts(resolved: dict[str, Any]) -> Iterator[BodyFacts]:
     events: dict[str, list[dict[str, Any]]] = {}
-    for event in resolved["events"]:
+    for event in changes_of_bodies(resolved):
         events.setdefault(event["body"], []).append(event)
     pushed = {force["body"] for force in resolved["scene"]["forces"] if any(force["force"])}
     twisted = {force["body"] for force in resolved["scene"]["forces"] if any(force["torque"])}
@@ -77,10 +82,10 @@ def facts_of(resolved: dict[str, Any], record: bool = True) -> Facts:
         solver=numerics["solver"],
         friction_cone=numerics["friction_cone"],
         sleeping=bool(numerics["sleeping"]),
-        events=bool(resolved["events"]),
+        events=bool(changes_of_bodies(resolved)),
         record=record,
         residuals=resolved["record"]["residuals"] != "none",
         problems=resolved["record"]["problems"] != "none",
-        timestep=float(Fraction(numerics["timestep"])),
+        timestep=float(Clock.of(resolved).longest),
         duration=float(resolved["duration"]),
     )

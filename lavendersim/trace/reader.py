@@ -17,6 +17,7 @@ import yaml
 from mcap.records import Attachment, Schema
 from numpy.typing import NDArray
 
+from lavendersim.clock import Clock
 from lavendersim.errors import TraceError, UsageError
 from lavendersim.trace import decode, layout
 from lavendersim.trace.absent import absent_table
@@ -32,7 +33,14 @@ from lavendersim.trace.index import (
 )
 from lavendersim.trace.scan import scan
 from lavendersim.trace.schema import FORMAT, RESIDUAL_COLUMNS, STEP_COLUMNS, Column
-from lavendersim.trace.writer import ABSENT, AS_WRITTEN, DESCRIPTION, ENDING, RESOLVED
+from lavendersim.trace.writer import (
+    ABSENT,
+    AS_WRITTEN,
+    DESCRIPTION,
+    ENDING,
+    RESOLVED,
+    TIMESTEP_CHANGES,
+)
 
 COMPLETE = "complete"
 INCOMPLETE = "incomplete"
@@ -52,11 +60,21 @@ class Trace:
                     f"{path}: log format {description['format']}, this version reads {FORMAT}"
                 )
             self.bodies: list[str] = json.loads(description["bodies"])
-            self.timestep = Fraction(description["timestep"])
+            self.clock = _clock(description)
             # topic -> why this log does without it; logs before there was a choice have them all
             self.absent: dict[str, str] = json.loads(description.get(ABSENT, "{}"))
             self.status = self.metadata[ENDING]["status"] if finished else INCOMPLETE
         self.complete = self.status == COMPLETE
+
+    @property
+    def timestep(self) -> Fraction:
+        """Length of the first step [s]."""
+        return self.clock.timestep
+
+    @cached_property
+    def timesteps(self) -> NDArray[np.float64]:
+        """Length [s] of the step that ends in each row of `step`; of step 0, that of the first."""
+        return self.clock.lengths(self.step["step"])
 
     @cached_property
     def step(self) -> NDArray[Any]:
@@ -163,6 +181,13 @@ class Trace:
             for entry in self._index.chunks:
                 if channel in entry.message_index_offsets:
                     yield read_chunk(stream, entry)
+
+
+def _clock(description: dict[str, str]) -> Clock:
+    """Return the times of the steps of a log; logs before timesteps could change have none."""
+    changes = json.loads(description.get(TIMESTEP_CHANGES, "[]"))
+    first = Fraction(description["timestep"])
+    return Clock.counted(first, [(done, Fraction(timestep)) for done, timestep in changes])
 
 
 def open_trace(path: str | Path, allow_incomplete: bool = False) -> Trace:

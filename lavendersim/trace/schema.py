@@ -18,6 +18,7 @@ columns, then red green blue alpha. PointCloud knows no 64-bit integer, so an in
 two fields: `name` (its low 32 bits, UINT32) and `name_high` (the rest, INT32).
 
 Simulation time is the only clock: log_time = publish_time = the step's time_ns, sequence = step.
+`trace` has the `timestep` [s], and where it changes `timestep_changes`: [steps done, timestep], ...
 A column that a run does not need is absent; one not listed here passes through unchanged. Readers
 take the columns from the file (the descriptor of lavender.Step, the `fields` of the PointCloud).
 """

@@ -12,7 +12,6 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
-from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +20,7 @@ import yaml
 from mcap.records import Channel, Schema
 from numpy.typing import NDArray
 
+from lavendersim.clock import Clock
 from lavendersim.trace import descriptors, layout
 from lavendersim.trace.container import INDEX_ENTRY, Container, Messages
 from lavendersim.trace.encode import Block, Encoded, Encoder
@@ -42,6 +42,7 @@ BULK_BYTES = 1024 * 1024
 AS_WRITTEN, RESOLVED = "config.yaml", "resolved.yaml"  # attachments
 DESCRIPTION, ENDING = "trace", "lavender"  # metadata written first and last
 ABSENT = "absent"  # of the description: topic -> why the log does without it
+TIMESTEP_CHANGES = "timestep_changes"  # and [steps done, timestep] of each; where there are any
 
 
 class _Stream:
@@ -81,7 +82,7 @@ class TraceWriter:
         bodies: Sequence[str],
         resolved: Mapping[str, Any],
         as_written: str,
-        timestep: Fraction,
+        clock: Clock,
         metadata: Mapping[str, Mapping[str, str]],
         absent: Mapping[str, str] | None = None,
     ) -> None:
@@ -101,9 +102,12 @@ class TraceWriter:
         description = {
             "format": FORMAT,
             "bodies": json.dumps(self._bodies),
-            "timestep": str(timestep),
+            "timestep": str(clock.timestep),
             ABSENT: json.dumps(absent, sort_keys=True),
         }
+        if clock.changes:
+            changes = [[done, str(timestep)] for done, timestep in clock.changes]
+            description[TIMESTEP_CHANGES] = json.dumps(changes)
         self._container.describe(DESCRIPTION, description)
         for name, values in metadata.items():
             if name in (DESCRIPTION, ENDING):

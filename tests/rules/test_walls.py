@@ -13,16 +13,17 @@ from sources import PACKAGES, ROOT, Import, files, imports, module_of, modules, 
 ROOMS = {
     "__init__": {"experiment", "runner", "simulator", "trace"},  # public names, imported when used
     "errors": set(),
-    "experiment": {"errors"},
+    "clock": set(),
+    "experiment": {"errors", "clock"},
     "engine": set(),
-    "scene": {"errors", "experiment", "engine"},
-    "trace": {"errors"},
+    "scene": {"errors", "clock", "experiment", "engine"},
+    "trace": {"errors", "clock"},
     "problems": {"errors", "engine"},
-    "measures": {"errors", "experiment", "trace"},
+    "measures": {"errors", "clock", "experiment", "trace"},
     "figures": {"errors", "experiment", "trace", "measures"},
     "replay": {"errors", "trace", "measures"},
     "simulator": {"errors", "experiment", "scene", "engine"},
-    "runner": {"errors", "experiment", "scene", "engine", "problems", "trace", "measures"},
+    "runner": {"errors", "clock", "experiment", "scene", "engine", "problems", "trace", "measures"},
     "pytest_plugin": {"errors", "experiment", "trace", "measures", "runner"},
     "cli": {
         *("errors", "experiment", "scene", "trace", "measures", "figures", "replay", "runner"),
@@ -35,7 +36,7 @@ LIBRARIES = {
     "llvmlite": {"engine"},
     "numpy": {
         *("scene", "engine", "trace", "measures", "figures", "replay", "simulator", "runner"),
-        "problems",
+        *("problems", "clock"),
     },
     "scipy": {"experiment", "problems"},  # hulls, where a scene has one; sparse matrices
     "h5py": {"problems"},

@@ -66,7 +66,7 @@ class Falsified:
     def __init__(self, trace: Any) -> None:
         self.step, self.pose, self.contact = trace.step.copy(), trace.pose.copy(), trace.contact
         self.contact = trace.contact.copy()
-        self.bodies, self.timestep = trace.bodies, trace.timestep
+        self.bodies, self.clock = trace.bodies, trace.clock
         self.resolved, self.absent, self.status = trace.resolved, trace.absent, trace.status
 
     def trace(self) -> Any:

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import numpy.lib.recfunctions as recfunctions
 
+from lavendersim.clock import Clock
 from lavendersim.measures.free_rotation import free_rotation
 
 STEP = [
@@ -84,7 +85,7 @@ class SyntheticTrace:
     residual: Any = field(default_factory=lambda: np.zeros(0, RESIDUAL))
     bodies: Sequence[str] = ("floor", "ball")
     resolved: Mapping[str, Any] = field(default_factory=ball_and_floor)
-    timestep: Fraction = Fraction(1, 100)
+    clock: Clock = field(default_factory=lambda: Clock(Fraction(1, 100)))
     status: str = "complete"
 
 

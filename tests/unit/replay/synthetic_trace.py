@@ -13,6 +13,8 @@ from typing import Any
 
 import numpy as np
 
+from lavendersim.clock import Clock
+
 G = 9.81
 STEP_FIELDS = [
     ("step", "i8"),
@@ -46,7 +48,7 @@ class SyntheticTrace:
     status: str = "complete"
     complete: bool = True
     path: Path = Path("cells/ball_and_box.mcap")
-    timestep: Fraction = Fraction(1, 240)
+    clock: Clock = field(default_factory=lambda: Clock(Fraction(1, 240)))
 
 
 def ball_and_box(steps: int = 480) -> SyntheticTrace:

@@ -9,6 +9,7 @@ import pytest
 from rerun.chunk import RrdReader
 
 from lavendersim import replay
+from lavendersim.clock import Clock
 from lavendersim.trace import Block, TraceWriter, open_trace
 
 
@@ -18,7 +19,7 @@ def test_log_of_the_trace_room_is_replayed(one_ball, tmp_path, contacts):
     names = [name for name in one_ball.step.dtype.names if name != "time"]
     log = tmp_path / "log.mcap"
     writer = TraceWriter(
-        log, one_ball.bodies, one_ball.resolved, "question: ?\n", Fraction(1, 240), {}
+        log, one_ball.bodies, one_ball.resolved, "question: ?\n", Clock(Fraction(1, 240)), {}
     )
     sweeps = np.zeros(0, [("step", "i8"), ("sweep", "i8"), ("residual", "f8")])
     writer.append(

@@ -9,7 +9,7 @@ import pytest
 from laboratory import body, plane, resolved
 
 from lavendersim.engine.spec import Spec
-from lavendersim.scene.build import Scene, build
+from lavendersim.scene.build import Scene, build, residual_window
 from lavendersim.scene.events import EventQueue
 from lavendersim.scene.facts import facts_of
 from lavendersim.scene.plan import plan_of
@@ -45,6 +45,7 @@ class Bench:
         self.forgotten: list = []
         engine = SimpleNamespace(
             spec=SPEC, bodies=self.scene.bodies, velocities=self.scene.velocities,
+            parameters=self.scene.parameters,
             forget_contacts=lambda *body: self.forgotten.append(body),
             wake=lambda index: None,
         )  # fmt: skip
@@ -133,6 +134,36 @@ def test_plan_knows_what_is_pushed_twisted_and_thrown() -> None:
     spun = Bench(events=[event(0.5, angular_velocity=[0, 0, 1])])
     assert plan_of(spun.cell).decisions["rotation"].on
     assert not np.isnan(pushed.scene.poses).any()
+
+
+def test_a_timestep_and_what_is_made_of_it_change_together() -> None:
+    """1/10 s up to 0.2 s, then 1/4 s: 0.25 s and 0.6 s are reached after 3 and after 4 steps."""
+    events = [{"at": 0.15, "timestep": "1/4"}, event(0.25, velocity=[1, 0, 0])]
+    bench = Bench([force(0.0, 0.6, force=[1, 0, 0])], events)
+    parameters = bench.scene.parameters[0]
+    parameters["gz"], bench.scene.numerics["restitution_threshold"] = -9.81, 2.0
+    assert bench.after(1)[0] == 1.0
+    assert parameters["dt"] == 0.1
+    bench.after(2)
+    assert (parameters["dt"], parameters["restitution_speed"]) == (0.25, 2.0 * 9.81 * 0.25)
+    assert bench.scene.velocities[1]["vx"] == 0
+    assert bench.after(3)[0] == 1.0
+    assert bench.scene.velocities[1]["vx"] == 1
+    assert bench.after(4)[0] == 0.0
+
+
+def test_a_window_of_residuals_is_counted_in_steps_of_their_length() -> None:
+    bench = Bench(events=[{"at": 0.2, "timestep": "1/4"}])
+    window = {
+        "record": {"residuals": {"from": 0.2, "to": 0.95}}
+    }  # steps end at 0.2, 0.45, 0.7, 0.95
+    assert residual_window(window, bench.scene.clock) == (2, 5)
+
+
+def test_the_plan_knows_the_longest_step_and_what_changes_no_body() -> None:
+    facts = facts_of(Bench(events=[{"at": 0.2, "timestep": "1/4"}]).cell)
+    assert (facts.timestep, facts.events) == (0.25, False)
+    assert facts_of(Bench(events=[{"at": 0.2, "timestep": "1/40"}]).cell).timestep == 0.1
 
 
 @pytest.mark.parametrize("at", [0.3, 0.30000000000000004])

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from lavendersim.clock import Clock
 from lavendersim.trace import Block, TraceWriter
 from lavendersim.trace.schema import CONTACT_COLUMNS, STEP_COLUMNS
 
@@ -94,7 +95,7 @@ def write(
     absent: Mapping[str, str] | None = None,
 ) -> Path:
     """Write blocks as a log; status None leaves it as a killed run would."""
-    writer = TraceWriter(path, BODIES, RESOLVED, AS_WRITTEN, TIMESTEP, METADATA, absent)
+    writer = TraceWriter(path, BODIES, RESOLVED, AS_WRITTEN, Clock(TIMESTEP), METADATA, absent)
     for block in blocks:
         writer.append(block)
     if status is None:

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
 import pytest
 from sample import AS_WRITTEN, BODIES, METADATA, RESOLVED, TIMESTEP, run, split, write
 
+from lavendersim.clock import Clock
 from lavendersim.errors import TraceError
-from lavendersim.trace import Block, Trace, open_trace
+from lavendersim.trace import Block, Trace, TraceWriter, open_trace
 
 # enough for several groups: a step is some 400 B of the light stream, a group 128 KiB
 MANY = 900
@@ -41,6 +43,25 @@ def test_what_describes_the_run_returns(tmp_path: Path) -> None:
     assert trace.status == "diverged: ball at step 2"
     assert not trace.complete
     assert METADATA.items() <= trace.metadata.items()
+
+
+def test_changes_of_the_timestep_return(tmp_path: Path) -> None:
+    path = tmp_path / "run.mcap"
+    clock = Clock.counted(TIMESTEP, [(2, Fraction(1, 3)), (7, Fraction(1, 1000))])
+    writer = TraceWriter(path, BODIES, RESOLVED, AS_WRITTEN, clock, METADATA)
+    writer.append(run(10))
+    writer.close("complete")
+    trace = open_trace(path)
+    assert trace.clock.stretches == clock.stretches
+    assert trace.timestep == TIMESTEP
+    lengths = [1 / 240] * 3 + [1 / 3] * 5 + [1 / 1000] * 2  # of step 0, that of the first
+    assert trace.timesteps.tolist() == lengths
+
+
+def test_a_log_of_one_timestep_is_as_all_logs_were(tmp_path: Path) -> None:
+    trace = open_trace(write(tmp_path / "run.mcap", [run(3)]))
+    assert "timestep_changes" not in trace.metadata["trace"]
+    assert trace.clock.stretches == [(0, Fraction(0), TIMESTEP)]
 
 
 @pytest.mark.parametrize("sizes", [[1] * 40, [100] * 8, [327, 1, 300]])
