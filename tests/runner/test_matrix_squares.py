@@ -12,6 +12,7 @@ from typing import Any
 
 import pytest
 
+from lavendersim.clock import Clock
 from lavendersim.errors import UsageError
 from lavendersim.experiment import load_experiment_text
 from lavendersim.measures import Verdict
@@ -52,8 +53,7 @@ class Ran:
 
     @property
     def run(self) -> Any:
-        numerics = SimpleNamespace(timestep=Fraction(1, 100))
-        whole = SimpleNamespace(config=SimpleNamespace(numerics=numerics))
+        whole = SimpleNamespace(config=SimpleNamespace(clock=Clock(Fraction(1, 100))))
         cells = [
             SimpleNamespace(path=Path("run/cells/a.mcap"), label="cell a", status="complete"),
             SimpleNamespace(path=Path("run/cells/b.mcap"), label="cell b", status=self.ended),
