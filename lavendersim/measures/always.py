@@ -7,11 +7,13 @@ bound was stopped there: it is the last state of its log.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from lavendersim.errors import LavenderError
 from lavendersim.experiment.always_specs import BEYOND_BOUNDS, Always
-from lavendersim.measures.values import Part
+from lavendersim.measures.parts import parts_of
 from lavendersim.measures.verdict import Outcome, failure
 from lavendersim.measures.views import Cell, Trace
 from lavendersim.measures.watch import Watch, Watched, checks_of
@@ -30,34 +32,62 @@ def outcomes_of(always: Always, cell: Cell) -> dict[str, Outcome]:
         trace: Trace = cell.trace()
         ended = trace.status
         whole = ended == COMPLETE or ended.startswith(BEYOND_BOUNDS)
-        judged = trace if whole else Part(trace, len(trace.step) - 1)
-        if len(judged.step) == 0:
+        states = len(trace.step) - (0 if whole else 1)
+        if states <= 0:
             return dict.fromkeys(checks_of(always), failure("a complete run", ended, not whole))
-        why = "" if whole else ended
-        found = {one.check: _outcome(one, judged, why, cell) for one in Watch(always).over(judged)}
+        found = _worst(always, trace, states)
     except LavenderError as error:  # a log that is damaged
         return {check: failure("a log that can answer", str(error)) for check in checks_of(always)}
+    return {name: _outcome(one, "" if whole else ended, cell) for name, one in found.items()}
+
+
+class _Worst(NamedTuple):
+    """What became of one check over a log."""
+
+    check: Watched
+    number: float  # the largest; NaN where one is none
+    first: str = ""  # where and how the first state is that breaks it; nothing where none does
+    time: float = 0.0  # [s] of that state
+
+
+def _worst(always: Always, trace: Trace, states: int) -> dict[str, _Worst]:
+    found: dict[str, _Worst] = {}
+    watch = Watch(always)
+    for before, part in parts_of(trace, states):
+        for one in watch.over(part):
+            numbers = one.numbers[1 if before else 0 :]
+            known = found.get(one.check, _Worst(one, 0.0))
+            known = known._replace(number=float(np.max(numbers, initial=known.number)))
+            broken = np.flatnonzero(~(numbers <= one.bound))
+            if len(broken) and not known.first:
+                row = int(broken[0]) + (1 if before else 0)
+                known = known._replace(
+                    first=_place(one, part, row), time=float(part.step["time"][row])
+                )
+            found[one.check] = known
     return found
 
 
-def _outcome(one: Watched, trace: Trace, ended: str, cell: Cell) -> Outcome:
-    expected = f"at most {one.bound:g}{one.unit} in every step"
-    broken = np.flatnonzero(~(one.numbers <= one.bound))
-    worst = float(np.max(one.numbers)) if len(one.numbers) else 0.0
-    margin = 1.0 - worst / one.bound if one.bound > 0.0 else float("nan")
-    if len(broken) == 0:
-        return Outcome(True, worst, expected, "none", margin=margin)
-    row = int(broken[0])
-    time = float(trace.step["time"][row])
+def _place(one: Watched, part: Trace, row: int) -> str:
     whose = one.bodies(row)
+    step, time = int(part.step["step"][row]), float(part.step["time"][row])
+    number = f"{float(one.numbers[row]):.6g}{one.unit}"
+    return f"first in step {step}, t = {time:.9g} s: {number}{f', {whose}' if whose else ''}"
+
+
+def _outcome(one: _Worst, ended: str, cell: Cell) -> Outcome:
+    bound, unit = one.check.bound, one.check.unit
+    expected = f"at most {bound:g}{unit} in every step"
+    margin = 1.0 - one.number / bound if bound > 0.0 else float("nan")
+    if not one.first:
+        return Outcome(True, one.number, expected, "none", margin=margin)
     reason = (
-        f"first in step {int(trace.step['step'][row])}, t = {time:.9g} s: "
-        f"{float(one.numbers[row]):.6g}{one.unit}{f', {whose}' if whose else ''}"
+        f"{one.first}"
         f"\n  cell       {cell.label or 'the only one'}"
-        f"\n  replay     {replay_command(cell, time)}"
+        f"\n  replay     {replay_command(cell, one.time)}"
     )
     reason += f"\n  ended      {ended}" if ended else ""
-    return Outcome(False, worst, expected, "none", reason, bool(ended), margin)
+    return Outcome(False, one.number, expected, "none", reason, bool(ended), margin)
 
 
 def replay_command(cell: Cell, time: float) -> str:

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Any
 
 import numpy as np
 
 from lavendersim.experiment.measure_specs import MeasureSpec
 from lavendersim.measures.registry import evaluate
-from lavendersim.measures.views import Cell, Floats, Trace
+from lavendersim.measures.views import Cell, Floats
 
 
 class Values:
@@ -31,31 +30,3 @@ class Values:
     def of(self, measure: str) -> Callable[[Cell], Floats]:
         """Return the function from a cell to its row of one measure."""
         return lambda cell: self.row(measure, cell)
-
-
-class Part:
-    """The first states of a log, as a log."""
-
-    def __init__(self, trace: Trace, states: int) -> None:
-        self._trace, self._states = trace, max(states, 0)
-
-    def __getattr__(self, name: str) -> Any:
-        """Return what does not depend on how many states there are."""
-        return getattr(self._trace, name)
-
-    @property
-    def step(self) -> Any:
-        """The first rows of /step."""
-        return self._trace.step[: self._states]
-
-    @property
-    def pose(self) -> Any:
-        """The poses of these states."""
-        return self._trace.pose[: self._states]
-
-    @property
-    def contact(self) -> Any:
-        """The contacts of these steps."""
-        rows = self._trace.contact
-        last = self.step["step"][-1] if self._states else -1
-        return rows[: np.searchsorted(rows["step"], last, side="right")]

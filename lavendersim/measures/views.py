@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -30,6 +30,9 @@ class Trace(Protocol):
         Where the log has no /contacts, for nothing could touch, no column of it can be asked for:
         LavenderError, one sentence.
         """
+
+    def contacts_in_parts(self) -> Iterator[Any]:
+        """Yield the rows of `contact` in parts of whole steps; none where the log has none."""
 
     @property
     def pose(self) -> Any:

@@ -8,29 +8,16 @@ here: the engine itself ends the run there.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from lavendersim.clock import Clock
 from lavendersim.experiment.always_specs import BEYOND_BOUNDS, STOPPING, Always
+from lavendersim.measures.parts import Part
 from lavendersim.measures.views import Floats, Rows
 from lavendersim.measures.watch import Watch, Watched
 from lavendersim.trace import Block
-
-
-class Part(NamedTuple):
-    """Some states of a running cell as measures read them; see `measures.views.Trace`."""
-
-    step: Rows
-    contact: Rows
-    pose: Floats
-    residual: Rows
-    bodies: list[str]
-    resolved: Mapping[str, Any]
-    clock: Clock
-    absent: Mapping[str, str]
-    status: str = "complete"
 
 
 class Bounds:
@@ -58,7 +45,7 @@ class Bounds:
             again = 1
             step = np.concatenate([self._last[0], step])
             pose = np.concatenate([self._last[1], pose])
-        part = Part(step, block.contact, pose, block.residual, *self._cell)
+        part = Part(step, block.contact, pose, *self._cell)
         self._last = step[-1:].copy(), pose[-1:].copy()
         first: tuple[int, Watched] | None = None
         for check in self._watch.over(part):

@@ -98,12 +98,13 @@ def decode_residuals(chunk: ChunkContent, columns: Sequence[Column]) -> Table:
     return table
 
 
-def decode_poses(chunk: ChunkContent, bodies: Sequence[str]) -> tuple[Rows, NDArray[np.float64]]:
-    """Return steps (n,) and poses (n, bodies, 7) of a bulk chunk."""
+def decode_poses(
+    chunk: ChunkContent, template: Template, bodies: int
+) -> tuple[Rows, NDArray[np.float64]]:
+    """Return steps (n,) and poses (n, bodies, 7) of a bulk chunk; template: the layout of /tf."""
     entries = chunk.messages[layout.CHANNELS["/tf"]]
-    template = layout.transforms_layout(bodies)
     rows = _matching(template, chunk.data, entries["offset"])
-    shape = (len(rows), len(bodies), layout.POSE)
+    shape = (len(rows), bodies, layout.POSE)
     if not bodies:
         return _sequence(template, rows), np.empty(shape)
     words = np.ascontiguousarray(template.take(rows, "pose")).view("<f8").reshape(shape)

@@ -89,9 +89,9 @@ def _doubles(names: int, slot: str) -> Template:
 
 def transforms_layout(bodies: Sequence[str]) -> Template:
     """Return the layout of /tf; slot `pose` holds x y z qx qy qz qw of each body in turn."""
-    body = Template()
+    body, frame = Template(), root_frame(bodies)
     for name in bodies:
-        one = Template().timestamp(1).string(2, root_frame(bodies)).string(3, name)
+        one = Template().timestamp(1).string(2, frame).string(3, name)
         one.message(4, _doubles(3, "pose")).message(5, _doubles(4, "pose"))
         body.message(1, one)
     return record("/tf", body)

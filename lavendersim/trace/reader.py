@@ -106,7 +106,8 @@ class Trace:
         if "/tf" in self.absent:
             raise UsageError(self.why_not("/tf"))
         with damage(self.path, "/tf"):
-            parts = [decode.decode_poses(c, self.bodies) for c in self._chunks("/tf")]
+            form, count = layout.transforms_layout(self.bodies), len(self.bodies)
+            parts = [decode.decode_poses(c, form, count) for c in self._chunks("/tf")]
             steps = np.concatenate([np.empty(0, np.int64), *(steps for steps, _ in parts)])
             if not np.array_equal(steps, self.step["step"]):
                 raise ValueError("it has other steps than /step")
@@ -121,17 +122,25 @@ class Trace:
         """
         if "/contacts" in self.absent:
             return absent_table(self.why_not("/contacts"))
+        parts = list(self.contacts_in_parts())
+        return np.concatenate(parts) if parts else decode.join((), [("step", "i8"), ("time", "f8")])
+
+    def contacts_in_parts(self) -> Iterator[NDArray[Any]]:
+        """Yield the rows of `contact` in parts of whole steps, read as they are asked for.
+
+        A long run of many bodies has more of them than memory holds. None without /contacts.
+        """
+        if "contact" in self.__dict__:  # read already
+            yield self.contact
+            return
         with damage(self.path, "/contacts"):
             frame = layout.root_frame(self.bodies)
-            parts, columns = [], [("step", "i8"), ("time", "f8")]
             fields: tuple[layout.PackedField, ...] | None = None
             stride = 0
             for chunk in self._chunks("/contacts"):
                 if fields is None:
                     fields, stride = decode.packed_fields(self._schema("/contacts"), chunk)
-                    columns = decode.contact_columns(fields)
-                parts.append(decode.decode_contacts(chunk, fields, stride, frame))
-            return decode.join(parts, columns)
+                yield decode.decode_contacts(chunk, fields, stride, frame)
 
     def why_not(self, topic: str) -> str:
         """Return the sentence that says why this log has no such topic."""

@@ -72,6 +72,11 @@ class Falsified:
     def trace(self) -> Any:
         return self
 
+    def contacts_in_parts(self) -> Any:
+        """In parts of whole steps, as a long log has them; one of the parts is empty."""
+        cuts = np.searchsorted(self.contact["step"], [5, BROKEN, BROKEN, BROKEN + 1, 100])
+        return iter(np.split(self.contact, cuts))
+
     def sliding(self) -> int:
         """Row of the contact between floor and low ball in the step that is falsified."""
         return int(np.flatnonzero(self.contact["step"] == BROKEN)[0])

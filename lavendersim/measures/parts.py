@@ -1,0 +1,55 @@
+"""A log in; its states in parts out, as much at a time as memory holds.
+
+A part after the first begins with the last state of the one before, without its contacts: what is
+taken over each step finds both its ends.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from lavendersim.clock import Clock
+from lavendersim.measures.views import Floats, Rows, Trace
+
+
+class Part(NamedTuple):
+    """Some states of a run as measures of single steps read them; see `views.Trace`."""
+
+    step: Rows
+    contact: Rows
+    pose: Floats
+    bodies: Sequence[str]
+    resolved: Mapping[str, Any]
+    clock: Clock
+    absent: Mapping[str, str]
+    residual: Any = ()  # no measure of a single step asks for sweeps
+    status: str = "complete"
+
+    def contacts_in_parts(self) -> Iterator[Rows]:
+        """Yield all contacts: a part fits into memory."""
+        yield self.contact
+
+
+def parts_of(trace: Trace, states: int) -> Iterator[tuple[int, Trace]]:
+    """Yield the first states of a log in parts, each with how many were in the parts before."""
+    context = (trace.bodies, trace.resolved, trace.clock, trace.absent)
+    step, pose = trace.step[:states], trace.pose[:states]
+    begin, none = 0, None
+    for contact in trace.contacts_in_parts():
+        none = contact[:0]
+        if len(contact) == 0:
+            continue
+        end = int(np.searchsorted(step["step"], contact["step"][-1], "right"))
+        if end == begin:
+            break  # contacts of states that are not asked for
+        again = max(begin - 1, 0)
+        mine = contact[: np.searchsorted(contact["step"], step["step"][end - 1], "right")]
+        yield begin, Part(step[again:end], mine, pose[again:end], *context)
+        begin = end
+    if begin < len(step):
+        again = max(begin - 1, 0)
+        without = trace.contact if none is None else none
+        yield begin, Part(step[again:], without, pose[again:], *context)
