@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from . import removal
 from .assemble import StepProblem, step_problem
 from .collide.broad_phase import allocate_broad_phase
 from .collide.hull_geometry import HullGeometry
@@ -290,6 +291,19 @@ class Engine:
         """Wake who sleeps beside a body that is about to be changed."""
         if self.spec.has("sleeping"):
             sleeping.wake_around(self.bodies, body)
+
+    def remove(self, body: int) -> None:
+        """Take a body out for good: it stays where it is, and takes part in nothing."""
+        self.wake(body)
+        self.forget_contacts(body)
+        rows = removal.rows_of(self.bodies, body)
+        removal.hold_still(self.bodies, self.velocities, rows)
+        if self.spec.has("broad_phase"):
+            self._templates = removal.make_untouchable(self.bodies, self._templates, rows)
+            self._near.state["listed"] = 0
+            self._work = (*self._work[:-2], self._templates, self._near)
+        else:
+            self.pairs = removal.pairs_without(self.pairs, rows)
 
     def forget_contacts(self, body: int | None = None) -> None:
         """Drop cached impulses, of every contact or of those of one body (it was changed)."""

@@ -108,6 +108,7 @@ class CellEvent(_Resolved):
     velocity: Vector3 | None  # [m/s]
     angular_velocity: Vector3 | None  # [rad/s]
     contact_cache: Literal["keep", "clear"]
+    remove: bool  # and nothing else happens to it
 
 
 class CellTimestep(_Resolved):

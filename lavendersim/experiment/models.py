@@ -33,7 +33,7 @@ class Event(ConfigModel):
 
     at: Annotated[float, Quantity("s", minimum=0)] = Field(description="[s] simulated time")
     body: BodyName | None = Field(
-        default=None, description="name of a body that is not fixed; required but for a timestep"
+        default=None, description="name of a body; required but for a timestep"
     )
     timestep: Annotated[Fraction, Quantity("s", above=0, exact=True)] | None = Field(
         default=None, description="[s] length of the steps from then on; stands without a body"
@@ -54,6 +54,9 @@ class Event(ConfigModel):
         default=None,
         description="clear: every cached impulse is dropped, the next solve starts cold; "
         "not stated: keep",
+    )
+    remove: bool | None = Field(
+        default=None, description="true: the body, which may be fixed, takes part in nothing more"
     )
 
 

@@ -66,6 +66,7 @@ def _event(event: Event) -> CellEvent | CellTimestep:
         velocity=event.velocity,
         angular_velocity=event.angular_velocity,
         contact_cache=kept,
+        remove=bool(event.remove),
     )
 
 

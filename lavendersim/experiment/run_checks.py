@@ -10,8 +10,8 @@ from fractions import Fraction
 
 from lavendersim.clock import Clock
 from lavendersim.experiment.cost_checks import check_cost
-from lavendersim.experiment.found import near
-from lavendersim.experiment.messages import missing_key, place_of
+from lavendersim.experiment.event_checks import check_events
+from lavendersim.experiment.messages import place_of
 from lavendersim.experiment.node import Node, key_mark
 from lavendersim.experiment.population import body_node
 from lavendersim.experiment.presets import PRESETS, PresetValue
@@ -19,7 +19,6 @@ from lavendersim.experiment.report import Report
 from lavendersim.experiment.scalars import exact
 from lavendersim.experiment.scene_checks import is_kinematic, is_static, kind_of
 
-_CHANGES = ("scale_mass", "teleport", "velocity", "angular_velocity", "contact_cache")
 # Solvers that no sweep visits contact by contact.
 _WITHOUT_SWEEPS = ("jacobi", "accelerated_projected_gradient")
 MOST_STEPS = 100_000_000  # 1e8 steps of a small scene take minutes and log tens of gigabytes
@@ -31,10 +30,7 @@ def check_run(root: Node, report: Report) -> None:
     length = duration.number if duration is not None else None
     if duration is not None and length is not None and length > 0:
         _check_steps(root, duration, exact(length), report)
-    events = root.get("events")
-    for index, event in enumerate(events.items if events is not None else ()):
-        if event.entries:
-            _check_event(event, index, root, length, report)
+    check_events(root, length, report)
     forces = root.get("scene", "forces")
     for index, force in enumerate(forces.items if forces is not None else ()):
         if force.entries:
@@ -103,58 +99,6 @@ def _short(number: Fraction) -> str:
         return f"{float(number):g}".replace("e+0", "e").replace("e+", "e")
     except OverflowError:
         return "more than 1e308"
-
-
-def _check_event(event: Node, index: int, root: Node, length: float | None, report: Report) -> None:
-    at, body = event.get("at"), event.get("body")
-    if at is not None and at.number is not None and length is not None and at.number > length > 0:
-        sentence = f"at: {at.number:g} s is after the end of the run, duration {length:g} s"
-        report.add(at.mark, sentence)
-    timestep = event.get("timestep")
-    if timestep is not None and timestep.content is not None:
-        _check_timestep(event, index, report)
-        return
-    if body is None or body.content is None:
-        _check_lacks_body(event, index, report)
-        return
-    if body.text is not None:
-        target = body_node(root, body.text)
-        if target is not None and is_static(target):
-            what = "a plane" if kind_of(target) == "plane" else "fixed"
-            report.add(body.mark, f'body: "{body.text}" is {what}; expected a movable body')
-        elif target is not None and is_kinematic(target) and event.get("scale_mass"):
-            sentence = f'scale_mass: "{body.text}" is kinematic; a kinematic body has no mass'
-            report.add(key_mark(event, "scale_mass"), sentence)
-    stated = [key for key in _CHANGES if event.get(key)]
-    if not stated:
-        changes = f"{', '.join(_CHANGES[:-1])} or {_CHANGES[-1]}"
-        sentence = f"{place_of(('events', index))} changes nothing; expected {changes}"
-        report.add(event.mark, sentence)
-    cache = event.get("contact_cache")
-    if cache is not None and cache.text == "keep" and "teleport" in stated:
-        sentence = "contact_cache: a teleport always clears the body's cached contacts"
-        report.add(cache.mark, sentence)
-
-
-def _check_lacks_body(event: Node, index: int, report: Report) -> None:
-    """Without a body there is only a timestep to change; a misspelt key is told elsewhere."""
-    unknown = event.entries.keys() - {"at", "body", "timestep", *_CHANGES}
-    if event.torn or any(near(key, ("body", "timestep")) for key in unknown):
-        return
-    meaning = "name of a body that is not fixed, or else a timestep"
-    report.add(event.mark, missing_key("body", ("events", index), meaning))
-
-
-def _check_timestep(event: Node, index: int, report: Report) -> None:
-    """An event of the timestep is of nothing else."""
-    for key in ("body", *_CHANGES):
-        if event.get(key):
-            sentence = (
-                f"{key}: {place_of(('events', index))} changes the timestep; what happens to a body"
-                " is an event of its own"
-            )
-            report.add(key_mark(event, key), sentence)
-            return
 
 
 def _check_force(force: Node, index: int, root: Node, length: float | None, report: Report) -> None:

@@ -27,14 +27,21 @@ def events_of_bodies(trace: Trace) -> list[dict[str, Any]]:
     return [event for event in events if event.get("timestep") is None]
 
 
+def removals(trace: Trace) -> dict[str, int]:
+    """Return the row of the first step without it, for each body that is removed."""
+    gone = [event for event in events_of_bodies(trace) if event.get("remove")]
+    return {event["body"]: row_after(trace, event["at"]) for event in gone}
+
+
 def masses(trace: Trace) -> Floats:
     """Return the mass of everything movable [kg] in each state."""
     movable = {one.name: one.mass for one in cell_config.bodies(trace.resolved) if one.movable}
     total = np.full(len(trace.step), sum(movable.values()))
     for event in _in_order(trace):
-        if event.get("scale_mass") is not None:
+        scale = 0.0 if event.get("remove") else event.get("scale_mass")
+        if scale is not None and event["body"] in movable:
             before = movable[event["body"]]
-            movable[event["body"]] = before * event["scale_mass"]
+            movable[event["body"]] = before * scale
             total[row_after(trace, event["at"]) :] += movable[event["body"]] - before
     return total
 
@@ -73,7 +80,7 @@ def given_by_events(trace: Trace) -> Floats:
     A teleport gives -m g . (new - old), exactly. A new velocity gives what it carries, less what
     the body had, which is in no log: at most all of it. A mass that becomes s times as large gives
     (s - 1) times the body's energy: its potential part exactly, its kinetic part no more than the
-    scene's.
+    scene's. A body that is removed is one whose mass becomes 0 times as large.
     """
     given = np.zeros(len(trace.step))
     gravity = cell_config.gravity(trace.resolved)
@@ -82,7 +89,8 @@ def given_by_events(trace: Trace) -> Floats:
     moved: dict[tuple[str, int], Floats] = {}  # where an event of the same time put it
     for event in _in_order(trace):
         name, row = event["body"], row_after(trace, event["at"])
-        config, scale = configs[name], event.get("scale_mass")
+        config = configs[name]
+        scale = 0.0 if event.get("remove") else event.get("scale_mass")
         if row == 0 and scale is not None:  # in a part of the log before this one
             scaled[name] *= scale
         if not config.movable or not 0 < row < len(given):
@@ -112,7 +120,7 @@ def unknown_momentum(trace: Trace) -> np.ndarray:
     for event in _in_order(trace):
         row = row_after(trace, event["at"])
         changes = event.get("velocity") is not None or event.get("scale_mass") is not None
-        if changes and row < len(unknown):
+        if (changes or event.get("remove")) and row < len(unknown):
             unknown[row] = True
     return unknown
 

@@ -113,11 +113,15 @@ def impulse_balance(spec: specs.ImpulseBalance, trace: Trace) -> float:
 
     J is the vector sum of the impulses between movable and fixed bodies (impulses between two
     movable bodies cancel), M the movable mass, p the logged momentum. NaN without any impulse,
-    and where an event changes a mass.
+    and where an event changes a mass or removes one.
     """
-    if any(event.get("scale_mass") is not None for event in events_of_bodies(trace)):
-        return NAN
+    events = events_of_bodies(trace)
     configs = {one.name: one for one in cell_config.bodies(trace.resolved)}
+    gone = [configs[event["body"]] for event in events if event.get("remove")]
+    if any(event.get("scale_mass") is not None for event in events) or any(
+        one.movable for one in gone
+    ):
+        return NAN
     movable = np.array([configs[name].movable for name in trace.bodies])
     rows = trace.contact
     outer = rows[movable[rows["body_a"]] != movable[rows["body_b"]]]

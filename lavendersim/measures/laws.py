@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from lavendersim.experiment import law_specs as specs
-from lavendersim.measures import cell_config
+from lavendersim.measures import cell_config, changes
 from lavendersim.measures.columns import clearance_by_step, last_window, mechanical_energy
 from lavendersim.measures.views import Floats, Rows, Trace
 
@@ -17,17 +17,19 @@ NAN = float("nan")
 def force_error(spec: specs.ForceError, trace: Trace) -> float:
     """Return the largest |F/(m g) - 1| of any step in the last window, F against gravity.
 
-    Of one body all contacts count; of the scene those between movable and fixed bodies, since the
-    others cancel. NaN without gravity or a movable body, and for a run shorter than the window.
+    Of one body all contacts count, and m is its mass as configured; of the scene those between
+    movable and fixed bodies, since the others cancel, and m is what can move in that step. NaN
+    without gravity or a movable body, and for a run shorter than the window.
     """
     configs = {one.name: one for one in cell_config.bodies(trace.resolved)}
     gravity = cell_config.gravity(trace.resolved)
     pull = math.sqrt(float(gravity @ gravity))
     names = [spec.body] if spec.body else [name for name, one in configs.items() if one.movable]
     carried = np.array([name in names for name in trace.bodies])
-    weight = pull * sum(configs[name].mass for name in names)
     rows = np.flatnonzero(last_window(trace, spec.last))
-    if weight == 0.0 or len(rows) == 0:
+    masses = changes.masses(trace)[rows]
+    weight = pull * (np.full(len(rows), configs[spec.body].mass) if spec.body else masses)
+    if not np.all(weight > 0.0) or len(rows) == 0:
         return NAN
     contacts = trace.contact
     first = np.searchsorted(contacts["step"], trace.step["step"][rows[0]])

@@ -21,7 +21,7 @@ class Change(NamedTuple):
     """Something that happens between two steps."""
 
     after: int  # steps
-    order: int  # among those at one time: forces first, then events as they are written
+    order: int  # among those before one step: forces first, then events by time and as written
     apply: Callable[[], None]
 
 
@@ -50,7 +50,8 @@ class EventQueue:
     def _event_changes(self, events: list[dict[str, Any]]) -> Iterator[Change]:
         for done, timestep in self._scene.clock.changes:
             yield Change(done, 0, lambda timestep=timestep: self._pace(timestep))  # type: ignore[misc]
-        for order, event in enumerate(events, start=1):
+        timed = sorted(events, key=lambda event: float(event["at"]))
+        for order, event in enumerate(timed, start=1):
             if event.get("timestep") is not None:
                 continue
             yield Change(
@@ -95,6 +96,9 @@ def apply_event(engine: Engine, scene: Scene, event: dict[str, Any]) -> None:
     `contact_cache: clear` drops every cached impulse: the next solve starts from zero everywhere.
     """
     index = scene.names.index(event["body"])
+    if event.get("remove"):
+        engine.remove(index)
+        return
     engine.wake(index)
     body, velocity = engine.bodies[index], engine.velocities[index]
     if event["scale_mass"] is not None:

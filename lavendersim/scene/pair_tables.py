@@ -15,6 +15,7 @@ from lavendersim.engine.collide import SHAPE_PAIRS
 from lavendersim.engine.collide.broad_phase import template_dtype
 from lavendersim.engine.effects import surface_fields
 from lavendersim.engine.engine import allocate_pairs
+from lavendersim.engine.removal import NO_PAIR
 from lavendersim.engine.spec import Spec
 
 from .candidates import candidate_pairs
@@ -24,7 +25,6 @@ from .colliders import Collider
 # Rows of pairs that a scene with a broad phase starts with, per body: a densely packed pile of
 # spheres has six, and the engine makes more when it needs them.
 PAIRS_PER_BODY: Final = 8
-NO_PAIR: Final = -1  # `kind` of two classes that never touch
 
 
 def pair_tables(

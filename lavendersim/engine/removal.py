@@ -1,0 +1,47 @@
+"""Arrays of an engine between two steps enter; the same without one body leave.
+
+What is removed stays where it is, as a body that is fixed and that nothing can touch: without mass
+it is in no sum and no force moves it, and no pair of its rows is left. It has no velocity.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+NO_PAIR = -1  # `kind` of two classes of bodies that never touch
+# What says of a body that it moves, or may again.
+_MOVES = (
+    *("inv_m", "inv_ix", "inv_iy", "inv_iz", "kinematic", "asleep"),
+    *("own_inv_m", "own_inv_ix", "own_inv_iy", "own_inv_iz"),
+    *("fx", "fy", "fz", "tx", "ty", "tz"),
+)
+
+
+def rows_of(bodies: np.ndarray, body: int) -> np.ndarray:
+    """Return which rows of the body table are a body and its parts."""
+    if "owner" in (bodies.dtype.names or ()):
+        return np.asarray(bodies["owner"] == body)
+    return np.arange(len(bodies)) == body
+
+
+def hold_still(bodies: np.ndarray, velocities: np.ndarray, rows: np.ndarray) -> None:
+    """Make rows fixed, for good."""
+    for name in _MOVES:
+        if name in (bodies.dtype.names or ()):
+            bodies[name][rows] = 0
+    velocities[rows] = np.zeros(1, velocities.dtype)
+
+
+def pairs_without(pairs: np.ndarray, rows: np.ndarray) -> np.ndarray:
+    """Return the table of pairs without those of some rows of the body table."""
+    return np.ascontiguousarray(pairs[~(rows[pairs["a"]] | rows[pairs["b"]])])
+
+
+def make_untouchable(bodies: np.ndarray, templates: np.ndarray, rows: np.ndarray) -> np.ndarray:
+    """Give rows a class of their own, which touches nothing; returns the templates with it."""
+    classes = len(templates)
+    grown = np.zeros((classes + 1, classes + 1), templates.dtype)
+    grown["kind"] = NO_PAIR
+    grown[:classes, :classes] = templates
+    bodies["material"][rows] = classes
+    return grown
