@@ -299,7 +299,8 @@ class Engine:
         rows = removal.rows_of(self.bodies, body)
         removal.hold_still(self.bodies, self.velocities, rows)
         if self.spec.has("broad_phase"):
-            self._templates = removal.make_untouchable(self.bodies, self._templates, rows)
+            templates = np.asarray(self._templates)
+            self._templates = removal.make_untouchable(self.bodies, templates, rows)
             self._near.state["listed"] = 0
             self._work = (*self._work[:-2], self._templates, self._near)
         else:

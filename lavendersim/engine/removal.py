@@ -20,8 +20,8 @@ _MOVES = (
 def rows_of(bodies: np.ndarray, body: int) -> np.ndarray:
     """Return which rows of the body table are a body and its parts."""
     if "owner" in (bodies.dtype.names or ()):
-        return np.asarray(bodies["owner"] == body)
-    return np.arange(len(bodies)) == body
+        return np.asarray(bodies["owner"] == body, np.bool_)
+    return np.asarray(np.arange(len(bodies)) == body, np.bool_)
 
 
 def hold_still(bodies: np.ndarray, velocities: np.ndarray, rows: np.ndarray) -> None:

@@ -22,7 +22,7 @@ class Removal(NamedTuple):
     """When a body is removed."""
 
     at: float  # [s]
-    index: int  # of the event
+    event: int  # its index
 
 
 def check_events(root: Node, length: float | None, report: Report) -> None:
@@ -143,5 +143,5 @@ def _check_force_ends(force: Node, gone: dict[str, Removal], report: Report) -> 
 
 
 def _gone(key: str, name: str | None, removal: Removal) -> str:
-    event = place_of(("events", removal.index))
+    event = place_of(("events", removal.event))
     return f'{key}: "{name}" is removed at {removal.at:g} s by {event}'

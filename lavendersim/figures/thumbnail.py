@@ -14,6 +14,7 @@ from typing import Any, Final
 import numpy as np
 
 from lavendersim.figures.style import DARK, GREY, LOOKS
+from lavendersim.measures.changes import removals
 from lavendersim.measures.solids import rotations
 
 WIDTH, HEIGHT, DPI = 1.6, 1.1, 100  # inch, inch, dots per inch: 160 x 110 dots
@@ -76,7 +77,10 @@ def _view(trace: Any) -> tuple[np.ndarray, np.ndarray]:
 def _outlines(
     trace: Any, right: np.ndarray, up: np.ndarray
 ) -> tuple[list[np.ndarray], list[str], np.ndarray]:
-    """Return outlines, those of the start first, then the farthest, their colours, what is seen."""
+    """Return outlines, those of the start first, then the farthest, their colours, what is seen.
+
+    What was removed is seen where it began, and not at the end.
+    """
     poses = trace.pose
     whole = np.flatnonzero(np.isfinite(poses).all(axis=(1, 2)))
     shapes = [trace.resolved["scene"]["bodies"][name] for name in trace.bodies]
@@ -87,11 +91,12 @@ def _outlines(
     if len(whole) == 0:
         return outlines, colours, NOTHING
     start, end = poses[whole[0]], poses[whole[-1]]
+    gone = {list(trace.bodies).index(n) for n, row in removals(trace).items() if row <= whole[-1]}
     far = np.cross(up, right)
     for pose, is_end in ((start, False), (end, True)):
         turns = rotations(pose[:, 3:])
         for i in sorted(solid, key=lambda i: -float(pose[i, :3] @ far)):
-            if i in movable or is_end:
+            if (i in movable or is_end) and not (is_end and i in gone):
                 corners = pose[i, :3] + _corners(shapes[i]["shape"]) @ turns[i].T
                 outlines.append(_hull(np.column_stack([corners @ right, corners @ up])))
                 own = LOOKS[i % len(LOOKS)].colour if is_end else BEFORE

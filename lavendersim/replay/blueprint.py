@@ -23,7 +23,6 @@ import rerun as rr
 import rerun.blueprint as rrb
 
 from lavendersim.replay.columns import (
-    TIMELINE,
     Plot,
     plots_of,
     time_in_nanoseconds,
@@ -31,6 +30,7 @@ from lavendersim.replay.columns import (
 )
 from lavendersim.replay.force_scale import ForceScale
 from lavendersim.replay.scene import WORLD, Extent, Shape, Vector, grid_spacing
+from lavendersim.replay.timeline import TIMELINE
 
 if TYPE_CHECKING:
     from lavendersim.trace import Trace

@@ -15,12 +15,13 @@ import numpy.typing as npt
 import rerun as rr
 
 from lavendersim.replay.force_scale import CONTACT_KEY, ForceScale
-from lavendersim.replay.scene import WORLD, Extent, entity
+from lavendersim.replay.removal import clear_removed
+from lavendersim.replay.scene import BODIES, GRIDS, WORLD, Extent, entity
+from lavendersim.replay.timeline import TIMELINE
 
 if TYPE_CHECKING:
     from lavendersim.trace import Trace
 
-TIMELINE = "sim_time"
 CONTACT_POINTS = "contacts/points"
 CONTACT_FORCES = "contacts/forces"
 
@@ -126,6 +127,7 @@ def send(stream: rr.RecordingStream, trace: Trace, room: Extent, scale: ForceSca
     if scale is not None:
         _send_contacts(stream, trace, times, room, scale)
     _send_plots(stream, trace, times)
+    clear_removed(stream, trace, time_in_nanoseconds(trace), [BODIES, GRIDS])
 
 
 def _send_poses(stream: rr.RecordingStream, trace: Trace, times: npt.NDArray[Any]) -> None:

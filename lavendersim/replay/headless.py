@@ -20,7 +20,6 @@ import numpy as np
 from rerun.experimental import ViewerClient
 
 from lavendersim.errors import LavenderError, MissingDriverError
-from lavendersim.replay.columns import TIMELINE
 from lavendersim.replay.drivers import (
     NO_DRIVER,
     VIEWER_HAS_NO_DRIVER,
@@ -28,6 +27,7 @@ from lavendersim.replay.drivers import (
     viewer_program,
 )
 from lavendersim.replay.recording import moment_to_show, write_rrd
+from lavendersim.replay.timeline import TIMELINE
 
 if TYPE_CHECKING:
     from rerun.experimental import ViewerState

@@ -13,14 +13,17 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 import rerun as rr
 
+from lavendersim.replay.removal import removed
 from lavendersim.replay.shapes import UP, Shape, Vector, rotate, shapes
 from lavendersim.replay.solids import Look, archetypes
+from lavendersim.replay.timeline import at_time
 
 if TYPE_CHECKING:
     from lavendersim.trace import Trace
 
 __all__ = ["WORLD", "Extent", "Shape", "Vector", "draw", "entity", "extent", "shapes"]
 
+BODIES, GRIDS = "bodies", "grid"  # where bodies are drawn, and the grids of planes
 WORLD = "tf#/"  # rerun's name of the root frame, which no body can have
 
 # Okabe and Ito's palette, which stays distinct for all common kinds of colour blindness. Yellow
@@ -53,7 +56,7 @@ class Extent(NamedTuple):
 
 def entity(name: str) -> str:
     """Entity path of a body; its last part is the body's name, escaped as rerun asks."""
-    return rr.new_entity_path(["bodies", name])
+    return rr.new_entity_path([BODIES, name])
 
 
 def extent(trace: Trace, bodies: Iterable[Shape]) -> Extent:
@@ -74,13 +77,20 @@ def extent(trace: Trace, bodies: Iterable[Shape]) -> Extent:
 
 
 def draw(stream: rr.RecordingStream, trace: Trace, bodies: Sequence[Shape], room: Extent) -> None:
-    """Log every body's geometry, and the path its centre takes, once, as static data."""
+    """Log every body's geometry, and the path its centre takes, once.
+
+    As static data, but for what is removed on the way: that can be cleared (`clear_removed`).
+    """
     stream.log("/", rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
+    gone = removed(trace)
+    begin = int(trace.step["time_ns"][0]) if len(trace.step) else 0
     movable = sum(not shape.fixed for shape in bodies)
     colours = iter(MOVABLE_COLOURS * (movable // len(MOVABLE_COLOURS) + 1))
     for shape in bodies:
+        stays = shape.name not in gone
         if shape.kind == "plane":
-            _draw_plane(stream, shape, room)
+            with at_time(stream, begin):
+                _draw_plane(stream, shape, room, stays)
             continue
         colour = FIXED_COLOUR if shape.fixed else next(colours)
         _draw_path(stream, trace, shape, colour)
@@ -92,8 +102,9 @@ def draw(stream: rr.RecordingStream, trace: Trace, bodies: Sequence[Shape], room
             within = [] if len(drawn) == 1 else [kind]
             for form in forms:
                 edges = ["edges"] if isinstance(form, rr.LineStrips3D) else []
-                place = rr.new_entity_path(["bodies", shape.name, *within, *edges])
-                stream.log(place, frame, form, static=True)
+                place = rr.new_entity_path([BODIES, shape.name, *within, *edges])
+                with at_time(stream, begin):
+                    stream.log(place, frame, form, static=stays)
 
 
 def _draw_path(
@@ -109,7 +120,7 @@ def _draw_path(
         stream.log(place, rr.CoordinateFrame(WORLD), line, static=True)
 
 
-def _draw_plane(stream: rr.RecordingStream, plane: Shape, room: Extent) -> None:
+def _draw_plane(stream: rr.RecordingStream, plane: Shape, room: Extent, stays: bool) -> None:
     """A thin box whose upper face lies in the plane, below (or beside) the scene, with a grid.
 
     The viewer's own grid is endless and flickers where it coincides with a face.
@@ -127,7 +138,7 @@ def _draw_plane(stream: rr.RecordingStream, plane: Shape, room: Extent) -> None:
         colors=[GROUND_COLOUR],
         fill_mode="Solid",
     )
-    stream.log(entity(plane.name), rr.CoordinateFrame(WORLD), slab, static=True)
+    stream.log(entity(plane.name), rr.CoordinateFrame(WORLD), slab, static=stays)
 
     ticks = np.linspace(-across, across, 2 * cells + 1)
     ends = np.array([-across, across])
@@ -137,8 +148,8 @@ def _draw_plane(stream: rr.RecordingStream, plane: Shape, room: Extent) -> None:
     lines = foot + rotate(turn, corners)
     radius = rr.Radius.ui_points(0.5)
     grid = rr.LineStrips3D(list(lines), colors=[GRID_COLOUR], radii=radius)
-    place = rr.new_entity_path(["grid", plane.name])
-    stream.log(place, rr.CoordinateFrame(WORLD), grid, static=True)
+    place = rr.new_entity_path([GRIDS, plane.name])
+    stream.log(place, rr.CoordinateFrame(WORLD), grid, static=stays)
 
 
 def grid_spacing(room: Extent) -> float:

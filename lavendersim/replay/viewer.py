@@ -13,9 +13,9 @@ import rerun as rr
 from rerun.experimental import ViewerClient
 
 from lavendersim.errors import LavenderError
-from lavendersim.replay.columns import TIMELINE
 from lavendersim.replay.drivers import require_display, viewer_program
 from lavendersim.replay.recording import moment_to_show, new_stream, record
+from lavendersim.replay.timeline import TIMELINE
 
 if TYPE_CHECKING:
     import numpy as np

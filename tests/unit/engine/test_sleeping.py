@@ -118,6 +118,30 @@ def test_what_stood_on_a_body_taken_away_falls() -> None:
     assert LONE in asleep(bench)
 
 
+@pytest.mark.parametrize(
+    ("removed", "left"), [("low", [LONE]), ("high", [LONE]), ("floor", []), ("lift", [])]
+)
+def test_whoever_slept_beside_a_removed_body_wakes(removed, left) -> None:
+    """The floor and the lift bore whom nobody knows: all wake."""
+    bench = slept()
+    row = bench.scene.names.index(removed)
+    place = bench.engine.bodies[["x", "y", "z"]][row].item()
+    apply_event(bench.engine, bench.scene, {**EVENT, "body": removed, "remove": True})
+    assert asleep(bench) == left
+    bodies, velocities = bench.engine.bodies, bench.engine.velocities
+    assert (bodies["inv_m"][row], bodies["own_inv_m"][row], bodies["kinematic"][row]) == (0, 0, 0)
+    bench.run(24)
+    assert bodies[["x", "y", "z"]][row].item() == place
+    assert not any(velocities[row].item())
+    fallen = {"low": [MIDDLE, HIGH], "high": [], "floor": [LOW, MIDDLE, HIGH, LONE], "lift": []}
+    for other in (LOW, MIDDLE, HIGH, LONE):
+        if other != row:
+            height = 0.1 if other == LONE else 0.2 * other - 0.1
+            # 0.1 s of free fall: g t^2 / 2 = 49 mm; Euler falls g dt t / 2 = 2 mm more
+            drop = 0.5 * G * (24 * DT) ** 2 if other in fallen[removed] else 0.0
+            assert bodies["z"][other] == pytest.approx(height - drop, abs=0.51 * G * DT * 24 * DT)
+
+
 @pytest.mark.parametrize("force", [(0.0, 0.0, 15.0), (1e-9, 0.0, 0.0)])
 def test_a_force_wakes_and_keeps_awake_as_long_as_it_acts(force) -> None:
     bench = slept()

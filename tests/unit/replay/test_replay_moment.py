@@ -11,8 +11,8 @@ import pytest
 from lavendersim import replay
 from lavendersim.errors import LavenderError, UsageError
 from lavendersim.replay import drivers, headless, viewer
-from lavendersim.replay.columns import TIMELINE
 from lavendersim.replay.recording import moment_to_show, new_stream, record
+from lavendersim.replay.timeline import TIMELINE
 
 HAS_DRIVER = sys.platform != "linux" or any(drivers.driver_files(os.environ))
 needs_driver = pytest.mark.skipif(

@@ -222,3 +222,31 @@ def test_where_nothing_can_touch_the_scene_is_the_only_view(one_ball):
     kinds, title = views_of(where_nothing_can_touch(one_ball))
     assert kinds == ["Spatial3DView"]
     assert "force" not in title
+
+
+@pytest.mark.parametrize("at", [1.0, 0.9999, 9.0])
+def test_a_removed_body_vanishes_with_the_first_state_without_it(two_bodies, tmp_path, at):
+    two_bodies.resolved["events"] = [{"at": at, "body": "box", "remove": True}]
+    replay.save(two_bodies, tmp_path / "trace.rrd")
+    moving, static = read(tmp_path / "trace.rrd")
+    box = moving["/bodies/box"]
+    cleared = [batch for batch in box if "Clear:is_recursive" in batch.schema.names]
+    if at == 9.0:  # the log ends before: drawn as everything that stays
+        assert "/bodies/box" in static
+        assert not cleared
+        return
+    assert "/bodies/box" not in static
+    drawn = [batch for batch in box if "Boxes3D:half_sizes" in batch.schema.names]
+    assert times(drawn).tolist() == [0]
+    assert times(cleared).tolist() == [two_bodies.step["time_ns"][241]]
+    assert column(cleared, "Clear:is_recursive") == [[True]]
+    assert "/bodies/ball" in static
+
+
+def test_a_removed_floor_takes_its_grid_along(two_bodies, tmp_path):
+    two_bodies.resolved["events"] = [{"at": 1.0, "body": "floor", "remove": True}]
+    replay.save(two_bodies, tmp_path / "trace.rrd")
+    moving, static = read(tmp_path / "trace.rrd")
+    for place in ("/bodies/floor", "/grid/floor"):
+        assert place not in static
+        assert times(moving[place]).tolist() == [0, two_bodies.step["time_ns"][241]]
