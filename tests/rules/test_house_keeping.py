@@ -40,6 +40,10 @@ SHARED_BY_SOLVERS = {
     "newton_matrix",
     "envelope",
 }
+# Folders of configs that claim something of physics, and what claims something else: maps look for
+# where bounds break, and what the fuzz found is held to its laws (`tests/property`).
+CLAIMING = ("chapter", "hard", "paw_check", "scenes")
+CLAIMING_ELSE = {"maps", "found"}
 FIELD_GROUPS = (
     *("BODY_FIELDS", "VELOCITY_FIELDS", "PAIR_FIELDS", "CONTACT_FIELDS", "CACHE_FIELDS"),
     *("CONTACT_ROW_FIELDS", "STEP_ROW_FIELDS"),
@@ -50,6 +54,18 @@ def test_no_file_is_longer_than_the_limit() -> None:
     sources = [*files(), *sorted((ROOT / "tests").rglob("*.py"))]
     lengths = {path.relative_to(ROOT): len(path.read_text().splitlines()) for path in sources}
     assert {path: length for path, length in lengths.items() if length > LONGEST_FILE} == {}
+
+
+def test_a_config_says_what_every_step_keeps() -> None:
+    """A default may not hold; then its number, or `none`, stands there with the reason."""
+    claims = [path for folder in CLAIMING for path in (ROOT / "configs" / folder).rglob("*.yaml")]
+    assert len(claims) > 80
+    silent = [
+        path.relative_to(ROOT)
+        for path in claims
+        if "\nalways:" not in path.read_text() and path.parent.name not in CLAIMING_ELSE
+    ]
+    assert silent == []
 
 
 def test_no_two_test_files_share_a_name() -> None:
