@@ -6,14 +6,37 @@ import math
 from collections.abc import Sequence
 from html import escape
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 from lavendersim.figures.html_page import address, document, picture, write_whole
 
-LEGEND = (
+LEGEND: Final = (
     "Margin: the least share of a bound that is left over all claims that have one; below 0 it is "
     "broken. Residual: the worst of any step. Cost: physics alone, one processor, no logging."
 )
+HEADS: Final = ("case", "verdict", "margin", "residual [m/s]", "cost [us/step]", "log")
+CELL_HEADS: Final = ("cell", "verdict", "margin", "of the claim", *HEADS[3:])
+CLAIM_HEADS: Final = ("verdict", "claim", "measured", "expected", "margin")
+NUMBERS: Final = frozenset({"margin", "measured", *HEADS[3:5]})
+# A row of numbers that no text below it can widen; on a narrow screen every number has its own
+# line, told by its head.
+STYLE: Final = """
+.cases > tbody > tr.case > td:not(.picture) { border-bottom: none; padding-bottom: 0; }
+.cases > tbody > tr.more > td { padding-top: 0; }
+.cases > tbody > tr.case { height: 1px; } /* what a picture is taller goes below */
+td.verdict { white-space: nowrap; }
+td.number .small { display: inline-block; white-space: normal; max-width: 16em; }
+pre { white-space: pre-wrap; overflow-wrap: anywhere; }
+details { overflow-x: auto; }
+@media (max-width: 55em) {
+  .cases > thead { display: none; }
+  .cases, .cases > tbody, .cases > tbody > tr, .cases > tbody > tr > td { display: block; }
+  .cases > tbody > tr > td { width: auto; border: none; padding: 0 0 0.2em; }
+  .cases > tbody > tr > td.number { text-align: left; }
+  .cases > tbody > tr > td.number::before { content: attr(data-head) ": "; color: #666; }
+  .cases > tbody > tr.more { border-bottom: 1px solid #ddd; margin-bottom: 1em; }
+}
+"""
 
 
 def write_report(results: Sequence[Any], path: Path) -> None:
@@ -28,23 +51,16 @@ def report(results: Sequence[Any], folder: Path) -> str:
     claims = [verdict for result in results for verdict in result.verdicts]
     met = sum(verdict.passed for verdict in claims)
     mark = _mark(good == len(results), f"{good} of {len(results)} cases pass")
-    heads = "".join(
-        f"<th{' class=number' if number else ''}>{name}</th>"
-        for name, number in (
-            *(("", False), ("case", False), ("verdict", False), ("margin", True)),
-            *(("residual [m/s]", True), ("cost [us/step]", True), ("log", False)),
-        )
-    )
     rows = "\n".join(_case(result, folder) for result in results)
     body = f"""<h1>{mark}</h1>
 <p>{met} of {len(claims)} claims met in {cells} cells. <span class="small">{LEGEND}</span></p>
-<table>
-<thead><tr>{heads}</tr></thead>
+<table class="cases">
+<thead><tr><th></th>{_heads(HEADS)}</tr></thead>
 <tbody>
 {rows}
 </tbody>
 </table>"""
-    return document(f"lavender: {good} of {len(results)} cases pass", body)
+    return document(f"lavender: {good} of {len(results)} cases pass", body, STYLE)
 
 
 def _case(result: Any, folder: Path) -> str:
@@ -65,15 +81,21 @@ def _case(result: Any, folder: Path) -> str:
         f"<pre>{escape(verdict.message)}</pre>" for verdict in verdicts if not verdict.passed
     )
     below = f'<br><span class="small">{escape(whose)}</span>' if whose else ""
+    said = "".join(f"<br>{escape(one)} fails, as declared" for one in _declared(run.experiment))
     return (
         f'<tr class="case" data-case="{escape(run.name, quote=True)}">'
-        f'<td class="picture">{picture(shown)}</td>'
-        f"<td>{name}{question}{_details(result, folder)}{failed}</td>"
-        f"<td>{_mark(result.good)}<br>"
-        f'<span class="small">{met} of {len(verdicts)} claims</span></td>'
-        f'<td class="number">{_number(margin)}{below}</td><td class="number">{residual:.2g}</td>'
-        f'<td class="number">{_range(costs)}</td><td>{_link(shown, folder)}</td></tr>'
+        f'<td class="picture" rowspan="2">{picture(shown)}</td><td>{name}{question}</td>'
+        f'<td class="verdict">{_mark(result.good)}<br>'
+        f'<span class="small">{met} of {len(verdicts)} claims{said}</span></td>'
+        f"{_cell('margin', _number(margin) + below)}{_cell(HEADS[3], f'{residual:.2g}')}"
+        f"{_cell(HEADS[4], _range(costs))}<td>{_link(shown, folder)}</td></tr>\n"
+        f'<tr class="more"><td colspan="{len(HEADS)}">{_details(result, folder)}{failed}</td></tr>'
     )
+
+
+def _declared(experiment: Any) -> list[str]:
+    """Return the checks that the config says will fail: known failures and negative controls."""
+    return list(dict.fromkeys(control.fails for control in experiment.controls))
 
 
 def _details(result: Any, folder: Path) -> str:
@@ -88,19 +110,30 @@ def _details(result: Any, folder: Path) -> str:
             f"<td>{_mark(good and all(verdict.passed for verdict in own))}</td>"
             f'<td class="number">{_number(margin)}</td><td>{escape(whose)}</td>'
             f'<td class="number">{outcome.accuracy.worst_residual:.2g}</td>'
-            f'<td class="number">{_cost(outcome):.3g}</td><td>{_link(cell, folder)}</td></tr>'
+            f'<td class="number">{_number(_cost(outcome))}</td><td>{_link(cell, folder)}</td></tr>'
         )
-    claims = "".join(
+    claims = [
         f"<tr><td>{_mark(verdict.passed)}</td><td>{escape(verdict.node)}</td>"
         f'<td class="number">{_number(verdict.measured)}</td><td>{escape(verdict.expected)}</td>'
         f'<td class="number">{_number(verdict.margin)}</td></tr>'
         for verdict in result.verdicts
+    ]
+    tables = "".join(
+        f"<table><thead><tr>{_heads(heads)}</tr></thead><tbody>{''.join(lines)}</tbody></table>"
+        for heads, lines in ((CELL_HEADS, rows), (CLAIM_HEADS, claims))
     )
-    count = f"{len(rows)} cell{'s' if len(rows) > 1 else ''}, {len(result.verdicts)} claims"
-    return (
-        f"<details><summary>{count}</summary><table><tbody>{''.join(rows)}</tbody></table>"
-        f"<table><tbody>{claims}</tbody></table></details>"
+    count = (
+        f"{len(rows)} cell{'s' * (len(rows) != 1)}, {len(claims)} claim{'s' * (len(claims) != 1)}"
     )
+    return f"<details><summary>{count}</summary>{tables}</details>"
+
+
+def _heads(names: Sequence[str]) -> str:
+    return "".join(f"<th{' class=number' if name in NUMBERS else ''}>{name}</th>" for name in names)
+
+
+def _cell(head: str, number: str) -> str:
+    return f'<td class="number" data-head="{head}">{number}</td>'
 
 
 def _shown(result: Any) -> Any:
@@ -115,10 +148,11 @@ def _link(cell: Any, folder: Path) -> str:
 
 
 def _margin(verdicts: Sequence[Any]) -> tuple[float, str]:
-    """Return the least margin and the claim that has it."""
-    known = [verdict for verdict in verdicts if not math.isnan(verdict.margin)]
+    """Return the least margin and the claim that has it; of a failure without one, no number."""
+    failed = [verdict for verdict in verdicts if not verdict.passed]
+    known = [one for one in failed or verdicts if not math.isnan(one.margin)]
     if not known:
-        return math.nan, ""
+        return math.nan, failed[0].node if failed else ""
     least = min(known, key=lambda verdict: verdict.margin)
     return least.margin, least.node
 
@@ -128,12 +162,14 @@ def _cost(outcome: Any) -> float:
 
 
 def _range(numbers: Sequence[float]) -> str:
-    low, high = f"{min(numbers):.3g}", f"{max(numbers):.3g}"
+    low, high = _number(min(numbers)), _number(max(numbers))
     return low if low == high else f"{low} to {high}"
 
 
 def _number(value: float) -> str:
-    return "-" if math.isnan(value) else f"{value:.3g}"
+    if math.isnan(value):
+        return "-"
+    return f"{value:.0f}" if 1e3 <= abs(value) < 1e6 else f"{value:.3g}"
 
 
 def _mark(good: bool, words: str = "") -> str:

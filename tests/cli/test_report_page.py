@@ -17,15 +17,18 @@ HOSTILE = '<script src="http://example.com/x.js">alert("1 & 2")</script>'
 
 @pytest.fixture(scope="module")
 def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A case that passes and one, with hostile words, of which a cell fails."""
+    """A case that passes, one, with hostile words, of which a cell fails, and one that must."""
     folder = tmp_path_factory.mktemp("reported")
     swept = DROP.replace("How high?", f"'{HOSTILE}'") + (
         "sweep:\n  e: {path: scene.bodies.ball.surface.restitution, values: [0.5, 0.9]}\n"
     )
     (folder / "good.yaml").write_text(DROP)
     (folder / "so so.yaml").write_text(swept)
+    must = DROP.replace("[0.02, 0.03]", "[0.2, 0.3]") + "  - {name: too low, fails: rebound}\n"
+    (folder / "z.yaml").write_text(must)
     done = lavender(
-        *("check", "good.yaml", "so so.yaml", "--report", "pages/report.html"), where=folder
+        *("check", "good.yaml", "so so.yaml", "z.yaml", "--report", "pages/report.html"),
+        where=folder,
     )
     assert done.returncode == 1, done.stderr
     return folder / "pages" / "report.html"
@@ -33,17 +36,31 @@ def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_there_is_a_row_for_every_case_and_cell(report: Path) -> None:
     page = Page(report.read_text(encoding="utf-8"))
-    assert [row["data-case"] for row in page.all("tr", "case")] == ["good", "so so"]
-    assert len(page.all("tr", "cell")) == 3
-    for words in ("1 of 2 cases pass", "2 of 3 claims met in 3 cells", "rebound at e=0.9: FAILED"):
+    assert [row["data-case"] for row in page.all("tr", "case")] == ["good", "so so", "z"]
+    assert len(page.all("tr", "cell")) == 4
+    for words in ("2 of 3 cases pass", "3 of 4 claims met in 4 cells", "rebound at e=0.9: FAILED"):
         assert words in page.text
+
+
+def test_a_pass_by_a_declared_failure_says_so(report: Path) -> None:
+    rows = report.read_text(encoding="utf-8").split('<tr class="case"')[1:]
+    assert ["rebound fails, as declared" in row for row in rows] == [False, False, True]
+
+
+def test_no_text_below_a_row_can_widen_it(report: Path) -> None:
+    page = Page(report.read_text(encoding="utf-8"))
+    (heads,) = (i for i, (_, at) in enumerate(page.seen) if at.get("class") == "cases")
+    columns = [tag for tag, _ in page.seen[heads : heads + 20]].count("th") - 1  # of the picture
+    wide = [at["colspan"] for tag, at in page.seen if tag == "td" and "colspan" in at]
+    assert wide == [str(columns)] * 3
+    assert len(page.all("tr", "more")) == 3
 
 
 def test_the_page_needs_nothing_else(report: Path) -> None:
     page = Page(report.read_text(encoding="utf-8"))
     page.needs_nothing_else()
     pictures = page.all("img")
-    assert len(pictures) == 2
+    assert len(pictures) == 3
     for picture in pictures:
         kind, _, data = picture["src"].partition(",")
         assert kind == "data:image/png;base64"
@@ -54,7 +71,7 @@ def test_the_page_needs_nothing_else(report: Path) -> None:
 def test_every_link_leads_to_a_log(report: Path) -> None:
     page = Page(report.read_text(encoding="utf-8"))
     links = [link["href"] for link in page.all("a")]
-    assert len(links) == 2 + 3
+    assert len(links) == 3 + 4
     for link in links:
         log = report.parent / unquote(link)
         assert log.suffix == ".mcap"
@@ -75,4 +92,4 @@ def test_a_page_of_another_name_is_refused(report: Path) -> None:
 
 def test_the_page_opens_in_a_browser(report: Path, tmp_path: Path) -> None:
     page = opened_in_a_browser(report, tmp_path)
-    assert [row["data-case"] for row in page.all("tr", "case")] == ["good", "so so"]
+    assert [row["data-case"] for row in page.all("tr", "case")] == ["good", "so so", "z"]
