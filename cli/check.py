@@ -88,7 +88,11 @@ def check(
         short = sum(experiment.reduced for experiment in experiments)
         typer.echo(
             f"{passed} of {len(verdicts)} expectations met, {ended} of {len(cells)} cells complete"
-            + (f"; {short} experiments reduced, --full runs all of them" if short else "")
+            + (
+                f"; {short} experiment{'s' * (short != 1)} reduced, --full runs all of them"
+                if short
+                else ""
+            )
         )
     if not good:
         raise typer.Exit(1)
