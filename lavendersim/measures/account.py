@@ -84,7 +84,8 @@ class EnergyAccount:
         self._given, self._lowest = float(given[-1]), float(lowest[-1])
         self._lowest_potential = float(lowest_potential[-1])
         self._worked, self._put_in = float(worked[-1]), float(put_in[-1])
-        created = own - lowest
+        with np.errstate(invalid="ignore"):  # of what is beyond all numbers
+            created = own - lowest
         at_play = (
             self._first_kinetic
             + self._own_weight
