@@ -10,8 +10,8 @@ import numpy as np
 from matplotlib import style
 from matplotlib.figure import Figure
 
-from lavendersim.figures.page import wrapped
-from lavendersim.figures.residual_against_time import marks, save, sheet
+from lavendersim.figures.page import save, wrapped
+from lavendersim.figures.residual_against_time import marks, sheet
 from lavendersim.figures.style import STYLE, look
 
 WIDTH, HEIGHT = 8.6, 4.2  # [inch]
@@ -28,10 +28,8 @@ def draw_contact_cost(found: Mapping[str, Any], directory: Path) -> list[Path]:
     found: `repeats`, `sweeps`, `environment` with the `processor`, and rows `growth` with `solver`,
     `contacts` and `samples` [ns].
     """
-    directory = Path(directory)
-    directory.mkdir(parents=True, exist_ok=True)
     with style.context(STYLE, after_reset=True):
-        return save(compose(found), directory / "contact_cost")
+        return save(compose(found), Path(directory) / "contact_cost")
 
 
 def compose(found: Mapping[str, Any]) -> Figure:

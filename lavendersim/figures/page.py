@@ -59,14 +59,17 @@ def draw(run: Any, directory: Path) -> list[Path]:
     experiment = run.experiment
     if experiment.figure is None:
         return []
-    directory = Path(directory)
-    directory.mkdir(parents=True, exist_ok=True)
     name = getattr(run, "name", experiment.name)  # a run kept its file as config.yaml
-    paths = [directory / f"{name}.{suffix}" for suffix in ("png", "svg")]
     with style.context(STYLE, after_reset=True):
-        figure = compose(experiment, list(run.cells))
-        figure.savefig(paths[0], dpi=DPI, metadata={"Software": None})
-        figure.savefig(paths[1], metadata={"Date": None, "Creator": "lavender"})
+        return save(compose(experiment, list(run.cells)), Path(directory) / name)
+
+
+def save(figure: Figure, stem: Path) -> list[Path]:
+    """Write a page as PNG and SVG into a directory, made where missing; returns the files."""
+    stem.parent.mkdir(parents=True, exist_ok=True)
+    paths = [stem.with_name(f"{stem.name}.{suffix}") for suffix in ("png", "svg")]
+    figure.savefig(paths[0], dpi=DPI, metadata={"Software": None})
+    figure.savefig(paths[1], metadata={"Date": None, "Creator": "lavender"})
     return paths
 
 

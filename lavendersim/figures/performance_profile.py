@@ -18,8 +18,8 @@ from matplotlib import style
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator
 
-from lavendersim.figures.page import wrapped
-from lavendersim.figures.residual_against_time import marks, save, sheet, span
+from lavendersim.figures.page import save, wrapped
+from lavendersim.figures.residual_against_time import marks, sheet, span
 from lavendersim.figures.style import STYLE
 
 WIDTH, HEIGHT = 8.6, 4.0  # [inch]
@@ -45,8 +45,6 @@ def draw_profile(
     """Write `performance_profile.png` and `.svg`; returns the files, none without problems."""
     if not comparisons:
         return []
-    directory = Path(directory)
-    directory.mkdir(parents=True, exist_ok=True)
     repeats = [one.timing.repeats for each in comparisons for one in each.attempts]
     count = len(comparisons)
     with style.context(STYLE, after_reset=True):
@@ -59,7 +57,7 @@ def draw_profile(
             ),
             WIDTH,
         )
-        return save(compose(ratios, caption), directory / "performance_profile")
+        return save(compose(ratios, caption), Path(directory) / "performance_profile")
 
 
 def compose(ratios: dict[str, list[float]], caption: str) -> Figure:

@@ -17,8 +17,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, NullLocator, SymmetricalLogLocator
 
-from lavendersim.figures.page import MARGIN, wrapped
-from lavendersim.figures.style import DARK, DPI, GREY, LINE_HEIGHT, STYLE, look
+from lavendersim.figures.page import MARGIN, save, wrapped
+from lavendersim.figures.style import DARK, GREY, LINE_HEIGHT, STYLE, look
 
 ROW: Final = 0.27  # [inch]
 SCENE_WIDTH, COMPILE_WIDTH, NAMES_WIDTH = 3.6, 2.6, 2.0  # [inch]
@@ -44,15 +44,9 @@ def draw_prices(runs: Sequence[Any], directory: Path) -> list[Path]:
     priced = [(str(run.name), run.results()["prices"]) for run in runs if _has_prices(run)]
     if not priced:
         return []
-    directory = Path(directory)
-    directory.mkdir(parents=True, exist_ok=True)
     stem = f"{priced[0][0]}_prices" if len(priced) == 1 else "prices"
-    paths = [directory / f"{stem}.{suffix}" for suffix in ("png", "svg")]
     with style.context(STYLE, after_reset=True):
-        figure = compose(priced)
-        figure.savefig(paths[0], dpi=DPI, metadata={"Software": None})
-        figure.savefig(paths[1], metadata={"Date": None, "Creator": "lavender"})
-    return paths
+        return save(compose(priced), Path(directory) / stem)
 
 
 def _has_prices(run: Any) -> bool:

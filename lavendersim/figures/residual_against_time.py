@@ -19,8 +19,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator, NullLocator
 
-from lavendersim.figures.page import MARGIN, wrapped
-from lavendersim.figures.style import DPI, GREY, LINE_HEIGHT, LOOKS, STYLE, look
+from lavendersim.figures.page import MARGIN, save, wrapped
+from lavendersim.figures.style import GREY, LINE_HEIGHT, LOOKS, STYLE, look
 
 PANEL: Final = (4.3, 3.1)  # [inch]
 COLUMNS, PANELS_ON_PAGE = 3, 12
@@ -61,23 +61,13 @@ def draw_curves(
     """
     drawn = [each for each in comparisons if any(one.points for one in each.attempts)]
     pages = [drawn[at : at + PANELS_ON_PAGE] for at in range(0, len(drawn), PANELS_ON_PAGE)]
-    directory = Path(directory)
-    directory.mkdir(parents=True, exist_ok=True)
     paths = []
     for number, page in enumerate(pages, start=1):
         stem = "residual_against_time" if quantity == "scaled" else "error_against_time"
         stem += f"_{number}" if len(pages) > 1 else ""
         with style.context(STYLE, after_reset=True):
             figure = compose(page, tolerance, processor, quantity)
-            paths += save(figure, directory / stem)
-    return paths
-
-
-def save(figure: Figure, stem: Path) -> list[Path]:
-    """Write a page as PNG and SVG; equal numbers give equal bytes."""
-    paths = [stem.with_name(f"{stem.name}.{suffix}") for suffix in ("png", "svg")]
-    figure.savefig(paths[0], dpi=DPI, metadata={"Software": None})
-    figure.savefig(paths[1], metadata={"Date": None, "Creator": "lavender"})
+            paths += save(figure, Path(directory) / stem)
     return paths
 
 

@@ -21,8 +21,8 @@ from matplotlib.patches import Rectangle
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from lavendersim.figures.cost_looks import RINGS, Looks, curves_of, handles_of
-from lavendersim.figures.page import MARGIN, wrapped
-from lavendersim.figures.style import DARK, DPI, GREY, LINE_HEIGHT, STYLE
+from lavendersim.figures.page import MARGIN, save, wrapped
+from lavendersim.figures.style import DARK, GREY, LINE_HEIGHT, STYLE
 from lavendersim.figures.timestep_errors import draw_timestep_errors
 
 WIDTH, LEGEND_WIDTH, HEIGHT = 5.6, 2.9, 5.0  # [inch] of a panel, of the legend
@@ -50,14 +50,8 @@ def draw_work_precision(run: Any, directory: Path) -> list[Path]:
     table = run.cost()
     if table is None:
         return []
-    directory = Path(directory)
-    directory.mkdir(parents=True, exist_ok=True)
-    paths = [directory / f"{run.name}_cost.{suffix}" for suffix in ("png", "svg")]
     with style.context(STYLE, after_reset=True):
-        figure = compose(table)
-        figure.savefig(paths[0], dpi=DPI, metadata={"Software": None})
-        figure.savefig(paths[1], metadata={"Date": None, "Creator": "lavender"})
-    return paths
+        return save(compose(table), Path(directory) / f"{run.name}_cost")
 
 
 def compose(table: dict[str, Any]) -> Figure:
