@@ -31,6 +31,24 @@ class ContactProblem(NamedTuple):
         """How many contacts the problem has."""
         return len(self.mu)
 
+    @property
+    def columns(self) -> np.ndarray:
+        """Block column of every stored block, (m,)."""
+        return np.repeat(np.arange(self.contacts), np.diff(self.begin))
+
+    @property
+    def own_blocks(self) -> np.ndarray:
+        """The contacts' own blocks of W, (n, 3, 3) [1/kg]."""
+        blocks: np.ndarray = self.blocks[self.row == self.columns]
+        return blocks
+
+    @property
+    def q(self) -> np.ndarray:
+        """A copy of free + target e_n, (n, 3) [m/s]: u = (W + gamma) r + q."""
+        q: np.ndarray = self.free.copy()
+        q[:, 0] += self.target
+        return q
+
 
 class Solution(NamedTuple):
     """What a solver leaves."""

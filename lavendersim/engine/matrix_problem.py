@@ -14,32 +14,19 @@ from .solvers import SOLVERS
 from .spec import Spec
 
 
-def columns_of_blocks(problem: ContactProblem) -> np.ndarray:
-    """Return the block column of every stored block, shape (m,)."""
-    return np.repeat(np.arange(problem.contacts), np.diff(problem.begin))
-
-
 def multiply(problem: ContactProblem, impulses: np.ndarray) -> np.ndarray:
     """Return W r, shape (n, 3) [m/s]."""
     product = np.zeros((problem.contacts, 3))
-    parts = np.einsum("kij,kj->ki", problem.blocks, impulses[columns_of_blocks(problem)])
+    parts = np.einsum("kij,kj->ki", problem.blocks, impulses[problem.columns])
     np.add.at(product, problem.row, parts)
     return product
-
-
-def diagonal_blocks(problem: ContactProblem) -> np.ndarray:
-    """Return the contacts' own blocks of W, shape (n, 3, 3) [1/kg]."""
-    blocks: np.ndarray = problem.blocks[problem.row == columns_of_blocks(problem)]
-    return blocks
 
 
 def coupling_of(problem: ContactProblem) -> Coupling:
     """Return W with the scales of the problem's residual."""
     contacts = max(problem.contacts, 1)
-    trace = np.trace(diagonal_blocks(problem), axis1=1, axis2=2).sum() + problem.gamma.sum()
-    q = problem.free.copy()
-    q[:, 0] += problem.target
-    norm = float(np.linalg.norm(q))
+    trace = np.trace(problem.own_blocks, axis1=1, axis2=2).sum() + problem.gamma.sum()
+    norm = float(np.linalg.norm(problem.q))
     return Coupling(
         problem.row, problem.blocks, np.array([trace / (3 * contacts), norm if norm > 0.0 else 1.0])
     )
@@ -51,7 +38,7 @@ def contacts_of(problem: ContactProblem, spec: Spec, impulses: np.ndarray) -> np
         problem.contacts,
         dtype(MATRIX_CONTACT, getattr(SOLVERS[spec.solver], "CONTACT_FIELDS", [])),
     )
-    own = diagonal_blocks(problem)
+    own = problem.own_blocks
     w = multiply(problem, impulses) + problem.free
     w[:, 0] += problem.target
     for k, axis in enumerate("n12"):
@@ -69,7 +56,7 @@ def contacts_of(problem: ContactProblem, spec: Spec, impulses: np.ndarray) -> np
     # No step against W that is this stiff can overshoot: Gershgorin's bound, by blocks.
     size = np.linalg.norm(problem.blocks, axis=(1, 2))
     rows = np.bincount(problem.row, size, problem.contacts)
-    columns = np.bincount(columns_of_blocks(problem), size, problem.contacts)
+    columns = np.bincount(problem.columns, size, problem.contacts)
     contacts["bound"] = np.maximum(rows, columns) + problem.gamma
     return contacts
 

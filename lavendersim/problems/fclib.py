@@ -19,7 +19,7 @@ from scipy import sparse
 
 from lavendersim.engine.contact_problem import ContactProblem
 from lavendersim.errors import ProblemError
-from lavendersim.problems.matrices import DIMENSION, matrix_of, problem_of, velocities_of
+from lavendersim.problems.matrices import DIMENSION, matrix_of, problem_of
 from lavendersim.problems.reduction import reduce_to_contacts
 
 SIGNATURE = b"\x89HDF\r\n\x1a\n"  # the first bytes of every HDF5 file
@@ -174,7 +174,7 @@ def write_fclib(
     if problem.contacts == 0:
         raise ProblemError(f"{file}: a problem without contacts cannot be stored as FCLIB's")
     h5py = _h5py(file)
-    matrix, q = matrix_of(problem), velocities_of(problem)
+    matrix, q = matrix_of(problem), problem.q
     with h5py.File(file, "w", libver=("earliest", "v108")) as opened:
         group = opened.create_group(LOCAL)
         _write(group, "spacedim", [DIMENSION], np.int32)

@@ -52,28 +52,16 @@ def problem_of(matrix: Any, free: np.ndarray, mu: np.ndarray) -> ContactProblem:
     )
 
 
-def columns_of(problem: ContactProblem) -> np.ndarray:
-    """Return the block column of every stored block, (m,)."""
-    return np.repeat(np.arange(problem.contacts), np.diff(problem.begin))
-
-
 def matrix_of(problem: ContactProblem) -> Any:
     """Return W + gamma on the normal diagonal [1/kg], a (3n, 3n) scipy matrix by columns.
 
-    With it and `velocities_of` the problem is `u = W r + q`, as others state it.
+    With it and `problem.q` the problem is `u = W r + q`, as others state it.
     """
     softened = problem.blocks.copy()
-    own = problem.row == columns_of(problem)
+    own = problem.row == problem.columns
     softened[own, 0, 0] += problem.gamma
     size = DIMENSION * problem.contacts
     transposed = sparse.bsr_matrix(
         (softened.transpose(0, 2, 1), problem.row, problem.begin), shape=(size, size)
     )
     return transposed.tocsr().T.tocsc()
-
-
-def velocities_of(problem: ContactProblem) -> np.ndarray:
-    """Return q = free + target e_n, (n, 3) [m/s]."""
-    q: np.ndarray = problem.free.copy()
-    q[:, 0] += problem.target
-    return q

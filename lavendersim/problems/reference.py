@@ -19,7 +19,6 @@ from typing import NamedTuple
 import numpy as np
 
 from lavendersim.engine.contact_problem import SOLVED, ContactProblem, Solution
-from lavendersim.problems.matrices import velocities_of
 from lavendersim.problems.residual import contact_velocities, own_scales
 from lavendersim.problems.solve import solve
 
@@ -79,7 +78,7 @@ def reference(problem: ContactProblem, tolerance: float = TOLERANCE) -> Referenc
 
 def relative_difference(problem: ContactProblem, first: np.ndarray, second: np.ndarray) -> float:
     """Return |u1 - u2| / max(|u1|, |u2|, |q|), 0 where all are 0."""
-    longest = max(float(np.linalg.norm(u)) for u in (first, second, velocities_of(problem)))
+    longest = max(float(np.linalg.norm(u)) for u in (first, second, problem.q))
     apart = float(np.linalg.norm(first - second))
     if not np.isfinite(apart):
         return float("inf")
@@ -90,7 +89,7 @@ def _along_the_normals(problem: ContactProblem) -> np.ndarray:
     """Return normal impulses, (n, 3), that would change each contact's velocity by |q| alone."""
     own = own_scales(problem)
     impulses = np.zeros((problem.contacts, 3))
-    impulses[:, 0] = np.linalg.norm(velocities_of(problem)) / np.where(own > 0.0, own, np.inf)
+    impulses[:, 0] = np.linalg.norm(problem.q) / np.where(own > 0.0, own, np.inf)
     return impulses
 
 

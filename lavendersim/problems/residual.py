@@ -26,7 +26,6 @@ from typing import NamedTuple
 import numpy as np
 
 from lavendersim.engine.contact_problem import ContactProblem
-from lavendersim.problems.matrices import columns_of, velocities_of
 
 
 class Part(NamedTuple):
@@ -82,13 +81,13 @@ def _natural_maps(
 
 
 def _distances(problem: ContactProblem, maps: np.ndarray) -> tuple[float, float]:
-    q = _length(velocities_of(problem))
+    q = _length(problem.q)
     return _ratio(_length(maps[0]), q), _ratio(_length(maps[1]), q)
 
 
 def own_scales(problem: ContactProblem) -> np.ndarray:
     """Return c = tr W_ii / 3 of every contact, (n,) [1/kg]."""
-    diagonal = problem.blocks[problem.row == columns_of(problem)].reshape(-1, 9)
+    diagonal = problem.own_blocks.reshape(-1, 9)
     traces = diagonal[:, 0] + diagonal[:, 4] + diagonal[:, 8]
     scales: np.ndarray = (traces + problem.gamma) / 3.0
     return scales
@@ -96,9 +95,9 @@ def own_scales(problem: ContactProblem) -> np.ndarray:
 
 def contact_velocities(problem: ContactProblem, impulses: np.ndarray) -> np.ndarray:
     """Return u, (n, 3) [m/s], with what softness and targets add to its normal rows."""
-    u = velocities_of(problem)
+    u = problem.q
     u[:, 0] += problem.gamma * impulses[:, 0]
-    pushed = np.einsum("mij,mj->mi", problem.blocks, impulses[columns_of(problem)])
+    pushed = np.einsum("mij,mj->mi", problem.blocks, impulses[problem.columns])
     for k in range(3):
         u[:, k] += np.bincount(problem.row, pushed[:, k], problem.contacts)
     return u

@@ -15,7 +15,6 @@ from scipy import sparse
 
 from lavendersim.engine.contact_problem import ContactProblem
 from lavendersim.problems.friction_cone import project
-from lavendersim.problems.matrices import columns_of, velocities_of
 from lavendersim.problems.residual import own_scales
 
 
@@ -41,9 +40,9 @@ class ScaledProblem(NamedTuple):
 
 def scale(problem: ContactProblem) -> ScaledProblem:
     """Return the problem without units; every contact can be moved, and q is not 0."""
-    own, q = own_scales(problem), velocities_of(problem)
+    own, q = own_scales(problem), problem.q
     s = 1.0 / np.sqrt(own)
-    blocks, columns = problem.blocks.copy(), columns_of(problem)
+    blocks, columns = problem.blocks.copy(), problem.columns
     blocks[problem.row == columns, 0, 0] += problem.gamma
     order = np.lexsort((columns, problem.row))
     rows, columns = problem.row[order], columns[order]

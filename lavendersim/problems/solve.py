@@ -18,7 +18,6 @@ from lavendersim.engine.solvers import SOLVERS as KERNELS
 from lavendersim.errors import UsageError
 from lavendersim.problems.by_kernel import solve_by_kernel
 from lavendersim.problems.interior_point import WAYS
-from lavendersim.problems.matrices import columns_of, velocities_of
 from lavendersim.problems.residual import own_scales, residual
 from lavendersim.problems.search import Search
 
@@ -129,7 +128,7 @@ def solve(
     solution = judged(problem, found._replace(impulses=impulses), tolerance)
     if solution.status == SOLVED:
         return solution
-    closing = np.where(moved, 0.0, velocities_of(problem)[:, 0])
+    closing = np.where(moved, 0.0, problem.q[:, 0])
     worst = int(np.argmin(closing))
     if closing[worst] < 0.0:
         return solution._replace(
@@ -160,7 +159,7 @@ def _run(
     start: np.ndarray,
     history: bool,
 ) -> Solution:
-    if not velocities_of(problem).any():  # no contacts, or none that needs an impulse
+    if not problem.q.any():  # no contacts, or none that needs an impulse
         told = np.zeros(1 if history else 0)
         return Solution(np.zeros((problem.contacts, 3)), 0, told, SOLVED, 0.0, 0.0)
     if sweeps is None:
@@ -170,7 +169,7 @@ def _run(
 
 def _only(problem: ContactProblem, kept: np.ndarray) -> ContactProblem:
     """Return the problem of some of its contacts; the others push nothing."""
-    columns = columns_of(problem)
+    columns = problem.columns
     stays = kept[columns] & kept[problem.row]
     number = np.cumsum(kept) - 1
     counts = np.bincount(number[columns[stays]], minlength=int(kept.sum()))

@@ -17,7 +17,7 @@ from made_problems import outside, random_problem
 from scipy import sparse
 
 from lavendersim.engine.contact_problem import ContactProblem
-from lavendersim.problems.matrices import matrix_of, problem_of, velocities_of
+from lavendersim.problems.matrices import matrix_of, problem_of
 from lavendersim.problems.read import read_problem
 from lavendersim.problems.residual import own_scales, residual
 
@@ -38,7 +38,7 @@ def some_impulses(problem: ContactProblem) -> np.ndarray:
 def transformed(problem: ContactProblem, impulses: np.ndarray, turn: np.ndarray) -> Pair:
     """Return T W T', T q, T r for an orthogonal T whose contacts are permuted or turned."""
     matrix = sparse.csc_matrix(turn) @ matrix_of(problem) @ sparse.csc_matrix(turn).T
-    q = turn @ velocities_of(problem).ravel()
+    q = turn @ problem.q.ravel()
     # Which old contact a new one is, seen by its normal row.
     old = np.argmax(np.abs(turn[::3, ::3]), axis=1)
     copy = problem_of(matrix, q, problem.mu[old])
