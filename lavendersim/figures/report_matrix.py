@@ -54,6 +54,7 @@ th.solver, td.square { text-align: center; padding: 0.4em 0.2em; width: 6em; fon
 th.solver b { font-size: 1.15em; }
 th.family { padding-top: 1.2em; font-weight: bold; color: #222; }
 td.name img { float: left; margin-right: 1em; }
+td.name > span.small { display: block; } /* why there is no picture */
 td.square { vertical-align: middle; border-left: 2px solid #fff; white-space: nowrap; }
 td.square a { display: block; color: inherit; text-decoration: none; }
 td.square a:hover, td.square a:focus { outline: 2px solid #222; }
