@@ -62,9 +62,10 @@ def square_of(case: str, solver: str, finished: Any) -> Square:
         word, why, detail = FAILS, _line(undeclared[0]), undeclared[0].message
     if ended:
         stopped = ended[0].status.startswith(BEYOND_BOUNDS)
-        word, why = BEYOND if stopped else DIVERGED, ended[0].status
+        word = BEYOND if stopped else DIVERGED
+        why = ended[0].status.removeprefix(f"{word}: ")  # the verdict says it already
         why = f"{ended[0].label}: {why}" if ended[0].label else why
-        detail = "\n".join([why, *([detail] if detail else [])])
+        detail = "\n".join(filter(None, (why, detail)))
     elif not undeclared and failed:
         word, why = KNOWN, _line(failed[0])
         detail = "\n".join(verdict.message for verdict in failed)
