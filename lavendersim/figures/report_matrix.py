@@ -63,6 +63,7 @@ td.square a:hover, td.square a:focus { outline: 2px solid #222; }
 .known { background: #fbf0c0; color: #5c4a00; }
 .fails { background: #f9d9c8; color: #8a3300; }
 .other { background: #eee; color: #555; }
+summary { margin-top: 0.6em; }
 .key span.sign { padding: 0 0.4em; margin-left: 0.8em; }
 @media (max-width: 60em) { td.name img, .question { display: none; } }
 """
