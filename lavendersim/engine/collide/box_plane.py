@@ -1,13 +1,40 @@
 """A plane A and a box B enter; up to four corners below the plane leave. n is the plane's normal.
 
 The feature of a point is its corner, bit 0, 1, 2 set where the corner lies at +x, +y, +z.
+
+Of a plate, or of a box that comes fast, more than four corners may be within the margin. Then those
+of the face that looks down most are kept: each other one lies straight above one of them, as seen
+from the box, and stays above it unless the box turns by more than asin(1/sqrt(3)), 35 degrees, in a
+step. The four that span most area would be others: an upper corner lies further out.
 """
 
 from __future__ import annotations
 
-from ..compile import kernel
+from ..compile import inner, kernel
 from ..rotation import to_body, to_world
-from .point import keep_four, place
+from .point import copy_point, place
+
+
+@inner
+def lower_side(bx, by, bz):
+    """Return the face that looks against (bx, by, bz): the bit of its axis, its corners' value."""
+    if abs(bz) >= abs(bx) and abs(bz) >= abs(by):
+        return 4, 0 if bz > 0.0 else 4
+    if abs(by) >= abs(bx):
+        return 2, 0 if by > 0.0 else 2
+    return 1, 0 if bx > 0.0 else 1
+
+
+@inner
+def keep_lower(points, count, bx, by, bz):
+    """Keep the corners of the lower face, in their order; returns the new count."""
+    bit, value = lower_side(bx, by, bz)
+    kept = 0
+    for k in range(count):
+        if points[k].feature & bit == value:
+            copy_point(points[k], points[kept])
+            kept += 1
+    return kept
 
 
 def make(spec):
@@ -37,6 +64,8 @@ def make(spec):
                     corner,
                 )
                 count += 1
-        return keep_four(points, count, nx, ny, nz)
+        if count > 4:
+            count = keep_lower(points, count, bx, by, bz)
+        return count
 
     return kernel(box_plane, spec)
