@@ -16,6 +16,9 @@ CONTACT_FIELDS = [
         for name in ("held", "seen", "step")
         for axis in "n12"
     ],
+    ("shift", "f8"),  # De Saxce's, of this round [m/s]
+    ("lack", "f8"),  # what mu |v_t| is above it [m/s]
+    ("moved", "f8"),  # its change from the round before [m/s]
     ("scale", "f8"),  # s
     ("stiff_n", "f8"),  # e along the normal and in the tangent plane [kg]
     ("stiff_t", "f8"),

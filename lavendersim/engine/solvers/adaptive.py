@@ -6,6 +6,11 @@ make shrink so slowly that Newton's steps cost less than the sweeps still needed
 takes over (`newton`); sweeps follow, so that impulses end inside their cones. Both costs are
 counted in operations, never in time: equal runs take equal decisions.
 
+A solve that would end above its tolerance calls it once more, LAST sweeps before the end, whatever
+the sweeps promise: what a step leaves unsolved, a cold first one above all, later steps only
+spread. Where that is in vain, as in a heap that hundreds of bodies fall into, it is tried in ever
+fewer steps.
+
 A solve that begins near its solution is over after a sweep and pays for nothing else.
 """
 
@@ -23,6 +28,12 @@ from .sweep import make_account, make_note, make_sweep
 
 # Sweeps between two looks at how fast they converge.
 LOOK = 8
+# Sweeps that follow the last call of Newton's method.
+LAST = 2
+# So many times the tolerance is far from solved; after n such ends one step in 2^n has a last call,
+# n at most RAREST.
+VAIN = 1000.0
+RAREST = 6
 # No solve is worth more than so many sweeps.
 MOST_SWEEPS = 3000.0
 # An end that the sweeps left would not reach is worth so many.
@@ -65,8 +76,9 @@ def make(spec: Spec):
         sharp = SHARPNESS * params.tolerance
         aim = sharp if counters.sharpen == 1 else params.tolerance
         counters.sharpen = 0
-        measured = False
+        measured, bold = False, True
         earlier = 0.0
+        last, rare, tried = params.sweeps - LAST, min(counters.in_vain, RAREST), False
         while sweeps < params.sweeps:
             greatest = sweep(contacts, order, count, velocities, params)
             sweeps += 1
@@ -84,20 +96,30 @@ def make(spec: Spec):
                 if over or largest <= aim:
                     break
             if hastens:
-                if sweeps >= look:
+                ends = False
+                if sweeps == last and sweeps > LOOK and counters.step % (1 << rare) == 0:
+                    if not measured:
+                        largest, worst = residual(contacts, count, velocities)
+                        measured = True
+                    ends = not largest <= params.tolerance
+                if sweeps >= look or ends:
                     look = sweeps + pause
-                    if earlier > 0.0:
+                    if earlier > 0.0 or ends:
                         # Sweeps still needed at the rate of the last LOOK of them.
                         needed = MOST_SWEEPS
-                        if greatest < earlier:
+                        if greatest < earlier and not ends:
                             rate = log(greatest / earlier) / pause
                             needed = min(log(aim / greatest) / rate, MOST_SWEEPS)
                         if sweeps + needed > params.sweeps:
                             needed = max(needed, WORTH)
                         allowance = VISIT * count * needed
-                        steps = newton(contacts, count, bodies, velocities, space, sharp, allowance)
+                        steps, bold = newton(
+                            contacts, count, bodies, velocities, space, sharp, allowance, bold
+                        )
                         counters.newton_steps += steps
+                        measured = False
                         if steps > 0:
+                            tried = tried or ends
                             counters.sharpen = 1
                             aim = params.tolerance
                             # Where this was not the last call, sweeps must prepare the next one.
@@ -105,6 +127,8 @@ def make(spec: Spec):
                     earlier = greatest
         if not measured:
             largest, worst = residual(contacts, count, velocities)
+        if tried:
+            counters.in_vain = counters.in_vain + 1 if largest > VAIN * params.tolerance else 0
         account(params, counters, sweeps, largest, worst)
 
     return kernel(adaptive, spec)

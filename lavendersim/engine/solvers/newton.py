@@ -5,8 +5,9 @@ Around impulses lambda^k the next ones answer velocities v as stiff dampers woul
 onto Coulomb's cone, with De Saxce's shift s = mu |v_t^k| along the normal, without which the
 projection onto the cone would lift what slides. Held for a round, it leaves a convex problem
 (`newton_minimise`). At rest s = 0, and a round shrinks the error by softness over the least
-eigenvalue of the scaled Delassus operator. A round must end exactly: what it leaves undone comes
-back in the impulses, times E.
+eigenvalue of the scaled Delassus operator; where that is not what a round leaves, the shifts are,
+and the next ones go by their secants. A round must end exactly: what it leaves undone comes back in
+the impulses, times E.
 
 The first round is stiff and takes contacts to be at rest: a load that is carried without slip is
 found at once, through a tower or a pyramid. Where that fails, rounds begin soft, where few contacts
@@ -26,18 +27,21 @@ from .newton_minimise import make_minimise, make_weigh
 from .newton_rows import make_answer, make_start
 
 # Newton steps in a call; fewer than these are not worth beginning.
-MOST_STEPS = 80
+MOST_STEPS = 150
 FEWEST_STEPS = 12.0
 # Softness of the first round, of the second where the first failed, and the least [-].
 BOLD = 1e-6
 SOFTEST = 1e-2
 STIFFEST = 1e-8
-# Softness falls by this factor from round to round, by its root after one that failed [-].
+# Softness falls by this factor from round to round, by its root after one that failed: the same
+# round again would fail again [-].
 CUT = 0.03
 # Rounds that may fail before sweeps go on.
 FAILURES = 6
 # A round may leave the largest residual this much above the least so far: it falls on average.
 WORSE = 10.0
+# Above this share of the residual before it, a round has stalled: it is the shifts that are off.
+STALLED = 0.3
 # The first round has to bring it down to this share, or what it took to be at rest slides.
 REST = 0.1
 # A round's impulses may be this share of the residual, squared, off the minimum's [-].
@@ -47,10 +51,11 @@ ASSEMBLY = 1000
 
 
 def make_newton(spec: Spec):
-    """Return `kernel(contacts, count, bodies, velocities, space, tolerance, allowance) -> steps`.
+    """Return `kernel(contacts, count, bodies, velocities, space, tolerance, allowance, bold)`.
 
-    None when the system is larger than its arrays; no more steps than fit into `allowance`
-    multiplications. Impulses and velocities leave consistent with each other.
+    It returns the number of steps, none when the system is larger than its arrays and no more than
+    fit into `allowance` multiplications, and whether the first round held, `bold`: taken to be at
+    rest. Impulses and velocities leave consistent with each other.
     """
     friction = spec.has("friction")
     residual, apply_block = make_residual(spec), make_apply_block(spec)
@@ -93,26 +98,29 @@ def make_newton(spec: Spec):
 
     take_back = kernel(take_back, spec)
 
-    def newton(contacts, count, bodies, velocities, space, tolerance, allowance):
+    def newton(contacts, count, bodies, velocities, space, tolerance, allowance, bold):
         size, entries, work = lay_out(contacts, count, space)
         if size == 0:
-            return 0
+            return 0, bold
         if entries > space.values.shape[0]:
-            return 0
+            return 0, bold
         most = min(float(MOST_STEPS), allowance / (work + ASSEMBLY * count))
         if most < FEWEST_STEPS:
-            return 0
+            return 0, bold
         weigh(bodies, size, space)
         # A gain of dI^2 softness k / 2 is what an impulse dI off the minimum costs.
         lightest = 1.0 / contacts[0].k_n
         for c in range(count):
             lightest = min(lightest, 1.0 / contacts[c].k_n)
         least, _ = residual(contacts, count, velocities)
-        softness, good, cut = BOLD, SOFTEST / CUT, CUT
-        steps, failed = 0, 0
+        now, stalls = least, False
+        good, cut = SOFTEST / CUT, CUT
+        softness = BOLD if bold else SOFTEST
+        steps, failed, held = 0, 0, bold
         while steps < most:
             off = max(least, tolerance)
-            start(contacts, count, velocities, softness, steps == 0)
+            at_rest = bold and steps == 0
+            start(contacts, count, velocities, softness, at_rest, stalls)
             made, found = minimise(
                 contacts, count, size, space, EXACTNESS * softness * lightest * off * off
             )
@@ -123,8 +131,9 @@ def make_newton(spec: Spec):
                 largest, _ = residual(contacts, count, velocities)
                 if largest <= tolerance:
                     break
-                better = largest < (REST if steps == made else WORSE) * least
+                better = largest < (REST if at_rest else WORSE) * least
                 if better:
+                    stalls, now = largest > STALLED * now, largest
                     least, good = min(least, largest), softness
                     softness = max(softness * cut, STIFFEST)
                 else:
@@ -133,9 +142,11 @@ def make_newton(spec: Spec):
                 failed += 1
                 if failed > FAILURES:
                     break
-                if failed > 1:
+                if at_rest:
+                    held = False
+                else:
                     cut = sqrt(cut)
                 softness = good * cut
-        return steps
+        return steps, held
 
     return kernel(newton, spec)

@@ -11,22 +11,23 @@ from __future__ import annotations
 from math import sqrt
 
 from ..block import make_relative_velocity
-from ..compile import kernel
+from ..compile import inner, kernel
 from ..contact import make_smooth_velocity
 from ..effects.smooth_contact import by_roughness
 from ..spec import Spec
 
 
 def make_start(spec: Spec):
-    """Return `kernel(contacts, count, velocities, softness, at_rest)`: rows at their impulses.
+    """Return `kernel(contacts, count, velocities, softness, at_rest, stalls)`.
 
-    1/softness is the stiffness of an answer, relative to the row's own effective mass [-]; at_rest:
-    what slides is taken to stop.
+    Rows stand at their impulses then. 1/softness is the stiffness of an answer, relative to the
+    row's own effective mass [-]; at_rest: what slides is taken to stop; stalls: shifts go on by the
+    secant of their last two.
     """
     compliant = spec.has("compliance")
     look = by_roughness(spec, _make_look_along_normal, _make_look)
 
-    def start(contacts, count, velocities, softness, at_rest):
+    def start(contacts, count, velocities, softness, at_rest, stalls):
         for c in range(count):
             contact = contacts[c]
             va, vb = velocities[contact.a], velocities[contact.b]
@@ -36,7 +37,7 @@ def make_start(spec: Spec):
                 contact.scale = 1.0 / (1.0 + stiff * contact.gamma)
             contact.stiff_n = stiff * contact.scale
             contact.held_n = contact.lambda_n
-            look(contact, va, vb, softness, at_rest)
+            look(contact, va, vb, softness, at_rest, stalls)
 
     return kernel(start, spec)
 
@@ -45,7 +46,7 @@ def _make_look_along_normal(spec: Spec):
     tangents = spec.has("friction")
     normal_velocity = make_smooth_velocity(spec)
 
-    def look_along_normal(contact, va, vb, softness, at_rest):
+    def look_along_normal(contact, va, vb, softness, at_rest, stalls):
         contact.seen_n = normal_velocity(contact, va, vb) + contact.target
         if tangents:
             contact.held_1, contact.held_2 = 0.0, 0.0
@@ -53,11 +54,34 @@ def _make_look_along_normal(spec: Spec):
     return kernel(look_along_normal, spec)
 
 
+# Slopes of the lack over the shift that a secant is drawn for [-].
+STEEPEST, FLATTEST = -2.0, -0.1
+
+
+@inner
+def move_shift(contact, slip, stalls):
+    """Bring De Saxce's shift to mu |v_t|, `slip`, that the last one led to [m/s].
+
+    A shift taken too small lifts the contact by the rest, which pushes it less, and friction then
+    leaves it more slip: by itself the error falls by a constant factor a round, a half for a ball.
+    The secant finds the end of that.
+    """
+    lack = slip - contact.shift
+    change = lack
+    if stalls and contact.moved != 0.0:
+        slope = (lack - contact.lack) / contact.moved
+        if STEEPEST < slope < FLATTEST:
+            change = -lack / slope
+    old = contact.shift
+    contact.shift = max(old + change, 0.0)
+    contact.moved, contact.lack = contact.shift - old, lack
+
+
 def _make_look(spec: Spec):
     moving_surface = spec.has("surface_velocity")
     relative_velocity = make_relative_velocity(spec)
 
-    def look(contact, va, vb, softness, at_rest):
+    def look(contact, va, vb, softness, at_rest, stalls):
         x, y, z = relative_velocity(contact, va, vb)
         contact.seen_n = contact.nx * x + contact.ny * y + contact.nz * z + contact.target
         contact.seen_1 = contact.t1x * x + contact.t1y * y + contact.t1z * z
@@ -65,9 +89,12 @@ def _make_look(spec: Spec):
         if moving_surface:
             contact.seen_1 += contact.surface_1
             contact.seen_2 += contact.surface_2
-        if not at_rest:  # De Saxce's shift
+        if at_rest:
+            contact.shift, contact.lack, contact.moved = 0.0, 0.0, 0.0
+        else:
             squared = contact.seen_1 * contact.seen_1 + contact.seen_2 * contact.seen_2
-            contact.seen_n += contact.mu * sqrt(squared)
+            move_shift(contact, contact.mu * sqrt(squared), stalls)
+            contact.seen_n += contact.shift
         contact.stiff_t = 1.0 / (softness * contact.k_t)
         contact.held_1, contact.held_2 = contact.lambda_1, contact.lambda_2
 

@@ -29,7 +29,8 @@ def test_each_corner_left_out_lies_an_edge_above_one_that_is_kept(rng, half):
         boxes.append(convex.Box(-2.0 * normal, convex.random_rotation(rng), np.array(half)))
         poses.put(first[i], normal)
         poses.put(second[i], half, boxes[i].centre, boxes[i].matrix)
-    for row, solid, found in zip(first, boxes, poses.manifolds("box_plane", first, second)):
+    manifolds = poses.manifolds("box_plane", first, second)
+    for row, solid, found in zip(first, boxes, manifolds, strict=True):
         normal = np.array([row["hx"], row["hy"], row["hz"]])
         signs = np.array([[1.0 if c & (1 << k) else -1.0 for k in range(3)] for c in range(8)])
         phi = (solid.centre + signs * solid.half @ solid.matrix.T) @ normal
