@@ -14,7 +14,8 @@ from .compile import inner
 def project_cone(n, one, two, mu):
     """Return the nearest point of K to (n, one, two)."""
     radius = sqrt(one * one + two * two)
-    if radius <= mu * n:
+    # Without friction and slip mu n is -0.0 for a contact that pulls, and no radius exceeds it.
+    if n >= 0.0 and radius <= mu * n:
         return n, one, two
     along = n + mu * radius
     if along <= 0.0:
