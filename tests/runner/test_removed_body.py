@@ -1,18 +1,24 @@
 """A body that is removed stays where it was and takes part in nothing; what it bore falls.
 
-Two balls stand on the floor. A guest begins within them or far off and is removed before the first
-step, or begins far off and is removed in free fall. The floor goes at 0.6 s. Once with pairs that
-are listed, once with those that the engine finds.
+Two balls stand on the floor, 3 m below where potential energy is 0. A guest begins within them or
+far off and is removed before the first step, or begins far off and is removed in free fall. The
+floor goes at 0.6 s. Once with pairs that are listed, once with those that the engine finds.
 """
 
 from __future__ import annotations
 
+import io
 from typing import Any
 
 import numpy as np
 import pytest
+from matplotlib.colors import to_rgb
+from matplotlib.image import imread
 
 import lavendersim
+from lavendersim.figures.style import LOOKS
+from lavendersim.figures.thumbnail import thumbnail
+from lavendersim.measures.values import Part
 from lavendersim.runner.experiment_run import Finished
 from lavendersim.trace import Trace, open_trace
 
@@ -21,10 +27,10 @@ SCENE = """
 scene:
   surfaces: {rough: {friction: 0.5}}
   bodies:
-    floor: {shape: {kind: plane}, surface: rough}
-    low: {shape: {kind: sphere, radius: 0.1}, mass: 1, surface: rough, position: [0, 0, 0.1]}
-    guest: {shape: {kind: sphere, radius: 0.1}, mass: 7, surface: rough, position: [5, 0, 1]}
-    high: {shape: {kind: sphere, radius: 0.1}, mass: 2, surface: rough, position: [0, 0, 0.3]}
+    floor: {shape: {kind: plane, offset: -3}, surface: rough}
+    low: {shape: {kind: sphere, radius: 0.1}, mass: 1, surface: rough, position: [0, 0, -2.9]}
+    guest: {shape: {kind: sphere, radius: 0.1}, mass: 7, surface: rough, position: [5, 0, -2]}
+    high: {shape: {kind: sphere, radius: 0.1}, mass: 2, surface: rough, position: [0, 0, -2.7]}
 events:
   - {at: 0, body: guest, remove: true}
   - {at: 0.6, body: floor, remove: true}
@@ -33,7 +39,7 @@ always: {}
 sweep:
   - pairs: {path: effects.broad_phase, values: [off, on]}
     x: {path: scene.bodies.guest.position.0, values: [0.05, 5]}
-    z: {path: scene.bodies.guest.position.2, values: [0.2]}
+    z: {path: scene.bodies.guest.position.2, values: [-2.8]}
   - pairs: {path: effects.broad_phase, values: [off, on]}
     at: {path: events.0.at, values: [0.3]}
 """
@@ -80,13 +86,13 @@ def test_it_stays_in_its_last_place_and_out_of_all_sums(finished: Finished, pair
     falling, gone = trace(finished, pairs, at=0.3), trace(finished, pairs, x=5)
     last = int(np.searchsorted(falling.step["time"], 0.3 - 1e-9))  # the state it is removed in
     assert last == 72
-    fallen = 1.0 - falling.pose[last, GUEST, 2]
-    assert fallen == pytest.approx(0.5 * G * 0.3**2, rel=1e-12)  # each step adds to 0.4 m
+    fallen = -2.0 - falling.pose[last, GUEST, 2]
+    assert fallen == pytest.approx(0.5 * G * 0.3**2, rel=1e-12)  # 72 steps round places of 2 m
     assert (falling.pose[last:, GUEST] == falling.pose[last, GUEST]).all()
     assert rest(falling, last + 1) == rest(gone, last + 1)
     energy = falling.step["kinetic_energy"] + falling.step["potential_energy"]
-    assert energy[0] == pytest.approx(G * (7 * 1.0 + 1 * 0.1 + 2 * 0.3), rel=1e-15)
-    assert energy[last + 1] == pytest.approx(G * (1 * 0.1 + 2 * 0.3), rel=1e-9)
+    assert energy[0] == pytest.approx(-G * (7 * 2.0 + 1 * 2.9 + 2 * 2.7), rel=1e-15)
+    assert energy[last + 1] == pytest.approx(-G * (1 * 2.9 + 2 * 2.7), rel=1e-9)
 
 
 @BOTH
@@ -95,7 +101,7 @@ def test_what_it_bore_falls(finished: Finished, pairs: str) -> None:
     log = trace(finished, pairs, x=5)
     first = 144  # 0.6 s
     time = np.maximum(log.step["time"] - 0.6, 0.0)
-    for body, height in ((1, 0.1), (3, 0.3)):
+    for body, height in ((1, -2.9), (3, -2.7)):
         expected = height - 0.5 * G * time**2
         assert np.abs(log.pose[:, body, 2] - expected).max() < 2e-7 + 0.4 * 2e-9
     assert (log.step["contact_count"][1 : first + 1] > 0).all()
@@ -107,3 +113,12 @@ def test_energy_and_momentum_know_what_was_taken(finished: Finished) -> None:
     assert {verdict.name for verdict in finished.verdicts} >= {
         "always: energy", "always: momentum"
     }  # fmt: skip
+
+
+def test_a_thumbnail_shows_it_as_long_as_it_is_there(finished: Finished) -> None:
+    log = trace(finished, "off", at=0.3)
+    shown = []
+    for states in (73, 74):
+        picture = imread(io.BytesIO(thumbnail(Part(log, states))))[:, :, :3]
+        shown.append(bool((np.abs(picture - to_rgb(LOOKS[GUEST].colour)).max(axis=2) < 0.01).any()))
+    assert shown == [True, False]
