@@ -88,6 +88,29 @@ def make_relative_velocity(spec: Spec):
     return kernel(relative_velocity, spec)
 
 
+def make_slip_velocity(spec: Spec):
+    """Return `kernel(contact, va, vb) -> (v_n, v_1, v_2)`, along its axes [m/s].
+
+    Of what rubs: with the velocities that surfaces have in their bodies.
+    """
+    if not spec.has("friction"):
+        return None
+    moving_surface = spec.has("surface_velocity")
+    relative_velocity = make_relative_velocity(spec)
+
+    def slip_velocity(contact, va, vb):
+        x, y, z = relative_velocity(contact, va, vb)
+        v_n = contact.nx * x + contact.ny * y + contact.nz * z
+        v_1 = contact.t1x * x + contact.t1y * y + contact.t1z * z
+        v_2 = contact.t2x * x + contact.t2y * y + contact.t2z * z
+        if moving_surface:
+            v_1 += contact.surface_1
+            v_2 += contact.surface_2
+        return v_n, v_1, v_2
+
+    return kernel(slip_velocity, spec)
+
+
 def make_apply_vector(spec: Spec):
     """Return `kernel(contact, va, vb, px, py, pz)`: + on B, - on A, world axes [N s]."""
     if not spec.has("friction"):

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .block import make_relative_velocity
+from .block import make_slip_velocity
 from .compile import kernel
 from .contact import make_apply_all, make_apply_block, make_smooth_velocity
 from .effects.smooth_contact import by_roughness
@@ -78,18 +78,11 @@ def make_rough_velocity(spec: Spec) -> Any:
             return contact.w_n, contact.w_1, contact.w_2
 
         return kernel(matrix_velocity, spec)
-    moving_surface = spec.has("surface_velocity")
-    relative_velocity = make_relative_velocity(spec)
+    slip_velocity = make_slip_velocity(spec)
 
     def contact_velocity(contact, velocities):
-        x, y, z = relative_velocity(contact, velocities[contact.a], velocities[contact.b])
-        w = contact.nx * x + contact.ny * y + contact.nz * z + contact.target
-        w1 = contact.t1x * x + contact.t1y * y + contact.t1z * z
-        w2 = contact.t2x * x + contact.t2y * y + contact.t2z * z
-        if moving_surface:
-            w1 += contact.surface_1
-            w2 += contact.surface_2
-        return w, w1, w2
+        v_n, v_1, v_2 = slip_velocity(contact, velocities[contact.a], velocities[contact.b])
+        return v_n + contact.target, v_1, v_2
 
     return kernel(contact_velocity, spec)
 

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from math import sqrt
 
-from .block import largest_response, make_relative_velocity
+from .block import largest_response, make_slip_velocity
 from .compile import kernel
 from .cone import project_cone
 from .contact import make_smooth_velocity
@@ -54,30 +54,13 @@ def _make_smooth_residual(spec: Spec):
     return kernel(row_residual, spec)
 
 
-def _make_slip_velocity(spec: Spec):
-    moving_surface = spec.has("surface_velocity")
-    relative_velocity = make_relative_velocity(spec)
-
-    def slip_velocity(contact, va, vb):
-        x, y, z = relative_velocity(contact, va, vb)
-        v_n = contact.nx * x + contact.ny * y + contact.nz * z
-        v_1 = contact.t1x * x + contact.t1y * y + contact.t1z * z
-        v_2 = contact.t2x * x + contact.t2y * y + contact.t2z * z
-        if moving_surface:
-            v_1 += contact.surface_1
-            v_2 += contact.surface_2
-        return v_n, v_1, v_2
-
-    return kernel(slip_velocity, spec)
-
-
 def _make_rough_residual(spec: Spec):
     if spec.friction_cone == "convex":
         return _make_convex_residual(spec)
     pyramid = spec.friction_cone == "pyramid"
     spins, spin_residual = resists_turning(spec), make_spin_residual(spec)
     normal_residual = make_normal_residual(spec)
-    slip_velocity = _make_slip_velocity(spec)
+    slip_velocity = make_slip_velocity(spec)
 
     def block_residual(contact, va, vb):
         v_n, v_1, v_2 = slip_velocity(contact, va, vb)
@@ -107,7 +90,7 @@ def _make_rough_residual(spec: Spec):
 def _make_convex_residual(spec: Spec):
     compliant = spec.has("compliance")
     spins, spin_residual = resists_turning(spec), make_spin_residual(spec)
-    slip_velocity = _make_slip_velocity(spec)
+    slip_velocity = make_slip_velocity(spec)
 
     def convex_residual(contact, va, vb):
         v_n, w_1, w_2 = slip_velocity(contact, va, vb)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import sqrt
 from typing import Any
 
-from ..block import make_relative_velocity
+from ..block import make_slip_velocity
 from ..compile import inner, kernel
 from ..effects.smooth_contact import has_smooth
 from ..spec import Spec
@@ -95,8 +95,7 @@ def _make_put_geometry(spec: Spec, eight: bool) -> Any:
 def _make_pack_contact(spec: Spec, eight: bool) -> Any:
     """Return `kernel(contact, velocities, rows, at, factor)`: every field of a contact."""
     compliant, smooth = spec.has("compliance"), has_smooth(spec)
-    moving_surface = spec.has("surface_velocity")
-    relative_velocity = make_relative_velocity(spec)
+    slip_velocity = make_slip_velocity(spec)
     put_axis, put_turn, put_turns = _make_put_geometry(spec, eight)
     step = WIDTH if eight else 1
 
@@ -115,14 +114,8 @@ def _make_pack_contact(spec: Spec, eight: bool) -> Any:
         put_turns(rows, turn_b, factor, b, 1.0, contact, contact.rbx, contact.rby, contact.rbz)
         put(rows, at, INV_M_A, contact.inv_m_a)
         put(rows, at, INV_M_B, contact.inv_m_b)
-        x, y, z = relative_velocity(contact, velocities[a], velocities[b])
-        w_n = contact.nx * x + contact.ny * y + contact.nz * z + contact.target
-        w_1 = contact.t1x * x + contact.t1y * y + contact.t1z * z
-        w_2 = contact.t2x * x + contact.t2y * y + contact.t2z * z
-        if moving_surface:
-            w_1 += contact.surface_1
-            w_2 += contact.surface_2
-        put(rows, at, W_N, w_n)
+        v_n, w_1, w_2 = slip_velocity(contact, velocities[a], velocities[b])
+        put(rows, at, W_N, v_n + contact.target)
         put(rows, at, W_1, w_1)
         put(rows, at, W_2, w_2)
         put(rows, at, INV_K, contact.inv_k)
