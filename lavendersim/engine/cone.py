@@ -1,4 +1,4 @@
-"""A vector enters, the nearest one in Coulomb's cone leaves.
+"""A vector enters, the nearest one in Coulomb's cone, or in a section across it, leaves.
 
 K = {|r_t| <= mu r_n}       its dual K* = {|u_t| mu <= u_n}       (n, t1, t2), Euclidean norm
 """
@@ -8,6 +8,7 @@ from __future__ import annotations
 from math import sqrt
 
 from .compile import inner
+from .spec import Spec
 
 
 @inner
@@ -24,3 +25,24 @@ def project_cone(n, one, two, mu):
     # The radius is positive here: radius = 0 and along > 0 would have been inside.
     scale = mu * n / radius
     return n, one * scale, two * scale
+
+
+@inner
+def project_disc(one, two, limit):
+    """Return the nearest point of the disc of radius `limit` to (one, two)."""
+    squared = one * one + two * two
+    if squared > limit * limit:
+        scale = limit / sqrt(squared)
+        return one * scale, two * scale
+    return one, two
+
+
+@inner
+def project_square(one, two, limit):
+    """Return the nearest point of the square of half width `limit` to (one, two)."""
+    return min(max(one, -limit), limit), min(max(two, -limit), limit)
+
+
+def make_project_section(spec: Spec):
+    """Return `kernel(one, two, limit)`: onto the section of the cone, or of its pyramid."""
+    return project_square if spec.friction_cone == "pyramid" else project_disc

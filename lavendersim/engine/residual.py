@@ -17,7 +17,7 @@ from math import sqrt
 
 from .block import largest_response, make_slip_velocity
 from .compile import kernel
-from .cone import project_cone
+from .cone import make_project_section, project_cone
 from .contact import make_smooth_velocity
 from .effects.smooth_contact import by_roughness
 from .scaled_residual import make_scaled_residual
@@ -57,7 +57,7 @@ def _make_smooth_residual(spec: Spec):
 def _make_rough_residual(spec: Spec):
     if spec.friction_cone == "convex":
         return _make_convex_residual(spec)
-    pyramid = spec.friction_cone == "pyramid"
+    project = make_project_section(spec)
     spins, spin_residual = resists_turning(spec), make_spin_residual(spec)
     normal_residual = make_normal_residual(spec)
     slip_velocity = make_slip_velocity(spec)
@@ -66,15 +66,7 @@ def _make_rough_residual(spec: Spec):
         v_n, v_1, v_2 = slip_velocity(contact, va, vb)
         held_1, held_2 = contact.k_t * contact.lambda_1, contact.k_t * contact.lambda_2
         limit = contact.k_t * contact.mu * contact.lambda_n
-        new_1, new_2 = held_1 - v_1, held_2 - v_2
-        if pyramid:
-            new_1 = min(max(new_1, -limit), limit)
-            new_2 = min(max(new_2, -limit), limit)
-        else:
-            squared = new_1 * new_1 + new_2 * new_2
-            if squared > limit * limit:
-                scale = limit / sqrt(squared)
-                new_1, new_2 = new_1 * scale, new_2 * scale
+        new_1, new_2 = project(held_1 - v_1, held_2 - v_2, limit)
         new_1, new_2 = new_1 - held_1, new_2 - held_2
         r_t = sqrt(new_1 * new_1 + new_2 * new_2)
         if spins:

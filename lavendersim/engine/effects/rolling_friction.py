@@ -11,6 +11,7 @@ psi_t: angular impulse on B [N m s]; a pair's c is the larger of its surfaces'. 
 from math import sqrt
 
 from ..compile import kernel
+from ..cone import project_disc
 from .decision import Decision, Facts, PairFacts, by_pair
 
 NAME = "rolling_friction"
@@ -73,10 +74,7 @@ def make_solve(spec):
         new_2 = old_2 - contact.h_12 * w1 - contact.h_22 * w2
         if new_1 * new_1 + new_2 * new_2 > limit * limit:
             new_1, new_2 = old_1 - w1 / contact.k_roll, old_2 - w2 / contact.k_roll
-            squared = new_1 * new_1 + new_2 * new_2
-            if squared > limit * limit:
-                scale = limit / sqrt(squared)
-                new_1, new_2 = new_1 * scale, new_2 * scale
+            new_1, new_2 = project_disc(new_1, new_2, limit)
         contact.psi_1, contact.psi_2 = new_1, new_2
         return new_1 - old_1, new_2 - old_2
 
@@ -89,11 +87,7 @@ def make_residual(spec):
     def rolling_residual(contact, w1, w2):
         held_1, held_2 = contact.k_roll * contact.psi_1, contact.k_roll * contact.psi_2
         limit = contact.k_roll * contact.rolling * contact.lambda_n
-        new_1, new_2 = held_1 - w1, held_2 - w2
-        squared = new_1 * new_1 + new_2 * new_2
-        if squared > limit * limit:
-            scale = limit / sqrt(squared)
-            new_1, new_2 = new_1 * scale, new_2 * scale
+        new_1, new_2 = project_disc(held_1 - w1, held_2 - w2, limit)
         new_1, new_2 = new_1 - held_1, new_2 - held_2
         return sqrt(new_1 * new_1 + new_2 * new_2)
 

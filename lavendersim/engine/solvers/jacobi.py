@@ -8,11 +8,10 @@ What resists turning is swept one after the other.
 
 from __future__ import annotations
 
-from math import sqrt
 from typing import Any
 
 from ..compile import kernel
-from ..cone import project_cone
+from ..cone import make_project_section, project_cone
 from ..coupling import make_add_impulse, make_contact_velocity
 from ..residual import make_residual
 from ..spec import Spec
@@ -34,7 +33,7 @@ LOOK = 8
 def make_answer(spec: Spec) -> Any:
     """Return `kernel(contact, velocities) -> change` [m/s]: the contact's own new impulse."""
     friction, compliant = spec.has("friction"), spec.has("compliance")
-    pyramid = spec.friction_cone == "pyramid"
+    project = make_project_section(spec)
     convex = friction and spec.friction_cone == "convex"
     contact_velocity = make_contact_velocity(spec)
 
@@ -53,14 +52,8 @@ def make_answer(spec: Spec) -> Any:
             new_2 = contact.lambda_2 - w2 / contact.bound
             if convex:
                 new_n, new_1, new_2 = project_cone(new_n, new_1, new_2, contact.mu)
-            elif pyramid:
-                new_1 = min(max(new_1, -limit), limit)
-                new_2 = min(max(new_2, -limit), limit)
             else:
-                squared = new_1 * new_1 + new_2 * new_2
-                if squared > limit * limit:
-                    scale = limit / sqrt(squared)
-                    new_1, new_2 = new_1 * scale, new_2 * scale
+                new_1, new_2 = project(new_1, new_2, limit)
             contact.change_1 = new_1 - contact.lambda_1
             contact.change_2 = new_2 - contact.lambda_2
             contact.lambda_1, contact.lambda_2 = new_1, new_2

@@ -21,11 +21,9 @@ afterwards. A factor of 1 gives the bits of none.
 
 from __future__ import annotations
 
-from math import sqrt
-
 from ..block import largest_response
 from ..compile import kernel
-from ..cone import project_cone
+from ..cone import project_cone, project_disc, project_square
 from ..contact import make_smooth_impulse, make_smooth_velocity
 from ..coupling import make_add_rough, make_rough_velocity
 from ..effects import capture_in_sweeps
@@ -71,12 +69,38 @@ def _make_normal(spec: Spec):
     return kernel(solve_contact_velocity, spec)
 
 
+def _make_give(spec: Spec):
+    """Return `kernel(contact, contacts, velocities, n, one, two) -> change`: its new impulses.
+
+    Velocities follow, and so does what resists turning.
+    """
+    add_impulse = make_add_rough(spec)
+    spins, solve_spin = resists_turning(spec), make_solve_spin(spec)
+
+    def give(contact, contacts, velocities, n, one, two):
+        change_n, change_1 = n - contact.lambda_n, one - contact.lambda_1
+        change_2 = two - contact.lambda_2
+        contact.lambda_n, contact.lambda_1, contact.lambda_2 = n, one, two
+        add_impulse(contact, contacts, velocities, change_n, change_1, change_2)
+        # In this order a NaN stays.
+        change = max(
+            max(abs(change_n) * contact.k_n, abs(change_1) * contact.k_t),
+            abs(change_2) * contact.k_t,
+        )
+        if spins:
+            turned = solve_spin(contact, velocities[contact.a], velocities[contact.b])
+            if turned > change or turned != turned:
+                change = turned
+        return change
+
+    return kernel(give, spec)
+
+
 def _make_block(spec: Spec):
     compliant, relaxed = spec.has("compliance"), spec.over_relaxation
     recaptures, capture_again = spec.made(capture_in_sweeps)
     pyramid = spec.friction_cone == "pyramid"
-    spins, solve_spin = resists_turning(spec), make_solve_spin(spec)
-    contact_velocity, add_impulse = make_rough_velocity(spec), make_add_rough(spec)
+    contact_velocity, give = make_rough_velocity(spec), _make_give(spec)
 
     def solve_contact_block(contact, contacts, velocities, params):
         w, w1, w2 = contact_velocity(contact, velocities)
@@ -98,27 +122,11 @@ def _make_block(spec: Spec):
         new_1 = old_1 - contact.i_11 * w1 - contact.i_12 * w2
         new_2 = old_2 - contact.i_12 * w1 - contact.i_22 * w2
         if pyramid:
-            new_1 = min(max(new_1, -limit), limit)
-            new_2 = min(max(new_2, -limit), limit)
+            new_1, new_2 = project_square(new_1, new_2, limit)
         elif new_1 * new_1 + new_2 * new_2 > limit * limit:
             new_1, new_2 = old_1 - w1 / contact.k_t, old_2 - w2 / contact.k_t
-            squared = new_1 * new_1 + new_2 * new_2
-            if squared > limit * limit:
-                scale = limit / sqrt(squared)
-                new_1, new_2 = new_1 * scale, new_2 * scale
-        contact.lambda_n, contact.lambda_1, contact.lambda_2 = new_n, new_1, new_2
-        change_1, change_2 = new_1 - old_1, new_2 - old_2
-        add_impulse(contact, contacts, velocities, change_n, change_1, change_2)
-        # In this order a NaN stays.
-        change = max(
-            max(abs(change_n) * contact.k_n, abs(change_1) * contact.k_t),
-            abs(change_2) * contact.k_t,
-        )
-        if spins:
-            turned = solve_spin(contact, velocities[contact.a], velocities[contact.b])
-            if turned > change or turned != turned:
-                change = turned
-        return change
+            new_1, new_2 = project_disc(new_1, new_2, limit)
+        return give(contact, contacts, velocities, new_n, new_1, new_2)
 
     return kernel(solve_contact_block, spec)
 
@@ -126,8 +134,7 @@ def _make_block(spec: Spec):
 def _make_convex(spec: Spec):
     compliant, relaxed = spec.has("compliance"), spec.over_relaxation
     recaptures, capture_again = spec.made(capture_in_sweeps)
-    spins, solve_spin = resists_turning(spec), make_solve_spin(spec)
-    contact_velocity, add_impulse = make_rough_velocity(spec), make_add_rough(spec)
+    contact_velocity, give = make_rough_velocity(spec), _make_give(spec)
 
     def solve_contact_convex(contact, contacts, velocities, params):
         w, w1, w2 = contact_velocity(contact, velocities)
@@ -154,18 +161,6 @@ def _make_convex(spec: Spec):
             new_n, new_1, new_2 = project_cone(
                 old_n - step * w, old_1 - step * w1, old_2 - step * w2, mu
             )
-        contact.lambda_n, contact.lambda_1, contact.lambda_2 = new_n, new_1, new_2
-        change_n, change_1, change_2 = new_n - old_n, new_1 - old_1, new_2 - old_2
-        add_impulse(contact, contacts, velocities, change_n, change_1, change_2)
-        # In this order a NaN stays.
-        change = max(
-            max(abs(change_n) * contact.k_n, abs(change_1) * contact.k_t),
-            abs(change_2) * contact.k_t,
-        )
-        if spins:
-            turned = solve_spin(contact, velocities[contact.a], velocities[contact.b])
-            if turned > change or turned != turned:
-                change = turned
-        return change
+        return give(contact, contacts, velocities, new_n, new_1, new_2)
 
     return kernel(solve_contact_convex, spec)
