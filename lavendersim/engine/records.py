@@ -147,7 +147,6 @@ PARAMETERS: Final[list[Field]] = [
     ("residuals_to", I8),
     ("sweeps", I8),
     ("over_relaxation", F8),  # factor on the changes that sweeps make, 0 to 2 [-]
-    ("in_vain", I8),  # last calls of Newton's method in a row that left a step far from solved
     ("projection_sweeps", I8),
 ]
 
@@ -161,7 +160,6 @@ COUNTERS: Final[list[Field]] = [
     ("stronge", I8),  # 1 when Stronge's law replaced Newton's in the last step
     ("newton_steps", I8),  # of Newton's method since the start
     ("sharpen", I8),  # 1 when the next solve must end sharper than its tolerance
-    ("in_vain", I8),  # last calls of Newton's method in a row that left a step far from solved
     ("projection_sweeps", I8),  # and by the positional projection, 0: nothing had to move
     ("residual_contact", I8),  # contact with the largest residual, -1 without contacts
     ("residual", F8),  # of the last step [m/s]

@@ -12,8 +12,8 @@ CHOSEN_BY = "solver"
 CONTACT_FIELDS = [
     *[
         (f"{name}_{axis}", "f8")
-        # lambda^k [N s], the velocities seen, and those that a step adds [m/s].
-        for name in ("held", "seen", "step")
+        # lambda^k and the best so far [N s], the velocities seen, and those that a step adds [m/s].
+        for name in ("held", "best", "seen", "step")
         for axis in "n12"
     ],
     ("shift", "f8"),  # De Saxce's, of this round [m/s]

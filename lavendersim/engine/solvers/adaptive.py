@@ -8,8 +8,7 @@ counted in operations, never in time: equal runs take equal decisions.
 
 A solve that would end above its tolerance calls it once more, LAST sweeps before the end, whatever
 the sweeps promise: what a step leaves unsolved, a cold first one above all, later steps only
-spread. Where that is in vain, as in a heap that hundreds of bodies fall into, it is tried in ever
-fewer steps.
+spread. In a large heap that is not affordable, and the call takes no step.
 
 A solve that begins near its solution is over after a sweep and pays for nothing else.
 """
@@ -30,10 +29,6 @@ from .sweep import make_account, make_note, make_sweep
 LOOK = 8
 # Sweeps that follow the last call of Newton's method.
 LAST = 2
-# So many times the tolerance is far from solved; after n such ends one step in 2^n has a last call,
-# n at most RAREST.
-VAIN = 1000.0
-RAREST = 6
 # No solve is worth more than so many sweeps.
 MOST_SWEEPS = 3000.0
 # An end that the sweeps left would not reach is worth so many.
@@ -78,7 +73,7 @@ def make(spec: Spec):
         counters.sharpen = 0
         measured, bold = False, True
         earlier = 0.0
-        last, rare, tried = params.sweeps - LAST, min(counters.in_vain, RAREST), False
+        last = params.sweeps - LAST
         while sweeps < params.sweeps:
             greatest = sweep(contacts, order, count, velocities, params)
             sweeps += 1
@@ -97,7 +92,7 @@ def make(spec: Spec):
                     break
             if hastens:
                 ends = False
-                if sweeps == last and sweeps > LOOK and counters.step % (1 << rare) == 0:
+                if sweeps == last and sweeps > LOOK:
                     if not measured:
                         largest, worst = residual(contacts, count, velocities)
                         measured = True
@@ -119,7 +114,6 @@ def make(spec: Spec):
                         counters.newton_steps += steps
                         measured = False
                         if steps > 0:
-                            tried = tried or ends
                             counters.sharpen = 1
                             aim = params.tolerance
                             # Where this was not the last call, sweeps must prepare the next one.
@@ -127,8 +121,6 @@ def make(spec: Spec):
                     earlier = greatest
         if not measured:
             largest, worst = residual(contacts, count, velocities)
-        if tried:
-            counters.in_vain = counters.in_vain + 1 if largest > VAIN * params.tolerance else 0
         account(params, counters, sweeps, largest, worst)
 
     return kernel(adaptive, spec)

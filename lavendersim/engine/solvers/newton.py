@@ -38,7 +38,8 @@ STIFFEST = 1e-8
 CUT = 0.03
 # Rounds that may fail before sweeps go on.
 FAILURES = 6
-# A round may leave the largest residual this much above the least so far: it falls on average.
+# A round may leave the largest residual this much above the least so far: it falls on average. What
+# is handed on is the least.
 WORSE = 10.0
 # Above this share of the residual before it, a round has stalled: it is the shifts that are off.
 STALLED = 0.3
@@ -98,6 +99,27 @@ def make_newton(spec: Spec):
 
     take_back = kernel(take_back, spec)
 
+    def keep(contacts, count):
+        # The best impulses so far.
+        for c in range(count):
+            contact = contacts[c]
+            contact.best_n = contact.lambda_n
+            if friction:
+                contact.best_1, contact.best_2 = contact.lambda_1, contact.lambda_2
+
+    keep = kernel(keep, spec)
+
+    def go_back(contacts, count, velocities):
+        # To those.
+        for c in range(count):
+            contact = contacts[c]
+            one, two = 0.0, 0.0
+            if friction:
+                one, two = contact.best_1, contact.best_2
+            put(contact, velocities, contact.best_n, one, two)
+
+    go_back = kernel(go_back, spec)
+
     def newton(contacts, count, bodies, velocities, space, tolerance, allowance, bold):
         size, entries, work = lay_out(contacts, count, space)
         if size == 0:
@@ -114,6 +136,7 @@ def make_newton(spec: Spec):
             lightest = min(lightest, 1.0 / contacts[c].k_n)
         least, _ = residual(contacts, count, velocities)
         now, stalls = least, False
+        keep(contacts, count)
         good, cut = SOFTEST / CUT, CUT
         softness = BOLD if bold else SOFTEST
         steps, failed, held = 0, 0, bold
@@ -130,11 +153,14 @@ def make_newton(spec: Spec):
                 accept(contacts, count, velocities)
                 largest, _ = residual(contacts, count, velocities)
                 if largest <= tolerance:
+                    now = least = largest
                     break
                 better = largest < (REST if at_rest else WORSE) * least
                 if better:
-                    stalls, now = largest > STALLED * now, largest
-                    least, good = min(least, largest), softness
+                    stalls, now, good = largest > STALLED * now, largest, softness
+                    if largest <= least:
+                        least = largest
+                        keep(contacts, count)
                     softness = max(softness * cut, STIFFEST)
                 else:
                     take_back(contacts, count, velocities)
@@ -147,6 +173,8 @@ def make_newton(spec: Spec):
                 else:
                     cut = sqrt(cut)
                 softness = good * cut
+        if now > least:
+            go_back(contacts, count, velocities)
         return steps, held
 
     return kernel(newton, spec)
