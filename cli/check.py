@@ -35,19 +35,20 @@ def check(
 ) -> None:
     """Run experiments and print every verdict, cell by cell. Exits 1 when one fails.
 
-    With --solver: a matrix of verdicts, case by solver. Exits 1 when a solver fails a case in more
-    than what the case says of itself; a known failure is no pass, but no news either.
+    With --solver: a matrix of verdicts, case by solver. Exits 1 when a solver
+    fails a case in more than what the case says of itself; a known failure is
+    no pass, but no news either.
     """
-    from lavendersim.errors import UsageError
+    from lavendersim.figures import make_room, write_report
     from lavendersim.runner import load_all, run
 
-    if report is not None and report.suffix not in (".html", ".htm"):
-        raise UsageError(f"{report}: the name of this file ends in .html")
     if solver:
         from lavendersim.runner.solver_matrix import chosen
 
         chosen(solver)  # a wrong name is told before any file is read
     experiments = load_all(configs, reduced=not full)
+    if report is not None:
+        make_room(report)  # not after an hour of runs
     if solver:
         if not solver_matrix.check_solvers(experiments, solver, runs, jobs, report, as_json):
             raise typer.Exit(1)
@@ -76,8 +77,6 @@ def check(
             )
         printing.print_failures(finished)
     if report is not None:
-        from lavendersim.figures import write_report
-
         write_report(results, report)
         typer.echo(f"report {report}", err=True)
     if as_json:

@@ -53,6 +53,13 @@ def draw_comparisons(
     return paths + draw_profile(ratios, comparisons, tolerance, processor, directory)
 
 
+def make_room(page: Path) -> None:
+    """Make the folder of a page to come; UsageError where no page can be. Before long runs."""
+    from lavendersim.figures.html_page import make_room as make
+
+    make(page)
+
+
 def write_report(results: Sequence[Any], path: Path) -> None:
     """Write one self-contained HTML page of finished runs (`runner.Finished`): a row per case."""
     from lavendersim.figures.report import write_report as write_page

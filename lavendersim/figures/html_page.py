@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any, Final
 from urllib.parse import quote
 
-from lavendersim.errors import LavenderError
+from lavendersim.errors import LavenderError, UsageError
 from lavendersim.figures.thumbnail import thumbnail
 
 WIDTH, HEIGHT = 160, 110  # dots of a picture, as `thumbnail` draws it
@@ -51,6 +51,21 @@ def document(title: str, body: str, style: str = "") -> str:
 </body>
 </html>
 """
+
+
+def make_room(path: Path) -> None:
+    """Make the folder of a page that is to be written; UsageError where none can be there."""
+    if path.suffix not in (".html", ".htm"):
+        raise UsageError(f"{path}: the name of this file ends in .html")
+    if path.is_dir():
+        raise UsageError(f"{path}: a folder has this name")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+    except OSError as error:  # a file stands where the folder is to be, or it may not be made
+        told = (error.strerror or str(error)).lower()
+        raise UsageError(f"{path}: no folder can be made for it: {told}") from None
+    if not os.access(path.parent, os.W_OK):
+        raise UsageError(f"{path}: nothing may be written into its folder")
 
 
 def write_whole(text: str, path: Path) -> None:

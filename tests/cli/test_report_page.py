@@ -90,6 +90,26 @@ def test_a_page_of_another_name_is_refused(report: Path) -> None:
     assert done.stderr == "page.pdf: the name of this file ends in .html\n"
 
 
+@pytest.mark.parametrize(
+    ("page", "why"),
+    [
+        ("good.yaml/page.html", "no folder can be made for it: file exists"),
+        ("good.yaml/pages/page.html", "no folder can be made for it: not a directory"),
+        ("pages.html", "a folder has this name"),
+    ],
+)
+def test_a_page_that_cannot_be_is_told_before_anything_runs(
+    report: Path, page: str, why: str
+) -> None:
+    where = report.parents[1]
+    (where / "pages.html").mkdir(exist_ok=True)
+    before = sorted((where / "runs").iterdir())
+    done = lavender("check", "good.yaml", "--report", page, where=where)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr == f"{page}: {why}\n"
+    assert sorted((where / "runs").iterdir()) == before
+
+
 def test_the_page_opens_in_a_browser(report: Path, tmp_path: Path) -> None:
     page = opened_in_a_browser(report, tmp_path)
     assert [row["data-case"] for row in page.all("tr", "case")] == ["good", "so so", "z"]
