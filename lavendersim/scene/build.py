@@ -86,7 +86,8 @@ def set_timestep(parameters: np.ndarray, numerics: dict[str, Any], timestep: Fra
     """
     p = parameters[0]
     p["dt"] = float(timestep)
-    magnitude = sqrt(sum(float(p[f"g{axis}"]) ** 2 for axis in "xyz"))
+    gravity = (float(p[f"g{axis}"]) for axis in "xyz")
+    magnitude = sqrt(sum(g * g for g in gravity))  # a power raises where this is infinite
     p["restitution_speed"] = float(numerics["restitution_threshold"]) * magnitude * p["dt"]
 
 
