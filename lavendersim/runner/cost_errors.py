@@ -10,9 +10,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import replace
 from itertools import pairwise
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -144,20 +143,6 @@ def unsolved_steps(unsolved: int, steps: int, tolerance: float | None) -> str:
     return f"{unsolved} of {steps} steps above {tolerance:g} m/s"
 
 
-@dataclass(frozen=True)
-class _OwnCell:
-    """A cell of the grid as the experiment's expectations know it: without the grid's axes."""
-
-    index: int
-    label: str
-    coordinates: Mapping[str, Any]
-    path: Path
-    inside: RunCell
-
-    def trace(self) -> Any:
-        return self.inside.trace()
-
-
 class _Taken(Values):
     """Measures that were taken already, by the index of a cell."""
 
@@ -176,8 +161,9 @@ def _unmet(experiment: Experiment, run: SettingRun) -> list[str]:
     assert experiment.cost is not None
     error = experiment.cost.error.measure
     claims = [each for each in experiment.expectations if each.measure != error]
+    # as the experiment's expectations know them: without the axes of the grid
     own = [
-        _OwnCell(place, cell.label, cell.coordinates, inside.path, inside)
+        replace(inside, index=place, label=cell.label, coordinates=cell.coordinates)
         for place, (cell, inside) in enumerate(zip(experiment.cells(), run.cells, strict=True))
     ]
     verdicts = judge(experiment.measures, claims, own, _Taken(experiment, run.measured))

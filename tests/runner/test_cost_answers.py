@@ -16,6 +16,7 @@ from lavendersim.figures.cost_looks import curves_of
 from lavendersim.runner.cell import Accuracy, CellOutcome
 from lavendersim.runner.cost_errors import SettingRun, errors_of, orders_of, relative_error
 from lavendersim.runner.cost_targets import answers, front_of
+from lavendersim.runner.run_directory import RunCell
 
 BALL = """\
 scene:
@@ -110,20 +111,18 @@ def test_a_setting_that_leaves_more_than_its_share_unsolved_has_failed(
     (setting, *_) = settings_of(experiment)
     asked = setting._replace(tolerance=1e-3)
     measured = [{"apex": 0.25, "sinking": 0.0}]
-    run_of = SettingRun(asked, [FakeCell()], [outcome(200, unsolved)], measured)
+    run_of = SettingRun(asked, [CELL], [outcome(200, unsolved)], measured)
     (error,) = errors_of(experiment, [run_of])
     assert (error.error, error.residual, error.unsolved) == (0.25, 2e-3, unsolved)
     assert error.failed == said  # a hundredth, two of two hundred, may be
 
 
-class FakeCell:
-    path, label = Path("cell.mcap"), ""
-
+class FakeCell(RunCell):
     def trace(self) -> Any:
         return SimpleNamespace(status="complete")
 
-    def release(self) -> None:
-        pass
+
+CELL = FakeCell(0, "", {}, Path("cell.mcap"), "complete")
 
 
 def test_a_target_is_reached_by_what_is_just_as_good_but_by_no_failure() -> None:
