@@ -20,7 +20,7 @@ from lavendersim.engine.records import COUNTERS, PARAMETERS, dtype
 from lavendersim.engine.solvers import SOLVERS
 from lavendersim.engine.spec import Spec
 
-from .residual import residual
+from .residual import distances
 
 
 def spec_of(solver: str, history: bool = False, friction_cone: str = "disc") -> Spec:
@@ -35,8 +35,8 @@ def _kernel(spec: Spec) -> Any:
 
 
 def solve_by_kernel(
-    problem: ContactProblem,
     solver: str,
+    problem: ContactProblem,
     tolerance: float = 1e-8,
     sweeps: int = 10_000,
     start: np.ndarray | None = None,
@@ -67,9 +67,9 @@ def solve_by_kernel(
     with compiling():
         _kernel(spec)(contacts, order, coupling_of(problem), space, params, counters, rows)
     impulses = np.stack([contacts[f"lambda_{k}"] for k in "n12"], axis=1)
-    judged = residual(problem, impulses)
-    status = SOLVED if judged.scaled <= max(tolerance, 0.0) else SPENT
+    scaled, local = distances(problem, impulses)
+    status = SOLVED if scaled <= max(tolerance, 0.0) else SPENT
     if not np.isfinite(impulses).all():
         status = NOT_FINITE
     told = rows["residual"][: int(counters["residual_rows"][0])].copy()
-    return Solution(impulses, int(counters["sweeps"][0]), told, status, judged.scaled, judged.local)
+    return Solution(impulses, int(counters["sweeps"][0]), told, status, scaled, local)

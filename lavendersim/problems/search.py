@@ -19,7 +19,7 @@ from lavendersim.problems.by_kernel import solve_by_kernel
 from lavendersim.problems.factorise import ENTRY
 from lavendersim.problems.interior_point import BOLD, Way, interior_point
 from lavendersim.problems.newton_rounds import newton_rounds
-from lavendersim.problems.residual import residual
+from lavendersim.problems.residual import distances
 from lavendersim.problems.scaled_problem import from_impulses, scale, to_impulses
 from lavendersim.problems.semismooth_newton import newton_steps
 
@@ -50,7 +50,7 @@ class Search:
         self.problem, self.tolerance, self.history = problem, tolerance, history
         self.account = Account(MARGIN * tolerance, steps, price)
         self.best = self.here = np.zeros((problem.contacts, 3)) if start is None else start.copy()
-        self.least = residual(problem, self.best).scaled
+        self.least, _ = distances(problem, self.best)
         self.account.history.append(self.least)
         if not self.over:  # what needs no impulses may have no scale
             self.p = scale(problem)
@@ -75,8 +75,8 @@ class Search:
         price = SWEEP_PRICE * len(self.problem.row)
         within = min(sweeps, self.account.steps_left, self.account.price_left / price)
         swept = solve_by_kernel(
-            self.problem,
             SWEEPER,
+            self.problem,
             self.account.tolerance,
             max(1, int(within)),
             self.here,
@@ -125,9 +125,9 @@ class Search:
 
     def solution(self) -> Solution:
         """Return the best, judged from its impulses alone."""
-        judged = residual(self.problem, self.best)
+        scaled, local = distances(self.problem, self.best)
         status = SPENT if np.isfinite(self.best).all() else NOT_FINITE
-        if judged.scaled <= self.tolerance:
+        if scaled <= self.tolerance:
             status = SOLVED
         history = np.array(self.account.history if self.history else [])
-        return Solution(self.best, self.account.steps, history, status, judged.scaled, judged.local)
+        return Solution(self.best, self.account.steps, history, status, scaled, local)

@@ -12,13 +12,12 @@ from functools import partial
 
 import numpy as np
 
-import lavendersim.engine.effects  # noqa: F401  before solvers: they need each other
 from lavendersim.engine.contact_problem import NOT_FINITE, SOLVED, SPENT, ContactProblem, Solution
 from lavendersim.engine.solvers import SOLVERS as KERNELS
 from lavendersim.errors import UsageError
 from lavendersim.problems.by_kernel import solve_by_kernel
 from lavendersim.problems.interior_point import WAYS
-from lavendersim.problems.residual import own_scales, residual
+from lavendersim.problems.residual import distances, own_scales
 from lavendersim.problems.search import Search
 
 Solver = Callable[[ContactProblem, float, int, "np.ndarray | None", bool], Solution]
@@ -30,69 +29,50 @@ AUTO_SWEEPS = 1_000_000
 AUTO = 3e9
 
 
-def solve_by_newton(
-    problem: ContactProblem,
-    tolerance: float,
-    sweeps: int,
-    start: np.ndarray | None = None,
-    history: bool = False,
-) -> Solution:
-    """Solve by sweeps, semismooth Newton steps and rounds; `sweeps` counts all of them."""
-    search = Search(problem, tolerance, sweeps, start, history)
+def _newton(search: Search) -> None:
+    """Take turns of sweeps, semismooth Newton steps and rounds."""
     search.open()
     search.go_on()
-    return search.solution()
 
 
-def solve_by_interior_point(
-    problem: ContactProblem,
-    tolerance: float,
-    sweeps: int,
-    start: np.ndarray | None = None,
-    history: bool = False,
-) -> Solution:
-    """Solve by `interior_point`; `start` is what to return where nothing better is found."""
-    search = Search(problem, tolerance, sweeps, start, history)
+def _interior_point(search: Search) -> None:
+    """Begin inside the cones, one way after the other."""
     for way in WAYS:
         if not search.over:
             search.interior(way)
         if not search.over:
             search.rounds()
-    return search.solution()
 
 
-def solve_by_all(
-    problem: ContactProblem,
-    tolerance: float,
-    sweeps: int,
-    start: np.ndarray | None = None,
-    history: bool = False,
-) -> Solution:
-    """Solve by whatever does it, in turn, within the price `AUTO`."""
-    search = Search(problem, tolerance, sweeps, start, history, AUTO)
+def _whatever_does_it(search: Search) -> None:
     search.open()
     search.go_on(WAYS)
-    return search.solution()
 
 
-def _by_kernel(
-    solver: str,
-    problem: ContactProblem,
-    tolerance: float,
-    sweeps: int,
-    start: np.ndarray | None = None,
-    history: bool = False,
-) -> Solution:
-    return solve_by_kernel(problem, solver, tolerance, sweeps, start, history)
+def _by_search(plan: Callable[[Search], None], price: float = float("inf")) -> Solver:
+    """Return the solver that makes a plan; it counts sweeps and steps alike as `sweeps`."""
+
+    def solver(
+        problem: ContactProblem,
+        tolerance: float,
+        sweeps: int,
+        start: np.ndarray | None = None,
+        history: bool = False,
+    ) -> Solution:
+        search = Search(problem, tolerance, sweeps, start, history, price)
+        plan(search)
+        return search.solution()
+
+    return solver
 
 
 # `adaptive` chooses by what a scene's bodies allow. The block and coloured variants differ from
 # `projected_gauss_seidel` in how they visit bodies: through W all three are the same sweeps.
 SOLVERS: dict[str, Solver] = {
-    **{name: partial(_by_kernel, name) for name in KERNELS if name != "adaptive"},
-    "semismooth_newton": solve_by_newton,
-    "interior_point": solve_by_interior_point,
-    "auto": solve_by_all,
+    **{name: partial(solve_by_kernel, name) for name in KERNELS if name != "adaptive"},
+    "semismooth_newton": _by_search(_newton),
+    "interior_point": _by_search(_interior_point),
+    "auto": _by_search(_whatever_does_it, AUTO),
 }
 
 
@@ -140,15 +120,15 @@ def solve(
 
 def judged(problem: ContactProblem, solution: Solution, tolerance: float) -> Solution:
     """Return the solution with its residual and whether it is one, from its impulses alone."""
-    found = residual(problem, solution.impulses)
+    scaled, local = distances(problem, solution.impulses)
     status = solution.status
-    if found.scaled <= tolerance:
+    if scaled <= tolerance:
         status = SOLVED
     elif status == SOLVED:
         status = SPENT
     if not np.isfinite(solution.impulses).all():
         status = NOT_FINITE
-    return solution._replace(status=status, scaled=found.scaled, local=found.local)
+    return solution._replace(status=status, scaled=scaled, local=local)
 
 
 def _run(

@@ -62,3 +62,8 @@ def test_no_module_of_a_view_loads_the_engine(room: str) -> None:
     loaded = loaded_after("\n".join(f"import {name.removesuffix('.__init__')}" for name in names))
     assert f"lavendersim.{room}" in loaded
     assert loaded & {"numba", "llvmlite", "lavendersim.engine", "lavendersim.scene"} == set()
+
+
+def test_solvers_can_be_the_first_of_the_engine_that_is_asked_for() -> None:
+    """Effects need blocks and residuals, which need effects: somebody has to say who begins."""
+    assert "lavendersim.engine.effects" in loaded_after("import lavendersim.engine.solvers")

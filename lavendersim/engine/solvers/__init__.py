@@ -4,6 +4,8 @@ A solver's module has `make(spec) -> kernel` and, where it needs them, CONTACT_F
 (columns per contact) and `allocate(spec, bodies, contacts)` (arrays it works in).
 """
 
+# Effects begin: their list names files that need the blocks which solvers and effects share.
+from .. import effects  # noqa: F401
 from . import (
     accelerated_projected_gradient,
     adaptive,

@@ -97,7 +97,7 @@ def test_a_solver_by_itself_finds_the_same_velocities(solver: str) -> None:
     found = bench.engine.problem()
     assert found is not None
     problem: ContactProblem = found.problem
-    made = solve_by_kernel(problem, solver, 1e-12, 200_000, friction_cone="convex")
+    made = solve_by_kernel(solver, problem, 1e-12, 200_000, friction_cone="convex")
     u = contact_velocities(problem, made.impulses)
     np.testing.assert_allclose(u[:, 0], MU * LIFTED, atol=ALLOWED)
     np.testing.assert_allclose(np.linalg.norm(u[:, 1:], axis=1), LIFTED, atol=ALLOWED)

@@ -89,7 +89,7 @@ def test_a_problem_by_itself_is_solved_in_fewer_sweeps() -> None:
     by_column = np.argsort(column, kind="stable")
     problem = ContactProblem(begin, row[by_column], blocks[by_column], free, zero, zero, zero)
     plain, over = (
-        solve_by_kernel(problem, "projected_gauss_seidel", 1e-11, over_relaxation=factor)
+        solve_by_kernel("projected_gauss_seidel", problem, 1e-11, over_relaxation=factor)
         for factor in (1.0, 1.6)
     )
     assert plain.status == over.status == SOLVED

@@ -67,7 +67,7 @@ def test_sweeps_over_bodies_and_through_the_matrix_leave_the_same_impulses(
     solver: str, sweeps: int
 ) -> None:
     problem, impulses = solved(solver, sweeps)
-    found = solve_by_kernel(problem, solver, tolerance=-1.0, sweeps=sweeps)
+    found = solve_by_kernel(solver, problem, tolerance=-1.0, sweeps=sweeps)
     assert found.sweeps == sweeps
     assert np.abs(impulses).max() > 0.1
     np.testing.assert_allclose(found.impulses, impulses, rtol=0, atol=ROUND_OFF)
@@ -76,7 +76,7 @@ def test_sweeps_over_bodies_and_through_the_matrix_leave_the_same_impulses(
 @pytest.mark.parametrize("solver", STEPPED)
 def test_steps_over_bodies_and_through_the_matrix_end_at_the_same_velocities(solver: str) -> None:
     problem, impulses = solved(solver, 5000)
-    found = solve_by_kernel(problem, solver, tolerance=1e-13, sweeps=5000)
+    found = solve_by_kernel(solver, problem, tolerance=1e-13, sweeps=5000)
     assert found.scaled <= 1e-13
     # The engine stops at a residual of 1e-14 m/s, here at 1e-13 of |q|, some m/s: both are off by
     # that times the condition of W on a box, below 1e3.
@@ -88,7 +88,7 @@ def test_steps_over_bodies_and_through_the_matrix_end_at_the_same_velocities(sol
 def test_the_history_a_kernel_keeps_is_the_residual_of_its_impulses(solver: str) -> None:
     problem, _ = solved("projected_gauss_seidel", 1)
     for sweeps in (0, 1, 7):
-        found = solve_by_kernel(problem, solver, -1.0, sweeps, history=True)
+        found = solve_by_kernel(solver, problem, -1.0, sweeps, history=True)
         assert len(found.history) == found.sweeps + 1
         judged = residual(problem, found.impulses).scaled
         np.testing.assert_allclose(found.history[-1], judged, rtol=1e-9, atol=ROUND_OFF)
