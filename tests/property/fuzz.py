@@ -3,9 +3,11 @@
     python tests/property/fuzz.py --runs 10000 --plans 20 --keep finds
 
 Every run is one of `fuzz_laws.broken`: on the plan with every effect and pair of shapes for as many
-`--runs`, then on so many drawn `--plans` for a share of them each. Each config that breaks a law is
-written to the directory `--keep`, as a config that replays it. The config that runs stands there as
-`running.yaml`, so that it is known where the process itself ends. Exit 1 where anything
+`--runs`, then on so many drawn `--plans` for a share of them each; `--only full plan_3` picks some,
+for a process each. Runs are drawn in chunks, each from a seed of its own. The directory `--keep`
+holds a line per finished chunk, in `finished.csv`: started again, the program goes on behind them.
+It also holds each config that breaks a law, as a config that replays it, and the config that runs,
+as `<engine>_running.yaml`, so that it is known where the process itself ends. Exit 1 where anything
 broke that is not known (`fuzz_laws.KNOWN`).
 """
 
@@ -18,12 +20,14 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import numpy as np
 from fuzz_laws import KNOWN, broken, loaded, run, text_of, unknown
 from fuzz_scenes import FULL, Drawn, configs, plans
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import seed as seeded
 
-PROGRESS = 500  # runs between two lines that tell how far it is
+CHUNK = 500  # runs from one seed: what an interruption loses at most
+HEADING = "engine,seed,chunk,runs,finds,unknown,seconds\n"
 
 
 class Find(NamedTuple):
@@ -33,7 +37,7 @@ class Find(NamedTuple):
     laws: list[str]
 
 
-def drawn(strategy: Any, count: int, take: Callable[[Any], None], seed: int) -> None:
+def drawn(strategy: Any, count: int, take: Callable[[Any], None], seed: int | str) -> None:
     """Draw so many values, the same on every machine and day, and hand each on."""
 
     @seeded(seed)
@@ -73,21 +77,22 @@ def compiled(plan: Drawn) -> None:
 
 
 def finds(
-    plan: Drawn, count: int, keep: Path | None = None, seed: int = 0
+    plan: Drawn, count: int, keep: Path | None = None, seed: int | str = 0
 ) -> tuple[int, list[Find]]:
     """Run so many configs on the engine of one plan; returns their number, and what broke.
 
-    A plan's configs share an engine: one that calls for another is a find, too. keep: a file for
-    the config that runs, and the beginning of the names of finds.
+    A plan's configs share an engine: one that calls for another is a find, too. keep: the beginning
+    of the names of finds, and of the file for the config that runs.
     """
     compiled(plan)
     shared = loaded(first_config(plan))[1]
+    running = None if keep is None else keep.with_name(f"{keep.name}_running.yaml")
     done, found = 0, []
 
     def take(tree: dict[str, Any]) -> None:
         nonlocal done
-        if keep is not None:
-            keep.with_name("running.yaml").write_text(text_of(tree))
+        if running is not None:
+            running.write_text(text_of(tree))
         laws = broken(tree, shared)
         done += 1
         if laws:
@@ -96,11 +101,45 @@ def finds(
                 path = keep.with_name(f"{keep.name}_{done}.yaml")
                 path.write_text("".join(f"# {law}\n" for law in laws) + text_of(tree))
                 print(f"  {path}: {'; '.join(laws)}", flush=True)
-        if keep is not None and done % PROGRESS == 0:
-            print(f"  {done} of {count} runs", flush=True)
 
     drawn(configs(plan), count, take, seed)
+    if running is not None:
+        running.unlink()
     return done, found
+
+
+def finished(keep: Path) -> dict[tuple[str, int, int], tuple[int, int, int]]:
+    """Return the runs, finds and finds not known of every chunk that a directory tells of."""
+    path = keep / "finished.csv"
+    if not path.exists():
+        path.write_text(HEADING)
+    rows = (line.split(",") for line in path.read_text().splitlines()[1:])
+    return {(name, int(seed), int(chunk)): (int(runs), int(found), int(new))
+            for name, seed, chunk, runs, found, new, _ in rows}  # fmt: skip
+
+
+def fuzz(name: str, plan: Drawn, count: int, seed: int, keep: Path) -> int:
+    """Run what is not finished of one engine; returns how many runs broke a law not known to be.
+
+    Tells how far it is after every chunk.
+    """
+    laws = ", ".join(f"{value}" for value in plan.numerics.values())
+    print(f"{name} ({laws}; {len(plan.effects)} effects; {'/'.join(plan.shapes)})", flush=True)
+    total = np.zeros(3, int)
+    for chunk, first in enumerate(range(0, count, CHUNK)):
+        begin, wanted = time.perf_counter(), min(CHUNK, count - first)
+        told = finished(keep).get((name, seed, chunk), (0, 0, 0))
+        if told[0] < wanted:
+            key = f"{name}_{seed}_{chunk}"
+            done, found = finds(plan, wanted, keep / key, key)
+            told = (done, len(found), sum(bool(unknown(find.laws)) for find in found))
+            with (keep / "finished.csv").open("a") as file:
+                seconds = time.perf_counter() - begin
+                file.write(",".join(map(str, (name, seed, chunk, *told))) + f",{seconds:.0f}\n")
+        total += told
+        print(f"  {total[0]} of {count} runs: {total[1]} broke a law, {total[2]} of them none "
+              "that is known", flush=True)  # fmt: skip
+    return int(total[2])
 
 
 def main(arguments: list[str]) -> int:
@@ -110,25 +149,18 @@ def main(arguments: list[str]) -> int:
     parser.add_argument("--plans", type=int, default=2, help="drawn, with a tenth of the runs each")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--keep", type=Path, default=Path("fuzz_finds"), help="directory of finds")
+    parser.add_argument("--only", nargs="+", metavar="NAME", help="of full, plan_0, plan_1, ...")
     asked = parser.parse_args(arguments)
     asked.keep.mkdir(parents=True, exist_ok=True)
     engines = {"full": (FULL, asked.runs)}
     for number, plan in enumerate(drawn_plans(asked.plans, asked.seed)):
         engines[f"plan_{number}"] = (plan, max(asked.runs // 10, 1))
-    broke = 0
-    for name, (plan, count) in engines.items():
-        begin = time.perf_counter()
-        done, found = finds(plan, count, asked.keep / f"{name}_{asked.seed}", asked.seed)
-        known = [find for find in found if not unknown(find.laws)]
-        broke += len(found) - len(known)
-        took = f"{time.perf_counter() - begin:.0f} s"
-        laws = ", ".join(f"{value}" for value in plan.numerics.values())
-        print(f"{name} ({laws}; {len(plan.effects)} effects; {'/'.join(plan.shapes)}): "
-              f"{done - len(found)} of {done} runs broke nothing, {took}")  # fmt: skip
-        if known:
-            print(f"  {len(known)} of the others broke no more than is known ({', '.join(KNOWN)})")
-        sys.stdout.flush()
-    (asked.keep / "running.yaml").unlink(missing_ok=True)
+    names = asked.only or list(engines)
+    if not {*names} <= {*engines}:
+        parser.error(f"--only: expected names out of {', '.join(engines)}")
+    broke = sum(fuzz(name, *engines[name], asked.seed, asked.keep) for name in names)
+    if KNOWN:
+        print(f"known to be broken: {', '.join(KNOWN)}")
     return 1 if broke else 0
 
 
