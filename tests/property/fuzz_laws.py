@@ -31,11 +31,6 @@ LIMIT = 120.0  # [s]
 ROUNDING = 1e-12
 # Components that small are squared below the least number: their length is known to so much.
 UNDERFLOW = 1e-150
-# Laws that are known to be broken, and why; random configs are not held to them.
-KNOWN = {
-    "torque": "Newton's method gives contacts new normal impulses and leaves their torques, which "
-    "the sweeps that remain may be too few to bring back within c lambda_n",
-}
 SQUARES = ("kinetic_energy", "dissipation")  # columns that are products of two velocities
 BLOCK = 16  # steps that rows are held for: some blocks end within each run
 
@@ -79,11 +74,6 @@ def run(resolved: dict[str, Any], spec: Spec, steps: int) -> Ended:
     rows = Rows(*(np.concatenate(columns) for columns in zip(*blocks, strict=True)))
     said = divergence(scene, engine) if status == DIVERGED else ""
     return Ended(rows, done, said, scene, engine)
-
-
-def unknown(laws: list[str]) -> list[str]:
-    """Return those of some sentences that are not of laws known to be broken."""
-    return [law for law in laws if law.split(":")[0] not in KNOWN]
 
 
 def broken(tree: dict[str, Any], shared: Spec | None = None) -> list[str]:

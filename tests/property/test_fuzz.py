@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 import yaml
 from fuzz import drawn_plans, finds, first_config
-from fuzz_laws import KNOWN, broken, loaded, run, unknown
+from fuzz_laws import broken, loaded, run
 from fuzz_scenes import FULL, SOLIDS, Drawn
 from idle import compile_together
 
@@ -23,8 +23,6 @@ from lavendersim.engine.effects import EFFECTS
 CONFIGS = int(os.environ.get("LAVENDER_TEST_FUZZ", "300"))
 ENGINES = {"everything": FULL, **{f"drawn {k}": plan for k, plan in enumerate(drawn_plans(2))}}
 SHARE = {"everything": 8, "drawn 0": 1, "drawn 1": 1}  # tenths of the configs
-# Finds that still break a law, by the law.
-BROKEN = {"torque_beyond_its_cone": "torque"}
 FOUND = sorted((Path(__file__).parents[2] / "configs" / "hard" / "found").glob("*.yaml"))
 
 
@@ -42,16 +40,10 @@ def compiled() -> None:
 def test_random_configs_break_no_law(name: str) -> None:
     done, found = finds(ENGINES[name], CONFIGS * SHARE[name] // 10)
     assert done == CONFIGS * SHARE[name] // 10
-    assert [find.laws for find in found if unknown(find.laws)] == []
+    assert [find.laws for find in found] == []
 
 
-def _marked(path: Path) -> Any:
-    law = BROKEN.get(path.stem)
-    marks = [pytest.mark.xfail(reason=KNOWN[law], strict=True)] if law else []
-    return pytest.param(path, marks=marks, id=path.stem)
-
-
-@pytest.mark.parametrize("path", [_marked(path) for path in FOUND])
+@pytest.mark.parametrize("path", FOUND, ids=lambda path: path.stem)
 def test_what_was_found_once_breaks_no_law(path: Path) -> None:
     tree: dict[str, Any] = yaml.safe_load(path.read_text(encoding="utf-8"))
     assert broken(tree) == []

@@ -38,6 +38,7 @@ SHARED_BY_SOLVERS = {
     "newton_minimise",
     "newton_rows",
     "newton_matrix",
+    "newton_torques",
     "envelope",
 }
 # Folders of configs that claim something of physics, and what claims something else: maps look for

@@ -4,12 +4,14 @@ Two contacts that share a body trade their impulses sweep by sweep, more slowly 
 and the larger the ratio of masses. One row alone is solved by its first sweep.
 """
 
+from ..records import Field
+from ..spec import Spec
 from .decision import Decision, Facts
 
 NAME = "newton"
 STAGE = "solve"
 CHOSEN_BY = "solver"
-CONTACT_FIELDS = [
+FORCES = [
     *[
         (f"{name}_{axis}", "f8")
         # lambda^k and the best so far [N s], the velocities seen, and those that a step adds [m/s].
@@ -23,6 +25,18 @@ CONTACT_FIELDS = [
     ("stiff_n", "f8"),  # e along the normal and in the tangent plane [kg]
     ("stiff_t", "f8"),
 ]
+TORQUES = {  # by the effect that brings them: the same of psi, and the limits of a round [N m s]
+    "torsional_friction": [
+        *[(f"{name}_n", "f8") for name in ("held_psi", "seen_w", "step_w")],
+        ("stiff_torsion", "f8"),  # e [kg m^2]
+        ("most_torsion", "f8"),
+    ],
+    "rolling_friction": [
+        *[(f"{name}_{k}", "f8") for name in ("held_psi", "seen_w", "step_w") for k in "12"],
+        ("stiff_roll", "f8"),
+        ("most_roll", "f8"),
+    ],
+}
 # Shapes that touch each other, or a plane, in one point.
 ONE_POINT = {"sphere", "plane"}
 
@@ -44,3 +58,9 @@ def wanted(facts: Facts) -> Decision:
     if alone and not rubs and {shapes[pair.a], shapes[pair.b]} <= ONE_POINT:
         return Decision(False, f"{pair.a} and {pair.b} touch in one point, without friction")
     return Decision(True, "contacts that share a body may trade impulses for many sweeps")
+
+
+def contact_fields(spec: Spec) -> list[Field]:
+    """Return the columns of what is on its way: impulses, and the torques that there are."""
+    torques = [field for effect, held in TORQUES.items() if spec.has(effect) for field in held]
+    return [*FORCES, *torques]

@@ -7,7 +7,7 @@ projection onto the cone would lift what slides. Held for a round, it leaves a c
 (`newton_minimise`). At rest s = 0, and a round shrinks the error by softness over the least
 eigenvalue of the scaled Delassus operator; where that is not what a round leaves, the shifts are,
 and the next ones go by their secants. A round must end exactly: what it leaves undone comes back in
-the impulses, times E.
+the impulses, times E. Torques take part (`newton_torques`).
 
 The first round is stiff and takes contacts to be at rest: a load that is carried without slip is
 found at once, through a tower or a pyramid. Where that fails, rounds begin soft, where few contacts
@@ -22,9 +22,11 @@ from ..compile import kernel
 from ..contact import make_apply_block
 from ..residual import make_residual
 from ..spec import Spec
+from ..spin_block import resists_turning
 from .envelope import lay_out
 from .newton_minimise import make_minimise, make_weigh
 from .newton_rows import make_answer, make_start
+from .newton_torques import make_give_back, make_put_torques
 
 # Newton steps in a call; fewer than these are not worth beginning.
 MOST_STEPS = 150
@@ -56,12 +58,14 @@ def make_newton(spec: Spec):
 
     It returns the number of steps, none when the system is larger than its arrays and no more than
     fit into `allowance` multiplications, and whether the first round held, `bold`: taken to be at
-    rest. Impulses and velocities leave consistent with each other.
+    rest. Impulses, torques and velocities leave consistent with each other.
     """
     friction = spec.has("friction")
     residual, apply_block = make_residual(spec), make_apply_block(spec)
     start, answer = make_start(spec), make_answer(spec)
     weigh, minimise = make_weigh(spec), make_minimise(spec)
+    spins = resists_turning(spec)
+    put_torques, give_back = make_put_torques(spec), make_give_back(spec)
 
     def put(contact, velocities, n, one, two):
         # Impulses in place of those there are, and velocities with them.
@@ -86,6 +90,8 @@ def make_newton(spec: Spec):
                     scale = limit / sqrt(squared)
                     one, two = one * scale, two * scale
             put(contact, velocities, n, one, two)
+            if spins:
+                put_torques(contact, velocities[contact.a], velocities[contact.b])
 
     accept = kernel(accept, spec)
 
@@ -96,6 +102,8 @@ def make_newton(spec: Spec):
             if friction:
                 one, two = contact.held_1, contact.held_2
             put(contact, velocities, contact.held_n, one, two)
+            if spins:
+                give_back(contact, velocities[contact.a], velocities[contact.b])
 
     take_back = kernel(take_back, spec)
 

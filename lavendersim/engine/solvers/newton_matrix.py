@@ -7,8 +7,10 @@ from __future__ import annotations
 
 from ..compile import kernel
 from ..spec import Spec
+from ..spin_block import resists_turning
 from .envelope import DOF
 from .newton_rows import make_fill_rows, make_stiffness
+from .newton_torques import make_add_turning
 
 
 def make_assemble(spec: Spec):
@@ -16,6 +18,7 @@ def make_assemble(spec: Spec):
     friction = spec.has("friction")
     fill_rows, stiffness = make_fill_rows(spec), make_stiffness(spec)
     directions = 3 if friction else 1
+    spins, add_turning = resists_turning(spec), make_add_turning(spec)
 
     def add_block(space, p, q, rows_p, rows_q):
         # += rows_p^T E' rows_q on block row p and block column q <= p; E' rows_q are rows 6..8.
@@ -65,10 +68,10 @@ def make_assemble(spec: Spec):
         for c in range(count):
             contact = contacts[c]
             h_nn, h_n1, h_n2, h_11, h_12, h_22 = stiffness(contact)
+            a = space.position[contact.a] if contact.inv_m_a > 0.0 else -1
+            b = space.position[contact.b] if contact.inv_m_b > 0.0 else -1
             if h_nn > 0.0:
                 fill_rows(contact, space.rows)
-                a = space.position[contact.a] if contact.inv_m_a > 0.0 else -1
-                b = space.position[contact.b] if contact.inv_m_b > 0.0 else -1
                 if a >= 0:
                     scale_rows(space, 0, h_nn, h_n1, h_n2, h_11, h_12, h_22)
                     add_block(space, a, a, 0, 0)
@@ -79,5 +82,7 @@ def make_assemble(spec: Spec):
                     add_block(space, b, b, 3, 3)
                     if a > b:
                         add_block(space, a, b, 0, 3)
+            if spins:
+                add_turning(contact, a, b, space)
 
     return kernel(assemble, spec)

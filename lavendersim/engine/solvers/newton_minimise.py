@@ -12,9 +12,16 @@ from __future__ import annotations
 from ..compile import kernel
 from ..rotation import inertia_times
 from ..spec import Spec
+from ..spin_block import resists_turning
 from .envelope import DOF, factorise, solve_factorised
 from .newton_matrix import make_assemble
 from .newton_rows import make_answer, make_fill_rows
+from .newton_torques import (
+    make_advance_turning,
+    make_gather_torque,
+    make_look_round,
+    make_turn_slope,
+)
 
 # Steps at most. The one that finds every contact in its final state is the last but one.
 MOST_STEPS = 24
@@ -56,6 +63,9 @@ def make_minimise(spec: Spec):
     directions = 3 if friction else 1
     answer, fill_rows = make_answer(spec), make_fill_rows(spec)
     assemble = make_assemble(spec)
+    spins = resists_turning(spec)
+    gather_torque, look_round = make_gather_torque(spec), make_look_round(spec)
+    turn_slope, advance_turning = make_turn_slope(spec), make_advance_turning(spec)
 
     def multiply(size, space, x, p, i):
         # Row i of block p of M x.
@@ -101,6 +111,9 @@ def make_minimise(spec: Spec):
                             if friction:
                                 total += one * rows[3 * side + 1, i] + two * rows[3 * side + 2, i]
                             gradient[DOF * p + i] -= total
+            if spins:
+                a, b = body_of(contact, space, 0), body_of(contact, space, 1)
+                gather_torque(contact, a, b, gradient)
 
     gather = kernel(gather, spec)
 
@@ -123,6 +136,9 @@ def make_minimise(spec: Spec):
             contact.step_n = n
             if friction:
                 contact.step_1, contact.step_2 = one, two
+            if spins:
+                a, b = body_of(contact, space, 0), body_of(contact, space, 1)
+                look_round(contact, a, b, step)
 
     look_along = kernel(look_along, spec)
 
@@ -136,6 +152,8 @@ def make_minimise(spec: Spec):
             if friction:
                 total -= contact.step_1 * (one - contact.held_1)
                 total -= contact.step_2 * (two - contact.held_2)
+            if spins:
+                total += turn_slope(contact, length)
         return total
 
     slope_at = kernel(slope_at, spec)
@@ -202,6 +220,8 @@ def make_minimise(spec: Spec):
                     contact.seen_2 += length * contact.step_2
                     contact.step_1, contact.step_2 = 0.0, 0.0
                 contact.step_n = 0.0
+                if spins:
+                    advance_turning(contact, length)
         return MOST_STEPS, False
 
     return kernel(minimise, spec)

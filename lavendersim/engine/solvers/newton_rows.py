@@ -15,6 +15,8 @@ from ..compile import inner, kernel
 from ..contact import make_smooth_velocity
 from ..effects.smooth_contact import by_roughness
 from ..spec import Spec
+from ..spin_block import resists_turning
+from .newton_torques import make_hold_torques
 
 
 def make_start(spec: Spec):
@@ -26,6 +28,7 @@ def make_start(spec: Spec):
     """
     compliant = spec.has("compliance")
     look = by_roughness(spec, _make_look_along_normal, _make_look)
+    spins, hold_torques = resists_turning(spec), make_hold_torques(spec)
 
     def start(contacts, count, velocities, softness, at_rest, stalls):
         for c in range(count):
@@ -37,6 +40,8 @@ def make_start(spec: Spec):
                 contact.scale = 1.0 / (1.0 + stiff * contact.gamma)
             contact.stiff_n = stiff * contact.scale
             contact.held_n = contact.lambda_n
+            if spins:
+                hold_torques(contact, va, vb, softness)
             look(contact, va, vb, softness, at_rest, stalls)
 
     return kernel(start, spec)

@@ -1,0 +1,245 @@
+"""What Newton's method asks of torques: their answer to turning, its derivative, and its end.
+
+A contact that resists turning (`spin_block`) answers the relative angular velocity omega it sees,
+around the psi^k it holds, within limits that stand still in a round:
+    psi = proj(x),   x = psi^k - e omega,   |psi_n| <= c lambda_n^k,   |psi_t| <= c lambda_n^k,
+e = E = 1/(softness k) of either part. The round over, psi is brought within what the new lambda_n
+allows, and velocities follow: the residual judges impulses and torques that are in their cones.
+"""
+
+from __future__ import annotations
+
+from math import sqrt
+from typing import Any
+
+from ..compile import inner, kernel
+from ..effects import rolling_friction, torsional_friction
+from ..spec import Spec
+from ..spin_block import make_apply_spin, resists_turning
+from .envelope import DOF
+
+
+def make_hold_torques(spec: Spec) -> Any:
+    """Return `kernel(contact, va, vb, softness)`: what a round begins with."""
+    torsional, rolling = spec.has("torsional_friction"), spec.has("rolling_friction")
+
+    def hold_torques(contact, va, vb, softness):
+        x, y, z = vb.wx - va.wx, vb.wy - va.wy, vb.wz - va.wz
+        if torsional:
+            contact.held_psi_n = contact.psi_n
+            contact.seen_w_n = contact.nx * x + contact.ny * y + contact.nz * z
+            contact.step_w_n = 0.0
+            contact.stiff_torsion = 1.0 / (softness * contact.k_torsion)
+            contact.most_torsion = contact.torsional * contact.lambda_n
+        if rolling:
+            contact.held_psi_1, contact.held_psi_2 = contact.psi_1, contact.psi_2
+            contact.seen_w_1 = contact.t1x * x + contact.t1y * y + contact.t1z * z
+            contact.seen_w_2 = contact.t2x * x + contact.t2y * y + contact.t2z * z
+            contact.step_w_1, contact.step_w_2 = 0.0, 0.0
+            contact.stiff_roll = 1.0 / (softness * contact.k_roll)
+            contact.most_roll = contact.rolling * contact.lambda_n
+
+    return kernel(hold_torques, spec) if resists_turning(spec) else None
+
+
+def make_turn(spec: Spec) -> Any:
+    """Return `kernel(contact, length) -> (n, one, two)`: psi - psi^k so far along the step."""
+    torsional, rolling = spec.has("torsional_friction"), spec.has("rolling_friction")
+
+    def turn(contact, length):
+        n, one, two = 0.0, 0.0, 0.0
+        if torsional:
+            if contact.torsional > 0.0:
+                most = contact.most_torsion
+                x = contact.seen_w_n + length * contact.step_w_n
+                x = contact.held_psi_n - contact.stiff_torsion * x
+                n = min(max(x, -most), most) - contact.held_psi_n
+        if rolling:
+            if contact.rolling > 0.0:
+                most, e = contact.most_roll, contact.stiff_roll
+                one = contact.held_psi_1 - e * (contact.seen_w_1 + length * contact.step_w_1)
+                two = contact.held_psi_2 - e * (contact.seen_w_2 + length * contact.step_w_2)
+                r = sqrt(one * one + two * two)
+                if r > most:
+                    one, two = one * (most / r), two * (most / r)
+                one, two = one - contact.held_psi_1, two - contact.held_psi_2
+        return n, one, two
+
+    return kernel(turn, spec) if resists_turning(spec) else None
+
+
+def make_gather_torque(spec: Spec) -> Any:
+    """Return `kernel(contact, a, b, gradient)`: -= S^T (psi - psi^k); a, b: positions, -1: none."""
+    turn = make_turn(spec)
+
+    def gather_torque(contact, a, b, gradient):
+        n, one, two = turn(contact, 0.0)
+        if n != 0.0 or one != 0.0 or two != 0.0:
+            x = contact.nx * n + contact.t1x * one + contact.t2x * two
+            y = contact.ny * n + contact.t1y * one + contact.t2y * two
+            z = contact.nz * n + contact.t1z * one + contact.t2z * two
+            if a >= 0:
+                gradient[DOF * a + 3] += x
+                gradient[DOF * a + 4] += y
+                gradient[DOF * a + 5] += z
+            if b >= 0:
+                gradient[DOF * b + 3] -= x
+                gradient[DOF * b + 4] -= y
+                gradient[DOF * b + 5] -= z
+
+    return kernel(gather_torque, spec) if resists_turning(spec) else None
+
+
+def make_look_round(spec: Spec) -> Any:
+    """Return `kernel(contact, a, b, step)`: what the step adds to the turning that it sees."""
+    torsional, rolling = spec.has("torsional_friction"), spec.has("rolling_friction")
+
+    def look_round(contact, a, b, step):
+        x, y, z = 0.0, 0.0, 0.0
+        if a >= 0:
+            x, y, z = -step[DOF * a + 3], -step[DOF * a + 4], -step[DOF * a + 5]
+        if b >= 0:
+            x, y, z = x + step[DOF * b + 3], y + step[DOF * b + 4], z + step[DOF * b + 5]
+        if torsional:
+            contact.step_w_n = contact.nx * x + contact.ny * y + contact.nz * z
+        if rolling:
+            contact.step_w_1 = contact.t1x * x + contact.t1y * y + contact.t1z * z
+            contact.step_w_2 = contact.t2x * x + contact.t2y * y + contact.t2z * z
+
+    return kernel(look_round, spec) if resists_turning(spec) else None
+
+
+def make_turn_slope(spec: Spec) -> Any:
+    """Return `kernel(contact, length) -> the torques' part of the derivative along the step`."""
+    torsional, rolling = spec.has("torsional_friction"), spec.has("rolling_friction")
+    turn = make_turn(spec)
+
+    def turn_slope(contact, length):
+        n, one, two = turn(contact, length)
+        total = 0.0
+        if torsional:
+            total -= contact.step_w_n * n
+        if rolling:
+            total -= contact.step_w_1 * one + contact.step_w_2 * two
+        return total
+
+    return kernel(turn_slope, spec) if resists_turning(spec) else None
+
+
+def make_advance_turning(spec: Spec) -> Any:
+    """Return `kernel(contact, length)`: the step, so much of it, is taken."""
+    torsional, rolling = spec.has("torsional_friction"), spec.has("rolling_friction")
+
+    def advance_turning(contact, length):
+        if torsional:
+            contact.seen_w_n += length * contact.step_w_n
+            contact.step_w_n = 0.0
+        if rolling:
+            contact.seen_w_1 += length * contact.step_w_1
+            contact.seen_w_2 += length * contact.step_w_2
+            contact.step_w_1, contact.step_w_2 = 0.0, 0.0
+
+    return kernel(advance_turning, spec) if resists_turning(spec) else None
+
+
+@inner
+def _add(space, p, q, scale, xx, xy, xz, yy, yz, zz):
+    # += scale T on the turning of block row p and block column q <= p; p = q: its lower half.
+    values, start = space.values, space.start
+    offset = DOF * (q - space.first[p]) + 3
+    x, y, z = start[DOF * p + 3] + offset, start[DOF * p + 4] + offset, start[DOF * p + 5] + offset
+    values[x] += scale * xx
+    values[y] += scale * xy
+    values[y + 1] += scale * yy
+    values[z] += scale * xz
+    values[z + 1] += scale * yz
+    values[z + 2] += scale * zz
+    if p != q:
+        values[x + 1] += scale * xy
+        values[x + 2] += scale * xz
+        values[y + 2] += scale * yz
+
+
+def make_add_turning(spec: Spec) -> Any:
+    """Return `kernel(contact, a, b, space)`: += S^T E' S on the matrix, E' = -d psi / d omega."""
+    torsional, rolling = spec.has("torsional_friction"), spec.has("rolling_friction")
+
+    def add_turning(contact, a, b, space):
+        h_nn, h_11, h_12, h_22 = 0.0, 0.0, 0.0, 0.0
+        if torsional:
+            x = contact.held_psi_n - contact.stiff_torsion * contact.seen_w_n
+            if abs(x) <= contact.most_torsion:
+                h_nn = contact.stiff_torsion
+        if rolling:
+            e, most = contact.stiff_roll, contact.most_roll
+            one = contact.held_psi_1 - e * contact.seen_w_1
+            two = contact.held_psi_2 - e * contact.seen_w_2
+            r = sqrt(one * one + two * two)
+            if r <= most:
+                h_11, h_22 = e, e
+            else:  # around the disc only
+                around = e * (most / r)
+                u, v = one / r, two / r
+                h_11, h_12, h_22 = around * v * v, -around * u * v, around * u * u
+        if h_nn > 0.0 or h_11 > 0.0 or h_22 > 0.0:
+            nx, ny, nz = contact.nx, contact.ny, contact.nz
+            ax, ay, az = contact.t1x, contact.t1y, contact.t1z
+            bx, by, bz = contact.t2x, contact.t2y, contact.t2z
+            # T = h_nn n n^T + t1 (h_11 t1 + h_12 t2)^T + t2 (h_12 t1 + h_22 t2)^T
+            px, py, pz = h_11 * ax + h_12 * bx, h_11 * ay + h_12 * by, h_11 * az + h_12 * bz
+            qx, qy, qz = h_12 * ax + h_22 * bx, h_12 * ay + h_22 * by, h_12 * az + h_22 * bz
+            xx = h_nn * nx * nx + ax * px + bx * qx
+            xy = h_nn * nx * ny + ax * py + bx * qy
+            xz = h_nn * nx * nz + ax * pz + bx * qz
+            yy = h_nn * ny * ny + ay * py + by * qy
+            yz = h_nn * ny * nz + ay * pz + by * qz
+            zz = h_nn * nz * nz + az * pz + bz * qz
+            if a >= 0:
+                _add(space, a, a, 1.0, xx, xy, xz, yy, yz, zz)
+            if b >= 0:
+                _add(space, b, b, 1.0, xx, xy, xz, yy, yz, zz)
+            if a >= 0 and b >= 0:
+                _add(space, max(a, b), min(a, b), -1.0, xx, xy, xz, yy, yz, zz)
+
+    return kernel(add_turning, spec) if resists_turning(spec) else None
+
+
+def make_put_torques(spec: Spec) -> Any:
+    """Return `kernel(contact, va, vb)`: psi as answered, within what the new lambda_n allows."""
+    torsional, rolling = spec.has("torsional_friction"), spec.has("rolling_friction")
+    turn, apply_spin = make_turn(spec), make_apply_spin(spec)
+    # An update without turning is the projection alone.
+    project_torsion = torsional_friction.make_solve(spec)
+    project_rolling = rolling_friction.make_solve(spec)
+
+    def put_torques(contact, va, vb):
+        n, one, two = turn(contact, 0.0)
+        if torsional:
+            contact.psi_n += n
+            n += project_torsion(contact, 0.0)
+        if rolling:
+            contact.psi_1 += one
+            contact.psi_2 += two
+            more_1, more_2 = project_rolling(contact, 0.0, 0.0)
+            one, two = one + more_1, two + more_2
+        apply_spin(contact, va, vb, n, one, two)
+
+    return kernel(put_torques, spec) if resists_turning(spec) else None
+
+
+def make_give_back(spec: Spec) -> Any:
+    """Return `kernel(contact, va, vb)`: psi is what was held, and velocities follow."""
+    torsional, rolling = spec.has("torsional_friction"), spec.has("rolling_friction")
+    apply_spin = make_apply_spin(spec)
+
+    def give_back(contact, va, vb):
+        n, one, two = 0.0, 0.0, 0.0
+        if torsional:
+            n = contact.held_psi_n - contact.psi_n
+            contact.psi_n = contact.held_psi_n
+        if rolling:
+            one, two = contact.held_psi_1 - contact.psi_1, contact.held_psi_2 - contact.psi_2
+            contact.psi_1, contact.psi_2 = contact.held_psi_1, contact.held_psi_2
+        apply_spin(contact, va, vb, n, one, two)
+
+    return kernel(give_back, spec) if resists_turning(spec) else None
