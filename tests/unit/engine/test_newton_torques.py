@@ -1,15 +1,19 @@
 """Newton's method finds torques with impulses, and leaves them within what the impulses allow.
 
-A twisted tower under a heavy cube, on contacts that resist every turning. Sixteen sweeps call
-Newton's method after the last of them: no sweep mends what it leaves. And balls on each other,
-which only torques keep up.
+A twisted tower under a heavy cube, on contacts that resist every turning. After steps in vain the
+last of sixteen sweeps is followed by Newton's method: no sweep mends what it leaves. And balls on
+each other, which only torques keep up.
 """
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 import pytest
 from laboratory import Bench, box, plane, resolved, sphere
+
+from lavendersim.engine.engine import Rows
 
 G, DT, EDGE, COUNT = 9.81, 1.0 / 240.0, 0.2, 4
 C = 0.001
@@ -35,20 +39,38 @@ def twisted_tower(history: str = "none") -> Bench:
     return Bench(cell, spec=None)
 
 
-@pytest.fixture(scope="module")
-def ended() -> tuple[Bench, np.ndarray, np.ndarray]:
-    """The bench after a step that Newton's method ends, its contacts, and its velocities before."""
-    bench = twisted_tower()
-    before = np.hstack([bench.velocity, bench.spin])
+class Ended(NamedTuple):
+    """A step that Newton's method ends: its bench and rows, and the bodies before it."""
+
+    bench: Bench
+    rows: Rows
+    velocities: np.ndarray  # (bodies, 6)
+    centres: np.ndarray  # (bodies, 3)
+
+
+def ended_by_newton(history: str = "none") -> Ended:
+    """Run a first step, and a second one that calls Newton's method after its last sweep."""
+    bench = twisted_tower(history)
+    bench.run(1)
+    bench.engine.counters["in_vain"] = 6  # no call before the last sweeps
+    before = int(bench.engine.counters["newton_steps"][0])
+    velocities = np.hstack([bench.velocity, bench.spin])
+    centres = np.array([[row[axis] for axis in "xyz"] for row in bench.engine.bodies])
     rows = bench.run(1)
     assert rows.step["sweeps"][-1] == LAST
-    assert int(bench.engine.counters["newton_steps"][0]) > 0
-    return bench, rows.contact, before
+    assert int(bench.engine.counters["newton_steps"][0]) > before
+    return Ended(bench, rows, velocities, centres)
+
+
+@pytest.fixture(scope="module")
+def ended() -> Ended:
+    return ended_by_newton()
 
 
 def test_torques_end_within_the_cones_of_the_impulses_that_newton_found(ended) -> None:
     """Some are at their limits, which are kept to the rounding of a length, 4 ulp."""
-    contacts, limit = ended[1], C * ended[1]["impulse_n"]
+    contacts = ended.rows.contact
+    limit = C * contacts["impulse_n"]
     roll = np.hypot(contacts["angular_impulse_t1"], contacts["angular_impulse_t2"])
     for size in (np.abs(contacts["angular_impulse_n"]), roll):
         assert ((size > 0.0) & (size > 0.999 * limit)).any()
@@ -60,7 +82,7 @@ def test_velocities_are_those_that_impulses_and_torques_give(ended) -> None:
     gyroscopic torque. Some 1,000 updates of each velocity, of up to 3 rad/s, round; impulses are
     logged to the last bit, levers to the rounding of positions.
     """
-    bench, contacts, before = ended
+    bench, contacts = ended.bench, ended.rows.contact
     gained = {k: np.zeros(6) for k in range(1, COUNT + 1)}
     normal = np.stack([contacts[f"n{axis}"] for axis in "xyz"], axis=1)
     first = np.stack([contacts[f"t1{axis}"] for axis in "xyz"], axis=1)
@@ -73,13 +95,12 @@ def test_velocities_are_those_that_impulses_and_torques_give(ended) -> None:
     for side, sign in (("a", -1.0), ("b", 1.0)):
         for c, k in enumerate(contacts[f"body_{side}"]):
             if k > 0:
-                centre = np.array([0.01 * (k - 1), 0.0, EDGE * (k - 0.5)])
-                lever = point[c] + sign * half[c] - centre
+                lever = point[c] + sign * half[c] - ended.centres[k]
                 gained[k] += sign * np.hstack([push[c], np.cross(lever, push[c]) + twist[c]])
     for k, impulse in gained.items():
         mass = bench.cell["scene"]["bodies"][f"cube_{k - 1}"]["mass"]
         inertia = mass * EDGE**2 / 6.0
-        change = np.hstack([bench.velocity[k], bench.spin[k]]) - before[k]
+        change = np.hstack([bench.velocity[k], bench.spin[k]]) - ended.velocities[k]
         expected = np.hstack([impulse[:3] / mass + [0.0, 0.0, -G * DT], impulse[3:] / inertia])
         np.testing.assert_allclose(change, expected, atol=1e-11)
 
@@ -87,7 +108,7 @@ def test_velocities_are_those_that_impulses_and_torques_give(ended) -> None:
 @pytest.mark.parametrize("history", ["none", "all"])
 def test_a_step_tells_the_residual_that_its_contacts_end_with(history: str) -> None:
     """Whether or not the residual was told before Newton's method, after the last sweep."""
-    rows = twisted_tower(history).run(1)
+    rows = ended_by_newton(history).rows
     assert rows.step["residual"][-1] == rows.contact["residual"].max()
 
 
