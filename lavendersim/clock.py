@@ -164,9 +164,9 @@ def _nanoseconds(stretch: Stretch, steps: np.ndarray) -> np.ndarray:
     rest = stretch.begin - seconds
     scale = lcm(rest.denominator, stretch.timestep.denominator)
     begin, length = int(rest * scale) * NANOSECONDS, int(stretch.timestep * scale) * NANOSECONDS
-    whole, left = np.divmod(steps, scale)
     if scale * length + begin < 2**62:
+        whole, left = np.divmod(steps, scale)
         times = whole * length + (left * length + begin) // scale
-    else:  # Timesteps such as 0.0041666666 have denominators beyond 64-bit products.
+    else:  # Timesteps such as 0.0041666666, or many changes, have denominators beyond 64 bits.
         times = np.array([(int(step) * length + begin) // scale for step in steps], np.int64)
     return np.asarray(times + seconds * NANOSECONDS, np.int64)

@@ -6,7 +6,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from lavendersim.clock import Clock
@@ -100,6 +100,16 @@ LENGTHS = st.fractions(Fraction(1, 2000), Fraction(1, 5), max_denominator=10_000
 @given(
     first=LENGTHS,
     changes=st.lists(st.tuples(st.fractions(0, 2, max_denominator=1000), LENGTHS), max_size=5),
+)
+@example(  # the common denominator of its times is beyond 64 bits
+    first=Fraction(1, 2000),
+    changes=[
+        (Fraction(0), Fraction(7, 5963)),
+        (Fraction(1, 15), Fraction(11, 4000)),
+        (Fraction(1, 3), Fraction(11, 9723)),
+        (Fraction(1), Fraction(78, 8329)),
+        (Fraction(2), Fraction(3, 5077)),
+    ],
 )
 def test_one_step_after_the_other_gives_the_same_times(
     first: Fraction, changes: list[tuple[Fraction, Fraction]]
