@@ -27,12 +27,16 @@ FORCES = [
 ]
 TORQUES = {  # by the effect that brings them: the same of psi, and the limits of a round [N m s]
     "torsional_friction": [
-        *[(f"{name}_n", "f8") for name in ("held_psi", "seen_w", "step_w")],
+        *[(f"{name}_n", "f8") for name in ("held_psi", "best_psi", "seen_w", "step_w")],
         ("stiff_torsion", "f8"),  # e [kg m^2]
         ("most_torsion", "f8"),
     ],
     "rolling_friction": [
-        *[(f"{name}_{k}", "f8") for name in ("held_psi", "seen_w", "step_w") for k in "12"],
+        *[
+            (f"{name}_{k}", "f8")
+            for name in ("held_psi", "best_psi", "seen_w", "step_w")
+            for k in "12"
+        ],
         ("stiff_roll", "f8"),
         ("most_roll", "f8"),
     ],

@@ -26,7 +26,7 @@ from ..spin_block import resists_turning
 from .envelope import lay_out
 from .newton_minimise import make_minimise, make_weigh
 from .newton_rows import make_answer, make_start
-from .newton_torques import make_give_back, make_put_torques
+from .newton_torques import make_keep_torques, make_put_torques, make_restore
 
 # Newton steps in a call; fewer than these are not worth beginning.
 MOST_STEPS = 150
@@ -65,7 +65,9 @@ def make_newton(spec: Spec):
     start, answer = make_start(spec), make_answer(spec)
     weigh, minimise = make_weigh(spec), make_minimise(spec)
     spins = resists_turning(spec)
-    put_torques, give_back = make_put_torques(spec), make_give_back(spec)
+    put_torques, keep_torques = make_put_torques(spec), make_keep_torques(spec)
+    give_back = make_restore(spec, "held")
+    go_back_to_torques = make_restore(spec, "best")
 
     def put(contact, velocities, n, one, two):
         # Impulses in place of those there are, and velocities with them.
@@ -114,6 +116,8 @@ def make_newton(spec: Spec):
             contact.best_n = contact.lambda_n
             if friction:
                 contact.best_1, contact.best_2 = contact.lambda_1, contact.lambda_2
+            if spins:
+                keep_torques(contact)
 
     keep = kernel(keep, spec)
 
@@ -125,6 +129,8 @@ def make_newton(spec: Spec):
             if friction:
                 one, two = contact.best_1, contact.best_2
             put(contact, velocities, contact.best_n, one, two)
+            if spins:
+                go_back_to_torques(contact, velocities[contact.a], velocities[contact.b])
 
     go_back = kernel(go_back, spec)
 

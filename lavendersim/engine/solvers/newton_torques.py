@@ -227,19 +227,37 @@ def make_put_torques(spec: Spec) -> Any:
     return kernel(put_torques, spec) if resists_turning(spec) else None
 
 
-def make_give_back(spec: Spec) -> Any:
-    """Return `kernel(contact, va, vb)`: psi is what was held, and velocities follow."""
+def make_keep_torques(spec: Spec) -> Any:
+    """Return `kernel(contact)`: psi is the best so far."""
+    torsional, rolling = spec.has("torsional_friction"), spec.has("rolling_friction")
+
+    def keep_torques(contact):
+        if torsional:
+            contact.best_psi_n = contact.psi_n
+        if rolling:
+            contact.best_psi_1, contact.best_psi_2 = contact.psi_1, contact.psi_2
+
+    return kernel(keep_torques, spec) if resists_turning(spec) else None
+
+
+def make_restore(spec: Spec, which: str) -> Any:
+    """Return `kernel(contact, va, vb)`: psi is what was `held`, or `best`; velocities follow."""
     torsional, rolling = spec.has("torsional_friction"), spec.has("rolling_friction")
     apply_spin = make_apply_spin(spec)
+    held = which == "held"
 
-    def give_back(contact, va, vb):
+    def restore(contact, va, vb):
         n, one, two = 0.0, 0.0, 0.0
         if torsional:
-            n = contact.held_psi_n - contact.psi_n
-            contact.psi_n = contact.held_psi_n
+            psi = contact.held_psi_n if held else contact.best_psi_n
+            n, contact.psi_n = psi - contact.psi_n, psi
         if rolling:
-            one, two = contact.held_psi_1 - contact.psi_1, contact.held_psi_2 - contact.psi_2
-            contact.psi_1, contact.psi_2 = contact.held_psi_1, contact.held_psi_2
+            psi_1 = contact.held_psi_1 if held else contact.best_psi_1
+            psi_2 = contact.held_psi_2 if held else contact.best_psi_2
+            one, two = psi_1 - contact.psi_1, psi_2 - contact.psi_2
+            contact.psi_1, contact.psi_2 = psi_1, psi_2
         apply_spin(contact, va, vb, n, one, two)
 
-    return kernel(give_back, spec) if resists_turning(spec) else None
+    restore.__name__ = f"restore_{which}"  # each has a symbol of its own
+    restore.__qualname__ += f"_{which}"
+    return kernel(restore, spec) if resists_turning(spec) else None

@@ -1,8 +1,8 @@
 """Newton's method finds torques with impulses, and leaves them within what the impulses allow.
 
-A twisted tower under a heavy cube, on contacts that resist every turning. After steps in vain the
-last of sixteen sweeps is followed by Newton's method: no sweep mends what it leaves. And balls on
-each other, which only torques keep up.
+A twisted tower under a heavy cube, on contacts that resist every turning, asked for a sharp end:
+the last of sixteen sweeps is followed by Newton's method, and no sweep mends what it leaves. And
+balls on each other, which only torques keep up.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from laboratory import Bench, box, plane, resolved, sphere
 from lavendersim.engine.engine import Rows
 
 G, DT, EDGE, COUNT = 9.81, 1.0 / 240.0, 0.2, 4
-C = 0.001
+C = 5e-5
 LAST = 16  # sweeps: two looks, of which the second is the end
 
 
@@ -33,7 +33,7 @@ def twisted_tower(history: str = "none") -> Bench:
             **surface,
         )
     cell = resolved(
-        bodies, (0.0, 0.0, -G), solver="adaptive", sweeps=LAST, tolerance=1e-9, warm_start=False
+        bodies, (0.0, 0.0, -G), solver="adaptive", sweeps=LAST, tolerance=5.0, warm_start=False
     )
     cell["record"]["residuals"] = history
     return Bench(cell, spec=None)
@@ -49,16 +49,14 @@ class Ended(NamedTuple):
 
 
 def ended_by_newton(history: str = "none") -> Ended:
-    """Run a first step, and a second one that calls Newton's method after its last sweep."""
+    """Run a step that is within its tolerance before the last sweeps, but not as sharp as asked."""
     bench = twisted_tower(history)
-    bench.run(1)
-    bench.engine.counters["in_vain"] = 6  # no call before the last sweeps
-    before = int(bench.engine.counters["newton_steps"][0])
+    bench.engine.counters["sharpen"] = 1
     velocities = np.hstack([bench.velocity, bench.spin])
     centres = np.array([[row[axis] for axis in "xyz"] for row in bench.engine.bodies])
     rows = bench.run(1)
     assert rows.step["sweeps"][-1] == LAST
-    assert int(bench.engine.counters["newton_steps"][0]) > before
+    assert int(bench.engine.counters["newton_steps"][0]) > 0
     return Ended(bench, rows, velocities, centres)
 
 
