@@ -18,7 +18,7 @@ from matplotlib.image import imread
 import lavendersim
 from lavendersim.figures.style import LOOKS
 from lavendersim.figures.thumbnail import thumbnail
-from lavendersim.measures.values import Part
+from lavendersim.measures.parts import Part
 from lavendersim.runner.experiment_run import Finished
 from lavendersim.trace import Trace, open_trace
 
@@ -119,6 +119,8 @@ def test_a_thumbnail_shows_it_as_long_as_it_is_there(finished: Finished) -> None
     log = trace(finished, "off", at=0.3)
     shown = []
     for states in (73, 74):
-        picture = imread(io.BytesIO(thumbnail(Part(log, states))))[:, :, :3]
+        whole = (log.bodies, log.resolved, log.clock, log.absent)
+        part = Part(log.step[:states], log.contact, log.pose[:states], *whole)
+        picture = imread(io.BytesIO(thumbnail(part)))[:, :, :3]
         shown.append(bool((np.abs(picture - to_rgb(LOOKS[GUEST].colour)).max(axis=2) < 0.01).any()))
     assert shown == [True, False]

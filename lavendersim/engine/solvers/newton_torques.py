@@ -167,20 +167,22 @@ def make_add_turning(spec: Spec) -> Any:
     def add_turning(contact, a, b, space):
         h_nn, h_11, h_12, h_22 = 0.0, 0.0, 0.0, 0.0
         if torsional:
-            x = contact.held_psi_n - contact.stiff_torsion * contact.seen_w_n
-            if abs(x) <= contact.most_torsion:
-                h_nn = contact.stiff_torsion
+            if contact.torsional > 0.0:  # without, not even what turns at no rate is held
+                x = contact.held_psi_n - contact.stiff_torsion * contact.seen_w_n
+                if abs(x) <= contact.most_torsion:
+                    h_nn = contact.stiff_torsion
         if rolling:
-            e, most = contact.stiff_roll, contact.most_roll
-            one = contact.held_psi_1 - e * contact.seen_w_1
-            two = contact.held_psi_2 - e * contact.seen_w_2
-            r = sqrt(one * one + two * two)
-            if r <= most:
-                h_11, h_22 = e, e
-            else:  # around the disc only
-                around = e * (most / r)
-                u, v = one / r, two / r
-                h_11, h_12, h_22 = around * v * v, -around * u * v, around * u * u
+            if contact.rolling > 0.0:
+                e, most = contact.stiff_roll, contact.most_roll
+                one = contact.held_psi_1 - e * contact.seen_w_1
+                two = contact.held_psi_2 - e * contact.seen_w_2
+                r = sqrt(one * one + two * two)
+                if r <= most:
+                    h_11, h_22 = e, e
+                else:  # around the disc only
+                    around = e * (most / r)
+                    u, v = one / r, two / r
+                    h_11, h_12, h_22 = around * v * v, -around * u * v, around * u * u
         if h_nn > 0.0 or h_11 > 0.0 or h_22 > 0.0:
             nx, ny, nz = contact.nx, contact.ny, contact.nz
             ax, ay, az = contact.t1x, contact.t1y, contact.t1z
@@ -206,6 +208,8 @@ def make_add_turning(spec: Spec) -> Any:
 
 def make_put_torques(spec: Spec) -> Any:
     """Return `kernel(contact, va, vb)`: psi as answered, within what the new lambda_n allows."""
+    if not resists_turning(spec):
+        return None
     torsional, rolling = spec.has("torsional_friction"), spec.has("rolling_friction")
     turn, apply_spin = make_turn(spec), make_apply_spin(spec)
     # An update without turning is the projection alone.
@@ -224,7 +228,7 @@ def make_put_torques(spec: Spec) -> Any:
             one, two = one + more_1, two + more_2
         apply_spin(contact, va, vb, n, one, two)
 
-    return kernel(put_torques, spec) if resists_turning(spec) else None
+    return kernel(put_torques, spec)
 
 
 def make_keep_torques(spec: Spec) -> Any:
@@ -242,6 +246,8 @@ def make_keep_torques(spec: Spec) -> Any:
 
 def make_restore(spec: Spec, which: str) -> Any:
     """Return `kernel(contact, va, vb)`: psi is what was `held`, or `best`; velocities follow."""
+    if not resists_turning(spec):
+        return None
     torsional, rolling = spec.has("torsional_friction"), spec.has("rolling_friction")
     apply_spin = make_apply_spin(spec)
     held = which == "held"
@@ -260,4 +266,4 @@ def make_restore(spec: Spec, which: str) -> Any:
 
     restore.__name__ = f"restore_{which}"  # each has a symbol of its own
     restore.__qualname__ += f"_{which}"
-    return kernel(restore, spec) if resists_turning(spec) else None
+    return kernel(restore, spec)
