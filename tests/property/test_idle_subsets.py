@@ -161,7 +161,7 @@ def test_a_random_subset_of_idle_effects_changes_no_bit(kind: Kind, subset: int)
     lean, fuller = kind.engines(first(kind))
     full = fuller[subset]
     assert set(full.effects) > set(lean.effects)
-    more_sweeps = ("sweeps",) if full.has("residual_log") else ()
+    more_sweeps = ("sweeps",) if full.has("residual_log") or full.has("broad_phase") else ()
     contacts = []
 
     @SOME
@@ -171,6 +171,13 @@ def test_a_random_subset_of_idle_effects_changes_no_bit(kind: Kind, subset: int)
         one, other = Run(scene, lean, STEPS), Run(scene, full, STEPS)
         contacts.append(len(one.tables["contact"]))
         assert differences(one, other, *more_sweeps) == []
+        if not full.has("residual_log"):
+            # A pair out of reach of each other, which the broad phase does not list, may have a
+            # contact ahead that one sweep finds to be none: it is not logged, and pushes nothing.
+            steps, others = one.tables["step"], other.tables["step"]
+            touch = steps["contact_count"] > 0
+            assert np.array_equal(steps["sweeps"][touch], others["sweeps"][touch])
+            assert (others["sweeps"][~touch] <= steps["sweeps"][~touch]).all()
 
     equal()
     assert np.median(contacts) > 100
