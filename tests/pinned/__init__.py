@@ -1,0 +1,1 @@
+"""Behaviour pinned across changes that must change no result."""
