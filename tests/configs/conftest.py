@@ -1,3 +1,3 @@
 """The configs below `bad` are read by test_bad_configs.py; they are no experiments to run."""
 
-collect_ignore_glob = ["bad/*"]
+collect_ignore_glob = ["bad/*/*"]

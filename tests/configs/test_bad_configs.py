@@ -1,6 +1,6 @@
 """Every bad config is refused with exactly the sentences a person should read, in under a second.
 
-A case is `bad/<case>.yaml` beside `bad/<case>.expected`, one line per defect. Texts that no text
+A case is `bad/<section>/<case>.yaml` beside `<case>.expected`, one line per defect. Texts that no text
 file can hold, or that are too long to read, are made here.
 """
 
@@ -15,7 +15,7 @@ from lavendersim.errors import ConfigError
 from lavendersim.experiment import load_experiment
 
 BAD = Path(__file__).parent / "bad"
-CASES = sorted(BAD.glob("*.yaml"))
+CASES = sorted(BAD.rglob("*.yaml"))
 LONGEST = 1.0  # [s]; the slowest takes a tenth
 
 FLOOR = "scene: {bodies: {floor: {shape: {kind: plane}}}}\nduration: 1\n"
@@ -90,7 +90,7 @@ def refusal(path: Path) -> list[str]:
     return [str(defect._replace(file=path.name)) for defect in caught.value.defects]
 
 
-@pytest.mark.parametrize("path", CASES, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", CASES, ids=lambda path: f"{path.parent.name}-{path.stem}")
 def test_bad_config_is_refused_with_all_its_defects(path: Path) -> None:
     start = time.process_time()
     said = refusal(path)
@@ -111,5 +111,5 @@ def test_bad_bytes_are_refused_with_all_their_defects(case: str, tmp_path: Path)
 
 def test_every_case_says_what_it_expects() -> None:
     assert len(CASES) >= 100
-    assert {path.stem for path in CASES} == {path.stem for path in BAD.glob("*.expected")}
+    assert {path.stem for path in CASES} == {path.stem for path in BAD.rglob("*.expected")}
     assert all(path.with_suffix(".expected").read_text(encoding="utf-8") for path in CASES)
