@@ -20,27 +20,25 @@ from .assemble import StepProblem, step_problem
 from .collide.broad_phase import allocate_broad_phase
 from .collide.hull_geometry import HullGeometry
 from .collide.scratch import allocate_scratch
-from .collide.support import shapes_in
 from .compile import compiling
-from .effects import EFFECTS, contact_log, residual_log, sleeping, step_log
+from .effects import EFFECTS, sleeping
 from .integrate import keeps_motion
 from .ordering import BUCKETS
+from .record_layout import (
+    cache_dtype,
+    contact_dtype,
+    contact_row_dtype,
+    residual_row_dtype,
+    step_row_dtype,
+)
 from .records import (
-    BODY,
-    CONTACT,
     CONTACTS_FULL,
     COUNTERS,
-    HULL_BODY,
     MOTION,
-    ORIENTED_BODY,
-    PAIR,
     PAIRS_FULL,
-    PARAMETERS,
     POINT,
     ROWS_FULL,
-    VELOCITY,
     WOKEN,
-    Field,
     dtype,
 )
 from .solvers import SOLVERS
@@ -60,59 +58,6 @@ class Rows(NamedTuple):
     pose: np.ndarray
     contact: np.ndarray
     residual: np.ndarray
-
-
-def _fields(base: list[Field], spec: Spec, group: str) -> list[Field]:
-    extra = [getattr(e, group, []) for e in EFFECTS if spec.has(e.NAME)]
-    return [*base, *(field for fields in extra for field in fields)]
-
-
-def _dtype(base: list[Field], spec: Spec, group: str) -> np.dtype:
-    return dtype(_fields(base, spec, group))
-
-
-def _contact_dtype(spec: Spec) -> np.dtype:
-    """Return the contact record: what several effects share, and what the solver keeps."""
-    dependent = [
-        field
-        for effect in EFFECTS
-        if spec.has(effect.NAME) and hasattr(effect, "contact_fields")
-        for field in effect.contact_fields(spec)
-    ]
-    solver = getattr(SOLVERS[spec.solver], "CONTACT_FIELDS", [])
-    return dtype(_fields(CONTACT, spec, "CONTACT_FIELDS"), dependent, solver)
-
-
-def _step_dtype(spec: Spec) -> np.dtype:
-    unsolved = step_log.UNSOLVED_ROW if spec.tolerance else []
-    return dtype(_fields(step_log.STEP_ROW_FIELDS, spec, "STEP_ROW_FIELDS"), unsolved)
-
-
-def _contact_row_dtype(spec: Spec) -> np.dtype:
-    return _dtype(contact_log.CONTACT_ROW_FIELDS, spec, "CONTACT_ROW_FIELDS")
-
-
-def allocate_bodies(spec: Spec, count: int) -> np.ndarray:
-    """Return zeroed body records with the columns that `spec` has."""
-    shapes = shapes_in(spec)
-    oriented = not shapes <= {"plane", "sphere"}
-    base = [*BODY, *(ORIENTED_BODY if oriented else []), *(HULL_BODY if "hull" in shapes else [])]
-    return np.zeros(count, _dtype(base, spec, "BODY_FIELDS"))
-
-
-def allocate_velocities(spec: Spec, count: int) -> np.ndarray:
-    """Return zeroed velocity records."""
-    return np.zeros(count, _dtype(VELOCITY, spec, "VELOCITY_FIELDS"))
-
-
-def allocate_pairs(spec: Spec, count: int) -> np.ndarray:
-    """Return zeroed pair records."""
-    return np.zeros(count, _dtype(PAIR, spec, "PAIR_FIELDS"))
-
-
-def allocate_parameters() -> np.ndarray:
-    """Return one zeroed parameter record, shape (1,)."""
-    return np.zeros(1, dtype(PARAMETERS))
 
 
 class Engine:
@@ -160,7 +105,7 @@ class Engine:
         self._grow_contacts(max(4, min(4 * len(pairs), 1024)))
 
     def _grow_contacts(self, capacity: int) -> None:
-        self.contacts = np.zeros(capacity, _contact_dtype(self.spec))
+        self.contacts = np.zeros(capacity, contact_dtype(self.spec))
         allocate = getattr(SOLVERS[self.spec.solver], "allocate", None)
         self._work = (
             np.zeros(MANIFOLD_POINTS, dtype(POINT)),
@@ -177,9 +122,7 @@ class Engine:
         )
         held = getattr(self, "cache", None)
         warm = self.spec.has("warm_start")
-        self.cache = np.zeros(
-            capacity if warm else 0, _dtype([("key", "i8")], self.spec, "CACHE_FIELDS")
-        )
+        self.cache = np.zeros(capacity if warm else 0, cache_dtype(self.spec))
         if held is not None and warm:
             self.cache[: len(held)] = held
         self._allocate_rows(capacity)
@@ -200,13 +143,13 @@ class Engine:
         # A quarter of the worst case: full columns end a block early, they lose nothing.
         contact_rows = max(capacity, steps * capacity // 4) if steps else 0
         self._rows = (
-            np.zeros(steps, _step_dtype(self.spec)),
+            np.zeros(steps, step_row_dtype(self.spec)),
             np.repeat(self._initial_pose[None], steps, axis=0),
-            np.zeros(contact_rows, _contact_row_dtype(self.spec)),
+            np.zeros(contact_rows, contact_row_dtype(self.spec)),
         )
         self._pose_bits = self._rows[1].view(np.uint64)
         residual_rows = max(steps, 1) * self._sweep_rows()
-        self._residual_rows = np.zeros(residual_rows, dtype(residual_log.RESIDUAL_ROW_FIELDS))
+        self._residual_rows = np.zeros(residual_rows, residual_row_dtype())
 
     def _sweep_rows(self) -> int:
         """Rows that the sweeps of one step need."""

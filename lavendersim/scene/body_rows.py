@@ -12,7 +12,7 @@ import numpy as np
 
 from lavendersim.engine.collide.hull_geometry import HullGeometry, hull_geometry
 from lavendersim.engine.effects import EFFECTS
-from lavendersim.engine.engine import allocate_bodies
+from lavendersim.engine.record_layout import allocate_bodies
 from lavendersim.engine.records import BOX, CAPSULE, COMPOUND, CYLINDER, HULL, PLANE, SPHERE
 from lavendersim.engine.spec import Spec
 

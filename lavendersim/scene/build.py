@@ -10,7 +10,8 @@ import numpy as np
 
 from lavendersim.clock import Clock, written
 from lavendersim.engine.collide.hull_geometry import HullGeometry
-from lavendersim.engine.engine import Engine, allocate_parameters, allocate_velocities
+from lavendersim.engine.engine import Engine
+from lavendersim.engine.record_layout import allocate_parameters, allocate_velocities
 from lavendersim.engine.spec import Spec
 
 from .body_rows import body_table, pose_of

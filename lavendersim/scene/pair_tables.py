@@ -14,7 +14,7 @@ import numpy as np
 from lavendersim.engine.collide import SHAPE_PAIRS
 from lavendersim.engine.collide.broad_phase import template_dtype
 from lavendersim.engine.effects import surface_fields
-from lavendersim.engine.engine import allocate_pairs
+from lavendersim.engine.record_layout import allocate_pairs
 from lavendersim.engine.removal import NO_PAIR
 from lavendersim.engine.spec import Spec
 

@@ -16,7 +16,7 @@ from lavendersim.engine.collide import SHAPE_PAIRS
 from lavendersim.engine.collide.hull_geometry import UNIT_BOX, hull_geometry
 from lavendersim.engine.collide.outline import cut_straight
 from lavendersim.engine.collide.scratch import allocate_scratch
-from lavendersim.engine.engine import allocate_bodies
+from lavendersim.engine.record_layout import allocate_bodies
 from lavendersim.engine.records import POINT, TOUCHING, dtype
 
 HALF = (0.3, 0.3, 0.4)

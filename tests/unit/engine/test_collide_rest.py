@@ -15,7 +15,7 @@ import solid_poses
 
 from lavendersim.engine.collide import SHAPE_PAIRS
 from lavendersim.engine.collide.features import LEVEL
-from lavendersim.engine.engine import allocate_bodies
+from lavendersim.engine.record_layout import allocate_bodies
 from lavendersim.engine.records import TOUCHING
 
 DEPTH = 1e-6
