@@ -16,10 +16,11 @@ from fractions import Fraction
 
 from lavendersim.experiment.body_models import Release
 from lavendersim.experiment.cell_models import CellCompound, CellHull, CellSimple, Quaternion
-from lavendersim.experiment.frames import axes, dot, product, to_body, to_world, unit
 from lavendersim.experiment.node import Path
 from lavendersim.experiment.quantities import Vector3
 from lavendersim.experiment.shape_models import Box, Capsule, Plane, Sphere
+from lavendersim.geometry.quaternions import axes, product, to_body, to_world
+from lavendersim.geometry.vectors import dot, unit
 
 
 class SceneError(ValueError):

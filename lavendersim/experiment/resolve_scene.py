@@ -8,13 +8,14 @@ from fractions import Fraction
 from lavendersim.experiment.arrangements import centres
 from lavendersim.experiment.body_models import ArrangedBody, Body
 from lavendersim.experiment.cell_models import CellBody, CellForce, CellScene, CellShape
-from lavendersim.experiment.frames import IDENTITY, product, to_body, unit
 from lavendersim.experiment.placement import SceneError, released_position
 from lavendersim.experiment.population import ARRANGEMENTS, BODIES, member_name
 from lavendersim.experiment.quantities import Vector3
 from lavendersim.experiment.resolve_shape import quaternion_of, resolve_shape
 from lavendersim.experiment.scene_models import Force, Scene, TiltedGravity
 from lavendersim.experiment.shape_models import Plane
+from lavendersim.geometry.quaternions import IDENTITY, product, to_body
+from lavendersim.geometry.vectors import unit
 
 _ORIGIN: Vector3 = (0.0, 0.0, 0.0)
 

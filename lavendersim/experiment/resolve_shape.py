@@ -11,20 +11,23 @@ from lavendersim.experiment.cell_models import (
     CellSimple,
     Quaternion,
 )
-from lavendersim.experiment.frames import (
-    IDENTITY,
-    inverse,
-    minus,
-    product,
-    rotation_quaternion,
-    to_body,
-    unit,
-)
-from lavendersim.experiment.hulls import FlatError, convex_hull
 from lavendersim.experiment.placement import SceneError
 from lavendersim.experiment.quantities import Vector3
-from lavendersim.experiment.shape_models import AxisAngle, Compound, Hull, Simple
-from lavendersim.experiment.solids import ORIGIN, Placed, Solid, polyhedron, simple, together
+from lavendersim.experiment.shape_models import (
+    AxisAngle,
+    Box,
+    Capsule,
+    Compound,
+    Cylinder,
+    Hull,
+    Simple,
+    Sphere,
+)
+from lavendersim.geometry import mass_properties
+from lavendersim.geometry.convex_hull import FlatError, convex_hull
+from lavendersim.geometry.mass_properties import ORIGIN, Placed, Solid, polyhedron, together
+from lavendersim.geometry.quaternions import IDENTITY, from_axis_angle, inverse, product, to_body
+from lavendersim.geometry.vectors import minus, unit
 
 
 class SolidShape(NamedTuple):
@@ -49,14 +52,14 @@ def resolve_shape(shape: Simple | Compound) -> SolidShape:
 def quaternion_of(orientation: Quaternion | AxisAngle) -> Quaternion:
     """Return an orientation as written as a unit quaternion."""
     if isinstance(orientation, AxisAngle):
-        return rotation_quaternion(orientation.axis, orientation.degrees)
+        return from_axis_angle(orientation.axis, orientation.degrees)
     return unit(orientation)
 
 
 def _simple(shape: Simple) -> tuple[CellSimple, Solid]:
     """Return a convex shape in its principal frame, and its solid in that frame."""
     if not isinstance(shape, Hull):
-        return shape, simple(shape)
+        return shape, _solid(shape)
     try:
         hull = convex_hull(shape.points)
     except FlatError:
@@ -70,6 +73,16 @@ def _simple(shape: Simple) -> tuple[CellSimple, Solid]:
         kind="hull", points=points, faces=hull.faces, centre=solid.centre, axes=axes
     )
     return resolved, Solid(solid.volume, ORIGIN, moments)
+
+
+def _solid(shape: Sphere | Box | Capsule | Cylinder) -> Solid:
+    """Return the solid of a shape whose frame is its principal frame."""
+    if isinstance(shape, Box):
+        return mass_properties.box(shape.size)
+    if isinstance(shape, Sphere):
+        return mass_properties.sphere(shape.radius)
+    make = mass_properties.capsule if isinstance(shape, Capsule) else mass_properties.cylinder
+    return make(shape.radius, shape.length)
 
 
 def _compound(compound: Compound) -> SolidShape:

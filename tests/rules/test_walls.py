@@ -14,14 +14,15 @@ ROOMS = {
     "__init__": {"experiment", "runner", "simulator", "trace"},  # public names, imported when used
     "errors": set(),
     "clock": set(),
-    "experiment": {"errors", "clock"},
+    "geometry": set(),
+    "experiment": {"errors", "clock", "geometry"},
     "engine": set(),
-    "scene": {"errors", "clock", "experiment", "engine"},
-    "trace": {"errors", "clock"},
+    "scene": {"errors", "clock", "geometry", "experiment", "engine"},
+    "trace": {"errors", "clock", "geometry"},
     "problems": {"errors", "engine"},
-    "measures": {"errors", "clock", "experiment", "trace"},
-    "figures": {"errors", "experiment", "trace", "measures"},
-    "replay": {"errors", "trace", "measures"},
+    "measures": {"errors", "clock", "geometry", "experiment", "trace"},
+    "figures": {"errors", "geometry", "experiment", "trace", "measures"},
+    "replay": {"errors", "geometry", "trace", "measures"},
     "simulator": {"errors", "experiment", "scene", "engine"},
     "runner": {"errors", "clock", "experiment", "scene", "engine", "problems", "trace", "measures"},
     "pytest_plugin": {"errors", "experiment", "trace", "measures", "runner"},
@@ -36,9 +37,9 @@ LIBRARIES = {
     "llvmlite": {"engine"},
     "numpy": {
         *("scene", "engine", "trace", "measures", "figures", "replay", "simulator", "runner"),
-        *("problems", "clock"),
+        *("problems", "clock", "geometry"),
     },
-    "scipy": {"experiment", "problems"},  # hulls, where a scene has one; sparse matrices
+    "scipy": {"geometry", "problems"},  # hulls, where a scene has one; sparse matrices
     "h5py": {"problems"},
     "mcap": {"trace"},
     "google": {"trace"},  # google.protobuf

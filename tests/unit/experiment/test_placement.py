@@ -8,9 +8,10 @@ from fractions import Fraction
 import pytest
 
 from lavendersim.experiment.body_models import Release
-from lavendersim.experiment.frames import rotation_quaternion, unit
 from lavendersim.experiment.placement import SceneError, reach, released_position
 from lavendersim.experiment.shape_models import Box, Plane, Sphere
+from lavendersim.geometry.quaternions import from_axis_angle
+from lavendersim.geometry.vectors import unit
 
 DOWN = (0.0, 0.0, -9.81)
 UPRIGHT = (1.0, 0.0, 0.0, 0.0)
@@ -65,7 +66,7 @@ def test_phase_needs_gravity_towards_the_plane() -> None:
 def test_reach_of_a_turned_box(
     axis: tuple[float, float, float], degrees: float, expected: float
 ) -> None:
-    turned = rotation_quaternion(axis, degrees)
+    turned = from_axis_angle(axis, degrees)
     assert reach(BOX, turned, (0.0, 0.0, 1.0)) == pytest.approx(expected, abs=4e-16)
 
 

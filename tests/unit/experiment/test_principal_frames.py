@@ -6,10 +6,12 @@ import numpy as np
 import pytest
 
 from lavendersim.experiment import load_experiment_text
-from lavendersim.experiment.frames import axes, inverse, principal, product, to_body, to_world, unit
-from lavendersim.experiment.hulls import Polyhedron
-from lavendersim.experiment.shape_models import Box, Cylinder
-from lavendersim.experiment.solids import Placed, Solid, polyhedron, simple, together
+from lavendersim.geometry import mass_properties
+from lavendersim.geometry.convex_hull import Polyhedron
+from lavendersim.geometry.mass_properties import Placed, Solid, polyhedron, together
+from lavendersim.geometry.principal_axes import principal
+from lavendersim.geometry.quaternions import axes, inverse, product, to_body, to_world
+from lavendersim.geometry.vectors import unit
 
 ONE = (1.0, 0.0, 0.0, 0.0)
 SCENE = """\
@@ -118,8 +120,9 @@ def test_inertia_in_the_bodys_frame_is_its_moments(shape: str) -> None:
 def solid_of(shape: dict) -> Solid:
     if shape["kind"] == "hull":
         return polyhedron(Polyhedron(tuple(map(tuple, shape["points"])), shape["faces"]))
-    form = {"box": Box, "cylinder": Cylinder}[shape["kind"]]
-    return simple(form(**{key: tuple(v) if key == "size" else v for key, v in shape.items()}))
+    if shape["kind"] == "box":
+        return mass_properties.box(tuple(shape["size"]))
+    return mass_properties.cylinder(shape["radius"], shape["length"])
 
 
 @pytest.mark.parametrize("shape", [WEDGE, HAMMER])

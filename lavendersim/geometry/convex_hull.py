@@ -1,4 +1,4 @@
-"""Points in; the corners and flat faces of their convex hull out.
+"""Convex hulls of points with flat faces: Qhull's triangles (Barber et al. 1996), merged by plane.
 
 The hull itself is Qhull's (scipy). Its triangles that lie in one plane become one face, because a
 face that is cut into triangles gives contacts that jump from one to the next.
@@ -10,8 +10,7 @@ import math
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
-from lavendersim.experiment.frames import cross, dot, minus, unit
-from lavendersim.experiment.quantities import Vector3
+from lavendersim.geometry.vectors import Vector3, cross, dot, minus, unit
 
 # A hull thinner than this share of its largest extent has no sure inside in float64.
 LEAST_THICKNESS = 1e-6

@@ -1,4 +1,4 @@
-"""A shape in; its volume, centre of mass, inertia and principal frame out. Homogeneous solids.
+"""Volume, centre of mass and inertia of homogeneous solids.
 
 J is the inertia about the centre of mass over the mass [m^2], r a radius, l a length along z:
 
@@ -18,19 +18,10 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from lavendersim.experiment.frames import (
-    IDENTITY,
-    Matrix,
-    Quaternion,
-    cross,
-    dot,
-    minus,
-    principal,
-    to_body,
-)
-from lavendersim.experiment.hulls import Polyhedron
-from lavendersim.experiment.quantities import Vector3
-from lavendersim.experiment.shape_models import Box, Capsule, Cylinder, Sphere
+from lavendersim.geometry.convex_hull import Polyhedron
+from lavendersim.geometry.principal_axes import principal
+from lavendersim.geometry.quaternions import IDENTITY, Quaternion, to_body
+from lavendersim.geometry.vectors import Matrix, Vector3, cross, dot, minus
 
 
 class Solid(NamedTuple):
@@ -61,26 +52,45 @@ def _diagonal(x: float, y: float, z: float) -> Matrix:
     return ((x, 0.0, 0.0), (0.0, y, 0.0), (0.0, 0.0, z))
 
 
-def simple(shape: Sphere | Box | Capsule | Cylinder) -> Solid:
-    """Return the solid of a shape whose frame is its principal frame."""
-    if isinstance(shape, Box):
-        x, y, z = (edge * edge for edge in shape.size)
-        moments = ((y + z) / 12.0, (x + z) / 12.0, (x + y) / 12.0)
-        return Solid(math.prod(shape.size), ORIGIN, _diagonal(*moments))
-    square = shape.radius * shape.radius
-    ball = 4.0 / 3.0 * math.pi * shape.radius**3
-    if isinstance(shape, Sphere):
-        return Solid(ball, ORIGIN, _diagonal(0.4 * square, 0.4 * square, 0.4 * square))
-    bar = math.pi * square * shape.length
-    across, along = square / 4.0 + shape.length * shape.length / 12.0, square / 2.0
-    if isinstance(shape, Capsule):
-        volume, half = bar + ball, shape.length / 2.0
-        # A half ball about its centre of mass has 2/5 r^2 - (3/8 r)^2; it stands half + 3/8 r away.
-        ends = 0.4 * square + half * half + 0.75 * half * shape.radius
-        across = (bar * across + ball * ends) / volume
-        along = (bar * along + ball * 0.4 * square) / volume
-        bar = volume
+def sphere(radius: float) -> Solid:
+    """Return a ball."""
+    moment = 0.4 * (radius * radius)
+    return Solid(_ball(radius), ORIGIN, _diagonal(moment, moment, moment))
+
+
+def box(size: Vector3) -> Solid:
+    """Return a box by its full edges."""
+    x, y, z = (edge * edge for edge in size)
+    moments = ((y + z) / 12.0, (x + z) / 12.0, (x + y) / 12.0)
+    return Solid(math.prod(size), ORIGIN, _diagonal(*moments))
+
+
+def cylinder(radius: float, length: float) -> Solid:
+    """Return a round bar along z."""
+    bar, across, along = _bar(radius, length)
     return Solid(bar, ORIGIN, _diagonal(across, across, along))
+
+
+def capsule(radius: float, length: float) -> Solid:
+    """Return a round bar along z with half a ball on each end."""
+    bar, across, along = _bar(radius, length)
+    ball, square, half = _ball(radius), radius * radius, length / 2.0
+    volume = bar + ball
+    # A half ball about its centre of mass has 2/5 r^2 - (3/8 r)^2; it stands half + 3/8 r away.
+    ends = 0.4 * square + half * half + 0.75 * half * radius
+    across = (bar * across + ball * ends) / volume
+    along = (bar * along + ball * 0.4 * square) / volume
+    return Solid(volume, ORIGIN, _diagonal(across, across, along))
+
+
+def _ball(radius: float) -> float:
+    return 4.0 / 3.0 * math.pi * radius**3
+
+
+def _bar(radius: float, length: float) -> tuple[float, float, float]:
+    """Return volume, J_x and J_z of a cylinder."""
+    square = radius * radius
+    return math.pi * square * length, square / 4.0 + length * length / 12.0, square / 2.0
 
 
 def polyhedron(hull: Polyhedron) -> Solid:

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from numpy.polynomial.legendre import leggauss
 
-from lavendersim.experiment.hulls import convex_hull
 from lavendersim.experiment.resolve_shape import resolve_shape
-from lavendersim.experiment.shape_models import Box, Capsule, Compound, Cylinder, Hull, Part, Sphere
-from lavendersim.experiment.solids import Solid, polyhedron, simple
+from lavendersim.experiment.shape_models import Box, Compound, Hull, Part
+from lavendersim.geometry.convex_hull import convex_hull
+from lavendersim.geometry.mass_properties import Solid, box, capsule, cylinder, polyhedron, sphere
 
 CORNERS = [(x, y, z) for x in (0.0, 0.4) for y in (0.0, 0.6) for z in (0.0, 1.0)]
 BOX = Box(kind="box", size=(0.4, 0.6, 1.0))
@@ -41,16 +41,15 @@ def rod(radius: float, length: float, ends: bool):
 
 
 @pytest.mark.parametrize(
-    ("shape", "pieces"),
+    ("solid", "pieces"),
     [
-        (Sphere(kind="sphere", radius=0.3), rod(0.3, 0.0, True)[1:]),
-        (Cylinder(kind="cylinder", radius=0.3, length=0.7), rod(0.3, 0.7, False)),
-        (Capsule(kind="capsule", radius=0.3, length=0.7), rod(0.3, 0.7, True)),
-        (Capsule(kind="capsule", radius=0.02, length=2.0), rod(0.02, 2.0, True)),
+        (sphere(0.3), rod(0.3, 0.0, True)[1:]),
+        (cylinder(0.3, 0.7), rod(0.3, 0.7, False)),
+        (capsule(0.3, 0.7), rod(0.3, 0.7, True)),
+        (capsule(0.02, 2.0), rod(0.02, 2.0, True)),
     ],
 )
-def test_round_shapes_are_the_sum_of_their_discs(shape, pieces) -> None:
-    solid = simple(shape)
+def test_round_shapes_are_the_sum_of_their_discs(solid, pieces) -> None:
     volume, across, along = revolved(pieces)
     # a few dozen roundings of numbers of one sign
     assert solid.volume == pytest.approx(volume, rel=1e-14)
@@ -66,9 +65,9 @@ def assert_equal(one: Solid, other: Solid, tolerance: float = 4e-15) -> None:
 
 
 def test_hull_of_a_boxs_corners_is_the_box() -> None:
-    box = simple(BOX)
+    block = box(BOX.size)
     hull = polyhedron(convex_hull(CORNERS))
-    assert_equal(hull, Solid(box.volume, (0.2, 0.3, 0.5), box.inertia))
+    assert_equal(hull, Solid(block.volume, (0.2, 0.3, 0.5), block.inertia))
 
 
 def test_regular_prism_of_many_sides_has_the_closed_form_of_its_polygon() -> None:
@@ -103,9 +102,9 @@ def test_halves_of_a_box_are_the_box() -> None:
         Part(shape=half, position=(2.0, 0.15, 1.0), **turned),
     )
     whole = resolve_shape(Compound(kind="compound", parts=parts))
-    box = resolve_shape(BOX)
-    assert whole.volume == pytest.approx(box.volume, rel=1e-15)
-    assert whole.inertia_per_mass == pytest.approx(box.inertia_per_mass, rel=4e-15)
+    block = resolve_shape(BOX)
+    assert whole.volume == pytest.approx(block.volume, rel=1e-15)
+    assert whole.inertia_per_mass == pytest.approx(block.inertia_per_mass, rel=4e-15)
     assert whole.axes == (1.0, 0.0, 0.0, 0.0)
     assert whole.shape.centre == pytest.approx((2.0, 0.0, 1.0), abs=1e-15)
 

@@ -7,7 +7,7 @@ import itertools
 import numpy as np
 import pytest
 
-from lavendersim.experiment.hulls import FlatError, Polyhedron, convex_hull
+from lavendersim.geometry.convex_hull import FlatError, Polyhedron, convex_hull
 
 CUBE = [(float(x), float(y), float(z)) for x in (0, 1) for y in (0, 1) for z in (0, 1)]
 

@@ -1,0 +1,51 @@
+"""Rotations of arrays: matrices and products of quaternions (w, x, y, z), body to world."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from lavendersim.geometry.quaternions import columns
+
+Floats = npt.NDArray[np.float64]
+
+
+def rotation_matrix(quaternion: npt.ArrayLike) -> Floats:
+    """Return the matrix (3, 3) of a unit quaternion."""
+    w, x, y, z = np.asarray(quaternion, dtype=np.float64)
+    return np.array(columns(w, x, y, z)).T
+
+
+def rotation_matrices(quaternions: npt.ArrayLike) -> Floats:
+    """Return the matrices (n, 3, 3) of quaternions (n, 4), which are brought to unit length."""
+    rows = np.asarray(quaternions, dtype=np.float64)
+    w, x, y, z = (rows / np.linalg.norm(rows, axis=1)[:, None]).T
+    return np.stack([np.stack(column, axis=1) for column in columns(w, x, y, z)], axis=2)
+
+
+def unit_quaternion(quaternion: npt.ArrayLike) -> Floats:
+    """Return a quaternion at unit length."""
+    numbers = np.asarray(quaternion, dtype=np.float64)
+    return np.asarray(numbers / np.linalg.norm(numbers))
+
+
+def quaternion_product(one: Floats, other: Floats) -> Floats:
+    """Return the rotation that does `other` first, in the frame that `one` turns."""
+    w, v = one[0], one[1:]
+    real = w * other[0] - v @ other[1:]
+    return np.array([real, *(w * other[1:] + other[0] * v + np.cross(v, other[1:]))])
+
+
+def rotated(quaternion: Floats, vectors: Floats) -> Floats:
+    """Return vectors (..., 3) turned by a unit quaternion: v + 2 w u x v + 2 u x (u x v)."""
+    turn = np.cross(quaternion[1:], vectors) * 2
+    return np.asarray(vectors + quaternion[0] * turn + np.cross(quaternion[1:], turn))
+
+
+def shortest_turn(direction: Floats) -> Floats:
+    """Return the quaternion of the shortest rotation that takes z to a unit vector."""
+    up = np.array([0.0, 0.0, 1.0])
+    cosine = float(up @ direction)
+    if cosine < -1 + 1e-12:  # straight down: any horizontal axis does
+        return np.array([0.0, 1.0, 0.0, 0.0])
+    return unit_quaternion([1 + cosine, *np.cross(up, direction)])

@@ -1,0 +1,66 @@
+"""Rotations of arrays are those of plain floats, and both are rotations."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from lavendersim.geometry import quaternions
+from lavendersim.geometry.rotations import (
+    quaternion_product,
+    rotated,
+    rotation_matrices,
+    rotation_matrix,
+    shortest_turn,
+    unit_quaternion,
+)
+from lavendersim.geometry.vectors import unit
+
+RANDOM = np.random.default_rng(11).normal(size=(20, 4))
+
+
+def test_a_matrix_has_the_axes_of_its_quaternion_as_columns() -> None:
+    for row in RANDOM:
+        q = unit(tuple(row.tolist()))
+        np.testing.assert_array_equal(rotation_matrix(q), np.array(quaternions.axes(q)).T)
+
+
+def test_a_matrix_turns_and_does_not_stretch() -> None:
+    for matrix in rotation_matrices(RANDOM):
+        # a few dozen products of numbers below 1
+        np.testing.assert_allclose(matrix @ matrix.T, np.eye(3), atol=2e-15)
+        assert np.linalg.det(matrix) == pytest.approx(1.0, abs=2e-15)
+
+
+def test_many_matrices_are_those_of_the_single_quaternions() -> None:
+    single = [rotation_matrix(unit_quaternion(row)) for row in RANDOM]
+    # two ways to sum four squares differ by a rounding
+    np.testing.assert_allclose(rotation_matrices(RANDOM), single, atol=2e-15)
+
+
+def test_a_quarter_turn_about_z_takes_x_to_y() -> None:
+    quarter = np.sqrt([0.5, 0.0, 0.0, 0.5])
+    np.testing.assert_allclose(rotation_matrix(quarter) @ [1, 0, 0], [0, 1, 0], atol=4e-16)
+    np.testing.assert_allclose(rotated(quarter, np.eye(3)[0]), [0, 1, 0], atol=4e-16)
+
+
+def test_vectors_turn_as_by_the_matrix() -> None:
+    vectors = np.random.default_rng(1).normal(size=(5, 3))
+    for row in RANDOM:
+        q = unit_quaternion(row)
+        turned = vectors @ rotation_matrix(q).T
+        np.testing.assert_allclose(rotated(q, vectors), turned, atol=1e-14)
+
+
+def test_product_does_the_second_rotation_first() -> None:
+    one, other = unit_quaternion(RANDOM[0]), unit_quaternion(RANDOM[1])
+    together = rotation_matrix(quaternion_product(one, other))
+    np.testing.assert_allclose(together, rotation_matrix(one) @ rotation_matrix(other), atol=1e-15)
+    plain = quaternions.product(tuple(one.tolist()), tuple(other.tolist()))
+    np.testing.assert_allclose(quaternion_product(one, other), plain, atol=1e-15)
+
+
+@pytest.mark.parametrize("direction", [(0, 0, 1), (0, 0, -1), (0.6, 0, 0.8), (0, -1, 0)])
+def test_the_shortest_turn_takes_z_to_the_direction(direction: tuple[float, ...]) -> None:
+    turn = shortest_turn(np.array(direction, float))
+    np.testing.assert_allclose(rotation_matrix(turn)[:, 2], direction, atol=4e-16)
