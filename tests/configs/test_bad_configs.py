@@ -1,7 +1,7 @@
 """Every bad config is refused with exactly the sentences a person should read, in under a second.
 
-A case is `bad/<section>/<case>.yaml` beside `<case>.expected`, one line per defect. Texts that no text
-file can hold, or that are too long to read, are made here.
+A case is `bad/<section>/<case>.yaml` beside `<case>.expected`, one line per defect. Texts that no
+text file can hold, or that are too long to read, are made here.
 """
 
 from __future__ import annotations

@@ -19,7 +19,7 @@ from lavendersim.scene.explanation import Explanation, composed_kernels, explain
 from lavendersim.scene.plan import Plan, plan_of_cell
 
 CONFIGS = Path(__file__).parents[3] / "configs"
-NAMES = ("scenes/stack_of_six", "scenes/drop", "chapter/warm_start", "scenes/rough_rod")
+NAMES = ("scenes/stack_of_six", "scenes/drop", "chapter/warm_start", "scenes/frictional_rod")
 # Groups that the contract of an effect's module lists, by what they are called in an explanation.
 GROUPS = {
     "body": "BODY_FIELDS",
