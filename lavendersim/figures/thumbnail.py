@@ -14,8 +14,8 @@ from typing import Any, Final
 import numpy as np
 
 from lavendersim.figures.style import DARK, GREY, LOOKS
+from lavendersim.geometry.rotations import rotation_matrices
 from lavendersim.measures.changes import removals
-from lavendersim.measures.solids import rotations
 
 WIDTH, HEIGHT, DPI = 1.6, 1.1, 100  # inch, inch, dots per inch: 160 x 110 dots
 MARGIN = 0.08  # of the picture, on every side
@@ -94,7 +94,7 @@ def _outlines(
     gone = {list(trace.bodies).index(n) for n, row in removals(trace).items() if row <= whole[-1]}
     far = np.cross(up, right)
     for pose, is_end in ((start, False), (end, True)):
-        turns = rotations(pose[:, 3:])
+        turns = rotation_matrices(pose[:, 3:])
         for i in sorted(solid, key=lambda i: -float(pose[i, :3] @ far)):
             if (i in movable or is_end) and not (is_end and i in gone):
                 corners = pose[i, :3] + _corners(shapes[i]["shape"]) @ turns[i].T
@@ -135,7 +135,7 @@ def _corners(shape: Mapping[str, Any]) -> np.ndarray:
     if kind == "compound":
         parts = []
         for part in shape["parts"]:
-            turn = rotations(np.asarray([part["orientation"]], dtype=float))[0]
+            turn = rotation_matrices(np.asarray([part["orientation"]], dtype=float))[0]
             parts.append(np.asarray(part["position"]) + _corners(part["shape"]) @ turn.T)
         return np.concatenate(parts)
     radius, half = float(shape["radius"]), 0.5 * float(shape.get("length", 0.0))

@@ -49,3 +49,14 @@ def shortest_turn(direction: Floats) -> Floats:
     if cosine < -1 + 1e-12:  # straight down: any horizontal axis does
         return np.array([0.0, 1.0, 0.0, 0.0])
     return unit_quaternion([1 + cosine, *np.cross(up, direction)])
+
+
+def frame_along(direction: Floats) -> Floats:
+    """Return a rotation whose third column is a unit vector: two tangents, then the vector.
+
+    The first tangent stands across the coordinate axis that is farthest from the direction.
+    """
+    farthest = np.eye(3)[int(np.argmin(np.abs(direction)))]
+    tangent = np.cross(farthest, direction)
+    tangent /= np.linalg.norm(tangent)
+    return np.column_stack([tangent, np.cross(direction, tangent), direction])

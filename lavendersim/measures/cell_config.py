@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from lavendersim.geometry.rotations import rotation_matrix, unit_quaternion
 from lavendersim.measures.views import Floats
 
 GRAVITY = 9.81  # [m/s^2]
@@ -128,7 +129,7 @@ def body(resolved: Mapping[str, Any], name: str) -> BodyConfig:
         shape=entry["shape"],
         mass=_mass(entry),
         position=_vector(entry.get("position")),
-        rotation=rotation_matrix(entry.get("orientation") or (1.0, 0.0, 0.0, 0.0)),
+        rotation=rotation_matrix(unit_quaternion(entry.get("orientation") or (1.0, 0.0, 0.0, 0.0))),
         velocity=_vector(entry.get("velocity")),
         angular_velocity=_vector(entry.get("angular_velocity")),
         restitution=float(surface.get("restitution", 0.0)),
@@ -151,18 +152,6 @@ def gravity(resolved: Mapping[str, Any]) -> Floats:
 def numerics(resolved: Mapping[str, Any], name: str) -> float:
     """Return one number of the numerics; `1/480` is read as a ratio."""
     return float(Fraction(resolved["numerics"][name]))
-
-
-def rotation_matrix(quaternion: Any) -> Floats:
-    """Return the matrix (body to world) of a quaternion w x y z."""
-    w, x, y, z = np.asarray(quaternion, dtype=float) / np.linalg.norm(quaternion)
-    return np.array(
-        [
-            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
-        ]
-    )
 
 
 def _mass(entry: Mapping[str, Any]) -> float:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from lavendersim.errors import UsageError
+from lavendersim.geometry.rotations import rotation_matrix, unit_quaternion
 from lavendersim.measures import cell_config
 from lavendersim.measures.views import Floats, Rows, Trace
 
@@ -44,7 +45,7 @@ def clearance_by_step(trace: Trace, body: str, plane: str) -> Floats:
     heights: Floats = poses[:, :3] @ ground.normal - ground.offset
     if moving.shape["kind"] == "sphere":
         return np.asarray(heights - moving.extent(ground.normal), dtype=np.float64)
-    turns = [cell_config.rotation_matrix(pose[3:]) for pose in poses]
+    turns = [rotation_matrix(unit_quaternion(pose[3:])) for pose in poses]
     gaps: Floats = heights - np.array([moving.extent(ground.normal, turn) for turn in turns])
     return gaps
 

@@ -10,6 +10,7 @@ import math
 import numpy as np
 
 from lavendersim.experiment import kinematic_specs as specs
+from lavendersim.geometry.rotations import rotation_matrix, unit_quaternion
 from lavendersim.measures import cell_config
 from lavendersim.measures.views import Floats, Trace
 
@@ -67,7 +68,7 @@ def tilt(spec: specs.Tilt, trace: Trace) -> float:
     """Return the angle [degree] between both directions of the axis, good for small ones too."""
     turns = trace.pose[:, list(trace.bodies).index(spec.body), 3:]
     axis = _unit(spec.axis)
-    first, last = (cell_config.rotation_matrix(turns[row]) @ axis for row in (0, -1))
+    first, last = (rotation_matrix(unit_quaternion(turns[row])) @ axis for row in (0, -1))
     across = np.cross(first, last)
     return math.degrees(math.atan2(math.sqrt(float(across @ across)), float(first @ last)))
 

@@ -12,6 +12,7 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
+from lavendersim.geometry.rotations import rotation_matrices
 from lavendersim.measures import cell_config
 from lavendersim.measures.views import Floats
 
@@ -44,7 +45,7 @@ class Solids:
     def placed(self, poses: Floats) -> Placed:
         """Return the solids at one row of the pose table (bodies, 7)."""
         chosen = poses[self.columns]
-        return Placed(chosen[:, :3], rotations(chosen[:, 3:]), self.size)
+        return Placed(chosen[:, :3], rotation_matrices(chosen[:, 3:]), self.size)
 
 
 class Ground(NamedTuple):
@@ -78,17 +79,6 @@ def _size(shape: Mapping[str, Any]) -> tuple[float, ...]:
     if shape["kind"] in KINDS:
         return float(shape["radius"]), 0.0, 0.5 * float(shape["length"])
     return 0.0, 0.0, 0.0
-
-
-def rotations(quaternions: Floats) -> Floats:
-    """Return the matrices (n, 3, 3), body to world, of quaternions w x y z (n, 4)."""
-    w, x, y, z = (quaternions / np.linalg.norm(quaternions, axis=1)[:, None]).T
-    columns = [
-        (1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)),
-        (2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)),
-        (2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)),
-    ]
-    return np.stack([np.stack(column, axis=1) for column in columns], axis=2)
 
 
 def reach(kind: np.ndarray, placed: Placed, direction: Floats) -> Floats:

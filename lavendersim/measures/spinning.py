@@ -7,13 +7,13 @@ import math
 import numpy as np
 
 from lavendersim.experiment import law_specs as specs
+from lavendersim.geometry.rotations import rotation_matrices
 from lavendersim.measures import cell_config
 from lavendersim.measures.cell_config import BodyConfig
 from lavendersim.measures.columns import one_timestep
 from lavendersim.measures.free_rotation import FreeRotation, free_rotation
 from lavendersim.measures.impact_forms import velocities_after
 from lavendersim.measures.laws import angular_momentum
-from lavendersim.measures.solids import rotations
 from lavendersim.measures.views import Floats, Trace
 
 NAN = float("nan")
@@ -31,7 +31,7 @@ def velocity_error(spec: specs.VelocityError, trace: Trace) -> float:
     if ideal is None or not _alone(trace, moving):
         return NAN
     velocity = np.array([float(trace.step[f"momentum_{axis}"][-1]) for axis in "xyz"]) / moving.mass
-    omega = body_rates(trace, moving)[-1] @ rotations(_pose(trace, moving)[-1:, 3:])[0].T
+    omega = body_rates(trace, moving)[-1] @ rotation_matrices(_pose(trace, moving)[-1:, 3:])[0].T
     return max(
         math.dist(velocity, ideal[0]),
         moving.radius * math.dist(omega, ideal[1]),
@@ -108,7 +108,7 @@ def body_rates(trace: Trace, moving: BodyConfig) -> Floats:
     pose = _pose(trace, moving)
     momentum = np.column_stack([trace.step[f"momentum_{axis}"] for axis in "xyz"])
     spin = angular_momentum(trace) - np.cross(pose[:, :3], momentum)
-    rates: Floats = np.einsum("nji,nj->ni", rotations(pose[:, 3:]), spin)
+    rates: Floats = np.einsum("nji,nj->ni", rotation_matrices(pose[:, 3:]), spin)
     return rates / moving.principal_inertia
 
 

@@ -13,8 +13,9 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 import rerun as rr
 
+from lavendersim.geometry.rotations import rotated, shortest_turn
 from lavendersim.replay.removal import removed
-from lavendersim.replay.shapes import UP, Shape, Vector, rotate, shapes
+from lavendersim.replay.shapes import XYZW, Shape, Vector, shapes
 from lavendersim.replay.solids import Look, archetypes
 from lavendersim.replay.timeline import at_time
 
@@ -130,11 +131,11 @@ def _draw_plane(stream: rr.RecordingStream, plane: Shape, room: Extent, stays: b
     cells = math.ceil(0.7 * room.diagonal / spacing)
     across = cells * spacing
     foot = room.centre - (plane.normal @ room.centre - plane.offset) * plane.normal
-    turn = turn_up_to(plane.normal)
+    turn = shortest_turn(plane.normal)
     slab = rr.Boxes3D(
         half_sizes=[[across, across, thickness / 2]],
         centers=[foot - plane.normal * thickness / 2],
-        quaternions=[rr.Quaternion(xyzw=turn)],
+        quaternions=[rr.Quaternion(xyzw=turn[XYZW])],
         colors=[GROUND_COLOUR],
         fill_mode="Solid",
     )
@@ -145,7 +146,7 @@ def _draw_plane(stream: rr.RecordingStream, plane: Shape, room: Extent, stays: b
     lift = 0.1 * thickness  # or the slab's face hides the lines
     along = [[(tick, end, lift) for end in ends] for tick in ticks]
     corners = np.array(along + [[(y, x, z) for x, y, z in line] for line in along])
-    lines = foot + rotate(turn, corners)
+    lines = foot + rotated(turn, corners)
     radius = rr.Radius.ui_points(0.5)
     grid = rr.LineStrips3D(list(lines), colors=[GRID_COLOUR], radii=radius)
     place = rr.new_entity_path([GRIDS, plane.name])
@@ -155,12 +156,3 @@ def _draw_plane(stream: rr.RecordingStream, plane: Shape, room: Extent, stays: b
 def grid_spacing(room: Extent) -> float:
     """A power of ten [m] that gives a plane's grid some 10 to 100 lines."""
     return float(10.0 ** math.floor(math.log10(room.diagonal / 2)))
-
-
-def turn_up_to(normal: Vector) -> Vector:
-    """The shortest rotation (x, y, z, w) that turns the z axis to the unit vector `normal`."""
-    cosine = float(UP @ normal)
-    if cosine < -1 + 1e-12:  # straight down: any horizontal axis does
-        return np.array([1.0, 0.0, 0.0, 0.0])
-    turn = np.append(np.cross(UP, normal), 1 + cosine)
-    return np.asarray(turn / np.linalg.norm(turn))

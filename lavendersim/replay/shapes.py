@@ -12,6 +12,7 @@ import numpy.typing as npt
 Vector = npt.NDArray[np.float64]
 
 UP = np.array([0.0, 0.0, 1.0])
+XYZW = [1, 2, 3, 0]  # of a quaternion w x y z: the order that rerun takes
 UPRIGHT = np.array([1.0, 0.0, 0.0, 0.0])
 
 
@@ -82,9 +83,3 @@ def _radius(shape: Mapping[str, Any]) -> float:
         return max(math.hypot(*point) for point in shape["points"])
     radius, half = float(shape["radius"]), 0.5 * float(shape.get("length", 0.0))
     return math.hypot(radius, half) if kind == "cylinder" else radius + half
-
-
-def rotate(xyzw: Vector, vectors: Vector) -> Vector:
-    """Rotate vectors (..., 3) by a unit quaternion."""
-    turn = np.cross(xyzw[:3], vectors) * 2
-    return np.asarray(vectors + xyzw[3] * turn + np.cross(xyzw[:3], turn))

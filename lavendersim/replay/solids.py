@@ -9,7 +9,8 @@ from typing import Any, NamedTuple
 import numpy as np
 import rerun as rr
 
-from lavendersim.replay.shapes import Piece, Vector, rotate
+from lavendersim.geometry.rotations import rotated
+from lavendersim.replay.shapes import XYZW, Piece, Vector
 
 # Of the faces of a movable hull: forces act at surfaces and point into bodies, so they must be seen
 # through them.
@@ -45,7 +46,7 @@ def _draw(kind: str, pieces: Sequence[Piece], look: Look) -> list[Any]:
     if kind == "hull":
         return _hulls(pieces, look)
     centres = np.array([piece.position for piece in pieces])
-    turns = np.array([_xyzw(piece) for piece in pieces])
+    turns = np.array([piece.quaternion[XYZW] for piece in pieces])
     if kind == "box":
         sizes = np.array([piece.shape["size"] for piece in pieces], dtype=np.float64)
         return [rr.Boxes3D(half_sizes=sizes / 2, centers=centres, quaternions=turns, **look.words)]
@@ -58,8 +59,8 @@ def _draw(kind: str, pieces: Sequence[Piece], look: Look) -> list[Any]:
         return [rr.Cylinders3D(**size, centers=centres, **look.words)]
     # rerun's capsules begin in their origin
     begins = [
-        centre - rotate(turn, np.array([0.0, 0.0, 0.5 * length]))
-        for centre, turn, length in zip(centres, turns, lengths, strict=True)
+        piece.position - rotated(piece.quaternion, np.array([0.0, 0.0, 0.5 * length]))
+        for piece, length in zip(pieces, lengths, strict=True)
     ]
     return [rr.Capsules3D(**size, translations=np.array(begins), **look.words)]
 
@@ -72,7 +73,7 @@ def _hulls(pieces: Sequence[Piece], look: Look) -> list[Any]:
     for piece in pieces:
         first = sum(len(points) for points in corners)
         local = np.array(piece.shape["points"], dtype=np.float64)
-        points = piece.position + rotate(_xyzw(piece), local)
+        points = piece.position + rotated(piece.quaternion, local)
         corners.append(points)
         for face in piece.shape["faces"]:
             loop = [int(corner) for corner in face]
@@ -95,8 +96,3 @@ def _hulls(pieces: Sequence[Piece], look: Look) -> list[Any]:
         show_labels=look.labelled,
     )
     return [mesh, lines]
-
-
-def _xyzw(piece: Piece) -> Vector:
-    """Return the turn of a piece as rerun takes it; ours is w x y z."""
-    return piece.quaternion[[1, 2, 3, 0]]

@@ -15,6 +15,7 @@ from lavendersim.engine.effects import EFFECTS
 from lavendersim.engine.record_layout import allocate_bodies
 from lavendersim.engine.records import BOX, CAPSULE, COMPOUND, CYLINDER, HULL, PLANE, SPHERE
 from lavendersim.engine.spec import Spec
+from lavendersim.geometry.rotations import quaternion_product, rotation_matrix
 
 from .colliders import Collider, bounding_radius, is_movable
 
@@ -27,25 +28,6 @@ SHAPES: Final = {
     "hull": HULL,
     "compound": COMPOUND,
 }
-
-
-def rotation_matrix(q: np.ndarray) -> np.ndarray:
-    """Return the (3, 3) body-to-world matrix of a unit quaternion w x y z."""
-    w, x, y, z = q
-    return np.array(
-        [
-            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
-        ]
-    )
-
-
-def quaternion_product(one: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """Return the rotation that does `other` first, in the frame that `one` turns."""
-    w, v = one[0], one[1:]
-    real = w * other[0] - v @ other[1:]
-    return np.array([real, *(w * other[1:] + other[0] * v + np.cross(v, other[1:]))])
 
 
 def pose_of(body: dict[str, Any]) -> np.ndarray:

@@ -14,6 +14,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from lavendersim.geometry.rotations import frame_along, rotation_matrix
+
 PLANE_THICKNESS = 0.02  # m; thin beside any body, thick enough to be seen edge-on
 EDGE_SHARE = 0.01  # radius of a drawn edge by the reach of its hull
 
@@ -48,7 +50,7 @@ def visuals(shape: Mapping[str, Any], pose: Matrix, plane_side: float) -> list[V
         return [_plane(shape, pose, plane_side)]
     if kind == "compound":
         return [
-            visual.within(np.array(part["position"], float), rotation(part["orientation"]))
+            visual.within(np.array(part["position"], float), rotation_matrix(part["orientation"]))
             for part in shape["parts"]
             for visual in _solid(part["shape"])
         ]
@@ -83,7 +85,7 @@ def _edges(hull: Mapping[str, Any]) -> Iterator[Visual]:
         along = points[other] - points[one]
         length = float(np.linalg.norm(along))
         middle = 0.5 * (points[one] + points[other])
-        yield Visual(_cylinder(radius, length), middle, facing(along / length))
+        yield Visual(_cylinder(radius, length), middle, frame_along(along / length))
 
 
 def _plane(shape: Mapping[str, Any], pose: Matrix, side: float) -> Visual:
@@ -91,9 +93,9 @@ def _plane(shape: Mapping[str, Any], pose: Matrix, side: float) -> Visual:
     normal = np.array([float(v) for v in shape["normal"]])
     normal /= np.linalg.norm(normal)
     centre = normal * (float(shape["offset"]) - PLANE_THICKNESS / 2)
-    body = rotation(pose[3:])
+    body = rotation_matrix(pose[3:])
     box = f'<box size="{numbers((side, side, PLANE_THICKNESS))}"/>'
-    return Visual(box, body.T @ (centre - pose[:3]), body.T @ facing(normal))
+    return Visual(box, body.T @ (centre - pose[:3]), body.T @ frame_along(normal))
 
 
 def _centred(geometry: str) -> Visual:
@@ -106,26 +108,6 @@ def _sphere(radius: float) -> str:
 
 def _cylinder(radius: float, length: float) -> str:
     return f'<cylinder radius="{radius!r}" length="{length!r}"/>'
-
-
-def facing(direction: Matrix) -> Matrix:
-    """Return a rotation that takes z to a unit vector."""
-    helper = np.eye(3)[int(np.argmin(np.abs(direction)))]
-    x = np.cross(helper, direction)
-    x /= np.linalg.norm(x)
-    return np.column_stack([x, np.cross(direction, x), direction])
-
-
-def rotation(q: Any) -> Matrix:
-    """Return the matrix of a unit quaternion w x y z."""
-    w, x, y, z = q
-    return np.array(
-        [
-            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
-        ]
-    )
 
 
 def roll_pitch_yaw(matrix: Matrix) -> tuple[float, float, float]:

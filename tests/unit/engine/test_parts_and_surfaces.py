@@ -7,7 +7,8 @@ from laboratory import body, plane, resolved
 
 from lavendersim.engine.effects import compound, surface_velocity
 from lavendersim.engine.spec import Spec
-from lavendersim.scene.body_rows import part_pose, rotation_matrix
+from lavendersim.geometry.rotations import rotation_matrix
+from lavendersim.scene.body_rows import part_pose
 from lavendersim.scene.build import build
 
 SPHERE = {"kind": "sphere", "radius": 0.1}

@@ -7,6 +7,7 @@ import pytest
 
 from lavendersim.geometry import quaternions
 from lavendersim.geometry.rotations import (
+    frame_along,
     quaternion_product,
     rotated,
     rotation_matrices,
@@ -44,6 +45,11 @@ def test_a_quarter_turn_about_z_takes_x_to_y() -> None:
     np.testing.assert_allclose(rotated(quarter, np.eye(3)[0]), [0, 1, 0], atol=4e-16)
 
 
+def test_a_third_of_a_turn_about_the_diagonal_permutes_the_axes() -> None:
+    turned = rotated(np.full(4, 0.5), np.eye(3))
+    np.testing.assert_allclose(turned, np.eye(3)[[1, 2, 0]], atol=1e-16)
+
+
 def test_vectors_turn_as_by_the_matrix() -> None:
     vectors = np.random.default_rng(1).normal(size=(5, 3))
     for row in RANDOM:
@@ -60,7 +66,19 @@ def test_product_does_the_second_rotation_first() -> None:
     np.testing.assert_allclose(quaternion_product(one, other), plain, atol=1e-15)
 
 
-@pytest.mark.parametrize("direction", [(0, 0, 1), (0, 0, -1), (0.6, 0, 0.8), (0, -1, 0)])
+SLOPE = (-0.5, 0.0, np.sqrt(0.75))
+
+
+@pytest.mark.parametrize("direction", [(0, 0, 1), (0, 0, -1), (1, 0, 0), (0, -1, 0), SLOPE])
 def test_the_shortest_turn_takes_z_to_the_direction(direction: tuple[float, ...]) -> None:
     turn = shortest_turn(np.array(direction, float))
-    np.testing.assert_allclose(rotation_matrix(turn)[:, 2], direction, atol=4e-16)
+    # the half-angle formula loses 1 + cos to cancellation: 1e-12 there is 1e-6 at worst
+    np.testing.assert_allclose(rotation_matrix(turn)[:, 2], direction, atol=1e-14)
+
+
+def test_a_frame_along_a_direction_is_right_handed() -> None:
+    for direction in (*np.eye(3), *-np.eye(3), np.array([0.6, 0.0, 0.8])):
+        turn = frame_along(direction)
+        np.testing.assert_allclose(turn[:, 2], direction, atol=1e-16)
+        np.testing.assert_allclose(turn.T @ turn, np.eye(3), atol=4e-16)
+        assert np.linalg.det(turn) == pytest.approx(1.0)

@@ -11,6 +11,7 @@ from scipy.spatial import ConvexHull
 from synthetic import contacts, log_of, scene_of
 
 from lavendersim.experiment.motion_specs import Overlap
+from lavendersim.geometry.rotations import rotation_matrices as rotations
 from lavendersim.measures import evaluate
 from lavendersim.measures.penetration import (
     box_box,
@@ -26,7 +27,6 @@ from lavendersim.measures.solids import (
     SPHERE,
     Placed,
     near_pairs,
-    rotations,
 )
 
 SEED = 20

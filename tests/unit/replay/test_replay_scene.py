@@ -17,15 +17,6 @@ def plane(normal, offset=0.0):
     return scene.shapes({"scene": {"bodies": {"plane": body}}})[0]
 
 
-@pytest.mark.parametrize("normal", [[0, 0, 1], [0, 0, -1], [1, 0, 0], [0, -1, 0], SLOPE])
-def test_up_is_turned_to_the_normal(normal):
-    x, y, z, w = scene.turn_up_to(np.array(normal, dtype=float))
-    # third column of the rotation matrix of a unit quaternion
-    turned = [2 * (x * z + y * w), 2 * (y * z - x * w), 1 - 2 * (x * x + y * y)]
-    # the half-angle formula loses 1 + cos to cancellation: 1e-12 there is 1e-6 at worst
-    np.testing.assert_allclose(turned, normal, atol=1e-14)
-
-
 @pytest.mark.parametrize("normal", [[0, 0, 1], [0, 1, 0], [-1, 0, 0], SLOPE])
 def test_camera_stands_on_the_open_side_of_every_plane(normal):
     wall = plane(normal)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import rerun as rr
 
-from lavendersim.replay.shapes import Shape, rotate, shapes
+from lavendersim.replay.shapes import Shape, shapes
 from lavendersim.replay.solids import Look, archetypes
 
 LOOK = Look((1, 2, 3), False, "thing", True)
@@ -86,9 +86,3 @@ def test_reach_holds_every_piece() -> None:
     can = shape_of({"kind": "cylinder", "radius": 0.3, "length": 0.8})
     assert can.reach == pytest.approx(0.5)
     assert shape_of(TETRA).reach == pytest.approx(np.linalg.norm([0.75, 0.25, 0.25]))
-
-
-def test_rotation_by_rerun_quaternions() -> None:
-    x, y, z, w = 0.5, 0.5, 0.5, 0.5
-    turned = rotate(np.array([x, y, z, w]), np.eye(3))
-    np.testing.assert_allclose(turned, np.eye(3)[[1, 2, 0]], atol=1e-16)

@@ -8,7 +8,8 @@ from laboratory import body, plane, resolved
 
 from lavendersim.engine.records import CAPSULE, COMPOUND, CYLINDER, HULL, SPHERE
 from lavendersim.engine.spec import Spec
-from lavendersim.scene.body_rows import part_pose, quaternion_product, rotation_matrix
+from lavendersim.geometry.rotations import quaternion_product, rotation_matrix
+from lavendersim.scene.body_rows import part_pose
 from lavendersim.scene.build import Scene, build
 from lavendersim.scene.colliders import bounding_radius
 

@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from lavendersim.geometry.rotations import rotation_matrix
 from lavendersim.trace import urdf
 from lavendersim.trace.urdf import robot_description
-from lavendersim.trace.urdf_visuals import facing, roll_pitch_yaw, rotation
+from lavendersim.trace.urdf_visuals import roll_pitch_yaw
 
 Vector = NDArray[np.float64]
 POSE = np.array([[0.3, 2.0, 1.0, 0.5, 0.5, -0.5, 0.5]])  # that of the body says nothing here
@@ -52,7 +53,7 @@ def matrix_of(rpy: Vector) -> Vector:
 
 @pytest.mark.parametrize("q", [*np.random.default_rng(0).normal(size=(20, 4)), np.ones(4)])
 def test_angles_give_their_rotation_back(q: Vector) -> None:
-    turn = rotation(q / np.linalg.norm(q))
+    turn = rotation_matrix(q / np.linalg.norm(q))
     np.testing.assert_allclose(matrix_of(np.array(roll_pitch_yaw(turn))), turn, atol=4e-15)
 
 
@@ -124,11 +125,3 @@ def test_hulls_beyond_the_limit_have_no_visual(monkeypatch: pytest.MonkeyPatch) 
     robot = ET.fromstring(robot_description(names, shapes, np.repeat(POSE, 3, axis=0)))
     counts = {link.attrib["name"]: len(link.findall("visual")) for link in robot.iter("link")}
     assert [counts[name] for name in names] == [6, 0, 1]
-
-
-def test_facing_takes_z_to_any_direction() -> None:
-    for direction in (*np.eye(3), *-np.eye(3), np.array([0.6, 0.0, 0.8])):
-        turn = facing(direction)
-        np.testing.assert_allclose(turn[:, 2], direction, atol=1e-16)
-        np.testing.assert_allclose(turn.T @ turn, np.eye(3), atol=4e-16)
-        assert np.linalg.det(turn) == pytest.approx(1.0)
