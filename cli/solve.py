@@ -90,8 +90,8 @@ def solve(
 def _chosen(names: list[str]) -> list[str]:
     """Return the solvers that are meant, each once; raises UsageError with the nearest name."""
     from lavendersim.errors import UsageError
-    from lavendersim.experiment.found import nearest, quoted
     from lavendersim.problems.solve import SOLVERS
+    from lavendersim.quantities.found import nearest, quoted
 
     valid = ["auto", *SOLVERS]
     chosen: dict[str, None] = {}

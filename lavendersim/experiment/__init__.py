@@ -1,9 +1,9 @@
 """A config file in; one frozen, validated Experiment with its cells out. Knows YAML, not numba."""
 
+from lavendersim.cell.config import CellConfig
 from lavendersim.experiment.cell import Cell
 from lavendersim.experiment.experiment import Experiment, resolved_yaml
 from lavendersim.experiment.load import load_experiment, load_experiment_text
-from lavendersim.experiment.resolved import CellConfig
 
 __all__ = [
     "Cell",

@@ -10,11 +10,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from lavendersim.experiment.always_specs import NONE
-from lavendersim.experiment.found import quoted
 from lavendersim.experiment.node import Node, key_mark
 from lavendersim.experiment.population import described
 from lavendersim.experiment.report import Report
 from lavendersim.experiment.scene_checks import is_kinematic
+from lavendersim.quantities.found import quoted
 
 
 def check_always(root: Node, report: Report) -> None:

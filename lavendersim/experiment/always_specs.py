@@ -17,8 +17,8 @@ from typing import Annotated, Any, Final, Literal
 
 from pydantic import Field, Tag
 
-from lavendersim.experiment.base import ConfigModel
-from lavendersim.experiment.quantities import Quantity, either
+from lavendersim.quantities.model import ConfigModel
+from lavendersim.quantities.quantity import Quantity, either
 
 NONE: Final = "none"
 DERIVED: Final = "derived"

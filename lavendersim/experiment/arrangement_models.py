@@ -6,9 +6,9 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from lavendersim.experiment.base import ConfigModel
 from lavendersim.experiment.body_models import ArrangedBody
-from lavendersim.experiment.quantities import Position, Quantity, Vector, Vector3
+from lavendersim.quantities.model import ConfigModel
+from lavendersim.quantities.quantity import Position, Quantity, Vector, Vector3
 
 MOST_BODIES = 100_000  # of a scene; their names alone are some megabytes
 

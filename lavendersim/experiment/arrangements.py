@@ -12,10 +12,10 @@ from __future__ import annotations
 
 import random
 
+from lavendersim.cell.shapes import CellCompound, CellSimple
 from lavendersim.experiment.arrangement_models import Grid, Pyramid, Tower
-from lavendersim.experiment.cell_models import CellCompound, CellSimple, Quaternion
 from lavendersim.experiment.placement import reach
-from lavendersim.experiment.quantities import Vector3
+from lavendersim.quantities.quantity import Quaternion, Vector3
 
 
 def centres(

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from fractions import Fraction
 from typing import Annotated, Any
 
 from pydantic import Field, Tag
 
-from lavendersim.experiment.base import ConfigModel
-from lavendersim.experiment.names import PlaneName, SurfaceName
-from lavendersim.experiment.quantities import (
+from lavendersim.cell.body import Drag, Release
+from lavendersim.cell.surface import Surface
+from lavendersim.experiment.shape_models import Orientation, Shape, Solid
+from lavendersim.quantities.model import ConfigModel
+from lavendersim.quantities.names import SurfaceName
+from lavendersim.quantities.quantity import (
     AngularVelocity,
     Position,
     Quantity,
@@ -18,69 +20,8 @@ from lavendersim.experiment.quantities import (
     Velocity,
     either,
 )
-from lavendersim.experiment.shape_models import Orientation, Shape, Solid
 
 STATIC_HINT = "a body that never moves has fixed: true"
-
-
-class Surface(ConfigModel):
-    """What a body's surface does in a contact; a property that is not stated is 0.
-
-    In a contact of two surfaces friction is the geometric mean sqrt(mu_a mu_b), so that a smooth
-    surface stays smooth; compliances add (two springs in series); restitution, torsional and
-    rolling friction are the larger of the two.
-    """
-
-    restitution: Annotated[float, Quantity(minimum=0, maximum=1)] = Field(
-        default=0.0,
-        description="share of the approach speed given back, 0 to 1; a pair takes the larger",
-    )
-    compliance: Annotated[float, Quantity("m/N", minimum=0)] = Field(
-        default=0.0, description="[m/N] indentation per force; the two surfaces of a contact add"
-    )
-    friction: Annotated[float, Quantity(minimum=0)] = Field(
-        default=0.0,
-        description="Coulomb coefficient mu; a pair takes the geometric mean sqrt(mu_a mu_b)",
-    )
-    torsional_friction: Annotated[float, Quantity("m", minimum=0)] = Field(
-        default=0.0,
-        description="[m] torque about the normal per normal force; a pair takes the larger",
-    )
-    rolling_friction: Annotated[float, Quantity("m", minimum=0)] = Field(
-        default=0.0,
-        description="[m] torque against rolling per normal force; a pair takes the larger",
-    )
-
-
-class Release(ConfigModel):
-    """A start above a plane, by the clearance of the surfaces instead of a position."""
-
-    above: PlaneName = Field(description="name of the plane below")
-    clearance: Annotated[float, Quantity("m", minimum=0)] = Field(
-        description="[m] gap between the body's surface and the plane along the plane's normal"
-    )
-    phase: Annotated[Fraction, Quantity(minimum=0, exact=True)] = Field(
-        default=Fraction(0),
-        description="share of the fall of one step at impact, sqrt(2 g h) dt, added to the gap",
-    )
-    at: Annotated[tuple[float, float], Vector(2, Quantity("m"))] | None = Field(
-        default=None,
-        description="[m] x and y of the centre; not stated: on the plane's normal through 0",
-    )
-
-
-class Drag(ConfigModel):
-    """What the medium does: force -(linear + quadratic |v|) v, torque -angular omega."""
-
-    linear: Annotated[float, Quantity("N s/m", minimum=0)] = Field(
-        default=0.0, description="[N s/m] force per speed"
-    )
-    quadratic: Annotated[float, Quantity("N s^2/m^2", minimum=0)] = Field(
-        default=0.0, description="[N s^2/m^2] force per speed squared"
-    )
-    angular: Annotated[float, Quantity("N m s", minimum=0)] = Field(
-        default=0.0, description="[N m s] torque per angular velocity"
-    )
 
 
 def _surface_form(value: Any) -> str | None:

@@ -10,6 +10,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from lavendersim.cell.config import CellConfig
 from lavendersim.errors import ConfigError, Defect
 from lavendersim.experiment.always_checks import check_always
 from lavendersim.experiment.messages import report_errors
@@ -18,7 +19,7 @@ from lavendersim.experiment.node import Node, Path, key_mark
 from lavendersim.experiment.placement import SceneError
 from lavendersim.experiment.references import check_names
 from lavendersim.experiment.report import Report
-from lavendersim.experiment.resolved import CellConfig, resolve_cell
+from lavendersim.experiment.resolved import resolve_cell
 from lavendersim.experiment.run_checks import check_run
 from lavendersim.experiment.scene_checks import check_scene
 from lavendersim.experiment.study_checks import check_study

@@ -19,13 +19,13 @@ from typing import Any, Final, Literal, NamedTuple, get_args
 
 import yaml
 
+from lavendersim.cell.choices import Solver
 from lavendersim.experiment.cost_specs import CostSpec
 from lavendersim.experiment.experiment import Experiment
 from lavendersim.experiment.load import load_experiment_text
 from lavendersim.experiment.parse import parse
 from lavendersim.experiment.presets import PRESETS
-from lavendersim.experiment.scalars import Ratio, written
-from lavendersim.experiment.solver_names import Solver
+from lavendersim.quantities.scalars import Ratio, written
 
 KNOBS: Final = ("timestep", "solver", "sweeps", "tolerance", "warm_start")
 CHAPTER: Final = "chapter"  # name of a preset; its axis is `numerics`

@@ -11,11 +11,11 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, Tag
 
-from lavendersim.experiment.base import ConfigModel
+from lavendersim.cell.choices import Solver
 from lavendersim.experiment.measure_base import ClosedForm
-from lavendersim.experiment.names import MeasureName
-from lavendersim.experiment.quantities import Quantity, either
-from lavendersim.experiment.solver_names import Solver
+from lavendersim.quantities.model import ConfigModel
+from lavendersim.quantities.names import MeasureName
+from lavendersim.quantities.quantity import Quantity, either
 
 FEWEST_REPEATS = 7  # of six samples the interval that holds the median is all of them
 FEW = "of fewer, one slow moment of the machine decides where the median lies"

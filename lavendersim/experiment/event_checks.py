@@ -7,12 +7,12 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from lavendersim.experiment.found import near
 from lavendersim.experiment.messages import missing_key, place_of
 from lavendersim.experiment.node import Node, key_mark
 from lavendersim.experiment.population import body_node
 from lavendersim.experiment.report import Report
 from lavendersim.experiment.scene_checks import is_kinematic, is_static, kind_of
+from lavendersim.quantities.found import near
 
 REMOVE = "remove"
 CHANGES = ("scale_mass", "teleport", "velocity", "angular_velocity", "contact_cache", REMOVE)

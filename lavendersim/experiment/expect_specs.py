@@ -30,11 +30,11 @@ from typing import Annotated, Final, Literal
 from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from lavendersim.experiment.base import ConfigModel
 from lavendersim.experiment.measure_base import ClosedForm
-from lavendersim.experiment.names import AxisName, MeasureName
-from lavendersim.experiment.quantities import Quantity
 from lavendersim.experiment.selection import Selection
+from lavendersim.quantities.model import ConfigModel
+from lavendersim.quantities.names import AxisName, MeasureName
+from lavendersim.quantities.quantity import Quantity
 
 # How the name of a `fails` begins that says what lavender does not hold, but should.
 KNOWN_FAILURE: Final = "known failure"

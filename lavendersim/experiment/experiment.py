@@ -8,6 +8,7 @@ from typing import Any
 
 import yaml
 
+from lavendersim.cell.choices import NO_MISTAKE
 from lavendersim.experiment.always_specs import Always
 from lavendersim.experiment.cell import Cell
 from lavendersim.experiment.cost_specs import CostSpec
@@ -16,7 +17,6 @@ from lavendersim.experiment.figure_specs import FigureSpec
 from lavendersim.experiment.measure_specs import MeasureSpec
 from lavendersim.experiment.models import ExperimentConfig
 from lavendersim.experiment.price_specs import PriceSpec
-from lavendersim.experiment.study_specs import NO_MISTAKE
 
 
 @dataclass(frozen=True)

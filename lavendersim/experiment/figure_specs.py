@@ -10,12 +10,12 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from lavendersim.experiment.base import ConfigModel
 from lavendersim.experiment.expect_specs import Reduction
 from lavendersim.experiment.measure_base import ClosedForm
-from lavendersim.experiment.names import AxisName, BodyName, MeasureName, PlaneName
-from lavendersim.experiment.quantities import Quantity
 from lavendersim.experiment.selection import Selection
+from lavendersim.quantities.model import ConfigModel
+from lavendersim.quantities.names import AxisName, BodyName, MeasureName, PlaneName
+from lavendersim.quantities.quantity import Quantity
 
 Scale = Literal["linear", "log"]
 Number = Annotated[float, Quantity()]

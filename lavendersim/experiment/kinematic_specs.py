@@ -7,8 +7,8 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, model_validator
 
 from lavendersim.experiment.measure_base import Measure, Seconds
-from lavendersim.experiment.names import BodyName
-from lavendersim.experiment.quantities import Quantity, Vector, Vector3, sentence_error
+from lavendersim.quantities.names import BodyName
+from lavendersim.quantities.quantity import Quantity, Vector, Vector3, sentence_error
 
 Direction = Annotated[Vector3, Vector(3, Quantity())]
 

@@ -11,8 +11,8 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from lavendersim.experiment.measure_base import Measure, Seconds
-from lavendersim.experiment.names import BodyName, PlaneName
-from lavendersim.experiment.quantities import Quantity
+from lavendersim.quantities.names import BodyName, PlaneName
+from lavendersim.quantities.quantity import Quantity
 
 # |omega| dt of the step's rotation must stay small for a flip to be told from the samples around it
 Flips = Annotated[int, Quantity("", minimum=1, whole=True)]

@@ -16,7 +16,6 @@ from lavendersim.errors import ConfigError, UsageError
 from lavendersim.experiment import sweep
 from lavendersim.experiment.cell import Cell, build_cell, check_cell
 from lavendersim.experiment.experiment import Experiment
-from lavendersim.experiment.found import found
 from lavendersim.experiment.messages import report_errors
 from lavendersim.experiment.models import ExperimentConfig
 from lavendersim.experiment.node import Node, key_mark
@@ -25,6 +24,7 @@ from lavendersim.experiment.reduction import check_reduction, reduce
 from lavendersim.experiment.references import check_references, swept_values
 from lavendersim.experiment.report import Report
 from lavendersim.experiment.solver_override import with_solver
+from lavendersim.quantities.found import found
 
 # Checking a cell takes 0.3 ms. Of larger sweeps every axis is checked value by value up to as many
 # cells; what is left is checked when its cell is built.

@@ -14,10 +14,10 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from lavendersim.experiment.base import ConfigModel
-from lavendersim.experiment.names import BodyName
-from lavendersim.experiment.quantities import Quantity
 from lavendersim.experiment.selection import Selection
+from lavendersim.quantities.model import ConfigModel
+from lavendersim.quantities.names import BodyName
+from lavendersim.quantities.quantity import Quantity
 
 FormName = Literal[
     "newton_impulse",

@@ -16,8 +16,8 @@ from lavendersim.experiment.kinematic_specs import KinematicSpec
 from lavendersim.experiment.law_specs import LawSpec
 from lavendersim.experiment.measure_base import Measure, PairMeasure, Seconds
 from lavendersim.experiment.motion_specs import MotionSpec
-from lavendersim.experiment.names import BodyName, PlaneName
-from lavendersim.experiment.quantities import Quantity
+from lavendersim.quantities.names import BodyName, PlaneName
+from lavendersim.quantities.quantity import Quantity
 
 
 class FirstApex(Measure):

@@ -14,10 +14,10 @@ from pydantic import ValidationError
 from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails
 
-from lavendersim.experiment.found import found, near, nearest, quoted
 from lavendersim.experiment.node import BROKEN, Broken, Mark, Node, Path, key_mark
 from lavendersim.experiment.report import Report
 from lavendersim.experiment.walk import Model, Place, fields, places
+from lavendersim.quantities.found import found, near, nearest, quoted
 
 _TYPES = {
     "string_type": "text",

@@ -7,25 +7,25 @@ from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field, Tag
 
+from lavendersim.cell.choices import FrictionCone, Impacts, Integrator, Order, Solver, Switch
 from lavendersim.experiment.always_specs import Always
-from lavendersim.experiment.base import ConfigModel
 from lavendersim.experiment.cost_specs import CostSpec
 from lavendersim.experiment.expect_specs import ExpectSpec
 from lavendersim.experiment.figure_specs import FigureSpec
 from lavendersim.experiment.measure_specs import MeasureSpec
-from lavendersim.experiment.names import BodyName, NewName
 from lavendersim.experiment.price_specs import PriceSpec
-from lavendersim.experiment.quantities import (
+from lavendersim.experiment.record_models import Record
+from lavendersim.experiment.scene_models import Scene
+from lavendersim.experiment.study_specs import Study
+from lavendersim.quantities.model import ConfigModel
+from lavendersim.quantities.names import BodyName, NewName
+from lavendersim.quantities.quantity import (
     AngularVelocity,
     Position,
     Quantity,
     Velocity,
     either,
 )
-from lavendersim.experiment.record_models import Record
-from lavendersim.experiment.scene_models import Scene
-from lavendersim.experiment.solver_names import Solver
-from lavendersim.experiment.study_specs import Study
 
 
 class Event(ConfigModel):
@@ -62,10 +62,6 @@ class Event(ConfigModel):
 
 Count = Annotated[int, Quantity(whole=True, minimum=1, maximum=1_000_000)]
 CountOrNone = Annotated[int, Quantity(whole=True, minimum=0, maximum=1_000_000)]
-Impacts = Literal["captured", "at_surface"]
-Integrator = Literal["semi_implicit_euler", "midpoint"]
-FrictionCone = Literal["disc", "pyramid", "convex"]
-Order = Literal["coloured", "forward", "backward", "symmetric", "random"]
 
 
 class NumericsChange(ConfigModel):
@@ -149,9 +145,6 @@ NumericsOf = Annotated[
     | Annotated[NumericsChange, Tag("values")],
     either("the name of a preset (chapter, default) or a mapping of values", _numerics_form),
 ]
-
-
-Switch = Literal["on", "off"]
 
 
 class Effects(ConfigModel):

@@ -10,8 +10,8 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from lavendersim.experiment.measure_base import Measure, Seconds
-from lavendersim.experiment.names import BodyName, PlaneName
-from lavendersim.experiment.quantities import Quantity
+from lavendersim.quantities.names import BodyName, PlaneName
+from lavendersim.quantities.quantity import Quantity
 
 Stride = Annotated[int, Quantity("", minimum=1, whole=True)]
 

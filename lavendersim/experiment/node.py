@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
-from lavendersim.experiment.scalars import Value
+from lavendersim.quantities.scalars import Value
 
 
 class Mark(NamedTuple):

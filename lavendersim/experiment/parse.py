@@ -15,10 +15,10 @@ from typing import Any
 import yaml
 
 from lavendersim.errors import Defect
-from lavendersim.experiment.found import quoted
 from lavendersim.experiment.node import BROKEN, Mark, Node
-from lavendersim.experiment.scalars import ScalarError, resolve
 from lavendersim.experiment.syntax import describe
+from lavendersim.quantities.found import quoted
+from lavendersim.quantities.scalars import ScalarError, resolve
 
 LARGEST_FILE = 1 << 20  # [byte]
 DEEPEST = 32  # a config needs about six levels

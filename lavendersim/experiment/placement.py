@@ -14,13 +14,12 @@ from __future__ import annotations
 import math
 from fractions import Fraction
 
-from lavendersim.experiment.body_models import Release
-from lavendersim.experiment.cell_models import CellCompound, CellHull, CellSimple, Quaternion
+from lavendersim.cell.body import Release
+from lavendersim.cell.shapes import Box, Capsule, CellCompound, CellHull, CellSimple, Plane, Sphere
 from lavendersim.experiment.node import Path
-from lavendersim.experiment.quantities import Vector3
-from lavendersim.experiment.shape_models import Box, Capsule, Plane, Sphere
 from lavendersim.geometry.quaternions import axes, product, to_body, to_world
 from lavendersim.geometry.vectors import dot, unit
+from lavendersim.quantities.quantity import Quaternion, Vector3
 
 
 class SceneError(ValueError):

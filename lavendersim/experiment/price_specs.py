@@ -6,8 +6,8 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, Tag
 
-from lavendersim.experiment.base import ConfigModel
-from lavendersim.experiment.quantities import Quantity, either
+from lavendersim.quantities.model import ConfigModel
+from lavendersim.quantities.quantity import Quantity, either
 
 
 def _effects_form(value: Any) -> str | None:

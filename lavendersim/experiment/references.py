@@ -8,14 +8,14 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Mapping
 
 from lavendersim.experiment.always_specs import CHECKS, COMPLETES, DIVERGES, NONE
-from lavendersim.experiment.found import nearest, quoted
 from lavendersim.experiment.messages import name_of
-from lavendersim.experiment.names import NamedKind
 from lavendersim.experiment.node import Mark, Node
 from lavendersim.experiment.population import body_names
 from lavendersim.experiment.report import Report
-from lavendersim.experiment.scalars import exact, written
 from lavendersim.experiment.walk import Model, Place, places
+from lavendersim.quantities.found import nearest, quoted
+from lavendersim.quantities.names import NamedKind
+from lavendersim.quantities.scalars import exact, written
 
 ANY_VALUE = "any"
 SOLIDS = ("sphere", "box", "capsule", "cylinder", "hull", "compound")

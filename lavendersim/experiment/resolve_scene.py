@@ -5,17 +5,18 @@ from __future__ import annotations
 import math
 from fractions import Fraction
 
+from lavendersim.cell.body import CellBody
+from lavendersim.cell.scene import CellForce, CellScene
+from lavendersim.cell.shapes import CellShape, Plane
 from lavendersim.experiment.arrangements import centres
 from lavendersim.experiment.body_models import ArrangedBody, Body
-from lavendersim.experiment.cell_models import CellBody, CellForce, CellScene, CellShape
 from lavendersim.experiment.placement import SceneError, released_position
 from lavendersim.experiment.population import ARRANGEMENTS, BODIES, member_name
-from lavendersim.experiment.quantities import Vector3
 from lavendersim.experiment.resolve_shape import quaternion_of, resolve_shape
 from lavendersim.experiment.scene_models import Force, Scene, TiltedGravity
-from lavendersim.experiment.shape_models import Plane
 from lavendersim.geometry.quaternions import IDENTITY, product, to_body
 from lavendersim.geometry.vectors import unit
+from lavendersim.quantities.quantity import Vector3
 
 _ORIGIN: Vector3 = (0.0, 0.0, 0.0)
 

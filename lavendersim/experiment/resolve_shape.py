@@ -4,30 +4,24 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from lavendersim.experiment.cell_models import (
+from lavendersim.cell.shapes import (
+    Box,
+    Capsule,
     CellCompound,
     CellHull,
     CellPart,
     CellSimple,
-    Quaternion,
-)
-from lavendersim.experiment.placement import SceneError
-from lavendersim.experiment.quantities import Vector3
-from lavendersim.experiment.shape_models import (
-    AxisAngle,
-    Box,
-    Capsule,
-    Compound,
     Cylinder,
-    Hull,
-    Simple,
     Sphere,
 )
+from lavendersim.experiment.placement import SceneError
+from lavendersim.experiment.shape_models import AxisAngle, Compound, Hull, Simple
 from lavendersim.geometry import mass_properties
 from lavendersim.geometry.convex_hull import FlatError, convex_hull
 from lavendersim.geometry.mass_properties import ORIGIN, Placed, Solid, polyhedron, together
 from lavendersim.geometry.quaternions import IDENTITY, from_axis_angle, inverse, product, to_body
 from lavendersim.geometry.vectors import minus, unit
+from lavendersim.quantities.quantity import Quaternion, Vector3
 
 
 class SolidShape(NamedTuple):

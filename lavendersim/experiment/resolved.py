@@ -4,16 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
-from lavendersim.experiment.cell_models import (
-    CellConfig,
-    CellEffects,
-    CellEvent,
-    CellRecord,
-    CellStudy,
-    CellTimestep,
-    Numerics,
-    ResidualWindow,
-)
+from lavendersim.cell.config import CellConfig, CellEffects, CellStudy
+from lavendersim.cell.events import CellEvent, CellTimestep
+from lavendersim.cell.numerics import Numerics
+from lavendersim.cell.record import CellRecord, ResidualWindow
 from lavendersim.experiment.models import CellSource, Event, NumericsChange
 from lavendersim.experiment.presets import PRESETS, PresetValue
 from lavendersim.experiment.record_models import Record, Window

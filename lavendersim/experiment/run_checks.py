@@ -16,8 +16,8 @@ from lavendersim.experiment.node import Node, key_mark
 from lavendersim.experiment.population import body_node
 from lavendersim.experiment.presets import PRESETS, PresetValue
 from lavendersim.experiment.report import Report
-from lavendersim.experiment.scalars import exact
 from lavendersim.experiment.scene_checks import is_kinematic, is_static, kind_of
+from lavendersim.quantities.scalars import exact
 
 # Solvers that no sweep visits contact by contact.
 _WITHOUT_SWEEPS = ("jacobi", "accelerated_projected_gradient")

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from lavendersim.experiment.arrangement_models import MOST_BODIES
 from lavendersim.experiment.body_models import Body
-from lavendersim.experiment.found import near, quoted
 from lavendersim.experiment.messages import missing_key, place_of
 from lavendersim.experiment.node import Mark, Node, Path, key_mark
 from lavendersim.experiment.population import (
@@ -20,6 +19,7 @@ from lavendersim.experiment.population import (
 )
 from lavendersim.experiment.references import SOLIDS
 from lavendersim.experiment.report import Report
+from lavendersim.quantities.found import near, quoted
 
 _OF_MOVING = ("velocity", "angular_velocity")
 _OF_MOVABLE = ("mass", "density", "inertia", "drag")

@@ -6,11 +6,12 @@ from typing import Annotated, Any
 
 from pydantic import Field, Tag
 
+from lavendersim.cell.surface import Surface
 from lavendersim.experiment.arrangement_models import Arrangement
-from lavendersim.experiment.base import ConfigModel
-from lavendersim.experiment.body_models import Body, Surface
-from lavendersim.experiment.names import BodyName, NewName
-from lavendersim.experiment.quantities import Quantity, Vector, Vector3, either
+from lavendersim.experiment.body_models import Body
+from lavendersim.quantities.model import ConfigModel
+from lavendersim.quantities.names import BodyName, NewName
+from lavendersim.quantities.quantity import Quantity, Vector, Vector3, either
 
 GRAVITY = 9.81  # [m/s^2]
 

@@ -12,8 +12,8 @@ from typing import Annotated, Any
 from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import CoreSchema, core_schema
 
-from lavendersim.experiment.names import AxisName
-from lavendersim.experiment.quantities import refusal
+from lavendersim.quantities.names import AxisName
+from lavendersim.quantities.quantity import refusal
 
 ANY = "any"
 

@@ -10,9 +10,9 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, Tag
 
-from lavendersim.experiment.base import ConfigModel
-from lavendersim.experiment.quantities import (
-    BoxSize,
+from lavendersim.cell.shapes import Box, Capsule, Cylinder, Plane, Sphere
+from lavendersim.quantities.model import ConfigModel
+from lavendersim.quantities.quantity import (
     Direction,
     Position,
     Quantity,
@@ -20,49 +20,8 @@ from lavendersim.experiment.quantities import (
     either,
 )
 
-Length = Annotated[float, Quantity("m", above=0)]
 MOST_POINTS = 256  # of a hull: features of contacts are counted in eight bits
 MOST_PARTS = 256
-
-
-class Plane(ConfigModel):
-    """The half-space n.x <= offset, always static."""
-
-    kind: Literal["plane"]
-    normal: Direction = Field(default=(0.0, 0.0, 1.0), description="outward normal; is normalised")
-    offset: Annotated[float, Quantity("m")] = Field(
-        default=0.0, description="[m] n.x of its points"
-    )
-
-
-class Sphere(ConfigModel):
-    """A ball."""
-
-    kind: Literal["sphere"]
-    radius: Length = Field(description="[m]")
-
-
-class Box(ConfigModel):
-    """A rectangular block."""
-
-    kind: Literal["box"]
-    size: BoxSize = Field(description="[m] full edge lengths along the body's x, y, z")
-
-
-class Capsule(ConfigModel):
-    """A cylinder along the body's z with a half ball on each end."""
-
-    kind: Literal["capsule"]
-    radius: Length = Field(description="[m]")
-    length: Length = Field(description="[m] of the cylinder between the half balls")
-
-
-class Cylinder(ConfigModel):
-    """A round bar along the body's z."""
-
-    kind: Literal["cylinder"]
-    radius: Length = Field(description="[m]")
-    length: Length = Field(description="[m] from end to end")
 
 
 class Hull(ConfigModel):

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Final
 
+from lavendersim.cell.choices import CAPTURE_IN_SWEEPS
 from lavendersim.experiment.node import Node
 from lavendersim.experiment.report import Report
 from lavendersim.experiment.run_checks import preset_of
-from lavendersim.experiment.study_specs import CAPTURE_IN_SWEEPS
 
 # What the numerics must state for a mistake to be one: key, value, and why.
 _PLACES: Final = {

@@ -9,15 +9,10 @@ preset and of no other section, and every run that makes one says so: `lavender 
 
 from __future__ import annotations
 
-from typing import Final, Literal
-
 from pydantic import Field
 
-from lavendersim.experiment.base import ConfigModel
-
-NO_MISTAKE: Final = "none"
-CAPTURE_IN_SWEEPS: Final = "capture_in_sweeps"
-Mistake = Literal["none", "capture_in_sweeps"]
+from lavendersim.cell.choices import NO_MISTAKE, Mistake
+from lavendersim.quantities.model import ConfigModel
 
 
 class Study(ConfigModel):

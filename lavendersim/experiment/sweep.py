@@ -12,12 +12,12 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-from lavendersim.experiment.found import found, quoted
 from lavendersim.experiment.node import Node, Path, graft, key_mark
 from lavendersim.experiment.references import products
 from lavendersim.experiment.report import Report
-from lavendersim.experiment.scalars import Ratio, exact, written
 from lavendersim.experiment.sweep_paths import find_path
+from lavendersim.quantities.found import found, quoted
+from lavendersim.quantities.scalars import Ratio, exact, written
 
 MOST_CELLS = 100_000
 

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from typing import Any, get_args, get_origin
 
-from lavendersim.experiment.found import nearest, quoted
 from lavendersim.experiment.models import CellSource
 from lavendersim.experiment.node import Node, Path
-from lavendersim.experiment.quantities import Vector
 from lavendersim.experiment.report import Report
 from lavendersim.experiment.walk import (
     Model,
@@ -18,6 +16,8 @@ from lavendersim.experiment.walk import (
     model_for,
     names_of,
 )
+from lavendersim.quantities.found import nearest, quoted
+from lavendersim.quantities.quantity import Vector
 
 SWEPT_SECTIONS = ("scene", "events", "numerics", "duration", "effects", "study")
 

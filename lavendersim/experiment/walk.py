@@ -14,8 +14,8 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_typ
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from lavendersim.experiment.names import Refers
 from lavendersim.experiment.node import Mark, Node, Path, key_mark
+from lavendersim.quantities.names import Refers
 
 Model = type[BaseModel]
 

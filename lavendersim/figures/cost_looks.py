@@ -9,7 +9,7 @@ from typing import Any, Final, NamedTuple, get_args
 
 from matplotlib.lines import Line2D
 
-from lavendersim.experiment.solver_names import Solver
+from lavendersim.cell.choices import Solver
 from lavendersim.figures.style import DARK, LOOKS, Look
 
 # Every solver has its colour in every figure; black is that of the front and of what failed.

@@ -7,8 +7,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from lavendersim.experiment.scalars import written
 from lavendersim.measures.views import Cell, Floats
+from lavendersim.quantities.scalars import written
 
 
 class Series(NamedTuple):

@@ -16,11 +16,11 @@ from matplotlib.colors import LogNorm, Normalize
 from matplotlib.patches import Rectangle
 
 from lavendersim.experiment.figure_specs import StabilityMap
-from lavendersim.experiment.scalars import written
 from lavendersim.figures.series import by_value
 from lavendersim.figures.style import DARK, GREY
 from lavendersim.measures.values import Values
 from lavendersim.measures.views import Cell
+from lavendersim.quantities.scalars import written
 
 COLOURS: Final = "cividis"  # told apart by colour-blind readers and in grey
 HALF_DARK: Final = 0.5  # luminance below which letters are white [-]

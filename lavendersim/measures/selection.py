@@ -6,9 +6,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 from typing import Any, TypeVar
 
-from lavendersim.experiment.scalars import written
 from lavendersim.experiment.selection import ANY
 from lavendersim.measures.views import Cell
+from lavendersim.quantities.scalars import written
 
 SomeCell = TypeVar("SomeCell", bound=Cell)
 

@@ -9,10 +9,10 @@ from typing import Final
 import numpy as np
 
 from lavendersim.experiment.expect_specs import Crosses, ExpectSpec, Order, Ratio
-from lavendersim.experiment.scalars import written
 from lavendersim.measures.selection import group_by, select
 from lavendersim.measures.verdict import Outcome, failure
 from lavendersim.measures.views import Cell, Floats
+from lavendersim.quantities.scalars import written
 
 NO_TOLERANCE = "none"
 REDUCTIONS: Final[Mapping[str, Callable[..., Floats]]] = {

@@ -13,9 +13,9 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from lavendersim.cell.record import NONE
 from lavendersim.errors import ConfigError, Defect, UsageError
 from lavendersim.experiment import Experiment, load_experiment, resolved_yaml
-from lavendersim.experiment.record_models import NONE
 from lavendersim.measures import Values, Verdict, judge, meant_to_end_early
 
 from .environment import environment

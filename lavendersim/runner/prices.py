@@ -20,7 +20,7 @@ from lavendersim.engine.spec import Spec
 from lavendersim.errors import ConfigError
 from lavendersim.experiment import Experiment
 from lavendersim.experiment.cell import Cell
-from lavendersim.experiment.found import nearest, quoted
+from lavendersim.quantities.found import nearest, quoted
 from lavendersim.scene.colliders import is_movable
 
 from .environment import processor

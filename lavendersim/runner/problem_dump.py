@@ -15,11 +15,11 @@ from typing import Any
 
 import numpy as np
 
+from lavendersim.cell.record import NONE, steps_between
 from lavendersim.engine.assemble import StepProblem
 from lavendersim.engine.engine import Engine
 from lavendersim.errors import ConfigError
 from lavendersim.experiment import Experiment
-from lavendersim.experiment.record_models import NONE, steps_between
 from lavendersim.scene.plan import plan_of_cell
 
 PROBLEMS = "problems"  # beside `cells`, one folder a cell, named as the cell's log

@@ -15,11 +15,11 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import NamedTuple, get_args
 
+from lavendersim.cell.choices import Solver
 from lavendersim.errors import ConfigError, UsageError
 from lavendersim.experiment import Experiment, load_experiment
-from lavendersim.experiment.found import nearest, quoted
-from lavendersim.experiment.solver_names import Solver
 from lavendersim.experiment.solver_override import about_something_else
+from lavendersim.quantities.found import nearest, quoted
 
 from .experiment_run import run
 from .matrix_square import DIED, REFUSED, Square, square_of, without_run

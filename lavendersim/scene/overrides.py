@@ -13,11 +13,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any, Final, Literal, NamedTuple, get_args
 
+from lavendersim.cell.config import CellStudy
+from lavendersim.cell.numerics import Numerics
 from lavendersim.engine.collide import SHAPE_PAIRS
 from lavendersim.engine.effects import Decision, Facts, contact_log, pose_log, step_log
 from lavendersim.errors import UsageError
-from lavendersim.experiment.cell_models import CellStudy, Numerics
-from lavendersim.experiment.found import nearest, quoted
+from lavendersim.quantities.found import nearest, quoted
 
 from .laws import BUSY, BY_NAME, choice, has_law, is_law, needs
 

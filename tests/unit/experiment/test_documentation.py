@@ -10,8 +10,8 @@ from pydantic import BaseModel
 
 from lavendersim.experiment.models import ExperimentConfig
 from lavendersim.experiment.presets import PRESETS
-from lavendersim.experiment.scalars import resolve, written
 from lavendersim.experiment.walk import alternatives, annotation_of, field_name, is_model, kinds
+from lavendersim.quantities.scalars import resolve, written
 
 TEXT = (Path(__file__).parents[3] / "docs" / "config.md").read_text(encoding="utf-8")
 ROWS = {

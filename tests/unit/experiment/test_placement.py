@@ -7,9 +7,9 @@ from fractions import Fraction
 
 import pytest
 
-from lavendersim.experiment.body_models import Release
+from lavendersim.cell.body import Release
+from lavendersim.cell.shapes import Box, Plane, Sphere
 from lavendersim.experiment.placement import SceneError, reach, released_position
-from lavendersim.experiment.shape_models import Box, Plane, Sphere
 from lavendersim.geometry.quaternions import from_axis_angle
 from lavendersim.geometry.vectors import unit
 

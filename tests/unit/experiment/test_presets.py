@@ -6,9 +6,10 @@ from fractions import Fraction
 
 import pytest
 
+from lavendersim.cell.numerics import Numerics
 from lavendersim.experiment.models import NumericsChange
 from lavendersim.experiment.presets import CHAPTER, PRESETS
-from lavendersim.experiment.resolved import Numerics, resolve_numerics
+from lavendersim.experiment.resolved import resolve_numerics
 
 
 def test_chapter_is_frozen() -> None:

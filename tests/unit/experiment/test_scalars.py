@@ -8,7 +8,7 @@ from fractions import Fraction
 
 import pytest
 
-from lavendersim.experiment.scalars import Ratio, ScalarError, exact, resolve, written
+from lavendersim.quantities.scalars import Ratio, ScalarError, exact, resolve, written
 
 
 @pytest.mark.parametrize(

@@ -12,8 +12,8 @@ from jsonschema import Draft7Validator
 
 from lavendersim.experiment import load_experiment
 from lavendersim.experiment.parse import parse
-from lavendersim.experiment.scalars import Ratio
 from lavendersim.experiment.schema import json_schema
+from lavendersim.quantities.scalars import Ratio
 
 ROOT = Path(__file__).parents[3]
 GOOD = sorted(ROOT.glob("configs/*/*.yaml"))

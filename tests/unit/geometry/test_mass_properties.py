@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 from numpy.polynomial.legendre import leggauss
 
+from lavendersim.cell.shapes import Box
 from lavendersim.experiment.resolve_shape import resolve_shape
-from lavendersim.experiment.shape_models import Box, Compound, Hull, Part
+from lavendersim.experiment.shape_models import Compound, Hull, Part
 from lavendersim.geometry.convex_hull import convex_hull
 from lavendersim.geometry.mass_properties import Solid, box, capsule, cylinder, polyhedron, sphere
 

@@ -10,7 +10,7 @@ import math
 import re
 from fractions import Fraction
 
-from lavendersim.experiment.scalars import ScalarError, resolve
+from lavendersim.quantities.scalars import ScalarError, resolve
 
 _DEGREE = math.pi / 180.0
 

@@ -6,7 +6,7 @@ import difflib
 import itertools
 from collections.abc import Iterable
 
-from lavendersim.experiment.scalars import Ratio
+from lavendersim.quantities.scalars import Ratio
 
 LONGEST_QUOTE = 40
 MOST_NAMES = 24

@@ -11,12 +11,12 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Annotated, Any
 
-from pydantic import Discriminator, GetCoreSchemaHandler, GetJsonSchemaHandler
+from pydantic import Discriminator, GetCoreSchemaHandler, GetJsonSchemaHandler, ValidationInfo
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
-from lavendersim.experiment.found import found
-from lavendersim.experiment.scalars import exact, written
-from lavendersim.experiment.units import advice
+from lavendersim.quantities.found import found
+from lavendersim.quantities.scalars import exact, written
+from lavendersim.quantities.units import advice
 
 RATIO_PATTERN = r"^[-+]?[0-9]+/[0-9]+$"
 
@@ -100,9 +100,17 @@ class Quantity:
     ) -> CoreSchema:
         """Validate with `check`; write Fractions as `1/480`."""
         writer = core_schema.plain_serializer_function_ser_schema(written, when_used="json")
-        return core_schema.no_info_plain_validator_function(
-            self.check, serialization=writer if self.exact else None
+        if not self.exact:
+            return core_schema.no_info_plain_validator_function(self.check)
+        return core_schema.with_info_plain_validator_function(
+            self._check_exact, serialization=writer
         )
+
+    def _check_exact(self, value: object, info: ValidationInfo) -> Any:
+        """Check a number; in resolved configs (JSON) a ratio is the text `1/480`."""
+        if info.mode == "json" and isinstance(value, str):
+            value = Fraction(value)
+        return self.check(value)
 
     def __get_pydantic_json_schema__(
         self, schema: CoreSchema, handler: GetJsonSchemaHandler
@@ -170,6 +178,7 @@ class Vector:
 
 
 Vector3 = tuple[float, float, float]
+Quaternion = tuple[float, float, float, float]  # w x y z
 Position = Annotated[Vector3, Vector(3, Quantity("m"))]
 Velocity = Annotated[Vector3, Vector(3, Quantity("m/s"))]
 AngularVelocity = Annotated[Vector3, Vector(3, Quantity("rad/s"))]

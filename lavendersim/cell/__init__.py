@@ -1,0 +1,70 @@
+"""The resolved cell: one frozen, typed config of what is simulated, hashed and logged."""
+
+from lavendersim.cell.body import CellBody, Drag, Release
+from lavendersim.cell.choices import (
+    CAPTURE_IN_SWEEPS,
+    NO_MISTAKE,
+    FrictionCone,
+    Impacts,
+    Integrator,
+    Mistake,
+    Order,
+    Preset,
+    Solver,
+    Switch,
+)
+from lavendersim.cell.config import CellConfig, CellEffects, CellStudy
+from lavendersim.cell.events import CellEvent, CellTimestep
+from lavendersim.cell.numerics import Numerics
+from lavendersim.cell.record import CellRecord, ResidualWindow
+from lavendersim.cell.scene import CellForce, CellScene
+from lavendersim.cell.shapes import (
+    Box,
+    Capsule,
+    CellCompound,
+    CellHull,
+    CellPart,
+    CellShape,
+    CellSimple,
+    Cylinder,
+    Plane,
+    Sphere,
+)
+from lavendersim.cell.surface import Surface
+
+__all__ = [
+    "CAPTURE_IN_SWEEPS",
+    "NO_MISTAKE",
+    "Box",
+    "Capsule",
+    "CellBody",
+    "CellCompound",
+    "CellConfig",
+    "CellEffects",
+    "CellEvent",
+    "CellForce",
+    "CellHull",
+    "CellPart",
+    "CellRecord",
+    "CellScene",
+    "CellShape",
+    "CellSimple",
+    "CellStudy",
+    "CellTimestep",
+    "Cylinder",
+    "Drag",
+    "FrictionCone",
+    "Impacts",
+    "Integrator",
+    "Mistake",
+    "Numerics",
+    "Order",
+    "Plane",
+    "Preset",
+    "Release",
+    "ResidualWindow",
+    "Solver",
+    "Sphere",
+    "Surface",
+    "Switch",
+]

@@ -1,0 +1,64 @@
+"""One body of a cell, ready to be built: shape, mass, inertia, surface, pose and motion."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Annotated
+
+from pydantic import Field
+
+from lavendersim.cell.shapes import CellShape
+from lavendersim.cell.surface import Surface
+from lavendersim.quantities.model import ConfigModel, ResolvedModel
+from lavendersim.quantities.names import PlaneName
+from lavendersim.quantities.quantity import Quantity, Quaternion, Vector, Vector3
+
+
+class Release(ConfigModel):
+    """A start above a plane, by the clearance of the surfaces instead of a position."""
+
+    above: PlaneName = Field(description="name of the plane below")
+    clearance: Annotated[float, Quantity("m", minimum=0)] = Field(
+        description="[m] gap between the body's surface and the plane along the plane's normal"
+    )
+    phase: Annotated[Fraction, Quantity(minimum=0, exact=True)] = Field(
+        default=Fraction(0),
+        description="share of the fall of one step at impact, sqrt(2 g h) dt, added to the gap",
+    )
+    at: Annotated[tuple[float, float], Vector(2, Quantity("m"))] | None = Field(
+        default=None,
+        description="[m] x and y of the centre; not stated: on the plane's normal through 0",
+    )
+
+
+class Drag(ConfigModel):
+    """What the medium does: force -(linear + quadratic |v|) v, torque -angular omega."""
+
+    linear: Annotated[float, Quantity("N s/m", minimum=0)] = Field(
+        default=0.0, description="[N s/m] force per speed"
+    )
+    quadratic: Annotated[float, Quantity("N s^2/m^2", minimum=0)] = Field(
+        default=0.0, description="[N s^2/m^2] force per speed squared"
+    )
+    angular: Annotated[float, Quantity("N m s", minimum=0)] = Field(
+        default=0.0, description="[N m s] torque per angular velocity"
+    )
+
+
+class CellBody(ResolvedModel):
+    """One rigid body; its frame has the centre of mass as origin and the principal axes."""
+
+    shape: CellShape
+    fixed: bool  # neither contacts nor forces move it
+    kinematic: bool  # but it keeps its own velocity
+    mass: float | None  # [kg]; None for a fixed body
+    density: float | None  # [kg/m^3] as written
+    inertia: Vector3 | None  # [kg m^2] about the axes of its frame; None for a fixed body
+    surface: Surface
+    surface_velocity: Vector3  # [m/s] in its frame
+    position: Vector3  # [m] centre of mass; of a plane: its point nearest to the origin
+    release: Release | None  # as written; `position` follows from it
+    orientation: Quaternion  # unit quaternion w x y z, its frame to world
+    velocity: Vector3  # [m/s]
+    angular_velocity: Vector3  # [rad/s]
+    drag: Drag

@@ -1,0 +1,64 @@
+"""The resolved config of one cell: what is simulated, hashed and logged, with nothing left open.
+
+Surfaces stand in place, arrangements have become bodies, density has become mass, a release has
+become a position, the preset has become numbers.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from typing import Any
+
+from lavendersim.cell.choices import Mistake, Switch
+from lavendersim.cell.events import CellEvent, CellTimestep
+from lavendersim.cell.numerics import Numerics
+from lavendersim.cell.record import CellRecord
+from lavendersim.cell.scene import CellScene
+from lavendersim.clock import Clock, written
+from lavendersim.quantities.model import ResolvedModel
+
+
+class CellEffects(ResolvedModel):
+    """What the plan is overridden by."""
+
+    force: bool  # what is off is left out even where the scene requires it
+    switches: dict[str, Switch]  # by the name of an effect or a shape pair, sorted
+
+
+class CellStudy(ResolvedModel):
+    """The deliberate error of the run, if any."""
+
+    mistake: Mistake
+
+
+class CellConfig(ResolvedModel):
+    """One cell of an experiment, complete."""
+
+    scene: CellScene
+    events: tuple[CellEvent | CellTimestep, ...]
+    numerics: Numerics
+    duration: float  # [s]
+    record: CellRecord
+    effects: CellEffects
+    study: CellStudy
+
+    @classmethod
+    def from_dict(cls, data: Mapping[str, Any]) -> CellConfig:
+        """Return the config that `as_dict` gave this data, such as a log's attachment."""
+        return cls.model_validate_json(json.dumps(data))  # JSON's mode reads `1/480` and lists
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain JSON-able data: ratios as `1/480`, vectors as lists."""
+        return self.model_dump(mode="json", by_alias=True)
+
+    @property
+    def clock(self) -> Clock:
+        """The times of its steps."""
+        changes = [one for one in self.events if isinstance(one, CellTimestep)]
+        return Clock(self.numerics.timestep, [(written(one.at), one.timestep) for one in changes])
+
+    @property
+    def steps(self) -> int:
+        """How many steps the duration has, see `Clock.steps_of`."""
+        return self.clock.steps_of(written(self.duration))
