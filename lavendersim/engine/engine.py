@@ -17,8 +17,8 @@ import numpy as np
 
 from . import removal
 from .assemble import StepProblem, step_problem
-from .collide.broad_phase import allocate_broad_phase
-from .collide.hull_geometry import HullGeometry
+from .collide.broad.broad_phase import allocate_broad_phase
+from .collide.convex.hull_geometry import HullGeometry
 from .collide.scratch import allocate_scratch
 from .compile import compiling
 from .effects import EFFECTS, sleeping

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .collide.support import shapes_in
+from .collide.convex.support import shapes_in
 from .effects import EFFECTS, contact_log, residual_log, step_log
 from .records import (
     BODY,

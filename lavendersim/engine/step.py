@@ -12,7 +12,8 @@ from __future__ import annotations
 from functools import cache
 from typing import Any
 
-from .collide import broad_phase, narrow_phase
+from .collide import narrow_phase
+from .collide.broad import broad_phase
 from .compile import chain, composing, kernel
 from .effects import compound as compound_effect
 from .effects import (

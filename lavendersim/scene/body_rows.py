@@ -10,7 +10,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from lavendersim.engine.collide.hull_geometry import HullGeometry, hull_geometry
+from lavendersim.engine.collide.convex.hull_geometry import HullGeometry, hull_geometry
 from lavendersim.engine.effects import EFFECTS
 from lavendersim.engine.record_layout import allocate_bodies
 from lavendersim.engine.records import BOX, CAPSULE, COMPOUND, CYLINDER, HULL, PLANE, SPHERE

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from lavendersim.clock import Clock, written
-from lavendersim.engine.collide.hull_geometry import HullGeometry
+from lavendersim.engine.collide.convex.hull_geometry import HullGeometry
 from lavendersim.engine.engine import Engine
 from lavendersim.engine.record_layout import allocate_parameters, allocate_velocities
 from lavendersim.engine.spec import Spec

@@ -14,7 +14,7 @@ from lavendersim.engine.collide import SHAPE_PAIRS
 
 from .colliders import Collider, is_movable
 
-_PAIR_BY_SHAPES = {shapes: name for name, (_, shapes, _) in SHAPE_PAIRS.items()}
+_PAIR_BY_SHAPES = {pair.shapes: name for name, pair in SHAPE_PAIRS.items()}
 
 
 class Surface(NamedTuple):

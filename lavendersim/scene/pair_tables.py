@@ -12,7 +12,7 @@ from typing import Final
 import numpy as np
 
 from lavendersim.engine.collide import SHAPE_PAIRS
-from lavendersim.engine.collide.broad_phase import template_dtype
+from lavendersim.engine.collide.broad.broad_phase import template_dtype
 from lavendersim.engine.effects import surface_fields
 from lavendersim.engine.record_layout import allocate_pairs
 from lavendersim.engine.removal import NO_PAIR
@@ -39,7 +39,7 @@ def pair_tables(
     names = _surface_names(pairs)
     for index, (line, pair) in enumerate(zip(pairs, candidates, strict=True)):
         line["a"], line["b"], line["key"] = pair.a, pair.b, index
-        line["kind"] = SHAPE_PAIRS[pair.shape_pair][0]
+        line["kind"] = SHAPE_PAIRS[pair.shape_pair].kind
         for name in names:
             line[name] = getattr(pair, name)
     return pairs, np.zeros((0, 0), template_dtype([]))
@@ -61,7 +61,7 @@ def _templates(spec: Spec, rows: Sequence[Collider]) -> tuple[np.ndarray, list[i
                 continue
             swap, name = ordered((one.kind, other.kind))
             template, surface = templates[i, j], mix(one.surface, other.surface)
-            template["kind"], template["swap"] = SHAPE_PAIRS[name][0], swap
+            template["kind"], template["swap"] = SHAPE_PAIRS[name].kind, swap
             for field in names:
                 template[field] = getattr(surface, field)
     return templates, members

@@ -30,8 +30,8 @@ CHOICES: Final = (
     "effects",
 )
 APART: Final = {
-    name: Decision(False, f"no {one} and {other} may touch")
-    for name, (_, (one, other), _) in SHAPE_PAIRS.items()
+    name: Decision(False, f"no {pair.shapes[0]} and {pair.shapes[1]} may touch")
+    for name, pair in SHAPE_PAIRS.items()
 }
 DERIVED: Final = "derived"  # no effect is switched by hand
 MOST_LABELS: Final = 4  # of cells in a sentence

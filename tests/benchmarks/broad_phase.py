@@ -24,7 +24,7 @@ from typing import Any
 
 import numpy as np
 
-from lavendersim.engine.collide import broad_phase
+from lavendersim.engine.collide.broad import broad_phase
 from lavendersim.engine.compile import compiling
 from lavendersim.engine.effects.broad_phase import BODY_FIELDS
 from lavendersim.engine.records import (

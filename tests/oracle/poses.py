@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from lavendersim.engine.collide import SHAPE_PAIRS
-from lavendersim.engine.collide.box_box import allocate_scratch
+from lavendersim.engine.collide.scratch import allocate_scratch
 from lavendersim.engine.compile import kernel
 from lavendersim.engine.engine import MANIFOLD_POINTS
 from lavendersim.engine.kernel_cache import cached
@@ -34,7 +34,7 @@ class Manifold(NamedTuple):
 @cache
 def _every_pose(pair: str) -> Any:
     def compose(spec: Spec) -> Any:
-        manifold = SHAPE_PAIRS[pair][2].make(spec)
+        manifold = SHAPE_PAIRS[pair].make(spec)
 
         def every_pose(first, second, found, normals, counts, points, normal, scratch):
             for i in range(first.shape[0]):

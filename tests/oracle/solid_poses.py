@@ -18,9 +18,9 @@ import solids
 from scipy.spatial import ConvexHull
 
 from lavendersim.engine.collide import SHAPE_PAIRS, narrow_phase
-from lavendersim.engine.collide.hull_geometry import hull_geometry
+from lavendersim.engine.collide.convex.hull_geometry import hull_geometry
+from lavendersim.engine.collide.convex.separation import make_separation
 from lavendersim.engine.collide.scratch import allocate_scratch
-from lavendersim.engine.collide.separation import make_separation
 from lavendersim.engine.compile import kernel
 from lavendersim.engine.engine import MANIFOLD_POINTS
 from lavendersim.engine.kernel_cache import cached
@@ -33,7 +33,7 @@ PAIRS = tuple(sorted(SHAPE_PAIRS))
 EVERY_SHAPE = Spec(
     effects=("rotation", "speculative"), shape_pairs=PAIRS, solver=f"solid poses {_TEXT}"
 )
-NEW_PAIRS = tuple(name for name in PAIRS if SHAPE_PAIRS[name][0] > 4)
+NEW_PAIRS = tuple(name for name in PAIRS if SHAPE_PAIRS[name].kind > 4)
 
 
 class Sample(NamedTuple):
@@ -99,7 +99,7 @@ def manifolds(sample: Sample, margin: float, spec: Spec = EVERY_SHAPE) -> list[p
     counts = np.zeros(count, np.int64)
     scratch = allocate_scratch(hull_geometry(sample.hulls))
     points, normal = np.zeros(MANIFOLD_POINTS, dtype(POINT)), np.zeros(3)
-    kind = SHAPE_PAIRS[sample.pair][0]
+    kind = SHAPE_PAIRS[sample.pair].kind
     every_pose(spec)(
         kind, sample.first, sample.second, found, normals, counts, points, normal, scratch, margin
     )
@@ -118,7 +118,7 @@ def separations(sample: Sample) -> np.ndarray:
     """Return (distance, nx, ny, nz) of every pose."""
     found = np.zeros((len(sample.first), 4))
     scratch = allocate_scratch(hull_geometry(sample.hulls))
-    every_separation()(SHAPE_PAIRS[sample.pair][0], sample.first, sample.second, found, scratch)
+    every_separation()(SHAPE_PAIRS[sample.pair].kind, sample.first, sample.second, found, scratch)
     return found
 
 
@@ -174,7 +174,7 @@ def random_sample(
     """Return random poses, a third with parallel axes; centres within `spread` bounding radii."""
     rng = np.random.default_rng([seed, *pair.encode()])
     hulls = random_hulls(rng)
-    kinds = SHAPE_PAIRS[pair][1]
+    kinds = SHAPE_PAIRS[pair].shapes
     first, second = allocate_bodies(EVERY_SHAPE, count), allocate_bodies(EVERY_SHAPE, count)
     for i in range(count):
         matrix = convex.random_rotation(rng)

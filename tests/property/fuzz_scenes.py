@@ -59,7 +59,7 @@ class Drawn(NamedTuple):
     def switches(self) -> dict[str, str]:
         """Return the section `effects` that forces all of it on."""
         shapes = {*self.shapes, "plane"} - {"compound"}
-        pairs = [name for name, (_, pair, _) in SHAPE_PAIRS.items() if {*pair} <= shapes]
+        pairs = [name for name, pair in SHAPE_PAIRS.items() if {*pair.shapes} <= shapes]
         return dict.fromkeys((*self.effects, *pairs), "on")
 
 

@@ -76,7 +76,7 @@ ELSEWHERE = {
         "engine/effects/sleeping.py": LAW,
         "engine/integrate.py": LAW,
         "engine/collide/narrow_phase.py": LAW,
-        "engine/collide/box_box.py": LAW,
+        "engine/collide/pairs/box_box.py": LAW,
     },
 }
 WIND = '''\

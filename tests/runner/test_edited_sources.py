@@ -41,7 +41,7 @@ EDITS = {
     ),
     # a ball of twice its radius: at e = 0.2 it comes to rest one radius higher
     "a shape": Edit(
-        "collide/sphere_plane.py",
+        "collide/pairs/sphere_plane.py",
         "- plane.offset - r",
         "- plane.offset - 2.0 * r",
         lambda before, after: before["heights"][0] < 0.15 < after["heights"][0],

@@ -81,7 +81,7 @@ def test_every_change_of_an_engine_source_changes_the_source_hash(
     engine = tmp_path / "lavendersim/engine"
     before = source_hash()
     if change == "comment":
-        deepest = engine / "collide/box_box.py"
+        deepest = engine / "collide/pairs/box_box.py"
         deepest.write_text(deepest.read_text() + "# a word\n")
     elif change == "new file":
         (engine / "effects/unheard_of.py").write_text("")

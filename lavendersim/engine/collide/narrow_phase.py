@@ -23,8 +23,8 @@ def make_manifold(spec: Spec, names: tuple[str, ...]):
             return 0
 
         return kernel(no_manifold, spec)
-    own_kind, _, module = SHAPE_PAIRS[names[0]]
-    own_manifold = module.make(spec)
+    own = SHAPE_PAIRS[names[0]]
+    own_kind, own_manifold = own.kind, own.make(spec)
     if len(names) == 1:
 
         def only_manifold(kind, a, b, points, normal, scratch, margin):

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..records import POINT, dtype
-from .hull_geometry import HullGeometry, hull_geometry
+from .convex.hull_geometry import HullGeometry, hull_geometry
 
 # Corners of the polygon that stands for a cylinder's cap (features.py).
 CAP_CORNERS = 8

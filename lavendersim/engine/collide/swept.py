@@ -31,13 +31,11 @@ from ..effects.fast_bodies import FAST
 from ..records import PLANE, TOUCHING
 from ..spec import Spec
 from . import SHAPE_PAIRS
-from .convex import NEAREST
-from .point import copy_point, place
-from .separation import make_separation
-from .support import make_radius
+from .convex.separation import make_separation
+from .convex.support import make_radius
+from .manifold.point import copy_point, place
+from .pairs.convex import NEAREST
 
-# Pairs whose manifold holds the true distance at any margin: no need of a general separation.
-CLOSED_FORMS = frozenset({"sphere_sphere", "sphere_box", "sphere_capsule", "capsule_capsule"})
 ANY_MARGIN = 1e100  # [m]
 # Newton's steps: a few for an impact; a graze halves the way left in each, and 1e-9 of 1 m is 30.
 ADVANCES = 64
@@ -68,7 +66,8 @@ def make_gap(spec: Spec, manifold):
     points[0] is then the middle of the nearest points, where the two do not overlap.
     """
     # The general walk is a second or two of compiling: only where a pair needs it.
-    if all(name in CLOSED_FORMS or "plane" in SHAPE_PAIRS[name][1] for name in spec.shape_pairs):
+    pairs = [SHAPE_PAIRS[name] for name in spec.shape_pairs]
+    if all(pair.closed_form or "plane" in pair.shapes for pair in pairs):
 
         def closed_gap(kind, a, b, points, normal, scratch):
             count = manifold(kind, a, b, points, normal, scratch, ANY_MARGIN)

@@ -1,6 +1,6 @@
 """Broad phase: which bodies come near each other a tree tells, not a look at every pair."""
 
-from ..collide.broad_phase import make
+from ..collide.broad.broad_phase import make
 from .decision import Decision, Facts
 
 __all__ = ["BODY_FIELDS", "MOST_PAIRS", "NAME", "STAGE", "make", "wanted"]

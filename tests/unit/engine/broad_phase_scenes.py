@@ -15,7 +15,7 @@ from typing import Any
 import convex
 import numpy as np
 
-from lavendersim.engine.collide import broad_phase
+from lavendersim.engine.collide.broad import broad_phase
 from lavendersim.engine.compile import compiling, kernel
 from lavendersim.engine.effects.broad_phase import BODY_FIELDS
 from lavendersim.engine.kernel_cache import cached

@@ -81,7 +81,7 @@ def _off(kind: str, shape) -> Callable[[np.ndarray], float]:
 @cache
 def random_poses(pair: str) -> Poses:
     """Return 2000 poses, about half of them touching, with what both sides say of them."""
-    kinds = poses.SHAPE_PAIRS[pair][1]
+    kinds = poses.SHAPE_PAIRS[pair].shapes
     rng = np.random.default_rng(sum(pair.encode()))
     first, second = poses.allocate(POSES), poses.allocate(POSES)
     separation, off_first, off_second = np.zeros(POSES), [], []

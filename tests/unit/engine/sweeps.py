@@ -12,10 +12,10 @@ import numpy as np
 import poses
 
 from lavendersim.engine.collide import SHAPE_PAIRS, swept
+from lavendersim.engine.collide.convex.separation import make_separation
+from lavendersim.engine.collide.manifold.point import place
 from lavendersim.engine.collide.narrow_phase import make_manifold
-from lavendersim.engine.collide.point import place
 from lavendersim.engine.collide.scratch import allocate_scratch
-from lavendersim.engine.collide.separation import make_separation
 from lavendersim.engine.compile import compiling, kernel
 from lavendersim.engine.engine import MANIFOLD_POINTS
 from lavendersim.engine.kernel_cache import cached
@@ -81,7 +81,7 @@ class Pair:
 
     def __init__(self, pair: str, half_a, half_b, centre_b, turn_a=None, turn_b=None) -> None:
         self.pairs = CLOSED if pair in CLOSED else GENERAL
-        self.kind, shapes, _ = SHAPE_PAIRS[pair]
+        self.kind, shapes = SHAPE_PAIRS[pair].kind, SHAPE_PAIRS[pair].shapes
         self.bodies = poses.allocate(2)
         poses.put(self.bodies[0], half_a, matrix=turn_a)
         poses.put(self.bodies[1], half_b, centre_b, turn_b)

@@ -13,8 +13,8 @@ import solid_poses
 import solids
 
 from lavendersim.engine.collide import SHAPE_PAIRS
-from lavendersim.engine.collide.hull_geometry import UNIT_BOX, hull_geometry
-from lavendersim.engine.collide.outline import cut_straight
+from lavendersim.engine.collide.convex.hull_geometry import UNIT_BOX, hull_geometry
+from lavendersim.engine.collide.manifold.outline import cut_straight
 from lavendersim.engine.collide.scratch import allocate_scratch
 from lavendersim.engine.record_layout import allocate_bodies
 from lavendersim.engine.records import POINT, TOUCHING, dtype
@@ -29,7 +29,7 @@ ROUND = 1e-3
 def pair_of(name: str, offset, turn=None, half=HALF) -> solid_poses.Sample:
     rows = [allocate_bodies(solid_poses.EVERY_SHAPE, 1) for _ in range(2)]
     for row, kind, centre, matrix in zip(
-        rows, SHAPE_PAIRS[name][1], (np.zeros(3), offset), (None, turn), strict=True
+        rows, SHAPE_PAIRS[name].shapes, (np.zeros(3), offset), (None, turn), strict=True
     ):
         solid_poses.put(row[0], kind, half, centre, matrix, corners=HULL[0])
     return solid_poses.Sample(name, rows[0], rows[1], [HULL])
@@ -80,7 +80,7 @@ def test_parallel_bodies_metres_apart_have_their_true_distance(name, axis):
 @pytest.mark.parametrize("name", [name for name in solid_poses.PAIRS if "capsule" in name])
 def test_a_capsule_without_length_is_a_sphere(name):
     half = (0.3, 0.3, 0.0)
-    kinds = SHAPE_PAIRS[name][1]
+    kinds = SHAPE_PAIRS[name].shapes
     for turn in (np.eye(3), convex.matrix_of([np.sqrt(0.5), 0.0, np.sqrt(0.5), 0.0])):
         rows = [allocate_bodies(solid_poses.EVERY_SHAPE, 1) for _ in range(2)]
         for row, kind, z in zip(rows, kinds, (0.0, 0.7 - 1e-6), strict=True):

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from lavendersim.engine.collide.hull_geometry import UNIT_BOX, hull_geometry
+from lavendersim.engine.collide.convex.hull_geometry import UNIT_BOX, hull_geometry
 from lavendersim.engine.collide.scratch import allocate_scratch
 
 TETRAHEDRON = (

@@ -14,7 +14,7 @@ import pytest
 import solid_poses
 
 from lavendersim.engine.collide import SHAPE_PAIRS
-from lavendersim.engine.collide.features import LEVEL
+from lavendersim.engine.collide.manifold.features import LEVEL
 from lavendersim.engine.record_layout import allocate_bodies
 from lavendersim.engine.records import TOUCHING
 
@@ -135,7 +135,7 @@ def placed(case: Case, turns: np.ndarray, nudge=None) -> solid_poses.Sample:
     """Return the case in worlds turned by each of `turns`; nudge: (n, 3) of the upper body [m]."""
     count = len(turns)
     bodies = [allocate_bodies(solid_poses.EVERY_SHAPE, count) for _ in range(2)]
-    kinds = SHAPE_PAIRS[case.pair][1]
+    kinds = SHAPE_PAIRS[case.pair].shapes
     for i, turn in enumerate(turns):
         upper = np.array([*case.beside, case.height + case.gap])
         if nudge is not None:
@@ -227,7 +227,7 @@ def test_a_tilted_cylinder_touches_in_the_lowest_point_of_its_rim(pair, tilt, rn
     count = 30
     angle = rng.uniform(0.0, 2.0 * np.pi, count)
     bodies = [allocate_bodies(solid_poses.EVERY_SHAPE, count) for _ in range(2)]
-    kind = SHAPE_PAIRS[pair][1][0]
+    kind = SHAPE_PAIRS[pair].shapes[0]
     half = {"box": WIDE, "plane": (0.0, 0.0, 1.0), "cylinder": (2.0, 0.0, 0.5)}[kind]
     for i in range(count):
         solid_poses.put(bodies[0][i], kind, half, offset=0.5)

@@ -13,10 +13,10 @@ import solid_poses
 import solids
 
 from lavendersim.engine.collide import SHAPE_PAIRS
-from lavendersim.engine.collide.box_box import EDGE_SHARE, EDGE_SIZE
-from lavendersim.engine.collide.epa import ROUND_SHARE, ROUND_SIZE
-from lavendersim.engine.collide.overlay import PARALLEL
-from lavendersim.engine.collide.separation import FACE_SHARE
+from lavendersim.engine.collide.convex.epa import ROUND_SHARE, ROUND_SIZE
+from lavendersim.engine.collide.convex.separation import FACE_SHARE
+from lavendersim.engine.collide.manifold.overlay import PARALLEL
+from lavendersim.engine.collide.pairs.box_box import EDGE_SHARE, EDGE_SIZE
 from lavendersim.engine.records import TOUCHING
 
 POSES = 400
@@ -134,7 +134,7 @@ def test_coal_finds_the_same_distance_and_no_lesser_depth(seen):
 def test_the_swept_distance_is_the_manifolds_and_never_more(seen):
     sample = seen[0]
     found = solid_poses.separations(sample)
-    planes = SHAPE_PAIRS[sample.pair][1][0] == "plane"
+    planes = SHAPE_PAIRS[sample.pair].shapes[0] == "plane"
     for i, _, _, size, manifold in looked_at(seen):
         distance, normal = found[i, 0], found[i, 1:]
         phi = manifold.phi.min()

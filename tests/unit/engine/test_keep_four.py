@@ -13,7 +13,7 @@ from itertools import combinations, permutations
 import numpy as np
 import pytest
 
-from lavendersim.engine.collide.point import keep_four
+from lavendersim.engine.collide.manifold.point import keep_four
 from lavendersim.engine.records import POINT, dtype
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from shape_pairs import ALL, CUT, ROUND_OFF, random_poses
 
-from lavendersim.engine.collide.box_box import EDGE_SHARE, EDGE_SIZE
+from lavendersim.engine.collide.pairs.box_box import EDGE_SHARE, EDGE_SIZE
 from lavendersim.engine.records import TOUCHING
 
 

@@ -75,7 +75,7 @@ def test_classes_hold_every_pair_of_the_list(seed: int) -> None:
     for pair in classes:
         counted[pair.shape_pair, pair.surface] += pair.row_pairs
         kinds = (rows[pair.a].kind, rows[pair.b].kind)
-        assert kinds == SHAPE_PAIRS[pair.shape_pair][1]
+        assert kinds == SHAPE_PAIRS[pair.shape_pair].shapes
     assert counted == listed
     first = [sorted((pair.a, pair.b)) for pair in classes]
     assert first == sorted(first)
@@ -91,7 +91,7 @@ def test_templates_say_what_the_list_says(seed: int) -> None:
     for pair in listed:
         first, second = sorted((pair.a, pair.b))
         template = scene.templates[material[first], material[second]]
-        assert template["kind"] == SHAPE_PAIRS[pair.shape_pair][0]
+        assert template["kind"] == SHAPE_PAIRS[pair.shape_pair].kind
         assert template["swap"] == (pair.a > pair.b)
         for name in ("friction", "restitution", "compliance"):
             assert template[name] == getattr(pair, name)

@@ -1,0 +1,212 @@
+"""Bodies enter, the pairs of them that may come near leave; made anew only when they must be.
+
+    place regions   where each body may be in the next steps            `regions`
+    sort, build     a tree over the regions                             `tree`
+    walk            pairs of regions that meet; planes against all
+    write           rows of the pair table, ascending in their key      `pair_rows`
+
+The rows serve as long as every body stays in its region.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ...compile import kernel
+from ...records import COMPOUND, I8, PAIR, PLANE, Field, dtype
+from ...spec import Spec
+from .pair_rows import make_put_pair, make_write_rows
+from .regions import REGION, make_holds, make_place_regions
+from .tree import (
+    BOUNDS,
+    DIGITS,
+    LEAF,
+    LEVELS,
+    PLACE_BITS,
+    build_nodes,
+    cell,
+    hilbert,
+    meet,
+    next_group,
+    node_count,
+    overlap,
+    size_class,
+    sort_by_code,
+)
+
+STATE: list[Field] = [
+    ("listed", I8),  # 1 once the pairs are those of the regions
+    ("count", I8),  # pairs of the list
+    ("needed", I8),  # rows it asked for when it was made, more than there were if it failed
+    ("rebuilds", I8),
+]
+
+
+class BroadPhaseWork(NamedTuple):
+    """What is kept between steps, and buffers. N bodies, P rows of pairs."""
+
+    state: np.ndarray  # (1,) STATE
+    regions: np.ndarray  # (N,) REGION
+    leaves: np.ndarray  # (N,) LEAF, sorted
+    nodes: np.ndarray  # BOUNDS of the levels above
+    starts: np.ndarray  # (LEVELS,)
+    codes: np.ndarray  # (N,)
+    order: np.ndarray  # (N,) body of each leaf
+    other_codes: np.ndarray
+    other_order: np.ndarray
+    counts: np.ndarray  # digits of the sort, or bodies
+    first: np.ndarray  # (P,) bodies of the pairs found, before they are in order
+    second: np.ndarray
+    other_first: np.ndarray
+    other_second: np.ndarray
+
+
+def allocate_broad_phase(body_count: int, pair_capacity: int) -> BroadPhaseWork:
+    """Return work arrays that hold no list yet; to enlarge them, allocate anew."""
+
+    def numbers(count: int) -> np.ndarray:
+        return np.zeros(count, np.int64)
+
+    return BroadPhaseWork(
+        np.zeros(1, dtype(STATE)),
+        np.zeros(body_count, dtype(REGION)),
+        np.zeros(body_count, dtype(LEAF)),
+        np.zeros(node_count(body_count), dtype(BOUNDS)),
+        numbers(LEVELS),
+        numbers(body_count),
+        numbers(body_count),
+        numbers(body_count),
+        numbers(body_count),
+        numbers(max(DIGITS, body_count) + 1),
+        numbers(pair_capacity),
+        numbers(pair_capacity),
+        numbers(pair_capacity),
+        numbers(pair_capacity),
+    )
+
+
+def template_dtype(surface: list[Field]) -> np.dtype:
+    """Return the record of `templates`: what pairs of two classes of bodies have in common.
+
+    templates[c, d], c and d `material` of the first and second row of a pair: `kind` of its
+    manifold, negative for classes that never touch, `swap` 1 where the kernel of that manifold
+    takes the second first, and the surface fields that go into the pair's row.
+    """
+    kind = [field for field in PAIR if field[0] == "kind"]
+    return dtype([*kind, ("swap", I8)], surface)
+
+
+def make_sort_leaves(spec: Spec):
+    """Return `kernel(bodies, work) -> leaves`: bodies with a region, sorted for the tree."""
+    compound, sleeps = spec.has("compound"), spec.has("sleeping")
+
+    def sort_leaves(bodies, work):
+        regions, codes, order, leaves = work.regions, work.codes, work.order, work.leaves
+        low_x, low_y, low_z = np.inf, np.inf, np.inf
+        high_x, high_y, high_z = -np.inf, -np.inf, -np.inf
+        largest, count = 0.0, 0
+        for i in range(bodies.shape[0]):
+            if bodies[i].shape == PLANE or bodies[i].shape == COMPOUND:
+                continue
+            r = regions[i]
+            low_x, low_y, low_z = min(low_x, r.x), min(low_y, r.y), min(low_z, r.z)
+            high_x, high_y, high_z = max(high_x, r.x), max(high_y, r.y), max(high_z, r.z)
+            largest = max(largest, max(r.ex, max(r.ey, r.ez)))
+            order[count] = i
+            count += 1
+        # One scale for all axes: cells are cubes, or a flat scene would be cut into pillars.
+        side = 1.0 / max(high_x - low_x, max(high_y - low_y, high_z - low_z))
+        for k in range(count):
+            r = regions[order[k]]
+            place = hilbert(
+                cell((r.x - low_x) * side),
+                cell((r.y - low_y) * side),
+                cell((r.z - low_z) * side),
+            )
+            size = size_class(max(r.ex, max(r.ey, r.ez)), largest)
+            codes[k] = (size << (3 * PLACE_BITS)) | place
+        sort_by_code(codes, order, work.other_codes, work.other_order, work.counts, count)
+        for k in range(count):
+            i = order[k]
+            body, r, leaf = bodies[i], regions[i], leaves[k]
+            leaf.low_x, leaf.low_y, leaf.low_z = r.x - r.ex, r.y - r.ey, r.z - r.ez
+            leaf.high_x, leaf.high_y, leaf.high_z = r.x + r.ex, r.y + r.ey, r.z + r.ez
+            leaf.x, leaf.y, leaf.z = r.x, r.y, r.z
+            leaf.radius = r.radius + body.bound
+            leaf.body, leaf.owner = i, i
+            if compound:
+                leaf.owner = body.owner
+            leaf.still = 1 if bodies[leaf.owner].inv_m == 0.0 else 0
+            if sleeps:  # it may wake while the list is kept
+                leaf.still -= bodies[leaf.owner].asleep
+        return count
+
+    return kernel(sort_leaves, spec)
+
+
+def make(spec: Spec, surface: list[Field] | tuple[Field, ...] = ()):
+    """Return `kernel(bodies, velocities, pairs, templates, params, work) -> count`.
+
+    -1 when there are too few rows; `work.state["needed"]` says how many it takes.
+    surface: the fields that templates have beside `kind` and `swap`, see `template_dtype`. Rows
+    of `bodies` need `material`; with the effect `compound`, parts need `owner`, the row of their
+    body, and every other row has its own there. Pairs that nothing can push get no row.
+    """
+    holds, place_regions, sort_leaves = (
+        make_holds(spec),
+        make_place_regions(spec),
+        make_sort_leaves(spec),
+    )
+    put_pair = make_put_pair(spec)
+    write_rows = make_write_rows(spec, [name for name, _ in surface])
+
+    def find_pairs(bodies, templates, work):
+        leaves, nodes, starts = work.leaves, work.nodes, work.starts
+        count, found = sort_leaves(bodies, work), 0
+        build_nodes(leaves, count, nodes, starts)
+        groups = (count + 3) // 4
+        for g in range(groups):
+            other = g  # among themselves first
+            while other < groups:
+                end = min(4 * other + 4, count)
+                for i in range(4 * g, min(4 * g + 4, count)):
+                    if overlap(leaves[i], nodes[other]):
+                        for j in range(max(4 * other, i + 1), end):
+                            if meet(leaves[i], leaves[j]):
+                                a, b = leaves[i].body, leaves[j].body
+                                found = put_pair(bodies, templates, a, b, work, found)
+                other = next_group(nodes, starts, groups, nodes[g], other + 1)
+        for i in range(bodies.shape[0]):
+            if bodies[i].shape != PLANE:
+                continue
+            nx, ny, nz = bodies[i].hx, bodies[i].hy, bodies[i].hz
+            for k in range(count):
+                leaf = leaves[k]
+                height = nx * leaf.x + ny * leaf.y + nz * leaf.z - bodies[i].offset
+                r = work.regions[leaf.body]
+                depth = min(leaf.radius, abs(nx) * r.ex + abs(ny) * r.ey + abs(nz) * r.ez)
+                if height <= depth and leaf.still == 0:
+                    found = put_pair(bodies, templates, i, leaf.body, work, found)
+        return found
+
+    find_pairs = kernel(find_pairs, spec)
+
+    def broad_phase(bodies, velocities, pairs, templates, params, work):
+        state = work.state[0]
+        if state.listed == 1:
+            if holds(bodies, velocities, params, work.regions):
+                return state.count
+        state.listed = 0
+        place_regions(bodies, velocities, params, work.regions)
+        found = find_pairs(bodies, templates, work)
+        state.needed = found
+        if found > min(pairs.shape[0], work.first.shape[0]):
+            return -1
+        write_rows(bodies, templates, work, found, pairs)
+        state.listed, state.count = 1, found
+        state.rebuilds += 1
+        return found
+
+    return kernel(broad_phase, spec)

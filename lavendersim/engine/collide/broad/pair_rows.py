@@ -1,0 +1,90 @@
+"""Pairs of body rows enter in any order, rows of the pair table leave, ascending in their key.
+
+key = i N + j,   i < j rows of the two bodies, N rows in all
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from ...compile import kernel
+from ...spec import Spec
+
+
+def make_copy_fields(spec: Spec, names: Sequence[str]):
+    """Return `kernel(row, template)` that copies the named fields."""
+    if not names:
+
+        def copy_nothing(row, template):
+            pass
+
+        return kernel(copy_nothing, spec)
+    name = names[0]
+    copy_others = make_copy_fields(spec, names[1:])
+
+    def copy_fields(row, template):
+        row[name] = template[name]
+        copy_others(row, template)
+
+    copy_fields.__qualname__ += f"_{name}"  # each link of the chain has a symbol of its own
+    return kernel(copy_fields, spec)
+
+
+def make_put_pair(spec: Spec):
+    """Return `kernel(bodies, templates, i, j, work, found) -> found`, one more if they may touch.
+
+    A pair beyond the rows there are is counted, not kept.
+    """
+
+    def put_pair(bodies, templates, i, j, work, found):
+        first, second = min(i, j), max(i, j)
+        if templates[bodies[first].material, bodies[second].material].kind < 0:
+            return found
+        if found < work.first.shape[0]:
+            work.first[found], work.second[found] = first, second
+        return found + 1
+
+    return kernel(put_pair, spec)
+
+
+def make_write_rows(spec: Spec, surface: Sequence[str]):
+    """Return `kernel(bodies, templates, work, found, pairs)`; surface: fields of the templates.
+
+    Two stable counting sorts, by the second and then by the first body: linear whatever the keys.
+    """
+    copy_surface = make_copy_fields(spec, surface)
+
+    def sort(by, first, second, to_first, to_second, counts, bodies_count, found):
+        # Stable, by a column of bodies.
+        for k in range(bodies_count + 1):
+            counts[k] = 0
+        for p in range(found):
+            counts[by[p] + 1] += 1
+        for k in range(bodies_count):
+            counts[k + 1] += counts[k]
+        for p in range(found):
+            place = counts[by[p]]
+            counts[by[p]] = place + 1
+            to_first[place], to_second[place] = first[p], second[p]
+
+    sort = kernel(sort, spec)
+
+    def write_rows(bodies, templates, work, found, pairs):
+        bodies_count = bodies.shape[0]
+        first, second = work.first, work.second
+        other_first, other_second = work.other_first, work.other_second
+        sort(second, first, second, other_first, other_second, work.counts, bodies_count, found)
+        sort(
+            other_first, other_first, other_second, first, second, work.counts, bodies_count, found
+        )
+        for p in range(found):
+            i, j = first[p], second[p]
+            template, row = templates[bodies[i].material, bodies[j].material], pairs[p]
+            row.kind, row.key = template.kind, i * bodies_count + j
+            if template.swap == 1:
+                row.a, row.b = j, i
+            else:
+                row.a, row.b = i, j
+            copy_surface(row, template)
+
+    return kernel(write_rows, spec)

@@ -1,0 +1,1 @@
+"""Signed separation, normal and witness points of two convex bodies: GJK and EPA."""

@@ -1,0 +1,1 @@
+"""Contact manifolds: clipping of the features that touch, and reduction to four points."""
