@@ -11,7 +11,7 @@ from lavendersim.experiment.figure_specs import FreeRotation
 from lavendersim.figures.drawing import draw_ideal
 from lavendersim.figures.style import look
 from lavendersim.measures import cell_config
-from lavendersim.measures.spinning import body_rates, exact_rotation, times
+from lavendersim.measures.kinds.spinning import body_rates, exact_rotation, times
 from lavendersim.measures.values import Values
 from lavendersim.measures.views import Cell
 

@@ -19,8 +19,8 @@ from lavendersim.measures.columns import (
     mechanical_energy,
     summed_by_step,
 )
-from lavendersim.measures.motion import drift_by_step
-from lavendersim.measures.overlap import overlap_of_rows
+from lavendersim.measures.kinds.motion import drift_by_step
+from lavendersim.measures.kinds.overlap import overlap_of_rows
 from lavendersim.measures.values import Values
 from lavendersim.measures.views import Cell, Floats, Rows, Trace
 

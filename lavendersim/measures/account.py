@@ -37,7 +37,7 @@ import numpy as np
 from lavendersim.measures import cell_config, changes
 from lavendersim.measures.columns import mechanical_energy
 from lavendersim.measures.extent import bounding_radius
-from lavendersim.measures.laws import impulses
+from lavendersim.measures.kinds.laws import impulses
 from lavendersim.measures.views import Floats, Rows, Trace
 
 

@@ -1,73 +1,20 @@
-"""A measure's spec and a log in; its number, or row of numbers, out."""
+"""The value of a measure in one log, by the function that is registered for its kind."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from typing import Any, Final
+from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 
 from lavendersim.experiment.measure_specs import MeasureSpec
-from lavendersim.measures import (
-    convergence,
-    energy,
-    impact,
-    kinematics,
-    laws,
-    motion,
-    optimality,
-    overlap,
-    spinning,
-    steady,
-)
+from lavendersim.measures import kinds
 from lavendersim.measures.closed_forms import evaluate_form
+from lavendersim.measures.registration import FUNCTIONS
 from lavendersim.measures.selection import selects
 from lavendersim.measures.views import Trace, Value
 
-MEASURES: Final[dict[str, Callable[[Any, Trace], Value]]] = {
-    "first_apex": impact.first_apex,
-    "impact_impulse": impact.impact_impulse,
-    "step_impulse": impact.step_impulse,
-    "approach_velocity": impact.approach_velocity,
-    "separation_velocity": impact.separation_velocity,
-    "inverse_effective_mass": impact.inverse_effective_mass,
-    "peak_force": impact.peak_force,
-    "steps_above_force": impact.steps_above_force,
-    "impulse_balance": impact.impulse_balance,
-    "momentum_drift": impact.momentum_drift,
-    "steady_force": steady.steady_force,
-    "steady_penetration": steady.steady_penetration,
-    "max_penetration": steady.max_penetration,
-    "settling_time": steady.settling_time,
-    "simulated_duration": steady.simulated_duration,
-    "residual_by_sweep": convergence.residual_by_sweep,
-    "final_residual": convergence.final_residual,
-    "energy_by_bounce": energy.energy_by_bounce,
-    "energy_after_bounces": energy.energy_after_bounces,
-    "apex_error": motion.apex_error,
-    "drift": motion.drift,
-    "overlap": overlap.overlap,
-    "slip_distance": motion.slip_distance,
-    "creep": motion.creep,
-    "effective_friction": motion.effective_friction,
-    "passed_through": motion.passed_through,
-    "displacement": kinematics.displacement,
-    "mean_velocity": kinematics.mean_velocity,
-    "mean_angular_velocity": kinematics.mean_angular_velocity,
-    "top_speed": kinematics.top_speed,
-    "rest_time": kinematics.rest_time,
-    "tilt": kinematics.tilt,
-    "force_error": laws.force_error,
-    "energy_drift": laws.energy_drift,
-    "energy_gain": laws.energy_gain,
-    "angular_momentum_drift": laws.angular_momentum_drift,
-    "velocity_error": spinning.velocity_error,
-    "angular_velocity_error": spinning.angular_velocity_error,
-    "flip_time_error": spinning.flip_time_error,
-    "optimality": optimality.optimality,
-    "law_violation": laws.law_violation,
-    "unsolved_steps": laws.unsolved_steps,
-}
+kinds.load_all()
 
 
 def evaluate(spec: MeasureSpec, trace: Trace) -> Value:
@@ -75,7 +22,7 @@ def evaluate(spec: MeasureSpec, trace: Trace) -> Value:
 
     NaN where the log cannot answer, or a closed form to divide by is 0.
     """
-    value = MEASURES[spec.kind](spec, trace)
+    value = FUNCTIONS[type(spec)](spec, trace)
     form = spec.over or spec.against
     if form is None:
         return value

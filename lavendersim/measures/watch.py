@@ -25,7 +25,7 @@ from lavendersim.measures import cell_config
 from lavendersim.measures.account import EnergyAccount, contacts_of_log, momentum_gap
 from lavendersim.measures.changes import events_of_bodies, row_after
 from lavendersim.measures.extent import thickness
-from lavendersim.measures.optimality import friction_of
+from lavendersim.measures.kinds.optimality import friction_of
 from lavendersim.measures.views import Floats, Rows, Trace
 
 ENERGY: Final = "energy"  # the one check that needs what went before

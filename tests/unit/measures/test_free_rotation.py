@@ -15,7 +15,7 @@ from lavendersim.experiment import law_specs as specs
 from lavendersim.measures import evaluate
 from lavendersim.measures.elliptic import integral, jacobi, quarter_period
 from lavendersim.measures.free_rotation import free_rotation
-from lavendersim.measures.spinning import crossings
+from lavendersim.measures.kinds.spinning import crossings
 
 # sorted and unsorted, near both stable axes and the unstable one, both senses, equal moments
 CASES = [

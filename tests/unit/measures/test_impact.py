@@ -11,7 +11,7 @@ from synthetic import GRAVITY, MASS, ball_and_floor, trace_of
 from lavendersim.experiment import measure_specs as specs
 from lavendersim.experiment.measure_base import ClosedForm
 from lavendersim.measures import evaluate
-from lavendersim.measures.impact import parabola_vertex
+from lavendersim.measures.kinds.impact import parabola_vertex
 
 APEX = specs.FirstApex(kind="first_apex", body="ball", above="floor")
 IMPULSE = specs.ImpactImpulse(kind="impact_impulse", body="ball", other="floor")

@@ -1,4 +1,4 @@
-"""A log in; how well it keeps balance and conservation, and whether its steps were solved, out."""
+"""Balance and conservation of a log, the laws of its contacts, and steps that did not converge."""
 
 from __future__ import annotations
 
@@ -9,11 +9,13 @@ import numpy as np
 from lavendersim.experiment import law_specs as specs
 from lavendersim.measures import cell_config, changes
 from lavendersim.measures.columns import clearance_by_step, last_window, mechanical_energy
+from lavendersim.measures.registration import measure
 from lavendersim.measures.views import Floats, Rows, Trace
 
 NAN = float("nan")
 
 
+@measure(specs.ForceError)
 def force_error(spec: specs.ForceError, trace: Trace) -> float:
     """Return the largest |F/(m g) - 1| of any step in the last window, F against gravity.
 
@@ -54,12 +56,14 @@ def impulses(contacts: Rows) -> Floats:
     return total
 
 
+@measure(specs.EnergyDrift)
 def energy_drift(spec: specs.EnergyDrift, trace: Trace) -> float:
     """Return the largest |E/E0 - 1| over the run; NaN for a run that starts without energy."""
     change = _energy_change(spec, trace)
     return float(np.max(np.abs(change)))
 
 
+@measure(specs.EnergyGain)
 def energy_gain(spec: specs.EnergyGain, trace: Trace) -> float:
     """Return the largest E/E0 - 1 over the run; NaN for a run that starts without energy."""
     return float(np.max(_energy_change(spec, trace)))
@@ -78,6 +82,7 @@ def _energy_change(spec: specs.EnergyDrift | specs.EnergyGain, trace: Trace) -> 
     return energy / energy[0] - 1.0 if energy[0] != 0.0 else np.array([NAN])
 
 
+@measure(specs.AngularMomentumDrift)
 def angular_momentum_drift(spec: specs.AngularMomentumDrift, trace: Trace) -> float:
     """Return the largest |L - L0| / |L0| over the run; NaN for a scene that does not turn."""
     momentum = angular_momentum(trace)
@@ -91,6 +96,7 @@ def angular_momentum(trace: Trace) -> Floats:
     return np.column_stack([trace.step[f"angular_momentum_{axis}"] for axis in "xyz"])
 
 
+@measure(specs.LawViolation)
 def law_violation(spec: specs.LawViolation, trace: Trace) -> float:
     """Return the largest violation in any step; NaN without a step after the time.
 
@@ -103,6 +109,7 @@ def law_violation(spec: specs.LawViolation, trace: Trace) -> float:
     return float(np.max(trace.step[column][late]))
 
 
+@measure(specs.UnsolvedSteps)
 def unsolved_steps(spec: specs.UnsolvedSteps, trace: Trace) -> float:
     """Return how many steps ended above the tolerance asked for; NaN where none was asked for."""
     if "unsolved" not in (trace.step.dtype.names or ()):

@@ -1,4 +1,4 @@
-"""The log of a body that comes to rest in; its steady force, penetration and settling time out."""
+"""Steady force, penetration and settling time of a body that comes to rest."""
 
 from __future__ import annotations
 
@@ -12,11 +12,13 @@ from lavendersim.measures.columns import (
     last_window,
     summed_by_step,
 )
+from lavendersim.measures.registration import measure
 from lavendersim.measures.views import Trace
 
 NAN = float("nan")
 
 
+@measure(specs.SteadyForce)
 def steady_force(spec: specs.SteadyForce, trace: Trace) -> float:
     """Return the mean normal force [N] of the last window, or its value furthest from the mean."""
     rows = contacts_of(trace, spec.body, spec.other)
@@ -29,6 +31,7 @@ def steady_force(spec: specs.SteadyForce, trace: Trace) -> float:
     return float(forces[np.argmax(np.abs(forces - mean))])
 
 
+@measure(specs.SteadyPenetration)
 def steady_penetration(spec: specs.SteadyPenetration, trace: Trace) -> float:
     """Return the mean of the deepest penetration [m] in the last window; NaN without contact."""
     rows = contacts_of(trace, spec.body, spec.other)
@@ -39,12 +42,14 @@ def steady_penetration(spec: specs.SteadyPenetration, trace: Trace) -> float:
     return float(depths.mean()) - above
 
 
+@measure(specs.MaxPenetration)
 def max_penetration(spec: specs.MaxPenetration, trace: Trace) -> float:
     """Return the deepest penetration [m] of the whole run; NaN if nothing touches the body."""
     rows = contacts_of(trace, spec.body, spec.other)
     return float(rows["penetration"].max()) if len(rows) else NAN
 
 
+@measure(specs.SettlingTime)
 def settling_time(spec: specs.SettlingTime, trace: Trace) -> float:
     """Return the time [s] from first contact until the penetration stays below the threshold.
 
@@ -63,6 +68,7 @@ def settling_time(spec: specs.SettlingTime, trace: Trace) -> float:
     return float(time[above[-1] + 1] - time[touch])
 
 
+@measure(specs.SimulatedDuration)
 def simulated_duration(spec: specs.SimulatedDuration, trace: Trace) -> float:
     """Return the simulated time [s] of the last logged step."""
     return float(trace.step["time"][-1])

@@ -1,4 +1,4 @@
-"""Logged poses and resolved shapes in; how deep bodies overlap out. No solver's word is taken."""
+"""Depth by which bodies overlap, from logged poses and the shapes of the config alone."""
 
 from __future__ import annotations
 
@@ -9,12 +9,14 @@ import numpy as np
 from lavendersim.experiment.motion_specs import Overlap
 from lavendersim.measures.columns import last_window
 from lavendersim.measures.penetration import depths
+from lavendersim.measures.registration import measure
 from lavendersim.measures.solids import Ground, Placed, near_pairs, reach, solids_of
 from lavendersim.measures.views import Floats, Trace
 
 NAN = float("nan")
 
 
+@measure(Overlap)
 def overlap(spec: Overlap, trace: Trace) -> float:
     """Return the deepest penetration [m] in the last window; 0 when nothing overlaps.
 

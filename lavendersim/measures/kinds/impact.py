@@ -1,4 +1,4 @@
-"""The log of a drop or a collision in; rebound, impulses, forces and velocities of the impact out.
+"""Rebound, impulses, forces and velocities of an impact, from the log of a drop or collision.
 
 NaN means "this log cannot answer": nothing touched, or the run ended too early.
 """
@@ -20,6 +20,7 @@ from lavendersim.measures.columns import (
     runs_of,
     summed_by_step,
 )
+from lavendersim.measures.registration import measure
 from lavendersim.measures.views import Floats, Rows, Trace
 
 NAN = float("nan")
@@ -33,6 +34,7 @@ def parabola_vertex(before: float, at: float, after: float) -> float:
     return at - (before - after) ** 2 / (8.0 * curvature)
 
 
+@measure(specs.FirstApex)
 def first_apex(spec: specs.FirstApex, trace: Trace) -> float:
     """Return the clearance [m] at the first apex after the first contact.
 
@@ -54,6 +56,7 @@ def first_apex(spec: specs.FirstApex, trace: Trace) -> float:
     return 0.0 if heights[-1] <= 0.0 else NAN
 
 
+@measure(specs.ImpactImpulse)
 def impact_impulse(spec: specs.ImpactImpulse, trace: Trace) -> float:
     """Return the impulse [N s] of the first run of pushing steps; 0 if the contact never pushes."""
     rows = contacts_of(trace, spec.body, spec.other)
@@ -66,6 +69,7 @@ def impact_impulse(spec: specs.ImpactImpulse, trace: Trace) -> float:
     return float(summed_by_step(trace, rows, "impulse_n")[first : last + 1].sum())
 
 
+@measure(specs.StepImpulse)
 def step_impulse(spec: specs.StepImpulse, trace: Trace) -> float:
     """Return the impulse [N s] of one step; NaN if the step was not logged."""
     positions = np.flatnonzero(trace.step["step"] == spec.step)
@@ -79,27 +83,32 @@ def _of_first_contact(rows: Rows, field: str) -> float:
     return float(rows[field][0]) if len(rows) else NAN
 
 
+@measure(specs.ApproachVelocity)
 def approach_velocity(spec: specs.ApproachVelocity, trace: Trace) -> float:
     """Return v_n [m/s] of the first contact before the solve."""
     return _of_first_contact(contacts_of(trace, spec.body, spec.other), "approach_velocity")
 
 
+@measure(specs.SeparationVelocity)
 def separation_velocity(spec: specs.SeparationVelocity, trace: Trace) -> float:
     """Return v_n [m/s] of the first contact after the solve."""
     return _of_first_contact(contacts_of(trace, spec.body, spec.other), "normal_velocity")
 
 
+@measure(specs.InverseEffectiveMass)
 def inverse_effective_mass(spec: specs.InverseEffectiveMass, trace: Trace) -> float:
     """Return k_n [1/kg] of the first contact."""
     return _of_first_contact(contacts_of(trace, spec.body, spec.other), "inverse_effective_mass")
 
 
+@measure(specs.PeakForce)
 def peak_force(spec: specs.PeakForce, trace: Trace) -> float:
     """Return the largest normal force [N] on the body; NaN if nothing ever touches it."""
     rows = contacts_of(trace, spec.body, spec.other)
     return float(summed_by_step(trace, rows, "force_n").max()) if len(rows) else NAN
 
 
+@measure(specs.StepsAboveForce)
 def steps_above_force(spec: specs.StepsAboveForce, trace: Trace) -> float:
     """Return how many steps have more normal force on the body than the threshold."""
     rows = contacts_of(trace, spec.body, spec.other)
@@ -108,6 +117,7 @@ def steps_above_force(spec: specs.StepsAboveForce, trace: Trace) -> float:
     return float(np.count_nonzero(summed_by_step(trace, rows, "force_n") > spec.threshold))
 
 
+@measure(specs.ImpulseBalance)
 def impulse_balance(spec: specs.ImpulseBalance, trace: Trace) -> float:
     """Return |J + M g T - (p1 - p0)| / |J| over a window of steps.
 
@@ -145,6 +155,7 @@ def impulse_balance(spec: specs.ImpulseBalance, trace: Trace) -> float:
     return math.sqrt(float(gap @ gap)) / size
 
 
+@measure(specs.MomentumDrift)
 def momentum_drift(spec: specs.MomentumDrift, trace: Trace) -> float:
     """Return the largest |p - p0| over the largest |p| of the run; NaN if nothing ever moves."""
     momentum = _momentum(trace)

@@ -1,4 +1,4 @@
-"""Logged poses in; apexes, drift, creep, sliding and tunnelling out. No solver's word is taken."""
+"""Apexes, drift, creep, sliding and tunnelling, from logged poses alone."""
 
 from __future__ import annotations
 
@@ -10,12 +10,14 @@ from lavendersim.experiment import motion_specs as specs
 from lavendersim.measures import cell_config
 from lavendersim.measures.closed_forms import clearance, pair_restitution
 from lavendersim.measures.columns import clearance_by_step, last_window, one_timestep
-from lavendersim.measures.impact import parabola_vertex
+from lavendersim.measures.kinds.impact import parabola_vertex
+from lavendersim.measures.registration import measure
 from lavendersim.measures.views import Floats, Trace
 
 NAN = float("nan")
 
 
+@measure(specs.ApexError)
 def apex_error(spec: specs.ApexError, trace: Trace) -> float:
     """Return |apex / (e^(2 k) h) - 1| after bounce k; NaN if the run does not reach it.
 
@@ -42,6 +44,7 @@ def apex_error(spec: specs.ApexError, trace: Trace) -> float:
     return abs(apex / ideal - 1.0) if ideal > 0.0 else NAN
 
 
+@measure(specs.Drift)
 def drift(spec: specs.Drift, trace: Trace) -> float:
     """Return the greatest distance [m] of any centre from its place at `after`, later in the run.
 
@@ -65,6 +68,7 @@ def drift_by_step(trace: Trace, after: float, bodies: tuple[str, ...] = ()) -> F
     return distances
 
 
+@measure(specs.SlipDistance)
 def slip_distance(spec: specs.SlipDistance, trace: Trace) -> float:
     """Return how far [m] the centre is at the end of the run from where the window began."""
     window = _window(trace, spec.last)
@@ -73,6 +77,7 @@ def slip_distance(spec: specs.SlipDistance, trace: Trace) -> float:
     return math.dist(*_ends(trace, spec.body, window)[0])
 
 
+@measure(specs.Creep)
 def creep(spec: specs.Creep, trace: Trace) -> float:
     """Return the mean speed [m/s] of the centre over the last window."""
     window = _window(trace, spec.last)
@@ -82,6 +87,7 @@ def creep(spec: specs.Creep, trace: Trace) -> float:
     return math.dist(*places) / duration
 
 
+@measure(specs.EffectiveFriction)
 def effective_friction(spec: specs.EffectiveFriction, trace: Trace) -> float:
     """Return (g_t - a)/g_n from the mean acceleration a down the slope in the last window.
 
@@ -107,6 +113,7 @@ def effective_friction(spec: specs.EffectiveFriction, trace: Trace) -> float:
     return (size - acceleration) / into
 
 
+@measure(specs.PassedThrough)
 def passed_through(spec: specs.PassedThrough, trace: Trace) -> float:
     """Return how far [m] the centre came behind the middle of the wall; negative: never."""
     wall = cell_config.body(trace.resolved, spec.wall)

@@ -1,4 +1,4 @@
-"""Logged contacts in; by how much they break each law of contact, beyond the residual, out.
+"""Violation of the laws of contact by logged contacts, beyond the residual of their step.
 
     pushing          lambda_n >= 0
     complementarity  0 <= lambda_n, 0 <= w, lambda_n w = 0  with  w = v_n + target + gamma lambda_n,
@@ -19,11 +19,13 @@ import numpy as np
 
 from lavendersim.experiment.law_specs import Optimality
 from lavendersim.measures import cell_config
+from lavendersim.measures.registration import measure
 from lavendersim.measures.views import Floats, Rows, Trace
 
 NAN = float("nan")
 
 
+@measure(Optimality)
 def optimality(spec: Optimality, trace: Trace) -> Floats:
     """Return the largest violations [m/s]: pushing, complementarity; with friction cone, sliding.
 

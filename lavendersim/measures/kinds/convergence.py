@@ -1,4 +1,4 @@
-"""The log of a solve in; its residual [m/s] sweep by sweep, or after the last sweep, out."""
+"""Residuals of one step, sweep by sweep or after the last sweep."""
 
 from __future__ import annotations
 
@@ -6,9 +6,11 @@ import numpy as np
 
 from lavendersim.experiment import measure_specs as specs
 from lavendersim.measures.columns import row_after
+from lavendersim.measures.registration import measure
 from lavendersim.measures.views import Floats, Trace
 
 
+@measure(specs.ResidualBySweep)
 def residual_by_sweep(spec: specs.ResidualBySweep, trace: Trace) -> Floats:
     """Return the residuals [m/s] before sweep 1 and after each sweep; one NaN if not logged."""
     row = row_after(trace, spec.after)
@@ -21,6 +23,7 @@ def residual_by_sweep(spec: specs.ResidualBySweep, trace: Trace) -> Floats:
     return residuals
 
 
+@measure(specs.FinalResidual)
 def final_residual(spec: specs.FinalResidual, trace: Trace) -> float:
     """Return the residual [m/s] that the step was left with; NaN if no step ends after the time."""
     row = row_after(trace, spec.after)

@@ -1,4 +1,4 @@
-"""The log of a bouncing body in; the energy it keeps or gains from bounce to bounce out."""
+"""Energy of a bouncing body: what it keeps or gains from bounce to bounce."""
 
 from __future__ import annotations
 
@@ -12,10 +12,23 @@ from lavendersim.measures.columns import (
     mechanical_energy,
     pushing_runs,
 )
+from lavendersim.measures.registration import measure
 from lavendersim.measures.views import Floats, Trace
 
 
-def energy_by_bounce(spec: specs.EnergyByBounce | specs.EnergyAfterBounces, trace: Trace) -> Floats:
+@measure(specs.EnergyByBounce)
+def energy_by_bounce(spec: specs.EnergyByBounce, trace: Trace) -> Floats:
+    """Return E_k / E_0 - 1 after bounce k = 1, 2, ...; see `_by_bounce`."""
+    return _by_bounce(spec, trace)
+
+
+@measure(specs.EnergyAfterBounces)
+def energy_after_bounces(spec: specs.EnergyAfterBounces, trace: Trace) -> float:
+    """Return the last number of `energy_by_bounce`."""
+    return float(_by_bounce(spec, trace)[-1])
+
+
+def _by_bounce(spec: specs.EnergyByBounce | specs.EnergyAfterBounces, trace: Trace) -> Floats:
     """Return E_k / E_0 - 1 after bounce k = 1, 2, ...; NaN for apexes the run does not reach.
 
     Energy is counted from rest on the surface. E_k is read in the state nearest the apex, where
@@ -37,8 +50,3 @@ def energy_by_bounce(spec: specs.EnergyByBounce | specs.EnergyAfterBounces, trac
         if last < apex < len(heights) - 1:  # an apex at the last row is not one yet
             drift[bounce] = float(energy[apex]) / float(energy[0]) - 1.0
     return drift
-
-
-def energy_after_bounces(spec: specs.EnergyAfterBounces, trace: Trace) -> float:
-    """Return the last number of `energy_by_bounce`."""
-    return float(energy_by_bounce(spec, trace)[-1])

@@ -1,4 +1,4 @@
-"""The log of one free or colliding body in; its distance from closed forms of rigid motion out."""
+"""Distance of one free or colliding body from closed forms of rigid motion."""
 
 from __future__ import annotations
 
@@ -13,12 +13,14 @@ from lavendersim.measures.cell_config import BodyConfig
 from lavendersim.measures.columns import one_timestep
 from lavendersim.measures.free_rotation import FreeRotation, free_rotation
 from lavendersim.measures.impact_forms import velocities_after
-from lavendersim.measures.laws import angular_momentum
+from lavendersim.measures.kinds.laws import angular_momentum
+from lavendersim.measures.registration import measure
 from lavendersim.measures.views import Floats, Trace
 
 NAN = float("nan")
 
 
+@measure(specs.VelocityError)
 def velocity_error(spec: specs.VelocityError, trace: Trace) -> float:
     """Return the larger of |v - v*| and rho |omega - omega*| [m/s] at the end of the run.
 
@@ -38,6 +40,7 @@ def velocity_error(spec: specs.VelocityError, trace: Trace) -> float:
     )
 
 
+@measure(specs.AngularVelocityError)
 def angular_velocity_error(spec: specs.AngularVelocityError, trace: Trace) -> float:
     """Return the largest |omega - omega*| / |omega(0)|, in body axes, over the run or until a time.
 
@@ -54,6 +57,7 @@ def angular_velocity_error(spec: specs.AngularVelocityError, trace: Trace) -> fl
     return float(np.sqrt((gaps**2).sum(axis=1)).max()) / first
 
 
+@measure(specs.FlipTimeError)
 def flip_time_error(spec: specs.FlipTimeError, trace: Trace) -> float:
     """Return the largest |t - t*| [s] of the first flips; NaN if the run has fewer.
 

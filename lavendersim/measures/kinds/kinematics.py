@@ -1,4 +1,4 @@
-"""Logged poses in; ways, speeds, turns and times of rest out. No solver's word is taken.
+"""Displacements, speeds, rotations and times of rest, from logged poses alone.
 
 Times are counted in steps: logged times are whole nanoseconds, rounded down.
 """
@@ -12,24 +12,28 @@ import numpy as np
 from lavendersim.experiment import kinematic_specs as specs
 from lavendersim.geometry.rotations import rotation_matrix, unit_quaternion
 from lavendersim.measures import cell_config
+from lavendersim.measures.registration import measure
 from lavendersim.measures.views import Floats, Trace
 
 NAN = float("nan")
 ROUNDED = 2e-9  # [s] logged times are rounded down to nanoseconds
 
 
+@measure(specs.Displacement)
 def displacement(spec: specs.Displacement, trace: Trace) -> float:
     """Return the way [m] of the centre along the direction; NaN when the run ends before."""
     rows = _rows(trace, spec.begin, spec.end)
     return _way(trace, spec, rows) if rows else NAN
 
 
+@measure(specs.MeanVelocity)
 def mean_velocity(spec: specs.MeanVelocity, trace: Trace) -> float:
     """Return that way over its time [m/s]."""
     rows = _rows(trace, spec.begin, spec.end)
     return _way(trace, spec, rows) / _seconds(trace, *rows) if rows else NAN
 
 
+@measure(specs.MeanAngularVelocity)
 def mean_angular_velocity(spec: specs.MeanAngularVelocity, trace: Trace) -> float:
     """Return the sum of the turns between neighbouring states, along the direction, over time.
 
@@ -48,6 +52,7 @@ def mean_angular_velocity(spec: specs.MeanAngularVelocity, trace: Trace) -> floa
     return float((stretch * (vector @ along)).sum()) / _seconds(trace, *rows)
 
 
+@measure(specs.TopSpeed)
 def top_speed(spec: specs.TopSpeed, trace: Trace) -> float:
     """Return the greatest speed [m/s]; NaN when the run ends before `after`."""
     speeds, ends = _speeds(trace, spec.bodies)
@@ -55,6 +60,7 @@ def top_speed(spec: specs.TopSpeed, trace: Trace) -> float:
     return float(np.max(later)) if later.size else NAN
 
 
+@measure(specs.RestTime)
 def rest_time(spec: specs.RestTime, trace: Trace) -> float:
     """Return the end [s] of the last step in which a centre was as fast as the threshold."""
     speeds, ends = _speeds(trace, spec.bodies)
@@ -64,6 +70,7 @@ def rest_time(spec: specs.RestTime, trace: Trace) -> float:
     return float(ends[fast[-1]]) if fast[-1] < len(speeds) - 1 else NAN
 
 
+@measure(specs.Tilt)
 def tilt(spec: specs.Tilt, trace: Trace) -> float:
     """Return the angle [degree] between both directions of the axis, good for small ones too."""
     turns = trace.pose[:, list(trace.bodies).index(spec.body), 3:]
