@@ -39,7 +39,7 @@ def check(
     fails a case in more than what the case says of itself; a known failure is
     no pass, but no news either.
     """
-    from lavendersim.figures import make_room, write_report
+    from lavendersim.figures import check_page_path, write_report
     from lavendersim.runner import load_all, run
 
     if solver:
@@ -48,7 +48,7 @@ def check(
         chosen(solver)  # a wrong name is told before any file is read
     experiments = load_all(configs, reduced=not full)
     if report is not None:
-        make_room(report)  # not after an hour of runs
+        check_page_path(report)  # not after an hour of runs
     if solver:
         if not solver_matrix.check_solvers(experiments, solver, runs, jobs, report, as_json):
             raise typer.Exit(1)

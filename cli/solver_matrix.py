@@ -14,10 +14,10 @@ from lavender_cli import printing
 if TYPE_CHECKING:
     from rich.table import Table
 
-    from lavendersim.runner.matrix_square import Square
+    from lavendersim.runner.matrix_entry import Entry
     from lavendersim.runner.solver_matrix import Case
 
-# What stands in a square: a word as well as a colour, capitals where it is no pass.
+# What an entry shows: a word as well as a colour, capitals where it is no pass.
 WORDS = {
     "passes": ("pass", "green"),
     "known failure": ("known", "yellow"),
@@ -40,21 +40,21 @@ def check_solvers(
 ) -> bool:
     """Run every case by every solver and print the matrix; False where more than known fails."""
     from lavendersim.errors import UsageError
-    from lavendersim.runner.solver_matrix import cases_of, chosen, squares
+    from lavendersim.runner.solver_matrix import cases_of, chosen, entries
 
     solvers = chosen(names)
     cases, left_out = cases_of(experiments)
     if not cases:
         name, why = next(iter(left_out.items()))
         raise UsageError(f"nothing here is put to several solvers: {name} {why}")
-    made: list[Square] = []
+    made: list[Entry] = []
     try:
-        for square in squares(cases, solvers, runs, jobs):
-            made.append(square)
+        for entry in entries(cases, solvers, runs, jobs):
+            made.append(entry)
             total = len(cases) * len(solvers)
-            said = f": {square.why}" if square.why else ""
-            progress = f"{len(made)} of {total}  {square.solver}  {square.case}"
-            typer.echo(f"{progress}  {square.verdict}{said}", err=True)
+            why = f": {entry.why}" if entry.why else ""
+            progress = f"{len(made)} of {total}  {entry.solver}  {entry.case}"
+            typer.echo(f"{progress}  {entry.verdict}{why}", err=True)
     finally:
         # what an interrupted matrix has is shown; what it has not stands as not run
         if report is not None:
@@ -63,29 +63,29 @@ def check_solvers(
             printing.as_json(as_data(cases, solvers, made, left_out))
         else:
             print_matrix(cases, solvers, made, left_out)
-    return all(square.fine for square in made)
+    return all(entry.fine for entry in made)
 
 
 def as_data(
     cases: Sequence[Case],
     solvers: Sequence[str],
-    made: Sequence[Square],
+    made: Sequence[Entry],
     left_out: dict[str, str],
 ) -> dict[str, Any]:
     """Return the matrix as plain data; JSON has no number for what is not one."""
     from lavendersim.runner.environment import processor
-    from lavendersim.runner.matrix_square import passed
+    from lavendersim.runner.matrix_entry import passed
 
     return {
-        "passed": all(square.fine for square in made),
+        "passed": all(entry.fine for entry in made),
         "processor": processor(),
         "cases": [case.name for case in cases],
         "reduced": [case.name for case in cases if case.reduced],
         "left_out": left_out,
         "solvers": {solver: passed(made, solver) for solver in solvers},
-        "squares": [
-            {name: None if value != value else value for name, value in square._asdict().items()}
-            for square in made
+        "entries": [
+            {name: None if value != value else value for name, value in entry._asdict().items()}
+            for entry in made
         ],
     }
 
@@ -94,15 +94,15 @@ def _write(
     report: Path,
     cases: Sequence[Case],
     solvers: Sequence[str],
-    made: Sequence[Square],
+    made: Sequence[Entry],
     left_out: dict[str, str],
 ) -> None:
     from lavendersim.figures import write_matrix
     from lavendersim.runner import open_run
     from lavendersim.runner.environment import processor
 
-    pictured = {square.case: square for square in reversed(made) if square.run is not None}
-    shown = {name: open_run(square.run).cells[0] for name, square in pictured.items()}
+    pictured = {entry.case: entry for entry in reversed(made) if entry.run is not None}
+    shown = {name: open_run(entry.run).cells[0] for name, entry in pictured.items()}
     write_matrix(cases, solvers, made, left_out, shown, processor(), report)
     typer.echo(f"report {report}", err=True)
 
@@ -110,7 +110,7 @@ def _write(
 def print_matrix(
     cases: Sequence[Case],
     solvers: Sequence[str],
-    made: Sequence[Square],
+    made: Sequence[Entry],
     left_out: dict[str, str],
     width: int | None = None,
 ) -> None:
@@ -138,21 +138,21 @@ def print_matrix(
         typer.echo(line.rstrip())
 
 
-def _matrix(cases: Sequence[Case], solvers: Sequence[str], made: Sequence[Square]) -> Table:
+def _matrix(cases: Sequence[Case], solvers: Sequence[str], made: Sequence[Entry]) -> Table:
     from rich.table import Table
     from rich.text import Text
 
-    from lavendersim.runner.matrix_square import passed
+    from lavendersim.runner.matrix_entry import passed
 
     table = Table(
         box=None, padding=(0, 2, 0, 0), header_style="bold", pad_edge=False, show_footer=True
     )
     table.add_column("case", footer="passed", no_wrap=True)
     for solver in solvers:
-        # a word a line: names of three words would take the room of the squares
+        # a word a line: names of three words would take the space of the entries
         foot = f"{passed(made, solver)} of {len(cases)}"
         table.add_column(solver.replace("_", "\n"), footer=foot, vertical="bottom")
-    places = {(square.case, square.solver): square for square in made}
+    places = {(entry.case, entry.solver): entry for entry in made}
     family = ""
     for case in cases:
         before, family = family, case.name.rpartition("/")[0]
@@ -165,7 +165,7 @@ def _matrix(cases: Sequence[Case], solvers: Sequence[str], made: Sequence[Square
     return table
 
 
-def _failures(bad: Sequence[Square]) -> Table:
+def _failures(bad: Sequence[Entry]) -> Table:
     from rich.table import Table
     from rich.text import Text
 
@@ -173,7 +173,7 @@ def _failures(bad: Sequence[Square]) -> Table:
     table.add_column(no_wrap=True)
     table.add_column(no_wrap=True)
     table.add_column()
-    for square in bad:
-        word, style = WORDS[square.verdict]
-        table.add_row(f"  {square.case}", Text(word, style), square.why)
+    for entry in bad:
+        word, style = WORDS[entry.verdict]
+        table.add_row(f"  {entry.case}", Text(word, style), entry.why)
     return table

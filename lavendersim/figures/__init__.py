@@ -53,11 +53,11 @@ def draw_comparisons(
     return paths + draw_profile(ratios, comparisons, tolerance, processor, directory)
 
 
-def make_room(page: Path) -> None:
+def check_page_path(page: Path) -> None:
     """Make the folder of a page to come; UsageError where no page can be. Before long runs."""
-    from lavendersim.figures.html_page import make_room as make
+    from lavendersim.figures.html_page import check_page_path as check
 
-    make(page)
+    check(page)
 
 
 def write_report(results: Sequence[Any], path: Path) -> None:
@@ -70,7 +70,7 @@ def write_report(results: Sequence[Any], path: Path) -> None:
 def write_matrix(
     cases: Sequence[Any],
     solvers: Sequence[str],
-    squares: Sequence[Any],
+    entries: Sequence[Any],
     left_out: Mapping[str, str],
     shown: Mapping[str, Any],
     processor: str,
@@ -78,10 +78,10 @@ def write_matrix(
 ) -> None:
     """Write one self-contained HTML page: a matrix of cases and solvers.
 
-    cases: `runner.solver_matrix.Case`; squares: `runner.matrix_square.Square`, those there are;
+    cases: `runner.solver_matrix.Case`; entries: `runner.matrix_entry.Entry`, those there are;
     left_out: case -> why; shown: case -> the cell whose last state is drawn.
     """
     from lavendersim.figures.report_matrix import Matrix
     from lavendersim.figures.report_matrix import write_matrix as write_page
 
-    write_page(Matrix(cases, solvers, squares, left_out, shown, processor), path)
+    write_page(Matrix(cases, solvers, entries, left_out, shown, processor), path)

@@ -1,6 +1,6 @@
-"""Cases and solvers in; a square for every case and solver out, as they finish.
+"""Cases and solvers in; an entry for every case and solver out, as they finish.
 
-Every square is a run of its own, in a directory of its own, made in another process: a case that
+Every entry is a run of its own, in a directory of its own, made in another process: a case that
 breaks its process off loses nothing else. Solver by solver, so that what an interrupted matrix
 leaves are whole columns.
 """
@@ -22,7 +22,7 @@ from lavendersim.experiment.solver_override import about_something_else
 from lavendersim.quantities.found import nearest, quoted
 
 from .experiment_run import run
-from .matrix_square import DIED, REFUSED, Square, square_of, without_run
+from .matrix_entry import DIED, REFUSED, Entry, entry_of, without_run
 from .run_directory import RUNS
 
 ALL = "all"
@@ -74,32 +74,32 @@ def cases_of(experiments: Sequence[Experiment]) -> tuple[list[Case], dict[str, s
     return cases, left_out
 
 
-def make_square(pair: Pair) -> Square:
-    """Run a case by a solver and return its square; whatever happens there is its verdict."""
+def make_entry(pair: Pair) -> Entry:
+    """Run a case by a solver and return its entry; whatever happens there is its verdict."""
     case, solver = pair.case.name, pair.solver
     try:
         experiment = load_experiment(pair.case.path, pair.case.reduced, solver)
-        return square_of(case, solver, run(experiment, pair.root, prices=False))
+        return entry_of(case, solver, run(experiment, pair.root, prices=False))
     except ConfigError as error:
         return without_run(case, solver, REFUSED, error.defects[0].message)
     except UsageError:
-        raise  # true of every square
+        raise  # true of every entry
     except Exception as error:
-        # a defect of lavender; the other squares are still worth having
+        # a defect of lavender; the other entries are still worth having
         died = without_run(case, solver, DIED, f"{type(error).__name__}: {error}")
         return died._replace(detail=traceback.format_exc())
 
 
-def squares(
+def entries(
     cases: Sequence[Case],
     solvers: Sequence[str],
     root: Path = RUNS,
     jobs: int = 1,
-    make: Callable[[Pair], Square] = make_square,
-) -> Iterator[Square]:
-    """Yield the square of every case and solver when it is done, solver by solver.
+    make: Callable[[Pair], Entry] = make_entry,
+) -> Iterator[Entry]:
+    """Yield the entry of every case and solver when it is done, solver by solver.
 
-    jobs: squares that are made at once, each in a process; their logs are the same for any number.
+    jobs: entries that are made at once, each in a process; their logs are the same for any number.
     make: what one process does.
     """
     for solver in solvers:
@@ -107,17 +107,17 @@ def squares(
         yield from _made([Pair(case, solver, root) for case in cases], jobs, make)
 
 
-def _made(pairs: list[Pair], jobs: int, make: Callable[[Pair], Square]) -> Iterator[Square]:
+def _made(pairs: list[Pair], jobs: int, make: Callable[[Pair], Entry]) -> Iterator[Entry]:
     lost: list[Pair] = []
     with ProcessPoolExecutor(jobs, get_context("spawn")) as pool:
         waiting = list(reversed(pairs))
-        running: dict[Future[Square], Pair] = {}
+        running: dict[Future[Entry], Pair] = {}
         while waiting or running:
             while waiting and len(running) < jobs:
                 pair = waiting.pop()
                 try:
                     running[pool.submit(make, pair)] = pair
-                except BrokenProcessPool:  # it broke between two squares
+                except BrokenProcessPool:  # it broke between two entries
                     lost.append(pair)
             for future in wait(running, return_when=FIRST_COMPLETED).done:
                 pair = running.pop(future)
@@ -135,7 +135,7 @@ def _made(pairs: list[Pair], jobs: int, make: Callable[[Pair], Square]) -> Itera
     yield from _made(list(reversed(waiting)), jobs, make)
 
 
-def _made_alone(pair: Pair, make: Callable[[Pair], Square]) -> Iterator[Square]:
+def _made_alone(pair: Pair, make: Callable[[Pair], Entry]) -> Iterator[Entry]:
     with ProcessPoolExecutor(1, get_context("spawn")) as pool:
         try:
             yield pool.submit(make, pair).result()

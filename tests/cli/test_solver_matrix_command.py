@@ -62,7 +62,7 @@ def test_known_failures_are_no_passes_and_end_well(
     table = json.loads(done.stdout)
     assert table["cases"] == ["ball/rest", "ball/sunk"]
     assert table["left_out"] == {"ball/control": "must fail (a negative control)"}
-    verdicts = {(one["case"], one["solver"]): one["verdict"] for one in table["squares"]}
+    verdicts = {(one["case"], one["solver"]): one["verdict"] for one in table["entries"]}
     assert verdicts == {
         (case, solver): said
         for case, said in (("ball/rest", "passes"), ("ball/sunk", "known failure"))
@@ -71,7 +71,7 @@ def test_known_failures_are_no_passes_and_end_well(
     assert table["solvers"] == dict.fromkeys(SOLVERS, 1)
 
 
-def test_the_progress_of_every_square_is_told(done: subprocess.CompletedProcess[str]) -> None:
+def test_the_progress_of_every_entry_is_told(done: subprocess.CompletedProcess[str]) -> None:
     lines = [line for line in done.stderr.splitlines() if " of 4  " in line]
     assert [line.split()[0] for line in lines] == ["1", "2", "3", "4"]
 
@@ -79,10 +79,10 @@ def test_the_progress_of_every_square_is_told(done: subprocess.CompletedProcess[
 def test_every_run_says_its_solver_and_can_be_shown(
     done: subprocess.CompletedProcess[str], folder: Path
 ) -> None:
-    for one in json.loads(done.stdout)["squares"]:
+    for one in json.loads(done.stdout)["entries"]:
         assert one["solver"] in Path(one["run"]).name
         assert (folder / one["log"]).is_file()
-    run = json.loads(done.stdout)["squares"][0]["run"]
+    run = json.loads(done.stdout)["entries"][0]["run"]
     shown = lavender("show", run, where=folder)
     assert shown.returncode == 0, shown.stderr
     assert f"solver  {SOLVERS[0]}, instead of what the config says" in shown.stdout
@@ -95,13 +95,13 @@ def test_the_log_was_made_by_the_solver_it_says(
 ) -> None:
     from lavendersim.trace import open_trace
 
-    for one in json.loads(done.stdout)["squares"]:
+    for one in json.loads(done.stdout)["entries"]:
         trace = open_trace(folder / one["log"])
         assert trace.metadata["engine"]["solver"] == one["solver"]
         assert trace.resolved["numerics"]["solver"] == one["solver"]
 
 
-def test_the_page_has_a_square_for_every_case_and_solver(
+def test_the_page_has_an_entry_for_every_case_and_solver(
     done: subprocess.CompletedProcess[str], folder: Path
 ) -> None:
     text = (folder / "pages" / "matrix.html").read_text(encoding="utf-8")
@@ -109,8 +109,8 @@ def test_the_page_has_a_square_for_every_case_and_solver(
     page.needs_nothing_else()
     assert [row["data-case"] for row in page.all("tr", "case")] == ["ball/rest", "ball/sunk"]
     assert [head["data-solver"] for head in page.all("th", "solver")] == list(SOLVERS)
-    assert len(page.all("td", "square passes")) == 2
-    known = page.all("td", "square known")
+    assert len(page.all("td", "entry passes")) == 2
+    known = page.all("td", "entry known")
     assert len(known) == 2
     assert all(one["title"].startswith("known failure: stays: ") for one in known)
     # one picture a case, however many solvers

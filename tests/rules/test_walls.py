@@ -51,6 +51,7 @@ LIBRARIES = {
     "zstandard": {"trace"},
     "rerun": {"replay"},
     "matplotlib": {"figures"},
+    "jinja2": {"figures"},
     "pydantic": {"quantities", "cell", "experiment"},
     "pydantic_core": {"quantities", "cell", "experiment"},
     "yaml": {"experiment", "trace"},

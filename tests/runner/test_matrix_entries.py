@@ -1,4 +1,4 @@
-"""What a square of the solver matrix says of a run, and that one case's end is not the others'."""
+"""What an entry of the solver matrix says of a run, and that one case's end is not the others'."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from lavendersim.clock import Clock
 from lavendersim.errors import UsageError
 from lavendersim.experiment import load_experiment_text
 from lavendersim.measures import Verdict
-from lavendersim.runner.matrix_square import Square, passed, square_of
-from lavendersim.runner.solver_matrix import Case, Pair, cases_of, chosen, make_square, squares
+from lavendersim.runner.matrix_entry import Entry, entry_of, passed
+from lavendersim.runner.solver_matrix import Case, Pair, cases_of, chosen, entries, make_entry
 
 BEYOND = "beyond bounds: residual 0.1 m/s, at most 1e-06, ball, in step 3 (t = 0.0125 s)"
 SCENE = """\
@@ -71,18 +71,18 @@ class Ran:
         return [cell for cell in self.run.cells if cell.status == self.ended and self.ended]
 
 
-def square(*raw: Verdict, controlled: tuple[str, ...] = (), ended: str = "") -> Square:
-    return square_of("family/case", "jacobi", Ran(list(raw), controlled, ended))
+def entry(*raw: Verdict, controlled: tuple[str, ...] = (), ended: str = "") -> Entry:
+    return entry_of("family/case", "jacobi", Ran(list(raw), controlled, ended))
 
 
 def test_a_case_of_which_every_claim_is_met_passes() -> None:
-    one = square(verdict("stands a", True, margin=0.5), verdict("stands b", True, margin=0.25))
+    one = entry(verdict("stands a", True, margin=0.5), verdict("stands b", True, margin=0.25))
     assert (one.verdict, one.why, one.margin, one.fine) == ("passes", "", 0.25, True)
     assert one.log == Path("run/cells/a.mcap")
 
 
 def test_a_failure_says_what_failed_first_with_its_number_and_its_bound() -> None:
-    one = square(verdict("stands a", True), verdict("force b", False), verdict("sinks a", False))
+    one = entry(verdict("stands a", True), verdict("force b", False), verdict("sinks a", False))
     assert (one.verdict, one.why, one.fine) == ("fails", "force b: 2, expected at most 1", False)
     assert one.detail == "force b: measured 2.0"
     # the first log of one that failed, in the order of the cells
@@ -90,20 +90,20 @@ def test_a_failure_says_what_failed_first_with_its_number_and_its_bound() -> Non
 
 
 def test_a_declared_failure_is_no_pass_and_no_news() -> None:
-    one = square(verdict("stands a", True), verdict("force b", False), controlled=("force b",))
+    one = entry(verdict("stands a", True), verdict("force b", False), controlled=("force b",))
     assert (one.verdict, one.fine) == ("known failure", True)
     assert one.why == "force b: 2, expected at most 1"
     assert passed([one], "jacobi") == 0
 
 
 def test_a_solver_that_holds_what_is_declared_to_fail_passes() -> None:
-    one = square(verdict("stands a", True), verdict("force b", True), controlled=("force b",))
+    one = entry(verdict("stands a", True), verdict("force b", True), controlled=("force b",))
     assert one.verdict == "passes"
     assert passed([one], "jacobi") == 1
 
 
 def test_a_declared_failure_hides_no_other() -> None:
-    one = square(verdict("force b", False), verdict("stands a", False), controlled=("force b",))
+    one = entry(verdict("force b", False), verdict("stands a", False), controlled=("force b",))
     assert (one.verdict, one.fine) == ("fails", False)
     assert one.why == "stands a: 2, expected at most 1"
 
@@ -112,13 +112,13 @@ def test_what_a_declared_bound_keeps_from_being_judged_is_not_declared() -> None
     # a control of a check of `always` takes the expectations of its cells too, as it may stop them
     ran = Ran([verdict("depth b", True), verdict("stands b", False)], ("depth b", "stands b"))
     ran.declared = ("depth",)
-    one = square_of("family/case", "jacobi", ran)
+    one = entry_of("family/case", "jacobi", ran)
     assert (one.verdict, one.why) == ("fails", "stands b: 2, expected at most 1")
 
 
 @pytest.mark.parametrize(("status", "word"), [(DIVERGED, "diverged"), (BEYOND, "beyond bounds")])
 def test_a_cell_that_ended_early_says_how(status: str, word: str) -> None:
-    one = square(verdict("stands a", True), verdict("force b", False, True), ended=status)
+    one = entry(verdict("stands a", True), verdict("force b", False, True), ended=status)
     said = status.removeprefix(f"{word}: ")  # once, not twice
     assert (one.verdict, one.why, one.fine) == (word, f"cell b: {said}", False)
     assert one.log == Path("run/cells/b.mcap")
@@ -126,26 +126,26 @@ def test_a_cell_that_ended_early_says_how(status: str, word: str) -> None:
 
 def test_the_cost_is_the_physics_of_all_cells_over_their_simulated_time() -> None:
     # 4 ms for (10 + 30) / 100 s
-    assert square(verdict("stands a", True)).cost == pytest.approx(0.004 / 0.4, rel=1e-12)
+    assert entry(verdict("stands a", True)).cost == pytest.approx(0.004 / 0.4, rel=1e-12)
 
 
 def case(name: str, path: Path = Path("none.yaml")) -> Case:
     return Case(name, path, False, "")
 
 
-def dies_of_two(pair: Pair) -> Square:
-    """Stand in for `make_square`: the second case kills its process, as memory that is full may."""
+def dies_of_two(pair: Pair) -> Entry:
+    """Stand in for `make_entry`: the second case kills its process, as memory that is full may."""
     if pair.case.name == "two":
         os._exit(3)
     if pair.case.name == "one":
         time.sleep(1.0)  # still at work beside the second when that dies
-    return Square(pair.case.name, pair.solver, "passes")
+    return Entry(pair.case.name, pair.solver, "passes")
 
 
 @pytest.mark.parametrize("jobs", [1, 2])
 def test_a_case_whose_process_dies_loses_no_other(jobs: int) -> None:
     cases = [case(name) for name in ("one", "two", "three", "four")]
-    made = list(squares(cases, ["jacobi"], jobs=jobs, make=dies_of_two))
+    made = list(entries(cases, ["jacobi"], jobs=jobs, make=dies_of_two))
     assert len(made) == 4
     assert {one.case: one.verdict for one in made} == {
         **{"one": "passes", "two": "died", "three": "passes", "four": "passes"}
@@ -155,7 +155,7 @@ def test_a_case_whose_process_dies_loses_no_other(jobs: int) -> None:
 def test_a_case_that_a_solver_cannot_take_is_refused_with_the_reason(tmp_path: Path) -> None:
     config = tmp_path / "relaxed.yaml"
     config.write_text(f"{SCENE}duration: 0.1\nalways: {{}}\nnumerics: {{over_relaxation: 1.5}}\n")
-    one = make_square(Pair(case("relaxed", config), "jacobi", tmp_path / "runs"))
+    one = make_entry(Pair(case("relaxed", config), "jacobi", tmp_path / "runs"))
     assert (one.verdict, one.run, one.fine) == ("refused", None, False)
     assert one.why == "over_relaxation: jacobi treats all contacts at once; expected 1"
     assert not (tmp_path / "runs").exists()

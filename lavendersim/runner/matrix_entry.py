@@ -1,4 +1,4 @@
-"""A finished run of a case by one solver in; its square of the matrix out, as plain data.
+"""A finished run of a case by one solver in; its entry of the matrix out, as plain data.
 
 passes         every claim is met, declared failures too: what fails elsewhere is held here
 known failure  nothing fails but what the case declares; it is no pass
@@ -31,7 +31,7 @@ Word = Literal["passes", "known failure", "fails", "beyond bounds", "diverged", 
 FINE: Final = frozenset({PASSES, KNOWN})
 
 
-class Square(NamedTuple):
+class Entry(NamedTuple):
     """What became of one case by one solver."""
 
     case: str  # `tall/jenga`
@@ -50,8 +50,8 @@ class Square(NamedTuple):
         return self.verdict in FINE
 
 
-def square_of(case: str, solver: str, finished: Any) -> Square:
-    """Return the square of a `Finished` run."""
+def entry_of(case: str, solver: str, finished: Any) -> Entry:
+    """Return the entry of a `Finished` run."""
     failed = [verdict for verdict in finished.raw if not verdict.passed]
     declared = _declared(finished)
     undeclared = [one for one in failed if one.node not in declared and not one.follows]
@@ -75,17 +75,17 @@ def square_of(case: str, solver: str, finished: Any) -> Square:
     known = [one.margin for one in finished.raw if not math.isnan(one.margin)]
     margin = min(known, default=math.nan)
     run = finished.run.path
-    return Square(case, solver, word, why, detail, margin, _cost(finished), run, first.path)
+    return Entry(case, solver, word, why, detail, margin, _cost(finished), run, first.path)
 
 
-def without_run(case: str, solver: str, word: Word, why: str) -> Square:
-    """Return the square of a case that left no run."""
-    return Square(case, solver, word, why, why)
+def without_run(case: str, solver: str, word: Word, why: str) -> Entry:
+    """Return the entry of a case that left no run."""
+    return Entry(case, solver, word, why, why)
 
 
-def passed(squares: Iterable[Square], solver: str) -> int:
+def passed(entries: Iterable[Entry], solver: str) -> int:
     """Return how many cases a solver passes; declared failures are none."""
-    return sum(one.solver == solver and one.verdict == PASSES for one in squares)
+    return sum(one.solver == solver and one.verdict == PASSES for one in entries)
 
 
 def _declared(finished: Any) -> set[str]:
