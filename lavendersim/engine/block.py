@@ -11,7 +11,7 @@ from __future__ import annotations
 from math import sqrt
 
 from .compile import inner, kernel
-from .effects import surface_velocity as surface_velocity_effect
+from .effects import made_once
 from .spec import Spec
 
 
@@ -141,7 +141,7 @@ def make_apply_vector(spec: Spec):
 
 def make_complete_block(spec: Spec):
     """Return `kernel(contact, body_a, body_b, va, vb, pair) -> k_n`: frame, levers and the 3x3."""
-    moving_surface, surface_velocity = spec.made(surface_velocity_effect)
+    moving_surface, surface_velocity = made_once(spec, "surface_velocity")
     ahead = spec.has("fast_bodies")
 
     def complete_block(contact, body_a, body_b, va, vb, pair):

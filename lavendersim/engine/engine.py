@@ -21,7 +21,7 @@ from .collide.broad.broad_phase import allocate_broad_phase
 from .collide.convex.hull_geometry import HullGeometry
 from .collide.scratch import allocate_scratch
 from .compile import compiling
-from .effects import EFFECTS, sleeping
+from .effects import effects_of, sleeping
 from .integrate import keeps_motion
 from .ordering import BUCKETS
 from .record_layout import (
@@ -76,10 +76,10 @@ class Engine:
         block_steps: int = BLOCK_STEPS,
     ) -> None:
         lacking = {
-            f"{effect.NAME} needs {name}"
-            for effect in EFFECTS
-            for name in getattr(effect, "NEEDS", ())
-            if spec.has(effect.NAME) and not spec.has(name)
+            f"{effect.name} needs {name}"
+            for effect in effects_of(spec)
+            for name in effect.needs
+            if not spec.has(name)
         }
         if lacking:
             raise ValueError(", ".join(sorted(lacking)))

@@ -12,7 +12,7 @@ from math import sqrt
 from typing import Any
 
 from .compile import kernel
-from .effects import gyroscopic, rotation
+from .effects import made_once
 from .records import NOT_FINITE, TURNS_TOO_FAST
 from .rotation import inertia_times, turn
 from .spec import Spec
@@ -94,9 +94,8 @@ def make_classify(spec: Spec) -> Any:
 
 def make_turn(spec: Spec) -> Any:
     """Return `kernel(body, velocity, dt) -> solved`: the body's turn; None where nothing turns."""
-    if not spec.has("rotation"):
-        return None
-    return (gyroscopic if spec.has("gyroscopic") else rotation).make(spec)
+    uneven, turn_uneven = made_once(spec, "turn_uneven")
+    return turn_uneven if uneven else made_once(spec, "turn")[1]
 
 
 def make_displace(spec: Spec) -> Any:
@@ -106,7 +105,7 @@ def make_displace(spec: Spec) -> Any:
     at_surface = spec.has("impact_time")
     uneven = spec.has("gyroscopic")
     integrate_rotation: Any = make_turn(spec)
-    _, jump = spec.made(gyroscopic, "make_jump")
+    _, jump = made_once(spec, "add_spin")
 
     def displace(body, v, m, dt):
         if at_surface:

@@ -1,16 +1,17 @@
 """Every record the kernels work on: field, unit, meaning. Scalar float64 or int64 fields only.
 
 A record's dtype is composed from the base fields below and the fields that the effects of a `Spec`
-bring (`BODY_FIELDS`, `CONTACT_FIELDS` of an effect's module), so an absent effect has no column.
+bring (`effects.effect.Fields`), so an absent effect has no column.
 World frame, SI units, unless a comment says otherwise.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
-import numpy as np
+if TYPE_CHECKING:
+    import numpy as np
 
 F8: Final = "f8"
 I8: Final = "i8"
@@ -182,6 +183,8 @@ COUNTERS: Final[list[Field]] = [
 
 def dtype(*groups: Iterable[Field]) -> np.dtype:
     """Join field groups into one aligned record type; a field named twice is taken once."""
+    import numpy as np  # declarations of effects load without it
+
     fields: dict[str, str] = {}
     for group in groups:
         for name, kind in group:

@@ -14,15 +14,7 @@ from typing import Any
 from . import ordering
 from .compile import chain, kernel
 from .contact import make_append_contact, make_apply_start
-from .effects import (
-    contact_log,
-    impact_energy,
-    impact_time,
-    made_by,
-    problem_log,
-    projection,
-    warm_start,
-)
+from .effects import made_by, made_once
 from .integrate import make_classify
 from .solvers import SOLVERS
 from .spec import Spec
@@ -32,20 +24,21 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
     """Return `kernel(bodies, velocities, motion, pseudo, contacts, count, cache, pairs, work,
     params, counters, rows, residual_rows)`; log_contacts: the kernel of `contact_log`.
     """
-    append_contact = make_append_contact(spec, chain(made_by(spec, "make", "capture"), spec))
+    append_contact = make_append_contact(spec, chain(made_by(spec, "capture"), spec))
     order_contacts = ordering.make(spec)
     shuffles = spec.order == "random"
     shuffle: Any = ordering.make_shuffle(spec) if shuffles else None
     solve = SOLVERS[spec.solver].make(spec)
-    strikes, strike = spec.made(impact_time, "make_strike")
-    warms, match_contacts = spec.made(warm_start)
-    _, store_contacts = spec.made(warm_start, "make_store")
+    strikes, strike = made_once(spec, "predict_impacts")
+    warms, match_contacts = made_once(spec, "match")
+    _, store_contacts = made_once(spec, "store")
     apply_start: Any = make_apply_start(spec) if warms else None
-    watched, note = spec.made(impact_energy, "make_note")
-    settle: Any = impact_energy.make_settle(spec, solve, make_classify(spec)) if watched else None
-    projects, project_positions = spec.made(projection)
-    logs = spec.has(contact_log.NAME)
-    keeps_free, keep_free = spec.made(problem_log)
+    watched, note = made_once(spec, "note_slip")
+    classify: Any = make_classify(spec) if watched else None
+    _, settle = made_once(spec, "limit_impacts", solve, classify)
+    projects, project_positions = made_once(spec, "project")
+    logs = spec.has("contact_log")
+    keeps_free, keep_free = made_once(spec, "keep_free")
 
     def respond(
         bodies, velocities, motion, pseudo, contacts, count, cache, pairs, work, params, counters,
@@ -93,7 +86,7 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
 
 def make_pass_by(spec: Spec, log_contacts: Any) -> Any:
     """Return `kernel(contacts, velocities, params, counters, rows)`: the same for no contact."""
-    logs = spec.has(contact_log.NAME)
+    logs = spec.has("contact_log")
 
     def pass_by(contacts, velocities, params, counters, rows):
         counters.sweeps, counters.projection_sweeps = 0, 0

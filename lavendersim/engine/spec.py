@@ -7,7 +7,7 @@ sweep over any of them uses one compiled engine.
 from __future__ import annotations
 
 import hashlib
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 
 class Spec(NamedTuple):
@@ -36,11 +36,6 @@ class Spec(NamedTuple):
     def has(self, effect: str) -> bool:
         """Whether `effect` is part of this engine."""
         return effect in self.effects
-
-    def made(self, effect: Any, maker: str = "make") -> tuple[bool, Any]:
-        """Return whether this structure has an effect, and then what its module's maker makes."""
-        on = self.has(effect.NAME)
-        return on, getattr(effect, maker)(self) if on else None
 
     def including(self, *effects: str) -> Spec:
         """Return this structure with more effects."""

@@ -18,7 +18,7 @@ from typing import Any
 
 from .block import inertia_response
 from .compile import inner, kernel
-from .effects import rolling_friction, torsional_friction
+from .effects import made_once
 from .spec import Spec
 
 
@@ -52,9 +52,8 @@ def make_turns_hard(spec: Spec) -> Any:
 
 def make_complete_spin(spec: Spec) -> Any:
     """Return `kernel(contact, va, vb, pair)`: coefficients and responses; psi starts at 0."""
-    torsional, rolling = spec.has("torsional_friction"), spec.has("rolling_friction")
-    complete_torsion = torsional_friction.make_complete(spec)
-    complete_rolling = rolling_friction.make_complete(spec)
+    torsional, complete_torsion = made_once(spec, "complete_torsion")
+    rolling, complete_rolling = made_once(spec, "complete_rolling")
 
     def complete_spin(contact, va, vb, pair):
         squared = 0.0
@@ -123,9 +122,8 @@ def make_solve_spin(spec: Spec) -> Any:
     """
     if not resists_turning(spec):
         return None
-    torsional, rolling = spec.has("torsional_friction"), spec.has("rolling_friction")
-    solve_torsion = torsional_friction.make_solve(spec)
-    solve_rolling = rolling_friction.make_solve(spec)
+    torsional, solve_torsion = made_once(spec, "solve_torsion")
+    rolling, solve_rolling = made_once(spec, "solve_rolling")
     apply_spin = make_apply_spin(spec)
 
     def solve_spin(contact, va, vb):
@@ -158,9 +156,8 @@ def make_spin_residual(spec: Spec) -> Any:
     """Return `kernel(contact, va, vb) -> r`: the larger natural-map residual of the two [m/s]."""
     if not resists_turning(spec):
         return None
-    torsional, rolling = spec.has("torsional_friction"), spec.has("rolling_friction")
-    torsion_residual = torsional_friction.make_residual(spec)
-    rolling_residual = rolling_friction.make_residual(spec)
+    torsional, torsion_residual = made_once(spec, "torsion_residual")
+    rolling, rolling_residual = made_once(spec, "rolling_residual")
 
     def spin_residual(contact, va, vb):
         x, y, z = vb.wx - va.wx, vb.wy - va.wy, vb.wz - va.wz

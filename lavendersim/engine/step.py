@@ -13,18 +13,8 @@ from functools import cache
 from typing import Any
 
 from .collide import narrow_phase
-from .collide.broad import broad_phase
 from .compile import chain, composing, kernel
-from .effects import compound as compound_effect
-from .effects import (
-    contact_log,
-    friction,
-    made_by,
-    pose_log,
-    sleeping,
-    step_log,
-    surface_fields,
-)
+from .effects import made_by, made_once
 from .integrate import keeps_motion, make_begin, make_classify, make_integrate, make_undo
 from .kernel_cache import cached
 from .records import CONTACTS_FULL, DIVERGED, PAIRS_FULL, ROWS_FULL, RUNNING, WOKEN
@@ -32,44 +22,33 @@ from .respond import make_pass_by, make_respond
 from .spec import Spec
 
 
-def make_find_pairs(spec: Spec) -> Any:
-    """Return the kernel of the broad phase; without one there is nothing to call."""
-    if not spec.has("broad_phase"):
-        return None
-    return broad_phase.make(spec, surface_fields(spec))
-
-
 def make_advance(spec: Spec) -> Any:
     """Compose `advance(bodies, velocities, motion, pseudo, bits, contacts, cache, pairs, work,
     parameters, counter, rows, residual_rows, steps) -> status`; counter says how many steps are
     done.
     """
-    touches, broad = bool(spec.shape_pairs), spec.has("broad_phase")
-    records, record_residuals = spec.has("step_log"), spec.has("residual_log")
-    log_step: Any = None
-    if records:
-        log_step = step_log.make(spec, pose_log.make(spec), made_by(spec, "make_step_log"))
-    accelerations = made_by(spec, "make", "accelerate")
+    touches, record_residuals = bool(spec.shape_pairs), spec.has("residual_log")
+    _, log_pose = made_once(spec, "log_pose")
+    records, log_step = made_once(spec, "log_step", log_pose, made_by(spec, "step_row"))
+    accelerations = made_by(spec, "accelerate")
     accelerates, keeps = bool(accelerations), keeps_motion(spec)
     accelerate = chain(accelerations, spec)
     begin: Any = make_begin(spec, accelerate) if keeps else None
     undo: Any = make_undo(spec) if keeps else None
-    rubs, refresh = spec.made(friction, "make_refresh")
-    compound, place_parts = spec.made(compound_effect)
-    find_pairs = make_find_pairs(spec)
+    rubs, refresh = made_once(spec, "refresh_inertia")
+    compound, place_parts = made_once(spec, "place_parts")
+    broad, find_pairs = made_once(spec, "find_pairs")
     collide: Any = narrow_phase.make(spec) if touches else None
-    log_contacts: Any = None
-    if spec.has("contact_log"):
-        log_contacts = contact_log.make(spec, made_by(spec, "make_log"))
+    _, log_contacts = made_once(spec, "log_contacts", made_by(spec, "contact_row"))
     respond: Any = make_respond(spec, log_contacts) if touches else None
     # With residuals recorded a step without contacts has its history, too.
     passes = touches and not record_residuals
     pass_by: Any = make_pass_by(spec, log_contacts) if passes else None
     classify: Any = make_classify(spec) if keeps and touches else None
     integrate = make_integrate(spec)
-    sleeps, set_pace = spec.made(sleeping, "make_set_pace")
-    _, wake = spec.made(sleeping, "make_wake")
-    _, doze = spec.made(sleeping, "make_doze")
+    sleeps, measure_speeds = made_once(spec, "measure_speeds")
+    _, wake = made_once(spec, "wake")
+    _, update_sleeping = made_once(spec, "update_sleeping")
 
     def advance(
         bodies, velocities, motion, pseudo, bits, contacts, cache, pairs, work, parameters,
@@ -89,7 +68,7 @@ def make_advance(spec: Spec) -> Any:
                 if counters.residual_rows + params.sweeps + 1 > residual_rows.shape[0]:
                     return ROWS_FULL
             if sleeps:
-                set_pace(bodies, velocities)
+                measure_speeds(bodies, velocities)
             if keeps:
                 begin(bodies, velocities, motion, params)
             if rubs:
@@ -140,7 +119,7 @@ def make_advance(spec: Spec) -> Any:
             moved = counters.projection_sweeps > 0
             diverged, cause = integrate(bodies, velocities, motion, pseudo, moved, params.dt)
             if sleeps:
-                doze(bodies, velocities, motion, contacts, count, taken, params)
+                update_sleeping(bodies, velocities, motion, contacts, count, taken, params)
             counters.step += 1
             counters.contacts = count
             if records:

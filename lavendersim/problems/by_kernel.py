@@ -13,7 +13,7 @@ import numpy as np
 
 from lavendersim.engine.compile import compiling
 from lavendersim.engine.contact_problem import NOT_FINITE, SOLVED, SPENT, ContactProblem, Solution
-from lavendersim.engine.effects.residual_log import RESIDUAL_ROW_FIELDS
+from lavendersim.engine.effects import row_fields
 from lavendersim.engine.kernel_cache import cached
 from lavendersim.engine.matrix_problem import contacts_of, coupling_of, make_solve
 from lavendersim.engine.records import COUNTERS, PARAMETERS, dtype
@@ -60,7 +60,7 @@ def solve_by_kernel(
     params["tolerance"], params["sweeps"] = tolerance, sweeps
     params["over_relaxation"] = over_relaxation
     params["residuals_from"] = params["residuals_to"] = 1
-    rows = np.zeros(sweeps + 1 if history else 0, dtype(RESIDUAL_ROW_FIELDS))
+    rows = np.zeros(sweeps + 1 if history else 0, dtype(row_fields(spec, "residual")))
     order = np.arange(problem.contacts)
     allocate = getattr(SOLVERS[solver], "allocate", None)
     space = allocate(spec, 0, problem.contacts) if allocate else ()

@@ -67,9 +67,9 @@ def metadata_of(plan: Plan, seeds: str) -> dict[str, dict[str, str]]:
     """Return what the log says about the engine that made it, and where it was overridden."""
     forced: dict[str, dict[str, str]] = {"forced": {**plan.forced}} if plan.forced else {}
     mistakes = {
-        effect.NAME: f"a known mistake on purpose: {effect.STUDY_ONLY}"
+        effect.name: f"a known mistake on purpose: {effect.study_only}"
         for effect in EFFECTS
-        if plan.spec.has(effect.NAME) and hasattr(effect, "STUDY_ONLY")
+        if plan.spec.has(effect.name) and effect.study_only
     }
     study: dict[str, dict[str, str]] = {"study-only": mistakes} if mistakes else {}
     return {
@@ -93,10 +93,10 @@ def metadata_of(plan: Plan, seeds: str) -> dict[str, dict[str, str]]:
 def absent_topics(plan: Plan) -> dict[str, str]:
     """Return the topics that the log does without, each with the plan's reason."""
     return {
-        topic: f"{plan.decisions[effect.NAME].reason} (plan: {effect.NAME} off)"
+        topic: f"{plan.decisions[effect.name].reason} (plan: {effect.name} off)"
         for effect in EFFECTS
-        if not plan.spec.has(effect.NAME)
-        for topic in getattr(effect, "CHANNELS", ())
+        if not plan.spec.has(effect.name)
+        for topic in effect.channels or ()
     }
 
 

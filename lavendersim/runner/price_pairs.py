@@ -9,20 +9,16 @@ friction is priced on top of friction. Where there is no such pair, a sentence s
 from __future__ import annotations
 
 from collections.abc import Iterable
-from types import ModuleType
 from typing import Any, Final, NamedTuple
 
-from lavendersim.engine.effects import EFFECTS, Facts
-from lavendersim.engine.effects import pose_log as poses
-from lavendersim.engine.effects import step_log as steps
+from lavendersim.engine.effects import BY_NAME, EFFECTS, Effect, Facts
 from lavendersim.engine.spec import Spec
 from lavendersim.scene.facts import facts_of
-from lavendersim.scene.laws import BY_NAME, choice, has_law, is_law, needs
+from lavendersim.scene.laws import choice, has_law, is_law, needs
 from lavendersim.scene.plan import plan_of
 
 ALL: Final = "all effects"
 ALL_RECORDED: Final = "all effects, recorded"
-BODY_STAGES: Final = ("accelerate", "integrate", "collide", "record")
 
 
 class Pair(NamedTuple):
@@ -57,23 +53,23 @@ def pairs_of(resolved: dict[str, Any], names: Iterable[str] = ()) -> list[Pair]:
     plans = Plans(facts_of(resolved), plan_of(resolved, record=False).spec, logged.spec)
     asked = set(names) or set(BY_NAME)
     pairs = [
-        _pair(effect, logged.decisions[effect.NAME].reason, plans)
+        _pair(effect, logged.decisions[effect.name].reason, plans)
         for effect in EFFECTS
-        if effect.NAME in asked
+        if effect.name in asked
     ]
     if names:
         return pairs
     return [*pairs, *_everything(plans)]
 
 
-def _pair(effect: ModuleType, reason: str, plans: Plans) -> Pair:
-    name = effect.NAME
+def _pair(effect: Effect, reason: str, plans: Plans) -> Pair:
+    name = effect.name
     on = plans.logged.has(name)
     pair = Pair(name, on, reason, of_contacts(effect))
-    if effect in (steps, poses):
-        if effect is poses:
+    if name in ("step_log", "pose_log"):
+        if name == "pose_log":
             return pair._replace(why_not="written with the rows of step_log: see there")
-        kept = plans.silent.including(name, poses.NAME)
+        kept = plans.silent.including(name, "pose_log")
         return pair._replace(off=plans.silent, on=kept)
     chosen = [each for each in (name, *needs(name)) if not has_law(each, plans.facts)]
     if on and is_law(name):
@@ -100,10 +96,10 @@ def _everything(plans: Plans) -> list[Pair]:
     agreeing = [
         effect
         for effect in EFFECTS
-        if all(has_law(each, plans.facts) for each in (effect.NAME, *needs(effect.NAME)))
+        if all(has_law(each, plans.facts) for each in (effect.name, *needs(effect.name)))
     ]
-    physics = [effect.NAME for effect in agreeing if not _is_log(effect)]
-    logs = [effect.NAME for effect in agreeing if _is_log(effect)]
+    physics = [effect.name for effect in agreeing if not _is_log(effect)]
+    logs = [effect.name for effect in agreeing if _is_log(effect)]
     whole = plans.silent.including(*physics)
     reason = "every effect whose law the numerics have, idle where the scene does not call for it"
     return [
@@ -112,10 +108,10 @@ def _everything(plans: Plans) -> list[Pair]:
     ]
 
 
-def of_contacts(effect: ModuleType) -> bool:
+def of_contacts(effect: Effect) -> bool:
     """Whether an effect works on contacts; otherwise it works on bodies."""
-    return effect.STAGE not in BODY_STAGES or "/contacts" in getattr(effect, "CHANNELS", ())
+    return effect.per == "contact"
 
 
-def _is_log(effect: ModuleType) -> bool:
-    return hasattr(effect, "CHANNELS")
+def _is_log(effect: Effect) -> bool:
+    return effect.channels is not None

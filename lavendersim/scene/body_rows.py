@@ -73,7 +73,7 @@ def body_table(
             pose = part_pose(pose, row.part)
         _fill(record, ("owner",), (row.owner,))
         for effect in EFFECTS:
-            if hasattr(effect, "body_values"):
+            if effect.body_values:
                 values = effect.body_values(row.body)
                 _fill(record, values, values.values())
         _fill(record, ("x", "y", "z", "qw", "qx", "qy", "qz"), pose)

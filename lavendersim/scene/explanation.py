@@ -11,7 +11,7 @@ from functools import cache
 from typing import Any, NamedTuple
 
 from lavendersim.engine.collide import SHAPE_PAIRS
-from lavendersim.engine.effects import EFFECTS, step_log
+from lavendersim.engine.effects import EFFECTS, Effect
 from lavendersim.engine.solvers import SOLVERS
 from lavendersim.engine.spec import Spec
 from lavendersim.engine.step import kernels_of
@@ -20,7 +20,6 @@ from .laws import needs
 from .plan import CHOICES, Plan
 
 _GROUP = "_FIELDS"  # BODY_FIELDS of a module: columns of the body record
-_ENGINE = "lavendersim.engine."
 _GLUE = "compile"  # links between the kernels of one stage, which have nothing to say
 
 Fields = dict[str, list[str]]  # record -> names of its columns
@@ -102,17 +101,15 @@ def explain_all(plans: Iterable[Plan]) -> list[Explanation]:
     return [explain(plan, plans) for plan in plans]
 
 
-def _effect(plan: Plan, effect: Any) -> Part:
-    part = _decided(plan, effect.NAME)
-    fields = fields_of(effect)
+def _effect(plan: Plan, effect: Effect) -> Part:
+    part = _decided(plan, effect.name)
     # Some columns depend on what else is there; that is known where the effect is on.
-    if part.on and hasattr(effect, "contact_fields"):
-        fields["contact"] = _names(effect.contact_fields(plan.spec))
+    fields = effect.columns_by_record(plan.spec if part.on else None)
     return part._replace(
-        needs=list(getattr(effect, "NEEDS", ())),
-        chosen_by=getattr(effect, "CHOSEN_BY", None),
-        fields={record: names for record, names in fields.items() if names},
-        channels=list(getattr(effect, "CHANNELS", ())),
+        needs=list(effect.needs),
+        chosen_by=effect.chosen_by.key if effect.chosen_by else None,
+        fields=dict(sorted(fields.items())),
+        channels=list(effect.channels or ()),
         kernels=_brought(plan.spec, effect) if part.on else {},
     )
 
@@ -145,15 +142,15 @@ def fields_of(module: Any) -> Fields:
     }
 
 
-def _brought(spec: Spec, effect: Any) -> Kernels:
+def _brought(spec: Spec, effect: Effect) -> Kernels:
     """Return the kernels that are there because of an effect: its own, those that vanish without.
 
     A kernel of another effect's module is that effect's, whatever else it waits for.
     """
-    own = effect.__name__.removeprefix(_ENGINE)
-    dependents = [e.NAME for e in EFFECTS if spec.has(e.NAME) and effect.NAME in needs(e.NAME)]
+    own = f"effects.{effect.name}"
+    dependents = [e.name for e in EFFECTS if spec.has(e.name) and effect.name in needs(e.name)]
     lean = spec.without(*dependents)
-    gone = _without(composed_kernels(lean), composed_kernels(lean.without(effect.NAME)))
+    gone = _without(composed_kernels(lean), composed_kernels(lean.without(effect.name)))
     gone = {module: names for module, names in gone.items() if not _of_an_effect(module)}
     stated = composed_kernels(spec).get(own)
     return ({own: stated} if stated else {}) | gone
@@ -178,8 +175,6 @@ def _solver(plan: Plan, composed: Kernels) -> Part:
     spec = plan.spec
     fields = fields_of(SOLVERS[spec.solver])
     stops = "stops at a tolerance" if spec.tolerance else "takes all its sweeps"
-    if spec.tolerance:
-        fields["step_row"] = _names(step_log.UNSOLVED_ROW)
     return Part(
         name=spec.solver,
         on=True,

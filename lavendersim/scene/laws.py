@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from typing import Any, Final
 
-from lavendersim.engine.effects import EFFECTS, BodyFacts, Facts, PairFacts
+from lavendersim.engine.effects import BY_NAME, BodyFacts, Facts, PairFacts
 
-BY_NAME: Final = {effect.NAME: effect for effect in EFFECTS}
 # A scene in which boxes fall, touch and rub: what is off there, the numerics have switched off.
 BUSY: Final[dict[str, Any]] = {
     "bodies": tuple(
@@ -24,7 +23,8 @@ def needs(name: str) -> tuple[str, ...]:
     found: dict[str, None] = {}
     waiting = [name]
     while waiting:
-        for need in getattr(BY_NAME.get(waiting.pop()), "NEEDS", ()):
+        effect = BY_NAME.get(waiting.pop())
+        for need in effect.needs if effect else ():
             if need not in found:
                 found[need] = None
                 waiting.append(need)
@@ -33,17 +33,20 @@ def needs(name: str) -> tuple[str, ...]:
 
 def choice(name: str) -> tuple[str, str]:
     """Return the section and the key of a config that choose an effect; it is a law."""
-    effect = BY_NAME[name]
-    return getattr(effect, "CHOSEN_IN", "numerics"), effect.CHOSEN_BY
+    chosen = BY_NAME[name].chosen_by
+    if chosen is None:
+        raise ValueError(f"no key of a config chooses {name}")
+    return chosen.section, chosen.key
 
 
 def is_law(name: str) -> bool:
     """Whether a key of the config chooses an effect, and no coefficient turns it off."""
-    return hasattr(BY_NAME.get(name), "CHOSEN_BY")
+    effect = BY_NAME.get(name)
+    return effect is not None and effect.chosen_by is not None
 
 
 def has_law(name: str, facts: Facts) -> bool:
     """Whether an effect is no law that the numerics exclude: in some scene they would have it."""
     if not is_law(name):
         return True
-    return bool(BY_NAME[name].wanted(facts._replace(**BUSY)).on)
+    return bool(BY_NAME[name].decide(facts._replace(**BUSY)).on)

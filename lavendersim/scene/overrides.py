@@ -16,13 +16,13 @@ from typing import Any, Final, Literal, NamedTuple, get_args
 from lavendersim.cell.config import CellStudy
 from lavendersim.cell.numerics import Numerics
 from lavendersim.engine.collide import SHAPE_PAIRS
-from lavendersim.engine.effects import Decision, Facts, contact_log, pose_log, step_log
+from lavendersim.engine.effects import BY_NAME, Decision, Facts
 from lavendersim.errors import UsageError
 from lavendersim.quantities.found import nearest, quoted
 
-from .laws import BUSY, BY_NAME, choice, has_law, is_law, needs
+from .laws import BUSY, choice, has_law, is_law, needs
 
-_LOGS = (step_log.NAME, pose_log.NAME)  # without them nothing of a run can be read
+_LOGS = ("step_log", "pose_log")  # without them nothing of a run can be read
 
 # Sections of a config whose keys choose laws.
 SECTIONS: Final[dict[str, Any]] = {"numerics": Numerics, "study": CellStudy}
@@ -90,7 +90,7 @@ def _switch(
         return f"{reason} may touch; without it they would pass through each other"
     if name in _LOGS:
         return "a run without its log is no run; leave it on"
-    if name == contact_log.NAME:
+    if name == "contact_log":
         return "the sums in /step are those of the contacts that are logged; leave it on"
     if is_law(name):
         chooser = "the numerics choose" if choice(name)[0] == "numerics" else "the study chooses"
@@ -151,7 +151,7 @@ def _choosing(name: str, facts: Facts, on: bool) -> str:
     section, key = choice(name)
     annotation: Any = SECTIONS[section].model_fields[key].annotation
     for value in (False, True) if annotation is bool else get_args(annotation):
-        if BY_NAME[name].wanted(facts._replace(**BUSY, **{key: value})).on == on:
+        if BY_NAME[name].decide(facts._replace(**BUSY, **{key: value})).on == on:
             written = str(value).lower() if isinstance(value, bool) else value
             return f"`{section}: {{{key}: {written}}}`"
     return ""

@@ -95,7 +95,7 @@ def plan_of(resolved: dict[str, Any], record: bool = True, cell: CellName = ALON
     record: its steps are to be logged. Raises OverrideError where its `effects` cannot be.
     """
     facts = facts_of(resolved, record)
-    derived = {effect.NAME: effect.wanted(facts) for effect in EFFECTS}
+    derived = {effect.name: effect.decide(facts) for effect in EFFECTS}
     touching = _shape_pairs(facts)
     made = override(derived, touching, facts, resolved["effects"])
     numerics = resolved["numerics"]

@@ -26,7 +26,7 @@ import numpy as np
 
 from lavendersim.engine.collide.broad import broad_phase
 from lavendersim.engine.compile import compiling
-from lavendersim.engine.effects.broad_phase import BODY_FIELDS
+from lavendersim.engine.effects import BY_NAME
 from lavendersim.engine.records import (
     ANGULAR_VELOCITY,
     BODY,
@@ -55,7 +55,7 @@ class Cloud:
     def __init__(self, find: Any, radii: np.ndarray, side: float, rng: np.random.Generator) -> None:
         count = len(radii)
         self.find = find
-        self.bodies = np.zeros(count, dtype(BODY, BODY_FIELDS))
+        self.bodies = np.zeros(count, dtype(BODY, BY_NAME["broad_phase"].fields.body))
         self.velocities = np.zeros(count, dtype(VELOCITY, ANGULAR_VELOCITY))
         self.bodies["shape"], self.bodies["inv_m"] = SPHERE, 1.0
         self.bodies["hx"] = self.bodies["bound"] = radii

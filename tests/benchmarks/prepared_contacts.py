@@ -15,8 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from lavendersim.engine.compile import compiling
-from lavendersim.engine.effects import newton
-from lavendersim.engine.effects.residual_log import RESIDUAL_ROW_FIELDS
+from lavendersim.engine.effects import row_fields
 from lavendersim.engine.engine import Engine
 from lavendersim.engine.kernel_cache import cached
 from lavendersim.engine.records import dtype
@@ -59,7 +58,7 @@ def next_step(engine: Engine, spec: Spec) -> Prepared:
         engine.velocities.copy(),
         engine.parameters,
         engine.counters,
-        spec.without(newton.NAME)._replace(shape_pairs=()),
+        spec.without("newton")._replace(shape_pairs=()),
     )
 
 
@@ -117,7 +116,7 @@ class Solve:
         self._arguments = (
             self.contacts, prepared.order, self.count, prepared.bodies, self.velocities,
             self.space, self._parameters[0], self._counters[0],
-            np.zeros(0, dtype(RESIDUAL_ROW_FIELDS)),
+            np.zeros(0, dtype(row_fields(spec, "residual"))),
         )  # fmt: skip
         kernel = cached(SOLVERS[solver].make, spec)
         kernel._cache.anew = anew

@@ -10,7 +10,7 @@ from tests.benchmarks import effects
 
 # Laws that the chapter's numerics exclude, and what needs them.
 OTHER_LAWS = {"midpoint", "impact_time", "speculative", "newton", "fast_bodies", "impact_energy"}
-MISTAKES = {effect.NAME for effect in EFFECTS if hasattr(effect, "STUDY_ONLY")}
+MISTAKES = {effect.name for effect in EFFECTS if effect.study_only}
 LOGS = {"step_log", "pose_log", "contact_log", "residual_log", "problem_log"}
 
 

@@ -68,7 +68,7 @@ def test_switches_that_cannot_be_exit_2_and_leave_nothing(
 def test_a_pipe_gets_whole_lines(tmp_path: Path) -> None:
     lines = lavender("plan", STACK, where=tmp_path).stdout.splitlines()
     for effect in EFFECTS:
-        assert any(re.match(rf"{effect.NAME} +(on |off)  \S", line) for line in lines)
+        assert any(re.match(rf"{effect.name} +(on |off)  \S", line) for line in lines)
     assert any(line.endswith("friction; velocity 6: jxx jxy jxz jyy jyz jzz") for line in lines)
     assert lines[0] == "stack_of_six: 1 cell"
     assert not any(line != line.rstrip() for line in lines)
@@ -78,7 +78,7 @@ def test_json_has_all_that_the_table_has(drop: Path, tmp_path: Path) -> None:
     text = drop.read_text()
     drop.write_text(text[: text.index("measure:")] + SWEPT + "effects: {friction: on}\n")
     plan = json.loads(lavender("plan", drop, "--json", where=tmp_path).stdout)
-    assert list(plan["effects"]) == [effect.NAME for effect in EFFECTS]
+    assert list(plan["effects"]) == [effect.name for effect in EFFECTS]
     assert list(plan["shape_pairs"]) == list(SHAPE_PAIRS)
     assert plan["effects"]["restitution"]["called_for_by"] == [1, 2]
     assert plan["effects"]["restitution"]["callers"] == "called for by 2 of 3 cells: e=0.5; e=0.8"

@@ -21,7 +21,7 @@ from lavendersim.engine.spec import Spec
 from lavendersim.engine.step import is_compiled
 from lavendersim.scene.plan import plan_of
 
-MODULES = {effect.NAME: effect for effect in EFFECTS}
+MODULES = {effect.name: effect for effect in EFFECTS}
 # What lets a law in that the numerics or the study choose, by the key that its module names.
 LETS_IN = {
     "impacts": "at_surface",
@@ -42,7 +42,7 @@ PIECES = 12  # that state is looked at after so many parts of a run
 
 def closed(*names: str) -> set[str]:
     """Return the effects and all that they cannot be without."""
-    needed = {need for name in names for need in getattr(MODULES[name], "NEEDS", ())}
+    needed = {need for name in names for need in MODULES[name].needs}
     return {*names, *(closed(*needed) if needed else ())}
 
 
@@ -55,8 +55,8 @@ def may_idle(cell: dict[str, Any], name: str, record: bool = True) -> bool:
 
 
 def _is_let_in(cell: dict[str, Any], name: str) -> bool:
-    key = getattr(MODULES[name], "CHOSEN_BY", None)
-    return key is None or bool((cell["numerics"] | cell["study"])[key] == LETS_IN[key])
+    chosen = MODULES[name].chosen_by
+    return chosen is None or bool(cell[chosen.section][chosen.key] == LETS_IN[chosen.key])
 
 
 class Run:

@@ -27,7 +27,7 @@ OTHER_LAWS = {
 }
 # Every other effect and the shapes of most tests: one compilation serves them.
 EVERYTHING = Spec(
-    effects=tuple(sorted(effect.NAME for effect in EFFECTS if effect.NAME not in OTHER_LAWS)),
+    effects=tuple(sorted(effect.name for effect in EFFECTS if effect.name not in OTHER_LAWS)),
     shape_pairs=("box_box", "box_plane", "sphere_box", "sphere_plane", "sphere_sphere"),
     tolerance=True,
 )

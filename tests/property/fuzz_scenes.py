@@ -73,7 +73,7 @@ def _closed(names: set[str], numerics: dict[str, Any]) -> tuple[str, ...]:
 
 
 # Mistakes that are made on purpose break laws.
-EVERY = {effect.NAME for effect in EFFECTS if not hasattr(effect, "STUDY_ONLY")}
+EVERY = {effect.name for effect in EFFECTS if not effect.study_only}
 LAWS: dict[str, Any] = {
     "solver": "adaptive",
     "friction_cone": "disc",

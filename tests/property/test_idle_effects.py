@@ -89,7 +89,7 @@ def compiled(request: pytest.FixtureRequest) -> None:
 
 
 def test_every_effect_has_a_scene_that_does_not_call_for_it() -> None:
-    assert sorted(CASES) == sorted(effect.NAME for effect in EFFECTS)
+    assert sorted(CASES) == sorted(effect.name for effect in EFFECTS)
     assert all(CASES.values())
 
 

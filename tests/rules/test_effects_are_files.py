@@ -13,17 +13,16 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 import pytest
 from sources import ROOT
 
-from lavendersim.engine.effects import EFFECTS
+from lavendersim.engine.effects import EFFECTS, Effect
 from tests.drop_config import DROP
 
 LIST = "lavendersim/engine/effects/__init__.py"
-CHAINED = [effect for effect in EFFECTS if effect.STAGE in ("accelerate", "capture")]
+CHAINED = [effect for effect in EFFECTS if effect.hooks.accelerate or effect.hooks.capture]
 FACT = "a property of the scene, which predicates may ask for, has the same name"
 SHARED = "a property of pairs of surfaces, mixed for all effects alike, has the same name"
 ROW = "a soft row is a term in what every solver computes"
@@ -82,12 +81,9 @@ ELSEWHERE = {
 WIND = '''\
 """Wind: a force c (u - v) of air that moves at u along x, on every movable body."""
 
-from ..compile import kernel
 from .decision import Decision
+from .effect import Effect, Fields, Hooks, kernel
 
-NAME = "wind"
-STAGE = "accelerate"
-BODY_FIELDS = [("wind", "f8")]  # c [N s/m]
 SPEED = 3.0  # u [m/s]
 
 
@@ -95,7 +91,7 @@ def body_values(body):
     return {"wind": 0.4}
 
 
-def wanted(facts):
+def decide(facts):
     if facts.pairs:
         return Decision(True, f"{facts.pairs[0].b} stands in a wind of {SPEED:g} m/s")
     return Decision(False, "nothing stands in the wind")
@@ -106,6 +102,16 @@ def make(spec):
         velocity.vx += params.dt * body.inv_m * body.wind * (SPEED - velocity.vx)
 
     return kernel(wind, spec)
+
+
+EFFECT = Effect(
+    name="wind",
+    decide=decide,
+    per="body",
+    fields=Fields(body=[("wind", "f8")]),  # c [N s/m]
+    body_values=body_values,
+    hooks=Hooks(accelerate=make),
+)
 '''
 # Prints the plan's word on the wind, and the ball's velocity along x after each of 30 steps.
 BLOW = """
@@ -141,18 +147,18 @@ def names(file: Path) -> set[str]:
     return {name for name in found if isinstance(name, str)}
 
 
-@pytest.mark.parametrize("effect", CHAINED, ids=lambda effect: effect.NAME)
-def test_nothing_else_names_an_effect(effect: ModuleType) -> None:
-    own = {LIST, f"lavendersim/engine/effects/{effect.NAME}.py"}
+@pytest.mark.parametrize("effect", CHAINED, ids=lambda effect: effect.name)
+def test_nothing_else_names_an_effect(effect: Effect) -> None:
+    own = {LIST, f"lavendersim/engine/effects/{effect.name}.py"}
     files = [
         path for room in ("engine", "scene") for path in (ROOT / "lavendersim" / room).rglob("*.py")
     ]
     naming = {
         path.relative_to(ROOT / "lavendersim").as_posix()
         for path in files
-        if path.relative_to(ROOT).as_posix() not in own and effect.NAME in names(path)
+        if path.relative_to(ROOT).as_posix() not in own and effect.name in names(path)
     }
-    assert naming == set(ELSEWHERE.get(effect.NAME, ()))
+    assert naming == set(ELSEWHERE.get(effect.name, ()))
 
 
 class Copy:
@@ -171,8 +177,9 @@ class Copy:
         if listed:
             path = self.folder / LIST
             text = path.read_text()
-            assert text.count("    warm_start,\n") == 2  # imported, and listed
-            path.write_text(text.replace("    warm_start,\n", "    warm_start,\n    wind,\n"))
+            line = '    "warm_start",\n'
+            assert text.count(line) == 1
+            path.write_text(text.replace(line, f'{line}    "wind",\n'))
 
     def python(self, *arguments: Any) -> str:
         """Return what a Python process prints; -P: this copy, not the working directory's."""

@@ -4,20 +4,17 @@ from __future__ import annotations
 
 import ast
 from pathlib import Path
-from types import ModuleType
 
 import pytest
 from sources import ROOT, files
 
 from lavendersim.engine.collide import SHAPE_PAIRS
-from lavendersim.engine.effects import EFFECTS
+from lavendersim.engine.effects import CHAINED, EFFECTS, Effect, hook_names
 from lavendersim.engine.records import F8, I8, U8
 from lavendersim.engine.solvers import SOLVERS
 
 ENGINE = ROOT / "lavendersim/engine"
 LONGEST_FILE = 400  # lines; beyond it a file does more than one thing
-STAGES = {"accelerate", "capture", "collide", "integrate", "match", "project", "record", "solve"}
-CHAINED = {"accelerate", "capture"}  # every effect of these is called through `make`
 SHARED_BY_SOLVERS = {
     "row_update",
     "step_bound",
@@ -38,10 +35,6 @@ SHARED_BY_SOLVERS = {
 # where bounds break, and what the fuzz found is held to its laws (`tests/property`).
 CLAIMING = ("chapter", "hard", "paw_check", "scenes")
 CLAIMING_ELSE = {"maps", "found"}
-FIELD_GROUPS = (
-    *("BODY_FIELDS", "VELOCITY_FIELDS", "PAIR_FIELDS", "CONTACT_FIELDS", "CACHE_FIELDS"),
-    *("CONTACT_ROW_FIELDS", "STEP_ROW_FIELDS"),
-)
 
 
 def test_no_file_is_longer_than_the_limit() -> None:
@@ -74,22 +67,29 @@ def test_a_module_says_what_it_is_for(file: Path) -> None:
 
 
 def test_every_module_of_effects_is_listed_once() -> None:
-    stems = {path.stem for path in (ENGINE / "effects").glob("*.py")} - {"__init__", "decision"}
-    names = [effect.NAME for effect in EFFECTS]
+    stems = {path.stem for path in (ENGINE / "effects").glob("*.py")} - {
+        "__init__",
+        "decision",
+        "effect",
+    }
+    names = [effect.name for effect in EFFECTS]
     assert sorted(names) == sorted(stems)
 
 
-@pytest.mark.parametrize("effect", EFFECTS, ids=lambda effect: effect.NAME)
-def test_an_effect_has_what_the_step_asks_of_it(effect: ModuleType) -> None:
-    assert effect.__name__.endswith(f".{effect.NAME}")
-    assert effect.STAGE in STAGES
-    assert callable(effect.wanted)
-    if effect.STAGE in CHAINED:
-        assert callable(effect.make)
-    for group in FIELD_GROUPS:
-        for name, kind in getattr(effect, group, []):
-            assert name.isidentifier()
-            assert kind in (F8, I8, U8)
+@pytest.mark.parametrize("effect", EFFECTS, ids=lambda effect: effect.name)
+def test_fields_and_columns_of_an_effect_can_be_stored(effect: Effect) -> None:
+    own = effect.fields
+    fields = [*own.body, *own.velocity, *own.pair, *own.contact, *own.cache]
+    columns = [*effect.contact_columns, *effect.step_columns, *effect.residual_columns]
+    for name, kind in [*fields, *((column.name, column.kind) for column in columns)]:
+        assert name.isidentifier()
+        assert kind in (F8, I8, U8)
+
+
+@pytest.mark.parametrize("hook", [h for h in hook_names() if h not in CHAINED])
+def test_a_hook_that_is_called_once_is_had_by_one_effect(hook: str) -> None:
+    having = [effect.name for effect in EFFECTS if getattr(effect.hooks, hook)]
+    assert len(having) == 1
 
 
 def stems_of(folder: str) -> set[str]:

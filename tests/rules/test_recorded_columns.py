@@ -6,8 +6,7 @@ import re
 
 import pytest
 
-from lavendersim.engine.effects import EFFECTS, residual_log, step_log
-from lavendersim.engine.records import Field
+from lavendersim.engine.effects import EFFECTS, Column
 from lavendersim.trace.schema import CONTACT_COLUMNS, RESIDUAL_COLUMNS, STEP_COLUMNS
 
 UNIT = re.compile(r"\[[^]]+\]")
@@ -22,40 +21,37 @@ WITHOUT_UNIT = {
 OF_THE_MESSAGE = "step"
 
 
-def rows(group: str) -> list[Field]:
-    """Return the columns that all effects log."""
-    return [field for effect in EFFECTS for field in getattr(effect, group, [])]
-
-
-CONTACTS = rows("CONTACT_ROW_FIELDS")
-STEPS = [*rows("STEP_ROW_FIELDS"), *step_log.UNSOLVED_ROW]
-RESIDUALS = residual_log.RESIDUAL_ROW_FIELDS[1:]
+CONTACTS = [column for effect in EFFECTS for column in effect.contact_columns]
+STEPS = [column for effect in EFFECTS for column in effect.step_columns]
+RESIDUALS = [column for effect in EFFECTS for column in effect.residual_columns][1:]
 STEP = {column.name: column for column in STEP_COLUMNS}
 RESIDUAL = {column.name: column for column in RESIDUAL_COLUMNS}
 
 
-def names(rows: list[Field]) -> list[str]:
-    """Return the names of recorded fields."""
-    return [name for name, _ in rows]
+def names(columns: list[Column]) -> list[str]:
+    """Return the names of recorded columns."""
+    return [column.name for column in columns]
 
 
-@pytest.mark.parametrize("field", STEPS, ids=names(STEPS))
-def test_a_step_column_is_described_with_its_kind_and_unit(field: Field) -> None:
-    name, kind = field
-    assert STEP[name].kind == kind
-    assert bool(UNIT.search(STEP[name].meaning)) != (name in WITHOUT_UNIT)
+@pytest.mark.parametrize("column", STEPS, ids=names(STEPS))
+def test_a_step_column_is_described_with_its_kind_and_unit(column: Column) -> None:
+    known = STEP[column.name]
+    assert (known.kind, known.number, known.meaning) == (column.kind, column.number, column.text)
+    assert bool(UNIT.search(known.meaning)) != (column.name in WITHOUT_UNIT)
 
 
-@pytest.mark.parametrize("name", [name for name in names(CONTACTS) if name != OF_THE_MESSAGE])
-def test_a_contact_column_is_described_with_its_unit(name: str) -> None:
-    assert bool(UNIT.search(CONTACT_COLUMNS[name])) != (name in WITHOUT_UNIT)
+@pytest.mark.parametrize("column", CONTACTS, ids=names(CONTACTS))
+def test_a_contact_column_is_described_with_its_unit(column: Column) -> None:
+    assert bool(column.unit) != (column.name in WITHOUT_UNIT)
+    if column.name != OF_THE_MESSAGE:
+        assert CONTACT_COLUMNS[column.name] == column.text
 
 
-@pytest.mark.parametrize("field", RESIDUALS, ids=names(RESIDUALS))
-def test_a_residual_column_is_described_with_its_kind_and_unit(field: Field) -> None:
-    name, kind = field
-    assert RESIDUAL[name].kind == kind
-    assert bool(UNIT.search(RESIDUAL[name].meaning)) != (name in WITHOUT_UNIT)
+@pytest.mark.parametrize("column", RESIDUALS, ids=names(RESIDUALS))
+def test_a_residual_column_is_described_with_its_kind_and_unit(column: Column) -> None:
+    known = RESIDUAL[column.name]
+    assert (known.kind, known.number, known.meaning) == (column.kind, column.number, column.text)
+    assert bool(UNIT.search(known.meaning)) != (column.name in WITHOUT_UNIT)
 
 
 def test_numbers_of_step_columns_are_never_used_twice() -> None:

@@ -100,5 +100,5 @@ def test_equal_runs_of_a_free_body_give_equal_bytes(tmp_path: Path) -> None:
 
 
 def test_every_topic_of_the_log_belongs_to_one_effect() -> None:
-    topics = [topic for effect in EFFECTS for topic in getattr(effect, "CHANNELS", ())]
+    topics = [topic for effect in EFFECTS for topic in effect.channels or ()]
     assert sorted(topics) == sorted(CHANNELS)

@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import Any
 
 from ..compile import kernel
-from ..effects import sleeping
+from ..effects import made_once
 from ..records import TOUCHING
 from ..spec import Spec
 from . import SHAPE_PAIRS
@@ -58,7 +58,7 @@ def make(spec: Spec):
     swept_manifold: Any = make_swept_manifold(spec, manifold) if sweeps else None
     share = 0.5 if spec.has("midpoint") else 1.0
     compound = spec.has("compound")
-    sleeps, still = spec.made(sleeping, "make_still")
+    sleeps, still = made_once(spec, "is_still")
 
     def narrow_phase(bodies, motion, pairs, listed, contacts, points, normal, scratch, dt):
         total = 0

@@ -1,126 +1,116 @@
-"""Effects: one file each, with its predicate, its one-sentence reason, its fields and its kernels.
+"""Effects: one file each, which declares the whole effect (`effect.Effect`), and one line here.
 
-An effect's module has
-    NAME, STAGE        what it is called in plans; where in the step its kernel runs
-    wanted(facts)      Decision: does this scene call for it, and why, in the scene's own words
-    make(spec)         its kernel, where the step calls one
-and, where there is need,
-    NEEDS              effects without which it cannot be
-    CHOSEN_BY          the key of the numerics that chooses it: a law, no coefficient turns it off
-    CHOSEN_IN          the section of that key, where it is another one
-    STUDY_ONLY         of a mistake on purpose, what it does: every run that has it says so
-    BODY_FIELDS, VELOCITY_FIELDS, PAIR_FIELDS, CONTACT_FIELDS, CACHE_FIELDS   columns it brings
-    contact_fields(spec)   columns of contacts that depend on other effects
-    body_values(body)  values of its BODY_FIELDS for one body of a resolved config, by name
-    CONTACT_ROW_FIELDS with make_log(spec) -> kernel(out, contact, va, vb)
-    STEP_ROW_FIELDS    with make_step_log(spec) -> kernel(row, bodies, counters)
-    CHANNELS           of the log
-Stages:
-    accelerate   kernel(body, velocity, params), before contacts are completed
-    capture      kernel(contact, pair, params), once per contact and step
-    collide, integrate, match, project, record, solve   called by name from the step and the solver
-
-An effect of the first two stages is its file and its name in EFFECTS, nothing else: see `drag`.
+The step is composed of the kernels that the effects of a `Spec` have for its hooks (`Hooks`).
 """
 
-from typing import Any
+from importlib import import_module
+from typing import Any, Final, Literal
 
 from ..records import Field
 from ..spec import Spec
-from . import (
-    broad_phase,
-    capture_in_sweeps,
-    compliance,
-    compound,
-    contact_log,
-    contact_torque,
-    drag,
-    external_force,
-    fast_bodies,
-    friction,
-    gravity,
-    gyroscopic,
-    impact_energy,
-    impact_time,
-    kinematic,
-    midpoint,
-    newton,
-    pose_log,
-    problem_log,
-    projection,
-    residual_log,
-    restitution,
-    rolling_friction,
-    rotation,
-    sleeping,
-    smooth_contact,
-    speculative,
-    stabilisation,
-    step_log,
-    surface_velocity,
-    torsional_friction,
-    warm_start,
-)
 from .decision import BodyFacts, Decision, Facts, PairFacts
+from .effect import CHAINED, Column, Effect, Hooks, hook_names
 
-# Order matters within a stage: kernels of one stage run in this order.
-EFFECTS = (
-    compound,
-    broad_phase,
-    gravity,
-    external_force,
-    drag,
-    rotation,
-    gyroscopic,
-    kinematic,
-    contact_torque,
-    smooth_contact,
-    friction,
-    torsional_friction,
-    rolling_friction,
-    surface_velocity,
-    midpoint,
-    impact_time,
-    speculative,
-    fast_bodies,
-    restitution,
-    capture_in_sweeps,
-    impact_energy,
-    stabilisation,
-    compliance,
-    warm_start,
-    newton,
-    projection,
-    sleeping,
-    step_log,
-    pose_log,
-    contact_log,
-    residual_log,
-    problem_log,
+# Order matters within a hook: kernels of one hook run in this order.
+NAMES: Final = (
+    "compound",
+    "broad_phase",
+    "gravity",
+    "external_force",
+    "drag",
+    "rotation",
+    "gyroscopic",
+    "kinematic",
+    "contact_torque",
+    "smooth_contact",
+    "friction",
+    "torsional_friction",
+    "rolling_friction",
+    "surface_velocity",
+    "midpoint",
+    "impact_time",
+    "speculative",
+    "fast_bodies",
+    "restitution",
+    "capture_in_sweeps",
+    "impact_energy",
+    "stabilisation",
+    "compliance",
+    "warm_start",
+    "newton",
+    "projection",
+    "sleeping",
+    "step_log",
+    "pose_log",
+    "contact_log",
+    "residual_log",
+    "problem_log",
+)
+EFFECTS: Final[tuple[Effect, ...]] = tuple(
+    import_module(f".{name}", __name__).EFFECT for name in NAMES
 )
 
 
-def made_by(spec: Spec, maker: str, stage: str | None = None) -> list[Any]:
-    """Return the kernels that a maker makes of every effect of `spec` that has it, in order."""
-    return [
-        getattr(effect, maker)(spec)
-        for effect in EFFECTS
-        if spec.has(effect.NAME) and hasattr(effect, maker) and stage in (None, effect.STAGE)
-    ]
+BY_NAME: Final = {effect.name: effect for effect in EFFECTS}
+
+
+def effects_of(spec: Spec) -> list[Effect]:
+    """Return the effects of an engine, in order."""
+    return [effect for effect in EFFECTS if spec.has(effect.name)]
+
+
+def made_by(spec: Spec, hook: str) -> list[Any]:
+    """Return the kernels that the effects of `spec` have for a hook, in order."""
+    makers = [getattr(effect.hooks, hook) for effect in effects_of(spec)]
+    return [make(spec) for make in makers if make is not None]
+
+
+def made_once(spec: Spec, hook: str, *others: Any) -> tuple[bool, Any]:
+    """Return whether an effect of `spec` has a hook that only one has, and its kernel.
+
+    others: what its maker is given beside the spec.
+    """
+    for effect in effects_of(spec):
+        make = getattr(effect.hooks, hook)
+        if make is not None:
+            return True, make(spec, *others)
+    return False, None
 
 
 def surface_fields(spec: Spec) -> list[Field]:
     """Return the columns that surfaces bring to pairs."""
-    extra = [getattr(e, "PAIR_FIELDS", []) for e in EFFECTS if spec.has(e.NAME)]
-    return [field for fields in extra for field in fields]
+    return [field for effect in effects_of(spec) for field in effect.fields.pair]
+
+
+def columns_of(spec: Spec, row: Literal["contact", "step", "residual"]) -> list[Column]:
+    """Return the columns of a log row: the log's own, then those of the effects of `spec`."""
+    log = BY_NAME[f"{row}_log"]
+    effects = [log, *(effect for effect in effects_of(spec) if effect is not log)]
+    columns = [column for effect in effects for column in getattr(effect, f"{row}_columns")]
+    return [column for column in columns if column.when is None or column.when(spec)]
+
+
+def row_fields(spec: Spec, row: Literal["contact", "step", "residual"]) -> list[Field]:
+    """Return the fields of a log row."""
+    return [(column.name, column.kind) for column in columns_of(spec, row)]
 
 
 __all__ = [
+    "BY_NAME",
+    "CHAINED",
     "EFFECTS",
     "BodyFacts",
+    "Column",
     "Decision",
+    "Effect",
     "Facts",
+    "Hooks",
     "PairFacts",
+    "columns_of",
+    "effects_of",
+    "hook_names",
     "made_by",
+    "made_once",
+    "row_fields",
     "surface_fields",
 ]

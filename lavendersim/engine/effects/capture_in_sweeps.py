@@ -8,21 +8,15 @@ bounce back: every e ends at v_n = 0, as e = 0 does. With one sweep the mistake 
 does the residual show it: it is that of the row, in which nothing of the bounce is left.
 """
 
-from ..compile import kernel
 from .decision import Decision, Facts
+from .effect import Choice, Effect, Fields, Hooks, kernel
 
-NAME = "capture_in_sweeps"
-STAGE = "solve"
-NEEDS = ("restitution",)
-CHOSEN_BY = "mistake"
-CHOSEN_IN = "study"
 STUDY_ONLY = "restitution is captured anew in every sweep, which takes the bounce back"
-CONTACT_FIELDS = [("e", "f8")]  # coefficient of restitution of the pair [-]
 
 
-def wanted(facts: Facts) -> Decision:
+def decide(facts: Facts) -> Decision:
     """On when the section `study` asks for it and something bounces."""
-    if facts.mistake != NAME:
+    if facts.mistake != "capture_in_sweeps":
         return Decision(False, "restitution is captured once, before the solve")
     if any(pair.restitution > 0.0 for pair in facts.pairs):
         return Decision(True, f"study-only, a known mistake: {STUDY_ONLY}")
@@ -39,3 +33,17 @@ def make(spec):
         return w
 
     return kernel(capture_again, spec)
+
+
+EFFECT = Effect(
+    name="capture_in_sweeps",
+    decide=decide,
+    per="contact",
+    needs=("restitution",),
+    chosen_by=Choice("mistake", "study"),
+    study_only=STUDY_ONLY,
+    fields=Fields(
+        contact=[("e", "f8")],  # coefficient of restitution of the pair [-]
+    ),
+    hooks=Hooks(recapture=make),
+)

@@ -4,16 +4,11 @@ c is the sum over the two surfaces (in series) [m/N]; divided by dt^2, not dt: t
 velocities and its unknown an impulse, F = lambda/dt and d = c F.
 """
 
-from ..compile import kernel
 from .decision import Decision, Facts, by_pair
-
-NAME = "compliance"
-STAGE = "capture"
-PAIR_FIELDS = [("compliance", "f8")]  # c of the pair [m/N]
-CONTACT_FIELDS = [("gamma", "f8")]  # [1/kg]
+from .effect import Effect, Fields, Hooks, kernel
 
 
-def wanted(facts: Facts) -> Decision:
+def decide(facts: Facts) -> Decision:
     """On when a pair that may touch is compliant."""
     if any(pair.compliance > 0.0 for pair in facts.pairs):
         said = by_pair(
@@ -30,3 +25,15 @@ def make(spec):
         contact.gamma = pair.compliance / (params.dt * params.dt)
 
     return kernel(compliance, spec)
+
+
+EFFECT = Effect(
+    name="compliance",
+    decide=decide,
+    per="contact",
+    fields=Fields(
+        pair=[("compliance", "f8")],  # c of the pair [m/N]
+        contact=[("gamma", "f8")],  # [1/kg]
+    ),
+    hooks=Hooks(capture=make),
+)

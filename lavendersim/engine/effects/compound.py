@@ -6,27 +6,12 @@ Parts are rows of the body table behind all bodies; every other row is its own o
 
 from math import sqrt
 
-from ..compile import kernel
 from ..records import ORIENTED_BODY
-from ..rotation import orient, to_world
 from .decision import Decision, Facts, named
-
-NAME = "compound"
-STAGE = "collide"
-BODY_FIELDS = [
-    *ORIENTED_BODY,
-    ("owner", "i8"),  # row of the body that moves
-    ("px", "f8"),  # part: its centre in the owner's frame [m]
-    ("py", "f8"),
-    ("pz", "f8"),
-    ("pqw", "f8"),  # part to owner
-    ("pqx", "f8"),
-    ("pqy", "f8"),
-    ("pqz", "f8"),
-]
+from .effect import Effect, Fields, Hooks, kernel
 
 
-def wanted(facts: Facts) -> Decision:
+def decide(facts: Facts) -> Decision:
     """On when a body has parts."""
     whole = [body.name for body in facts.bodies if body.parts]
     if whole:
@@ -36,6 +21,7 @@ def wanted(facts: Facts) -> Decision:
 
 def make(spec):
     """Return `kernel(bodies)`: parts follow their owners."""
+    from ..rotation import orient, to_world
 
     def place_parts(bodies):
         for i in range(bodies.shape[0]):
@@ -55,3 +41,24 @@ def make(spec):
                 orient(part)
 
     return kernel(place_parts, spec)
+
+
+EFFECT = Effect(
+    name="compound",
+    decide=decide,
+    per="body",
+    fields=Fields(
+        body=[
+            *ORIENTED_BODY,
+            ("owner", "i8"),  # row of the body that moves
+            ("px", "f8"),  # part: its centre in the owner's frame [m]
+            ("py", "f8"),
+            ("pz", "f8"),
+            ("pqw", "f8"),  # part to owner
+            ("pqx", "f8"),
+            ("pqy", "f8"),
+            ("pqz", "f8"),
+        ],
+    ),
+    hooks=Hooks(place_parts=make),
+)

@@ -1,42 +1,15 @@
 """Contact log: `/contacts`, every contact of every step as the solve left it.
 
-What an effect adds to a contact it logs itself: CONTACT_ROW_FIELDS and `make_log` of its module.
+What an effect adds to a contact it logs itself: its `contact_columns` and its hook `contact_row`.
 """
 
-from ..compile import chain, kernel
-from ..records import TOUCHING, Field
-from ..residual import make_row_residual
+from ..records import TOUCHING
 from ..spec import Spec
-from ..violations import (
-    SIGNORINI_ROW,
-    make_forget,
-    make_log_signorini,
-    make_watch_coulomb,
-    make_watch_signorini,
-)
 from .decision import Decision, Facts
-
-NAME = "contact_log"
-STAGE = "record"
-NEEDS = ("step_log",)  # its kernel sums up contacts in the row of the step
-CHANNELS = ("/contacts", "/plot/force", "/plot/penetration", "/plot/log10_residual")
-CONTACT_ROW_FIELDS: list[Field] = [
-    *[(name, "i8") for name in ("step", "body_a", "body_b", "feature")],
-    *[(name, "f8") for name in ("x", "y", "z", "nx", "ny", "nz")],
-    ("separation", "f8"),  # phi [m]
-    ("penetration", "f8"),  # max(-phi, 0) [m]
-    ("approach_velocity", "f8"),  # v_n before the solve, negative when approaching [m/s]
-    ("normal_velocity", "f8"),  # v_n after the solve [m/s]
-    ("impulse_n", "f8"),  # [N s]
-    ("force_n", "f8"),  # impulse / dt [N]
-    ("inverse_effective_mass", "f8"),  # k_n [1/kg]
-    ("target", "f8"),  # b + b_rest: the row asked v_n + target + gamma lambda_n >= 0 [m/s]
-    ("residual", "f8"),  # of the row [m/s]
-]
-STEP_ROW_FIELDS = SIGNORINI_ROW
+from .effect import Column, Effect, Hooks, Kernel, kernel
 
 
-def wanted(facts: Facts) -> Decision:
+def decide(facts: Facts) -> Decision:
     """On when the run is logged and something can touch."""
     if not facts.record:
         return Decision(False, "nothing of the run is logged")
@@ -52,6 +25,10 @@ def make(spec: Spec, loggers):
     residual belong to the velocities and levers of the solve; turning changes both.
     rows: (step rows, pose rows, contact rows); the caller guarantees room.
     """
+    from ..compile import chain
+    from ..residual import make_row_residual
+    from ..violations import make_forget, make_watch_coulomb, make_watch_signorini
+
     ahead = spec.has("speculative")
     rubs, moving_surface = spec.has("friction"), spec.has("surface_velocity")
     row_residual, forget = make_row_residual(spec), make_forget(spec)
@@ -109,4 +86,55 @@ def make(spec: Spec, loggers):
     return kernel(log_contacts, spec)
 
 
-make_step_log = make_log_signorini
+def make_step_row(spec: Spec) -> Kernel:
+    """Return `kernel(row, bodies, counters)` that fills the columns of a step."""
+    from ..violations import make_log_signorini
+
+    return make_log_signorini(spec)
+
+
+EFFECT = Effect(
+    name="contact_log",
+    decide=decide,
+    per="contact",
+    needs=("step_log",),  # its kernel sums up contacts in the row of the step
+    contact_columns=(
+        Column("step", "i8", "index of the step"),
+        Column("body_a", "i8", "index of body A in the list of bodies"),
+        Column("body_b", "i8", "index of body B in the list of bodies"),
+        Column("feature", "i8", "which features of the two shapes touch; stable while they do"),
+        Column("x", "f8", "contact point, world x", "m"),
+        Column("y", "f8", "contact point, world y", "m"),
+        Column("z", "f8", "contact point, world z", "m"),
+        Column("nx", "f8", "unit normal from A to B, world x"),
+        Column("ny", "f8", "unit normal from A to B, world y"),
+        Column("nz", "f8", "unit normal from A to B, world z"),
+        Column("separation", "f8", "signed distance, negative inside", "m"),
+        Column("penetration", "f8", "max(-separation, 0)", "m"),
+        Column(
+            "approach_velocity", "f8", "normal velocity of B relative to A before the solve", "m/s"
+        ),
+        Column(
+            "normal_velocity", "f8", "normal velocity of B relative to A after the solve", "m/s"
+        ),
+        Column("impulse_n", "f8", "normal impulse on B", "N s"),
+        Column("force_n", "f8", "impulse_n / timestep: the step's average", "N"),
+        Column("inverse_effective_mass", "f8", "along the normal", "1/kg"),
+        Column(
+            "target", "f8", "b + b_rest: the row asked v_n + target + gamma impulse_n >= 0", "m/s"
+        ),
+        Column("residual", "f8", "natural-map residual after the solve", "m/s"),
+    ),
+    step_columns=(
+        Column(
+            "signorini",
+            "f8",
+            "largest |min((k_n + gamma) lambda_n, w_n)| of a contact",
+            "m/s",
+            number=21,
+        ),
+        Column("signorini_contact", "i8", "row of the contact that has it; -1 none", number=22),
+    ),
+    channels=("/contacts", "/plot/force", "/plot/penetration", "/plot/log10_residual"),
+    hooks=Hooks(log_contacts=make, step_row=make_step_row),
+)

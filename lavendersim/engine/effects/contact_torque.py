@@ -2,14 +2,11 @@
 
 from ..records import LEVER
 from .decision import Decision, Facts, named
+from .effect import Effect, Fields
 from .smooth_contact import has_smooth
 
-NAME = "contact_torque"
-STAGE = "solve"
-NEEDS = ("rotation",)
 
-
-def wanted(facts: Facts) -> Decision:
+def decide(facts: Facts) -> Decision:
     """On when a contact may push a movable body past its centre of mass."""
     if not facts.pairs:
         return Decision(False, "nothing can touch")
@@ -31,3 +28,14 @@ def wanted(facts: Facts) -> Decision:
 def contact_fields(spec):
     """Return the columns of a normal row; the blocks of friction have levers of their own."""
     return LEVER if has_smooth(spec) else []
+
+
+EFFECT = Effect(
+    name="contact_torque",
+    decide=decide,
+    per="contact",
+    needs=("rotation",),
+    fields=Fields(
+        contact_with=contact_fields,
+    ),
+)

@@ -11,25 +11,16 @@ from collections.abc import Mapping
 from math import sqrt
 from typing import Any
 
-from ..compile import kernel
-from ..rotation import to_body, to_world
 from .decision import Decision, Facts, named
-
-NAME = "drag"
-STAGE = "accelerate"
-BODY_FIELDS = [
-    ("drag_linear", "f8"),  # c1 [N s/m]
-    ("drag_quadratic", "f8"),  # c2 [N s^2/m^2]
-    ("drag_angular", "f8"),  # c [N m s]
-]
+from .effect import Effect, Fields, Hooks, kernel
 
 
 def body_values(body: Mapping[str, Any]) -> dict[str, float]:
-    """Return the values of BODY_FIELDS that a config states for a body."""
+    """Return the values of the body fields that a config states for a body."""
     return {f"drag_{name}": float(value) for name, value in body["drag"].items()}
 
 
-def wanted(facts: Facts) -> Decision:
+def decide(facts: Facts) -> Decision:
     """On when a movable body has a coefficient."""
     dragged = [
         body.name
@@ -43,6 +34,8 @@ def wanted(facts: Facts) -> Decision:
 
 def make(spec):
     """Return `kernel(body, velocity, params)`."""
+    from ..rotation import to_body, to_world
+
     turns = spec.has("rotation")
 
     def drag(body, velocity, params):
@@ -66,3 +59,19 @@ def make(spec):
                 )
 
     return kernel(drag, spec)
+
+
+EFFECT = Effect(
+    name="drag",
+    decide=decide,
+    per="body",
+    fields=Fields(
+        body=[
+            ("drag_linear", "f8"),  # c1 [N s/m]
+            ("drag_quadratic", "f8"),  # c2 [N s^2/m^2]
+            ("drag_angular", "f8"),  # c [N m s]
+        ],
+    ),
+    body_values=body_values,
+    hooks=Hooks(accelerate=make),
+)

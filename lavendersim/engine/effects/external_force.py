@@ -4,19 +4,11 @@
 Both act on the centre of mass, in world axes.
 """
 
-from ..compile import kernel
-from ..rotation import inverse_inertia_times
 from .decision import Decision, Facts, named
-
-NAME = "external_force"
-STAGE = "accelerate"
-BODY_FIELDS = [
-    *[(f"f{axis}", "f8") for axis in "xyz"],  # [N] world axes
-    *[(f"t{axis}", "f8") for axis in "xyz"],  # [N m]
-]
+from .effect import Effect, Fields, Hooks, kernel
 
 
-def wanted(facts: Facts) -> Decision:
+def decide(facts: Facts) -> Decision:
     """On when a force or a torque acts on a movable body at some time."""
     pushed = [body.name for body in facts.bodies if body.movable and (body.force or body.torque)]
     if pushed:
@@ -26,6 +18,8 @@ def wanted(facts: Facts) -> Decision:
 
 def make(spec):
     """Return `kernel(body, velocity, params)`."""
+    from ..rotation import inverse_inertia_times
+
     turns = spec.has("rotation")
 
     def external_force(body, velocity, params):
@@ -40,3 +34,17 @@ def make(spec):
             velocity.wz += z * params.dt
 
     return kernel(external_force, spec)
+
+
+EFFECT = Effect(
+    name="external_force",
+    decide=decide,
+    per="body",
+    fields=Fields(
+        body=[
+            *[(f"f{axis}", "f8") for axis in "xyz"],  # [N] world axes
+            *[(f"t{axis}", "f8") for axis in "xyz"],  # [N m]
+        ],
+    ),
+    hooks=Hooks(accelerate=make),
+)

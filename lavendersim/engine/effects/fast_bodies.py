@@ -13,15 +13,8 @@ is spared the search, by bounds that hold whatever the contacts do, for no conta
 from math import hypot, inf, sqrt
 
 from .decision import BodyFacts, Decision, Facts
+from .effect import Effect, Fields
 
-NAME = "fast_bodies"
-STAGE = "collide"
-NEEDS = ("speculative",)
-CONTACT_FIELDS = [
-    ("beside_x", "f8"),  # way of B relative to A across n until they meet [m]
-    ("beside_y", "f8"),
-    ("beside_z", "f8"),
-]
 # Share of the smaller bounding radius that a pair may close in a step before it is fast [-].
 FAST = 0.5
 # The bound on speeds is taken this many times, for what a solver's error may add to them [-].
@@ -30,7 +23,7 @@ SAFETY = 1.5
 LEVEL = 1e-9
 
 
-def wanted(facts: Facts) -> Decision:
+def decide(facts: Facts) -> Decision:
     """On when two bodies without a plane between them may come to close in fast."""
     if not facts.speculative:
         return Decision(False, "speculative is false")
@@ -120,3 +113,18 @@ def _kinetic_energy(body: BodyFacts) -> float:
     mass, spin = float(body.stated["mass"]), hypot(*body.stated["angular_velocity"])
     inertia = float(max(body.stated["inertia"]))
     return 0.5 * mass * body.speed**2 + 0.5 * inertia * spin**2
+
+
+EFFECT = Effect(
+    name="fast_bodies",
+    decide=decide,
+    per="body",
+    needs=("speculative",),
+    fields=Fields(
+        contact=[
+            ("beside_x", "f8"),  # way of B relative to A across n until they meet [m]
+            ("beside_y", "f8"),
+            ("beside_z", "f8"),
+        ],
+    ),
+)

@@ -6,41 +6,9 @@ taken in the contact frame. Bodies carry their world inverse inertia beside thei
 a sweep needs both and nothing else of a body.
 """
 
-from ..block import make_relative_velocity
-from ..compile import kernel
-from ..violations import COULOMB_ROW, make_log_coulomb
+from ..spec import Spec
 from .decision import Decision, Facts, PairFacts, by_pair
-
-NAME = "friction"
-STAGE = "solve"
-NEEDS = ("contact_torque", "rotation")
-PAIR_FIELDS = [("friction", "f8")]  # mu of the pair, the geometric mean of its surfaces' [-]
-VELOCITY_FIELDS = [(f"j{axes}", "f8") for axes in ("xx", "xy", "xz", "yy", "yz", "zz")]
-CONTACT_FIELDS = [
-    ("mu", "f8"),
-    *[(f"t{k}{axis}", "f8") for k in "12" for axis in "xyz"],  # tangents, n x t1 = t2
-    *[(f"r{body}{axis}", "f8") for body in "ab" for axis in "xyz"],  # centre to own surface [m]
-    ("k_n1", "f8"),  # entries of K in the frame (n, t1, t2) [1/kg]
-    ("k_n2", "f8"),
-    ("i_11", "f8"),  # inverse of the tangential 2x2 of K [kg]
-    ("i_12", "f8"),
-    ("i_22", "f8"),
-    ("k_t", "f8"),  # bound on the largest eigenvalue of that 2x2 [1/kg]
-    ("lambda_1", "f8"),  # accumulated impulse on B along t1, t2 [N s]
-    ("lambda_2", "f8"),
-]
-# Of the impulse on B along t1, t2; slip: tangential velocity of B's surface relative to A's after
-# the solve.
-CONTACT_ROW_FIELDS = [
-    ("impulse_t1", "f8"),  # [N s]
-    ("impulse_t2", "f8"),
-    ("slip_t1", "f8"),  # [m/s]
-    ("slip_t2", "f8"),
-    *[(f"t1{axis}", "f8") for axis in "xyz"],  # t2 = n x t1 [-]
-    ("friction", "f8"),  # mu [-]
-]
-STEP_ROW_FIELDS = COULOMB_ROW
-CACHE_FIELDS = [("px", "f8"), ("py", "f8"), ("pz", "f8")]  # tangential impulse, world axes [N s]
+from .effect import Column, Effect, Fields, Hooks, Kernel, kernel
 
 
 def _said(pair: PairFacts) -> str:
@@ -49,7 +17,7 @@ def _said(pair: PairFacts) -> str:
     return "resistance to turning acts in friction's frame" if pair.resists_turning else ""
 
 
-def wanted(facts: Facts) -> Decision:
+def decide(facts: Facts) -> Decision:
     """On when a pair that may touch has a positive coefficient, or resists turning without one."""
     if any(pair.friction > 0.0 or pair.resists_turning for pair in facts.pairs):
         return Decision(True, by_pair(facts.pairs, _said))
@@ -83,8 +51,10 @@ def make_refresh(spec):
     return kernel(refresh, spec)
 
 
-def make_log(spec):
-    """Return `kernel(out, contact, va, vb)` that fills CONTACT_ROW_FIELDS."""
+def make_contact_row(spec):
+    """Return `kernel(out, contact, va, vb)` that fills its columns of a contact."""
+    from ..block import make_relative_velocity
+
     relative_velocity = make_relative_velocity(spec)
 
     def log_friction(out, contact, va, vb):
@@ -98,4 +68,75 @@ def make_log(spec):
     return kernel(log_friction, spec)
 
 
-make_step_log = make_log_coulomb
+def make_step_row(spec: Spec) -> Kernel:
+    """Return `kernel(row, bodies, counters)` that fills the columns of a step."""
+    from ..violations import make_log_coulomb
+
+    return make_log_coulomb(spec)
+
+
+EFFECT = Effect(
+    name="friction",
+    decide=decide,
+    per="contact",
+    needs=("contact_torque", "rotation"),
+    fields=Fields(
+        velocity=[(f"j{axes}", "f8") for axes in ("xx", "xy", "xz", "yy", "yz", "zz")],
+        pair=[("friction", "f8")],  # mu of the pair, the geometric mean of its surfaces' [-]
+        contact=[
+            ("mu", "f8"),
+            *[(f"t{k}{axis}", "f8") for k in "12" for axis in "xyz"],  # tangents, n x t1 = t2
+            *[
+                (f"r{body}{axis}", "f8") for body in "ab" for axis in "xyz"
+            ],  # centre to own surface [m]
+            ("k_n1", "f8"),  # entries of K in the frame (n, t1, t2) [1/kg]
+            ("k_n2", "f8"),
+            ("i_11", "f8"),  # inverse of the tangential 2x2 of K [kg]
+            ("i_12", "f8"),
+            ("i_22", "f8"),
+            ("k_t", "f8"),  # bound on the largest eigenvalue of that 2x2 [1/kg]
+            ("lambda_1", "f8"),  # accumulated impulse on B along t1, t2 [N s]
+            ("lambda_2", "f8"),
+        ],
+        cache=[("px", "f8"), ("py", "f8"), ("pz", "f8")],  # tangential impulse, world axes [N s]
+    ),
+    contact_columns=(
+        Column("impulse_t1", "f8", "tangential impulse on B along t1", "N s"),
+        Column("impulse_t2", "f8", "tangential impulse on B along t2 = n x t1", "N s"),
+        Column(
+            "slip_t1",
+            "f8",
+            "tangential velocity of B relative to A after the solve, along t1",
+            "m/s",
+        ),
+        Column(
+            "slip_t2",
+            "f8",
+            "tangential velocity of B relative to A after the solve, along t2",
+            "m/s",
+        ),
+        Column("t1x", "f8", "first unit tangent, world x"),
+        Column("t1y", "f8", "first unit tangent, world y"),
+        Column("t1z", "f8", "first unit tangent, world z"),
+        Column("friction", "f8", "coefficient of the pair", "-"),
+    ),
+    step_columns=(
+        Column(
+            "cone",
+            "f8",
+            "largest |lambda_t| - mu lambda_n or -lambda_n of a contact",
+            "N s",
+            number=23,
+        ),
+        Column("cone_contact", "i8", "row of the contact that has it; -1 none", number=24),
+        Column(
+            "dissipation",
+            "f8",
+            "largest |lambda_t . w_t + mu lambda_n |w_t||, contacts",
+            "J",
+            number=25,
+        ),
+        Column("dissipation_contact", "i8", "row of the contact that has it; -1 none", number=26),
+    ),
+    hooks=Hooks(refresh_inertia=make_refresh, contact_row=make_contact_row, step_row=make_step_row),
+)

@@ -1,13 +1,10 @@
 """Gravity: v += g dt for every movable body, before contacts capture their approach velocity."""
 
-from ..compile import kernel
 from .decision import Decision, Facts
-
-NAME = "gravity"
-STAGE = "accelerate"
+from .effect import Effect, Hooks, kernel
 
 
-def wanted(facts: Facts) -> Decision:
+def decide(facts: Facts) -> Decision:
     """On when gravity is not zero."""
     if any(facts.gravity):
         return Decision(True, "gravity is ({:g}, {:g}, {:g}) m/s^2".format(*facts.gravity))
@@ -23,3 +20,11 @@ def make(spec):
         velocity.vz += params.gz * params.dt
 
     return kernel(gravity, spec)
+
+
+EFFECT = Effect(
+    name="gravity",
+    decide=decide,
+    per="body",
+    hooks=Hooks(accelerate=make),
+)

@@ -9,13 +9,9 @@ found by Newton's method.
 
 from math import sqrt
 
-from ..compile import kernel
-from ..rotation import inertia_times, to_body, to_world, turn
 from .decision import Decision, Facts, named
+from .effect import Effect, Hooks, kernel
 
-NAME = "gyroscopic"
-STAGE = "integrate"
-NEEDS = ("rotation",)
 # Newton doubles the digits in each pass: four serve any |omega| dt < 1. A body that has not found
 # its midpoint after these turns several radians a step, and the run ends: nothing here is true.
 PASSES = 20
@@ -23,7 +19,7 @@ PASSES = 20
 FOUND = 1e-28
 
 
-def wanted(facts: Facts) -> Decision:
+def decide(facts: Facts) -> Decision:
     """On when a movable body that may turn has unequal principal inertias."""
     uneven = [
         body.name
@@ -37,6 +33,7 @@ def wanted(facts: Facts) -> Decision:
 
 def make(spec):
     """Return `kernel(body, velocity, dt) -> solved` that replaces the plain turn."""
+    from ..rotation import to_body, to_world, turn
 
     def integrate_gyroscopic(body, velocity, dt):
         wx, wy, wz = velocity.wx, velocity.wy, velocity.wz
@@ -95,6 +92,7 @@ def make_jump(spec):
         beta dw . L + beta^2 dw . I dw / 2 = dw . L + dw . I_0 dw / 2,    L = I omega;
     a jump that takes all that its direction can take has no such root, and scales the spin instead.
     """
+    from ..rotation import inertia_times
 
     def jump(body, velocity, x, y, z, twice_spent):
         if body.inv_ix == body.inv_iy and body.inv_iy == body.inv_iz:
@@ -129,3 +127,12 @@ def make_jump(spec):
         velocity.wz = scale * (wz + share * z)
 
     return kernel(jump, spec)
+
+
+EFFECT = Effect(
+    name="gyroscopic",
+    decide=decide,
+    per="body",
+    needs=("rotation",),
+    hooks=Hooks(turn_uneven=make, add_spin=make_jump),
+)

@@ -11,26 +11,16 @@ from __future__ import annotations
 
 from typing import Any
 
-from ..block import make_relative_velocity
-from ..compile import kernel
 from ..spec import Spec
-from ..stronge import make_leave
 from .decision import Decision, Facts
+from .effect import Column, Effect, Fields, Hooks, kernel
 
-NAME = "impact_energy"
-STAGE = "solve"
-NEEDS = ("friction", "impact_time", "restitution")
-CONTACT_FIELDS = [
-    ("pre_1", "f8"),  # tangential velocity before the solve [m/s]
-    ("pre_2", "f8"),
-]
-STEP_ROW_FIELDS = [("stronge", "i8")]  # 1 when Stronge's law took the place of Newton's
 # Gain, relative to the work's own size, that is round-off.
 ROUND_OFF = 1e-13
 HALVINGS = 60
 
 
-def wanted(facts: Facts) -> Decision:
+def decide(facts: Facts) -> Decision:
     """On where impacts at the surface may bounce and rub."""
     if facts.impacts != "at_surface":
         return Decision(False, f"impacts are {facts.impacts}")
@@ -48,6 +38,8 @@ def wanted(facts: Facts) -> Decision:
 
 def make_note(spec: Spec) -> Any:
     """Return `kernel(contact, va, vb)`: tangential velocities before the solve."""
+    from ..block import make_relative_velocity
+
     relative_velocity = make_relative_velocity(spec)
 
     def note(contact, va, vb):
@@ -65,6 +57,9 @@ def make_settle(spec: Spec, solve: Any, classify: Any) -> Any:
 
     Called after `solve`; sets counters.stronge to 1 where it took Stronge's law.
     """
+    from ..block import make_relative_velocity
+    from ..stronge import make_leave
+
     relative_velocity = make_relative_velocity(spec)
     leave = make_leave(spec)
     some_smooth = spec.has("smooth_contact")
@@ -162,10 +157,28 @@ def make_settle(spec: Spec, solve: Any, classify: Any) -> Any:
     return kernel(settle, spec)
 
 
-def make_step_log(spec: Spec) -> Any:
-    """Return `kernel(row, bodies, counters)` that fills STEP_ROW_FIELDS."""
+def make_step_row(spec: Spec) -> Any:
+    """Return `kernel(row, bodies, counters)` that fills its columns of a step."""
 
     def log_stronge(row, bodies, counters):
         row.stronge = counters.stronge
 
     return kernel(log_stronge, spec)
+
+
+EFFECT = Effect(
+    name="impact_energy",
+    decide=decide,
+    per="contact",
+    needs=("friction", "impact_time", "restitution"),
+    fields=Fields(
+        contact=[
+            ("pre_1", "f8"),  # tangential velocity before the solve [m/s]
+            ("pre_2", "f8"),
+        ],
+    ),
+    step_columns=(
+        Column("stronge", "i8", "1 when Stronge's law of restitution replaced Newton's", number=19),
+    ),
+    hooks=Hooks(note_slip=make_note, limit_impacts=make_settle, step_row=make_step_row),
+)

@@ -11,27 +11,15 @@ it would end within the step is no flight: the contact is then a plastic one.
 
 from math import sqrt
 
-from ..compile import kernel
 from ..records import TOUCHING
 from .decision import Decision, Facts
+from .effect import Choice, Effect, Fields, Hooks, kernel
 
-NAME = "impact_time"
-STAGE = "solve"
-CHOSEN_BY = "impacts"
-CONTACT_FIELDS = [
-    ("dv_n", "f8"),  # change of v_n by forces in this step [m/s]
-    ("e", "f8"),  # coefficient of restitution of the pair [-]
-    ("tau", "f8"),  # when the surfaces meet, from the start of the step; dt: not in it [s]
-    ("hit", "f8"),  # speed at which they meet [m/s]
-    ("up", "f8"),  # speed at which they leave, by Newton's law [m/s]
-    ("after", "f8"),  # what forces add to v_n from then to the end of the step [m/s]
-    ("struck", "i8"),  # 1 where the impact sets the row's target
-]
 # Slower than so many times what forces change in a step, surfaces come to rest, they do not hit.
 SLOWEST = 4.0
 
 
-def wanted(facts: Facts) -> Decision:
+def decide(facts: Facts) -> Decision:
     """On when the numerics ask for it and something can touch."""
     if facts.impacts != "at_surface":
         return Decision(False, f"impacts are {facts.impacts}")
@@ -107,3 +95,23 @@ def make_strike(spec):
                 contact.target = (gap - params.slop) / (dt - first)
 
     return kernel(strike, spec)
+
+
+EFFECT = Effect(
+    name="impact_time",
+    decide=decide,
+    per="contact",
+    chosen_by=Choice("impacts"),
+    fields=Fields(
+        contact=[
+            ("dv_n", "f8"),  # change of v_n by forces in this step [m/s]
+            ("e", "f8"),  # coefficient of restitution of the pair [-]
+            ("tau", "f8"),  # when the surfaces meet, from the start of the step; dt: not in it [s]
+            ("hit", "f8"),  # speed at which they meet [m/s]
+            ("up", "f8"),  # speed at which they leave, by Newton's law [m/s]
+            ("after", "f8"),  # what forces add to v_n from then to the end of the step [m/s]
+            ("struck", "i8"),  # 1 where the impact sets the row's target
+        ],
+    ),
+    hooks=Hooks(predict_impacts=make_strike),
+)

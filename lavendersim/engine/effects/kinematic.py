@@ -7,20 +7,28 @@ from collections.abc import Mapping
 from typing import Any
 
 from .decision import Decision, Facts, named
-
-NAME = "kinematic"
-STAGE = "integrate"
-BODY_FIELDS = [("kinematic", "i8")]  # 1: keeps its velocity
+from .effect import Effect, Fields
 
 
 def body_values(body: Mapping[str, Any]) -> dict[str, bool]:
-    """Return the value of BODY_FIELDS that a config states for a body."""
+    """Return the value of the body fields that a config states for a body."""
     return {"kinematic": bool(body["kinematic"])}
 
 
-def wanted(facts: Facts) -> Decision:
+def decide(facts: Facts) -> Decision:
     """On when a body is kinematic."""
     told = [body.name for body in facts.bodies if body.kinematic]
     if told:
         return Decision(True, f"{named(told)}: moves as its velocity says")
     return Decision(False, "no body is kinematic")
+
+
+EFFECT = Effect(
+    name="kinematic",
+    decide=decide,
+    per="body",
+    fields=Fields(
+        body=[("kinematic", "i8")],  # 1: keeps its velocity
+    ),
+    body_values=body_values,
+)

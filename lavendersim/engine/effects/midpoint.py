@@ -5,21 +5,28 @@ A body that a contact holds moves with its new velocity, which is the one that r
 """
 
 from .decision import Decision, Facts
-
-NAME = "midpoint"
-STAGE = "integrate"
-CHOSEN_BY = "integrator"
-CONTACT_FIELDS = [("dv_n", "f8")]  # change of v_n by forces in this step [m/s]
+from .effect import Choice, Effect, Fields
 
 
-def wanted(facts: Facts) -> Decision:
+def decide(facts: Facts) -> Decision:
     """On when the numerics ask for it and something accelerates bodies between contacts."""
     if facts.integrator != "midpoint":
         return Decision(False, f"the integrator is {facts.integrator}")
     from . import EFFECTS  # by the time it is asked, all are there
 
     for effect in EFFECTS:
-        if effect.STAGE == "accelerate" and effect.wanted(facts).on:
-            name = effect.NAME.replace("_", " ")
+        if effect.hooks.accelerate and effect.decide(facts).on:
+            name = effect.name.replace("_", " ")
             return Decision(True, f"integrator is midpoint and {name} accelerates bodies")
     return Decision(False, "free bodies keep their velocity, any integrator moves them alike")
+
+
+EFFECT = Effect(
+    name="midpoint",
+    decide=decide,
+    per="body",
+    chosen_by=Choice("integrator"),
+    fields=Fields(
+        contact=[("dv_n", "f8")],  # change of v_n by forces in this step [m/s]
+    ),
+)

@@ -7,10 +7,8 @@ and the larger the ratio of masses. One row alone is solved by its first sweep.
 from ..records import Field
 from ..spec import Spec
 from .decision import Decision, Facts
+from .effect import Choice, Effect, Fields
 
-NAME = "newton"
-STAGE = "solve"
-CHOSEN_BY = "solver"
 FORCES = [
     *[
         (f"{name}_{axis}", "f8")
@@ -45,7 +43,7 @@ TORQUES = {  # by the effect that brings them: the same of psi, and the limits o
 ONE_POINT = {"sphere", "plane"}
 
 
-def wanted(facts: Facts) -> Decision:
+def decide(facts: Facts) -> Decision:
     """On where the solver is adaptive and some step may have two rows."""
     if facts.solver != "adaptive":
         return Decision(False, f"the solver is {facts.solver}")
@@ -68,3 +66,14 @@ def contact_fields(spec: Spec) -> list[Field]:
     """Return the columns of what is on its way: impulses, and the torques that there are."""
     torques = [field for effect, held in TORQUES.items() if spec.has(effect) for field in held]
     return [*FORCES, *torques]
+
+
+EFFECT = Effect(
+    name="newton",
+    decide=decide,
+    per="contact",
+    chosen_by=Choice("solver"),
+    fields=Fields(
+        contact_with=contact_fields,
+    ),
+)

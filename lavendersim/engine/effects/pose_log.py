@@ -1,15 +1,10 @@
 """Pose log: `/tf`, where every body is after every step, and `/robot_description` to draw it by."""
 
-from ..compile import kernel
 from .decision import Decision, Facts
-
-NAME = "pose_log"
-STAGE = "record"
-CHANNELS = ("/robot_description", "/tf")
-POSE_ROW_FIELDS = [(name, "f8") for name in ("x", "y", "z", "qw", "qx", "qy", "qz")]
+from .effect import Effect, Hooks, kernel
 
 
-def wanted(facts: Facts) -> Decision:
+def decide(facts: Facts) -> Decision:
     """On when the run is logged."""
     if facts.record:
         return Decision(True, "the run is logged")
@@ -26,3 +21,12 @@ def make(spec):
             row[3], row[4], row[5], row[6] = body.qw, body.qx, body.qy, body.qz
 
     return kernel(log_pose, spec)
+
+
+EFFECT = Effect(
+    name="pose_log",
+    decide=decide,
+    per="body",
+    channels=("/robot_description", "/tf"),
+    hooks=Hooks(log_pose=make),
+)

@@ -6,15 +6,11 @@ kept. The rest of the problem stands in the contacts when the step is over (`ass
 impacts are settled by several solves, theirs is the last one's target, and its impulses.
 """
 
-from ..compile import kernel
 from .decision import Decision, Facts
-
-NAME = "problem_log"
-STAGE = "record"
-CHANNELS = ()  # its files stand beside the log
+from .effect import Effect, Hooks, kernel
 
 
-def wanted(facts: Facts) -> Decision:
+def decide(facts: Facts) -> Decision:
     """On when the config asks for the contact problems of some steps, and there are any."""
     if not facts.record:
         return Decision(False, "nothing of the run is logged")
@@ -33,3 +29,12 @@ def make(spec):
             free[i] = velocities[i]
 
     return kernel(keep_free, spec)
+
+
+EFFECT = Effect(
+    name="problem_log",
+    decide=decide,
+    per="body",
+    channels=(),  # its files stand beside the log
+    hooks=Hooks(keep_free=make),
+)

@@ -10,20 +10,11 @@ and dropped.
 With every target at zero the solution is u = 0, and the pass ends before it begins.
 """
 
-from ..compile import kernel
-from ..contact import make_apply_impulse, make_normal_velocity
 from .decision import Decision, Facts
-
-NAME = "projection"
-STAGE = "project"
-CONTACT_FIELDS = [
-    ("correction", "f8"),  # asked change of separation in this step [m]
-    ("push", "f8"),  # accumulated pseudo-impulse [kg m]
-    ("inv_k_n", "f8"),  # 1/k_n, without compliance [kg]
-]
+from .effect import Effect, Fields, Hooks, kernel
 
 
-def wanted(facts: Facts) -> Decision:
+def decide(facts: Facts) -> Decision:
     """On when a share of the penetration is to be projected out."""
     if facts.projection > 0.0 and facts.pairs:
         return Decision(True, f"projection is {facts.projection:g} per step")
@@ -32,6 +23,8 @@ def wanted(facts: Facts) -> Decision:
 
 def make(spec):
     """Return `kernel(contacts, order, count, velocities, pseudo, params) -> sweeps spent`."""
+    from ..contact import make_apply_impulse, make_normal_velocity
+
     normal_velocity = make_normal_velocity(spec)
     apply_impulse = make_apply_impulse(spec)
     torque = spec.has("contact_torque")
@@ -81,3 +74,18 @@ def make(spec):
         return sweeps
 
     return kernel(project_positions, spec)
+
+
+EFFECT = Effect(
+    name="projection",
+    decide=decide,
+    per="contact",
+    fields=Fields(
+        contact=[
+            ("correction", "f8"),  # asked change of separation in this step [m]
+            ("push", "f8"),  # accumulated pseudo-impulse [kg m]
+            ("inv_k_n", "f8"),  # 1/k_n, without compliance [kg]
+        ],
+    ),
+    hooks=Hooks(project=make),
+)

@@ -6,15 +6,11 @@ ever. At the surface, `impact_time` applies the law itself and only takes the co
 and so does the mistake of `capture_in_sweeps`.
 """
 
-from ..compile import kernel
 from .decision import Decision, Facts, by_pair
-
-NAME = "restitution"
-STAGE = "capture"
-PAIR_FIELDS = [("restitution", "f8")]  # e of the pair, the larger of its surfaces' [-]
+from .effect import Effect, Fields, Hooks, kernel
 
 
-def wanted(facts: Facts) -> Decision:
+def decide(facts: Facts) -> Decision:
     """On when a pair that may touch has a positive coefficient."""
     if any(pair.restitution > 0.0 for pair in facts.pairs):
         said = by_pair(
@@ -36,3 +32,14 @@ def make(spec):
 
     elsewhere = spec.has("impact_time") or spec.has("capture_in_sweeps")
     return kernel(noted if elsewhere else captured, spec)
+
+
+EFFECT = Effect(
+    name="restitution",
+    decide=decide,
+    per="contact",
+    fields=Fields(
+        pair=[("restitution", "f8")],  # e of the pair, the larger of its surfaces' [-]
+    ),
+    hooks=Hooks(capture=make),
+)

@@ -10,40 +10,17 @@ psi_t: angular impulse on B [N m s]; a pair's c is the larger of its surfaces'. 
 
 from math import sqrt
 
-from ..compile import kernel
-from ..cone import project_disc
 from .decision import Decision, Facts, PairFacts, by_pair
+from .effect import Column, Effect, Fields, Hooks, kernel
 
-NAME = "rolling_friction"
-STAGE = "solve"
-NEEDS = ("friction",)
-PAIR_FIELDS = [("rolling_friction", "f8")]  # c of the pair [m]
-CONTACT_FIELDS = [
-    ("arm", "f8"),  # greatest distance to the centre of a movable body of the two [m]
-    ("rolling", "f8"),  # c [m]
-    ("h_11", "f8"),  # inverse of the tangential 2x2 of S [kg m^2]
-    ("h_12", "f8"),
-    ("h_22", "f8"),
-    ("k_roll", "f8"),  # largest eigenvalue of that 2x2 [1/(kg m^2)]
-    ("psi_1", "f8"),  # accumulated angular impulse on B about t1, t2 [N m s]
-    ("psi_2", "f8"),
-]
 # spin: angular velocity of B relative to A after the solve, about the tangents.
-CONTACT_ROW_FIELDS = [
-    ("angular_impulse_t1", "f8"),  # on B [N m s]
-    ("angular_impulse_t2", "f8"),
-    ("spin_t1", "f8"),  # [rad/s]
-    ("spin_t2", "f8"),
-    ("rolling_friction", "f8"),  # c of the pair [m]
-]
-CACHE_FIELDS = [("psi_x", "f8"), ("psi_y", "f8"), ("psi_z", "f8")]  # world axes [N m s]
 
 
 def _said(pair: PairFacts) -> str:
     return f"rolling friction {pair.rolling_friction:g} m" if pair.rolling_friction > 0.0 else ""
 
 
-def wanted(facts: Facts) -> Decision:
+def decide(facts: Facts) -> Decision:
     """On when a pair that may touch has a positive coefficient."""
     if any(pair.rolling_friction > 0.0 for pair in facts.pairs):
         return Decision(True, by_pair(facts.pairs, _said))
@@ -66,6 +43,7 @@ def make_complete(spec):
 
 def make_solve(spec):
     """Return `kernel(contact, w1, w2) -> changes of psi_1, psi_2`; w1, w2: omega_t [rad/s]."""
+    from ..cone import project_disc
 
     def solve_rolling(contact, w1, w2):
         limit = contact.rolling * contact.lambda_n
@@ -83,6 +61,7 @@ def make_solve(spec):
 
 def make_residual(spec):
     """Return `kernel(contact, w1, w2) -> r` [rad/s]: |k psi_t - proj(k psi_t - omega_t)|."""
+    from ..cone import project_disc
 
     def rolling_residual(contact, w1, w2):
         held_1, held_2 = contact.k_roll * contact.psi_1, contact.k_roll * contact.psi_2
@@ -94,8 +73,8 @@ def make_residual(spec):
     return kernel(rolling_residual, spec)
 
 
-def make_log(spec):
-    """Return `kernel(out, contact, va, vb)` that fills CONTACT_ROW_FIELDS."""
+def make_contact_row(spec):
+    """Return `kernel(out, contact, va, vb)` that fills its columns of a contact."""
 
     def log_rolling(out, contact, va, vb):
         x, y, z = vb.wx - va.wx, vb.wy - va.wy, vb.wz - va.wz
@@ -105,3 +84,48 @@ def make_log(spec):
         out.rolling_friction = contact.rolling
 
     return kernel(log_rolling, spec)
+
+
+EFFECT = Effect(
+    name="rolling_friction",
+    decide=decide,
+    per="contact",
+    needs=("friction",),
+    fields=Fields(
+        pair=[("rolling_friction", "f8")],  # c of the pair [m]
+        contact=[
+            ("arm", "f8"),  # greatest distance to the centre of a movable body of the two [m]
+            ("rolling", "f8"),  # c [m]
+            ("h_11", "f8"),  # inverse of the tangential 2x2 of S [kg m^2]
+            ("h_12", "f8"),
+            ("h_22", "f8"),
+            ("k_roll", "f8"),  # largest eigenvalue of that 2x2 [1/(kg m^2)]
+            ("psi_1", "f8"),  # accumulated angular impulse on B about t1, t2 [N m s]
+            ("psi_2", "f8"),
+        ],
+        cache=[("psi_x", "f8"), ("psi_y", "f8"), ("psi_z", "f8")],  # world axes [N m s]
+    ),
+    contact_columns=(
+        Column("angular_impulse_t1", "f8", "of rolling friction on B about t1", "N m s"),
+        Column("angular_impulse_t2", "f8", "of rolling friction on B about t2", "N m s"),
+        Column(
+            "spin_t1",
+            "f8",
+            "angular velocity of B relative to A after the solve, about t1",
+            "rad/s",
+        ),
+        Column(
+            "spin_t2",
+            "f8",
+            "angular velocity of B relative to A after the solve, about t2",
+            "rad/s",
+        ),
+        Column("rolling_friction", "f8", "coefficient of the pair", "m"),
+    ),
+    hooks=Hooks(
+        complete_rolling=make_complete,
+        solve_rolling=make_solve,
+        rolling_residual=make_residual,
+        contact_row=make_contact_row,
+    ),
+)

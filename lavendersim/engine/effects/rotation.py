@@ -1,19 +1,14 @@
 """Rotation: orientations change; something turns at the start or a contact exerts a torque."""
 
-from ..compile import kernel
 from ..records import ANGULAR_VELOCITY, ORIENTED_BODY
-from ..rotation import turn
 from .decision import BodyFacts, Decision, Facts, PairFacts, named
+from .effect import Effect, Fields, Hooks, kernel
 
-NAME = "rotation"
-STAGE = "integrate"
-BODY_FIELDS = [*ORIENTED_BODY, ("inv_ix", "f8"), ("inv_iy", "f8"), ("inv_iz", "f8")]
-VELOCITY_FIELDS = ANGULAR_VELOCITY
 # Bodies of one kind are alike to all others: a pair stands for all pairs of its two kinds.
 Kind = tuple[str, bool, str]
 
 
-def wanted(facts: Facts) -> Decision:
+def decide(facts: Facts) -> Decision:
     """On when a body spins at the start, is twisted, or can be turned by its contacts."""
     rubbing = _touched(facts, [pair for pair in facts.pairs if pair.friction > 0.0])
     resisting = _touched(facts, [pair for pair in facts.pairs if pair.resists_turning])
@@ -58,6 +53,7 @@ def _touched(facts: Facts, pairs: list[PairFacts]) -> set[Kind]:
 
 def make(spec):
     """Return `kernel(body, velocity, dt) -> solved`: turn by omega dt; omega stays."""
+    from ..rotation import turn
 
     def integrate_rotation(body, velocity, dt):
         wx, wy, wz = velocity.wx, velocity.wy, velocity.wz
@@ -67,3 +63,15 @@ def make(spec):
         return True
 
     return kernel(integrate_rotation, spec)
+
+
+EFFECT = Effect(
+    name="rotation",
+    decide=decide,
+    per="body",
+    fields=Fields(
+        body=[*ORIENTED_BODY, ("inv_ix", "f8"), ("inv_iy", "f8"), ("inv_iz", "f8")],
+        velocity=ANGULAR_VELOCITY,
+    ),
+    hooks=Hooks(turn=make),
+)

@@ -14,33 +14,17 @@ bodies. Nothing else can take its supports away: they are asleep with it, or fix
 from __future__ import annotations
 
 from math import sqrt
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import numpy as np
+if TYPE_CHECKING:
+    import numpy as np
 
-from ..compile import kernel
-from ..islands import make_label_islands
 from ..spec import Spec
 from .decision import Decision, Facts, named
-
-NAME = "sleeping"
-STAGE = "integrate"
-BODY_FIELDS = [
-    ("asleep", "i8"),  # 1: at rest, left out
-    ("island", "i8"),  # asleep: the number its island has in common
-    ("pace", "f8"),  # speed of its fastest point, at most, when the step begins [m/s]
-    ("rest", "f8"),  # how long it has been at rest [s]
-    ("own_inv_m", "f8"),  # asleep: what it weighs once awake
-    ("own_inv_ix", "f8"),
-    ("own_inv_iy", "f8"),
-    ("own_inv_iz", "f8"),
-]
+from .effect import Column, Effect, Fields, Hooks, kernel
 
 
-STEP_ROW_FIELDS = [("awake", "i8")]  # movable bodies that do not sleep
-
-
-def wanted(facts: Facts) -> Decision:
+def decide(facts: Facts) -> Decision:
     """On when the numerics ask for it and something can come to rest."""
     if not facts.sleeping:
         return Decision(False, "sleeping is false")
@@ -165,6 +149,8 @@ def make_doze(spec: Spec) -> Any:
     At the end of a step: who has been at rest for how long, and which islands fall asleep. `pace`
     is that of the step's begin: what counts is a step behind. island: (bodies,) int64, overwritten.
     """
+    from ..islands import make_label_islands
+
     turns = spec.has("rotation")
     keeps = any(spec.has(name) for name in ("speculative", "midpoint", "impact_time"))
     kinematic = spec.has("kinematic")
@@ -233,8 +219,8 @@ def make_doze(spec: Spec) -> Any:
     return kernel(doze, spec)
 
 
-def make_step_log(spec: Spec) -> Any:
-    """Return `kernel(row, bodies, counters)` that fills STEP_ROW_FIELDS."""
+def make_step_row(spec: Spec) -> Any:
+    """Return `kernel(row, bodies, counters)` that fills its columns of a step."""
 
     def log_awake(row, bodies, counters):
         row.awake = 0
@@ -243,3 +229,30 @@ def make_step_log(spec: Spec) -> Any:
                 row.awake += 1
 
     return kernel(log_awake, spec)
+
+
+EFFECT = Effect(
+    name="sleeping",
+    decide=decide,
+    per="body",
+    fields=Fields(
+        body=[
+            ("asleep", "i8"),  # 1: at rest, left out
+            ("island", "i8"),  # asleep: the number its island has in common
+            ("pace", "f8"),  # speed of its fastest point, at most, when the step begins [m/s]
+            ("rest", "f8"),  # how long it has been at rest [s]
+            ("own_inv_m", "f8"),  # asleep: what it weighs once awake
+            ("own_inv_ix", "f8"),
+            ("own_inv_iy", "f8"),
+            ("own_inv_iz", "f8"),
+        ],
+    ),
+    step_columns=(Column("awake", "i8", "number of movable bodies that do not sleep", number=20),),
+    hooks=Hooks(
+        measure_speeds=make_set_pace,
+        is_still=make_still,
+        wake=make_wake,
+        update_sleeping=make_doze,
+        step_row=make_step_row,
+    ),
+)

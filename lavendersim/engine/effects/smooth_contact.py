@@ -6,13 +6,10 @@ apart; a smooth one then costs, and gives, what it would in a scene without fric
 
 from typing import Any
 
-from ..compile import kernel
 from ..records import Field
 from ..spec import Spec
 from .decision import Decision, Facts, PairFacts, named
-
-NAME = "smooth_contact"
-STAGE = "solve"
+from .effect import Effect, Fields, kernel
 
 
 def is_smooth(pair: PairFacts) -> bool:
@@ -20,7 +17,7 @@ def is_smooth(pair: PairFacts) -> bool:
     return pair.friction == 0.0 and not pair.resists_turning
 
 
-def wanted(facts: Facts) -> Decision:
+def decide(facts: Facts) -> Decision:
     """On when a pair that may touch has no friction of any kind."""
     smooth = [f"{pair.a} and {pair.b}" for pair in facts.pairs if is_smooth(pair)]
     if smooth:
@@ -35,7 +32,7 @@ def contact_fields(spec: Spec) -> list[Field]:
 
 def has_smooth(spec: Spec) -> bool:
     """Whether an engine has contacts of a normal alone."""
-    return spec.has(NAME) or not spec.has("friction")
+    return spec.has("smooth_contact") or not spec.has("friction")
 
 
 def by_roughness(spec: Spec, make_smooth: Any, make_rough: Any) -> Any:
@@ -46,7 +43,7 @@ def by_roughness(spec: Spec, make_smooth: Any, make_rough: Any) -> Any:
     if not spec.has("friction"):
         return make_smooth(spec)
     rough = make_rough(spec)
-    if not spec.has(NAME):
+    if not spec.has("smooth_contact"):
         return rough
     smooth = make_smooth(spec)
 
@@ -58,3 +55,13 @@ def by_roughness(spec: Spec, make_smooth: Any, make_rough: Any) -> Any:
     either.__name__ = f"either_{smooth.__name__}"  # each has a symbol of its own
     either.__qualname__ += f"_{smooth.__name__}"
     return kernel(either, spec)
+
+
+EFFECT = Effect(
+    name="smooth_contact",
+    decide=decide,
+    per="contact",
+    fields=Fields(
+        contact_with=contact_fields,
+    ),
+)

@@ -7,15 +7,11 @@ within the slop of each other rest where they are: closing gaps of round-off siz
 stack moving.
 """
 
-from ..compile import kernel
 from .decision import Decision, Facts
-
-NAME = "speculative"
-STAGE = "capture"
-CHOSEN_BY = "speculative"
+from .effect import Choice, Effect, Hooks, kernel
 
 
-def wanted(facts: Facts) -> Decision:
+def decide(facts: Facts) -> Decision:
     """On when the numerics ask for it and something can touch."""
     if facts.speculative and facts.pairs:
         return Decision(True, "speculative is true")
@@ -40,3 +36,12 @@ def make(spec):
                     contact.target = max(contact.target, -contact.v_n_pre)
 
     return kernel(speculative, spec)
+
+
+EFFECT = Effect(
+    name="speculative",
+    decide=decide,
+    per="contact",
+    chosen_by=Choice("speculative"),
+    hooks=Hooks(capture=make),
+)

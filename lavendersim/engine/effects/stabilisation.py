@@ -1,13 +1,10 @@
 """Stabilisation: bias velocity b = -(beta/dt) max(d - slop, 0) that separates what penetrates."""
 
-from ..compile import kernel
 from .decision import Decision, Facts
-
-NAME = "stabilisation"
-STAGE = "capture"
+from .effect import Effect, Hooks, kernel
 
 
-def wanted(facts: Facts) -> Decision:
+def decide(facts: Facts) -> Decision:
     """On when the gain is positive."""
     gain = facts.stabilisation_gain
     if gain > 0.0 and facts.pairs:
@@ -24,3 +21,11 @@ def make(spec):
             contact.target -= params.stabilisation_gain / params.dt * excess
 
     return kernel(stabilisation, spec)
+
+
+EFFECT = Effect(
+    name="stabilisation",
+    decide=decide,
+    per="contact",
+    hooks=Hooks(capture=make),
+)

@@ -1,40 +1,14 @@
 """Step log: `/step`, the sums of every step: energy, momentum, residual, hash of the state.
 
-What an effect adds to a step it logs itself: STEP_ROW_FIELDS and `make_step_log` of its module.
+What an effect adds to a step it logs itself: its `step_columns` and its hook `step_row`.
 """
 
-from ..compile import chain, kernel
-from ..records import Field
-from ..rotation import inertia_times
 from ..spec import Spec
 from .decision import Decision, Facts
-
-NAME = "step_log"
-STAGE = "record"
-CHANNELS = ("/step",)
-STEP_ROW_FIELDS: list[Field] = [
-    ("step", "i8"),
-    ("contact_count", "i8"),
-    ("sweeps", "i8"),
-    ("residual_contact", "i8"),
-    ("total_normal_force", "f8"),  # sum over contacts [N]
-    ("max_penetration", "f8"),  # [m]
-    ("residual", "f8"),  # [m/s]
-    ("kinetic_energy", "f8"),  # [J]
-    ("potential_energy", "f8"),  # -m g . x, zero at the origin [J]
-    ("momentum_x", "f8"),  # [kg m/s]
-    ("momentum_y", "f8"),
-    ("momentum_z", "f8"),
-    ("angular_momentum_x", "f8"),  # about the origin [kg m^2/s]
-    ("angular_momentum_y", "f8"),
-    ("angular_momentum_z", "f8"),
-    ("state_hash", "u8"),  # of every body's pose and velocity
-]
-# Where a tolerance is asked for.
-UNSOLVED_ROW: list[Field] = [("unsolved", "i8")]  # 1 when the residual stayed above it
+from .effect import Column, Effect, Hooks, kernel
 
 
-def wanted(facts: Facts) -> Decision:
+def decide(facts: Facts) -> Decision:
     """On when the run is logged."""
     if facts.record:
         return Decision(True, "the run is logged")
@@ -48,6 +22,9 @@ def make(spec: Spec, log_pose, loggers):
     log more of a step. bits: uint64 views of the pose rows (n, bodies, 7) and the velocities
     (bodies, words), for the state hash. rows: (step rows, pose rows, contact rows) with room.
     """
+    from ..compile import chain
+    from ..rotation import inertia_times
+
     rotation, tolerance = spec.has("rotation"), spec.tolerance
     sleeps = spec.has("sleeping")
     speeds = 6 if rotation else 3  # vx vy vz, wx wy wz: the first words of a velocity record
@@ -118,3 +95,56 @@ def make(spec: Spec, log_pose, loggers):
         counters.contact_rows += row.contact_count
 
     return kernel(log_step, spec)
+
+
+EFFECT = Effect(
+    name="step_log",
+    decide=decide,
+    per="body",
+    step_columns=(
+        Column("step", "i8", "index of the step; 0 is the initial state", number=1),
+        Column("contact_count", "i8", "number of contacts", number=3),
+        Column("sweeps", "i8", "solver sweeps done", number=4),
+        Column("residual_contact", "i8", "row of the contact that has it; -1 none", number=6),
+        Column(
+            "total_normal_force",
+            "f8",
+            "sum of normal forces, each impulse / timestep",
+            "N",
+            number=7,
+        ),
+        Column("max_penetration", "f8", "deepest penetration", "m", number=8),
+        Column(
+            "residual", "f8", "largest residual over the contacts after the solve", "m/s", number=5
+        ),
+        Column("kinetic_energy", "f8", "kinetic energy of all movable bodies", "J", number=9),
+        Column("potential_energy", "f8", "potential energy under gravity", "J", number=10),
+        Column("momentum_x", "f8", "linear momentum, world x", "kg m/s", number=11),
+        Column("momentum_y", "f8", "linear momentum, world y", "kg m/s", number=12),
+        Column("momentum_z", "f8", "linear momentum, world z", "kg m/s", number=13),
+        Column(
+            "angular_momentum_x", "f8", "about the world origin, world x", "kg m^2/s", number=14
+        ),
+        Column(
+            "angular_momentum_y", "f8", "about the world origin, world y", "kg m^2/s", number=15
+        ),
+        Column(
+            "angular_momentum_z", "f8", "about the world origin, world z", "kg m^2/s", number=16
+        ),
+        Column(
+            "state_hash",
+            "u8",
+            "hash of positions and velocities; equal states, equal hashes",
+            number=17,
+        ),
+        Column(
+            "unsolved",
+            "i8",
+            "1 when the residual stayed above the tolerance asked for",
+            number=18,
+            when=lambda spec: spec.tolerance,
+        ),
+    ),
+    channels=("/step",),
+    hooks=Hooks(log_step=make),
+)

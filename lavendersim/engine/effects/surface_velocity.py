@@ -7,27 +7,17 @@ s_A, s_B in the bodies' frames [m/s]. Its part along the normal says nothing and
 from collections.abc import Mapping
 from typing import Any
 
-from ..compile import kernel
 from ..records import ORIENTED_BODY
-from ..rotation import to_world
 from .decision import Decision, Facts, named
-
-NAME = "surface_velocity"
-STAGE = "solve"
-NEEDS = ("friction",)
-BODY_FIELDS = [*ORIENTED_BODY, ("sx", "f8"), ("sy", "f8"), ("sz", "f8")]  # body's frame [m/s]
-CONTACT_FIELDS = [
-    ("surface_1", "f8"),  # velocity of B's surface in B relative to A's in A, along t1 [m/s]
-    ("surface_2", "f8"),
-]
+from .effect import Effect, Fields, Hooks, kernel
 
 
 def body_values(body: Mapping[str, Any]) -> dict[str, float]:
-    """Return the values of its own BODY_FIELDS that a config states for a body."""
+    """Return the values of its own the body fields that a config states for a body."""
     return dict(zip(("sx", "sy", "sz"), body["surface_velocity"], strict=True))
 
 
-def wanted(facts: Facts) -> Decision:
+def decide(facts: Facts) -> Decision:
     """On when a surface moves and some contact has friction."""
     moving = [body.name for body in facts.bodies if any(body.stated["surface_velocity"])]
     if not moving:
@@ -39,6 +29,7 @@ def wanted(facts: Facts) -> Decision:
 
 def make(spec):
     """Return `kernel(contact, body_a, body_b)`, once its tangents are set."""
+    from ..rotation import to_world
 
     def surface_velocity(contact, body_a, body_b):
         ax, ay, az = to_world(body_a, body_a.sx, body_a.sy, body_a.sz)
@@ -48,3 +39,23 @@ def make(spec):
         contact.surface_2 = contact.t2x * x + contact.t2y * y + contact.t2z * z
 
     return kernel(surface_velocity, spec)
+
+
+EFFECT = Effect(
+    name="surface_velocity",
+    decide=decide,
+    per="contact",
+    needs=("friction",),
+    fields=Fields(
+        body=[*ORIENTED_BODY, ("sx", "f8"), ("sy", "f8"), ("sz", "f8")],  # body's frame [m/s]
+        contact=[
+            (
+                "surface_1",
+                "f8",
+            ),  # velocity of B's surface in B relative to A's in A, along t1 [m/s]
+            ("surface_2", "f8"),
+        ],
+    ),
+    body_values=body_values,
+    hooks=Hooks(surface_velocity=make),
+)

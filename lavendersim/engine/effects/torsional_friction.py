@@ -7,26 +7,10 @@ psi_n: angular impulse on B [N m s]; a pair's c [m] is the larger of its surface
 no other friction: mu may be 0, friction's block is there for its frame.
 """
 
-from ..compile import kernel
 from .decision import Decision, Facts, PairFacts, by_pair
+from .effect import Column, Effect, Fields, Hooks, kernel
 
-NAME = "torsional_friction"
-STAGE = "solve"
-NEEDS = ("friction",)
-PAIR_FIELDS = [("torsional_friction", "f8")]  # c of the pair [m]
-CONTACT_FIELDS = [
-    ("arm", "f8"),  # greatest distance to the centre of a movable body of the two [m]
-    ("torsional", "f8"),  # c [m]
-    ("k_torsion", "f8"),  # inverse effective inertia about n [1/(kg m^2)]
-    ("psi_n", "f8"),  # accumulated angular impulse on B about n [N m s]
-]
 # spin: angular velocity of B relative to A after the solve, about the normal.
-CONTACT_ROW_FIELDS = [
-    ("angular_impulse_n", "f8"),  # on B [N m s]
-    ("spin_n", "f8"),  # [rad/s]
-    ("torsional_friction", "f8"),  # c of the pair [m]
-]
-CACHE_FIELDS = [("psi_n", "f8")]
 
 
 def _said(pair: PairFacts) -> str:
@@ -35,7 +19,7 @@ def _said(pair: PairFacts) -> str:
     )
 
 
-def wanted(facts: Facts) -> Decision:
+def decide(facts: Facts) -> Decision:
     """On when a pair that may touch has a positive coefficient."""
     if any(pair.torsional_friction > 0.0 for pair in facts.pairs):
         return Decision(True, by_pair(facts.pairs, _said))
@@ -78,8 +62,8 @@ def make_residual(spec):
     return kernel(torsion_residual, spec)
 
 
-def make_log(spec):
-    """Return `kernel(out, contact, va, vb)` that fills CONTACT_ROW_FIELDS."""
+def make_contact_row(spec):
+    """Return `kernel(out, contact, va, vb)` that fills its columns of a contact."""
 
     def log_torsion(out, contact, va, vb):
         x, y, z = vb.wx - va.wx, vb.wy - va.wy, vb.wz - va.wz
@@ -88,3 +72,37 @@ def make_log(spec):
         out.torsional_friction = contact.torsional
 
     return kernel(log_torsion, spec)
+
+
+EFFECT = Effect(
+    name="torsional_friction",
+    decide=decide,
+    per="contact",
+    needs=("friction",),
+    fields=Fields(
+        pair=[("torsional_friction", "f8")],  # c of the pair [m]
+        contact=[
+            ("arm", "f8"),  # greatest distance to the centre of a movable body of the two [m]
+            ("torsional", "f8"),  # c [m]
+            ("k_torsion", "f8"),  # inverse effective inertia about n [1/(kg m^2)]
+            ("psi_n", "f8"),  # accumulated angular impulse on B about n [N m s]
+        ],
+        cache=[("psi_n", "f8")],
+    ),
+    contact_columns=(
+        Column("angular_impulse_n", "f8", "of torsional friction on B about the normal", "N m s"),
+        Column(
+            "spin_n",
+            "f8",
+            "angular velocity of B relative to A after the solve, about the normal",
+            "rad/s",
+        ),
+        Column("torsional_friction", "f8", "coefficient of the pair", "m"),
+    ),
+    hooks=Hooks(
+        complete_torsion=make_complete,
+        solve_torsion=make_solve,
+        torsion_residual=make_residual,
+        contact_row=make_contact_row,
+    ),
+)

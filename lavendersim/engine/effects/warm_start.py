@@ -5,29 +5,11 @@ from body A, whose normal still points the same way. The same feature is preferr
 nearest unclaimed point serves. Rows of both lists are ordered by pair, so one walk matches all.
 """
 
-from ..compile import kernel
 from .decision import Decision, Facts
-
-NAME = "warm_start"
-STAGE = "match"
-CONTACT_FIELDS = [("matched", "i8")]  # 1 once it has taken a cached impulse
-CACHE_FIELDS = [
-    ("key", "i8"),  # of the pair
-    ("a", "u8"),  # bodies of the pair
-    ("b", "u8"),
-    ("feature", "i8"),
-    ("claimed", "i8"),  # 1 once a new contact has taken the impulse
-    ("rx", "f8"),  # contact point from the centre of A, world axes [m]
-    ("ry", "f8"),
-    ("rz", "f8"),
-    ("nx", "f8"),
-    ("ny", "f8"),
-    ("nz", "f8"),
-    ("lambda_n", "f8"),  # [N s], of a step of length counters.cached_dt
-]
+from .effect import Effect, Fields, Hooks, kernel
 
 
-def wanted(facts: Facts) -> Decision:
+def decide(facts: Facts) -> Decision:
     """On when the numerics ask for it and something can touch."""
     if facts.warm_start and facts.pairs:
         return Decision(True, "warm_start is true")
@@ -132,3 +114,28 @@ def make_store(spec):
         counters.cached_dt = params.dt
 
     return kernel(store_contacts, spec)
+
+
+EFFECT = Effect(
+    name="warm_start",
+    decide=decide,
+    per="contact",
+    fields=Fields(
+        contact=[("matched", "i8")],  # 1 once it has taken a cached impulse
+        cache=[
+            ("key", "i8"),  # of the pair
+            ("a", "u8"),  # bodies of the pair
+            ("b", "u8"),
+            ("feature", "i8"),
+            ("claimed", "i8"),  # 1 once a new contact has taken the impulse
+            ("rx", "f8"),  # contact point from the centre of A, world axes [m]
+            ("ry", "f8"),
+            ("rz", "f8"),
+            ("nx", "f8"),
+            ("ny", "f8"),
+            ("nz", "f8"),
+            ("lambda_n", "f8"),  # [N s], of a step of length counters.cached_dt
+        ],
+    ),
+    hooks=Hooks(match=make, store=make_store),
+)

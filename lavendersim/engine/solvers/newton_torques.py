@@ -13,7 +13,7 @@ from math import sqrt
 from typing import Any
 
 from ..compile import inner, kernel
-from ..effects import rolling_friction, torsional_friction
+from ..effects import made_once
 from ..spec import Spec
 from ..spin_block import make_apply_spin, resists_turning
 from .envelope import DOF
@@ -210,11 +210,10 @@ def make_put_torques(spec: Spec) -> Any:
     """Return `kernel(contact, va, vb)`: psi as answered, within what the new lambda_n allows."""
     if not resists_turning(spec):
         return None
-    torsional, rolling = spec.has("torsional_friction"), spec.has("rolling_friction")
     turn, apply_spin = make_turn(spec), make_apply_spin(spec)
     # An update without turning is the projection alone.
-    project_torsion = torsional_friction.make_solve(spec)
-    project_rolling = rolling_friction.make_solve(spec)
+    torsional, project_torsion = made_once(spec, "solve_torsion")
+    rolling, project_rolling = made_once(spec, "solve_rolling")
 
     def put_torques(contact, va, vb):
         n, one, two = turn(contact, 0.0)

@@ -26,7 +26,7 @@ from ..compile import kernel
 from ..cone import project_cone, project_disc, project_square
 from ..contact import make_smooth_impulse, make_smooth_velocity
 from ..coupling import make_add_rough, make_rough_velocity
-from ..effects import capture_in_sweeps
+from ..effects import made_once
 from ..effects.smooth_contact import by_roughness
 from ..spec import Spec
 from ..spin_block import make_solve_spin, resists_turning
@@ -45,7 +45,7 @@ def make_solve_contact_velocity(spec: Spec):
 
 def _make_normal(spec: Spec):
     compliant, relaxed = spec.has("compliance"), spec.over_relaxation
-    recaptures, capture_again = spec.made(capture_in_sweeps)
+    recaptures, capture_again = made_once(spec, "recapture")
     normal_velocity = make_smooth_velocity(spec)
     apply_impulse = make_smooth_impulse(spec)
 
@@ -98,7 +98,7 @@ def _make_give(spec: Spec):
 
 def _make_block(spec: Spec):
     compliant, relaxed = spec.has("compliance"), spec.over_relaxation
-    recaptures, capture_again = spec.made(capture_in_sweeps)
+    recaptures, capture_again = made_once(spec, "recapture")
     pyramid = spec.friction_cone == "pyramid"
     contact_velocity, give = make_rough_velocity(spec), _make_give(spec)
 
@@ -133,7 +133,7 @@ def _make_block(spec: Spec):
 
 def _make_convex(spec: Spec):
     compliant, relaxed = spec.has("compliance"), spec.over_relaxation
-    recaptures, capture_again = spec.made(capture_in_sweeps)
+    recaptures, capture_again = made_once(spec, "recapture")
     contact_velocity, give = make_rough_velocity(spec), _make_give(spec)
 
     def solve_contact_convex(contact, contacts, velocities, params):

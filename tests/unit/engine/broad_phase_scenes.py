@@ -17,7 +17,7 @@ import numpy as np
 
 from lavendersim.engine.collide.broad import broad_phase
 from lavendersim.engine.compile import compiling, kernel
-from lavendersim.engine.effects.broad_phase import BODY_FIELDS
+from lavendersim.engine.effects import BY_NAME
 from lavendersim.engine.kernel_cache import cached
 from lavendersim.engine.records import (
     ANGULAR_VELOCITY,
@@ -43,7 +43,7 @@ SURFACE = [("friction", "f8"), ("restitution", "f8")]
 MATERIALS = {PLANE: 0, COMPOUND: 0, SPHERE: 1, BOX: 2, CAPSULE: 3, CYLINDER: 4}
 GHOST = 5
 CLASSES = 6
-BODY_RECORD = dtype(BODY, ORIENTED_BODY, BODY_FIELDS, [("owner", "i8")])
+BODY_RECORD = dtype(BODY, ORIENTED_BODY, BY_NAME["broad_phase"].fields.body, [("owner", "i8")])
 _TEXT = hashlib.sha256(Path(__file__).read_bytes()).hexdigest()[:8]
 
 

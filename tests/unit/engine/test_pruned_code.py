@@ -35,10 +35,7 @@ AS_THE_COMPILER_LIKES = {"smooth_contact", "kinematic"}
 TOUCHING = {"impact_time": "balls", "speculative": "balls"}
 # Effects that call the kernel.
 CALLED_BY = {"pose_log": ("step_log",)}
-FIELD_GROUPS = (
-    *("BODY_FIELDS", "VELOCITY_FIELDS", "PAIR_FIELDS", "CONTACT_FIELDS", "CACHE_FIELDS"),
-    *("CONTACT_ROW_FIELDS", "STEP_ROW_FIELDS"),
-)
+RECORDS = ("body", "velocity", "pair", "contact", "cache", "contact_row", "step_row")
 
 
 def engines(name: str) -> tuple[dict[str, Any], Spec, Spec]:
@@ -65,7 +62,7 @@ def columns(cell: dict[str, Any], spec: Spec) -> dict[str, set[str]]:
     step_rows, _, contact_rows = engine._rows
     return {
         group: set(array.dtype.names or ()) if len(array) else set()
-        for group, array in zip(FIELD_GROUPS, (*arrays, contact_rows, step_rows), strict=True)
+        for group, array in zip(RECORDS, (*arrays, contact_rows, step_rows), strict=True)
     }
 
 
@@ -113,14 +110,14 @@ def _as_listed(kernel: tuple[str, str], listed: set[tuple[str, str]]) -> tuple[s
 def test_records_have_no_column_of_an_absent_effect(name: str) -> None:
     cell, lean, full = engines(name)
     before, after = columns(cell, lean), columns(cell, full)
-    for group in FIELD_GROUPS:
+    for group in RECORDS:
         elsewhere = {
             field
             for effect in EFFECTS
-            if lean.has(effect.NAME)
-            for field, _ in getattr(effect, group, ())
+            if lean.has(effect.name)
+            for field in effect.columns_by_record().get(group, ())
         }
-        own = {field for field, _ in getattr(MODULES[name], group, ())} - elsewhere
+        own = {*MODULES[name].columns_by_record().get(group, ())} - elsewhere
         assert own & before[group] == set()
         assert before[group] <= after[group]
         if after[group]:

@@ -20,16 +20,8 @@ from lavendersim.scene.plan import Plan, plan_of_cell
 
 CONFIGS = Path(__file__).parents[3] / "configs"
 NAMES = ("scenes/stack_of_six", "scenes/drop", "chapter/warm_start", "scenes/frictional_rod")
-# Groups that the contract of an effect's module lists, by what they are called in an explanation.
-GROUPS = {
-    "body": "BODY_FIELDS",
-    "velocity": "VELOCITY_FIELDS",
-    "pair": "PAIR_FIELDS",
-    "contact": "CONTACT_FIELDS",
-    "cache": "CACHE_FIELDS",
-    "contact_row": "CONTACT_ROW_FIELDS",
-    "step_row": "STEP_ROW_FIELDS",
-}
+# Records whose columns an effect lists, whatever else an engine has.
+RECORDS = ("body", "velocity", "pair", "cache", "contact_row")
 
 
 def plan(name: str) -> Plan:
@@ -46,7 +38,7 @@ def test_every_effect_and_pair_is_there_in_the_engines_order(
     explained: tuple[Plan, Explanation],
 ) -> None:
     _, said = explained
-    assert [part.name for part in said.effects] == [effect.NAME for effect in EFFECTS]
+    assert [part.name for part in said.effects] == [effect.name for effect in EFFECTS]
     assert [part.name for part in said.shape_pairs] == list(SHAPE_PAIRS)
     assert said.solver.name in SOLVERS
 
@@ -61,13 +53,13 @@ def test_what_is_on_is_the_spec(explained: tuple[Plan, Explanation]) -> None:
 def test_fields_and_channels_are_those_of_the_modules(explained: tuple[Plan, Explanation]) -> None:
     _, said = explained
     for effect, part in zip(EFFECTS, said.effects, strict=True):
-        for record, group in GROUPS.items():
-            stated = dict.fromkeys(name for name, _ in getattr(effect, group, []))
-            if record == "contact" and hasattr(effect, "contact_fields"):
-                continue  # depends on the spec
-            assert part.fields.get(record, []) == list(stated), (part.name, record)
-        assert part.channels == list(getattr(effect, "CHANNELS", ()))
-        assert part.needs == list(getattr(effect, "NEEDS", ()))
+        stated = effect.columns_by_record()
+        for record in RECORDS:
+            assert part.fields.get(record, []) == stated.get(record, []), (part.name, record)
+        assert set(stated.get("contact", [])) <= set(part.fields.get("contact", []))
+        assert set(stated.get("step_row", [])) <= set(part.fields.get("step_row", []))
+        assert part.channels == list(effect.channels or ())
+        assert part.needs == list(effect.needs)
 
 
 @pytest.mark.parametrize(
@@ -97,7 +89,7 @@ def test_every_composed_kernel_is_told(explained: tuple[Plan, Explanation]) -> N
 def test_what_is_off_brings_no_kernel(explained: tuple[Plan, Explanation]) -> None:
     _, said = explained
     assert all(part.kernels == {} for part in said.parts() if not part.on)
-    own = {f"effects.{e.__name__.rpartition('.')[2]}": e.NAME for e in EFFECTS}
+    own = {f"effects.{effect.name}": effect.name for effect in EFFECTS}
     for part in said.parts():
         assert {own[m] for m in part.kernels if m.startswith("effects.")} <= {part.name}
 

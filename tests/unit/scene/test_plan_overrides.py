@@ -8,6 +8,7 @@ from lavendersim.engine.collide import SHAPE_PAIRS
 from lavendersim.engine.effects import EFFECTS
 from lavendersim.errors import ConfigError
 from lavendersim.experiment import load_experiment_text
+from lavendersim.scene.laws import choice
 from lavendersim.scene.plan import Plan, plan_of_cell
 
 SCENE = """\
@@ -22,7 +23,7 @@ scene:
 numerics: {numerics}
 duration: 0.1
 """
-BY_NAME = {effect.NAME: effect for effect in EFFECTS}
+BY_NAME = {effect.name: effect for effect in EFFECTS}
 # Key of the numerics -> the value that the preset `default` has, and the first other one.
 LAWS = {
     "impacts": ("at_surface", "captured"),
@@ -30,14 +31,14 @@ LAWS = {
     "speculative": ("true", "false"),
     "solver": ("adaptive", "projected_gauss_seidel"),
 }
-LAWFUL = [effect.NAME for effect in EFFECTS if hasattr(effect, "CHOSEN_BY")]
+LAWFUL = [effect.name for effect in EFFECTS if effect.chosen_by]
 MISTAKE = "capture_in_sweeps"  # chosen by the study; all others by the numerics
 CHOSEN = [name for name in LAWFUL if name != MISTAKE]
 # Those of which something needs a law are refused with it, see below.
 IDLE = [
     name
     for name in (*BY_NAME, *SHAPE_PAIRS)
-    if not {name, *getattr(BY_NAME.get(name), "NEEDS", ())} & set(LAWFUL)
+    if not {name, *(BY_NAME[name].needs if name in BY_NAME else ())} & set(LAWFUL)
 ]
 
 
@@ -76,7 +77,7 @@ def test_whatever_is_no_law_can_be_switched_on(name: str) -> None:
         assert f"needed by {name}" in forced.decisions[other].reason
     assert set(forced.forced) == grown - before
     for other in forced.spec.effects:
-        assert set(getattr(BY_NAME[other], "NEEDS", ())) <= set(forced.spec.effects)
+        assert set(BY_NAME[other].needs) <= set(forced.spec.effects)
 
 
 def test_what_is_forced_on_says_what_the_scene_says() -> None:
@@ -140,7 +141,7 @@ def test_what_needs_it_can_be_switched_off_as_well() -> None:
 
 @pytest.mark.parametrize("name", CHOSEN)
 def test_a_law_is_chosen_by_the_numerics_alone(name: str) -> None:
-    key = BY_NAME[name].CHOSEN_BY
+    _, key = choice(name)
     chosen, other = LAWS[key]
     preset = f"{{{key}: {other}}}"
     text = config(f"{name}: on", mu=0.5, numerics=preset)

@@ -1,0 +1,159 @@
+"""Effect: one term of the physics or of the log, declared whole in one file of this folder.
+
+Each file ends with `EFFECT = Effect(...)`: when a scene requires it and why, the record fields, log
+columns and config keys that it brings, and its kernels by the hooks of the step that call them. The
+list in `effects/__init__.py` names the file; nothing else needs to.
+
+Declarations load without numba: a maker imports what its kernel is made of when it is called.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from dataclasses import fields as dataclass_fields
+from typing import Any, Final, Literal, NamedTuple
+
+from ..records import Field
+from ..spec import Spec
+from .decision import Decision, Facts
+
+Kernel = Any  # a compiled function
+Maker = Callable[..., Kernel]  # (spec, ...) -> kernel; what it is given beside the spec: see Hooks
+
+
+class Column(NamedTuple):
+    """One number of a log row."""
+
+    name: str
+    kind: str  # f8, i8 or u8
+    meaning: str
+    unit: str = ""  # "" where it is a count, an index, a hash or a direction
+    number: int = 0  # of the field in the messages of /step and /residuals; fixed for ever
+    when: Callable[[Spec], bool] | None = None  # the engines of the effect that log it; None: all
+
+    @property
+    def text(self) -> str:
+        """Meaning and unit."""
+        return f"{self.meaning} [{self.unit}]" if self.unit else self.meaning
+
+
+@dataclass(frozen=True, kw_only=True)
+class Fields:
+    """Columns of the engine's records that an effect brings."""
+
+    body: Sequence[Field] = ()
+    velocity: Sequence[Field] = ()
+    pair: Sequence[Field] = ()
+    contact: Sequence[Field] = ()
+    contact_with: Callable[[Spec], Sequence[Field]] | None = None  # that depend on other effects
+    cache: Sequence[Field] = ()  # of a contact, kept until the next step
+
+
+# Hooks that several effects may have.
+CHAINED: Final = ("accelerate", "capture", "contact_row", "step_row")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Hooks:
+    """Where the step calls an effect: makers of kernels, by the signatures of the kernels.
+
+    Several effects may have a hook of the first group (CHAINED); they run in the order of the list
+    EFFECTS. Of the second group one effect has each: the step is made with it or without it.
+    """
+
+    accelerate: Maker | None = None  # (body, velocity, params), before contacts are completed
+    capture: Maker | None = None  # (contact, pair, params), once per contact and step
+    contact_row: Maker | None = None  # (out, contact, va, vb): fills the columns of a contact
+    step_row: Maker | None = None  # (row, bodies, counters): fills the columns of a step
+
+    measure_speeds: Maker | None = None  # (bodies, velocities), before forces act
+    refresh_inertia: Maker | None = None  # (bodies, velocities), when forces have acted
+    place_parts: Maker | None = None  # (bodies), before collision detection
+    find_pairs: Maker | None = None  # the broad phase, see `collide.broad.broad_phase`
+    is_still: Maker | None = None  # (body) -> whether it cannot move in this step
+    wake: Maker | None = None  # (bodies, contacts, count, params) -> whether a body woke
+    surface_velocity: Maker | None = None  # (contact, body_a, body_b), once its tangents are set
+    complete_torsion: Maker | None = None  # (contact, pair, x, y, z): response to a unit psi_n
+    complete_rolling: Maker | None = None  # (contact, pair, k_11, k_12, k_22)
+    solve_torsion: Maker | None = None  # (contact, spin) -> change of psi_n
+    solve_rolling: Maker | None = None  # (contact, w1, w2) -> changes of psi_1, psi_2
+    torsion_residual: Maker | None = None  # (contact, spin) -> r [rad/s]
+    rolling_residual: Maker | None = None  # (contact, w1, w2) -> r [rad/s]
+    note_slip: Maker | None = None  # (contact, va, vb): tangential velocity before the solve
+    predict_impacts: Maker | None = None  # (contacts, count, motion, params), before the solve
+    keep_free: Maker | None = None  # (velocities, free), before any contact impulse acts
+    match: Maker | None = None  # (contacts, count, bodies, cache, counters, params)
+    recapture: Maker | None = None  # (contact, w, params) -> w, in every sweep
+    limit_impacts: Maker | None = None  # made with (spec, solve, classify); after the solve
+    log_contacts: Maker | None = None  # made with (spec, kernels of contact_row); after the solve
+    store: Maker | None = None  # (contacts, count, bodies, cache, counters, params)
+    project: Maker | None = None  # (contacts, order, count, velocities, pseudo, params) -> sweeps
+    turn: Maker | None = None  # (body, velocity, dt) -> whether the turn has a solution
+    turn_uneven: Maker | None = None  # the same for unequal principal inertias
+    add_spin: Maker | None = None  # (body, velocity, x, y, z, twice_spent): jump of spin
+    update_sleeping: Maker | None = None  # at the end of a step, see `sleeping`
+    log_pose: Maker | None = None  # (body, row)
+    log_step: Maker | None = None  # made with (spec, log_pose, kernels of step_row)
+
+
+class Choice(NamedTuple):
+    """The key of a config that chooses an effect: a law, which no coefficient turns off."""
+
+    key: str
+    section: str = "numerics"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Effect:
+    """A term of the physics or of the log; all there is to know of it outside its kernels."""
+
+    name: str  # that of its file
+    decide: Callable[[Facts], Decision]  # whether a scene requires it, and the reason
+    per: Literal["body", "contact"]  # what its cost grows with
+    needs: tuple[str, ...] = ()  # effects without which it cannot be
+    chosen_by: Choice | None = None
+    study_only: str = ""  # of a deliberate error, what it does: every run that has it says so
+    fields: Fields = Fields()
+    body_values: Callable[[Mapping[str, Any]], Mapping[str, Any]] | None = None  # of fields.body
+    contact_columns: tuple[Column, ...] = ()  # of /contacts
+    step_columns: tuple[Column, ...] = ()  # of /step
+    residual_columns: tuple[Column, ...] = ()  # of /residuals
+    channels: tuple[str, ...] | None = None  # of the log; None: it is no log
+    hooks: Hooks = Hooks()
+
+    def columns_by_record(self, spec: Spec | None = None) -> dict[str, list[str]]:
+        """Return the names of all columns that it brings: of records, and of log rows (`step_row`).
+
+        spec: with those that depend on what else an engine has.
+        """
+        own = self.fields
+        dependent = own.contact_with(spec) if spec and own.contact_with else ()
+        groups: dict[str, Sequence[Field]] = {
+            "body": own.body,
+            "velocity": own.velocity,
+            "pair": own.pair,
+            "contact": [*own.contact, *dependent],
+            "cache": own.cache,
+        }
+        found = {record: [name for name, _ in fields] for record, fields in groups.items()}
+        rows = {
+            "contact_row": self.contact_columns,
+            "step_row": self.step_columns,
+            "residual_row": self.residual_columns,
+        }
+        for row, columns in rows.items():
+            found[row] = [c.name for c in columns if c.when is None or (spec and c.when(spec))]
+        return {record: list(dict.fromkeys(names)) for record, names in found.items() if names}
+
+
+def hook_names() -> tuple[str, ...]:
+    """Return the names of all hooks of the step."""
+    return tuple(field.name for field in dataclass_fields(Hooks))
+
+
+def kernel(function: Callable[..., Any], spec: Spec) -> Kernel:
+    """Compile `function`, made for `spec`, for use inside other kernels."""
+    from ..compile import kernel as compiled  # numba
+
+    return compiled(function, spec)
