@@ -12,18 +12,18 @@ from pydantic import ValidationError
 
 from lavendersim.cell.config import CellConfig
 from lavendersim.errors import ConfigError, Defect
-from lavendersim.experiment.always_checks import check_always
-from lavendersim.experiment.messages import report_errors
-from lavendersim.experiment.models import CellSource
-from lavendersim.experiment.node import Node, Path, key_mark
-from lavendersim.experiment.placement import SceneError
-from lavendersim.experiment.references import check_names
-from lavendersim.experiment.report import Report
-from lavendersim.experiment.resolved import resolve_cell
-from lavendersim.experiment.run_checks import check_run
-from lavendersim.experiment.scene_checks import check_scene
-from lavendersim.experiment.study_checks import check_study
-from lavendersim.experiment.sweep import Point
+from lavendersim.experiment.checks.always import check_always
+from lavendersim.experiment.checks.messages import report_errors
+from lavendersim.experiment.checks.references import check_names
+from lavendersim.experiment.checks.run import check_run
+from lavendersim.experiment.checks.scene import check_scene
+from lavendersim.experiment.checks.study import check_study
+from lavendersim.experiment.models.experiment import CellSource
+from lavendersim.experiment.resolve.cell import resolve_cell
+from lavendersim.experiment.resolve.placement import SceneError
+from lavendersim.experiment.sweeps.axes import Point
+from lavendersim.experiment.text.node import Node, Path, key_mark
+from lavendersim.experiment.text.report import Report
 
 
 def check_cell(tree: Node, report: Report) -> None:

@@ -9,14 +9,14 @@ from typing import Any
 import yaml
 
 from lavendersim.cell.choices import NO_MISTAKE
-from lavendersim.experiment.always_specs import Always
 from lavendersim.experiment.cell import Cell
-from lavendersim.experiment.cost_specs import CostSpec
-from lavendersim.experiment.expect_specs import ExpectSpec
-from lavendersim.experiment.figure_specs import FigureSpec
-from lavendersim.experiment.measure_specs import MeasureSpec
-from lavendersim.experiment.models import ExperimentConfig
-from lavendersim.experiment.price_specs import PriceSpec
+from lavendersim.experiment.models.always import Always
+from lavendersim.experiment.models.cost import CostSpec
+from lavendersim.experiment.models.expect import ExpectSpec
+from lavendersim.experiment.models.experiment import ExperimentConfig
+from lavendersim.experiment.models.figure import FigureSpec
+from lavendersim.experiment.models.measures import MeasureSpec
+from lavendersim.experiment.models.overhead import PriceSpec
 
 
 @dataclass(frozen=True)

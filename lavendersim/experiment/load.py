@@ -13,17 +13,17 @@ from pathlib import Path
 from pydantic import ValidationError
 
 from lavendersim.errors import ConfigError, UsageError
-from lavendersim.experiment import sweep
 from lavendersim.experiment.cell import Cell, build_cell, check_cell
+from lavendersim.experiment.checks.messages import report_errors
+from lavendersim.experiment.checks.references import check_references, swept_values
 from lavendersim.experiment.experiment import Experiment
-from lavendersim.experiment.messages import report_errors
-from lavendersim.experiment.models import ExperimentConfig
-from lavendersim.experiment.node import Node, key_mark
-from lavendersim.experiment.parse import LARGEST_FILE, decode, parse
-from lavendersim.experiment.reduction import check_reduction, reduce
-from lavendersim.experiment.references import check_references, swept_values
-from lavendersim.experiment.report import Report
-from lavendersim.experiment.solver_override import with_solver
+from lavendersim.experiment.models.experiment import ExperimentConfig
+from lavendersim.experiment.sweeps import axes as sweep
+from lavendersim.experiment.sweeps.reduction import check_reduction, reduce
+from lavendersim.experiment.sweeps.solver_override import with_solver
+from lavendersim.experiment.text.node import Node, key_mark
+from lavendersim.experiment.text.parse import LARGEST_FILE, decode, parse
+from lavendersim.experiment.text.report import Report
 from lavendersim.quantities.found import found
 
 # Checking a cell takes 0.3 ms. Of larger sweeps every axis is checked value by value up to as many

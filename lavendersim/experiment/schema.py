@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from lavendersim.experiment.models import ExperimentConfig
+from lavendersim.experiment.models.experiment import ExperimentConfig
 
 DRAFT_7 = "http://json-schema.org/draft-07/schema#"
 _NAMED_SCHEMAS = ("properties", "patternProperties", "definitions")

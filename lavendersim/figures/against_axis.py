@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from lavendersim.experiment.figure_specs import MeasureAgainstAxis
+from lavendersim.experiment.models.figure import MeasureAgainstAxis
 from lavendersim.figures.drawing import draw_band, draw_ideal, ticks_at_values
 from lavendersim.figures.ideal import ideal_line
 from lavendersim.figures.series import Band, band_along, series_of, swept_path

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from lavendersim.experiment.figure_specs import MeasureByName
+from lavendersim.experiment.models.figure import MeasureByName
 from lavendersim.figures.series import by_value, series_of
 from lavendersim.figures.style import GREY, look
 from lavendersim.measures.values import Values

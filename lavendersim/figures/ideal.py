@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from lavendersim.experiment.measure_base import ClosedForm
+from lavendersim.experiment.models.measure_base import ClosedForm
 from lavendersim.figures.series import band_along
 from lavendersim.measures.closed_forms import evaluate_form
 from lavendersim.measures.selection import group_by

@@ -17,7 +17,7 @@ from matplotlib.font_manager import FontProperties
 from matplotlib.textpath import TextPath
 
 from lavendersim.errors import TraceError
-from lavendersim.experiment.figure_specs import FigureSpec
+from lavendersim.experiment.models.figure import FigureSpec
 from lavendersim.figures import (
     against_axis,
     by_name,

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from matplotlib.ticker import MaxNLocator
 
-from lavendersim.experiment.figure_specs import RowAgainstIndex
+from lavendersim.experiment.models.figure import RowAgainstIndex
 from lavendersim.figures.drawing import draw_band
 from lavendersim.figures.series import band_of_rows, series_of
 from lavendersim.figures.style import look

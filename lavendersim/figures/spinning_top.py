@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from lavendersim.experiment.figure_specs import FreeRotation
+from lavendersim.experiment.models.figure import FreeRotation
 from lavendersim.figures.drawing import draw_ideal
 from lavendersim.figures.style import look
 from lavendersim.measures import cell_config

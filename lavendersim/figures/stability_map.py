@@ -15,7 +15,7 @@ from matplotlib import colormaps
 from matplotlib.colors import LogNorm, Normalize
 from matplotlib.patches import Rectangle
 
-from lavendersim.experiment.figure_specs import StabilityMap
+from lavendersim.experiment.models.figure import StabilityMap
 from lavendersim.figures.series import by_value
 from lavendersim.figures.style import DARK, GREY
 from lavendersim.measures.values import Values

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from lavendersim.experiment.figure_specs import TimeSeries
+from lavendersim.experiment.models.figure import TimeSeries
 from lavendersim.figures.drawing import draw_ideal
 from lavendersim.figures.series import series_of
 from lavendersim.figures.style import look

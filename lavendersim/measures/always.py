@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from lavendersim.errors import LavenderError
-from lavendersim.experiment.always_specs import BEYOND_BOUNDS, Always
+from lavendersim.experiment.models.always import BEYOND_BOUNDS, Always
 from lavendersim.measures.parts import parts_of
 from lavendersim.measures.verdict import Outcome, failure
 from lavendersim.measures.views import Cell, Trace

@@ -11,7 +11,7 @@ from typing import Final
 
 import numpy as np
 
-from lavendersim.experiment.expect_specs import Equals, ExpectSpec
+from lavendersim.experiment.models.expect import Equals, ExpectSpec
 from lavendersim.measures.closed_forms import evaluate_form
 from lavendersim.measures.verdict import Outcome
 from lavendersim.measures.views import Floats, Trace, Value

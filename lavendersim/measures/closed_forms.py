@@ -25,7 +25,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from lavendersim.experiment.measure_base import ClosedForm
+from lavendersim.experiment.models.measure_base import ClosedForm
 from lavendersim.measures.cell_config import BodyConfig, body, gravity, numerics
 from lavendersim.measures.views import Floats
 

@@ -12,8 +12,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
-from lavendersim.experiment.always_specs import BEYOND_BOUNDS, COMPLETES, DIVERGES, STOPPING
-from lavendersim.experiment.expect_specs import ExpectSpec
+from lavendersim.experiment.models.always import BEYOND_BOUNDS, COMPLETES, DIVERGES, STOPPING
+from lavendersim.experiment.models.expect import ExpectSpec
 from lavendersim.measures.always import COMPLETE
 from lavendersim.measures.selection import coordinates_text, select, telling_axes
 from lavendersim.measures.verdict import Verdict

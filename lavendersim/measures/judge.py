@@ -11,9 +11,9 @@ from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple, Protocol
 
 from lavendersim.errors import LavenderError
-from lavendersim.experiment.always_specs import Always
-from lavendersim.experiment.expect_specs import ExpectSpec
-from lavendersim.experiment.measure_specs import MeasureSpec
+from lavendersim.experiment.models.always import Always
+from lavendersim.experiment.models.expect import ExpectSpec
+from lavendersim.experiment.models.measures import MeasureSpec
 from lavendersim.measures import controls
 from lavendersim.measures.always import COMPLETE, PREFIX
 from lavendersim.measures.cell_judgements import judge_cell

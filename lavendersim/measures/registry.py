@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from lavendersim.experiment.measure_specs import MeasureSpec
+from lavendersim.experiment.models.measures import MeasureSpec
 from lavendersim.measures import kinds
 from lavendersim.measures.closed_forms import evaluate_form
 from lavendersim.measures.registration import FUNCTIONS

@@ -8,7 +8,7 @@ from typing import Final
 
 import numpy as np
 
-from lavendersim.experiment.expect_specs import Crosses, ExpectSpec, Order, Ratio
+from lavendersim.experiment.models.expect import Crosses, ExpectSpec, Order, Ratio
 from lavendersim.measures.selection import group_by, select
 from lavendersim.measures.verdict import Outcome, failure
 from lavendersim.measures.views import Cell, Floats

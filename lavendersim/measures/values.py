@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from lavendersim.experiment.measure_specs import MeasureSpec
+from lavendersim.experiment.models.measures import MeasureSpec
 from lavendersim.measures.registry import evaluate
 from lavendersim.measures.views import Cell, Floats
 

@@ -20,7 +20,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from lavendersim.experiment.always_specs import CHECKS, DERIVED, FINITE, NONE, Always
+from lavendersim.experiment.models.always import CHECKS, DERIVED, FINITE, NONE, Always
 from lavendersim.measures import cell_config
 from lavendersim.measures.account import EnergyAccount, contacts_of_log, momentum_gap
 from lavendersim.measures.changes import events_of_bodies, row_after

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from lavendersim.clock import Clock
-from lavendersim.experiment.always_specs import BEYOND_BOUNDS, STOPPING, Always
+from lavendersim.experiment.models.always import BEYOND_BOUNDS, STOPPING, Always
 from lavendersim.measures.parts import Part
 from lavendersim.measures.views import Floats, Rows
 from lavendersim.measures.watch import Watch, Watched

@@ -16,8 +16,8 @@ from typing import Any, Final, NamedTuple
 
 from lavendersim.errors import ConfigError, UsageError
 from lavendersim.experiment import Experiment
-from lavendersim.experiment.cost_grid import Setting, fragment_of, over_the_grid, settings_of
-from lavendersim.experiment.cost_specs import FEW, FEWEST_REPEATS
+from lavendersim.experiment.models.cost import FEW, FEWEST_REPEATS
+from lavendersim.experiment.sweeps.cost_grid import Setting, fragment_of, over_the_grid, settings_of
 
 from .cost_errors import SettingError, errors_of, law_of, orders_of, runs_of
 from .cost_targets import answers, front_of

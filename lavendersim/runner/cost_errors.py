@@ -17,8 +17,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from lavendersim.experiment import Experiment
-from lavendersim.experiment.cost_grid import Setting
-from lavendersim.experiment.measure_base import ClosedForm
+from lavendersim.experiment.models.measure_base import ClosedForm
+from lavendersim.experiment.sweeps.cost_grid import Setting
 from lavendersim.measures import Values, judge
 from lavendersim.measures.closed_forms import evaluate_form
 

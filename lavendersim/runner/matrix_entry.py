@@ -16,7 +16,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, Final, Literal, NamedTuple
 
-from lavendersim.experiment.always_specs import BEYOND_BOUNDS
+from lavendersim.experiment.models.always import BEYOND_BOUNDS
 from lavendersim.measures.always import PREFIX
 from lavendersim.measures.controls import of_completion
 

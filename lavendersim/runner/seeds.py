@@ -9,8 +9,8 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from lavendersim.experiment import Experiment
-from lavendersim.experiment.node import Node
-from lavendersim.experiment.parse import parse
+from lavendersim.experiment.text.node import Node
+from lavendersim.experiment.text.parse import parse
 
 NONE = "none, nothing is drawn at random"
 

@@ -18,7 +18,7 @@ from typing import NamedTuple, get_args
 from lavendersim.cell.choices import Solver
 from lavendersim.errors import ConfigError, UsageError
 from lavendersim.experiment import Experiment, load_experiment
-from lavendersim.experiment.solver_override import about_something_else
+from lavendersim.experiment.sweeps.solver_override import about_something_else
 from lavendersim.quantities.found import nearest, quoted
 
 from .experiment_run import run

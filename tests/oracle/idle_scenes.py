@@ -11,7 +11,7 @@ from typing import Any
 
 from laboratory import body, box, plane, resolved, sphere
 
-from lavendersim.experiment.presets import CHAPTER, DEFAULT
+from lavendersim.experiment.resolve.presets import CHAPTER, DEFAULT
 
 GRAVITY = (0.0, 0.0, -9.81)  # [m/s^2]
 NOWHERE = (0.0, 0.0, 0.0)

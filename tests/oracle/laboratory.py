@@ -15,8 +15,8 @@ from lavendersim.engine.effects import EFFECTS
 from lavendersim.engine.engine import Engine, Rows
 from lavendersim.engine.records import ROWS_FULL
 from lavendersim.engine.spec import Spec
-from lavendersim.experiment.resolve_shape import resolve_shape
-from lavendersim.experiment.shape_models import Solid
+from lavendersim.experiment.models.shapes import Solid
+from lavendersim.experiment.resolve.shape import resolve_shape
 from lavendersim.scene.build import Scene, build
 from lavendersim.scene.plan import plan_of
 

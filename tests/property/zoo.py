@@ -16,7 +16,7 @@ from laboratory import Bench, body, plane, resolved
 from lavendersim.engine.collide import SHAPE_PAIRS
 from lavendersim.engine.engine import Rows
 from lavendersim.engine.spec import Spec
-from lavendersim.experiment.presets import DEFAULT
+from lavendersim.experiment.resolve.presets import DEFAULT
 
 # All that the default numerics compile for such worlds, whatever bodies one of them holds.
 ZOO = Spec(

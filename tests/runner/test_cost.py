@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from lavendersim.experiment import load_experiment, load_experiment_text
-from lavendersim.experiment.cost_grid import fragment_of, over_the_grid, settings_of
+from lavendersim.experiment.sweeps.cost_grid import fragment_of, over_the_grid, settings_of
 from lavendersim.figures.work_precision import compose, draw_work_precision
 from lavendersim.runner import open_run, run
 from lavendersim.runner.cost import Costed, take_cost

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from lavendersim.experiment import load_experiment_text
-from lavendersim.experiment.cost_grid import settings_of
+from lavendersim.experiment.sweeps.cost_grid import settings_of
 from lavendersim.figures.cost_looks import curves_of
 from lavendersim.runner.cell import Accuracy, CellOutcome
 from lavendersim.runner.cost_errors import SettingRun, errors_of, orders_of, relative_error

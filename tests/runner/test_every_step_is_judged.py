@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 import lavendersim
-from lavendersim.experiment.always_specs import CHECKS, Always
+from lavendersim.experiment.models.always import CHECKS, Always
 from lavendersim.measures import outcomes_of
 from lavendersim.runner import Finished
 

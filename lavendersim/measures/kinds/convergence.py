@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from lavendersim.experiment import measure_specs as specs
+from lavendersim.experiment.models import measures as specs
 from lavendersim.measures.columns import row_after
 from lavendersim.measures.registration import measure
 from lavendersim.measures.views import Floats, Trace

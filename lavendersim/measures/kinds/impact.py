@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from lavendersim.experiment import measure_specs as specs
+from lavendersim.experiment.models import measures as specs
 from lavendersim.measures import cell_config
 from lavendersim.measures.changes import events_of_bodies
 from lavendersim.measures.columns import (

@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from lavendersim.experiment import kinematic_specs as specs
+from lavendersim.experiment.models import kinematic_measures as specs
 from lavendersim.geometry.rotations import rotation_matrix, unit_quaternion
 from lavendersim.measures import cell_config
 from lavendersim.measures.registration import measure

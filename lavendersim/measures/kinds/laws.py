@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from lavendersim.experiment import law_specs as specs
+from lavendersim.experiment.models import law_measures as specs
 from lavendersim.measures import cell_config, changes
 from lavendersim.measures.columns import clearance_by_step, last_window, mechanical_energy
 from lavendersim.measures.registration import measure

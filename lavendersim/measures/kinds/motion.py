@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from lavendersim.experiment import motion_specs as specs
+from lavendersim.experiment.models import motion_measures as specs
 from lavendersim.measures import cell_config
 from lavendersim.measures.closed_forms import clearance, pair_restitution
 from lavendersim.measures.columns import clearance_by_step, last_window, one_timestep

@@ -17,7 +17,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from lavendersim.experiment.law_specs import Optimality
+from lavendersim.experiment.models.law_measures import Optimality
 from lavendersim.measures import cell_config
 from lavendersim.measures.registration import measure
 from lavendersim.measures.views import Floats, Rows, Trace

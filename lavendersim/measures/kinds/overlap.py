@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from lavendersim.experiment.motion_specs import Overlap
+from lavendersim.experiment.models.motion_measures import Overlap
 from lavendersim.measures.columns import last_window
 from lavendersim.measures.penetration import depths
 from lavendersim.measures.registration import measure

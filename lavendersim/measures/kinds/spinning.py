@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from lavendersim.experiment import law_specs as specs
+from lavendersim.experiment.models import law_measures as specs
 from lavendersim.geometry.rotations import rotation_matrices
 from lavendersim.measures import cell_config
 from lavendersim.measures.cell_config import BodyConfig

@@ -8,9 +8,15 @@ from pathlib import Path
 import pytest
 from pydantic import BaseModel
 
-from lavendersim.experiment.models import ExperimentConfig
-from lavendersim.experiment.presets import PRESETS
-from lavendersim.experiment.walk import alternatives, annotation_of, field_name, is_model, kinds
+from lavendersim.experiment.checks.walk import (
+    alternatives,
+    annotation_of,
+    field_name,
+    is_model,
+    kinds,
+)
+from lavendersim.experiment.models.experiment import ExperimentConfig
+from lavendersim.experiment.resolve.presets import PRESETS
 from lavendersim.quantities.scalars import resolve, written
 
 TEXT = (Path(__file__).parents[3] / "docs" / "config.md").read_text(encoding="utf-8")

@@ -9,7 +9,7 @@ import pytest
 
 from lavendersim.cell.body import Release
 from lavendersim.cell.shapes import Box, Plane, Sphere
-from lavendersim.experiment.placement import SceneError, reach, released_position
+from lavendersim.experiment.resolve.placement import SceneError, reach, released_position
 from lavendersim.geometry.quaternions import from_axis_angle
 from lavendersim.geometry.vectors import unit
 

@@ -7,9 +7,9 @@ from fractions import Fraction
 import pytest
 
 from lavendersim.cell.numerics import Numerics
-from lavendersim.experiment.models import NumericsChange
-from lavendersim.experiment.presets import CHAPTER, PRESETS
-from lavendersim.experiment.resolved import resolve_numerics
+from lavendersim.experiment.models.experiment import NumericsChange
+from lavendersim.experiment.resolve.cell import resolve_numerics
+from lavendersim.experiment.resolve.presets import CHAPTER, PRESETS
 
 
 def test_chapter_is_frozen() -> None:

@@ -11,8 +11,8 @@ import pytest
 from jsonschema import Draft7Validator
 
 from lavendersim.experiment import load_experiment
-from lavendersim.experiment.parse import parse
 from lavendersim.experiment.schema import json_schema
+from lavendersim.experiment.text.parse import parse
 from lavendersim.quantities.scalars import Ratio
 
 ROOT = Path(__file__).parents[3]

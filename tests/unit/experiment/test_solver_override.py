@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from lavendersim.experiment import load_experiment, load_experiment_text
-from lavendersim.experiment.solver_override import about_something_else
+from lavendersim.experiment.sweeps.solver_override import about_something_else
 
 CANON = Path(__file__).parents[3] / "configs" / "hard"
 SCENE = """\

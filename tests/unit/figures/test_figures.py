@@ -15,8 +15,8 @@ from matplotlib import style
 from synthetic import RESIDUAL, SyntheticCell, ball_and_floor, spinning_log, trace_of
 
 from lavendersim.errors import TraceError
-from lavendersim.experiment.figure_specs import FigureSpec
-from lavendersim.experiment.measure_specs import ImpactImpulse, ResidualBySweep
+from lavendersim.experiment.models.figure import FigureSpec
+from lavendersim.experiment.models.measures import ImpactImpulse, ResidualBySweep
 from lavendersim.figures import draw
 from lavendersim.figures.page import compose
 from lavendersim.figures.style import DARK, STYLE

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from lavendersim.experiment.figure_specs import MeasureAgainstAxis
+from lavendersim.experiment.models.figure import MeasureAgainstAxis
 from lavendersim.figures.against_axis import marker_size
 from lavendersim.figures.drawing import dress, legend, ticks_at_values
 

@@ -11,8 +11,8 @@ import pytest
 from matplotlib import style
 from synthetic import SyntheticCell, ball_and_floor, trace_of
 
-from lavendersim.experiment.figure_specs import FigureSpec
-from lavendersim.experiment.measure_specs import ImpactImpulse
+from lavendersim.experiment.models.figure import FigureSpec
+from lavendersim.experiment.models.measures import ImpactImpulse
 from lavendersim.figures.page import compose
 from lavendersim.figures.style import STYLE
 

@@ -9,8 +9,8 @@ import pytest
 from numpy.polynomial.legendre import leggauss
 
 from lavendersim.cell.shapes import Box
-from lavendersim.experiment.resolve_shape import resolve_shape
-from lavendersim.experiment.shape_models import Compound, Hull, Part
+from lavendersim.experiment.models.shapes import Compound, Hull, Part
+from lavendersim.experiment.resolve.shape import resolve_shape
 from lavendersim.geometry.convex_hull import convex_hull
 from lavendersim.geometry.mass_properties import Solid, box, capsule, cylinder, polyhedron, sphere
 

@@ -7,9 +7,11 @@ import pytest
 from synthetic import SyntheticCell, SyntheticTrace, trace_of
 
 from lavendersim.errors import UsageError
-from lavendersim.experiment import law_specs, measure_specs, motion_specs
-from lavendersim.experiment.expect_specs import ExpectSpec
-from lavendersim.experiment.figure_specs import TimeSeries
+from lavendersim.experiment.models import law_measures as law_specs
+from lavendersim.experiment.models import measures as measure_specs
+from lavendersim.experiment.models import motion_measures as motion_specs
+from lavendersim.experiment.models.expect import ExpectSpec
+from lavendersim.experiment.models.figure import TimeSeries
 from lavendersim.figures.time_series import window_of
 from lavendersim.measures.judge import judge
 from lavendersim.measures.registry import evaluate

@@ -13,8 +13,8 @@ from synthetic import GRAVITY, MASS, contacts, log_of, scene_of, spinning_log, t
 
 from lavendersim.clock import Clock
 from lavendersim.errors import UsageError
-from lavendersim.experiment import law_specs
-from lavendersim.experiment.measure_specs import MeasureSpec
+from lavendersim.experiment.models import law_measures as law_specs
+from lavendersim.experiment.models.measures import MeasureSpec
 from lavendersim.measures import account, evaluate
 from lavendersim.measures.watch import NUMBERS
 

@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 from scipy.special import ellipj, ellipkinc, ellipkm1
 from synthetic import spinning_log
 
-from lavendersim.experiment import law_specs as specs
+from lavendersim.experiment.models import law_measures as specs
 from lavendersim.measures import evaluate
 from lavendersim.measures.elliptic import integral, jacobi, quarter_period
 from lavendersim.measures.free_rotation import free_rotation

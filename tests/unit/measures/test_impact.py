@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from synthetic import GRAVITY, MASS, ball_and_floor, trace_of
 
-from lavendersim.experiment import measure_specs as specs
-from lavendersim.experiment.measure_base import ClosedForm
+from lavendersim.experiment.models import measures as specs
+from lavendersim.experiment.models.measure_base import ClosedForm
 from lavendersim.measures import evaluate
 from lavendersim.measures.kinds.impact import parabola_vertex
 

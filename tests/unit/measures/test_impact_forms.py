@@ -10,7 +10,7 @@ import numpy.lib.recfunctions as recfunctions
 import pytest
 from synthetic import GRAVITY, log_of, scene_of
 
-from lavendersim.experiment import law_specs as specs
+from lavendersim.experiment.models import law_measures as specs
 from lavendersim.measures import evaluate
 from lavendersim.measures.cell_config import body as body_of
 from lavendersim.measures.impact_forms import velocities_after

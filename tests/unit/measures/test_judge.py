@@ -10,8 +10,8 @@ import pytest
 from synthetic import RESIDUAL, SyntheticCell, trace_of
 
 from lavendersim.errors import TraceError
-from lavendersim.experiment.expect_specs import ExpectSpec
-from lavendersim.experiment.measure_specs import FinalResidual, ImpactImpulse, ResidualBySweep
+from lavendersim.experiment.models.expect import ExpectSpec
+from lavendersim.experiment.models.measures import FinalResidual, ImpactImpulse, ResidualBySweep
 from lavendersim.measures import Verdict, judge, judge_nodes
 
 MEASURES = {

@@ -10,7 +10,7 @@ import pytest
 from pydantic import ValidationError
 from synthetic import log_of, scene_of
 
-from lavendersim.experiment import kinematic_specs as specs
+from lavendersim.experiment.models import kinematic_measures as specs
 from lavendersim.measures import evaluate
 
 CUBE = {"shape": {"kind": "box", "size": [0.2, 0.2, 0.2]}, "mass": 1.0}

@@ -10,7 +10,7 @@ import numpy.lib.recfunctions as recfunctions
 import pytest
 from synthetic import GRAVITY, MASS, contacts, log_of, scene_of, trace_of
 
-from lavendersim.experiment import law_specs as specs
+from lavendersim.experiment.models import law_measures as specs
 from lavendersim.measures import evaluate
 
 WEIGHT = MASS * GRAVITY / 100.0  # impulse of the ball's weight in a step of 10 ms [N s]

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from synthetic import GRAVITY, ball_and_floor, contacts, log_of, scene_of, trace_of
 
-from lavendersim.experiment import motion_specs as specs
+from lavendersim.experiment.models import motion_measures as specs
 from lavendersim.measures import evaluate
 
 DT = 0.01

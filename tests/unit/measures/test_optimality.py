@@ -11,7 +11,7 @@ import numpy.lib.recfunctions as recfunctions
 import pytest
 from synthetic import MASS, contacts, log_of, scene_of
 
-from lavendersim.experiment.law_specs import Optimality
+from lavendersim.experiment.models.law_measures import Optimality
 from lavendersim.measures import evaluate
 
 SPEC = Optimality(kind="optimality")

@@ -10,7 +10,7 @@ import pytest
 from scipy.spatial import ConvexHull
 from synthetic import contacts, log_of, scene_of
 
-from lavendersim.experiment.motion_specs import Overlap
+from lavendersim.experiment.models.motion_measures import Overlap
 from lavendersim.geometry.rotations import rotation_matrices as rotations
 from lavendersim.measures import evaluate
 from lavendersim.measures.penetration import (

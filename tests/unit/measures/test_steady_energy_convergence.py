@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from synthetic import GRAVITY, MASS, RESIDUAL, trace_of
 
-from lavendersim.experiment import measure_specs as specs
+from lavendersim.experiment.models import measures as specs
 from lavendersim.measures import evaluate
 
 

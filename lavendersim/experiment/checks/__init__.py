@@ -1,0 +1,1 @@
+"""What no single value shows: rules between values, names that must exist; the sentences."""

@@ -1,0 +1,191 @@
+"""pydantic's errors and the tree of nodes in; sentences at the places of the file out.
+
+Every sentence says what was found, what is expected, and the nearest valid name. An unknown key is
+reported at the key, a bad value at the value, a missing key at the mapping that lacks it.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from typing import Any
+
+from pydantic import ValidationError
+from pydantic.fields import FieldInfo
+from pydantic_core import ErrorDetails
+
+from lavendersim.experiment.checks.walk import Model, Place, fields, places
+from lavendersim.experiment.text.node import BROKEN, Broken, Mark, Node, Path, key_mark
+from lavendersim.experiment.text.report import Report
+from lavendersim.quantities.found import found, near, nearest, quoted
+
+_TYPES = {
+    "string_type": "text",
+    "bool_type": "true or false",
+    "int_type": "a whole number",
+    "int_from_float": "a whole number",
+    "float_type": "a number",
+    "finite_number": "a finite number",
+    "dict_type": "a mapping",
+    "model_type": "a mapping",
+    "model_attributes_type": "a mapping",
+    "list_type": "a list",
+    "tuple_type": "a list",
+}
+_BOUNDS = {
+    "greater_than": ("gt", "a number above {}"),
+    "greater_than_equal": ("ge", "a number of {} or more"),
+    "less_than": ("lt", "a number below {}"),
+    "less_than_equal": ("le", "a number of {} or less"),
+}
+_SWITCHED = ["on", "off"]  # plain texts in YAML 1.2
+_SWITCHES = {"yes": "true", "on": "true", "no": "false", "off": "false"}
+
+
+def report_errors(error: ValidationError, model: Model, root: Node, report: Report) -> None:
+    """Note every error of a validation of `root` against `model`."""
+    described = {place.path: place for place in places(model, root) if not place.refers}
+    errors = error.errors(include_url=False)
+    replaced = _replaced_keys(errors, root, described)
+    judged: set[Path] = set()  # a value that fits no form of a union has one error per form
+    for item in errors:
+        path, node = locate(root, item["loc"])
+        if item["type"] not in ("missing", "extra_forbidden"):
+            if path in judged:
+                continue
+            judged.add(path)
+        if isinstance(node.content, Broken) or item.get("input") is BROKEN:
+            continue
+        if item["type"] == "missing" and (node.torn or (path, item["loc"][-1]) in replaced):
+            continue
+        if item["type"] == "too_short" and len(node.items) >= item["ctx"]["min_length"]:
+            continue  # pydantic does not count the items that it refused
+        mark, sentence = _sentence(item, path, node, root, described)
+        report.add(mark, sentence)
+
+
+def locate(root: Node, loc: tuple[str | int, ...]) -> tuple[Path, Node]:
+    """Return the deepest node on the way of a pydantic location, whose union tags are no keys."""
+    path: list[str | int] = []
+    node = root
+    for step in loc:
+        child = node.get(step)
+        if child is not None:
+            path.append(step)
+            node = child
+    return tuple(path), node
+
+
+def name_of(path: Path) -> str:
+    """Return how a sentence calls the value at the path: its key, with the index in a list."""
+    keys = [index for index, step in enumerate(path) if isinstance(step, str)]
+    if not keys:
+        return "the file"
+    indices = "".join(f"[{step}]" for step in path[keys[-1] + 1 :])
+    return f"{path[keys[-1]]}{indices}"
+
+
+def place_of(path: Path) -> str:
+    """Return how a sentence calls the mapping at the path: all keys on the way."""
+    if not path:
+        return "the experiment"
+    dotted = "".join(f"[{step}]" if isinstance(step, int) else f".{step}" for step in path)
+    return dotted.lstrip(".")
+
+
+def missing_key(key: str, path: Path, meaning: str | None) -> str:
+    """Return the sentence for a key that a mapping lacks."""
+    return f"missing key {quoted(key)} in {place_of(path)}" + (f": {meaning}" if meaning else "")
+
+
+def _replaced_keys(
+    errors: list[ErrorDetails], root: Node, described: Mapping[Path, Place]
+) -> set[tuple[Path, str | int]]:
+    """Return the missing keys that are there, but misspelt: the unknown key says it all."""
+    replaced: set[tuple[Path, str | int]] = set()
+    for item in errors:
+        if item["type"] == "extra_forbidden":
+            path = locate(root, item["loc"])[0][:-1]
+            replaced.add((path, near(item["loc"][-1], _keys_at(described, path)) or ""))
+    return replaced
+
+
+def _sentence(
+    item: ErrorDetails, path: Path, node: Node, root: Node, described: Mapping[Path, Place]
+) -> tuple[Mark, str]:
+    kind, context, value = item["type"], item.get("ctx", {}), item["input"]
+    name, step = name_of(path), item["loc"][-1]
+    if kind == "extra_forbidden":
+        parent = root.get(*path[:-1]) or root
+        hint = nearest(step, _keys_at(described, path[:-1]))
+        sentence = f"unknown key {quoted(step)} in {place_of(path[:-1])}{hint}"
+        return key_mark(parent, str(path[-1])), sentence
+    if kind == "missing":
+        if isinstance(step, int):
+            return node.mark, f"{name}: expected at least {step + 1} items, {_count(node)}"
+        info = _keys_at(described, path).get(step)
+        return node.mark, missing_key(str(step), path, info.description if info else None)
+    if step == "[key]":
+        parent = root.get(*path[:-1]) or root
+        rule = 'use up to 64 letters, digits, "_" and "-", starting with a letter'
+        return key_mark(parent, str(path[-1])), f"{quoted(path[-1])} cannot be a name; {rule}"
+    if kind == "union_tag_not_found":
+        kinds = described[path].kinds if path in described else ()
+        return node.mark, missing_key("kind", path, f"one of {', '.join(kinds)}")
+    if kind == "union_tag_invalid":
+        tag = node.get("kind") or node
+        if tag.text is None:
+            return tag.mark, f"kind: expected one of {_tags(context)}, found {found(tag.data)}"
+        hint = nearest(tag.text, _tags(context).split(", "))
+        return tag.mark, f"unknown kind {quoted(tag.text)} in {place_of(path)}{hint}"
+    return node.mark, _value_sentence(kind, context, value, name, node)
+
+
+def _value_sentence(kind: str, context: Mapping[str, Any], value: Any, name: str, at: Node) -> str:
+    if kind == "lavender":
+        return f"{name}: {context['sentence']}"
+    if kind == "form":
+        return f"{name}: expected {context['expected']}, found {found(value)}"
+    if kind == "literal_error":
+        valid = re.findall(r"'([^']*)'", str(context["expected"]))
+        close = near(value, valid) if isinstance(value, str) else None
+        hint = f'; did you mean "{close}"?' if close else ""
+        if isinstance(value, bool) and valid == _SWITCHED:
+            hint = f"; write {_SWITCHED[not value]}"
+        return f"{name}: expected {' or '.join(valid)}, found {found(value)}{hint}"
+    if kind in _TYPES:
+        sentence = f"{name}: expected {_TYPES[kind]}, found {found(value)}"
+        if kind == "string_type" and isinstance(value, int | float):
+            return f"{sentence}; put it in quotes"
+        if kind == "bool_type" and isinstance(value, str) and value.lower() in _SWITCHES:
+            return f"{sentence}; write {_SWITCHES[value.lower()]}"
+        return sentence
+    if kind in _BOUNDS:
+        bound, words = _BOUNDS[kind]
+        return f"{name}: expected {words.format(context[bound])}, found {found(value)}"
+    if kind == "too_short":
+        return f"{name}: expected {_items(context['min_length'])} or more, {_count(at)}"
+    if kind == "too_long":
+        return f"{name}: expected {_items(context['max_length'])} or fewer, {_count(at)}"
+    if kind == "string_too_short":
+        return f"{name}: expected text, found an empty one"
+    if kind == "value_error":
+        return f"{name}: {context['error']}"
+    return f"{name}: {kind.replace('_', ' ')}, found {found(value)}"
+
+
+def _keys_at(described: Mapping[Path, Place], path: Path) -> dict[str, FieldInfo]:
+    model = described[path].model if path in described else None
+    return fields(model) if model is not None else {}
+
+
+def _tags(context: Mapping[str, Any]) -> str:
+    return ", ".join(re.findall(r"'([^']*)'", str(context.get("expected_tags", ""))))
+
+
+def _items(count: int) -> str:
+    return "1 item" if count == 1 else f"{count} items"
+
+
+def _count(node: Node) -> str:
+    return f"found {len(node.items)}" if node.items else "found none"

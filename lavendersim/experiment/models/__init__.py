@@ -1,0 +1,1 @@
+"""What can be written in a config: a pydantic model of every section."""

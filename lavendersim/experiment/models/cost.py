@@ -1,0 +1,113 @@
+"""The `cost` section of a config in; a validated CostSpec out: a grid of settings, and their truth.
+
+The grid is timestep x solver x (sweeps or tolerance) x warm start. Its error is one measure of the
+experiment, held against what is true.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Annotated, Any, Literal
+
+from pydantic import Field, Tag
+
+from lavendersim.cell.choices import Solver
+from lavendersim.experiment.models.measure_base import ClosedForm
+from lavendersim.quantities.model import ConfigModel
+from lavendersim.quantities.names import MeasureName
+from lavendersim.quantities.quantity import Quantity, either
+
+FEWEST_REPEATS = 7  # of six samples the interval that holds the median is all of them
+FEW = "of fewer, one slow moment of the machine decides where the median lies"
+
+Timestep = Annotated[Fraction, Quantity("s", above=0, exact=True)]
+Sweeps = Annotated[int, Quantity(whole=True, minimum=1, maximum=1_000_000)]
+Tolerance = Annotated[float, Quantity("m/s", above=0)]
+Share = Annotated[float, Quantity(above=0)]
+Repeats = Annotated[int, Quantity(whole=True, minimum=FEWEST_REPEATS, maximum=1000, hint=FEW)]
+
+
+def _truth_form(value: Any) -> str | None:
+    if value == "finest":
+        return "finest"
+    if isinstance(value, dict | ClosedForm):
+        return "form"
+    is_number = isinstance(value, int | float) and not isinstance(value, bool)
+    return "number" if is_number else None
+
+
+Truth = Annotated[
+    Annotated[float, Quantity(), Tag("number")]
+    | Annotated[Literal["finest"], Tag("finest")]
+    | Annotated[ClosedForm, Tag("form")],
+    either("a number, {form, bodies}, or finest", _truth_form),
+]
+
+
+def _solvers_form(value: Any) -> str | None:
+    return "all" if value == "all" else "named" if isinstance(value, list | tuple) else None
+
+
+SolverNames = Annotated[
+    Annotated[Literal["all"], Tag("all")]
+    | Annotated[tuple[Solver, ...], Field(min_length=1), Tag("named")],
+    either("all, or a list of solvers", _solvers_form),
+]
+
+
+class CostError(ConfigModel):
+    """What is wrong in a run: |measure - truth| / scale, the worst over cells and rows."""
+
+    measure: MeasureName = Field(description="the measure that is held against the truth")
+    truth: Truth = Field(
+        default=0.0,
+        description="a number in the measure's unit, a closed form, or finest: the measure at an "
+        "eighth of the grid's finest timestep, solved to 1e-12 m/s",
+    )
+    scale: Annotated[float, Quantity(above=0)] | None = Field(
+        default=None,
+        description="[measure's unit] what an error of 100 % is; |truth| where it is not stated, "
+        "and 1 for a truth of 0",
+    )
+
+
+class CostSpec(ConfigModel):
+    """What accuracy costs in this scene: taken by `lavender cost`."""
+
+    error: CostError = Field(description="what is wrong in a run, as a fraction")
+    presets: Annotated[tuple[Literal["chapter", "default"], ...], Field(min_length=1)] | None = (
+        Field(
+            default=None,
+            description="presets whose other numerics (the laws) are compared; the config's alone "
+            "if not stated",
+        )
+    )
+    timesteps: Annotated[tuple[Timestep, ...], Field(min_length=1)] = Field(
+        default=(Fraction(1, 60), Fraction(1, 120), Fraction(1, 240), Fraction(1, 480)),
+        description="[s] timesteps of the grid",
+    )
+    solvers: SolverNames = Field(default="all", description="all, or names of solvers")
+    sweeps: Annotated[tuple[Sweeps, ...], Field(min_length=1)] = Field(
+        default=(2, 4, 8, 16, 32, 64),
+        description="sweeps per step of solvers that take as many as they are given",
+    )
+    tolerances: Annotated[tuple[Tolerance, ...], Field(min_length=1)] = Field(
+        default=(1e-3, 1e-6, 1e-9),
+        description="[m/s] of solvers that sweep until a tolerance is reached (adaptive)",
+    )
+    warm_start: Annotated[tuple[bool, ...], Field(min_length=1)] = Field(
+        default=(True, False), description="true, false or both"
+    )
+    unsolved: Annotated[float, Quantity(minimum=0, maximum=1)] = Field(
+        default=0.01,
+        description="share of steps that may end above the tolerance before a setting has failed",
+    )
+    targets: Annotated[tuple[Share, ...], Field(min_length=1)] = Field(
+        default=(0.01, 0.001), description="errors whose cheapest setting is told; 0.01 is 1 %"
+    )
+    repeats: Repeats = Field(default=9, description="rounds; every round times every setting")
+    begin: Annotated[float, Quantity("s", minimum=0)] = Field(
+        alias="from",
+        default=0.0,
+        description="[s] simulated time at which what is timed begins; it ends with the run",
+    )

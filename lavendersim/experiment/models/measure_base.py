@@ -1,0 +1,73 @@
+"""What every measure of a config has in common: where it is taken and the closed form beside it.
+
+Every kind may carry
+
+- `at`: the cells in which the measure means something (all of them when absent), and
+- `over` or `against`: a closed form; the measure then becomes the fraction value / closed form, or
+  the relative distance |value / closed form - 1|.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal, Self
+
+from pydantic import Field, model_validator
+from pydantic_core import PydanticCustomError
+
+from lavendersim.experiment.models.selection import Selection
+from lavendersim.quantities.model import ConfigModel
+from lavendersim.quantities.names import BodyName
+from lavendersim.quantities.quantity import Quantity
+
+FormName = Literal[
+    "newton_impulse",
+    "newton_separation_velocity",
+    "inverse_effective_mass",
+    "impact_speed",
+    "drop_impulse",
+    "rebound_height",
+    "release_height",
+    "weight",
+    "slop",
+    "steady_penetration_above_slop",
+]
+Seconds = Annotated[float, Quantity("s", minimum=0)]
+
+
+class ClosedForm(ConfigModel):
+    """A named formula, evaluated from the cell's resolved config alone, never from its log."""
+
+    form: FormName = Field(description="name of the formula (measures/closed_forms.py)")
+    bodies: tuple[BodyName, ...] = Field(
+        default=(), description="the bodies it speaks of, in order: (A, B), (body, plane), ..."
+    )
+
+
+class Measure(ConfigModel):
+    """What every kind of measure may carry."""
+
+    at: Selection = Field(
+        default_factory=dict, description="the cells it is taken in; all when absent"
+    )
+    over: ClosedForm | None = Field(
+        default=None, description="turn the value into value / closed form, without unit"
+    )
+    against: ClosedForm | None = Field(
+        default=None, description="turn the value into |value / closed form - 1|, without unit"
+    )
+
+    @model_validator(mode="after")
+    def _one_form(self) -> Self:
+        if self.over is not None and self.against is not None:
+            sentence = "expected at most one of over, against"
+            raise PydanticCustomError("lavender", "{sentence}", {"sentence": sentence})
+        return self
+
+
+class PairMeasure(Measure):
+    """A measure of the contacts of one body."""
+
+    body: BodyName = Field(description="the body the measure is taken on")
+    other: BodyName | None = Field(
+        default=None, description="only contacts with this body; all contacts when absent"
+    )

@@ -1,0 +1,91 @@
+"""Kinds of measures that read where bodies are, from the logged poses alone: motion and overlap.
+
+The solver's own columns (penetration, impulses) play no part in them.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from lavendersim.experiment.models.measure_base import Measure, Seconds
+from lavendersim.quantities.names import BodyName, PlaneName
+from lavendersim.quantities.quantity import Quantity
+
+Stride = Annotated[int, Quantity("", minimum=1, whole=True)]
+
+
+class ApexError(Measure):
+    """|apex / (e^(2 k) h) - 1| [-] of the k-th apex of a body dropped from the clearance h."""
+
+    kind: Literal["apex_error"]
+    body: BodyName = Field(description="the bouncing body")
+    above: PlaneName = Field(description="the plane it bounces on")
+    bounce: Annotated[int, Quantity("", minimum=1, whole=True)] = Field(
+        default=1, description="the apex after which bounce, k [-]"
+    )
+
+
+class Drift(Measure):
+    """Greatest distance [m] of any centre from where it was at a given time."""
+
+    kind: Literal["drift"]
+    after: Seconds = Field(default=0.5, description="the time of the pose it is counted from [s]")
+    bodies: tuple[BodyName, ...] = Field(
+        default=(), description="whose centres; those of all movable bodies when absent"
+    )
+
+
+class Overlap(Measure):
+    """Deepest penetration [m] of any two bodies at the end of the run, from their geometry."""
+
+    kind: Literal["overlap"]
+    last: Seconds = Field(default=1.0, description="length of the window at the end [s]")
+    every: Stride = Field(
+        default=1, description="look at every k-th logged step, counted back from the last [-]"
+    )
+
+
+class SlipDistance(Measure):
+    """Distance [m] between a body's centre at the beginning and at the end of a window."""
+
+    kind: Literal["slip_distance"]
+    body: BodyName = Field(description="the body")
+    last: Seconds = Field(default=1.0, description="length of the window at the end [s]")
+
+
+class Creep(Measure):
+    """Mean speed [m/s] of a body over a window: `slip_distance` over the window's length."""
+
+    kind: Literal["creep"]
+    body: BodyName = Field(description="the body")
+    last: Seconds = Field(default=1.0, description="length of the window at the end [s]")
+
+
+class EffectiveFriction(Measure):
+    """The mu [-] that the body's mean acceleration along a plane stands for, under gravity alone.
+
+    (g_t - a) / g_n with g_t and g_n gravity along and into the plane; the slope g_t/g_n itself for
+    a body that holds.
+    """
+
+    kind: Literal["effective_friction"]
+    body: BodyName = Field(description="the sliding body")
+    on: PlaneName = Field(description="the plane it slides on")
+    last: Seconds = Field(default=1.0, description="length of the window at the end [s]")
+
+
+class PassedThrough(Measure):
+    """How far [m] a body's centre came behind the middle of a wall; negative: it never did.
+
+    A plane's middle is its surface. A fixed box is looked at along the edge on which the body
+    starts farthest outside it.
+    """
+
+    kind: Literal["passed_through"]
+    body: BodyName = Field(description="the body that may pass")
+    wall: BodyName = Field(description="a plane or a fixed box")
+
+
+MotionSpec = ApexError | Drift | Overlap | SlipDistance | Creep | EffectiveFriction | PassedThrough

@@ -1,0 +1,75 @@
+"""A validated config of one cell in; the same with every default filled in out."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from lavendersim.cell.config import CellConfig, CellEffects, CellStudy
+from lavendersim.cell.events import CellEvent, CellTimestep
+from lavendersim.cell.numerics import Numerics
+from lavendersim.cell.record import CellRecord, ResidualWindow
+from lavendersim.experiment.models.experiment import CellSource, Event, NumericsChange
+from lavendersim.experiment.models.record import Record, Window
+from lavendersim.experiment.resolve.presets import PRESETS, PresetValue
+from lavendersim.experiment.resolve.scene import resolve_scene
+
+
+def resolve_cell(source: CellSource) -> CellConfig:
+    """Fill in what the file leaves to defaults; raises SceneError for bodies that cannot be made.
+
+    `source` has passed the checks between its values (`checks`).
+    """
+    numerics = resolve_numerics(source.numerics)
+    return CellConfig.model_construct(
+        scene=resolve_scene(source.scene, numerics.timestep, source.duration),
+        events=tuple(_event(event) for event in source.events),
+        numerics=numerics,
+        duration=source.duration,
+        record=_record(source.record),
+        effects=CellEffects(
+            force=source.effects.force, switches=dict(sorted(source.effects.switches.items()))
+        ),
+        study=CellStudy(mistake=source.study.mistake),
+    )
+
+
+def resolve_numerics(stated: str | NumericsChange) -> Numerics:
+    """Return the preset with the stated values in place of its own."""
+    if isinstance(stated, str):
+        return _numerics(PRESETS[stated])
+    given = {name: getattr(stated, name) for name in stated.model_fields_set - {"preset"}}
+    # null is a value for `tolerance` (never stop early) and says nothing anywhere else
+    changes = {name: v for name, v in given.items() if v is not None or name == "tolerance"}
+    return _numerics(PRESETS[stated.preset] | changes)
+
+
+def _numerics(values: dict[str, PresetValue]) -> Numerics:
+    return Numerics.model_validate(values)
+
+
+def _event(event: Event) -> CellEvent | CellTimestep:
+    if event.body is None:  # `checks.events` let no other event stand without one
+        assert event.timestep is not None
+        return CellTimestep(at=event.at, timestep=event.timestep)
+    kept = event.contact_cache or ("keep" if event.teleport is None else "clear")
+    return CellEvent(
+        at=event.at,
+        body=event.body,
+        scale_mass=event.scale_mass,
+        teleport=event.teleport,
+        velocity=event.velocity,
+        angular_velocity=event.angular_velocity,
+        contact_cache=kept,
+        remove=bool(event.remove),
+    )
+
+
+def _record(record: Record) -> CellRecord:
+    residuals: Any = record.residuals
+    if isinstance(residuals, Window):
+        window = {"from": residuals.begin, "to": residuals.end}
+        residuals = ResidualWindow.model_validate(window)
+    return CellRecord(residuals=residuals, problems=record.problems)
+
+
+__all__ = ["CellConfig", "Numerics", "resolve_cell", "resolve_numerics"]

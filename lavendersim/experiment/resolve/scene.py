@@ -1,0 +1,129 @@
+"""A scene as written in; its bodies in their principal frames, gravity and forces out."""
+
+from __future__ import annotations
+
+import math
+from fractions import Fraction
+
+from lavendersim.cell.body import CellBody
+from lavendersim.cell.scene import CellForce, CellScene
+from lavendersim.cell.shapes import CellShape, Plane
+from lavendersim.experiment.checks.population import ARRANGEMENTS, BODIES, member_name
+from lavendersim.experiment.models.bodies import ArrangedBody, Body
+from lavendersim.experiment.models.scene import Force, Scene, TiltedGravity
+from lavendersim.experiment.resolve.arrangements import centres
+from lavendersim.experiment.resolve.placement import SceneError, released_position
+from lavendersim.experiment.resolve.shape import quaternion_of, resolve_shape
+from lavendersim.geometry.quaternions import IDENTITY, product, to_body
+from lavendersim.geometry.vectors import unit
+from lavendersim.quantities.quantity import Vector3
+
+_ORIGIN: Vector3 = (0.0, 0.0, 0.0)
+
+
+def resolve_scene(scene: Scene, timestep: Fraction, duration: float) -> CellScene:
+    """Fill in what the file leaves open; raises SceneError with the path of what to change."""
+    gravity = gravity_vector(scene.gravity)
+    bodies: dict[str, CellBody] = {}
+    for name, body in scene.bodies.items():
+        try:
+            bodies[name] = _body(body, scene, gravity, timestep)
+        except SceneError as error:
+            raise error.below(*BODIES, name) from None
+    for name, arrangement in scene.arrangements.items():
+        try:
+            one = _matter(arrangement.body, scene)
+        except SceneError as error:
+            raise error.below(*ARRANGEMENTS, name, "body") from None
+        assert not isinstance(one.shape, Plane)
+        places = centres(arrangement, one.shape, one.orientation)
+        for number, position in enumerate(places, start=1):
+            bodies[member_name(name, number)] = one.model_copy(update={"position": position})
+    forces = tuple(_force(force, duration) for force in scene.forces)
+    return CellScene.model_construct(gravity=gravity, bodies=bodies, forces=forces)
+
+
+def gravity_vector(gravity: float | Vector3 | TiltedGravity) -> Vector3:
+    """Return gravity [m/s^2]; a number is its magnitude along -z."""
+    if isinstance(gravity, tuple):
+        return gravity
+    if not isinstance(gravity, TiltedGravity):
+        return (0.0, 0.0, 0.0 - gravity)
+    if gravity.slope is not None:
+        down = 1.0 / math.hypot(1.0, gravity.slope)
+        along = gravity.slope * down
+    else:
+        angle = math.radians(gravity.tilt_degrees or 0.0)
+        down, along = math.cos(angle), math.sin(angle)
+    azimuth = math.radians(gravity.azimuth_degrees)
+    x, y = along * math.cos(azimuth), along * math.sin(azimuth)
+    return (gravity.magnitude * x, gravity.magnitude * y, -gravity.magnitude * down)
+
+
+def _body(body: Body, scene: Scene, gravity: Vector3, timestep: Fraction) -> CellBody:
+    resolved = _matter(body, scene)
+    shape = resolved.shape
+    if isinstance(shape, Plane):
+        x, y, z = shape.normal
+        position: Vector3 = (x * shape.offset, y * shape.offset, z * shape.offset)
+    elif body.release is not None:
+        plane = scene.bodies[body.release.above].shape
+        assert isinstance(plane, Plane)
+        position = released_position(
+            body.release, plane, shape, resolved.orientation, gravity, timestep
+        )
+    else:
+        assert body.position is not None
+        position = body.position
+    return resolved.model_copy(update={"position": position, "release": body.release})
+
+
+def _matter(body: Body | ArrangedBody, scene: Scene) -> CellBody:
+    """Return a body that stands at the origin; its velocities are as written."""
+    surface = scene.surfaces[body.surface] if isinstance(body.surface, str) else body.surface
+    fixed = body.fixed or body.kinematic or isinstance(body.shape, Plane)
+    orientation, surface_velocity = quaternion_of(body.orientation), body.surface_velocity
+    mass: float | None = None
+    inertia: Vector3 | None = None
+    shape: CellShape
+    if isinstance(body.shape, Plane):
+        shape = body.shape.model_copy(update={"normal": unit(body.shape.normal)})
+    else:
+        try:
+            shape, volume, (x, y, z), axes = resolve_shape(body.shape)
+        except SceneError as error:
+            raise error.below("shape") from None
+        if axes != IDENTITY:
+            orientation = product(orientation, axes)
+            surface_velocity = to_body(axes, surface_velocity)
+        if not fixed:
+            mass = body.mass if body.mass is not None else (body.density or 0.0) * volume
+            inertia = body.inertia or (mass * x, mass * y, mass * z)
+    return CellBody.model_construct(
+        shape=shape,
+        fixed=fixed,
+        kinematic=body.kinematic,
+        mass=mass,
+        density=body.density,
+        inertia=inertia,
+        surface=surface,
+        surface_velocity=surface_velocity,
+        position=_ORIGIN,
+        release=None,
+        orientation=orientation,
+        velocity=body.velocity,
+        angular_velocity=body.angular_velocity,
+        drag=body.drag,
+    )
+
+
+def _force(force: Force, duration: float) -> CellForce:
+    return CellForce.model_validate(
+        {
+            "body": force.body,
+            "from": force.begin,
+            "to": duration if force.end is None else force.end,
+            "force": force.force,
+            "torque": force.torque,
+        }
+    )

@@ -1,0 +1,186 @@
+"""The `sweep` of a config in; its axes, and the coordinates and tree of every cell out.
+
+A cell is the tree as written with the swept values' own nodes grafted in, so that whatever is wrong
+with a cell is reported at the value that makes it wrong.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+from lavendersim.experiment.checks.references import products
+from lavendersim.experiment.sweeps.paths import find_path
+from lavendersim.experiment.text.node import Node, Path, graft, key_mark
+from lavendersim.experiment.text.report import Report
+from lavendersim.quantities.found import found, quoted
+from lavendersim.quantities.scalars import Ratio, exact, written
+
+MOST_CELLS = 100_000
+
+
+@dataclass(frozen=True)
+class Axis:
+    """One swept value: its name, where it stands in the config, and the nodes of its values."""
+
+    name: str
+    path: Path
+    values: tuple[Node, ...]
+
+
+@dataclass(frozen=True)
+class Point:
+    """One cell of the sweep before it is resolved: the nodes to graft in, axis by axis."""
+
+    choices: tuple[tuple[Axis, Node], ...]
+
+    @property
+    def coordinates(self) -> dict[str, Any]:
+        """Axis name -> swept value; ratios are Fractions."""
+        return {axis.name: swept_value(node.data) for axis, node in self.choices}
+
+    @property
+    def label(self) -> str:
+        """The coordinates as text: `e=0.8, timestep=1/480`; empty without a sweep."""
+        return label_of(self.coordinates)
+
+    def tree(self, root: Node) -> Node:
+        """Return the config of this cell."""
+        for axis, node in self.choices:
+            root = graft(_opened(root, axis.path), axis.path, node)
+        return root
+
+
+def label_of(coordinates: Mapping[str, Any]) -> str:
+    """Return coordinates as text: `e=0.8, timestep=1/480`."""
+    return ", ".join(f"{name}={written(value)}" for name, value in coordinates.items())
+
+
+def swept_value(value: Any) -> Any:
+    """Return a value as cells hold it: a ratio as its Fraction, lists as tuples."""
+    if isinstance(value, Ratio):
+        return Fraction(value.fraction)
+    if isinstance(value, tuple):
+        return tuple(swept_value(item) for item in value)
+    return value
+
+
+def axes_of(root: Node, report: Report) -> tuple[tuple[Axis, ...], ...]:
+    """Return the axes of each product, without those that are refused here."""
+    read: list[tuple[Axis, ...]] = []
+    paths: dict[str, Path] = {}
+    for product in products(root):
+        axes: list[Axis] = []
+        for name, node in product.entries.items():
+            axis = _axis(name, node, root, report)
+            if axis is None:
+                continue
+            if paths.setdefault(name, axis.path) != axis.path:
+                sentence = f"{name}: varies another path earlier in the file; rename it"
+                report.add(key_mark(product, name), sentence)
+            elif clash := next((one for one in axes if _overlap(one.path, axis.path)), None):
+                sentence = f"{name}: varies the same place as axis {quoted(clash.name)}"
+                report.add(key_mark(product, name), sentence)
+            else:
+                axes.append(axis)
+        read.append(tuple(axes))
+    return tuple(read)
+
+
+def points(axes: tuple[tuple[Axis, ...], ...]) -> Iterator[Point]:
+    """Yield all cells: product after product, the first axis slowest; one without a sweep."""
+    for product in axes or ((),):
+        for nodes in itertools.product(*(axis.values for axis in product)):
+            yield Point(tuple(zip(product, nodes, strict=True)))
+
+
+def count(axes: tuple[tuple[Axis, ...], ...]) -> int:
+    """Return the number of cells without making them."""
+    total = 0
+    for product in axes or ((),):
+        cells = 1
+        for axis in product:
+            cells *= len(axis.values)
+        total += cells
+    return total
+
+
+def telling_points(axes: tuple[tuple[Axis, ...], ...]) -> Iterator[Point]:
+    """Yield a few cells in which every value of every axis stands once, for large sweeps."""
+    for product in axes or ((),):
+        if not product:
+            yield Point(())
+        first = [(axis, axis.values[0]) for axis in product]
+        for index, axis in enumerate(product):
+            for node in axis.values:
+                yield Point((*first[:index], (axis, node), *first[index + 1 :]))
+
+
+def check_distinct(axes: tuple[tuple[Axis, ...], ...], report: Report) -> None:
+    """Note cells that stand twice in a union of products."""
+    seen: set[str] = set()
+    for product in axes if len(axes) > 1 else ():
+        for point in points((product,)):
+            label = point.label
+            if label in seen and product:
+                mark = product[-1].values[0].mark
+                report.add(mark, f"sweep: cell {quoted(label)} stands in an earlier product too")
+                break
+            seen.add(label)
+
+
+def _axis(name: str, node: Node, root: Node, report: Report) -> Axis | None:
+    path_node, values = node.get("path"), node.get("values")
+    if path_node is None or path_node.text is None or values is None or not values.items:
+        return None  # refused by the model
+    path = find_path(path_node, root, report)
+    usable = _usable(name, values, report, nullable=path == ("numerics", "tolerance"))
+    return Axis(name, path, usable) if path is not None and usable else None
+
+
+def _usable(name: str, values: Node, report: Report, nullable: bool) -> tuple[Node, ...]:
+    """nullable: null means something, and no value that is missing."""
+    usable: dict[object, Node] = {}
+    labels: set[str] = set()
+    for value in values.items:
+        if (value.content is None and not nullable) or isinstance(value.content, dict):
+            sentence = f"{name}: expected a number, a text, true, false or a list"
+            report.add(value.mark, f"{sentence}, found {found(value.data)}")
+            continue
+        label = written(value.data)
+        number = value.number
+        key = (type(value.content), label) if number is None else exact(number)
+        if key in usable:
+            report.add(value.mark, f"{name}: value {label} stands twice")
+        elif label in labels:
+            sentence = f"{name}: another value reads {label} too; labels show six digits"
+            report.add(value.mark, sentence)
+        else:
+            usable[key] = value
+            labels.add(label)
+    return tuple(usable.values())
+
+
+def _overlap(one: Path, other: Path) -> bool:
+    shorter = min(len(one), len(other))
+    return one[:shorter] == other[:shorter]
+
+
+def _opened(root: Node, path: Path) -> Node:
+    """Return the tree with a name that the path enters replaced by what it names.
+
+    `numerics: chapter` becomes {preset: chapter}, `surface: rubber` this body's own copy of rubber.
+    """
+    for length in range(1, len(path)):
+        node = root.get(*path[:length])
+        if node is None or node.text is None:
+            continue
+        if path[:length] == ("numerics",):
+            opened = Node({"preset": node}, node.mark, {"preset": node.mark})
+            root = graft(root, path[:length], opened)
+        elif (named := root.get("scene", "surfaces", node.text)) is not None:
+            root = graft(root, path[:length], named)
+    return root

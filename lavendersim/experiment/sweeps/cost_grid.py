@@ -1,0 +1,188 @@
+"""An experiment with a `cost` section in; its settings, and one experiment that sweeps them, out.
+
+A setting is a preset and five of the numerics: timestep, solver, sweeps, tolerance, warm start. It
+becomes a product of the sweep, with the experiment's own axes inside it:
+
+    - {preset: .., timestep: .., solver: .., sweeps: .., tolerance: .., warm_start: .., <own axes>}
+    - {numerics: chapter, <own axes>}                                       the chapter's setting
+
+so that a grid is run, logged, measured and kept like any other sweep.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from fractions import Fraction
+from itertools import product
+from typing import Any, Final, Literal, NamedTuple, get_args
+
+import yaml
+
+from lavendersim.cell.choices import Solver
+from lavendersim.experiment.experiment import Experiment
+from lavendersim.experiment.load import load_experiment_text
+from lavendersim.experiment.models.cost import CostSpec
+from lavendersim.experiment.resolve.presets import PRESETS
+from lavendersim.experiment.text.parse import parse
+from lavendersim.quantities.scalars import Ratio, written
+
+KNOBS: Final = ("timestep", "solver", "sweeps", "tolerance", "warm_start")
+CHAPTER: Final = "chapter"  # name of a preset; its axis is `numerics`
+# They sweep until a residual is reached, however long that takes; all others take their sweeps.
+BY_TOLERANCE: Final = ("adaptive",)
+FINER: Final = 8  # the truth's timestep is the grid's finest over this
+TRUTH_TOLERANCE: Final = 1e-12  # [m/s] a thousandth of the default's
+TRUTH_SWEEPS: Final = 10_000
+# What the experiment that sweeps the grid does without: they speak of the own sweep, not of it.
+_LEFT_OUT: Final = ("expect", "figure", "price", "cost")
+
+Role = Literal["grid", "stated", "chapter", "truth"]
+
+
+class Setting(NamedTuple):
+    """One point of the grid."""
+
+    role: Role  # of the grid; what the config states; the chapter's; what the others are held to
+    preset: str  # of what it leaves alone
+    timestep: Fraction  # [s]
+    solver: str
+    sweeps: int  # at most
+    tolerance: float | None  # [m/s]
+    warm_start: bool
+
+    @property
+    def knobs(self) -> dict[str, Any]:
+        """The numerics it sets."""
+        return {name: getattr(self, name) for name in KNOBS}
+
+    @property
+    def curve(self) -> tuple[Any, ...]:
+        """What settings share that differ in their timestep alone."""
+        own = self.role == "chapter"  # whatever else the config states, it has the preset's numbers
+        return (own, self.preset, self.solver, self.sweeps, self.tolerance, self.warm_start)
+
+    @property
+    def coordinates(self) -> dict[str, Any]:
+        """Its place in the sweep, by axis."""
+        if self.role == "chapter":
+            return {"numerics": CHAPTER}
+        return {"preset": self.preset, **self.knobs}
+
+
+def settings_of(experiment: Experiment) -> list[Setting]:
+    """Return the settings: what the config states, the grid, the chapter's, the truth's if any."""
+    spec = experiment.cost
+    assert spec is not None
+    preset, others = _stated(experiment)
+    numerics = experiment.cells()[0].config.numerics
+    stated = Setting("stated", preset, **{name: getattr(numerics, name) for name in KNOBS})
+    values: Any = PRESETS[CHAPTER]
+    chapter = Setting("chapter", CHAPTER, **{name: values[name] for name in KNOBS})
+    alone = {stated[1:]} | ({chapter[1:]} if not others else set())
+    grid = [each for each in dict.fromkeys(_grid(spec, stated)) if each[1:] not in alone]
+    settings = [stated, *grid]
+    if others or stated[1:] != chapter[1:]:
+        settings.append(chapter)
+    if spec.error.truth == "finest":
+        finest = min(spec.timesteps) / FINER
+        truth = (finest, "adaptive", TRUTH_SWEEPS, TRUTH_TOLERANCE, True)
+        settings.append(Setting("truth", preset, *truth))
+    return settings
+
+
+def _grid(spec: CostSpec, stated: Setting) -> Iterator[Setting]:
+    presets = spec.presets or (stated.preset,)
+    solvers = get_args(Solver) if spec.solvers == "all" else spec.solvers
+    most: Any = PRESETS["default"]["sweeps"] if stated.tolerance is None else stated.sweeps
+    outer = product(presets, solvers, spec.warm_start, spec.timesteps)
+    for preset, solver, warm, timestep in outer:
+        if solver in BY_TOLERANCE:
+            for tolerance in spec.tolerances:
+                yield Setting("grid", preset, timestep, solver, most, tolerance, warm)
+        else:
+            for sweeps in spec.sweeps:
+                yield Setting("grid", preset, timestep, solver, sweeps, None, warm)
+
+
+def _stated(experiment: Experiment) -> tuple[str, dict[str, Any]]:
+    """Return the preset that a config names, and what else its numerics state, beside the knobs."""
+    root, _ = parse(experiment.text.encode(), experiment.name)
+    assert root is not None
+    stated = root.data.get("numerics", "default")
+    values = dict(stated) if isinstance(stated, dict) else {"preset": stated}
+    preset = values.pop("preset", "default")
+    return preset, {key: value for key, value in values.items() if key not in KNOBS}
+
+
+def over_the_grid(experiment: Experiment, settings: list[Setting]) -> Experiment:
+    """Return the experiment with every setting as a product of its sweep."""
+    root, _ = parse(experiment.text.encode(), experiment.name)
+    assert root is not None
+    data = {key: value for key, value in root.data.items() if key not in _LEFT_OUT}
+    data.setdefault("numerics", "default")
+    own = data.pop("sweep", None) or {}
+    products = own if isinstance(own, tuple) else (own,)
+    data["sweep"] = [
+        {**_axes(setting.coordinates), **axes} for setting in settings for axes in products
+    ]
+    head = f"# {experiment.name}: the settings of its section `cost`, as a sweep.\n"
+    swept = load_experiment_text(head + yaml_of(data), str(experiment.path))
+    return replace(swept, name=experiment.name)
+
+
+def _axes(coordinates: Mapping[str, Any]) -> dict[str, Any]:
+    return {
+        name: {"path": name if name == "numerics" else f"numerics.{name}", "values": [value]}
+        for name, value in coordinates.items()
+    }
+
+
+def fragment_of(experiment: Experiment, setting: Setting) -> str:
+    """Return the `numerics` section that gives this setting in this experiment, as YAML."""
+    if setting.role == "chapter":
+        return f"numerics: {CHAPTER}\n"
+    defaults = PRESETS[setting.preset]
+    chosen: dict[str, Any] = {} if setting.preset == "default" else {"preset": setting.preset}
+    chosen |= _stated(experiment)[1]
+    chosen |= {key: value for key, value in setting.knobs.items() if value != defaults[key]}
+    whole = list(chosen) in ([], ["preset"])
+    return yaml_of({"numerics": setting.preset if whole else chosen}, flow=True)
+
+
+def yaml_of(data: Mapping[str, Any], *, flow: bool | None = None) -> str:
+    """Return plain data as YAML that lavender reads back as the same; flow: each key on a line."""
+    if not flow:
+        text: str = yaml.dump(
+            data,
+            Dumper=_Dumper,
+            sort_keys=False,
+            allow_unicode=True,
+            width=100,
+            default_flow_style=None,
+        )
+        return text
+    lines = (
+        yaml.dump(
+            {key: value}, Dumper=_Dumper, sort_keys=False, default_flow_style=True, width=4096
+        )
+        for key, value in data.items()
+    )
+    return "".join(f"{line.strip()[1:-1]}\n" for line in lines)
+
+
+class _Dumper(yaml.SafeDumper):
+    """Writes what a config's tree holds: ratios as `1/480`, sequences as lists."""
+
+    def ignore_aliases(self, data: Any) -> bool:
+        """Write everything out: a config has no aliases."""
+        return True
+
+
+def _ratio(dumper: _Dumper, value: Ratio | Fraction) -> yaml.ScalarNode:
+    return dumper.represent_scalar("tag:yaml.org,2002:str", written(value))
+
+
+_Dumper.add_representer(Ratio, _ratio)
+_Dumper.add_representer(Fraction, _ratio)
+_Dumper.add_representer(tuple, _Dumper.represent_list)

@@ -1,0 +1,55 @@
+"""The tree of a config and a solver in; the tree with that solver out, and which cases that suits.
+
+A case of the default numerics asks what a solver makes of a scene. One that states numerics of its
+own is about these, and one that must fail is about what makes it fail: another solver would ask
+something else there, so neither is put to several.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from lavendersim.experiment.experiment import Experiment
+from lavendersim.experiment.text.node import Node, graft
+
+# What a case may state of its numerics and still be one of the default's: the timestep belongs to
+# the scene, as its size and its speeds do.
+OF_THE_SCENE: Final = frozenset({"preset", "timestep"})
+
+
+def with_solver(root: Node, solver: str) -> Node:
+    """Return the tree with this solver in its numerics; everything else as it stands."""
+    stated = root.get("numerics")
+    mark = stated.mark if stated is not None else root.mark
+    if stated is not None and stated.text is not None:
+        opened = Node({"preset": stated}, mark, {"preset": mark})
+        root = graft(root, ("numerics",), opened)
+    elif stated is not None and not isinstance(stated.content, dict):
+        return root  # refused by the model, at its place
+    return graft(root, ("numerics", "solver"), Node(solver, mark))
+
+
+def about_something_else(experiment: Experiment) -> str:
+    """Return why a case is not put to several solvers; nothing where it is.
+
+    experiment: loaded without an override.
+    """
+    if any(not control.known_failure for control in experiment.controls):
+        return "must fail (a negative control)"
+    if experiment.mistakes:
+        return f"makes a mistake on purpose ({', '.join(experiment.mistakes)})"
+    if not experiment.expectations and experiment.always is None:
+        return "judges nothing"
+    sweep = experiment.config.sweep
+    products = (sweep,) if isinstance(sweep, dict) else sweep
+    paths = dict.fromkeys(axis.path for product in products for axis in product.values())
+    swept = [path for path in paths if path.split(".")[0] == "numerics"]
+    if own := [path for path in swept if path != "numerics.timestep"]:
+        return f"varies {', '.join(own)}"
+    numerics = experiment.config.numerics
+    if isinstance(numerics, str):
+        return "" if numerics == "default" else f"is about the numerics {numerics}"
+    own = sorted(numerics.model_fields_set - OF_THE_SCENE)
+    if numerics.preset != "default":
+        own.insert(0, numerics.preset)
+    return f"is about numerics of its own ({', '.join(own)})" if own else ""

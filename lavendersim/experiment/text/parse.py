@@ -1,0 +1,199 @@
+"""The bytes of a config file in; a tree of nodes and the defects of its form out.
+
+The tree is composed here from PyYAML's event stream: its own composers recurse (the C one crashes
+on 100,000 nested brackets), resolve YAML 1.1 scalars, and let a key stand twice. There are no
+tags, anchors or aliases in a config, so nothing is constructed and nothing can grow.
+"""
+
+from __future__ import annotations
+
+import codecs
+import re
+from collections.abc import Iterator
+from typing import Any
+
+import yaml
+
+from lavendersim.errors import Defect
+from lavendersim.experiment.text.node import BROKEN, Mark, Node
+from lavendersim.experiment.text.syntax import describe
+from lavendersim.quantities.found import quoted
+from lavendersim.quantities.scalars import ScalarError, resolve
+
+LARGEST_FILE = 1 << 20  # [byte]
+DEEPEST = 32  # a config needs about six levels
+MOST_VALUES = 100_000
+
+_UNPRINTABLE = re.compile(
+    "[^\t\n\r\x20-\x7e\x85\xa0-\u2027\u202a-\ud7ff\ue000-\ufefe\uff00-\ufffd\U00010000-\U0010ffff]"
+)
+_LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+
+
+class _Stop(Exception):  # noqa: N818 - ends the reading; the defect is already noted
+    pass
+
+
+class _Open:
+    """A list or mapping whose end has not been read."""
+
+    def __init__(self, mark: Mark, is_mapping: bool) -> None:
+        self.mark = mark
+        self.is_mapping = is_mapping
+        self.items: list[Node] = []
+        self.entries: dict[str, Node] = {}
+        self.keys: dict[str, Mark] = {}
+        self.key: str | None = None  # read, and waiting for its value
+        self.drops_value = False  # the key was refused
+        self.torn = False
+
+
+def parse(raw: bytes, name: str, size: int | None = None) -> tuple[Node | None, list[Defect]]:
+    """Return the tree (None where there is none to speak of) and what is wrong with the text.
+
+    `size` is the length of the file [byte] when `raw` is only its beginning.
+    """
+    reading = _Reading(name)
+    try:
+        text = reading.decode(raw, size or len(raw))
+        return reading.compose(text), reading.defects
+    except _Stop:
+        return None, reading.defects
+
+
+def decode(raw: bytes) -> str:
+    """Return the text of a file that `parse` found readable, without its byte order mark."""
+    return raw.removeprefix(codecs.BOM_UTF8).decode("utf-8")
+
+
+class _Reading:
+    def __init__(self, name: str) -> None:
+        self.name = name
+        self.defects: list[Defect] = []
+        self.stack: list[_Open] = []
+        self.root: Node | None = None
+        self.anchors: set[str] = set()
+        self.values = 0
+
+    def refuse(self, mark: Mark, message: str) -> None:
+        self.defects.append(Defect(self.name, mark.line, mark.column, message))
+
+    def stop(self, mark: Mark, message: str) -> _Stop:
+        self.refuse(mark, message)
+        return _Stop()
+
+    def decode(self, raw: bytes, size: int) -> str:
+        if size > LARGEST_FILE:
+            raise self.stop(Mark(1, 1), f"the file has {size} bytes; a config has at most 1 MiB")
+        if raw[:2] in (b"\xff\xfe", b"\xfe\xff"):
+            raise self.stop(Mark(1, 1), "the file is UTF-16; save it as UTF-8")
+        try:
+            text = decode(raw)
+        except UnicodeDecodeError as error:
+            refused: bytes = error.object  # without the byte order mark
+            before = refused[: error.start].decode("utf-8")
+            message = f"byte 0x{refused[error.start]:02x} is not UTF-8; save the file as UTF-8"
+            raise self.stop(_mark_after(before), message) from None
+        if match := _UNPRINTABLE.search(text):
+            message = f"control character U+{ord(match[0]):04X}; remove it"
+            raise self.stop(_mark_after(text[: match.start()]), message)
+        return text
+
+    def compose(self, text: str) -> Node | None:
+        try:
+            self._read(yaml.parse(text, _LOADER))
+        except yaml.MarkedYAMLError as error:
+            self.defects += describe(error, text, self.name)
+            return None
+        if self.root is None or self.root.content is None:
+            raise self.stop(Mark(1, 1), "the file is empty; an experiment has a scene, a duration")
+        return self.root
+
+    def _read(self, events: Iterator[Any]) -> None:
+        documents = 0
+        for event in events:
+            mark = Mark(event.start_mark.line + 1, event.start_mark.column + 1)
+            if isinstance(event, yaml.DocumentStartEvent):
+                documents += 1
+                if documents > 1:
+                    raise self.stop(mark, "a second document; a file holds one experiment")
+            elif isinstance(event, yaml.NodeEvent):
+                self._node(event, mark)
+            elif isinstance(event, yaml.CollectionEndEvent):
+                done = self.stack.pop()
+                content = done.entries if done.is_mapping else tuple(done.items)
+                self._place(Node(content, done.mark, done.keys, done.torn), done.mark)
+
+    def _node(self, event: Any, mark: Mark) -> None:
+        self.values += 1
+        if self.values > MOST_VALUES:
+            raise self.stop(mark, f"more than {MOST_VALUES} values in one file")
+        if isinstance(event, yaml.AliasEvent):
+            if event.anchor not in self.anchors:
+                self.refuse(mark, f"alias *{event.anchor}: there is no such anchor")
+            self._place(Node(BROKEN, mark), mark)
+            return
+        refused = self._refuse_properties(event, mark)
+        if isinstance(event, yaml.ScalarEvent):
+            if match := _UNPRINTABLE.search(event.value):  # written as an escape such as "\\x1b"
+                self.refuse(mark, f"control character U+{ord(match[0]):04X}; remove it")
+            self._place(self._scalar(event, mark, refused), mark, event.value)
+            return
+        if len(self.stack) >= DEEPEST:
+            raise self.stop(mark, f"nested deeper than {DEEPEST} levels")
+        self.stack.append(_Open(mark, isinstance(event, yaml.MappingStartEvent)))
+
+    def _refuse_properties(self, event: Any, mark: Mark) -> bool:
+        if event.tag is not None:
+            tag = event.tag.replace("tag:yaml.org,2002:", "!!")
+            self.refuse(mark, f"tag {quoted(tag)}: a config has no tags, only plain values")
+        if event.anchor is not None:
+            message = f"anchor &{event.anchor}: anchors and aliases are not read"
+            self.refuse(mark, f"{message}; write the value out where it is used")
+            self.anchors.add(event.anchor)
+        return event.tag is not None
+
+    def _scalar(self, event: Any, mark: Mark, refused: bool) -> Node:
+        if refused:
+            return Node(BROKEN, mark)
+        if not event.implicit[0]:  # quoted, or a block of text
+            return Node(event.value, mark)
+        if self.stack and self.stack[-1].is_mapping and self.stack[-1].key is None:
+            return Node(event.value, mark)  # keys are text, whatever they look like
+        try:
+            return Node(resolve(event.value), mark)
+        except ScalarError as error:
+            self.refuse(mark, str(error))
+            return Node(BROKEN, mark)
+
+    def _place(self, node: Node, mark: Mark, text: str | None = None) -> None:
+        if not self.stack:
+            self.root = node
+            return
+        into = self.stack[-1]
+        if not into.is_mapping:
+            into.items.append(node)
+        elif into.key is not None:
+            if not into.drops_value:
+                into.entries[into.key] = node
+            into.key = None
+        else:
+            self._key(into, mark, text)
+
+    def _key(self, into: _Open, mark: Mark, text: str | None) -> None:
+        into.drops_value = False
+        if text is None:
+            self.refuse(mark, "a key is a list, a mapping or an alias; a key is a name")
+            into.drops_value = into.torn = True
+        elif text in into.keys:
+            first = into.keys[text].line
+            self.refuse(mark, f"key {quoted(text)} stands twice, first in line {first}")
+            into.drops_value = True
+        else:
+            into.keys[text] = mark
+        into.key = text or ""
+
+
+def _mark_after(text: str) -> Mark:
+    lines = text.split("\n")
+    return Mark(len(lines), len(lines[-1]) + 1)

@@ -1,0 +1,56 @@
+"""What checks find in; the defects of one file out, each place told once, in the file's order."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from lavendersim.errors import Defect
+from lavendersim.experiment.text.node import Mark
+
+MOST_DEFECTS = 200  # nobody reads further, and printing more takes longer than finding them
+
+
+class Report:
+    """Collects defects in rounds; a place that an earlier round refused is not refused again.
+
+    One round is the file as written, or one cell of its sweep: cells share most of their nodes, so
+    the same mistake is found in each of them.
+    """
+
+    def __init__(self, name: str, defects: Iterable[Defect] = ()) -> None:
+        self.name = name
+        self._defects = list(dict.fromkeys(defects))
+        self._told = {(defect.line, defect.column) for defect in self._defects}
+        self._round: dict[tuple[Mark, str], None] = {}
+        self._sound = True  # nothing found in this round, new or told before
+
+    def add(self, mark: Mark, message: str) -> None:
+        """Note a defect of the current round."""
+        self._sound = False
+        if mark not in self._told:
+            self._round[mark, message] = None
+
+    def doubt(self) -> None:
+        """Note that something is wrong that was told already, perhaps at another place."""
+        self._sound = False
+
+    def close_round(self) -> bool:
+        """End the round; tells whether nothing was found in it, be it new or told before."""
+        self._defects += [
+            Defect(self.name, mark.line, mark.column, said) for mark, said in self._round
+        ]
+        self._told |= {mark for mark, _ in self._round}
+        self._round.clear()
+        sound, self._sound = self._sound, True
+        return sound
+
+    @property
+    def defects(self) -> tuple[Defect, ...]:
+        """All defects in the order of the file; a very long list ends with how many are left."""
+        self.close_round()
+        ordered = sorted(self._defects, key=lambda defect: (defect.line, defect.column))
+        if len(ordered) <= MOST_DEFECTS:
+            return tuple(ordered)
+        last = ordered[MOST_DEFECTS - 1]
+        more = f"... and {len(ordered) - MOST_DEFECTS + 1} more defects from here on"
+        return (*ordered[: MOST_DEFECTS - 1], last._replace(message=more))
