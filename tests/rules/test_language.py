@@ -1,0 +1,84 @@
+"""One word, one meaning: words that the glossary retired do not come back."""
+
+from __future__ import annotations
+
+import ast
+import re
+from functools import cache
+from pathlib import Path
+
+import pytest
+from retired_words import EVERYWHERE, LEFT, RETIRED
+from sources import ROOT, files
+
+GLOSSARY = ROOT / "docs/glossary.md"
+# What speaks of old words because it must: the glossary, the history, these rules, and the reviewed
+# table of renames.
+ALLOWED = {
+    GLOSSARY,
+    ROOT / "CHANGELOG.md",
+    Path(__file__),
+    Path(__file__).with_name("retired_words.py"),
+    ROOT / "tests/pinned/renames.json",
+}
+ENDINGS = {".py", ".yaml", ".md", ".expected", ".html", ".json", ".toml", ".patch"}
+# Modules whose first line still says what comes in and what goes out, not what the module is.
+FIRST_LINES_LEFT = 148
+
+
+def place_of(file: Path) -> str:
+    """Return the package, or the folder of the repository, that a file belongs to."""
+    first, *rest = file.relative_to(ROOT).parts
+    if first == "lavendersim":
+        return rest[0] if len(rest) > 1 else "lavendersim"
+    return first if rest else "docs"  # README.md and its like
+
+
+@cache
+def texts() -> list[tuple[str, Path, list[str]]]:
+    """Return every text of the project: its place, its file, its lines as they are searched."""
+    folders = ["lavendersim", "cli", "configs", "docs", "tests"]
+    found = [file for folder in folders for file in sorted((ROOT / folder).rglob("*"))]
+    found += sorted(ROOT.glob("*.md"))
+    return [
+        (place_of(file), file, file.read_text().lower().replace("_", " ").splitlines())
+        for file in found
+        if file.suffix in ENDINGS and file.is_file() and file not in ALLOWED
+    ]
+
+
+@pytest.mark.parametrize("word", RETIRED)
+def test_a_retired_word_does_not_come_back(word: str) -> None:
+    pattern, now, where = RETIRED[word]
+    lines = [
+        f"{file.relative_to(ROOT)}:{number}"
+        for place, file, text in texts()
+        if place in where
+        for number, line in enumerate(text, start=1)
+        if re.search(pattern, line)
+    ]
+    assert len(lines) <= LEFT.get(word, 0), f"say {now}: {lines}"
+
+
+def test_every_place_is_searched() -> None:
+    assert {place for place, _, _ in texts()} <= set(EVERYWHERE)
+
+
+def test_a_module_says_what_it_is_first() -> None:
+    """Not 'X enters, Y leaves': that hides what the module is."""
+    found = []
+    for file in files():
+        first = (ast.get_docstring(ast.parse(file.read_text())) or "").partition("\n")[0]
+        if re.search(r"\b(enters?|in)\b.*(\bleaves?\b|, out\.)", first):
+            found.append(str(file.relative_to(ROOT)))
+    assert len(found) <= FIRST_LINES_LEFT, found
+
+
+def test_no_two_classes_of_the_sources_are_called_part() -> None:
+    parts = [
+        f"{file.relative_to(ROOT)}: {node.name}"
+        for file in files()
+        for node in ast.walk(ast.parse(file.read_text()))
+        if isinstance(node, ast.ClassDef) and node.name == "Part"
+    ]
+    assert len(parts) <= 5
