@@ -4,15 +4,9 @@ from __future__ import annotations
 
 from typing import Final, Literal
 
-Solver = Literal[
-    "projected_gauss_seidel",
-    "block_gauss_seidel",
-    "coloured_gauss_seidel",
-    "nonsmooth_conjugate_gradient",
-    "jacobi",
-    "accelerated_projected_gradient",
-    "adaptive",
-]
+from lavendersim.engine.solvers import SolverName
+
+Solver = SolverName
 Impacts = Literal["captured", "at_surface"]
 Integrator = Literal["semi_implicit_euler", "midpoint"]
 FrictionCone = Literal["disc", "pyramid", "convex"]

@@ -41,7 +41,7 @@ from .records import (
     WOKEN,
     dtype,
 )
-from .solvers import SOLVERS
+from .solvers.catalogue import SOLVERS
 from .spec import Spec
 from .step import advance_for
 
@@ -106,7 +106,6 @@ class Engine:
 
     def _grow_contacts(self, capacity: int) -> None:
         self.contacts = np.zeros(capacity, contact_dtype(self.spec))
-        allocate = getattr(SOLVERS[self.spec.solver], "allocate", None)
         self._work = (
             np.zeros(MANIFOLD_POINTS, dtype(POINT)),
             np.zeros(3),
@@ -115,7 +114,7 @@ class Engine:
             np.zeros(BUCKETS + 1, np.int64),
             np.zeros(capacity, np.int64),
             np.zeros(capacity, np.uint64),
-            allocate(self.spec, len(self.bodies), capacity) if allocate else (),
+            SOLVERS[self.spec.solver].allocate(self.spec, len(self.bodies), capacity),
             self.free,
             self._templates,
             self._near,

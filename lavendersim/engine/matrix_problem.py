@@ -10,7 +10,7 @@ from .compile import kernel
 from .contact_problem import ContactProblem
 from .coupling import MATRIX_CONTACT, Coupling
 from .records import dtype
-from .solvers import SOLVERS
+from .solvers.catalogue import SOLVERS
 from .spec import Spec
 
 
@@ -36,7 +36,7 @@ def contacts_of(problem: ContactProblem, spec: Spec, impulses: np.ndarray) -> np
     """Return the records of a problem's contacts at given impulses (n, 3) [N s]."""
     contacts = np.zeros(
         problem.contacts,
-        dtype(MATRIX_CONTACT, getattr(SOLVERS[spec.solver], "CONTACT_FIELDS", [])),
+        dtype(MATRIX_CONTACT, SOLVERS[spec.solver].contact_fields),
     )
     own = problem.own_blocks
     w = multiply(problem, impulses) + problem.free

@@ -24,7 +24,7 @@ from .records import (
     Field,
     dtype,
 )
-from .solvers import SOLVERS
+from .solvers.catalogue import SOLVERS
 from .spec import Spec
 
 Record = Literal["body", "velocity", "pair", "contact", "cache"]
@@ -56,7 +56,7 @@ def contact_dtype(spec: Spec) -> np.dtype:
         if effect.fields.contact_with
         for field in effect.fields.contact_with(spec)
     ]
-    solver = getattr(SOLVERS[spec.solver], "CONTACT_FIELDS", [])
+    solver = SOLVERS[spec.solver].contact_fields
     return dtype(CONTACT, _of_effects(spec, "contact"), dependent, solver)
 
 

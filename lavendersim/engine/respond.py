@@ -16,7 +16,7 @@ from .compile import chain, kernel
 from .contact import make_append_contact, make_apply_start
 from .effects import made_by, made_once
 from .integrate import make_classify
-from .solvers import SOLVERS
+from .solvers.catalogue import SOLVERS
 from .spec import Spec
 
 

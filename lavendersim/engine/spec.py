@@ -15,7 +15,7 @@ class Spec(NamedTuple):
 
     effects: names from `engine.effects.EFFECTS`, sorted.
     shape_pairs: names from `engine.collide.SHAPE_PAIRS`, sorted.
-    solver: name from `engine.solvers.SOLVERS`.
+    solver: name from `engine.solvers.SOLVER_NAMES`.
     tolerance: whether sweeping stops at a residual.
     friction_cone: disc; for study pyramid (|lambda_1|, |lambda_2| <= mu lambda_n) or convex (no
         De Saxce's shift: what slides is lifted).

@@ -17,7 +17,7 @@ from lavendersim.engine.effects import row_fields
 from lavendersim.engine.kernel_cache import cached
 from lavendersim.engine.matrix_problem import contacts_of, coupling_of, make_solve
 from lavendersim.engine.records import COUNTERS, PARAMETERS, dtype
-from lavendersim.engine.solvers import SOLVERS
+from lavendersim.engine.solvers.catalogue import SOLVERS
 from lavendersim.engine.spec import Spec
 
 from .residual import distances
@@ -44,7 +44,7 @@ def solve_by_kernel(
     friction_cone: str = "disc",
     over_relaxation: float = 1.0,
 ) -> Solution:
-    """Solve a problem by a kernel of `engine.solvers.SOLVERS`.
+    """Solve a problem by a kernel of `engine.solvers`.
 
     tolerance: `scaled` residual at which it stops [-], below 0: never; start: impulses (n, 3) to
     begin at [N s]; history: keep the residual at the start and after every sweep; over_relaxation:
@@ -62,10 +62,9 @@ def solve_by_kernel(
     params["residuals_from"] = params["residuals_to"] = 1
     rows = np.zeros(sweeps + 1 if history else 0, dtype(row_fields(spec, "residual")))
     order = np.arange(problem.contacts)
-    allocate = getattr(SOLVERS[solver], "allocate", None)
-    space = allocate(spec, 0, problem.contacts) if allocate else ()
+    workspace = SOLVERS[solver].allocate(spec, 0, problem.contacts)
     with compiling():
-        _kernel(spec)(contacts, order, coupling_of(problem), space, params, counters, rows)
+        _kernel(spec)(contacts, order, coupling_of(problem), workspace, params, counters, rows)
     impulses = np.stack([contacts[f"lambda_{k}"] for k in "n12"], axis=1)
     scaled, local = distances(problem, impulses)
     status = SOLVED if scaled <= max(tolerance, 0.0) else SPENT

@@ -13,7 +13,7 @@ from functools import partial
 import numpy as np
 
 from lavendersim.engine.contact_problem import NOT_FINITE, SOLVED, SPENT, ContactProblem, Solution
-from lavendersim.engine.solvers import SOLVERS as KERNELS
+from lavendersim.engine.solvers.catalogue import SOLVERS as KERNELS
 from lavendersim.errors import UsageError
 from lavendersim.problems.by_kernel import solve_by_kernel
 from lavendersim.problems.interior_point import WAYS
@@ -69,7 +69,7 @@ def _by_search(plan: Callable[[Search], None], price: float = float("inf")) -> S
 # `adaptive` chooses by what a scene's bodies allow. The block and coloured variants differ from
 # `projected_gauss_seidel` in how they visit bodies: through W all three are the same sweeps.
 SOLVERS: dict[str, Solver] = {
-    **{name: partial(solve_by_kernel, name) for name in KERNELS if name != "adaptive"},
+    **{name: partial(solve_by_kernel, name) for name in KERNELS if KERNELS[name].solves_matrix},
     "semismooth_newton": _by_search(_newton),
     "interior_point": _by_search(_interior_point),
     "auto": _by_search(_whatever_does_it, AUTO),

@@ -12,14 +12,13 @@ from typing import Any, NamedTuple
 
 from lavendersim.engine.collide import SHAPE_PAIRS
 from lavendersim.engine.effects import EFFECTS, Effect
-from lavendersim.engine.solvers import SOLVERS
+from lavendersim.engine.solvers.catalogue import SOLVERS
 from lavendersim.engine.spec import Spec
 from lavendersim.engine.step import kernels_of
 
 from .laws import needs
 from .plan import CHOICES, Plan
 
-_GROUP = "_FIELDS"  # BODY_FIELDS of a module: columns of the body record
 _GLUE = "compile"  # links between the kernels of one stage, which have nothing to say
 
 Fields = dict[str, list[str]]  # record -> names of its columns
@@ -133,15 +132,6 @@ def _decided(plan: Plan, name: str) -> Part:
     )
 
 
-def fields_of(module: Any) -> Fields:
-    """Return the columns that a module of the engine states, by record: `body`, `contact_row`."""
-    return {
-        group.removesuffix(_GROUP).lower(): _names(getattr(module, group))
-        for group in sorted(vars(module))
-        if group.endswith(_GROUP)
-    }
-
-
 def _brought(spec: Spec, effect: Effect) -> Kernels:
     """Return the kernels that are there because of an effect: its own, those that vanish without.
 
@@ -173,7 +163,8 @@ def _shape_pair(plan: Plan, name: str) -> Part:
 
 def _solver(plan: Plan, composed: Kernels) -> Part:
     spec = plan.spec
-    fields = fields_of(SOLVERS[spec.solver])
+    kept = _names(SOLVERS[spec.solver].contact_fields)
+    fields = {"contact": kept} if kept else {}
     stops = "stops at a tolerance" if spec.tolerance else "takes all its sweeps"
     return Part(
         name=spec.solver,

@@ -19,13 +19,14 @@ from lavendersim.engine.effects import row_fields
 from lavendersim.engine.engine import Engine
 from lavendersim.engine.kernel_cache import cached
 from lavendersim.engine.records import dtype
-from lavendersim.engine.solvers import SOLVERS
+from lavendersim.engine.solvers import SOLVER_NAMES
+from lavendersim.engine.solvers.catalogue import SOLVERS
 from lavendersim.engine.spec import Spec
 from lavendersim.experiment import load_experiment_text
 from lavendersim.scene.build import build
 from lavendersim.scene.plan import plan_of
 
-EVERY_SOLVER = tuple(SOLVERS)  # by name
+EVERY_SOLVER = tuple(SOLVER_NAMES)  # by name
 SCENES = Path(__file__).parents[2] / "configs" / "scenes"
 ORDER = 6  # of an engine's working arrays: the order of sweeps
 
@@ -103,19 +104,17 @@ class Solve:
         spec = prepared.spec._replace(solver=solver, tolerance=tolerance is not None)
         held = prepared.contacts.dtype
         fields = [(field, held[field].str[1:]) for field in held.names or ()]
-        own = getattr(SOLVERS[solver], "CONTACT_FIELDS", [])
-        self._initial = np.zeros(self.count, dtype(fields, own))
+        self._initial = np.zeros(self.count, dtype(fields, SOLVERS[solver].contact_fields))
         for field, _ in fields:
             self._initial[field] = prepared.contacts[field]
         self.contacts, self.velocities = self._initial.copy(), prepared.velocities.copy()
         self._parameters, self._counters = prepared.parameters.copy(), prepared.counters.copy()
         self._parameters["tolerance"] = -1.0 if tolerance is None else tolerance
         self._parameters["sweeps"] = 0
-        allocate = getattr(SOLVERS[solver], "allocate", None)
-        self.space = allocate(spec, len(prepared.bodies), self.count) if allocate else ()
+        self.workspace = SOLVERS[solver].allocate(spec, len(prepared.bodies), self.count)
         self._arguments = (
             self.contacts, prepared.order, self.count, prepared.bodies, self.velocities,
-            self.space, self._parameters[0], self._counters[0],
+            self.workspace, self._parameters[0], self._counters[0],
             np.zeros(0, dtype(row_fields(spec, "residual"))),
         )  # fmt: skip
         kernel = cached(SOLVERS[solver].make, spec)

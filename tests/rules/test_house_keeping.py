@@ -11,26 +11,13 @@ from sources import ROOT, files
 from lavendersim.engine.collide import SHAPE_PAIRS
 from lavendersim.engine.effects import CHAINED, EFFECTS, Effect, hook_names
 from lavendersim.engine.records import F8, I8, U8
-from lavendersim.engine.solvers import SOLVERS
+from lavendersim.engine.solvers import SOLVER_NAMES
+from lavendersim.engine.solvers.catalogue import SOLVERS
 
 ENGINE = ROOT / "lavendersim/engine"
 LONGEST_FILE = 400  # lines; beyond it a file does more than one thing
-SHARED_BY_SOLVERS = {
-    "row_update",
-    "step_bound",
-    "sweep",
-    "packed_rows",
-    "packed_sweep",
-    "packing",
-    "lanes",
-    "lane_memory",
-    "newton",
-    "newton_minimise",
-    "newton_rows",
-    "newton_matrix",
-    "newton_torques",
-    "envelope",
-}
+# What several solvers are made of, and their declaration.
+SHARED_BY_SOLVERS = {"catalogue", "row_update", "solver", "step_bound", "sweep"}
 # Folders of configs that claim something of physics, and what claims something else: maps look for
 # where bounds break, and what the fuzz found is held to its laws (`tests/property`).
 CLAIMING = ("chapter", "hard", "paw_check", "scenes")
@@ -96,9 +83,9 @@ def stems_of(folder: str) -> set[str]:
     return {path.stem for path in (ENGINE / folder).glob("*.py")} - {"__init__"}
 
 
-def test_every_solver_is_listed() -> None:
-    listed = {module.__name__.rpartition(".")[2] for module in SOLVERS.values()}
-    assert listed == stems_of("solvers") - SHARED_BY_SOLVERS
+def test_every_solver_is_a_file_and_a_name() -> None:
+    assert stems_of("solvers") - SHARED_BY_SOLVERS == set(SOLVER_NAMES)
+    assert [solver.name for solver in SOLVERS.values()] == list(SOLVER_NAMES)
 
 
 def test_every_shape_pair_is_listed() -> None:

@@ -16,7 +16,7 @@ ROOMS = {
     "clock": set(),
     "geometry": set(),
     "quantities": {"errors", "clock"},
-    "cell": {"errors", "clock", "quantities"},
+    "cell": {"errors", "clock", "quantities", "engine"},  # of the engine: DECLARATIONS
     "experiment": {"errors", "clock", "geometry", "quantities", "cell"},
     "engine": set(),
     "scene": {"errors", "clock", "geometry", "quantities", "cell", "experiment", "engine"},
@@ -36,6 +36,8 @@ ROOMS = {
         *("replay", "runner", "problems"),
     },
 }
+# Modules of the engine that list what it has, without numba: what configs may name.
+DECLARATIONS = {"lavendersim.engine.solvers"}
 # Who may import a library of others; what is not listed is imported by nobody.
 LIBRARIES = {
     "numba": {"engine"},
@@ -82,6 +84,13 @@ def test_a_room_imports_only_the_rooms_it_may(room: str) -> None:
         and found.module.split(".")[0] in PACKAGES.values()
         and found.target not in allowed
     ]
+    assert strangers == []
+
+
+def test_configs_are_read_with_no_more_of_the_engine_than_its_lists() -> None:
+    rooms = ("cell", "experiment")
+    of_engine = [f for f in IMPORTS if f.room in rooms and f.target == "engine"]
+    strangers = [str(f) for f in of_engine if f.module.rpartition(".")[0] not in DECLARATIONS]
     assert strangers == []
 
 

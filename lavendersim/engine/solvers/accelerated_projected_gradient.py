@@ -23,6 +23,7 @@ from ..residual import make_residual
 from ..spec import Spec
 from . import step_bound
 from .jacobi import make_act
+from .solver import Solver
 from .sweep import make_account, make_note
 
 CONTACT_FIELDS = [
@@ -33,7 +34,6 @@ CONTACT_FIELDS = [
     *[(f"pull_{k}", "f8") for k in "n12"],  # w(y) without shift [m/s]
     *[(f"change_{k}", "f8") for k in "n12"],  # of the impulse, in the last sweep [N s]
 ]
-allocate = step_bound.allocate
 
 # The convex problem is solved to this share of what its shift is off [-].
 INEXACT = 0.5
@@ -190,3 +190,11 @@ def make(spec: Spec) -> Any:
         account(params, counters, sweeps, largest, worst)
 
     return kernel(accelerated_projected_gradient, spec)
+
+
+SOLVER = Solver(
+    name="accelerated_projected_gradient",
+    make=make,
+    allocate=step_bound.allocate,
+    contact_fields=CONTACT_FIELDS,
+)

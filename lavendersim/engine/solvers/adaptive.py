@@ -21,8 +21,9 @@ from typing import Any
 from ..compile import kernel
 from ..residual import make_residual
 from ..spec import Spec
-from .envelope import allocate_envelope
-from .newton import make_newton
+from .newton.envelope import allocate_envelope
+from .newton.method import make_newton
+from .solver import Solver, no_workspace
 from .sweep import make_account, make_note, make_sweep
 
 # Sweeps between two looks at how fast they converge.
@@ -44,7 +45,7 @@ MOST_ENTRIES = 4_000_000
 def allocate(spec: Spec, bodies: int, contacts: int) -> Any:
     """Return the arrays this solver works in."""
     if not spec.has("newton"):
-        return ()
+        return no_workspace(spec, bodies, contacts)
     rows = 6 * bodies
     return allocate_envelope(bodies, contacts, min(rows * (rows + 1) // 2, MOST_ENTRIES))
 
@@ -124,3 +125,7 @@ def make(spec: Spec):
         account(params, counters, sweeps, largest, worst)
 
     return kernel(adaptive, spec)
+
+
+# By what bodies allow, it chooses whether to factorise: a matrix alone says nothing of bodies.
+SOLVER = Solver(name="adaptive", make=make, allocate=allocate, solves_matrix=False)

@@ -1,7 +1,7 @@
 """Projected Gauss-Seidel by contact blocks: a contact's normal and disc in one packed visit.
 
 The sweeps of `projected_gauss_seidel`, to round-off, on contacts that are packed once a solve
-(`packed_rows`). That pays from some three sweeps on. Where `can_pack` says no (without friction,
+(`packed`). That pays from some three sweeps on. Where `can_pack` says no (without friction,
 another cone than the disc, what resists turning, sweeps that are over-relaxed or go there and
 back), the sweeps are those of `projected_gauss_seidel` over the records, to the bit.
 """
@@ -12,13 +12,16 @@ from typing import Any
 
 from ..spec import Spec
 from . import projected_gauss_seidel
-from .packed_rows import allocate_packed
-from .packed_sweep import can_pack, make_solve_packed
+from .packed.layout import allocate_packed
+from .packed.sweep import can_pack, make_solve_packed
+from .solver import Solver, no_workspace
 
 
 def allocate(spec: Spec, bodies: int, contacts: int) -> Any:
     """Return the arrays this solver works in."""
-    return allocate_packed(bodies, contacts, eight=False) if can_pack(spec) else ()
+    if not can_pack(spec):
+        return no_workspace(spec, bodies, contacts)
+    return allocate_packed(bodies, contacts, eight=False)
 
 
 def make(spec: Spec) -> Any:
@@ -29,3 +32,6 @@ def make(spec: Spec) -> Any:
     if can_pack(spec):
         return make_solve_packed(spec, eight=False)
     return projected_gauss_seidel.make(spec)
+
+
+SOLVER = Solver(name="block_gauss_seidel", make=make, allocate=allocate)

@@ -13,13 +13,16 @@ from typing import Any
 
 from ..spec import Spec
 from . import projected_gauss_seidel
-from .packed_rows import allocate_packed
-from .packed_sweep import can_pack, make_solve_packed
+from .packed.layout import allocate_packed
+from .packed.sweep import can_pack, make_solve_packed
+from .solver import Solver, no_workspace
 
 
 def allocate(spec: Spec, bodies: int, contacts: int) -> Any:
     """Return the arrays this solver works in."""
-    return allocate_packed(bodies, contacts, eight=True) if can_pack(spec) else ()
+    if not can_pack(spec):
+        return no_workspace(spec, bodies, contacts)
+    return allocate_packed(bodies, contacts, eight=True)
 
 
 def make(spec: Spec) -> Any:
@@ -30,3 +33,6 @@ def make(spec: Spec) -> Any:
     if can_pack(spec):
         return make_solve_packed(spec, eight=True)
     return projected_gauss_seidel.make(spec)
+
+
+SOLVER = Solver(name="coloured_gauss_seidel", make=make, allocate=allocate)

@@ -17,6 +17,7 @@ from ..residual import make_residual
 from ..spec import Spec
 from ..spin_block import make_solve_spin, resists_turning
 from . import step_bound
+from .solver import Solver
 from .sweep import make_account, make_note
 
 CONTACT_FIELDS = [
@@ -25,7 +26,6 @@ CONTACT_FIELDS = [
     ("change_1", "f8"),
     ("change_2", "f8"),
 ]
-allocate = step_bound.allocate
 # Sweeps between two looks at the residual.
 LOOK = 8
 
@@ -136,3 +136,11 @@ def make(spec: Spec) -> Any:
         account(params, counters, sweeps, largest, worst)
 
     return kernel(jacobi, spec)
+
+
+SOLVER = Solver(
+    name="jacobi",
+    make=make,
+    allocate=step_bound.allocate,
+    contact_fields=CONTACT_FIELDS,
+)

@@ -18,6 +18,7 @@ from ..compile import kernel
 from ..coupling import make_add_impulse
 from ..residual import make_residual
 from ..spec import Spec
+from .solver import Solver
 from .sweep import make_account, make_note, make_sweep
 
 CONTACT_FIELDS = [
@@ -126,3 +127,6 @@ def make(spec: Spec):
         account(params, counters, sweeps, largest, worst)
 
     return kernel(nonsmooth_conjugate_gradient, spec)
+
+
+SOLVER = Solver(name="nonsmooth_conjugate_gradient", make=make, contact_fields=CONTACT_FIELDS)

@@ -11,6 +11,7 @@ from __future__ import annotations
 from ..compile import kernel
 from ..residual import make_residual
 from ..spec import Spec
+from .solver import Solver
 from .sweep import make_account, make_note, make_sweep
 
 
@@ -53,3 +54,6 @@ def make(spec: Spec):
         account(params, counters, sweeps, largest, worst)
 
     return kernel(projected_gauss_seidel, spec)
+
+
+SOLVER = Solver(name="projected_gauss_seidel", make=make)

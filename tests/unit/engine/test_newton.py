@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from laboratory import Bench, box, plane, resolved
 
-from lavendersim.engine.solvers.newton_rows import move_shift
+from lavendersim.engine.solvers.newton.response import move_shift
 
 G, DT, MU = 9.81, 1.0 / 240.0, 0.5
 TOLERANCE = 1e-9

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from packed_scenes import BLOCKS, SCENES, found, mechanics, natural_maps
 
-from lavendersim.engine.solvers import SOLVERS
-from lavendersim.engine.solvers.lanes import WIDTH
-from lavendersim.engine.solvers.packed_rows import FIELDS, INV_K, K_N, W_N
+from lavendersim.engine.solvers.catalogue import SOLVERS
+from lavendersim.engine.solvers.packed.lanes import WIDTH
+from lavendersim.engine.solvers.packed.layout import FIELDS, INV_K, K_N, W_N
 from tests.benchmarks.prepared_contacts import Solve
 
 PACKED = ("block_gauss_seidel", "coloured_gauss_seidel")
@@ -65,7 +65,7 @@ def test_the_scenes_have_what_could_go_wrong() -> None:
     slides = (tangential > 0.999 * limit) & (limit > 0.0)
     sticks = (tangential < 0.9 * limit) & (limit > 0.0)
     group = np.empty(len(contacts), np.int64)
-    group[found("mixed").order] = solve.space.slot // WIDTH
+    group[found("mixed").order] = solve.workspace.slot // WIDTH
     assert set(group[slides]) & set(group[sticks])
     assert len(set(group)) * WIDTH > len(contacts)  # some lanes are filled up
     assert (np.unique(group, return_counts=True)[1] == WIDTH).any()  # and some groups are full
@@ -82,11 +82,11 @@ def test_no_group_holds_a_movable_body_twice(name: str) -> None:
     solve = Solve(prepared, "coloured_gauss_seidel")
     solve.run(1)
     members: dict[int, list[int]] = {}
-    for contact, slot in zip(prepared.contacts[prepared.order], solve.space.slot, strict=True):
+    for contact, slot in zip(prepared.contacts[prepared.order], solve.workspace.slot, strict=True):
         ends = [i for i in (contact["a"], contact["b"]) if prepared.bodies[i]["inv_m"] > 0.0]
         members.setdefault(slot // WIDTH, []).extend(int(i) for i in ends)
     assert all(len(set(ends)) == len(ends) for ends in members.values())
-    assert np.all(np.diff(solve.space.slot) > 0)  # in the order of the sweep
+    assert np.all(np.diff(solve.workspace.slot) > 0)  # in the order of the sweep
 
 
 @pytest.mark.parametrize("solver", PACKED)
@@ -146,11 +146,11 @@ def test_what_an_earlier_solve_left_in_the_arrays_does_not_matter() -> None:
     to rest; the greatest change of any lane says when sweeps are over.
     """
     clean, dirty = (Solve(found("towers"), "coloured_gauss_seidel", 1e-6) for _ in range(2))
-    fields = dirty.space.rows.reshape(-1, FIELDS, WIDTH)
+    fields = dirty.workspace.rows.reshape(-1, FIELDS, WIDTH)
     fields[:, [INV_K, K_N]], fields[:, W_N] = 1.0, -1.0  # pushed by 1 m/s, and never moved
-    for array in (dirty.space.state, dirty.space.start, dirty.space.factor):
+    for array in (dirty.workspace.state, dirty.workspace.start, dirty.workspace.factor):
         array[...] = 7.0
-    dirty.space.group_of[...] = 0
+    dirty.workspace.group_of[...] = 0
     clean.run(3000)
     dirty.run(3000)
     assert clean.sweeps < 3000
@@ -180,6 +180,6 @@ def test_contacts_that_are_no_such_blocks_are_swept_as_records(solver: str) -> N
         BLOCKS._replace(order="symmetric"),
         BLOCKS._replace(operator="matrix"),
     ):
-        module = SOLVERS[solver]
-        assert module.allocate(spec, 2, 2) == ()
-        assert module.make(spec).py_func.__name__ == "projected_gauss_seidel"
+        declared = SOLVERS[solver]
+        assert declared.allocate(spec, 2, 2) == ()
+        assert declared.make(spec).py_func.__name__ == "projected_gauss_seidel"

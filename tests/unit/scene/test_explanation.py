@@ -11,7 +11,7 @@ import pytest
 from lavendersim.engine.collide import SHAPE_PAIRS
 from lavendersim.engine.effects import EFFECTS
 from lavendersim.engine.record_layout import allocate_bodies, allocate_pairs, allocate_velocities
-from lavendersim.engine.solvers import SOLVERS
+from lavendersim.engine.solvers.catalogue import SOLVERS
 from lavendersim.engine.spec import Spec
 from lavendersim.engine.step import kernels_of
 from lavendersim.experiment import load_experiment

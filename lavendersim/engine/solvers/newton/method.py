@@ -1,13 +1,13 @@
 """Newton's method on the augmented Lagrangian of a contact problem, factorised over the bodies.
 
-Around impulses lambda^k the next ones answer velocities v as stiff dampers would (`newton_rows`),
+Around impulses lambda^k the next ones answer velocities v as stiff dampers would (`response`),
     lambda(v) = proj(lambda^k - E (J v + b + s)),    E = 1/(softness k) per row,
 onto Coulomb's cone, with De Saxce's shift s = mu |v_t^k| along the normal, without which the
 projection onto the cone would lift what slides. Held for a round, it leaves a convex problem
-(`newton_minimise`). At rest s = 0, and a round shrinks the error by softness over the least
+(`minimise`). At rest s = 0, and a round shrinks the error by softness over the least
 eigenvalue of the scaled Delassus operator; where that is not what a round leaves, the shifts are,
 and the next ones go by their secants. A round must end exactly: what it leaves undone comes back in
-the impulses, times E. Torques take part (`newton_torques`).
+the impulses, times E. Torques take part (`torques`).
 
 The first round is stiff and takes contacts to be at rest: a load that is carried without slip is
 found at once, through a tower or a pyramid. Where that fails, rounds begin soft, where few contacts
@@ -18,15 +18,15 @@ from __future__ import annotations
 
 from math import sqrt
 
-from ..compile import kernel
-from ..contact import make_apply_block
-from ..residual import make_residual
-from ..spec import Spec
-from ..spin_block import resists_turning
+from ...compile import kernel
+from ...contact import make_apply_block
+from ...residual import make_residual
+from ...spec import Spec
+from ...spin_block import resists_turning
 from .envelope import lay_out
-from .newton_minimise import make_minimise, make_weigh
-from .newton_rows import make_answer, make_start
-from .newton_torques import make_keep_torques, make_put_torques, make_restore
+from .minimise import make_minimise, make_weigh
+from .response import make_answer, make_start
+from .torques import make_keep_torques, make_put_torques, make_restore
 
 # Newton steps in a call; fewer than these are not worth beginning.
 MOST_STEPS = 150

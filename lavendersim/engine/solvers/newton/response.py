@@ -10,13 +10,13 @@ from __future__ import annotations
 
 from math import sqrt
 
-from ..block import make_relative_velocity
-from ..compile import inner, kernel
-from ..contact import make_smooth_velocity
-from ..effects.smooth_contact import by_roughness
-from ..spec import Spec
-from ..spin_block import resists_turning
-from .newton_torques import make_hold_torques
+from ...block import make_relative_velocity
+from ...compile import inner, kernel
+from ...contact import make_smooth_velocity
+from ...effects.smooth_contact import by_roughness
+from ...spec import Spec
+from ...spin_block import resists_turning
+from .torques import make_hold_torques
 
 
 def make_start(spec: Spec):

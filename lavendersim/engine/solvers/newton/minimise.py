@@ -2,21 +2,21 @@
 
     g(v) = M (v - v^k) - J^T (lambda(v) - lambda^k)
 is the gradient of a convex function of the velocities, because every contact's answer lambda(v)
-(`newton_rows`) is a projection. Its Hessian M + J^T E' J is sparse over bodies and positive
+(`response`) is a projection. Its Hessian M + J^T E' J is sparse over bodies and positive
 definite however redundant the contacts are. Each step factorises it (`envelope`) and is shortened,
 or lengthened, to where the slope along it is nearly gone.
 """
 
 from __future__ import annotations
 
-from ..compile import kernel
-from ..rotation import inertia_times
-from ..spec import Spec
-from ..spin_block import resists_turning
+from ...compile import kernel
+from ...rotation import inertia_times
+from ...spec import Spec
+from ...spin_block import resists_turning
 from .envelope import DOF, factorise, solve_factorised
-from .newton_matrix import make_assemble
-from .newton_rows import make_answer, make_fill_rows
-from .newton_torques import (
+from .matrix import make_assemble
+from .response import make_answer, make_fill_rows
+from .torques import (
     make_advance_turning,
     make_gather_torque,
     make_look_round,

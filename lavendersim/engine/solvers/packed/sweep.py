@@ -15,10 +15,11 @@ from __future__ import annotations
 
 from typing import Any
 
-from ..compile import kernel
-from ..residual import make_residual
-from ..spec import Spec
-from ..spin_block import resists_turning
+from ...compile import kernel
+from ...residual import make_residual
+from ...spec import Spec
+from ...spin_block import resists_turning
+from ..sweep import make_account, make_note
 from .lane_memory import (
     put_bodies,
     put_body,
@@ -43,7 +44,7 @@ from .lanes import (
     where_greater,
     zeros,
 )
-from .packed_rows import (
+from .layout import (
     ALONE,
     AXIS,
     GAMMA,
@@ -71,7 +72,6 @@ from .packed_rows import (
     N,
 )
 from .packing import make_pack, make_unpack
-from .sweep import make_account, make_note
 
 
 def can_pack(spec: Spec) -> bool:

@@ -1,17 +1,17 @@
-"""Contacts and bodies enter, packed rows leave (`packed_rows`); and back, when sweeps are done."""
+"""Contacts and bodies enter, packed rows leave (`layout`); and back, when sweeps are done."""
 
 from __future__ import annotations
 
 from math import sqrt
 from typing import Any
 
-from ..block import make_slip_velocity
-from ..compile import inner, kernel
-from ..effects.smooth_contact import has_smooth
-from ..spec import Spec
+from ...block import make_slip_velocity
+from ...compile import inner, kernel
+from ...effects.smooth_contact import has_smooth
+from ...spec import Spec
 from .lane_memory import STRIDE, put_one, take_one
 from .lanes import WIDTH
-from .packed_rows import (
+from .layout import (
     AXIS,
     FIELDS,
     GAMMA,

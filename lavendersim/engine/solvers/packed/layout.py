@@ -19,8 +19,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..compile import kernel
-from ..spec import Spec
+from ...compile import kernel
+from ...spec import Spec
 from .lane_memory import STRIDE
 from .lanes import WIDTH
 

@@ -12,10 +12,10 @@ from __future__ import annotations
 from math import sqrt
 from typing import Any
 
-from ..compile import inner, kernel
-from ..effects import made_once
-from ..spec import Spec
-from ..spin_block import make_apply_spin, resists_turning
+from ...compile import inner, kernel
+from ...effects import made_once
+from ...spec import Spec
+from ...spin_block import make_apply_spin, resists_turning
 from .envelope import DOF
 
 

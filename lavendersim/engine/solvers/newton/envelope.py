@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compile import inner
+from ...compile import inner
 
 DOF = 6
 

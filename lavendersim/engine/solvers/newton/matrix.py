@@ -5,12 +5,12 @@ It lies in the envelope (`envelope`): block rows of bodies, each from its first 
 
 from __future__ import annotations
 
-from ..compile import kernel
-from ..spec import Spec
-from ..spin_block import resists_turning
+from ...compile import kernel
+from ...spec import Spec
+from ...spin_block import resists_turning
 from .envelope import DOF
-from .newton_rows import make_fill_rows, make_stiffness
-from .newton_torques import make_add_turning
+from .response import make_fill_rows, make_stiffness
+from .torques import make_add_turning
 
 
 def make_assemble(spec: Spec):

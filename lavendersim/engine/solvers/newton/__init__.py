@@ -1,0 +1,1 @@
+"""Newton's method on the augmented Lagrangian, factorised over the bodies; see `method`."""

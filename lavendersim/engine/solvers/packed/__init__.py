@@ -1,0 +1,1 @@
+"""Gauss-Seidel sweeps over contacts packed into flat arrays, one or eight at a time."""
