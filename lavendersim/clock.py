@@ -1,17 +1,17 @@
-"""Timesteps enter; exact times leave: of steps, and the steps that are done when a time is reached.
+"""The exact times of steps, and the steps that are done when a time is reached.
 
     times      0 ... dt1 ... 2 dt1 | 2 dt1 + dt2 ... | ...
     stretches  (done 0, begin 0, dt1)  (done 2, begin 2 dt1, dt2)  ...
 
 A clock counts steps and keeps fractions of a second: no time drifts, however often the timestep
-changes. A change that is stated for a time takes place when that time is reached by whole steps of
-the timestep before, so every step has one length.
+changes. A change specified for a time takes place when that time is reached by whole steps of the
+timestep before, so every step has one length.
 """
 
 from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from fractions import Fraction
 from math import ceil, floor, lcm
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -47,15 +47,6 @@ class Clock:
             if not before or before[-1].timestep != length:
                 before.append(Stretch(done, begin, length))
             self.stretches = before
-
-    @classmethod
-    def of(cls, resolved: Mapping[str, Any]) -> Clock:
-        """Return the clock of a resolved config."""
-        timed = [event for event in resolved.get("events") or () if event.get("timestep")]
-        return cls(
-            Fraction(resolved["numerics"]["timestep"]),
-            [(written(event["at"]), Fraction(event["timestep"])) for event in timed],
-        )
 
     @classmethod
     def counted(cls, timestep: Fraction, changes: Iterable[tuple[int, Fraction]]) -> Clock:

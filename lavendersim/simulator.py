@@ -1,4 +1,4 @@
-"""A config enters; a simulation that is stepped from Python leaves, with Gymnasium's conventions.
+"""A simulation that is stepped from Python, with Gymnasium's conventions.
 
 ```python
 sim = Simulator("configs/chapter/impact_telemetry.yaml")
@@ -68,8 +68,8 @@ class Simulator:
                 f"{experiment.name} has cells 0 to {len(cells) - 1}; there is no cell {cell}"
             )
         self.experiment = experiment
-        self._resolved = cells[cell].resolved
-        self._last_step = cells[cell].config.steps
+        self._config = cells[cell].config
+        self._last_step = self._config.steps
         self.plan: Plan = plan_of_cell(cells[cell])
         self.np_random = np.random.default_rng()
         self.reset()
@@ -104,9 +104,9 @@ class Simulator:
             raise UsageError(f"reset knows no options, found {', '.join(map(str, options))}")
         if seed is not None:
             self.np_random = np.random.default_rng(seed)
-        self._scene: Scene = build(self._resolved, self.plan.spec)
+        self._scene: Scene = build(self._config, self.plan.spec)
         self._engine: Engine = self._scene.engine(self.plan.spec, block_steps=1)
-        self._events = EventQueue(self._engine, self._scene, self._resolved["events"])
+        self._events = EventQueue(self._engine, self._scene, self._config.events)
         self._engine.advance(0)
         self._rows: Rows = self._engine.take_rows()
         self._terminated = False

@@ -15,7 +15,7 @@ mu is the config's; the limits of torsional and rolling friction are those of th
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Container, Iterator
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -48,13 +48,15 @@ class Watch:
     A part after the first begins with the last state of the one before, without its contacts.
     """
 
-    def __init__(self, always: Always) -> None:
+    def __init__(self, always: Always, checks: Container[str] = CHECKS) -> None:
+        """checks: those of CHECKS that may be made; the others are left out."""
         self._always, self._account = always, EnergyAccount()
+        self._checks = [check for check in checks_of(always) if check in checks]
         self._bounds: dict[str, float] = {}
 
     def over(self, trace: Trace) -> Iterator[Watched]:
         """Yield the checks that are made of a log or its next part, in the order of CHECKS."""
-        for check in checks_of(self._always):
+        for check in self._checks:
             if check not in self._bounds:
                 self._bounds[check] = bound_of(check, self._always, trace)
             numbers, bodies = self._numbers(check, trace)

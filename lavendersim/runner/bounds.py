@@ -1,4 +1,4 @@
-"""Blocks of a running cell enter, its `always` section beside them; where it must stop leaves.
+"""The bounds of an `always` section, held against the blocks of a cell while it runs.
 
 A cell stops with the first step that breaks a bound. What the engine did beyond is dropped, so the
 log ends with that step, whatever the size of a block. A state that is no number breaks no bound
@@ -8,10 +8,10 @@ here: the engine itself ends the run there.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 
+from lavendersim.cell import CellConfig
 from lavendersim.clock import Clock
 from lavendersim.experiment.models.always import BEYOND_BOUNDS, STOPPING, Always
 from lavendersim.measures.parts import Part
@@ -27,11 +27,12 @@ class Bounds:
         self,
         always: Always | None,
         bodies: list[str],
-        resolved: Mapping[str, Any],
+        config: CellConfig,
         clock: Clock,
         absent: Mapping[str, str],
     ) -> None:
-        self._watch = Watch(always) if always is not None and always.stop else None
+        self._watch = Watch(always, STOPPING) if always is not None and always.stop else None
+        resolved = {} if self._watch is None else config.as_dict()
         self._cell = (bodies, resolved, clock, absent)
         self._last: tuple[Rows, Floats] | None = None  # the state before the block's
 
@@ -49,8 +50,6 @@ class Bounds:
         self._last = step[-1:].copy(), pose[-1:].copy()
         first: tuple[int, Watched] | None = None
         for check in self._watch.over(part):
-            if check.check not in STOPPING:
-                continue
             beyond = np.flatnonzero(check.numbers[again:] > check.bound)
             if len(beyond) and (first is None or beyond[0] + again < first[0]):
                 first = int(beyond[0]) + again, check

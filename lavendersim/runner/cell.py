@@ -1,13 +1,14 @@
-"""One resolved cell and a plan enter; its log on disk and what it cost leave."""
+"""Runs one cell by its plan: engine, events and bounds in one loop, block by block into the log."""
 
 from __future__ import annotations
 
 from pathlib import Path
 from time import perf_counter_ns
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import numpy.lib.recfunctions as recfunctions
 
+from lavendersim.cell import CellConfig
 from lavendersim.clock import Clock
 from lavendersim.engine.effects import EFFECTS
 from lavendersim.engine.engine import Engine, Rows
@@ -35,8 +36,7 @@ class CellJob(NamedTuple):
     """Everything a worker needs to run one cell; plain data, so that it can cross processes."""
 
     cell: int  # index in the sweep
-    resolved: dict[str, Any]
-    steps: int
+    config: CellConfig
     as_written: str
     path: Path
     plan: Plan
@@ -120,36 +120,36 @@ def started(scene: Scene, plan: Plan) -> tuple[Engine, int]:
 
 def compile_kernel(job: CellJob) -> int:
     """Leave the kernel of a cell where other processes find it; returns what it took [ns]."""
-    return started(build(job.resolved, job.plan.spec), job.plan)[1]
+    return started(build(job.config, job.plan.spec), job.plan)[1]
 
 
 def run_cell(job: CellJob) -> CellOutcome:
     """Simulate one cell and write its log."""
     physics_ns = logging_ns = 0
-    scene = build(job.resolved, job.plan.spec)
+    scene = build(job.config, job.plan.spec)
     engine, compile_ns = started(scene, job.plan)
     absent = absent_topics(job.plan)
     writer = TraceWriter(
         job.path,
         scene.names,
-        job.resolved,
+        job.config.as_dict(),
         job.as_written,
         scene.clock,
         metadata_of(job.plan, job.seeds),
         absent,
     )
-    bounds = Bounds(job.always, scene.names, job.resolved, scene.clock, absent)
-    events = EventQueue(engine, scene, job.resolved["events"])
-    dump = ProblemDump(job.path, job.resolved)
-    accuracy = Accuracy(tolerance=job.resolved["numerics"]["tolerance"])
-    status = "complete"
+    bounds = Bounds(job.always, scene.names, job.config, scene.clock, absent)
+    events = EventQueue(engine, scene, job.config.events)
+    dump = ProblemDump(job.path, job.config.record)
+    accuracy = Accuracy(tolerance=job.config.numerics.tolerance)
+    status, steps = "complete", job.config.steps
     done = stop = 0
     while True:
         events.apply_due(done)
         start = perf_counter_ns()
         outcome = RUNNING
-        if done < job.steps:
-            stop = dump.next_stop(done, events.next_stop(job.steps))
+        if done < steps:
+            stop = dump.next_stop(done, events.next_stop(steps))
             outcome = engine.advance(stop - done)
         spent = perf_counter_ns() - start
         done = int(engine.counters["step"][0])
@@ -169,7 +169,7 @@ def run_cell(job: CellJob) -> CellOutcome:
         dump.take(engine, done, stop)
         physics_ns += spent
         logging_ns += perf_counter_ns() - start
-        if outcome in (DIVERGED, STOPPED) or (outcome == RUNNING and done >= job.steps):
+        if outcome in (DIVERGED, STOPPED) or (outcome == RUNNING and done >= steps):
             break
     start = perf_counter_ns()
     writer.close(status)

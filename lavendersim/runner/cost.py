@@ -80,7 +80,7 @@ def take_cost(
         assert spec is not None
         rounds = repeats or spec.repeats
         times = times_of(clocked, spec.begin, rounds, jobs, progress.pricing)
-        laws = [law_of(one.cells[0].resolved) for one in clocked]
+        laws = [law_of(one.cells[0].config) for one in clocked]
         rows = _rows(experiment, settings, errors, times, laws)
         table = {
             "experiment": experiment.name,

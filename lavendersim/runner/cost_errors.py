@@ -9,13 +9,14 @@ Three errors stand apart, none hides another:
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from lavendersim.cell import CellConfig
 from lavendersim.experiment import Experiment
 from lavendersim.experiment.models.measure_base import ClosedForm
 from lavendersim.experiment.sweeps.cost_grid import Setting
@@ -189,17 +190,15 @@ def orders_of(settings: Sequence[Setting], errors: Sequence[float]) -> list[floa
     return orders
 
 
-def law_of(resolved: Mapping[str, Any]) -> str:
-    """Name the law whose problem is solved: what no timestep and no sweep can mend."""
-    numerics, bodies = resolved["numerics"], resolved["scene"]["bodies"].values()
-    said = ["compliant contacts" if _any(bodies, "compliance") else "rigid contacts"]
-    if _any(bodies, "friction"):
-        said.append(CONES.get(numerics["friction_cone"], numerics["friction_cone"]))
-    if _any(bodies, "restitution"):
-        said.append(f"restitution {IMPACTS.get(numerics['impacts'], numerics['impacts'])}")
-    said.append(INTEGRATORS.get(numerics["integrator"], numerics["integrator"]))
-    return ", ".join(said)
-
-
-def _any(bodies: Iterable[Mapping[str, Any]], coefficient: str) -> bool:
-    return any(body["surface"][coefficient] for body in bodies)
+def law_of(config: CellConfig) -> str:
+    """Name the law whose problem is solved: what no timestep and no sweep can improve."""
+    numerics = config.numerics
+    surfaces = [body.surface for body in config.scene.bodies.values()]
+    compliant = any(surface.compliance for surface in surfaces)
+    laws = ["compliant contacts" if compliant else "rigid contacts"]
+    if any(surface.friction for surface in surfaces):
+        laws.append(CONES.get(numerics.friction_cone, numerics.friction_cone))
+    if any(surface.restitution for surface in surfaces):
+        laws.append(f"restitution {IMPACTS.get(numerics.impacts, numerics.impacts)}")
+    laws.append(INTEGRATORS.get(numerics.integrator, numerics.integrator))
+    return ", ".join(laws)

@@ -44,7 +44,7 @@ def times_of(
     """Return the times of every setting; begin: the simulated time [s] at which timing begins."""
     specs = [union([plan_of_cell(cell, False) for cell in each.cells]).spec for each in settings]
     seconds = compile_times(
-        settings[0].cells[0].resolved,
+        settings[0].cells[0].config,
         list(dict.fromkeys(specs)),
         workers,
         lambda done, total: report("compiling engines to time", done, total),
@@ -73,14 +73,14 @@ def _engines(each: Clocked, spec: Spec, begin: float) -> list[tuple[Timed, Fract
     """
     engines = []
     for cell, steps in zip(each.cells, each.steps, strict=True):
-        timestep = Fraction(cell.resolved["numerics"]["timestep"])
+        timestep = cell.config.numerics.timestep
         first = ceil(Fraction(repr(begin)) / timestep)
         last = steps if steps >= cell.config.steps else steps - 1
         if last <= first:
             continue
         shortest = SAMPLE_NS // len(each.cells)
         try:
-            timed = Timed(cell.resolved, spec, first, last - first, shortest=shortest)
+            timed = Timed(cell.config, spec, first, last - first, shortest=shortest)
         except Diverged:  # without its records an engine takes the same steps: never
             continue
         engines.append((timed, timestep))

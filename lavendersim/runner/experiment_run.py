@@ -197,8 +197,7 @@ def run(
     pending = [
         CellJob(
             cell.index,
-            cell.resolved,
-            cell.config.steps,
+            cell.config,
             experiment.text,
             directory / "cells" / _file_of(cell, source_hash()),
             plan,

@@ -1,4 +1,4 @@
-"""Specs enter; what each takes to compile leaves [s], and their kernels are ready to be called.
+"""Measures what each engine takes to compile [s], and leaves its kernel ready to be called.
 
 The time is one compilation's in a process of its own, since kernels share parts that a process
 compiles once; it is the processor's, kept with the kernel, and not taken again.
@@ -10,15 +10,15 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from multiprocessing import get_context
 from time import thread_time
-from typing import Any
 
+from lavendersim.cell import CellConfig
 from lavendersim.engine.spec import Spec
 from lavendersim.engine.step import advance_for, is_compiled
 from lavendersim.scene.build import build
 
 
 def compile_times(
-    resolved: dict[str, Any],
+    config: CellConfig,
     specs: Sequence[Spec],
     workers: int,
     progress: Callable[[int, int], None],
@@ -27,7 +27,7 @@ def compile_times(
 
     progress: called with how many of the missing ones are compiled, and how many were missing.
     """
-    times = {spec: known for spec in specs if (known := _known(resolved, spec)) is not None}
+    times = {spec: known for spec in specs if (known := _known(config, spec)) is not None}
     missing = [spec for spec in specs if spec not in times]
     if missing:
         progress(0, len(missing))
@@ -35,28 +35,28 @@ def compile_times(
         with ProcessPoolExecutor(
             min(workers, len(missing)), get_context("spawn"), max_tasks_per_child=1
         ) as pool:
-            waiting = {pool.submit(compile_anew, resolved, spec): spec for spec in missing}
+            waiting = {pool.submit(compile_anew, config, spec): spec for spec in missing}
             for done, future in enumerate(as_completed(waiting), start=1):
                 times[waiting[future]] = future.result()
                 progress(done, len(missing))
     return times
 
 
-def _known(resolved: dict[str, Any], spec: Spec) -> float | None:
+def _known(config: CellConfig, spec: Spec) -> float | None:
     """Return the time that is kept with a kernel, if it was compiled alone."""
     advance_for(spec)
     if not is_compiled(spec):
         return None
-    build(resolved, spec).engine(spec).advance(0)
+    build(config, spec).engine(spec).advance(0)
     compiled = advance_for(spec)._cache.compiled()
     return compiled.seconds if compiled is not None and compiled.alone else None
 
 
-def compile_anew(resolved: dict[str, Any], spec: Spec) -> float:
+def compile_anew(config: CellConfig, spec: Spec) -> float:
     """Compile the kernel of a spec, whatever is kept of it; returns what it took [s]."""
     cache = advance_for(spec)._cache
     cache.anew = True
-    engine = build(resolved, spec).engine(spec)
+    engine = build(config, spec).engine(spec)
     begin = thread_time()
     engine.advance(0)
     spent = thread_time() - begin

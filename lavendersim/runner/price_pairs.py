@@ -1,4 +1,4 @@
-"""A resolved cell enters; for every effect the two engines whose difference is its price leave.
+"""For every effect the two engines whose difference is its overhead.
 
 Off and on differ in one effect. What the effect needs is in both, so that prices add up: rolling
 friction is priced on top of friction. Where there is no such pair, a sentence says why:
@@ -9,8 +9,9 @@ friction is priced on top of friction. Where there is no such pair, a sentence s
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
+from lavendersim.cell import CellConfig
 from lavendersim.engine.effects import BY_NAME, EFFECTS, Effect, Facts
 from lavendersim.engine.spec import Spec
 from lavendersim.scene.facts import facts_of
@@ -47,10 +48,10 @@ def names_of_effects() -> tuple[str, ...]:
     return tuple(BY_NAME)
 
 
-def pairs_of(resolved: dict[str, Any], names: Iterable[str] = ()) -> list[Pair]:
+def pairs_of(config: CellConfig, names: Iterable[str] = ()) -> list[Pair]:
     """Return a pair for each named effect, for all without names, and for all effects at once."""
-    logged = plan_of(resolved)
-    plans = Plans(facts_of(resolved), plan_of(resolved, record=False).spec, logged.spec)
+    logged = plan_of(config)
+    plans = Plans(facts_of(config), plan_of(config, record=False).spec, logged.spec)
     asked = set(names) or set(BY_NAME)
     pairs = [
         _pair(effect, logged.decisions[effect.name].reason, plans)

@@ -1,4 +1,4 @@
-"""A resolved cell and a spec enter; what the engine's steps cost leaves, sample by sample.
+"""Measures what the steps of an engine cost, sample by sample.
 
 A sample is the same steps of the same motion every time: the engine is set back to the state in
 which they begin. Time is the processor's own in this thread, where the system counts it finely:
@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from lavendersim.cell import CellConfig
 from lavendersim.engine.engine import BLOCK_STEPS
 from lavendersim.engine.records import DIVERGED, RUNNING
 from lavendersim.engine.spec import Spec
@@ -43,7 +44,7 @@ class Timed:
 
     def __init__(
         self,
-        resolved: dict[str, Any],
+        config: CellConfig,
         spec: Spec,
         first: int,
         steps: int,
@@ -56,7 +57,7 @@ class Timed:
         """
         self.spec, self.steps = spec, steps
         self._now = now or clock()[1]
-        self.engine = build(resolved, spec).engine(spec, min(steps, BLOCK_STEPS))
+        self.engine = build(config, spec).engine(spec, min(steps, BLOCK_STEPS))
         self._run(first)
         self.engine.take_rows()
         self._held = dict(vars(self.engine))

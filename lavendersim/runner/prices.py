@@ -99,17 +99,17 @@ def take_prices(
     spec = experiment.price
     assert spec is not None
     (cell,) = experiment.cells()
-    pairs = pairs_of(cell.resolved, _named(experiment))
+    pairs = pairs_of(cell.config, _named(experiment))
     specs = list(
         dict.fromkeys(each for pair in pairs for each in (pair.off, pair.on) if each is not None)
     )
     seconds = compile_times(
-        cell.resolved,
+        cell.config,
         specs,
         workers,
         lambda done, total: report("compiling engines for prices", done, total),
     )
-    first = ceil(Fraction(repr(spec.begin)) / Fraction(cell.resolved["numerics"]["timestep"]))
+    first = ceil(Fraction(repr(spec.begin)) / cell.config.numerics.timestep)
     steps = cell.config.steps - first
     timed, diverged = _timed(cell, specs, first, steps)
     pairs = [_without_diverged(pair, diverged) for pair in pairs]
@@ -124,7 +124,7 @@ def _timed(
     diverged: set[Spec] = set()
     for spec in specs:
         try:
-            timed[spec] = Timed(cell.resolved, spec, first, steps)
+            timed[spec] = Timed(cell.config, spec, first, steps)
         except Diverged:
             diverged.add(spec)
     return timed, diverged
@@ -166,7 +166,7 @@ def _table(
     seconds: dict[Spec, float],
     window: tuple[int, int, int],
 ) -> dict[str, Any]:
-    bodies = sum(is_movable(body) for body in cell.resolved["scene"]["bodies"].values())
+    bodies = sum(is_movable(body) for body in cell.config.scene.bodies.values())
     # Contacts of the scene's own motion: of an engine whose effects the scene calls for, or idle.
     own = next(
         (

@@ -1,4 +1,4 @@
-"""An engine after certain steps enters; their contact problems as FCLIB files leave.
+"""Dumps the contact problems of certain steps as FCLIB files.
 
 `record: {problems: every 10}` makes `problems/<cell>/step_000010.hdf5`, `step_000020.hdf5`, ... in
 the run's directory. The impulses that the step's last solve left are FCLIB's first guess: how
@@ -11,10 +11,10 @@ import os
 from collections.abc import Iterator
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
+from lavendersim.cell import CellRecord
 from lavendersim.cell.record import NONE, steps_between
 from lavendersim.engine.assemble import StepProblem
 from lavendersim.engine.engine import Engine
@@ -30,8 +30,8 @@ _OF_NO_FILE = ("torsional_friction", "rolling_friction")
 class ProblemDump:
     """Which steps of a cell are dumped, and where to."""
 
-    def __init__(self, log: Path, resolved: dict[str, Any]) -> None:
-        self.every = steps_between(resolved["record"][PROBLEMS])
+    def __init__(self, log: Path, record: CellRecord) -> None:
+        self.every = steps_between(record.problems)
         self._folder = log.parent.parent / PROBLEMS / log.stem
         self._last = 0
 

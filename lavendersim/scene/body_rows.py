@@ -1,4 +1,4 @@
-"""Rows of the body table enter, described; the table and those of hulls leave, filled here alone.
+"""The engine's table of bodies and its tables of hulls, filled here alone.
 
 Columns that effects bring are filled where they are present.
 """
@@ -10,7 +10,22 @@ from typing import Any, Final
 
 import numpy as np
 
-from lavendersim.engine.collide.convex.hull_geometry import HullGeometry, hull_geometry
+from lavendersim.cell import (
+    Box,
+    Capsule,
+    CellBody,
+    CellHull,
+    CellPart,
+    CellShape,
+    Cylinder,
+    Plane,
+    Sphere,
+)
+from lavendersim.engine.collide.convex.hull_geometry import (
+    HullGeometry,
+    Polyhedron,
+    hull_geometry,
+)
 from lavendersim.engine.effects import EFFECTS
 from lavendersim.engine.record_layout import allocate_bodies
 from lavendersim.engine.records import BOX, CAPSULE, COMPOUND, CYLINDER, HULL, PLANE, SPHERE
@@ -30,20 +45,20 @@ SHAPES: Final = {
 }
 
 
-def pose_of(body: dict[str, Any]) -> np.ndarray:
+def pose_of(body: CellBody) -> np.ndarray:
     """Return x y z qw qx qy qz of a body; planes stand in the origin."""
     pose = np.array([0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0])
-    if body["shape"]["kind"] != "plane":
-        pose[:3] = body["position"]
-        pose[3:] = body["orientation"]
+    if not isinstance(body.shape, Plane):
+        pose[:3] = body.position
+        pose[3:] = body.orientation
         pose[3:] /= np.linalg.norm(pose[3:])
     return pose
 
 
-def part_pose(pose: np.ndarray, part: dict[str, Any]) -> np.ndarray:
+def part_pose(pose: np.ndarray, part: CellPart) -> np.ndarray:
     """Return the pose of a part in the world by that of its owner."""
-    position = pose[:3] + rotation_matrix(pose[3:]) @ np.asarray(part["position"], float)
-    turn = quaternion_product(pose[3:], np.asarray(part["orientation"], float))
+    position = pose[:3] + rotation_matrix(pose[3:]) @ np.asarray(part.position, float)
+    turn = quaternion_product(pose[3:], np.asarray(part.orientation, float))
     return np.concatenate([position, turn / np.linalg.norm(turn)])
 
 
@@ -56,20 +71,20 @@ def body_table(
     """
     bodies = allocate_bodies(spec, len(rows))
     hulls: dict[str, int] = {}
-    polyhedra: list[Any] = []
+    polyhedra: list[Polyhedron] = []
     for k, (record, row) in enumerate(zip(bodies, rows, strict=True)):
         pose = poses[row.owner]
         _fill_shape(record, row.shape)
-        if row.kind == "hull":
+        if isinstance(row.shape, CellHull):
             known = len(hulls)
-            record["hull"] = hulls.setdefault(repr(row.shape["points"]), known)
+            record["hull"] = hulls.setdefault(repr(row.shape.points), known)
             if len(hulls) > known:
-                polyhedra.append((np.array(row.shape["points"], float), row.shape["faces"]))
+                polyhedra.append((np.array(row.shape.points, float), row.shape.faces))
         if row.part is None:
             _fill_mass(record, row.body)
         else:
-            _fill(record, ("px", "py", "pz"), row.part["position"])
-            _fill(record, ("pqw", "pqx", "pqy", "pqz"), row.part["orientation"])
+            _fill(record, ("px", "py", "pz"), row.part.position)
+            _fill(record, ("pqw", "pqx", "pqy", "pqz"), row.part.orientation)
             pose = part_pose(pose, row.part)
         _fill(record, ("owner",), (row.owner,))
         for effect in EFFECTS:
@@ -91,23 +106,26 @@ def _fill(record: np.void, names: Iterable[str], values: Iterable[Any]) -> None:
             record[name] = value
 
 
-def _fill_shape(record: np.void, shape: dict[str, Any]) -> None:
-    kind = shape["kind"]
-    record["shape"] = SHAPES[kind]
+def _fill_shape(record: np.void, shape: CellShape) -> None:
+    record["shape"] = SHAPES[shape.kind]
     record["bound"] = bounding_radius(shape)
-    if kind == "plane":
-        normal = np.asarray(shape["normal"], float)
-        record["hx"], record["hy"], record["hz"] = normal / np.linalg.norm(normal)
-        record["offset"] = shape["offset"]
-    elif kind == "box":
-        record["hx"], record["hy"], record["hz"] = (0.5 * float(edge) for edge in shape["size"])
-    elif kind in ("sphere", "capsule", "cylinder"):
-        record["hx"] = shape["radius"]
-        record["hz"] = 0.5 * float(shape.get("length", 0.0))
+    match shape:
+        case Plane():
+            normal = np.asarray(shape.normal, float)
+            record["hx"], record["hy"], record["hz"] = normal / np.linalg.norm(normal)
+            record["offset"] = shape.offset
+        case Box():
+            record["hx"], record["hy"], record["hz"] = (0.5 * edge for edge in shape.size)
+        case Sphere():
+            record["hx"] = shape.radius
+        case Capsule() | Cylinder():
+            record["hx"], record["hz"] = shape.radius, 0.5 * shape.length
 
 
-def _fill_mass(record: np.void, body: dict[str, Any]) -> None:
+def _fill_mass(record: np.void, body: CellBody) -> None:
     if is_movable(body):
-        record["inv_m"] = 1.0 / body["mass"]
-        inverse = (1.0 / float(moment) for moment in body["inertia"])
+        assert body.mass is not None
+        assert body.inertia is not None
+        record["inv_m"] = 1.0 / body.mass
+        inverse = (1.0 / moment for moment in body.inertia)
         _fill(record, ("inv_ix", "inv_iy", "inv_iz"), inverse)

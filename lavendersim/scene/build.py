@@ -1,13 +1,14 @@
-"""A resolved config and a spec enter; the engine's arrays leave, filled at this one door."""
+"""The engine's arrays for one cell, filled from its config at this one place."""
 
 from __future__ import annotations
 
 from fractions import Fraction
 from math import inf, sqrt
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
+from lavendersim.cell import CellConfig, CellForce, CellRecord, Numerics
 from lavendersim.clock import Clock, written
 from lavendersim.engine.collide.convex.hull_geometry import HullGeometry
 from lavendersim.engine.engine import Engine
@@ -38,8 +39,8 @@ class Scene(NamedTuple):
     clock: Clock  # exact times of its steps
     templates: np.ndarray  # (classes, classes) what their pairs have in common; see `pair_tables`
     hulls: HullGeometry
-    forces: list[dict[str, Any]]  # resolved; `events` lets them act
-    numerics: dict[str, Any]  # resolved
+    forces: tuple[CellForce, ...]  # `events` lets them act
+    numerics: Numerics
 
     def engine(self, spec: Spec, block_steps: int | None = None) -> Engine:
         """Return an engine at the scene's initial state."""
@@ -57,30 +58,29 @@ class Scene(NamedTuple):
         )
 
 
-def _parameters(resolved: dict[str, Any], clock: Clock) -> np.ndarray:
-    numerics = resolved["numerics"]
+def _parameters(config: CellConfig, clock: Clock) -> np.ndarray:
+    numerics = config.numerics
     parameters = allocate_parameters()
     p = parameters[0]
-    gravity = [float(g) for g in resolved["scene"]["gravity"]]
-    p["gx"], p["gy"], p["gz"] = gravity
+    p["gx"], p["gy"], p["gz"] = config.scene.gravity
     for name in p.dtype.names or ():
-        if name in numerics and name not in ("tolerance",):
-            p[name] = numerics[name]
-    if not numerics["warm_start"]:
+        if name in Numerics.model_fields and name not in ("tolerance",):
+            p[name] = getattr(numerics, name)
+    if not numerics.warm_start:
         # An engine shared with warm cells: no cosine is this large, so nothing is carried over.
         p["cache_normal_cosine"] = 2.0
-    if not numerics["projection_sweeps"]:
+    if not numerics.projection_sweeps:
         p["projection"] = 0.0
-    if not numerics["sleeping"]:
+    if not numerics.sleeping:
         p["sleep_time"] = inf
     set_timestep(parameters, numerics, clock.timestep)
-    # A residual is never negative, so this tolerance never stops a cell that states none.
-    p["tolerance"] = -1.0 if numerics["tolerance"] is None else float(numerics["tolerance"])
-    p["residuals_from"], p["residuals_to"] = residual_window(resolved, clock)
+    # A residual is never negative, so this tolerance never stops a cell that has none.
+    p["tolerance"] = -1.0 if numerics.tolerance is None else numerics.tolerance
+    p["residuals_from"], p["residuals_to"] = residual_window(config.record, clock)
     return parameters
 
 
-def set_timestep(parameters: np.ndarray, numerics: dict[str, Any], timestep: Fraction) -> None:
+def set_timestep(parameters: np.ndarray, numerics: Numerics, timestep: Fraction) -> None:
     """Write a timestep [s] and what is made of it into parameters that have their gravity.
 
     Kernels make the rest of `dt` in each step; cached impulses know the step they belong to.
@@ -89,45 +89,45 @@ def set_timestep(parameters: np.ndarray, numerics: dict[str, Any], timestep: Fra
     p["dt"] = float(timestep)
     gravity = (float(p[f"g{axis}"]) for axis in "xyz")
     magnitude = sqrt(sum(g * g for g in gravity))  # a power raises where this is infinite
-    p["restitution_speed"] = float(numerics["restitution_threshold"]) * magnitude * p["dt"]
+    p["restitution_speed"] = numerics.restitution_threshold * magnitude * p["dt"]
 
 
-def residual_window(resolved: dict[str, Any], clock: Clock) -> tuple[int, int]:
+def residual_window(record: CellRecord, clock: Clock) -> tuple[int, int]:
     """Return the first and last step whose sweeps are recorded, by the time a step ends at."""
-    asked = resolved["record"]["residuals"]
-    if asked == "none":
+    window = record.residuals
+    if window == "none":
         return _NO_STEPS
-    if asked == "all":
+    if window == "all":
         return 1, np.iinfo(np.int64).max
     # By the number as written: 0.1 s is a step of 1/10 s, its binary value lies beside it.
-    begin, end = (written(asked[side]) for side in ("from", "to"))
+    begin, end = written(window.begin), written(window.end)
     return max(1, clock.steps_until(begin)), clock.steps_within(end)
 
 
-def build(resolved: dict[str, Any], spec: Spec) -> Scene:
-    """Fill the engine's arrays for one cell; `spec` may have effects the cell does not call for."""
-    config = resolved["scene"]["bodies"]
-    rows = colliders(list(config.values()))
-    poses = np.array([pose_of(body) for body in config.values()]).reshape(-1, 7)
+def build(config: CellConfig, spec: Spec) -> Scene:
+    """Fill the engine's arrays for one cell; `spec` may have effects the cell does not require."""
+    described = list(config.scene.bodies.values())
+    rows = colliders(described)
+    poses = np.array([pose_of(body) for body in described]).reshape(-1, 7)
     bodies, hulls = body_table(spec, rows, poses)
     velocities = allocate_velocities(spec, len(rows))
     turns = "wx" in (velocities.dtype.names or ())
-    for velocity, body in zip(velocities, config.values(), strict=False):  # parts have none
-        velocity["vx"], velocity["vy"], velocity["vz"] = body["velocity"]
+    for velocity, body in zip(velocities, described, strict=False):  # parts have none
+        velocity["vx"], velocity["vy"], velocity["vz"] = body.velocity
         if turns:
-            velocity["wx"], velocity["wy"], velocity["wz"] = body["angular_velocity"]
+            velocity["wx"], velocity["wy"], velocity["wz"] = body.angular_velocity
     pairs, templates = pair_tables(spec, rows, bodies)
-    clock = Clock.of(resolved)
+    clock = config.clock
     return Scene(
-        names=list(config),
+        names=list(config.scene.bodies),
         bodies=bodies,
         velocities=velocities,
         pairs=pairs,
-        parameters=_parameters(resolved, clock),
+        parameters=_parameters(config, clock),
         poses=poses,
         clock=clock,
         templates=templates,
         hulls=hulls,
-        forces=resolved["scene"]["forces"],
-        numerics=resolved["numerics"],
+        forces=config.scene.forces,
+        numerics=config.numerics,
     )

@@ -1,9 +1,11 @@
-"""Bodies of a small scene enter; every pair of rows that may touch leaves."""
+"""Every pair of rows of the body table that may touch, listed one by one: for small scenes."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
+
+from lavendersim.cell import CellBody
 
 from .classes import class_of, mix, ordered
 from .colliders import colliders
@@ -22,7 +24,7 @@ class CandidatePair(NamedTuple):
     rolling_friction: float
 
 
-def candidate_pairs(bodies: Sequence[dict[str, Any]]) -> list[CandidatePair]:
+def candidate_pairs(bodies: Sequence[CellBody]) -> list[CandidatePair]:
     """Return every pair of rows of which one moves, in the order of the rows; for small scenes."""
     rows = colliders(bodies)
     classes = [class_of(row) for row in rows]

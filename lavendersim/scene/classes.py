@@ -1,4 +1,4 @@
-"""Rows of the body table enter; classes of rows that are alike and their mixed surfaces leave.
+"""Classes of rows of the body table that touch others alike, and what holds between two of them.
 
 Ten thousand equal spheres are one class: what holds for a pair of rows is worked out once for a
 pair of classes.
@@ -68,8 +68,8 @@ def mix(one: Surface, other: Surface) -> Surface:
 
 def class_of(row: Collider) -> RowClass:
     """Return the class of one row."""
-    surface = row.body["surface"]
-    mixed = Surface(*(float(surface[name]) for name in Surface._fields))
+    surface = row.body.surface
+    mixed = Surface(*(getattr(surface, name) for name in Surface._fields))
     return RowClass(row.kind, mixed, is_movable(row.body))
 
 

@@ -1,4 +1,4 @@
-"""Changes from the config enter; between two steps they change the arrays of a running engine.
+"""The queue of changes that the config makes to the arrays of a running engine between two steps.
 
 Whatever has a time, an event or the begin and end of a force, acts before the first step that
 starts at that time or later.
@@ -6,11 +6,12 @@ starts at that time or later.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
 from math import fsum
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
+from lavendersim.cell import CellEvent, CellForce, CellTimestep
 from lavendersim.clock import written
 from lavendersim.engine.engine import Engine
 
@@ -28,9 +29,11 @@ class Change(NamedTuple):
 class EventQueue:
     """The changes of one run, in the order of their time."""
 
-    def __init__(self, engine: Engine, scene: Scene, events: list[dict[str, Any]]) -> None:
+    def __init__(
+        self, engine: Engine, scene: Scene, events: Sequence[CellEvent | CellTimestep]
+    ) -> None:
         self._engine, self._scene = engine, scene
-        self._acting: list[dict[str, Any]] = []
+        self._acting: list[CellForce] = []
         changes = [*self._force_changes(scene.forces), *self._event_changes(events)]
         self._pending = sorted(changes, key=lambda change: change[:2])
 
@@ -47,71 +50,71 @@ class EventQueue:
         """Return how many steps are done when a time [s], as written, is reached."""
         return self._scene.clock.steps_until(written(time))
 
-    def _event_changes(self, events: list[dict[str, Any]]) -> Iterator[Change]:
+    def _event_changes(self, events: Sequence[CellEvent | CellTimestep]) -> Iterator[Change]:
         for done, timestep in self._scene.clock.changes:
-            yield Change(done, 0, lambda timestep=timestep: self._pace(timestep))  # type: ignore[misc]
-        timed = sorted(events, key=lambda event: float(event["at"]))
+            yield Change(done, 0, lambda timestep=timestep: self._set_timestep(timestep))  # type: ignore[misc]
+        timed = sorted(events, key=lambda event: event.at)
         for order, event in enumerate(timed, start=1):
-            if event.get("timestep") is not None:
+            if isinstance(event, CellTimestep):
                 continue
             yield Change(
-                self._after(event["at"]),
+                self._after(event.at),
                 order,
                 lambda event=event: apply_event(self._engine, self._scene, event),  # type: ignore[misc]
             )
 
-    def _force_changes(self, forces: list[dict[str, Any]]) -> Iterator[Change]:
+    def _force_changes(self, forces: Sequence[CellForce]) -> Iterator[Change]:
         if not self._engine.spec.has("external_force"):
             return
         for force in forces:
-            begin, end = self._after(force["from"]), self._after(force["to"])
+            begin, end = self._after(force.begin), self._after(force.end)
             if begin < end:
                 yield Change(begin, 0, lambda force=force: self._begin(force))  # type: ignore[misc]
                 yield Change(end, 0, lambda force=force: self._end(force))  # type: ignore[misc]
 
-    def _pace(self, timestep: Fraction) -> None:
+    def _set_timestep(self, timestep: Fraction) -> None:
         set_timestep(self._engine.parameters, self._scene.numerics, timestep)
 
-    def _begin(self, force: dict[str, Any]) -> None:
+    def _begin(self, force: CellForce) -> None:
         self._acting.append(force)
-        self._set_force(force["body"])
+        self._set_force(force.body)
 
-    def _end(self, force: dict[str, Any]) -> None:
+    def _end(self, force: CellForce) -> None:
         self._acting = [other for other in self._acting if other is not force]
-        self._set_force(force["body"])
+        self._set_force(force.body)
 
     def _set_force(self, name: str) -> None:
         """Write the sum of what acts on a body now: no remainder is left when forces end."""
         body = self._engine.bodies[self._scene.names.index(name)]
-        acting = [force for force in self._acting if force["body"] == name]
+        acting = [force for force in self._acting if force.body == name]
         for k, axis in enumerate("xyz"):
-            body[f"f{axis}"] = fsum(force["force"][k] for force in acting)
+            body[f"f{axis}"] = fsum(force.force[k] for force in acting)
             if f"t{axis}" in (body.dtype.names or ()):
-                body[f"t{axis}"] = fsum(force["torque"][k] for force in acting)
+                body[f"t{axis}"] = fsum(force.torque[k] for force in acting)
 
 
-def apply_event(engine: Engine, scene: Scene, event: dict[str, Any]) -> None:
-    """Apply one resolved event. A body that jumps loses the impulses cached for its contacts.
+def apply_event(engine: Engine, scene: Scene, event: CellEvent) -> None:
+    """Apply one event. A body that jumps loses the impulses cached for its contacts.
 
     `contact_cache: clear` drops every cached impulse: the next solve starts from zero everywhere.
     """
-    index = scene.names.index(event["body"])
-    if event.get("remove"):
+    index = scene.names.index(event.body)
+    if event.remove:
         engine.remove(index)
         return
     engine.wake(index)
     body, velocity = engine.bodies[index], engine.velocities[index]
-    if event["scale_mass"] is not None:
-        body["inv_m"] /= event["scale_mass"]
+    if event.scale_mass is not None:
+        body["inv_m"] /= event.scale_mass
         if engine.spec.has("rotation"):
             for axis in "xyz":
-                body[f"inv_i{axis}"] /= event["scale_mass"]
-    if event["velocity"] is not None:
-        velocity["vx"], velocity["vy"], velocity["vz"] = event["velocity"]
-    if event["angular_velocity"] is not None and engine.spec.has("rotation"):
-        velocity["wx"], velocity["wy"], velocity["wz"] = event["angular_velocity"]
-    if event["teleport"] is not None:
-        body["x"], body["y"], body["z"] = event["teleport"]
+                body[f"inv_i{axis}"] /= event.scale_mass
+    if event.velocity is not None:
+        velocity["vx"], velocity["vy"], velocity["vz"] = event.velocity
+    if event.angular_velocity is not None and engine.spec.has("rotation"):
+        velocity["wx"], velocity["wy"], velocity["wz"] = event.angular_velocity
+    if event.teleport is not None:
+        body["x"], body["y"], body["z"] = event.teleport
         engine.forget_contacts(index)
-    elif event["contact_cache"] == "clear":
+    elif event.contact_cache == "clear":
         engine.forget_contacts()

@@ -13,8 +13,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any, Final, Literal, NamedTuple, get_args
 
-from lavendersim.cell.config import CellStudy
-from lavendersim.cell.numerics import Numerics
+from lavendersim.cell import CellEffects, CellStudy, Numerics
 from lavendersim.engine.collide import SHAPE_PAIRS
 from lavendersim.engine.effects import BY_NAME, Decision, Facts
 from lavendersim.errors import UsageError
@@ -57,25 +56,23 @@ def override(
     effects: Mapping[str, Decision],
     shape_pairs: Mapping[str, Decision],
     facts: Facts,
-    stated: Mapping[str, Any],
+    section: CellEffects,
 ) -> Overridden:
-    """Follow the switches of a resolved config; raises OverrideError with all that cannot be."""
+    """Follow the switches of a config; raises OverrideError with all that cannot be."""
     made = Overridden(dict(effects), dict(shape_pairs), {})
     refusals: list[Refusal] = []
-    for name, switch in stated["switches"].items():
-        sentence = _switch(made, name, switch, facts, stated)
+    for name, switch in section.switches.items():
+        sentence = _switch(made, name, switch, facts, section)
         if sentence:
             refusals.append(Refusal(name, f"effects.{name}: {sentence}"))
     refused = {refusal.name for refusal in refusals}
-    refusals += [one for one in _unmet(made, stated["switches"]) if one.name not in refused]
+    refusals += [one for one in _unmet(made, section.switches) if one.name not in refused]
     if refusals:
         raise OverrideError(refusals)
     return made
 
 
-def _switch(
-    made: Overridden, name: str, switch: str, facts: Facts, stated: Mapping[str, Any]
-) -> str:
+def _switch(made: Overridden, name: str, switch: str, facts: Facts, section: CellEffects) -> str:
     """Follow one switch; returns why it cannot be, or nothing."""
     if name not in made.effects and name not in made.shape_pairs:
         hint = nearest(name, [*BY_NAME, *SHAPE_PAIRS])
@@ -85,7 +82,7 @@ def _switch(
         return ""
     reason = decisions[name].reason
     if switch == "on":
-        return _force_on(made, decisions, name, facts, stated["switches"])
+        return _force_on(made, decisions, name, facts, section.switches)
     if name in made.shape_pairs:
         return f"{reason} may touch; without it they would pass through each other"
     if name in _LOGS:
@@ -95,7 +92,7 @@ def _switch(
     if is_law(name):
         chooser = "the numerics choose" if choice(name)[0] == "numerics" else "the study chooses"
         return f"{chooser} it; write {_choosing(name, facts, on=False)} instead"
-    if not stated["force"]:
+    if not section.force:
         return (
             f"the scene calls for it: {reason}; add `force: true` beside it to leave it out "
             "all the same"

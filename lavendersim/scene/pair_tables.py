@@ -1,4 +1,4 @@
-"""Rows of the body table enter; the engine's table of pairs that may touch leaves.
+"""The engine's table of pairs that may touch.
 
 A small scene lists its pairs once. With the effect `broad_phase` the engine finds them itself: what
 it writes into their rows is in `templates`, by the `material` of the two, the row of their class.

@@ -1,10 +1,11 @@
-"""A resolved config enters; the plan leaves: which effects the scene calls for, and why."""
+"""The plan: which effects the engine of a scene is composed of, and why each is in or left out."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from typing import Any, Final, NamedTuple
 
+from lavendersim.cell import CellConfig, CellEffects
 from lavendersim.engine.collide import SHAPE_PAIRS
 from lavendersim.engine.effects import EFFECTS, Decision, Facts
 from lavendersim.engine.effects.decision import named
@@ -89,30 +90,30 @@ class Plan(NamedTuple):
         return f"called for by {len(callers)} of {len(self.cells)} cells: {'; '.join(labels)}"
 
 
-def plan_of(resolved: dict[str, Any], record: bool = True, cell: CellName = ALONE) -> Plan:
-    """Derive the plan of one cell from its resolved config alone.
+def plan_of(config: CellConfig, record: bool = True, cell: CellName = ALONE) -> Plan:
+    """Derive the plan of one cell from its config alone.
 
     record: its steps are to be logged. Raises OverrideError where its `effects` cannot be.
     """
-    facts = facts_of(resolved, record)
+    facts = facts_of(config, record)
     derived = {effect.name: effect.decide(facts) for effect in EFFECTS}
     touching = _shape_pairs(facts)
-    made = override(derived, touching, facts, resolved["effects"])
-    numerics = resolved["numerics"]
+    made = override(derived, touching, facts, config.effects)
+    numerics = config.numerics
     spec = Spec(
         effects=_on(made.effects),
         shape_pairs=_on(made.shape_pairs),
-        solver=numerics["solver"],
-        tolerance=numerics["tolerance"] is not None,
-        friction_cone=numerics["friction_cone"],
-        over_relaxation=numerics["over_relaxation"] != 1.0,
-        order=numerics["order"],
+        solver=numerics.solver,
+        tolerance=numerics.tolerance is not None,
+        friction_cone=numerics.friction_cone,
+        over_relaxation=numerics.over_relaxation != 1.0,
+        order=numerics.order,
     )
     called = {name: decision.on for name, decision in (derived | touching).items()}
     return Plan(
         spec,
         made.effects,
-        _choices(resolved),
+        _choices(config),
         made.shape_pairs,
         made.forced,
         (cell,),
@@ -124,7 +125,7 @@ def plan_of(resolved: dict[str, Any], record: bool = True, cell: CellName = ALON
 def plan_of_cell(cell: Cell, record: bool = True) -> Plan:
     """Derive the plan of a cell; raises ConfigError at the keys of its `effects` that cannot be."""
     try:
-        return plan_of(cell.resolved, record, CellName(cell.index, cell.label))
+        return plan_of(cell.config, record, CellName(cell.index, cell.label))
     except OverrideError as error:
         defects = [cell.defect(("effects", one.name), one.sentence) for one in error.refusals]
         raise ConfigError(sorted(defects)) from None  # in the order of the file
@@ -187,16 +188,14 @@ def _on(decisions: Mapping[str, Decision]) -> tuple[str, ...]:
     return tuple(sorted(name for name, decision in decisions.items() if decision.on))
 
 
-def _choices(resolved: Mapping[str, Any]) -> tuple[Any, ...]:
-    stated = {**resolved["numerics"], **resolved["study"]}
-    return tuple(
-        _switched(resolved["effects"]) if name == "effects" else stated[name] for name in CHOICES
-    )
+def _choices(config: CellConfig) -> tuple[Any, ...]:
+    chosen = {**dict(config.numerics), **dict(config.study), "effects": _switched(config.effects)}
+    return tuple(chosen[name] for name in CHOICES)
 
 
-def _switched(stated: Mapping[str, Any]) -> str:
-    """Return what is switched by hand, as the file states it."""
-    return ", ".join(f"{name}: {how}" for name, how in stated["switches"].items()) or DERIVED
+def _switched(effects: CellEffects) -> str:
+    """Return what is switched by hand, as the file has it."""
+    return ", ".join(f"{name}: {how}" for name, how in effects.switches.items()) or DERIVED
 
 
 def _shape_pairs(facts: Facts) -> dict[str, Decision]:

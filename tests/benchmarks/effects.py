@@ -72,7 +72,7 @@ RATIOS = (
 
 def full(timed: Case) -> Case:
     """Return a case with all effects whose laws its numerics have."""
-    (everything,) = (pair for pair in pairs_of(timed.resolved) if pair.effect == ALL)
+    (everything,) = (pair for pair in pairs_of(timed.config) if pair.effect == ALL)
     assert everything.on is not None
     return timed._replace(plan=timed.plan._replace(spec=everything.on))
 
@@ -116,7 +116,7 @@ def same_scene(timed: Case) -> float:
 
 def engine_of(timed: Case) -> Timed:
     """Return the engine of a stack that has settled, ready to be sampled."""
-    return Timed(timed.resolved, timed.plan.spec, SETTLE, timed.steps - SETTLE)
+    return Timed(timed.config, timed.plan.spec, SETTLE, timed.steps - SETTLE)
 
 
 def measure(repeats: int) -> dict[str, Any]:

@@ -94,7 +94,7 @@ def logging_step(timed: Case) -> float:
     """Return what encoding and writing the log costs a step [us] when the cell is run."""
     with tempfile.TemporaryDirectory() as folder:
         log = Path(folder) / "cell.mcap"
-        job = CellJob(0, timed.resolved, timed.steps, timed.text, log, timed.plan, "none")
+        job = CellJob(0, timed.config, timed.text, log, timed.plan, "none")
         outcome = run_cell(job)
     assert outcome.status == "complete", outcome.status
     return outcome.logging_ns / MICROSECOND / outcome.steps

@@ -66,8 +66,8 @@ def next_step(engine: Engine, spec: Spec) -> Prepared:
 def prepare(text: str, step: int) -> Prepared:
     """Run a config up to `step` and return what the solver of the next one finds."""
     (cell,) = load_experiment_text(text, "benchmark.yaml").cells()
-    spec = plan_of(cell.resolved, record=False).spec
-    engine = build(cell.resolved, spec).engine(spec)
+    spec = plan_of(cell.config, record=False).spec
+    engine = build(cell.config, spec).engine(spec)
     engine.advance(step)
     return next_step(engine, spec)
 

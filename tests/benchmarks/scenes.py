@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from lavendersim.cell import CellConfig
 from lavendersim.engine.engine import Engine
 from lavendersim.experiment import load_experiment_text
 from lavendersim.scene.build import Scene, build
@@ -51,14 +52,14 @@ duration: 2.0
 class Case(NamedTuple):
     """A scene that can be started any number of times."""
 
-    resolved: dict
+    config: CellConfig
     plan: Plan
     steps: int  # of its duration
     text: str
 
     def scene(self) -> Scene:
         """Return the arrays of the initial state, anew."""
-        return build(self.resolved, self.plan.spec)
+        return build(self.config, self.plan.spec)
 
     def engine(self) -> Engine:
         """Return an engine at the initial state, its kernel compiled or loaded."""
@@ -70,4 +71,4 @@ class Case(NamedTuple):
 def case(text: str, record: bool) -> Case:
     """Return the only cell of a config, with or without the recording of rows."""
     (cell,) = load_experiment_text(text, "benchmark.yaml").cells()
-    return Case(cell.resolved, plan_of(cell.resolved, record), cell.config.steps, text)
+    return Case(cell.config, plan_of(cell.config, record), cell.config.steps, text)

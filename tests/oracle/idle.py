@@ -14,12 +14,11 @@ from concurrent.futures import ProcessPoolExecutor
 from typing import Any
 
 import numpy as np
-from laboratory import Bench
+from laboratory import Bench, planned
 
 from lavendersim.engine.effects import EFFECTS
 from lavendersim.engine.spec import Spec
 from lavendersim.engine.step import is_compiled
-from lavendersim.scene.plan import plan_of
 
 MODULES = {effect.name: effect for effect in EFFECTS}
 # What lets a law in that the numerics or the study choose, by the key that its module names.
@@ -48,7 +47,7 @@ def closed(*names: str) -> set[str]:
 
 def may_idle(cell: dict[str, Any], name: str, record: bool = True) -> bool:
     """Whether a scene does not call for an effect, and its numerics choose no other law for it."""
-    plan = plan_of(cell, record)
+    plan = planned(cell, record)
     return not plan.decisions[name].on and all(
         plan.spec.has(other) or _is_let_in(cell, other) for other in closed(name)
     )

@@ -11,6 +11,7 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import Field, TypeAdapter
 
+from lavendersim.cell import CellConfig
 from lavendersim.engine.effects import EFFECTS
 from lavendersim.engine.engine import Engine, Rows
 from lavendersim.engine.records import ROWS_FULL
@@ -18,7 +19,7 @@ from lavendersim.engine.spec import Spec
 from lavendersim.experiment.models.shapes import Solid
 from lavendersim.experiment.resolve.shape import resolve_shape
 from lavendersim.scene.build import Scene, build
-from lavendersim.scene.plan import plan_of
+from lavendersim.scene.plan import Plan, plan_of
 
 # Effects that put another law in a law's place: no coefficient of theirs takes them away.
 OTHER_LAWS = {
@@ -104,7 +105,7 @@ def plane(normal=(0.0, 0.0, 1.0), offset: float = 0.0, **stated: Any) -> dict[st
 
 
 def resolved(bodies: dict[str, Any], gravity=(0.0, 0.0, 0.0), **numerics: Any) -> dict[str, Any]:
-    """Return a resolved cell as the experiment room hands it on."""
+    """Return a resolved cell as data; `config` makes the typed one of it."""
     return {
         "scene": {"gravity": list(gravity), "bodies": bodies, "forces": []},
         "events": [],
@@ -116,15 +117,25 @@ def resolved(bodies: dict[str, Any], gravity=(0.0, 0.0, 0.0), **numerics: Any) -
     }
 
 
+def config(cell: dict[str, Any]) -> CellConfig:
+    """Return a resolved cell as the rooms take it."""
+    return CellConfig.from_dict(cell)
+
+
+def planned(cell: dict[str, Any], record: bool = True) -> Plan:
+    """Return the plan of a resolved cell."""
+    return plan_of(config(cell), record)
+
+
 class Bench:
     """A scene and its engine; `run` gathers every row it writes."""
 
     def __init__(
         self, cell: dict[str, Any], spec: Spec | None = EVERYTHING, block_steps: int = 512
     ):
-        self.spec = spec or plan_of(cell).spec
+        self.spec = spec or planned(cell).spec
         self.cell = cell
-        self.scene: Scene = build(cell, self.spec)
+        self.scene: Scene = build(config(cell), self.spec)
         self.engine: Engine = self.scene.engine(self.spec, block_steps)
         self.status = 0
 

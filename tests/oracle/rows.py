@@ -6,22 +6,21 @@ Jacobians, free velocities and targets are worked out again from the config.
 
 from __future__ import annotations
 
-from fractions import Fraction
-
 import convex
 import numpy as np
 from complementarity import Body, jacobian
-from laboratory import Bench
+from laboratory import Bench, config
 
+from lavendersim.cell import Sphere
 from lavendersim.scene.candidates import candidate_pairs
 
 
 def inertia_of(shape, mass) -> np.ndarray:
     """Principal moments of a homogeneous solid by the covariance of its mass: I = tr(C) - C."""
-    if shape["kind"] == "sphere":
-        second = np.full(3, shape["radius"] ** 2 / 5.0)
+    if isinstance(shape, Sphere):
+        second = np.full(3, shape.radius**2 / 5.0)
     else:
-        second = np.square(shape["size"]) / 12.0
+        second = np.square(shape.size) / 12.0
     return mass * (second.sum() - second)
 
 
@@ -29,24 +28,22 @@ class RowOracle:
     """The contact problem of the next step of `bench`, captured from its state now."""
 
     def __init__(self, bench: Bench) -> None:
-        cell, engine = bench.cell, bench.engine
-        self.described = list(cell["scene"]["bodies"].values())
-        self.numerics = cell["numerics"]
-        self.dt = float(Fraction(self.numerics["timestep"]))
-        gravity = np.array(cell["scene"]["gravity"], float)
-        self.speed_limit = (
-            self.numerics["restitution_threshold"] * np.linalg.norm(gravity) * self.dt
-        )
+        cell, engine = config(bench.cell), bench.engine
+        self.described = list(cell.scene.bodies.values())
+        self.numerics = cell.numerics
+        self.dt = float(self.numerics.timestep)
+        gravity = np.array(cell.scene.gravity, float)
+        self.speed_limit = self.numerics.restitution_threshold * np.linalg.norm(gravity) * self.dt
         self.pairs = {(p.a, p.b): p for p in candidate_pairs(self.described)}
         self.centres = np.array([[row[k] for k in "xyz"] for row in engine.bodies])
         self.velocity = np.concatenate([bench.velocity, bench.spin], axis=1)
         self.inverse = np.zeros((6 * len(self.described),) * 2)
         for i, described in enumerate(self.described):
-            mass = described["mass"]
+            mass = described.mass
             if mass is None:
                 continue
             quaternion = [engine.bodies[i][k] for k in ("qw", "qx", "qy", "qz")]
-            moments = inertia_of(described["shape"], mass)
+            moments = inertia_of(described.shape, mass)
             inverse = Body(1.0 / mass, 1.0 / moments, convex.matrix_of(quaternion)).inverse
             self.inverse[6 * i : 6 * i + 6, 6 * i : 6 * i + 6] = inverse
             self.velocity[i, :3] += gravity * self.dt
@@ -78,8 +75,8 @@ class RowOracle:
 
     def target(self, contacts: np.ndarray) -> np.ndarray:
         """Return b + b_rest of every row."""
-        depth = np.maximum(-contacts["separation"] - self.numerics["slop"], 0.0)
-        target = -self.numerics["stabilisation_gain"] / self.dt * depth
+        depth = np.maximum(-contacts["separation"] - self.numerics.slop, 0.0)
+        target = -self.numerics.stabilisation_gain / self.dt * depth
         approach = self.approach(contacts)
         for k, c in enumerate(contacts):
             if approach[k] < -self.speed_limit:

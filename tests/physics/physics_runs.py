@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from fractions import Fraction
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -42,9 +41,9 @@ def run_config(text: str) -> list[Course]:
     cells = load_experiment_text(text, "test.yaml").cells()
     courses = []
     for cell, plan in zip(cells, shared_plans(cells), strict=True):
-        scene = build(cell.resolved, plan.spec)
+        scene = build(cell.config, plan.spec)
         engine = scene.engine(plan.spec)
-        changes = EventQueue(engine, scene, cell.resolved["events"])
+        changes = EventQueue(engine, scene, cell.config.events)
         blocks, done, last = [], 0, cell.config.steps
         while True:
             changes.apply_due(done)
@@ -55,7 +54,7 @@ def run_config(text: str) -> list[Course]:
             if status == RUNNING and done >= last:
                 break
         step, pose, contact, _ = (np.concatenate(rows) for rows in zip(*blocks, strict=True))
-        dt = float(Fraction(cell.resolved["numerics"]["timestep"]))
+        dt = float(cell.config.numerics.timestep)
         courses.append(Course(cell.coordinates, scene.names, dt, step, pose, contact))
     return courses
 

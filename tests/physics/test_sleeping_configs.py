@@ -76,7 +76,7 @@ def test_the_blow_reaches_the_last_ball_undiminished(course: Course) -> None:
 
 def test_plan_names_who_may_sleep_and_off_is_the_default() -> None:
     def decision(text: str):
-        return plan_of(load_experiment_text(text, "t.yaml").cells()[0].resolved).decisions
+        return plan_of(load_experiment_text(text, "t.yaml").cells()[0].config).decisions
 
     on = decision(SCENE)["sleeping"]
     assert on.on

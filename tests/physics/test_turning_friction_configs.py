@@ -44,7 +44,7 @@ def course() -> Course:
 
 
 def decisions(text: str):
-    return plan_of(load_experiment_text(text, "test.yaml").cells()[0].resolved).decisions
+    return plan_of(load_experiment_text(text, "test.yaml").cells()[0].config).decisions
 
 
 def test_a_spinning_ball_stops_by_the_torque_of_its_load(course: Course) -> None:

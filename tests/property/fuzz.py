@@ -72,7 +72,7 @@ def first_config(plan: Drawn) -> dict[str, Any]:
 def compiled(plan: Drawn) -> None:
     """Compile the engine of a plan, so that no run waits for it."""
     experiment, spec = loaded(first_config(plan))
-    run(experiment.cells()[0].resolved, spec, 1)
+    run(experiment.cells()[0].config, spec, 1)
 
 
 def finds(

@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import yaml
 
+from lavendersim.cell import CellConfig
 from lavendersim.engine.engine import Engine, Rows
 from lavendersim.engine.records import DIVERGED, RUNNING
 from lavendersim.engine.spec import Spec
@@ -57,11 +58,11 @@ def loaded(tree: dict[str, Any]) -> tuple[Experiment, Spec]:
     return experiment, plan_of_cell(experiment.cells()[0]).spec
 
 
-def run(resolved: dict[str, Any], spec: Spec, steps: int) -> Ended:
-    """Run a resolved cell to its end, as a cell of an experiment is run."""
-    scene = build(resolved, spec)
+def run(config: CellConfig, spec: Spec, steps: int) -> Ended:
+    """Run a cell to its end, as a cell of an experiment is run."""
+    scene = build(config, spec)
     engine = scene.engine(spec, BLOCK)
-    events = EventQueue(engine, scene, resolved["events"])
+    events = EventQueue(engine, scene, config.events)
     blocks, status, done = [], RUNNING, 0
     while True:
         events.apply_due(done)
@@ -97,8 +98,8 @@ def _broken(tree: dict[str, Any], shared: Spec | None) -> list[str]:
     if shared is not None and spec != shared:
         return ["plan: it calls for another engine than its plan's"]
     cell = experiment.cells()[0]
-    resolved, steps = cell.resolved, cell.config.steps
-    one, other = run(resolved, spec, steps), run(resolved, spec, steps)
+    config, steps = cell.config, cell.config.steps
+    one, other = run(config, spec, steps), run(config, spec, steps)
     found = [
         f"equal runs: {name} differ"
         for name in Rows._fields
@@ -109,9 +110,9 @@ def _broken(tree: dict[str, Any], shared: Spec | None) -> list[str]:
     with warnings.catch_warnings():  # of numbers near the greatest, squared
         warnings.simplefilter("ignore", RuntimeWarning)
         found += _ending(one, steps)
-        found += _counts(one, resolved)
-        found += _contacts(one, resolved["numerics"]["friction_cone"])
-        found += _immovable(one, resolved)
+        found += _counts(one, config)
+        found += _contacts(one, config.numerics.friction_cone)
+        found += _immovable(one, config)
     return found
 
 
@@ -149,7 +150,7 @@ def _ending(run: Ended, steps: int) -> list[str]:
     return found
 
 
-def _counts(run: Ended, resolved: dict[str, Any]) -> list[str]:
+def _counts(run: Ended, config: CellConfig) -> list[str]:
     """The rows of the log fit each other."""
     step, contact, residual = run.rows.step, run.rows.contact, run.rows.residual
     found = []
@@ -171,7 +172,7 @@ def _counts(run: Ended, resolved: dict[str, Any]) -> list[str]:
     fine = np.isfinite(step["max_penetration"])
     if not np.array_equal(deepest[fine], step["max_penetration"][fine]):
         found.append("counts: max_penetration is not the deepest of the contacts")
-    asked = resolved["numerics"]["sweeps"]
+    asked = config.numerics.sweeps
     if len(residual) and residual["sweep"].max() > asked:
         found.append(f"counts: sweep {residual['sweep'].max()} of {asked}")
     same = np.diff(residual["step"]) == 0
@@ -214,14 +215,14 @@ def _contacts(run: Ended, cone: str) -> list[str]:
     return found
 
 
-def _immovable(run: Ended, resolved: dict[str, Any]) -> list[str]:
+def _immovable(run: Ended, config: CellConfig) -> list[str]:
     """What is fixed stays where it is; what is kinematic keeps its velocity."""
     found = []
-    for k, (name, body) in enumerate(resolved["scene"]["bodies"].items()):
-        if body["kinematic"]:
+    for k, (name, body) in enumerate(config.scene.bodies.items()):
+        if body.kinematic:
             velocity = [float(run.engine.velocities[k][f"v{axis}"]) for axis in "xyz"]
-            if velocity != [float(v) for v in body["velocity"]]:
+            if velocity != list(body.velocity):
                 found.append(f"immovable: {name} is kinematic, and its velocity changed")
-        elif body["fixed"] and (run.rows.pose[:, k] != run.rows.pose[0, k]).any():
+        elif body.fixed and (run.rows.pose[:, k] != run.rows.pose[0, k]).any():
             found.append(f"immovable: {name} is fixed, and moved")
     return found

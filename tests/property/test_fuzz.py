@@ -100,5 +100,5 @@ def test_a_state_that_is_no_number_is_told_as_a_divergence() -> None:
     tree["scene"]["bodies"]["ball"]["velocity"] = [1e200, 0.0, 0.0]
     assert broken(tree) == []
     experiment, spec = loaded(tree)
-    ended = run(experiment.cells()[0].resolved, spec, 24)
+    ended = run(experiment.cells()[0].config, spec, 24)
     assert ended.said.startswith("diverged: body ball is no longer finite after step 1")

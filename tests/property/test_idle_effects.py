@@ -20,11 +20,11 @@ from typing import Any
 import pytest
 from idle import MODULES, Run, closed, compile_together, differences, may_idle
 from idle_scenes import CASES, SCENES, UNLOGGED
+from laboratory import planned
 
 from lavendersim.engine.collide import SHAPE_PAIRS
 from lavendersim.engine.effects import EFFECTS
 from lavendersim.engine.spec import Spec
-from lavendersim.scene.plan import plan_of
 
 NOTHING_TOUCHES = {"flying brick"}
 # Where solves end early without it.
@@ -58,21 +58,21 @@ Engines = tuple[dict[str, Any], Spec, Spec]  # a scene, its own plan's, and a fu
 def with_effect(name: str, scene: str) -> Engines:
     """Return the engines without and with one effect."""
     cell = SCENES[scene]()
-    lean = plan_of(cell, record=name not in UNLOGGED).spec
+    lean = planned(cell, record=name not in UNLOGGED).spec
     return cell, lean, lean.including(*closed(name))
 
 
 def with_all_effects(scene: str) -> Engines:
     """Return the engines without and with everything that the scene does not call for."""
     cell = SCENES[scene]()
-    lean = plan_of(cell).spec
+    lean = planned(cell).spec
     return cell, lean, lean.including(*(name for name in MODULES if may_idle(cell, name)))
 
 
 def with_shape_pairs(scene: str) -> Engines:
     """Return the engines without and with shape pairs that do not occur."""
     cell = SCENES[scene]()
-    lean = plan_of(cell).spec
+    lean = planned(cell).spec
     more = {*lean.shape_pairs, *FOREIGN[scene]}
     return cell, lean, lean._replace(shape_pairs=tuple(sorted(more)))
 

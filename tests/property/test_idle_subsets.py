@@ -22,10 +22,9 @@ from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 from idle import MODULES, Run, closed, compile_together, differences, may_idle
 from idle_scenes import BRICK, CONJUGATE, CUBE, cell
-from laboratory import box, plane, sphere
+from laboratory import box, plane, planned, sphere
 
 from lavendersim.engine.spec import Spec
-from lavendersim.scene.plan import plan_of
 
 SUBSETS = int(os.environ.get("LAVENDER_TEST_SUBSETS", "2"))
 SCENES = int(os.environ.get("LAVENDER_TEST_SCENES", "30"))
@@ -115,7 +114,7 @@ class Kind:
 
     def engines(self, cell: dict[str, Any]) -> tuple[Spec, list[Spec]]:
         """Return the pruned engine and one for each subset."""
-        lean = plan_of(cell).spec._replace(shape_pairs=self.pairs)
+        lean = planned(cell).spec._replace(shape_pairs=self.pairs)
         idle = [name for name in MODULES if may_idle(cell, name)]
         draws = random.Random(self.name)
         fuller = []
@@ -167,7 +166,7 @@ def test_a_random_subset_of_idle_effects_changes_no_bit(kind: Kind, subset: int)
     @SOME
     @given(kind.scenes)
     def equal(scene: dict[str, Any]) -> None:
-        assert plan_of(scene).spec.effects == lean.effects
+        assert planned(scene).spec.effects == lean.effects
         one, other = Run(scene, lean, STEPS), Run(scene, full, STEPS)
         contacts.append(len(one.tables["contact"]))
         assert differences(one, other, *more_sweeps) == []

@@ -122,7 +122,7 @@ from lavendersim.experiment import load_experiment
 from lavendersim.scene.build import build
 from lavendersim.scene.plan import plan_of
 
-cell = next(iter(load_experiment(Path(sys.argv[1])).cells())).resolved
+cell = next(iter(load_experiment(Path(sys.argv[1])).cells())).config
 plan = plan_of(cell)
 engine = build(cell, plan.spec).engine(plan.spec)
 speeds, hashes = [], []

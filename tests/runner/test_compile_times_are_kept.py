@@ -18,13 +18,13 @@ from lavendersim.experiment import load_experiment
 from lavendersim.scene.build import build
 from lavendersim.scene.plan import plan_of
 cell = load_experiment(Path(sys.argv[1])).cells()[0]
-plan = plan_of(cell.resolved, record=False).spec
+plan = plan_of(cell.config, record=False).spec
 found = []
 for spec in (plan, plan.including("rotation")):
     cache = advance_for(spec)._cache
     cache.anew = sys.argv[2] == "anew"
     start = thread_time()
-    build(cell.resolved, spec).engine(spec).advance(0)
+    build(cell.config, spec).engine(spec).advance(0)
     spent = thread_time() - start
     took = cache.compiled()
     found.append([cache.hits, cache.misses, spent, *(took or ())])

@@ -9,6 +9,7 @@ import pytest
 from numba.core.registry import CPUDispatcher, cpu_target
 from small_configs import DROPS, copy_package, python, run_in_new_process, write
 
+from lavendersim.cell import CellConfig
 from lavendersim.engine import compile as engine_compile
 from lavendersim.engine.kernel_cache import KernelCache
 from lavendersim.engine.spec import Spec
@@ -122,9 +123,9 @@ def test_without_any_cache_directory_a_run_compiles_and_says_so(
     assert alone["logs"] == first["logs"]
 
 
-def rows_of_a_drop(spec: Spec, resolved: dict[str, Any], kernel: Any) -> list[bytes]:
+def rows_of_a_drop(spec: Spec, config: CellConfig, kernel: Any) -> list[bytes]:
     """Return the recorded rows of 120 steps of a drop under a kernel."""
-    engine = build(resolved, spec).engine(spec)
+    engine = build(config, spec).engine(spec)
     engine._kernel = kernel
     engine.advance(120)
     return [rows.tobytes() for rows in engine.take_rows()]
@@ -135,12 +136,12 @@ def test_kernels_without_reference_counting_give_the_same_bits(
 ) -> None:
     assert "_nrt" in engine_compile.OPTIONS, "this numba was to know the option"
     cell = load_experiment_text(DROPS, "drops.yaml").cells()[2]
-    spec = plan_of(cell.resolved).spec
-    without = rows_of_a_drop(spec, cell.resolved, advance_for(spec))
+    spec = plan_of(cell.config).spec
+    without = rows_of_a_drop(spec, cell.config, advance_for(spec))
     monkeypatch.delitem(engine_compile.OPTIONS, "_nrt")
     counting = make_advance(spec)  # composed here and kept nowhere
     assert counting.targetoptions.get("_nrt", True)
-    assert rows_of_a_drop(spec, cell.resolved, counting) == without
+    assert rows_of_a_drop(spec, cell.config, counting) == without
     assert len(without[0]) > 120 * 100
 
 
@@ -148,15 +149,15 @@ def test_kernels_linked_into_their_callers_give_the_same_bits_as_numba_s_own(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     cell = load_experiment_text(DROPS, "drops.yaml").cells()[2]
-    spec = plan_of(cell.resolved).spec
-    linked = rows_of_a_drop(spec, cell.resolved, make_advance(spec))
+    spec = plan_of(cell.config).spec
+    linked = rows_of_a_drop(spec, cell.config, make_advance(spec))
 
     def refuse(*_: Any) -> None:
         raise AssertionError("a part was compiled")
 
     monkeypatch.setattr(engine_compile.PartCompiler, "__init__", refuse)
     monkeypatch.setattr(engine_compile.Kernel, "get_call_template", CPUDispatcher.get_call_template)
-    assert rows_of_a_drop(spec, cell.resolved, make_advance(spec)) == linked
+    assert rows_of_a_drop(spec, cell.config, make_advance(spec)) == linked
     assert len(linked[0]) > 120 * 100
 
 

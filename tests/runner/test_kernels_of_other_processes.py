@@ -60,8 +60,8 @@ def test_two_plans_compiled_apart_and_loaded_together_give_what_each_gives_alone
 
 def test_no_part_of_a_kernel_is_a_symbol_of_its_object() -> None:
     cell = load_experiment_text(HEAVY.format(resistance=RESISTANCES[0]), "heavy.yaml").cells()[0]
-    spec = plan_of(cell.resolved).spec
-    engine = build(cell.resolved, spec).engine(spec)
+    spec = plan_of(cell.config).spec
+    engine = build(cell.config, spec).engine(spec)
     engine._kernel = make_advance(spec)  # compiled here, not loaded
     engine.advance(0)
     (compiled,) = engine._kernel.overloads.values()

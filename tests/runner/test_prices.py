@@ -124,9 +124,9 @@ def test_where_an_effect_has_no_price_the_row_says_why(monkeypatch: pytest.Monke
 @pytest.mark.parametrize("numerics", ["chapter", "default"])
 def test_both_engines_of_a_pair_can_be_and_differ_in_the_effect(numerics: str) -> None:
     text = EVERY.replace("numerics: chapter", f"numerics: {numerics}")
-    resolved = load_experiment_text(text, "ball.yaml").cells()[0].resolved
-    silent = plan_of(resolved, record=False).spec
-    for pair in pairs_of(resolved):
+    config = load_experiment_text(text, "ball.yaml").cells()[0].config
+    silent = plan_of(config, record=False).spec
+    for pair in pairs_of(config):
         assert (pair.off is None) == (pair.on is None) == bool(pair.why_not)
         if pair.off is None or pair.on is None:
             continue
@@ -154,10 +154,10 @@ class StepClock:
 
 def test_a_sample_is_the_same_steps_every_time() -> None:
     cell = load_experiment_text(BALL, "ball.yaml").cells()[0]
-    spec = plan_of(cell.resolved, record=False).spec
+    spec = plan_of(cell.config, record=False).spec
     first, steps = 24, 96  # of 120: the ball lands and bounces in them
     clock = StepClock()
-    timed = Timed(cell.resolved, spec, first, steps, clock)
+    timed = Timed(cell.config, spec, first, steps, clock)
     clock.engine, timed.starts = timed.engine, 3
     timed.set_back()
     begin = timed.engine.bodies["z"].tobytes()
@@ -168,7 +168,7 @@ def test_a_sample_is_the_same_steps_every_time() -> None:
         timed.set_back()
         assert timed.engine.bodies["z"].tobytes() == begin
     assert 0.0 < timed.contacts < 1.0
-    whole = Timed(cell.resolved, spec, 0, first + steps)
+    whole = Timed(cell.config, spec, 0, first + steps)
     assert whole.motion == timed.motion  # where an uninterrupted run ends, to the bit
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -62,7 +61,7 @@ def test_every_nth_step_that_has_contacts_has_a_file(dumped: Finished) -> None:
 
 
 def test_a_file_read_back_is_the_problem_of_its_step(dumped: Finished) -> None:
-    cell: Any = dumped.run.cells[0].trace().resolved
+    cell = dumped.run.experiment.cells()[0].config
     spec = plan_of(cell).spec
     engine, most = build(cell, spec).engine(spec), 0
     for file in files_of(dumped):

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from types import MappingProxyType
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 MOST_PAIRS = 3  # in a sentence
@@ -21,7 +20,7 @@ class BodyFacts(NamedTuple):
     speed: float = 0.0  # largest stated [m/s]
     size: float = 0.0  # radius of the sphere about its centre that holds it [m], planes: inf
     least_size: float = 0.0  # of the smallest of its parts, where it has some; planes: inf
-    stated: Mapping[str, Any] = MappingProxyType({})  # the body as the resolved config has it
+    stated: Any = None  # the body as the config of the cell has it
     force: bool = False  # a force acts on it at some time
     torque: bool = False
     parts: int = 0  # of a compound

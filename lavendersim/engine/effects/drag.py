@@ -7,7 +7,6 @@ Explicit steps overshoot rest where the bracket times h exceeds 1; these come to
 Forces act before, so that a fall ends at the very speed at which drag carries the weight.
 """
 
-from collections.abc import Mapping
 from math import sqrt
 from typing import Any
 
@@ -15,9 +14,9 @@ from .decision import Decision, Facts, named
 from .effect import Effect, Fields, Hooks, kernel
 
 
-def body_values(body: Mapping[str, Any]) -> dict[str, float]:
+def body_values(body: Any) -> dict[str, float]:
     """Return the values of the body fields that a config states for a body."""
-    return {f"drag_{name}": float(value) for name, value in body["drag"].items()}
+    return {f"drag_{name}": value for name, value in body.drag}
 
 
 def decide(facts: Facts) -> Decision:

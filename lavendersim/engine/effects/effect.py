@@ -115,7 +115,7 @@ class Effect:
     chosen_by: Choice | None = None
     study_only: str = ""  # of a deliberate error, what it does: every run that has it says so
     fields: Fields = Fields()
-    body_values: Callable[[Mapping[str, Any]], Mapping[str, Any]] | None = None  # of fields.body
+    body_values: Callable[[Any], Mapping[str, Any]] | None = None  # of fields.body
     contact_columns: tuple[Column, ...] = ()  # of /contacts
     step_columns: tuple[Column, ...] = ()  # of /step
     residual_columns: tuple[Column, ...] = ()  # of /residuals

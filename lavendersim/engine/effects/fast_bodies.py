@@ -59,7 +59,7 @@ def _source_of_energy(facts: Facts) -> str:
             return f"a force or torque acts on {body.name}"
         if body.kinematic and (body.spins or body.speed > 0.0):
             return f"{body.name} moves as its velocity says"
-        if body.stated and any(body.stated["surface_velocity"]):
+        if body.stated is not None and any(body.stated.surface_velocity):
             return f"the surface of {body.name} moves"
     if facts.events:
         return "events change bodies"
@@ -76,7 +76,7 @@ def _source_of_energy(facts: Facts) -> str:
 def _closing_speed(facts: Facts) -> float:
     """Return the greatest speed relative to each other that two bodies may reach [m/s]."""
     movable = [body for body in facts.bodies if body.movable]
-    masses = [float(body.stated["mass"]) for body in movable]
+    masses = [body.stated.mass for body in movable]
     g = hypot(*facts.gravity)
     energy = sum(_kinetic_energy(body) for body in movable)
     falling = sqrt(2.0 * energy) + g * facts.duration * sqrt(sum(masses))
@@ -86,7 +86,7 @@ def _closing_speed(facts: Facts) -> float:
         fx, fy, fz = facts.gravity
         fall = 0.0
         for body, mass in zip(movable, masses, strict=True):
-            x, y, z = body.stated["position"]
+            x, y, z = body.stated.position
             height = -(fx * x + fy * y + fz * z) / g - floor
             fall += mass * g * max(height + body.size, 0.0)
         bound = min(bound, energy + fall)
@@ -101,17 +101,17 @@ def _floor(facts: Facts, g: float) -> float:
     heights = [-inf]
     for body in facts.bodies:
         if body.shape == "plane":
-            shape = body.stated["shape"]
-            upward = -sum(n * f for n, f in zip(shape["normal"], facts.gravity, strict=True)) / g
+            shape = body.stated.shape
+            upward = -sum(n * f for n, f in zip(shape.normal, facts.gravity, strict=True)) / g
             if upward >= 1.0 - LEVEL:
-                heights.append(float(shape["offset"]))
+                heights.append(shape.offset)
     return max(heights)
 
 
 def _kinetic_energy(body: BodyFacts) -> float:
     """Return the largest kinetic energy that is stated for a body [J]."""
-    mass, spin = float(body.stated["mass"]), hypot(*body.stated["angular_velocity"])
-    inertia = float(max(body.stated["inertia"]))
+    mass, spin = float(body.stated.mass), hypot(*body.stated.angular_velocity)
+    inertia = float(max(body.stated.inertia))
     return 0.5 * mass * body.speed**2 + 0.5 * inertia * spin**2
 
 

@@ -3,16 +3,15 @@
 Their inverse mass is 0, as that of fixed bodies; the step moves them all the same (`integrate`).
 """
 
-from collections.abc import Mapping
 from typing import Any
 
 from .decision import Decision, Facts, named
 from .effect import Effect, Fields
 
 
-def body_values(body: Mapping[str, Any]) -> dict[str, bool]:
+def body_values(body: Any) -> dict[str, bool]:
     """Return the value of the body fields that a config states for a body."""
-    return {"kinematic": bool(body["kinematic"])}
+    return {"kinematic": body.kinematic}
 
 
 def decide(facts: Facts) -> Decision:

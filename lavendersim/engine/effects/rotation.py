@@ -42,7 +42,7 @@ def _turned_by(body: BodyFacts, touches: bool, rubbing: set[Kind], resisting: se
 
 
 def _kind(body: BodyFacts) -> Kind:
-    return body.shape, body.movable, repr(body.stated.get("surface", body.name))
+    return body.shape, body.movable, repr(body.name if body.stated is None else body.stated.surface)
 
 
 def _touched(facts: Facts, pairs: list[PairFacts]) -> set[Kind]:

@@ -4,7 +4,6 @@
 s_A, s_B in the bodies' frames [m/s]. Its part along the normal says nothing and is left out.
 """
 
-from collections.abc import Mapping
 from typing import Any
 
 from ..records import ORIENTED_BODY
@@ -12,14 +11,14 @@ from .decision import Decision, Facts, named
 from .effect import Effect, Fields, Hooks, kernel
 
 
-def body_values(body: Mapping[str, Any]) -> dict[str, float]:
-    """Return the values of its own the body fields that a config states for a body."""
-    return dict(zip(("sx", "sy", "sz"), body["surface_velocity"], strict=True))
+def body_values(body: Any) -> dict[str, float]:
+    """Return the values of the body fields of its own that a config states for a body."""
+    return dict(zip(("sx", "sy", "sz"), body.surface_velocity, strict=True))
 
 
 def decide(facts: Facts) -> Decision:
     """On when a surface moves and some contact has friction."""
-    moving = [body.name for body in facts.bodies if any(body.stated["surface_velocity"])]
+    moving = [body.name for body in facts.bodies if any(body.stated.surface_velocity)]
     if not moving:
         return Decision(False, "no surface moves in its body")
     if any(pair.friction > 0.0 for pair in facts.pairs):

@@ -80,10 +80,10 @@ class LavenderHandle:
     def __init__(self, scene: Scene) -> None:
         try:
             (cell,) = load_experiment_text(text(scene), "peers.yaml").cells()
-            plan = plan_of(cell.resolved, record=False)
+            plan = plan_of(cell.config, record=False)
         except LavenderError as error:
             raise CannotRun(f"refuses the scene: {str(error).splitlines()[0][:160]}") from error
-        self.engine = build_arrays(cell.resolved, plan.spec).engine(plan.spec)
+        self.engine = build_arrays(cell.config, plan.spec).engine(plan.spec)
         self.rows = [k for k, body in enumerate(scene.bodies) if body.moves]
         self.engine.advance(0)  # compiles or loads the kernel
 

@@ -12,11 +12,10 @@ from typing import Any
 import numpy as np
 import pytest
 from idle_scenes import CUBE, balls, boxes, cell
-from laboratory import EVERYTHING, Bench, box, plane, sphere
+from laboratory import EVERYTHING, Bench, box, plane, planned, sphere
 
 from lavendersim.engine.contact_problem import ContactProblem
 from lavendersim.engine.spec import Spec
-from lavendersim.scene.plan import plan_of
 
 # Sums of some ten products of velocities of 10 m/s and responses of 10 1/kg, each rounded by 1e-16.
 ROUND_OFF = 1e-12
@@ -62,7 +61,7 @@ class Solved:
     def __init__(self, name: str, steps: int) -> None:
         scene, spec = SCENES[name]
         self.cell = scene()
-        self.spec: Spec = spec or plan_of(self.cell).spec
+        self.spec: Spec = spec or planned(self.cell).spec
         assert self.spec.has("problem_log")
         bench = Bench(self.cell, self.spec)
         bench.run(steps - 1)

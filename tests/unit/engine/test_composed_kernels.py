@@ -28,7 +28,7 @@ def test_every_composed_kernel_is_compiled_and_no_other(
     """A kernel without an overload was never called by another: dead weight in the plan."""
     cell = load_experiment(CONFIGS / f"{name}.yaml").cells()[0]
     spec = plan_of_cell(cell).spec
-    engine = build(cell.resolved, spec).engine(spec)
+    engine = build(cell.config, spec).engine(spec)
     # A spec that no other test has: kernels that are made once a spec are made here.
     spec = spec._replace(effects=(*spec.effects, "nothing"))
     made: list[tuple[str, Any]] = []

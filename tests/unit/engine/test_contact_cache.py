@@ -7,9 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from laboratory import Bench, box, plane, resolved, sphere
-
-from lavendersim.scene.plan import plan_of
+from laboratory import Bench, box, plane, planned, resolved, sphere
 
 GRAVITY = (0.0, 0.0, -9.81)
 
@@ -106,7 +104,7 @@ def test_a_contact_that_was_lost_for_a_step_injects_nothing_stale():
 
 def test_a_cold_cell_stays_cold_in_an_engine_that_it_shares_with_warm_ones():
     cell = resolved(ball(), GRAVITY, warm_start=False)
-    assert not plan_of(cell).spec.has("warm_start")
+    assert not planned(cell).spec.has("warm_start")
     bench = Bench(cell)
     assert bench.spec.has("warm_start")
     bench.run(1)

@@ -15,12 +15,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from laboratory import Bench, box, plane, resolved
+from laboratory import Bench, box, plane, planned, resolved
 
 from lavendersim.engine.contact_problem import ContactProblem
 from lavendersim.problems.by_kernel import solve_by_kernel
 from lavendersim.problems.residual import contact_velocities
-from lavendersim.scene.plan import plan_of
 
 G, DT, MU = 9.81, 1.0 / 240.0, 0.5
 SPEED = 1.0
@@ -42,7 +41,7 @@ def block(cone: str, velocity: Any = (0.0, 0.0, 0.0), slope: float = 0.0) -> Ben
     numerics = {"sweeps": 20_000, "tolerance": TOLERANCE, "friction_cone": cone}
     cell = resolved(bodies, gravity, **numerics)
     cell["record"] = {"residuals": "none", "problems": "every 1"}
-    return Bench(cell, plan_of(cell).spec)
+    return Bench(cell, planned(cell).spec)
 
 
 @cache

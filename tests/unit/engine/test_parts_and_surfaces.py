@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
-from laboratory import body, plane, resolved
+from laboratory import body, config, plane, resolved
 
 from lavendersim.engine.effects import compound, surface_velocity
 from lavendersim.engine.spec import Spec
 from lavendersim.geometry.rotations import rotation_matrix
 from lavendersim.scene.body_rows import part_pose
 from lavendersim.scene.build import build
+from lavendersim.scene.colliders import parts_of
 
 SPHERE = {"kind": "sphere", "radius": 0.1}
 BOX = {"kind": "box", "size": [0.2, 0.3, 0.4]}
@@ -27,7 +28,8 @@ def test_parts_stand_where_the_scene_puts_them_in_every_pose() -> None:
         {"shape": BOX, "position": [-0.5, 0, 0.2], "orientation": [1.0, 2.0, 0.5, -1.0]},
     ]
     thing = body({"kind": "compound", "parts": parts}, (1, 2, 3))
-    scene = build(resolved({"floor": plane(), "thing": thing}), SPEC)
+    cell = config(resolved({"floor": plane(), "thing": thing}))
+    scene = build(cell, SPEC)
     bodies = scene.bodies
     place_parts = compound.make(SPEC)
     for seed in range(3):
@@ -40,7 +42,9 @@ def test_parts_stand_where_the_scene_puts_them_in_every_pose() -> None:
             for j in range(3):
                 row[f"r{i}{j}"] = turn[i, j]
         place_parts(bodies)
-        for part, described in zip(bodies[2:], thing["shape"]["parts"], strict=True):
+        for part, described in zip(
+            bodies[2:], parts_of(cell.scene.bodies["thing"].shape), strict=True
+        ):
             expected = part_pose(pose, described)
             found = [part[k] for k in ("x", "y", "z", "qw", "qx", "qy", "qz")]
             np.testing.assert_allclose(found, expected, atol=2e-15)
@@ -52,7 +56,7 @@ def test_parts_stand_where_the_scene_puts_them_in_every_pose() -> None:
 def test_surface_moves_along_the_tangents_in_the_bodies_frames() -> None:
     belt = body(BOX, surface_velocity=(0.3, -0.2, 0.5), orientation=quaternion(1))
     floor = plane(surface_velocity=(1.0, 2.0, 3.0))
-    scene = build(resolved({"floor": floor, "belt": belt}), SPEC)
+    scene = build(config(resolved({"floor": floor, "belt": belt})), SPEC)
     frame, _ = np.linalg.qr(np.random.default_rng(4).normal(size=(3, 3)))
     fields = [f"t{k}{axis}" for k in "12" for axis in "xyz"] + ["surface_1", "surface_2"]
     contact = np.zeros(1, [(name, "f8") for name in fields]).view(np.recarray)

@@ -13,13 +13,12 @@ from typing import Any
 import pytest
 from idle import MODULES, closed
 from idle_scenes import CASES, SCENES, UNLOGGED
-from laboratory import Bench
+from laboratory import Bench, planned
 from machine_code import Code, code_of
 
 from lavendersim.engine.effects import EFFECTS
 from lavendersim.engine.spec import Spec
 from lavendersim.engine.step import kernels_of
-from lavendersim.scene.plan import plan_of
 
 # Effects that have no kernel in their own file: they widen others, or theirs stand elsewhere.
 NO_KERNEL = {
@@ -41,7 +40,7 @@ RECORDS = ("body", "velocity", "pair", "contact", "cache", "contact_row", "step_
 def engines(name: str) -> tuple[dict[str, Any], Spec, Spec]:
     """Return a scene that does not call for an effect, and the engine without and with it."""
     cell = SCENES[TOUCHING.get(name, CASES[name][0])]()
-    lean = plan_of(cell, record=name not in UNLOGGED).spec
+    lean = planned(cell, record=name not in UNLOGGED).spec
     return cell, lean, lean.including(*closed(name), *CALLED_BY.get(name, ()))
 
 
@@ -81,7 +80,7 @@ def test_no_kernel_of_an_absent_effect_is_compiled(name: str) -> None:
 def test_absent_effects_leave_no_kernel_of_theirs_at_all() -> None:
     """A frictionless drop beside the same with every effect there is."""
     cell = SCENES["single ball"]()
-    lean = plan_of(cell).spec
+    lean = planned(cell).spec
     full = lean.including(*MODULES)
     drop, everything = code(cell, lean), code(cell, full)
     modules = {module for module, _ in drop.kernels if module.startswith("effects.")}
@@ -94,7 +93,7 @@ def test_absent_effects_leave_no_kernel_of_theirs_at_all() -> None:
 @pytest.mark.parametrize("scene", ["balls", "rough balls", "boxes"])
 def test_the_kernels_that_a_plan_lists_are_those_that_are_compiled(scene: str) -> None:
     cell = SCENES[scene]()
-    spec = plan_of(cell).spec
+    spec = planned(cell).spec
     listed = {(module, name) for module, names in kernels_of(spec).items() for name in names}
     assert listed == {_as_listed(kernel, listed) for kernel in code(cell, spec).kernels}
 

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from laboratory import EVERYTHING, Bench, box, plane, resolved, sphere
-
-from lavendersim.scene.plan import plan_of
+from laboratory import EVERYTHING, Bench, box, plane, planned, resolved, sphere
 
 GRAVITY = (0.0, 0.0, -9.81)
 # Effects that a coefficient of zero must switch off without a trace.
@@ -46,7 +44,7 @@ def test_frictionless_spheres_have_no_rotation_at_all():
 def test_coefficients_of_zero_change_no_bit(scene):
     """The plan's own effects against the same plus four whose coefficients are all zero."""
     cell = scene()
-    lean = plan_of(cell).spec.including("residual_log")._replace(tolerance=True)
+    lean = planned(cell).spec.including("residual_log")._replace(tolerance=True)
     full = lean._replace(effects=tuple(sorted({*lean.effects, *COEFFICIENTS})))
     assert not set(lean.effects) & set(COEFFICIENTS)
     one, other = Bench(cell, spec=lean).run(120), Bench(cell, spec=full).run(120)
@@ -70,6 +68,6 @@ def test_rotation_that_nothing_excites_is_none():
 
 def test_every_effect_has_a_reason_in_the_scenes_own_words():
     for cell in (spheres(), boxes()):
-        decisions = plan_of(cell).decisions
+        decisions = planned(cell).decisions
         assert all(decision.reason for decision in decisions.values())
         assert "0" in decisions["compliance"].reason

@@ -8,10 +8,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from laboratory import Bench, box, plane, resolved, sphere
+from laboratory import Bench, box, plane, planned, resolved, sphere
 
 from lavendersim.scene.events import apply_event
-from lavendersim.scene.plan import plan_of
 
 G, DT = 9.81, 1.0 / 240.0
 SLEEP_TIME = 0.1
@@ -37,7 +36,7 @@ def stack(ball=(50.0, 0.0, 50.0), velocity=(0.0, 0.0, 0.0), sleeping=True, **num
     numerics = {"sweeps": 2000, "tolerance": 1e-10, "sleep_time": SLEEP_TIME, **numerics}
     cell = resolved(bodies, (0.0, 0.0, -G), sleeping=sleeping, **numerics)
     # Every test pushes or not on one engine: the effect of forces is there, its forces are zero.
-    spec = plan_of(cell).spec
+    spec = planned(cell).spec
     spec = spec._replace(effects=tuple(sorted({*spec.effects, "external_force"})))
     return Bench(cell, spec=spec)
 

@@ -8,10 +8,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from complementarity import natural_map, solve_by_enumeration
-from laboratory import Bench, box, plane, resolved, sphere
+from laboratory import Bench, box, plane, planned, resolved, sphere
 from rows import RowOracle
-
-from lavendersim.scene.plan import plan_of
 
 GRAVITY = (0.0, 0.0, -9.81)
 NUMERICS = {"stabilisation_gain": 0.02, "slop": 0.001}
@@ -121,7 +119,7 @@ def test_sweeps_end_when_one_changes_nothing_and_the_bits_are_those_of_all_sweep
     """With residuals recorded every sweep is made; without, a fixed point ends the solve."""
     bodies = {"floor": plane(), "ball": sphere(0.1, (0.0, 0.0, 0.0995))}
     cell, steps = resolved(bodies, GRAVITY), 300
-    spec = plan_of(cell).spec.including("residual_log")
+    spec = planned(cell).spec.including("residual_log")
     every = Bench(cell, spec).run(steps)
     fewer = Bench(cell, spec.without("residual_log")).run(steps)
     assert (every.step["sweeps"][1:] == 22).all()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import convex
 import numpy as np
 import pytest
-from laboratory import Bench, box, plane, resolved, sphere
+from laboratory import Bench, box, config, plane, resolved, sphere
 from rows import inertia_of
 
 GRAVITY = np.array([0.3, -0.2, -9.81])
@@ -27,19 +27,19 @@ def bench() -> Bench:
 def test_energies_and_momenta_follow_their_definitions(bench):
     step = bench.run(7).step[-1]
     kinetic, potential, momentum, angular = 0.0, 0.0, np.zeros(3), np.zeros(3)
-    described = list(bench.cell["scene"]["bodies"].values())
+    described = list(config(bench.cell).scene.bodies.values())
     for i, body in enumerate(described):
-        if body["mass"] is None:
+        if body.mass is None:
             continue
         row = bench.engine.bodies[i]
         x = np.array([row[k] for k in "xyz"])
         turned = convex.matrix_of(np.array([row[k] for k in ("qw", "qx", "qy", "qz")]))
-        inertia = turned @ np.diag(inertia_of(body["shape"], body["mass"])) @ turned.T
+        inertia = turned @ np.diag(inertia_of(body.shape, body.mass)) @ turned.T
         v, spin = bench.velocity[i], bench.spin[i]
-        kinetic += 0.5 * body["mass"] * v @ v + 0.5 * spin @ inertia @ spin
-        potential -= body["mass"] * GRAVITY @ x
-        momentum += body["mass"] * v
-        angular += np.cross(x, body["mass"] * v) + inertia @ spin
+        kinetic += 0.5 * body.mass * v @ v + 0.5 * spin @ inertia @ spin
+        potential -= body.mass * GRAVITY @ x
+        momentum += body.mass * v
+        angular += np.cross(x, body.mass * v) + inertia @ spin
     assert step["kinetic_energy"] == pytest.approx(kinetic, rel=1e-14)
     assert step["potential_energy"] == pytest.approx(potential, rel=1e-14)
     for k, axis in enumerate("xyz"):

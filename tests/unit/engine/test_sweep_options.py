@@ -8,13 +8,12 @@ from typing import Any
 import numpy as np
 import pytest
 from idle_scenes import SCENES
-from laboratory import Bench, plane, resolved, sphere
+from laboratory import Bench, plane, planned, resolved, sphere
 
 from lavendersim.engine import ordering
 from lavendersim.engine.contact_problem import SOLVED, ContactProblem
 from lavendersim.engine.spec import Spec
 from lavendersim.problems.by_kernel import solve_by_kernel
-from lavendersim.scene.plan import plan_of
 
 BALLS, SWEEPS = 10, 12
 
@@ -57,7 +56,7 @@ def residuals(w: np.ndarray, free: np.ndarray, order: str, factor: float) -> lis
 @pytest.mark.parametrize(("order", "factor"), [("backward", 1.0), ("symmetric", 1.3)])
 def test_sweeps_go_as_numpy_goes(order: str, factor: float) -> None:
     cell = tower(order=order, over_relaxation=factor)
-    spec = plan_of(cell).spec
+    spec = planned(cell).spec
     assert (spec.order, spec.over_relaxation) == (order, factor != 1.0)
     bench = Bench(cell, spec)
     rows = bench.run(1)
@@ -102,7 +101,7 @@ def test_a_problem_by_itself_is_solved_in_fewer_sweeps() -> None:
 def test_a_factor_of_one_gives_the_bits_of_none() -> None:
     """As in a sweep of configs over the factor, whose cells share an engine."""
     cell = SCENES["rough balls"]()
-    spec = plan_of(cell).spec
+    spec = planned(cell).spec
     assert not spec.over_relaxation
     one = Bench(cell, spec).run(144)
     other = Bench(cell, spec._replace(over_relaxation=True)).run(144)

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from laboratory import Bench, box, plane, resolved
+from laboratory import Bench, box, plane, planned, resolved
 from made_problems import random_problem
 
 from lavendersim.engine.assemble import StepProblem
@@ -19,7 +19,6 @@ from lavendersim.engine.matrix_problem import contacts_of
 from lavendersim.problems.by_kernel import solve_by_kernel, spec_of
 from lavendersim.problems.matrices import matrix_of
 from lavendersim.problems.residual import contact_velocities, residual
-from lavendersim.scene.plan import plan_of
 
 GRAVITY = (0.0, 0.0, -9.81)
 # One box lands tilted and sliding on a soft floor: four contacts that stick, slide and open. Fewer
@@ -47,7 +46,7 @@ def stepped(solver: str, sweeps: int) -> Bench:
     """Return an engine after its first step, solved by so many sweeps."""
     cell = resolved(BODIES, GRAVITY, sweeps=sweeps, solver=solver, tolerance=1e-14)
     cell["record"]["problems"] = "every 1"
-    bench = Bench(cell, plan_of(cell).spec)
+    bench = Bench(cell, planned(cell).spec)
     bench.run(1)
     return bench
 

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+import json
+
 import numpy as np
 import pytest
-from laboratory import body, plane, resolved
+from laboratory import body, config, plane, resolved
 
+from lavendersim.cell import CellBody, CellPart, Sphere
 from lavendersim.engine.records import CAPSULE, COMPOUND, CYLINDER, HULL, SPHERE
 from lavendersim.engine.spec import Spec
 from lavendersim.geometry.rotations import quaternion_product, rotation_matrix
 from lavendersim.scene.body_rows import part_pose
 from lavendersim.scene.build import Scene, build
-from lavendersim.scene.colliders import bounding_radius
+from lavendersim.scene.colliders import bounding_radius, parts_of
 
 TETRA = {"kind": "hull", "points": [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]}
 EFFECTS = ("compound", "drag", "kinematic", "rotation", "surface_velocity")
@@ -20,7 +23,7 @@ TURN = np.array([0.5, -0.5, 0.5, 0.5])
 
 
 def built(**bodies: dict) -> Scene:
-    return build(resolved({"floor": plane(), **bodies}), SPEC)
+    return build(config(resolved({"floor": plane(), **bodies})), SPEC)
 
 
 def test_sizes_of_round_shapes() -> None:
@@ -41,14 +44,14 @@ def test_sizes_of_round_shapes() -> None:
     ],
 )
 def test_bounding_radius_holds_every_corner(shape: dict) -> None:
-    resolved_shape = body(shape)["shape"]
-    parts = resolved_shape.get("parts", [{"shape": resolved_shape, "position": [0, 0, 0]}])
+    made = CellBody.model_validate_json(json.dumps(body(shape))).shape
+    parts = parts_of(made) or (CellPart(shape=made, position=(0, 0, 0), orientation=(1, 0, 0, 0)),)
     far = 0.0
     for part in parts:
-        turn = rotation_matrix(np.array(part.get("orientation", (1, 0, 0, 0)), float))
-        points = np.array(part["shape"]["points"]) @ turn.T + part["position"]
+        turn = rotation_matrix(np.array(part.orientation, float))
+        points = np.array(part.shape.points) @ turn.T + part.position
         far = max(far, np.linalg.norm(points, axis=1).max())
-    bound = bounding_radius(resolved_shape)
+    bound = bounding_radius(made)
     assert far <= bound * (1 + 1e-15)
     assert shape["kind"] == "compound" or bound == pytest.approx(far, rel=1e-15)
 
@@ -98,7 +101,9 @@ def test_product_of_quaternions_is_that_of_their_matrices() -> None:
     one, other = (q / np.linalg.norm(q) for q in rng.normal(size=(2, 4)))
     together = rotation_matrix(quaternion_product(one, other))
     np.testing.assert_allclose(together, rotation_matrix(one) @ rotation_matrix(other), atol=1e-15)
-    pose = part_pose(np.array([1, 0, 0, *one]), {"position": [0, 0, 2], "orientation": other})
+    ball = Sphere(kind="sphere", radius=1.0)
+    part = CellPart(shape=ball, position=(0, 0, 2), orientation=tuple(other.tolist()))
+    pose = part_pose(np.array([1, 0, 0, *one]), part)
     np.testing.assert_allclose(pose[:3], [1, 0, 0] + 2 * rotation_matrix(one)[:, 2], atol=1e-15)
 
 

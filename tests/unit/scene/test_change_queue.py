@@ -6,8 +6,9 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from laboratory import body, plane, resolved
+from laboratory import body, config, plane, resolved
 
+from lavendersim.cell import CellRecord, ResidualWindow
 from lavendersim.engine.spec import Spec
 from lavendersim.scene.build import Scene, build, residual_window
 from lavendersim.scene.events import EventQueue
@@ -28,7 +29,7 @@ def force(begin: float, end: float, **stated: list[float]) -> dict:
 def event(at: float, name: str = "ball", **stated) -> dict:
     changes = ("scale_mass", "teleport", "velocity", "angular_velocity")
     return {
-        "at": at, "body": name, "contact_cache": "keep",
+        "at": at, "body": name, "contact_cache": "keep", "remove": False,
         **{key: stated.get(key) for key in changes},
     }  # fmt: skip
 
@@ -36,11 +37,12 @@ def event(at: float, name: str = "ball", **stated) -> dict:
 class Bench:
     """A scene of floor, ball and belt at 0.1 s, whose engine is nothing but its arrays."""
 
-    def __init__(self, forces=(), events=()) -> None:
+    def __init__(self, forces=(), events=(), gravity=0.0) -> None:
         bodies = {"floor": plane(), "ball": body(BALL), "belt": body(BALL, kinematic=True)}
-        self.cell = resolved(bodies, timestep="1/10")
-        self.cell["scene"]["forces"] = list(forces)
-        self.cell["events"] = list(events)
+        cell = resolved(bodies, (0.0, 0.0, gravity), timestep="1/10")
+        cell["scene"]["forces"] = list(forces)
+        cell["events"] = list(events)
+        self.cell = config(cell)
         self.scene: Scene = build(self.cell, SPEC)
         self.forgotten: list = []
         engine = SimpleNamespace(
@@ -49,7 +51,7 @@ class Bench:
             forget_contacts=lambda *body: self.forgotten.append(body),
             wake=lambda index: None,
         )  # fmt: skip
-        self.queue = EventQueue(engine, self.scene, self.cell["events"])
+        self.queue = EventQueue(engine, self.scene, self.cell.events)
 
     def after(self, steps: int) -> list[float]:
         """Return force and torque of the ball once what is due after `steps` steps acts."""
@@ -139,9 +141,8 @@ def test_plan_knows_what_is_pushed_twisted_and_thrown() -> None:
 def test_a_timestep_and_what_is_made_of_it_change_together() -> None:
     """1/10 s up to 0.2 s, then 1/4 s: 0.25 s and 0.6 s are reached after 3 and after 4 steps."""
     events = [{"at": 0.15, "timestep": "1/4"}, event(0.25, velocity=[1, 0, 0])]
-    bench = Bench([force(0.0, 0.6, force=[1, 0, 0])], events)
+    bench = Bench([force(0.0, 0.6, force=[1, 0, 0])], events, gravity=-9.81)
     parameters = bench.scene.parameters[0]
-    parameters["gz"], bench.scene.numerics["restitution_threshold"] = -9.81, 2.0
     assert bench.after(1)[0] == 1.0
     assert parameters["dt"] == 0.1
     bench.after(2)
@@ -154,10 +155,9 @@ def test_a_timestep_and_what_is_made_of_it_change_together() -> None:
 
 def test_a_window_of_residuals_is_counted_in_steps_of_their_length() -> None:
     bench = Bench(events=[{"at": 0.2, "timestep": "1/4"}])
-    window = {
-        "record": {"residuals": {"from": 0.2, "to": 0.95}}
-    }  # steps end at 0.2, 0.45, 0.7, 0.95
-    assert residual_window(window, bench.scene.clock) == (2, 5)
+    window = ResidualWindow.model_validate({"from": 0.2, "to": 0.95})
+    record = CellRecord(residuals=window, problems="none")  # steps end at 0.2, 0.45, 0.7, 0.95
+    assert residual_window(record, bench.scene.clock) == (2, 5)
 
 
 def test_the_plan_knows_the_longest_step_and_what_changes_no_body() -> None:

@@ -7,8 +7,9 @@ from collections import Counter
 
 import numpy as np
 import pytest
-from laboratory import body, box, plane, resolved, sphere
+from laboratory import body, box, config, plane, resolved, sphere
 
+from lavendersim.cell import CellBody
 from lavendersim.engine.collide import SHAPE_PAIRS
 from lavendersim.engine.spec import Spec
 from lavendersim.scene.build import build
@@ -26,6 +27,12 @@ KINDS = [
     {"kind": "hull", "points": [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]},
 ]
 FRICTION = Spec(effects=("broad_phase", "compliance", "compound", "friction", "restitution"))
+
+
+def bodies_of(*described: dict) -> list[CellBody]:
+    """Return bodies as a config has them."""
+    cell = config(resolved({f"body_{k}": one for k, one in enumerate(described)}))
+    return list(cell.scene.bodies.values())
 
 
 def crowd(seed: int, count: int, compounds: bool = False) -> list[dict]:
@@ -67,7 +74,7 @@ def test_smooth_surface_stays_smooth() -> None:
 
 @pytest.mark.parametrize("seed", range(5))
 def test_classes_hold_every_pair_of_the_list(seed: int) -> None:
-    bodies = crowd(seed, 12)
+    bodies = bodies_of(*crowd(seed, 12))
     listed = Counter((p.shape_pair, Surface(*p[3:])) for p in candidate_pairs(bodies))
     rows = colliders(bodies)
     classes = class_pairs(rows)
@@ -83,8 +90,9 @@ def test_classes_hold_every_pair_of_the_list(seed: int) -> None:
 
 @pytest.mark.parametrize("seed", range(5))
 def test_templates_say_what_the_list_says(seed: int) -> None:
-    bodies = crowd(seed, 12, compounds=True)
-    cell = resolved({f"body_{k}": one for k, one in enumerate(bodies)})
+    described = crowd(seed, 12, compounds=True)
+    cell = config(resolved({f"body_{k}": one for k, one in enumerate(described)}))
+    bodies = list(cell.scene.bodies.values())
     scene = build(cell, FRICTION._replace(shape_pairs=tuple(sorted(SHAPE_PAIRS))))
     material = scene.bodies["material"]
     listed = candidate_pairs(bodies)
@@ -106,7 +114,7 @@ def test_templates_say_what_the_list_says(seed: int) -> None:
 
 def test_parts_of_one_body_are_no_pair() -> None:
     parts = [{"shape": KINDS[0]}, {"shape": KINDS[0], "position": [1, 0, 0]}]
-    thing = body({"kind": "compound", "parts": parts})
+    (thing,) = bodies_of(body({"kind": "compound", "parts": parts}))
     assert candidate_pairs([thing]) == []
     assert class_pairs(colliders([thing])) == []
     pairs = candidate_pairs([thing, thing])
@@ -115,14 +123,15 @@ def test_parts_of_one_body_are_no_pair() -> None:
 
 def test_ten_thousand_bodies_are_planned_by_their_classes() -> None:
     spheres = {f"s{k}": sphere(0.1, (0, 0, k), friction=0.5) for k in range(10_000)}
-    cell = resolved({"floor": plane(friction=0.5), **spheres, "box": box((1, 1, 1), (0, 0, -5))})
+    bodies = {"floor": plane(friction=0.5), **spheres, "box": box((1, 1, 1), (0, 0, -5))}
+    cell = config(resolved(bodies))
     facts = facts_of(cell)
     # 10,000 with each other, the floor with 10,001, the box with 10,000
     assert facts.pair_count == math.comb(10_000, 2) + 10_001 + 10_000
     assert [(p.a, p.b) for p in facts.pairs] == [
         ("floor", "s0"), ("floor", "box"), ("s0", "s1"), ("box", "s0"),
     ]  # fmt: skip
-    assert len(classes_of(colliders(list(cell["scene"]["bodies"].values())))[0]) == 3
+    assert len(classes_of(colliders(list(cell.scene.bodies.values())))[0]) == 3
     assert plan_of(cell).spec.shape_pairs == (
         "box_plane", "sphere_box", "sphere_plane", "sphere_sphere",
     )  # fmt: skip
