@@ -13,7 +13,7 @@ def draw(run: Any, directory: Path) -> list[Path]:
     Returns the files written. matplotlib is imported here and not before: it takes a quarter of a
     second.
     """
-    from lavendersim.figures.page import draw as draw_page
+    from lavendersim.figures.config_figure import draw as draw_page
 
     paths = draw_page(run, directory)
     if getattr(run.experiment, "price", None) is not None:

@@ -1,4 +1,4 @@
-"""Samples of what a contact costs in a sweep in; cost against contact count out, PNG and SVG."""
+"""The time of one contact in one sweep against the count of contacts, a curve per solver."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
-from matplotlib import style
 from matplotlib.figure import Figure
 
-from lavendersim.figures.page import save, wrapped
-from lavendersim.figures.residual_against_time import marks, sheet
-from lavendersim.figures.style import STYLE, look
+from lavendersim.figures.drawing import describe
+from lavendersim.figures.page import write
+from lavendersim.figures.solver_marks import marks, page_of_solvers
+from lavendersim.figures.style import look
 
 WIDTH, HEIGHT = 8.6, 4.2  # [inch]
 CAPTION: Final = (
@@ -28,8 +28,7 @@ def draw_contact_cost(found: Mapping[str, Any], directory: Path) -> list[Path]:
     found: `repeats`, `sweeps`, `environment` with the `processor`, and rows `growth` with `solver`,
     `contacts` and `samples` [ns].
     """
-    with style.context(STYLE, after_reset=True):
-        return save(compose(found), Path(directory) / "contact_cost")
+    return write(Path(directory) / "contact_cost", compose, found)
 
 
 def compose(found: Mapping[str, Any]) -> Figure:
@@ -40,8 +39,9 @@ def compose(found: Mapping[str, Any]) -> Figure:
         sweeps=found["sweeps"],
         processor=found["environment"]["processor"],
     )
-    figure, axes = sheet(solvers, (1, 1), WIDTH, HEIGHT, wrapped(caption, WIDTH))
-    panel = axes[0, 0]
+    figure = page_of_solvers(solvers, WIDTH, HEIGHT, caption)
+    panel = figure.subplots()
+    describe(panel, "", "contacts [-]", "time per contact and sweep [ns]", x_scale="log")
     for solver in solvers:
         rows = [row for row in found["growth"] if row["solver"] == solver]
         rows.sort(key=lambda row: row["contacts"])
@@ -52,8 +52,5 @@ def compose(found: Mapping[str, Any]) -> Figure:
         colour = look(solvers.index(solver)).colour
         panel.fill_between(contacts, low, high, color=colour, alpha=0.18, linewidth=0)
         panel.plot(contacts, middle, **marks(solvers, solver))
-    panel.set_xscale("log")
     panel.set_ylim(bottom=0.0)
-    panel.set_xlabel("contacts [-]")
-    panel.set_ylabel("time per contact and sweep [ns]")
     return figure

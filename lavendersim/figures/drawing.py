@@ -1,7 +1,8 @@
-"""Axes and a panel's spec in; labels, scales, levels, bands and legend on the axes out."""
+"""What panels have in common: labels and scales, levels, bands, ideals, ticks and legends."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -15,19 +16,30 @@ MANY_MARKERS = 50  # on one line: more would hide it, so every so manyth is draw
 TWO_DECADES = 100.0
 
 
-def dress(axes: Any, panel: Any) -> None:
-    """Set title, labels, scales, limits and the constants to compare with."""
-    axes.set_title(panel.title, loc="left")
-    axes.set_xlabel(panel.x_label)
-    axes.set_ylabel(panel.y_label)
-    axes.set_xscale(panel.x_scale)
-    axes.set_yscale(panel.y_scale)
-    labels = list(dict.fromkeys(level.label for level in panel.levels))
-    for place, level in enumerate(panel.levels):
+def describe(
+    axes: Any,
+    title: str,
+    x_label: str,
+    y_label: str,
+    x_scale: str = "linear",
+    y_scale: str = "linear",
+) -> None:
+    """Set title, labels and scales."""
+    axes.set_title(title, loc="left")
+    axes.set_xlabel(x_label)
+    axes.set_ylabel(y_label)
+    axes.set_xscale(x_scale)
+    axes.set_yscale(y_scale)
+
+
+def draw_levels(axes: Any, levels: Sequence[Any]) -> None:
+    """Draw the constants to compare with as dashed lines."""
+    labels = list(dict.fromkeys(level.label for level in levels))
+    for place, level in enumerate(levels):
         index = labels.index(level.label)
         dashes = ((0, (5, 3)), (0, (1, 2)), (0, (5, 2, 1, 2)))[index % 3]
         # Levels of one label, such as the two ends of a range, share one entry of the legend.
-        first = all(earlier.label != level.label for earlier in panel.levels[:place])
+        first = all(earlier.label != level.label for earlier in levels[:place])
         label = level.label if first else None
         axes.axhline(level.value, color=GREY, linewidth=1.1, linestyle=dashes, label=label)
 

@@ -1,9 +1,9 @@
-"""Times of solvers over the best, by problem, in; their performance profile, PNG and SVG, out.
+"""The performance profile of solvers (Dolan and More, 2002), from their times over the best.
 
     share of problems |            ___________  rho(tau): the share that a solver solves in at most
                       |     ______|   ____      tau times the time of the fastest on that problem
                       |  __|  _______|
-                      +----------------- tau    (Dolan and More, 2002)
+                      +----------------- tau
 At tau = 1 stands how often a solver is the fastest, at the right end how many it solves at all.
 """
 
@@ -14,13 +14,12 @@ from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
-from matplotlib import style
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator
 
-from lavendersim.figures.page import save, wrapped
-from lavendersim.figures.residual_against_time import marks, sheet, span
-from lavendersim.figures.style import STYLE
+from lavendersim.figures.drawing import describe
+from lavendersim.figures.page import write
+from lavendersim.figures.solver_marks import marks, page_of_solvers, span
 
 WIDTH, HEIGHT = 8.6, 4.0  # [inch]
 LEAST_RANGE: Final = 10.0  # tau shown at least
@@ -47,23 +46,21 @@ def draw_profile(
         return []
     repeats = [one.timing.repeats for each in comparisons for one in each.attempts]
     count = len(comparisons)
-    with style.context(STYLE, after_reset=True):
-        caption = wrapped(
-            CAPTION.format(
-                problems=f"{count} problem{'' if count == 1 else 's'}",
-                tolerance=tolerance,
-                repeats=span(repeats),
-                processor=processor,
-            ),
-            WIDTH,
-        )
-        return save(compose(ratios, caption), Path(directory) / "performance_profile")
+    caption = CAPTION.format(
+        problems=f"{count} problem{'' if count == 1 else 's'}",
+        tolerance=tolerance,
+        repeats=span(repeats),
+        processor=processor,
+    )
+    return write(Path(directory) / "performance_profile", compose, ratios, caption)
 
 
 def compose(ratios: dict[str, list[float]], caption: str) -> Figure:
     """Return the page as a matplotlib Figure."""
     solvers = list(ratios)
-    figure, ((axes,),) = sheet(solvers, (1, 1), WIDTH, HEIGHT, caption)
+    figure = page_of_solvers(solvers, WIDTH, HEIGHT, caption)
+    axes = figure.subplots()
+    describe(axes, "", "tau: time over that of the fastest [-]", "problems solved [%]", "log")
     finite = [ratio for each in ratios.values() for ratio in each if np.isfinite(ratio)]
     end = max([LEAST_RANGE, *(ROOM * ratio for ratio in finite)])
     for order, solver in enumerate(solvers):
@@ -72,11 +69,8 @@ def compose(ratios: dict[str, list[float]], caption: str) -> Figure:
         width = 1.3 + WIDEST * (1.0 - (order + 1) / len(solvers))
         drawn = marks(solvers, solver) | {"linewidth": width, "zorder": 2.0 + 0.01 * order}
         axes.plot(taus, shares, drawstyle="steps-post", clip_on=False, **drawn)
-    axes.set_xscale("log")
     axes.set_xlim(1.0, end)
     axes.set_ylim(0.0, 100.0)
-    axes.set_xlabel("tau: time over that of the fastest [-]")
-    axes.set_ylabel("problems solved [%]")
     axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if end < 200.0 else (1.0,)))
     axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     return figure

@@ -11,17 +11,17 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Final
 
-from matplotlib import style
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, NullLocator, SymmetricalLogLocator
 
-from lavendersim.figures.page import MARGIN, save, wrapped
-from lavendersim.figures.style import DARK, GREY, LINE_HEIGHT, STYLE, look
+from lavendersim.figures.drawing import describe
+from lavendersim.figures.page import Page, blank, write
+from lavendersim.figures.style import DARK, GREY, look
 
 ROW: Final = 0.27  # [inch]
 SCENE_WIDTH, COMPILE_WIDTH, NAMES_WIDTH = 3.6, 2.6, 2.0  # [inch]
+GAPS: Final = (0.08, 0.04167)  # [inch] around a panel
 LINEAR: Final = 1.0  # [ns] below, the axis is linear: noise goes through zero
 IDLE, MOVES, CALLED = look(0).colour, look(1).colour, look(4).colour
 MARKERS: Final = {"body": "o", "contact": "s"}
@@ -45,8 +45,7 @@ def draw_prices(runs: Sequence[Any], directory: Path) -> list[Path]:
     if not priced:
         return []
     stem = f"{priced[0][0]}_prices" if len(priced) == 1 else "prices"
-    with style.context(STYLE, after_reset=True):
-        return save(compose(priced), Path(directory) / stem)
+    return write(Path(directory) / stem, compose, priced)
 
 
 def _has_prices(run: Any) -> bool:
@@ -60,21 +59,11 @@ def compose(priced: Sequence[tuple[str, dict[str, Any]]]) -> Figure:
     width = NAMES_WIDTH + SCENE_WIDTH * len(priced) + COMPILE_WIDTH
     repeats = sorted({table["repeats"] for _, table in priced})
     processors = sorted({table["processor"] for _, table in priced})
-    caption = wrapped(
-        CAPTION.format(
-            repeats=" or ".join(map(str, repeats)), processor="Processor: " + ", ".join(processors)
-        ),
-        width,
+    caption = CAPTION.format(
+        repeats=" or ".join(map(str, repeats)), processor="Processor: " + ", ".join(processors)
     )
-    below = LINE_HEIGHT * (caption.count("\n") + 1) + 2 * MARGIN
-    panels = ROW * (len(effects) + 1) + 1.1
-    height = panels + below
-    figure = Figure(figsize=(width, height))
-    FigureCanvasAgg(figure)
-    figure.set_layout_engine(
-        "constrained", rect=(0.0, below / height, 1.0, panels / height), w_pad=0.08
-    )
-    figure.text(MARGIN / width, MARGIN / height, caption, va="bottom", linespacing=1.25)
+    height = ROW * (len(effects) + 1) + 1.1
+    figure = blank(Page(caption, width, height, gaps=GAPS))
     widths = [*(SCENE_WIDTH for _ in priced), COMPILE_WIDTH]
     axes = figure.subplots(1, len(widths), squeeze=False, sharey=True, width_ratios=widths)[0]
     axes[0].set_yticks(list(places.values()), labels=[name.replace("_", " ") for name in effects])
@@ -88,8 +77,7 @@ def compose(priced: Sequence[tuple[str, dict[str, Any]]]) -> Figure:
 def _draw_scene(axes: Any, name: str, table: dict[str, Any], places: dict[str, int]) -> None:
     bodies, contacts = table["bodies"], table["contacts_per_step"]
     title = f"{name}: {bodies} {'body' if bodies == 1 else 'bodies'}, {contacts:.3g} contacts"
-    axes.set_title(title, loc="left")
-    axes.set_xlabel("price [ns per body or contact and step]")
+    describe(axes, title, "price [ns per body or contact and step]", "")
     axes.set_xscale("symlog", linthresh=LINEAR)
     axes.axvline(0.0, color=DARK, linewidth=1.1)
     for row in table["rows"]:
@@ -143,8 +131,7 @@ def _write_why_not(axes: Any, place: int, why_not: str) -> None:
 def _draw_compile_times(
     axes: Any, priced: Sequence[tuple[str, dict[str, Any]]], places: dict[str, int]
 ) -> None:
-    axes.set_title("compile time", loc="left")
-    axes.set_xlabel("compile time [s]")
+    describe(axes, "compile time", "compile time [s]", "")
     handles = []
     for index, (name, table) in enumerate(priced):
         shown = look(index + 2)  # the first two colours mean something else on this page

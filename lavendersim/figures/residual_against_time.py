@@ -1,4 +1,4 @@
-"""Comparisons of solvers in; pages of panels, one per problem, as PNG and SVG, out.
+"""Residual or velocity error of solvers against the time they took, a panel per contact problem.
 
 scaled residual |  o--o                  one curve per solver, each point a run of its own
                 |  s-s  o--o             with a budget of 1, 2, 4, ... sweeps
@@ -13,14 +13,12 @@ from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
-from matplotlib import style
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator, NullLocator
 
-from lavendersim.figures.page import MARGIN, save, wrapped
-from lavendersim.figures.style import GREY, LINE_HEIGHT, LOOKS, STYLE, look
+from lavendersim.figures.page import write
+from lavendersim.figures.solver_marks import marks, page_of_solvers, span
+from lavendersim.figures.style import GREY
 
 PANEL: Final = (4.3, 3.1)  # [inch]
 COLUMNS, PANELS_ON_PAGE = 3, 12
@@ -29,7 +27,6 @@ DECADE: Final = 10.0
 FEW_TICKS: Final = 40.0  # the last time over the first, up to which there is room for 1, 2, 5
 LOWEST, HIGHEST = 1e-16, 1e2  # [-] shown; beyond is round-off below and divergence above
 NARROWEST: Final = 8.6  # [inch] for the caption and the legend beside a single panel
-ENTRY: Final = 3.0  # [inch] of the legend, names of solvers are long
 CAPTION: Final = (
     "What each solver achieved against the time it took: every point is a run of its own from "
     "nothing with 1, 2, 4, ... sweeps, judged afterwards by the scaled residual of its impulses. "
@@ -65,9 +62,7 @@ def draw_curves(
     for number, page in enumerate(pages, start=1):
         stem = "residual_against_time" if quantity == "scaled" else "error_against_time"
         stem += f"_{number}" if len(pages) > 1 else ""
-        with style.context(STYLE, after_reset=True):
-            figure = compose(page, tolerance, processor, quantity)
-            paths += save(figure, Path(directory) / stem)
+        paths += write(Path(directory) / stem, compose, page, tolerance, processor, quantity)
     return paths
 
 
@@ -78,93 +73,30 @@ def compose(
     solvers = names(comparisons)
     columns = min(COLUMNS, len(comparisons))
     rows = -(-len(comparisons) // columns)
-    width = max(NARROWEST, PANEL[0] * columns)
     points = [p for each in comparisons for one in each.attempts for p in one.points]
-    caption = wrapped(
-        (CAPTION if quantity == "scaled" else ERRORS).format(
-            tolerance=tolerance,
-            hollow=HOLLOW if any(not _is_shown(point.scaled) for point in points) else "",
-            repeats=span([repeats for each in comparisons for repeats in _repeats(each)]),
-            processor=processor,
-        ),
-        width,
+    caption = (CAPTION if quantity == "scaled" else ERRORS).format(
+        tolerance=tolerance,
+        hollow=HOLLOW if any(not _is_shown(point.scaled) for point in points) else "",
+        repeats=span([point.repeats for point in points]),
+        processor=processor,
     )
-    figure, axes = sheet(solvers, (rows, columns), width, rows * PANEL[1], caption)
-    for place, panel in enumerate(axes.ravel()):
+    width = max(NARROWEST, PANEL[0] * columns)
+    figure = page_of_solvers(solvers, width, rows * PANEL[1], caption)
+    for place, panel in enumerate(figure.subplots(rows, columns, squeeze=False).ravel()):
         if place >= len(comparisons):
             panel.set_axis_off()
             continue
         _draw_panel(panel, comparisons[place], solvers, tolerance, quantity)
         if place % columns == 0:
-            panel.set_ylabel(
-                "scaled residual [-]" if quantity == "scaled" else "velocity error [-]"
-            )
+            panel.set_ylabel(LABELS[quantity])
         if place + columns >= len(comparisons):
             panel.set_xlabel("time [ms]")
     return figure
 
 
-def sheet(
-    solvers: Sequence[str], grid: tuple[int, int], width: float, panels: float, caption: str
-) -> tuple[Figure, Any]:
-    """Return a figure with the legend of the solvers above its panels and the caption below.
-
-    Above, since curves of many solvers leave no corner of a panel free.
-    """
-    entries = max(1, int(width / ENTRY))
-    lines = -(-len(solvers) // entries)
-    above = LINE_HEIGHT * lines + 2 * MARGIN
-    below = LINE_HEIGHT * (caption.count("\n") + 1) + 2 * MARGIN
-    height = panels + above + below
-    figure = Figure(figsize=(width, height))
-    FigureCanvasAgg(figure)
-    figure.set_layout_engine(
-        "constrained", rect=(0.0, below / height, 1.0, panels / height), w_pad=0.08, h_pad=0.08
-    )
-    figure.text(MARGIN / width, MARGIN / height, caption, va="bottom", linespacing=1.25)
-    figure.legend(
-        handles=[Line2D([], [], label=plain(name), **marks(solvers, name)) for name in solvers],
-        loc="upper left",
-        bbox_to_anchor=(0.0, 1.0),
-        ncols=entries,
-        handlelength=2.4,
-        borderaxespad=0.3,
-    )
-    return figure, figure.subplots(*grid, squeeze=False)
-
-
 def names(comparisons: Sequence[Any]) -> list[str]:
     """Return the solvers in the order they were asked for."""
     return list(dict.fromkeys(one.solver for each in comparisons for one in each.attempts))
-
-
-def plain(name: str) -> str:
-    """Return a solver's name in words."""
-    return name.replace("_", " ")
-
-
-def marks(solvers: Sequence[str], name: str) -> dict[str, Any]:
-    """Return how a solver is drawn on every page; dashed once colours and markers are used up."""
-    index = list(solvers).index(name)
-    shown = look(index)
-    return {
-        "color": shown.colour,
-        "marker": shown.marker,
-        "linestyle": "-" if index < len(LOOKS) else (0, (4, 2)),
-        "linewidth": 1.3,
-        "markersize": 5.0,
-        "markeredgecolor": shown.colour,
-    }
-
-
-def span(values: Sequence[int]) -> str:
-    """Return how many repeats there were, or from how many to how many."""
-    low, high = min(values, default=1), max(values, default=1)
-    return f"{low} repeat{'' if low == 1 else 's'}" if low == high else f"{low} to {high} repeats"
-
-
-def _repeats(comparison: Any) -> list[int]:
-    return [point.repeats for one in comparison.attempts for point in one.points]
 
 
 def _is_shown(scaled: float) -> bool:

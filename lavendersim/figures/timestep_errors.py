@@ -1,4 +1,4 @@
-"""What accuracy costs in; on the axes, error against timestep, solved as well as it was, out."""
+"""The panel of a cost table that shows error against timestep, each solved as well as it was."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any, Final
 import numpy as np
 from matplotlib.ticker import NullFormatter, NullLocator
 
-from lavendersim.figures.drawing import ticks_at_values
+from lavendersim.figures.drawing import describe, ticks_at_values
 from lavendersim.figures.style import GREY
 
 MS: Final = 1e3
@@ -19,10 +19,7 @@ FLOOR: Final = 1e-15  # [-] smaller errors are round-off
 
 def draw_timestep_errors(axes: Any, table: dict[str, Any], looks: Any) -> None:
     """Draw, for every solver and preset, the settings that were solved best, and slopes 1 and 2."""
-    axes.set_title("error against timestep, solved best", loc="left")
-    axes.set_xscale("log")
-    axes.set_yscale("log")
-    axes.set_xlabel("timestep [ms]")
+    describe(axes, "error against timestep, solved best", "timestep [ms]", "", "log", "log")
     rows = [row for row in table["rows"] if row["error"] is not None and row["role"] != "chapter"]
     if not rows:
         axes.text(0.5, 0.5, "no setting has an error", transform=axes.transAxes, ha="center")

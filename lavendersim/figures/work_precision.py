@@ -1,4 +1,4 @@
-"""What accuracy costs in; a page with error against cost and error against timestep out.
+"""The work-precision page of a cost table: error against cost, and error against timestep.
 
     error |  x x x  failed, no error      error |        /
           |  o--o                               |      o/   slope 1
@@ -14,19 +14,19 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Final
 
-from matplotlib import style
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from lavendersim.figures.cost_looks import RINGS, Looks, curves_of, handles_of
-from lavendersim.figures.page import MARGIN, save, wrapped
-from lavendersim.figures.style import DARK, GREY, LINE_HEIGHT, STYLE
+from lavendersim.figures.drawing import describe
+from lavendersim.figures.page import Page, blank, write
+from lavendersim.figures.style import DARK, GREY
 from lavendersim.figures.timestep_errors import draw_timestep_errors
 
 WIDTH, LEGEND_WIDTH, HEIGHT = 5.6, 2.9, 5.0  # [inch] of a panel, of the legend
 SECOND_WIDTH: Final = 4.2  # [inch]
+GAPS: Final = (0.1, 0.04167)  # [inch] around a panel
 FLOOR: Final = 1e-15  # [-] smaller errors are round-off
 BAND: Final = 0.94  # share of the axis from which on settings without an error stand
 CAPTION: Final = (
@@ -50,26 +50,13 @@ def draw_work_precision(run: Any, directory: Path) -> list[Path]:
     table = run.cost()
     if table is None:
         return []
-    with style.context(STYLE, after_reset=True):
-        return save(compose(table), Path(directory) / f"{run.name}_cost")
+    return write(Path(directory) / f"{run.name}_cost", compose, table)
 
 
 def compose(table: dict[str, Any]) -> Figure:
     """Return the page as a matplotlib Figure."""
-    width = WIDTH + SECOND_WIDTH + LEGEND_WIDTH
-    caption, question = wrapped(_caption(table), width), wrapped(table["question"], width, "bold")
-    below = LINE_HEIGHT * (caption.count("\n") + 1) + 2 * MARGIN
-    above = LINE_HEIGHT * (question.count("\n") + 1) + 2 * MARGIN if question else MARGIN
-    height = HEIGHT + below + above
-    figure = Figure(figsize=(width, height))
-    FigureCanvasAgg(figure)
-    figure.set_layout_engine(
-        "constrained", rect=(0.0, below / height, 1.0, HEIGHT / height), w_pad=0.1
-    )
-    left = MARGIN / width
-    figure.text(left, 1.0 - MARGIN / height, question, va="top", weight="bold")
-    figure.text(left, MARGIN / height, caption, va="bottom", linespacing=1.25)
     widths = [WIDTH, SECOND_WIDTH, LEGEND_WIDTH]
+    figure = blank(Page(_caption(table), sum(widths), HEIGHT, table["question"], gaps=GAPS))
     work, orders, legend = figure.subplots(1, 3, width_ratios=widths)
     looks = Looks.of(table["rows"])
     draw_settings(work, table, looks)
@@ -102,12 +89,9 @@ def _caption(table: dict[str, Any]) -> str:
 
 def draw_settings(axes: Any, table: dict[str, Any], looks: Looks) -> None:
     """Draw every setting, the curves between neighbours, the front and the targets."""
-    axes.set_title("error against cost", loc="left")
-    axes.set_xscale("log")
-    axes.set_yscale("log")
-    axes.set_xlabel(f"cost [{unit_of(table)[0]} per simulated second]")
-    axes.set_ylabel(f"relative error of {table['error']['measure']} [-]")
-    size = unit_of(table)[1]
+    unit, size = unit_of(table)
+    cost, error = f"cost [{unit} per simulated second]", table["error"]["measure"]
+    describe(axes, "error against cost", cost, f"relative error of {error} [-]", "log", "log")
     timed = [row for row in table["rows"] if row["ns_per_second"] is not None]
     for curve in curves_of(timed):
         shown = [row for row in curve if row["error"] is not None]

@@ -18,7 +18,7 @@ from lavendersim.errors import TraceError
 from lavendersim.experiment.models.figure import FigureSpec
 from lavendersim.experiment.models.measures import ImpactImpulse, ResidualBySweep
 from lavendersim.figures import draw
-from lavendersim.figures.page import compose
+from lavendersim.figures.config_figure import compose
 from lavendersim.figures.style import DARK, STYLE
 
 MEASURES = {
@@ -225,7 +225,10 @@ def test_the_text_stays_inside_the_page() -> None:
 @pytest.mark.parametrize(
     ("module", "absent"),
     [
-        ("lavendersim.figures.page", ("numba", "rerun", "matplotlib.pyplot", "lavendersim.engine")),
+        (
+            "lavendersim.figures.config_figure",
+            ("numba", "rerun", "matplotlib.pyplot", "lavendersim.engine"),
+        ),
         ("lavendersim.measures", ("numba", "rerun", "matplotlib", "lavendersim.engine")),
         ("lavendersim.figures", ("numba", "rerun", "matplotlib")),
     ],

@@ -13,7 +13,7 @@ from synthetic import SyntheticCell, ball_and_floor, trace_of
 
 from lavendersim.experiment.models.figure import FigureSpec
 from lavendersim.experiment.models.measures import ImpactImpulse
-from lavendersim.figures.page import compose
+from lavendersim.figures.config_figure import compose
 from lavendersim.figures.style import STYLE
 
 BOUND = 1.0

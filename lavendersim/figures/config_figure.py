@@ -1,0 +1,115 @@
+"""The figure that a config describes: its panels side by side, drawn from the logs of a run."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any, Final
+
+from matplotlib.figure import Figure
+
+from lavendersim.errors import TraceError
+from lavendersim.experiment.models.figure import FigureSpec
+from lavendersim.figures import (
+    against_axis,
+    by_name,
+    row_against_index,
+    spinning_top,
+    stability_map,
+    time_series,
+)
+from lavendersim.figures.drawing import describe, draw_levels, legend, limit
+from lavendersim.figures.page import Page, blank, legend_below, write
+from lavendersim.figures.series import series_of
+from lavendersim.figures.style import PANEL_HEIGHT, PANEL_WIDTH
+from lavendersim.measures.selection import select
+from lavendersim.measures.values import Values
+from lavendersim.measures.views import Cell
+
+PANELS: Final[dict[str, Callable[..., None]]] = {
+    "measure_against_axis": against_axis.draw_panel,
+    "row_against_index": row_against_index.draw_panel,
+    "time_series": time_series.draw_panel,
+    "free_rotation": spinning_top.draw_panel,
+    "measure_by_name": by_name.draw_panel,
+    "stability_map": stability_map.draw_panel,
+}
+SIDE_BY_SIDE: Final = 3  # panels in one row
+FEW_ENTRIES: Final = 4  # of a legend that finds space among the lines
+NARROWEST: Final = 6.8  # [inch] a single panel is wider, for its caption
+
+
+def draw(run: Any, directory: Path) -> list[Path]:
+    """Write `<experiment>.png` and `.svg` into the directory; returns them, none without a figure.
+
+    `run` has `.experiment`, `.cells` and, where it differs from the file's, a `.name`. Cells
+    without a readable log are left out and counted in the caption.
+    """
+    experiment = run.experiment
+    if experiment.figure is None:
+        return []
+    name = getattr(run, "name", experiment.name)  # a run kept its file as config.yaml
+    return write(Path(directory) / name, compose, experiment, list(run.cells))
+
+
+def compose(experiment: Any, cells: Sequence[Cell]) -> Figure:
+    """Return the page as a matplotlib Figure."""
+    spec: FigureSpec = experiment.figure
+    readable = [cell for cell in cells if _is_readable(cell)]
+    missing = len(cells) - len(readable)
+    note = f" Left out: {missing} of {len(cells)} cells have no readable log." if missing else ""
+    rows, columns = _grid(len(spec.panels))
+    page = Page(
+        caption=spec.caption + note,
+        width=max(NARROWEST, PANEL_WIDTH * columns),
+        height=PANEL_HEIGHT * rows,
+        question=experiment.question,
+        legend_below=_shared_entries(spec, readable),
+    )
+    figure = blank(page)
+    _draw_panels(figure, experiment, readable, shared=page.legend_below > 0)
+    if page.legend_below:
+        legend_below(figure, page)
+    return figure
+
+
+def _shared_entries(spec: FigureSpec, cells: Sequence[Cell]) -> int:
+    """Return how many entries a legend below all panels has; 0 where each panel has its own.
+
+    Panels of the same many series would hide their lines behind their legends.
+    """
+    split = {panel.series for panel in spec.panels}
+    if len(split) != 1 or None in split:
+        return 0
+    entries = len(series_of(cells, spec.panels[0].series))
+    return entries if entries > FEW_ENTRIES else 0
+
+
+def _grid(panels: int) -> tuple[int, int]:
+    """Return rows and columns: up to three panels side by side, more in two rows."""
+    rows = 1 if panels <= SIDE_BY_SIDE else 2
+    return rows, -(-panels // rows)
+
+
+def _draw_panels(figure: Figure, experiment: Any, cells: Sequence[Cell], shared: bool) -> None:
+    values = Values(experiment.measures)
+    panels = experiment.figure.panels
+    places = figure.subplots(*_grid(len(panels)), squeeze=False).ravel()
+    for axes in places[len(panels) :]:
+        axes.set_axis_off()
+    for axes, panel in zip(places, panels, strict=False):
+        describe(axes, panel.title, panel.x_label, panel.y_label, panel.x_scale, panel.y_scale)
+        draw_levels(axes, panel.levels)
+        measure = experiment.measures.get(getattr(panel, "measure", ""))
+        shown = select(cells, panel.at, measure.at if measure is not None else {})
+        PANELS[panel.kind](axes, panel, shown, values, experiment)
+        limit(axes, panel)
+        if not shared:
+            legend(axes)
+
+
+def _is_readable(cell: Cell) -> bool:
+    try:
+        return len(cell.trace().step) > 0
+    except (TraceError, OSError):
+        return False
