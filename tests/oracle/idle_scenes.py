@@ -6,11 +6,11 @@ Shapes are spheres where they will do: their kernels compile in a third of the t
 from __future__ import annotations
 
 from collections.abc import Callable
-from fractions import Fraction
 from typing import Any
 
 from laboratory import body, box, plane, resolved, sphere
 
+from lavendersim.cell import Numerics
 from lavendersim.experiment.resolve.presets import CHAPTER, DEFAULT
 
 GRAVITY = (0.0, 0.0, -9.81)  # [m/s^2]
@@ -22,8 +22,8 @@ CONJUGATE = {"solver": "nonsmooth_conjugate_gradient", "sweeps": 60}
 HULL = ((0.2, 0, -0.12), (-0.1, 0.17, -0.12), (-0.1, -0.17, -0.12), (0.02, 0.03, 0.25))
 
 
-def _numerics(preset: dict[str, Any]) -> dict[str, Any]:
-    return {k: str(v) if isinstance(v, Fraction) else v for k, v in preset.items()}
+def _numerics(preset: Numerics) -> dict[str, Any]:
+    return preset.model_dump(mode="json")
 
 
 # bare: captured impacts and projected Gauss-Seidel, without any repair of penetration.

@@ -5,7 +5,6 @@ One compiled engine serves them all: shapes, masses, surfaces and motions are va
 
 from __future__ import annotations
 
-from fractions import Fraction
 from typing import Any
 
 import numpy as np
@@ -43,10 +42,10 @@ ZOO = Spec(
         "warm_start",
     ),
     shape_pairs=tuple(sorted(SHAPE_PAIRS)),
-    solver=str(DEFAULT["solver"]),
+    solver=DEFAULT.solver,
     tolerance=True,
 )
-NUMERICS = {k: str(v) if isinstance(v, Fraction) else v for k, v in DEFAULT.items()}
+NUMERICS = DEFAULT.model_dump(mode="json")
 GRAVITY = (0.0, 0.0, -9.81)  # [m/s^2]
 NOWHERE = (0.0, 0.0, 0.0)
 DT = 1.0 / 240.0  # [s]

@@ -5,7 +5,6 @@ Works on the tree, and says nothing about values of a wrong type: those are refu
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from fractions import Fraction
 
 from lavendersim.clock import Clock
@@ -14,7 +13,6 @@ from lavendersim.experiment.checks.events import check_events
 from lavendersim.experiment.checks.messages import place_of
 from lavendersim.experiment.checks.population import body_node
 from lavendersim.experiment.checks.scene import is_kinematic, is_static, kind_of
-from lavendersim.experiment.resolve.presets import PRESETS, PresetValue
 from lavendersim.experiment.text.node import Node, key_mark
 from lavendersim.experiment.text.report import Report
 from lavendersim.quantities.scalars import exact
@@ -44,21 +42,10 @@ def check_run(root: Node, report: Report) -> None:
 
 
 def timestep_of(root: Node) -> Fraction | None:
-    """Return the timestep [s] that holds for this tree, None where it is no positive number."""
-    stated = root.get("numerics", "timestep")
-    if stated is not None and stated.content is not None:
-        number = stated.number
-        return exact(number) if number is not None and number > 0 else None
-    timestep = preset_of(root)["timestep"]
-    return timestep if isinstance(timestep, Fraction) else None
-
-
-def preset_of(root: Node) -> Mapping[str, PresetValue]:
-    """Return the preset that holds for this tree where its numerics state nothing else."""
-    numerics = root.get("numerics")
-    preset = numerics if numerics is None or numerics.text else numerics.get("preset")
-    name = preset.text if preset is not None and preset.text else "default"
-    return PRESETS.get(name, PRESETS["default"])
+    """Return the timestep [s] of this tree, None where it is no positive number."""
+    timestep = root.get("numerics", "timestep")
+    number = timestep.number if timestep is not None else None
+    return exact(number) if number is not None and number > 0 else None
 
 
 def clock_of(root: Node) -> Clock | None:

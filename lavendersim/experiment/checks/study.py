@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Final
 
 from lavendersim.cell.choices import CAPTURE_IN_SWEEPS
-from lavendersim.experiment.checks.run import preset_of
 from lavendersim.experiment.text.node import Node
 from lavendersim.experiment.text.report import Report
 
@@ -25,7 +24,7 @@ def check_study(root: Node, report: Report) -> None:
         return
     for key, expected, why in _PLACES[mistake.text]:
         stated = root.get("numerics", key)
-        found = preset_of(root)[key] if stated is None or stated.content is None else stated.text
+        found = stated.text if stated is not None else None
         if found in (None, expected):  # no text is refused elsewhere
             continue
         marks = [node.mark for node in (mistake, stated) if node is not None]

@@ -7,7 +7,8 @@ from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field, Tag
 
-from lavendersim.cell.choices import FrictionCone, Impacts, Integrator, Order, Solver, Switch
+from lavendersim.cell.choices import Preset, Switch
+from lavendersim.cell.numerics import Numerics
 from lavendersim.experiment.models.always import Always
 from lavendersim.experiment.models.cost import CostSpec
 from lavendersim.experiment.models.expect import ExpectSpec
@@ -60,79 +61,10 @@ class Event(ConfigModel):
     )
 
 
-Count = Annotated[int, Quantity(whole=True, minimum=1, maximum=1_000_000)]
-CountOrNone = Annotated[int, Quantity(whole=True, minimum=0, maximum=1_000_000)]
+class NumericsSource(Numerics):
+    """A preset and the values that differ from it; what is not specified comes from the preset."""
 
-
-class NumericsChange(ConfigModel):
-    """A preset and the values that differ from it; what is not stated comes from the preset."""
-
-    preset: Literal["chapter", "default"] = Field(
-        default="default", description="where the rest is from"
-    )
-    timestep: Annotated[Fraction, Quantity("s", above=0, exact=True)] | None = Field(
-        default=None, description="[s] a ratio such as 1/480 is kept exactly"
-    )
-    solver: Solver | None = Field(default=None, description="the solver of the contact problem")
-    sweeps: Count | None = Field(default=None, description="most velocity sweeps per step")
-    over_relaxation: Annotated[float, Quantity(above=0, below=2)] | None = Field(
-        default=None, description="factor on the changes that velocity sweeps make; 1: none"
-    )
-    order: Order | None = Field(default=None, description="in which sweeps visit contacts")
-    tolerance: Annotated[float, Quantity("m/s", above=0)] | None = Field(
-        default=None, description="[m/s] residual at which sweeping stops early; null: never"
-    )
-    warm_start: bool | None = Field(
-        default=None, description="start a solve from the cached impulses"
-    )
-    stabilisation_gain: Annotated[float, Quantity(minimum=0)] | None = Field(
-        default=None,
-        description="beta: share of (penetration - slop) per step that becomes bias velocity",
-    )
-    slop: Annotated[float, Quantity("m", minimum=0)] | None = Field(
-        default=None, description="[m] penetration that is left alone"
-    )
-    projection: Annotated[float, Quantity(minimum=0, maximum=1)] | None = Field(
-        default=None, description="share of (penetration - slop) moved out per step; 0: off"
-    )
-    projection_sweeps: CountOrNone | None = Field(
-        default=None, description="sweeps of the positional projection per step"
-    )
-    restitution_threshold: Annotated[float, Quantity("g dt", minimum=0)] | None = Field(
-        default=None, description="[g dt] approach speed above which restitution acts"
-    )
-    cache_distance: Annotated[float, Quantity("m", minimum=0)] | None = Field(
-        default=None, description="[m] largest distance between a contact and its cached match"
-    )
-    cache_normal_cosine: Annotated[float, Quantity(minimum=-1, maximum=1)] | None = Field(
-        default=None,
-        description="smallest cosine between a contact's normal and its cached match's",
-    )
-    speculative: bool | None = Field(
-        default=None, description="contacts are made ahead of touching; a gap may close, no more"
-    )
-    impacts: Impacts | None = Field(
-        default=None,
-        description="when restitution acts: captured (at the start of the step that finds the "
-        "contact) or at_surface (at the time within the step when the surfaces meet)",
-    )
-    integrator: Integrator | None = Field(
-        default=None, description="how poses follow from velocities between contacts"
-    )
-    friction_cone: FrictionCone | None = Field(
-        default=None,
-        description="disc: Coulomb's law; for study pyramid: each tangent on its own; convex: the "
-        "relaxation that lifts what slides",
-    )
-    sleeping: bool | None = Field(
-        default=None, description="bodies that have come to rest are left out until touched"
-    )
-    sleep_speed: Annotated[float, Quantity("m/s", minimum=0)] | None = Field(
-        default=None, description="[m/s] speed of every point below which a body counts as at rest"
-    )
-    sleep_time: Annotated[float, Quantity("s", minimum=0)] | None = Field(
-        default=None, description="[s] how long a body is at rest before it sleeps"
-    )
+    preset: Preset = Field(default="default", description="where the rest is from")
 
 
 def _numerics_form(value: Any) -> str | None:
@@ -141,8 +73,7 @@ def _numerics_form(value: Any) -> str | None:
 
 
 NumericsOf = Annotated[
-    Annotated[Literal["chapter", "default"], Tag("preset")]
-    | Annotated[NumericsChange, Tag("values")],
+    Annotated[Preset, Tag("preset")] | Annotated[NumericsSource, Tag("values")],
     either("the name of a preset (chapter, default) or a mapping of values", _numerics_form),
 ]
 

@@ -8,9 +8,8 @@ from lavendersim.cell.config import CellConfig, CellEffects, CellStudy
 from lavendersim.cell.events import CellEvent, CellTimestep
 from lavendersim.cell.numerics import Numerics
 from lavendersim.cell.record import CellRecord, ResidualWindow
-from lavendersim.experiment.models.experiment import CellSource, Event, NumericsChange
+from lavendersim.experiment.models.experiment import CellSource, Event, NumericsSource
 from lavendersim.experiment.models.record import Record, Window
-from lavendersim.experiment.resolve.presets import PRESETS, PresetValue
 from lavendersim.experiment.resolve.scene import resolve_scene
 
 
@@ -33,18 +32,12 @@ def resolve_cell(source: CellSource) -> CellConfig:
     )
 
 
-def resolve_numerics(stated: str | NumericsChange) -> Numerics:
-    """Return the preset with the stated values in place of its own."""
-    if isinstance(stated, str):
-        return _numerics(PRESETS[stated])
-    given = {name: getattr(stated, name) for name in stated.model_fields_set - {"preset"}}
-    # null is a value for `tolerance` (never stop early) and says nothing anywhere else
-    changes = {name: v for name, v in given.items() if v is not None or name == "tolerance"}
-    return _numerics(PRESETS[stated.preset] | changes)
-
-
-def _numerics(values: dict[str, PresetValue]) -> Numerics:
-    return Numerics.model_validate(values)
+def resolve_numerics(source: str | NumericsSource) -> Numerics:
+    """Return every number of the numerics; the preset is merged in already (`with_preset`)."""
+    assert isinstance(source, NumericsSource)
+    return Numerics.model_construct(
+        **{name: getattr(source, name) for name in Numerics.model_fields}
+    )
 
 
 def _event(event: Event) -> CellEvent | CellTimestep:

@@ -1,55 +1,80 @@
 """The named sets of numerics; a config takes one by name and may change single values.
 
-`chapter` is frozen: the checks of configs/chapter and configs/paw_check are held against it.
-`default`, what a config gets that states none, is lavender's own and may become better.
+`chapter` is frozen: the checks of configs/chapter and configs/paw_check are compared with it.
+`default`, what a config gets that names none, is lavender's own and may become better.
 """
 
 from __future__ import annotations
 
 from fractions import Fraction
 from types import MappingProxyType
-from typing import Final
+from typing import Any, Final
 
-PresetValue = Fraction | float | int | bool | str | None
+from lavendersim.cell.numerics import Numerics
+from lavendersim.experiment.text.node import UNWRITTEN, Node, graft
+from lavendersim.quantities.scalars import Ratio
 
+DEFAULT: Final = Numerics()
 # Source: the contact chapter (240 Hz, 22 sweeps, warm start, captured restitution above 2 g dt,
 # projection by a fifth). The chapter prints neither gain nor slop; with 0.02 and 1 mm a drop with
 # e = 0.8 at 480 Hz rebounds to 0.650..0.676 m here over release phases; it prints 0.659 m.
-CHAPTER: Final[dict[str, PresetValue]] = {
-    "timestep": Fraction(1, 240),  # [s]
-    "solver": "projected_gauss_seidel",
-    "sweeps": 22,
-    "over_relaxation": 1.0,
-    "order": "coloured",
-    "tolerance": None,  # [m/s]
-    "warm_start": True,
-    "stabilisation_gain": 0.02,
-    "slop": 0.001,  # [m]
-    "projection": 0.2,
-    "projection_sweeps": 22,
-    "restitution_threshold": 2.0,  # in units of g dt
-    "cache_distance": 0.02,  # [m]
-    "cache_normal_cosine": 0.95,
-    "speculative": False,
-    "impacts": "captured",
-    "integrator": "semi_implicit_euler",
-    "friction_cone": "disc",
-    "sleeping": False,
-    "sleep_speed": 0.005,  # [m/s]
-    "sleep_time": 0.5,  # [s]
-}
+CHAPTER: Final = Numerics(
+    timestep=Fraction(1, 240),
+    solver="projected_gauss_seidel",
+    sweeps=22,
+    over_relaxation=1.0,
+    order="coloured",
+    tolerance=None,
+    warm_start=True,
+    stabilisation_gain=0.02,
+    slop=0.001,
+    projection=0.2,
+    projection_sweeps=22,
+    restitution_threshold=2.0,
+    cache_distance=0.02,
+    cache_normal_cosine=0.95,
+    speculative=False,
+    impacts="captured",
+    integrator="semi_implicit_euler",
+    friction_cone="disc",
+    sleeping=False,
+    sleep_speed=0.005,
+    sleep_time=0.5,
+)
+PRESETS: Final[MappingProxyType[str, Numerics]] = MappingProxyType(
+    {"chapter": CHAPTER, "default": DEFAULT}
+)
 
-# No gain: projection alone repairs penetration, so resting repair never becomes bounce.
-DEFAULT: Final[dict[str, PresetValue]] = CHAPTER | {
-    "solver": "adaptive",
-    "sweeps": 50,
-    "tolerance": 1e-9,
-    "stabilisation_gain": 0.0,
-    "slop": 1e-7,
-    "projection_sweeps": 20,
-    "speculative": True,
-    "impacts": "at_surface",
-    "integrator": "midpoint",
-}
 
-PRESETS: Final = MappingProxyType({"chapter": CHAPTER, "default": DEFAULT})
+def specified_numerics(root: Node) -> tuple[str, dict[str, Node]]:
+    """Return the preset that a config names, and the values beside it, as written."""
+    numerics = root.get("numerics")
+    if numerics is None or numerics.text is not None:
+        return (numerics and numerics.text) or "default", {}
+    values = dict(numerics.entries)
+    preset = values.pop("preset", None)
+    return (preset and preset.text) or "default", values
+
+
+def with_preset(root: Node) -> Node:
+    """Return the tree with the preset's numbers in its numerics, below those that are written.
+
+    null is a value for `tolerance` (never stop early) and says nothing anywhere else.
+    """
+    numerics = root.get("numerics")
+    name, values = specified_numerics(root)
+    named = PRESETS.get(name)
+    wrong = numerics is not None and numerics.text is None and not numerics.entries
+    if named is None or wrong:
+        return root  # refused by the model
+    entries = {key: Node(_scalar(value), UNWRITTEN) for key, value in named}
+    given = {k: v for k, v in values.items() if v.content is not None or k == "tolerance"}
+    mark, keys, torn = root.mark, {}, False
+    if numerics is not None:
+        mark, keys, torn = numerics.mark, dict(numerics.keys), numerics.torn
+    whole = Node(entries | {"preset": Node(name, UNWRITTEN)} | given, mark, keys, torn)
+    return graft(root, ("numerics",), whole)
+
+
+def _scalar(value: Any) -> Any:
+    return Ratio(value) if isinstance(value, Fraction) else value

@@ -13,6 +13,7 @@ from fractions import Fraction
 from typing import Any
 
 from lavendersim.experiment.checks.references import products
+from lavendersim.experiment.resolve.presets import with_preset
 from lavendersim.experiment.sweeps.paths import find_path
 from lavendersim.experiment.text.node import Node, Path, graft, key_mark
 from lavendersim.experiment.text.report import Report
@@ -51,7 +52,7 @@ class Point:
         """Return the config of this cell."""
         for axis, node in self.choices:
             root = graft(_opened(root, axis.path), axis.path, node)
-        return root
+        return with_preset(root)
 
 
 def label_of(coordinates: Mapping[str, Any]) -> str:

@@ -23,7 +23,7 @@ from lavendersim.cell.choices import Solver
 from lavendersim.experiment.experiment import Experiment
 from lavendersim.experiment.load import load_experiment_text
 from lavendersim.experiment.models.cost import CostSpec
-from lavendersim.experiment.resolve.presets import PRESETS
+from lavendersim.experiment.resolve.presets import DEFAULT, PRESETS, specified_numerics
 from lavendersim.experiment.text.parse import parse
 from lavendersim.quantities.scalars import Ratio, written
 
@@ -77,8 +77,8 @@ def settings_of(experiment: Experiment) -> list[Setting]:
     preset, others = _stated(experiment)
     numerics = experiment.cells()[0].config.numerics
     stated = Setting("stated", preset, **{name: getattr(numerics, name) for name in KNOBS})
-    values: Any = PRESETS[CHAPTER]
-    chapter = Setting("chapter", CHAPTER, **{name: values[name] for name in KNOBS})
+    values = PRESETS[CHAPTER]
+    chapter = Setting("chapter", CHAPTER, **{name: getattr(values, name) for name in KNOBS})
     alone = {stated[1:]} | ({chapter[1:]} if not others else set())
     grid = [each for each in dict.fromkeys(_grid(spec, stated)) if each[1:] not in alone]
     settings = [stated, *grid]
@@ -94,7 +94,7 @@ def settings_of(experiment: Experiment) -> list[Setting]:
 def _grid(spec: CostSpec, stated: Setting) -> Iterator[Setting]:
     presets = spec.presets or (stated.preset,)
     solvers = get_args(Solver) if spec.solvers == "all" else spec.solvers
-    most: Any = PRESETS["default"]["sweeps"] if stated.tolerance is None else stated.sweeps
+    most = DEFAULT.sweeps if stated.tolerance is None else stated.sweeps
     outer = product(presets, solvers, spec.warm_start, spec.timesteps)
     for preset, solver, warm, timestep in outer:
         if solver in BY_TOLERANCE:
@@ -109,10 +109,8 @@ def _stated(experiment: Experiment) -> tuple[str, dict[str, Any]]:
     """Return the preset that a config names, and what else its numerics state, beside the knobs."""
     root, _ = parse(experiment.text.encode(), experiment.name)
     assert root is not None
-    stated = root.data.get("numerics", "default")
-    values = dict(stated) if isinstance(stated, dict) else {"preset": stated}
-    preset = values.pop("preset", "default")
-    return preset, {key: value for key, value in values.items() if key not in KNOBS}
+    preset, values = specified_numerics(root)
+    return preset, {key: node.data for key, node in values.items() if key not in KNOBS}
 
 
 def over_the_grid(experiment: Experiment, settings: list[Setting]) -> Experiment:
@@ -142,7 +140,7 @@ def fragment_of(experiment: Experiment, setting: Setting) -> str:
     """Return the `numerics` section that gives this setting in this experiment, as YAML."""
     if setting.role == "chapter":
         return f"numerics: {CHAPTER}\n"
-    defaults = PRESETS[setting.preset]
+    defaults = dict(PRESETS[setting.preset])
     chosen: dict[str, Any] = {} if setting.preset == "default" else {"preset": setting.preset}
     chosen |= _stated(experiment)[1]
     chosen |= {key: value for key, value in setting.knobs.items() if value != defaults[key]}

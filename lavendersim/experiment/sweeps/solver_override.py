@@ -10,7 +10,9 @@ from __future__ import annotations
 from typing import Final
 
 from lavendersim.experiment.experiment import Experiment
+from lavendersim.experiment.resolve.presets import specified_numerics
 from lavendersim.experiment.text.node import Node, graft
+from lavendersim.experiment.text.parse import parse
 
 # What a case may state of its numerics and still be one of the default's: the timestep belongs to
 # the scene, as its size and its speeds do.
@@ -46,10 +48,12 @@ def about_something_else(experiment: Experiment) -> str:
     swept = [path for path in paths if path.split(".")[0] == "numerics"]
     if own := [path for path in swept if path != "numerics.timestep"]:
         return f"varies {', '.join(own)}"
-    numerics = experiment.config.numerics
-    if isinstance(numerics, str):
-        return "" if numerics == "default" else f"is about the numerics {numerics}"
-    own = sorted(numerics.model_fields_set - OF_THE_SCENE)
-    if numerics.preset != "default":
-        own.insert(0, numerics.preset)
+    root, _ = parse(experiment.text.encode(), experiment.name)
+    assert root is not None
+    preset, specified = specified_numerics(root)
+    own = sorted(specified.keys() - OF_THE_SCENE)
+    if not specified and root.get("numerics", "preset") is None:
+        return "" if preset == "default" else f"is about the numerics {preset}"
+    if preset != "default":
+        own.insert(0, preset)
     return f"is about numerics of its own ({', '.join(own)})" if own else ""

@@ -16,6 +16,9 @@ class Mark(NamedTuple):
     column: int
 
 
+UNWRITTEN = Mark(0, 0)  # of a preset's values: before every place of the file
+
+
 class Broken:
     """Stands in the data for a value that was already refused, so that it is reported once."""
 

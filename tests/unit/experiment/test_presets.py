@@ -7,8 +7,7 @@ from fractions import Fraction
 import pytest
 
 from lavendersim.cell.numerics import Numerics
-from lavendersim.experiment.models.experiment import NumericsChange
-from lavendersim.experiment.resolve.cell import resolve_numerics
+from lavendersim.experiment import load_experiment_text
 from lavendersim.experiment.resolve.presets import CHAPTER, PRESETS
 
 
@@ -36,19 +35,33 @@ def test_chapter_is_frozen() -> None:
         "sleep_speed": 0.005,
         "sleep_time": 0.5,
     }
-    assert frozen == CHAPTER
+    assert frozen == dict(CHAPTER)
 
 
+@pytest.mark.parametrize("written", ["NAME", "{preset: NAME}", "{preset: NAME, slop: null}"])
 @pytest.mark.parametrize("name", PRESETS)
-def test_preset_states_every_number(name: str) -> None:
-    assert set(PRESETS[name]) == set(Numerics.model_fields)
-    assert set(NumericsChange.model_fields) == {*Numerics.model_fields, "preset"}
-    assert dict(resolve_numerics(name)) == PRESETS[name]
+def test_a_preset_specifies_every_number(name: str, written: str) -> None:
+    numerics = numerics_of(written.replace("NAME", name))
+    assert numerics == PRESETS[name]
+    assert set(dict(numerics)) == set(Numerics.model_fields)
 
 
-def test_stated_values_replace_those_of_the_preset() -> None:
-    change = NumericsChange(preset="chapter", sweeps=50, slop=None)
-    changed = resolve_numerics(change)
-    assert changed.sweeps == 50
-    assert changed.slop == CHAPTER["slop"]
-    assert changed.stabilisation_gain == CHAPTER["stabilisation_gain"]
+def test_default_is_taken_where_no_preset_is_named() -> None:
+    assert numerics_of("{}") == PRESETS["default"]
+
+
+def test_specified_values_replace_those_of_the_preset() -> None:
+    changed = numerics_of("{preset: chapter, sweeps: 50, slop: null}")
+    assert changed == CHAPTER.model_copy(update={"sweeps": 50})
+
+
+def test_null_is_a_value_of_the_tolerance_alone() -> None:
+    assert numerics_of("{tolerance: null}").tolerance is None
+    assert numerics_of("{solver: null}").solver == PRESETS["default"].solver
+
+
+def numerics_of(written: str) -> Numerics:
+    """Return the numerics of a cell of which only this is written."""
+    ball = "{shape: {kind: sphere, radius: 0.1}, mass: 1, position: [0, 0, 1]}"
+    text = f"scene: {{bodies: {{ball: {ball}}}}}\nduration: 1\nnumerics: {written}\n"
+    return load_experiment_text(text, "numerics.yaml").cells()[0].config.numerics
