@@ -1,0 +1,112 @@
+"""The recipes of docs/extending.md: each patch is applied to a copy of lavender, which is then used.
+
+A recipe is a section with a sentence `Touches N files.`, its patch as a `diff` block, and, as a
+`yaml` block, an experiment that only lavender with the patch takes and whose expectations it meets.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+PAGE = ROOT / "docs/extending.md"
+SECTION = re.compile(r"^## (?P<name>.+)\n(?P<text>(?:(?!^## ).*\n)*)", re.MULTILINE)
+BLOCK = re.compile(r"^```(?P<language>\w+)\n(?P<content>.*?)^```$", re.DOTALL | re.MULTILINE)
+# Files that a recipe may touch at most: what the design promises.
+MOST_FILES = {"A measure": 2, "A solver": 2, "An option of the numerics": 2, "A shape": 4}
+LAVENDER = "import sys; from lavender_cli.main import main; sys.argv[0] = 'lavender'; main()"
+
+
+class Recipe(NamedTuple):
+    """One section of the page."""
+
+    name: str
+    files: int  # as the page says
+    patch: str
+    experiment: str
+
+    def touched(self) -> set[str]:
+        """Return the files that the patch changes or makes."""
+        return set(re.findall(r"^\+\+\+ b/(.+)$", self.patch, re.MULTILINE))
+
+
+def recipes() -> list[Recipe]:
+    """Return the recipes of the page: its sections with a patch."""
+    found = []
+    for section in SECTION.finditer(PAGE.read_text()):
+        blocks = {m["language"]: m["content"] for m in BLOCK.finditer(section["text"])}
+        if "diff" in blocks:
+            counts = re.findall(r"Touches\s(\d+)\sfiles?\.", section["text"])
+            assert len(counts) == 1, f"{section['name']} does not say how many files it touches"
+            found.append(Recipe(section["name"], int(counts[0]), blocks["diff"], blocks["yaml"]))
+    return found
+
+
+RECIPES = recipes()
+
+
+class Copy:
+    """A copy of lavender, used by processes of its own."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        for package in ("lavendersim", "cli"):
+            without = shutil.ignore_patterns("__pycache__")
+            shutil.copytree(ROOT / package, folder / package, ignore=without)
+        (folder / "lavender_cli").symlink_to("cli")
+
+    def apply(self, patch: str) -> None:
+        """Apply a patch; the lines around a change are looked for, their numbers say little."""
+        subprocess.run(
+            ["git", "apply", "--whitespace=nowarn", "-"],
+            cwd=self.folder,
+            # What stands in a repository above is not meant.
+            env=os.environ | {"GIT_CEILING_DIRECTORIES": str(self.folder.parent)},
+            input=patch,
+            text=True,
+            check=True,
+        )
+
+    def lavender(self, *arguments: object) -> subprocess.CompletedProcess[str]:
+        """Run the command line of the copy; -P: not that of the working directory."""
+        return subprocess.run(
+            [sys.executable, "-P", "-c", LAVENDER, *map(str, arguments)],
+            cwd=self.folder,
+            env=os.environ | {"PYTHONPATH": str(self.folder), "NO_COLOR": "1"},
+            capture_output=True,
+            text=True,
+            timeout=300,
+            check=False,
+        )
+
+
+def test_the_page_has_recipes() -> None:
+    assert len(RECIPES) >= 2
+    assert len({recipe.name for recipe in RECIPES}) == len(RECIPES)
+
+
+@pytest.mark.parametrize("recipe", RECIPES, ids=lambda recipe: recipe.name)
+def test_a_recipe_touches_as_many_files_as_it_says(recipe: Recipe) -> None:
+    assert len(recipe.touched()) == recipe.files
+    assert recipe.files <= MOST_FILES.get(recipe.name, recipe.files)
+
+
+@pytest.mark.parametrize("recipe", RECIPES, ids=lambda recipe: recipe.name)
+def test_a_recipe_works(recipe: Recipe, tmp_path: Path) -> None:
+    copy = Copy(tmp_path)
+    config = tmp_path / "recipe.yaml"
+    config.write_text(recipe.experiment)
+    before = copy.lavender("check", config)
+    assert before.returncode == 2, before.stdout + before.stderr  # unknown to lavender as it is
+    copy.apply(recipe.patch)
+    after = copy.lavender("run", config, "--plot")
+    assert after.returncode == 0, after.stdout + after.stderr
+    assert "pass" in after.stdout
