@@ -71,10 +71,3 @@ def test_no_module_of_a_view_loads_the_engine(room: str) -> None:
     assert f"lavendersim.{room}" in loaded
     assert loaded & {"numba", "llvmlite", "lavendersim.scene"} == set()
     assert of_the_engine(loaded) <= DECLARATIONS
-
-
-def test_solvers_can_be_the_first_of_the_engine_that_is_asked_for() -> None:
-    """Effects need blocks and residuals, which need effects: somebody has to say who begins."""
-    assert "lavendersim.engine.effects" in loaded_after(
-        "import lavendersim.engine.solvers.catalogue"
-    )
