@@ -10,13 +10,13 @@ import yaml
 
 from lavendersim.cell.choices import NO_MISTAKE
 from lavendersim.experiment.cell import Cell
-from lavendersim.experiment.models.always import Always
 from lavendersim.experiment.models.cost import CostSpec
-from lavendersim.experiment.models.expect import ExpectSpec
 from lavendersim.experiment.models.experiment import ExperimentConfig
 from lavendersim.experiment.models.figure import FigureSpec
-from lavendersim.experiment.models.measures import MeasureSpec
 from lavendersim.experiment.models.overhead import PriceSpec
+from lavendersim.measures.specs.always import Always
+from lavendersim.measures.specs.catalogue import MeasureSpec
+from lavendersim.measures.specs.expectation import ExpectSpec
 
 
 @dataclass(frozen=True)

@@ -15,10 +15,10 @@ from typing import Any
 
 import numpy as np
 
-from lavendersim.experiment.models.measure_base import ClosedForm
 from lavendersim.figures.series import band_along
 from lavendersim.measures.closed_forms import evaluate_form
 from lavendersim.measures.selection import group_by
+from lavendersim.measures.specs.base import ClosedForm
 from lavendersim.measures.views import Cell, Floats
 
 POINTS = 24  # per interval between two swept values

@@ -12,8 +12,8 @@ from typing import NamedTuple
 import numpy as np
 
 from lavendersim.errors import LavenderError
-from lavendersim.experiment.models.always import BEYOND_BOUNDS, Always
 from lavendersim.measures.parts import parts_of
+from lavendersim.measures.specs.always import BEYOND_BOUNDS, Always
 from lavendersim.measures.verdict import Outcome, failure
 from lavendersim.measures.views import Cell, Trace
 from lavendersim.measures.watch import Watch, Watched, checks_of

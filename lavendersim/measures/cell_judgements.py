@@ -11,8 +11,8 @@ from typing import Final
 
 import numpy as np
 
-from lavendersim.experiment.models.expect import Equals, ExpectSpec
 from lavendersim.measures.closed_forms import evaluate_form
+from lavendersim.measures.specs.expectation import Equals, ExpectSpec
 from lavendersim.measures.verdict import Outcome
 from lavendersim.measures.views import Floats, Trace, Value
 

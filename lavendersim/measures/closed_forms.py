@@ -25,8 +25,8 @@ from typing import Any, Final
 
 import numpy as np
 
-from lavendersim.experiment.models.measure_base import ClosedForm
 from lavendersim.measures.cell_config import BodyConfig, body, gravity, numerics
+from lavendersim.measures.specs.base import ClosedForm
 from lavendersim.measures.views import Floats
 
 Resolved = Mapping[str, Any]

@@ -12,10 +12,10 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
-from lavendersim.experiment.models.always import BEYOND_BOUNDS, COMPLETES, DIVERGES, STOPPING
-from lavendersim.experiment.models.expect import ExpectSpec
 from lavendersim.measures.always import COMPLETE
 from lavendersim.measures.selection import coordinates_text, select, telling_axes
+from lavendersim.measures.specs.always import BEYOND_BOUNDS, COMPLETES, DIVERGES, STOPPING
+from lavendersim.measures.specs.expectation import ExpectSpec
 from lavendersim.measures.verdict import Verdict
 
 

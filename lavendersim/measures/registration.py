@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, Final, TypeVar
 
-from lavendersim.experiment.models.measure_base import Measure
+from lavendersim.measures.specs.base import Measure
 from lavendersim.measures.views import Trace, Value
 
 Spec = TypeVar("Spec", bound=Measure)

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 from typing import Any, TypeVar
 
-from lavendersim.experiment.models.selection import ANY
+from lavendersim.measures.specs.selection import ANY
 from lavendersim.measures.views import Cell
 from lavendersim.quantities.scalars import written
 

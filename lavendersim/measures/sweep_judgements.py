@@ -8,8 +8,8 @@ from typing import Final
 
 import numpy as np
 
-from lavendersim.experiment.models.expect import Crosses, ExpectSpec, Order, Ratio
 from lavendersim.measures.selection import group_by, select
+from lavendersim.measures.specs.expectation import Crosses, ExpectSpec, Order, Ratio
 from lavendersim.measures.verdict import Outcome, failure
 from lavendersim.measures.views import Cell, Floats
 from lavendersim.quantities.scalars import written

@@ -6,8 +6,8 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from lavendersim.experiment.models.measures import MeasureSpec
 from lavendersim.measures.registry import evaluate
+from lavendersim.measures.specs.catalogue import MeasureSpec
 from lavendersim.measures.views import Cell, Floats
 
 

@@ -20,12 +20,12 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from lavendersim.experiment.models.always import CHECKS, DERIVED, FINITE, NONE, Always
 from lavendersim.measures import cell_config
 from lavendersim.measures.account import EnergyAccount, contacts_of_log, momentum_gap
 from lavendersim.measures.changes import events_of_bodies, row_after
 from lavendersim.measures.extent import thickness
 from lavendersim.measures.kinds.optimality import friction_of
+from lavendersim.measures.specs.always import CHECKS, DERIVED, FINITE, NONE, Always
 from lavendersim.measures.views import Floats, Rows, Trace
 
 ENERGY: Final = "energy"  # the one check that needs what went before

@@ -13,8 +13,8 @@ import numpy as np
 
 from lavendersim.cell import CellConfig
 from lavendersim.clock import Clock
-from lavendersim.experiment.models.always import BEYOND_BOUNDS, STOPPING, Always
 from lavendersim.measures.parts import Part
+from lavendersim.measures.specs.always import BEYOND_BOUNDS, STOPPING, Always
 from lavendersim.measures.views import Floats, Rows
 from lavendersim.measures.watch import Watch, Watched
 from lavendersim.trace import Block

@@ -14,7 +14,7 @@ from lavendersim.engine.effects import EFFECTS
 from lavendersim.engine.engine import Engine, Rows
 from lavendersim.engine.kernel_cache import source_hash
 from lavendersim.engine.records import DIVERGED, NOT_FINITE, RUNNING, TURNS_TOO_FAST
-from lavendersim.experiment.models.always import Always
+from lavendersim.measures.specs.always import Always
 from lavendersim.scene.build import Scene, build
 from lavendersim.scene.events import EventQueue
 from lavendersim.scene.plan import Plan

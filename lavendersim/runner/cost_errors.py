@@ -18,10 +18,10 @@ import numpy as np
 
 from lavendersim.cell import CellConfig
 from lavendersim.experiment import Experiment
-from lavendersim.experiment.models.measure_base import ClosedForm
 from lavendersim.experiment.sweeps.cost_grid import Setting
 from lavendersim.measures import Values, judge
 from lavendersim.measures.closed_forms import evaluate_form
+from lavendersim.measures.specs.base import ClosedForm
 
 from .cell import CellOutcome
 from .cost_targets import ROUND_OFF

@@ -16,9 +16,9 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, Final, Literal, NamedTuple
 
-from lavendersim.experiment.models.always import BEYOND_BOUNDS
 from lavendersim.measures.always import PREFIX
 from lavendersim.measures.controls import of_completion
+from lavendersim.measures.specs.always import BEYOND_BOUNDS
 
 PASSES: Final = "passes"
 KNOWN: Final = "known failure"

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import lavendersim
-from lavendersim.experiment.models.always import STOPPING
 from lavendersim.measures import outcomes_of
+from lavendersim.measures.specs.always import STOPPING
 from lavendersim.measures.watch import Watch
 from lavendersim.runner import Finished, bounds
 

@@ -14,8 +14,8 @@ import numpy as np
 import pytest
 
 import lavendersim
-from lavendersim.experiment.models.always import CHECKS, Always
 from lavendersim.measures import outcomes_of
+from lavendersim.measures.specs.always import CHECKS, Always
 from lavendersim.runner import Finished
 
 # A ball slides to rolling; another is pushed and turned by a force and a torque, bounces, falls on

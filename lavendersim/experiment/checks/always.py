@@ -11,9 +11,9 @@ from collections.abc import Iterator
 
 from lavendersim.experiment.checks.population import described
 from lavendersim.experiment.checks.scene import is_kinematic
-from lavendersim.experiment.models.always import NONE
 from lavendersim.experiment.text.node import Node, key_mark
 from lavendersim.experiment.text.report import Report
+from lavendersim.measures.specs.always import NONE
 from lavendersim.quantities.found import quoted
 
 

@@ -10,9 +10,9 @@ from collections.abc import Collection, Iterable, Mapping
 from lavendersim.experiment.checks.messages import name_of
 from lavendersim.experiment.checks.population import body_names
 from lavendersim.experiment.checks.walk import Model, Place, places
-from lavendersim.experiment.models.always import CHECKS, COMPLETES, DIVERGES, NONE
 from lavendersim.experiment.text.node import Mark, Node
 from lavendersim.experiment.text.report import Report
+from lavendersim.measures.specs.always import CHECKS, COMPLETES, DIVERGES, NONE
 from lavendersim.quantities.found import nearest, quoted
 from lavendersim.quantities.names import NamedKind
 from lavendersim.quantities.scalars import exact, written

@@ -12,7 +12,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, Tag
 
 from lavendersim.cell.choices import Solver
-from lavendersim.experiment.models.measure_base import ClosedForm
+from lavendersim.measures.specs.base import ClosedForm
 from lavendersim.quantities.model import ConfigModel
 from lavendersim.quantities.names import MeasureName
 from lavendersim.quantities.quantity import Quantity, either

@@ -9,15 +9,15 @@ from pydantic import ConfigDict, Field, Tag
 
 from lavendersim.cell.choices import Preset, Switch
 from lavendersim.cell.numerics import Numerics
-from lavendersim.experiment.models.always import Always
 from lavendersim.experiment.models.cost import CostSpec
-from lavendersim.experiment.models.expect import ExpectSpec
 from lavendersim.experiment.models.figure import FigureSpec
-from lavendersim.experiment.models.measures import MeasureSpec
 from lavendersim.experiment.models.overhead import PriceSpec
 from lavendersim.experiment.models.record import Record
 from lavendersim.experiment.models.scene import Scene
 from lavendersim.experiment.models.study import Study
+from lavendersim.measures.specs.always import Always
+from lavendersim.measures.specs.catalogue import MeasureSpec
+from lavendersim.measures.specs.expectation import ExpectSpec
 from lavendersim.quantities.model import ConfigModel
 from lavendersim.quantities.names import BodyName, NewName
 from lavendersim.quantities.quantity import (

@@ -10,9 +10,9 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from lavendersim.experiment.models.expect import Reduction
-from lavendersim.experiment.models.measure_base import ClosedForm
-from lavendersim.experiment.models.selection import Selection
+from lavendersim.measures.specs.base import ClosedForm
+from lavendersim.measures.specs.expectation import Reduction
+from lavendersim.measures.specs.selection import Selection
 from lavendersim.quantities.model import ConfigModel
 from lavendersim.quantities.names import AxisName, BodyName, MeasureName, PlaneName
 from lavendersim.quantities.quantity import Quantity

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from lavendersim.experiment.models import measures as specs
 from lavendersim.measures.columns import row_after
 from lavendersim.measures.registration import measure
+from lavendersim.measures.specs import convergence as specs
 from lavendersim.measures.views import Floats, Trace
 
 

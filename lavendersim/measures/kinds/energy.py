@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from lavendersim.experiment.models import measures as specs
 from lavendersim.measures import cell_config
 from lavendersim.measures.columns import (
     clearance_by_step,
@@ -13,6 +12,7 @@ from lavendersim.measures.columns import (
     pushing_runs,
 )
 from lavendersim.measures.registration import measure
+from lavendersim.measures.specs import energy as specs
 from lavendersim.measures.views import Floats, Trace
 
 

@@ -9,7 +9,6 @@ import math
 
 import numpy as np
 
-from lavendersim.experiment.models import measures as specs
 from lavendersim.measures import cell_config
 from lavendersim.measures.changes import events_of_bodies
 from lavendersim.measures.columns import (
@@ -21,6 +20,7 @@ from lavendersim.measures.columns import (
     summed_by_step,
 )
 from lavendersim.measures.registration import measure
+from lavendersim.measures.specs import impact as specs
 from lavendersim.measures.views import Floats, Rows, Trace
 
 NAN = float("nan")

@@ -9,10 +9,10 @@ import math
 
 import numpy as np
 
-from lavendersim.experiment.models import kinematic_measures as specs
 from lavendersim.geometry.rotations import rotation_matrix, unit_quaternion
 from lavendersim.measures import cell_config
 from lavendersim.measures.registration import measure
+from lavendersim.measures.specs import kinematics as specs
 from lavendersim.measures.views import Floats, Trace
 
 NAN = float("nan")

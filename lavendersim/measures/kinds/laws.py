@@ -6,10 +6,10 @@ import math
 
 import numpy as np
 
-from lavendersim.experiment.models import law_measures as specs
 from lavendersim.measures import cell_config, changes
 from lavendersim.measures.columns import clearance_by_step, last_window, mechanical_energy
 from lavendersim.measures.registration import measure
+from lavendersim.measures.specs import laws as specs
 from lavendersim.measures.views import Floats, Rows, Trace
 
 NAN = float("nan")

@@ -6,12 +6,12 @@ import math
 
 import numpy as np
 
-from lavendersim.experiment.models import motion_measures as specs
 from lavendersim.measures import cell_config
 from lavendersim.measures.closed_forms import clearance, pair_restitution
 from lavendersim.measures.columns import clearance_by_step, last_window, one_timestep
 from lavendersim.measures.kinds.impact import parabola_vertex
 from lavendersim.measures.registration import measure
+from lavendersim.measures.specs import motion as specs
 from lavendersim.measures.views import Floats, Trace
 
 NAN = float("nan")

@@ -17,9 +17,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from lavendersim.experiment.models.law_measures import Optimality
 from lavendersim.measures import cell_config
 from lavendersim.measures.registration import measure
+from lavendersim.measures.specs.optimality import Optimality
 from lavendersim.measures.views import Floats, Rows, Trace
 
 NAN = float("nan")

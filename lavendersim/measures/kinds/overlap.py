@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from lavendersim.experiment.models.motion_measures import Overlap
 from lavendersim.measures.columns import last_window
 from lavendersim.measures.penetration import depths
 from lavendersim.measures.registration import measure
 from lavendersim.measures.solids import Ground, Placed, near_pairs, reach, solids_of
+from lavendersim.measures.specs.overlap import Overlap
 from lavendersim.measures.views import Floats, Trace
 
 NAN = float("nan")

@@ -6,7 +6,6 @@ import math
 
 import numpy as np
 
-from lavendersim.experiment.models import law_measures as specs
 from lavendersim.geometry.rotations import rotation_matrices
 from lavendersim.measures import cell_config
 from lavendersim.measures.cell_config import BodyConfig
@@ -15,6 +14,7 @@ from lavendersim.measures.free_rotation import FreeRotation, free_rotation
 from lavendersim.measures.impact_forms import velocities_after
 from lavendersim.measures.kinds.laws import angular_momentum
 from lavendersim.measures.registration import measure
+from lavendersim.measures.specs import spinning as specs
 from lavendersim.measures.views import Floats, Trace
 
 NAN = float("nan")

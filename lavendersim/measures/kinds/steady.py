@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from lavendersim.experiment.models import measures as specs
 from lavendersim.measures.cell_config import numerics
 from lavendersim.measures.columns import (
     contacts_of,
@@ -13,6 +12,7 @@ from lavendersim.measures.columns import (
     summed_by_step,
 )
 from lavendersim.measures.registration import measure
+from lavendersim.measures.specs import steady as specs
 from lavendersim.measures.views import Trace
 
 NAN = float("nan")

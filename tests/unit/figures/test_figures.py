@@ -16,10 +16,11 @@ from synthetic import RESIDUAL, SyntheticCell, ball_and_floor, spinning_log, tra
 
 from lavendersim.errors import TraceError
 from lavendersim.experiment.models.figure import FigureSpec
-from lavendersim.experiment.models.measures import ImpactImpulse, ResidualBySweep
 from lavendersim.figures import draw
 from lavendersim.figures.config_figure import compose
 from lavendersim.figures.style import DARK, STYLE
+from lavendersim.measures.specs.convergence import ResidualBySweep
+from lavendersim.measures.specs.impact import ImpactImpulse
 
 MEASURES = {
     "impulse": ImpactImpulse(kind="impact_impulse", body="ball"),

@@ -12,9 +12,9 @@ from matplotlib import style
 from synthetic import SyntheticCell, ball_and_floor, trace_of
 
 from lavendersim.experiment.models.figure import FigureSpec
-from lavendersim.experiment.models.measures import ImpactImpulse
 from lavendersim.figures.config_figure import compose
 from lavendersim.figures.style import STYLE
+from lavendersim.measures.specs.impact import ImpactImpulse
 
 BOUND = 1.0
 STEPS = (Fraction(1, 60), Fraction(1, 120), Fraction(1, 240))

@@ -7,14 +7,36 @@ import pytest
 from synthetic import SyntheticCell, SyntheticTrace, trace_of
 
 from lavendersim.errors import UsageError
-from lavendersim.experiment.models import law_measures as law_specs
-from lavendersim.experiment.models import measures as measure_specs
-from lavendersim.experiment.models import motion_measures as motion_specs
-from lavendersim.experiment.models.expect import ExpectSpec
 from lavendersim.experiment.models.figure import TimeSeries
 from lavendersim.figures.time_series import window_of
-from lavendersim.measures.judge import judge
+from lavendersim.measures.judging import judge
 from lavendersim.measures.registry import evaluate
+from lavendersim.measures.specs.convergence import FinalResidual, ResidualBySweep
+from lavendersim.measures.specs.energy import EnergyAfterBounces, EnergyByBounce
+from lavendersim.measures.specs.expectation import ExpectSpec
+from lavendersim.measures.specs.impact import (
+    ApproachVelocity,
+    FirstApex,
+    ImpactImpulse,
+    ImpulseBalance,
+    InverseEffectiveMass,
+    MomentumDrift,
+    PeakForce,
+    SeparationVelocity,
+    StepImpulse,
+    StepsAboveForce,
+)
+from lavendersim.measures.specs.laws import EnergyDrift, ForceError
+from lavendersim.measures.specs.motion import Drift
+from lavendersim.measures.specs.optimality import Optimality
+from lavendersim.measures.specs.overlap import Overlap
+from lavendersim.measures.specs.steady import (
+    MaxPenetration,
+    SettlingTime,
+    SimulatedDuration,
+    SteadyForce,
+    SteadyPenetration,
+)
 from lavendersim.trace.absent import absent_table
 
 SAYS = "free.mcap: this log has no /contacts: nothing can touch (plan: contact_log off)"
@@ -23,31 +45,31 @@ BALL = {"body": "ball", "other": "floor"}
 OVER = {"body": "ball", "above": "floor"}
 
 OF_CONTACTS = [
-    measure_specs.FirstApex(kind="first_apex", **OVER),
-    measure_specs.ImpactImpulse(kind="impact_impulse", **BALL),
-    measure_specs.StepImpulse(kind="step_impulse", step=2, **BALL),
-    measure_specs.ApproachVelocity(kind="approach_velocity", **BALL),
-    measure_specs.SeparationVelocity(kind="separation_velocity", **BALL),
-    measure_specs.InverseEffectiveMass(kind="inverse_effective_mass", **BALL),
-    measure_specs.PeakForce(kind="peak_force", **BALL),
-    measure_specs.StepsAboveForce(kind="steps_above_force", threshold=1.0, **BALL),
-    measure_specs.ImpulseBalance(kind="impulse_balance"),
-    measure_specs.SteadyForce(kind="steady_force", last=0.02, **BALL),
-    measure_specs.SteadyPenetration(kind="steady_penetration", last=0.02, **BALL),
-    measure_specs.MaxPenetration(kind="max_penetration", **BALL),
-    measure_specs.SettlingTime(kind="settling_time", threshold=1e-3, **BALL),
-    measure_specs.EnergyByBounce(kind="energy_by_bounce", bounces=1, **OVER),
-    measure_specs.EnergyAfterBounces(kind="energy_after_bounces", bounces=1, **OVER),
-    law_specs.ForceError(kind="force_error", last=0.02),
-    law_specs.Optimality(kind="optimality"),
+    FirstApex(kind="first_apex", **OVER),
+    ImpactImpulse(kind="impact_impulse", **BALL),
+    StepImpulse(kind="step_impulse", step=2, **BALL),
+    ApproachVelocity(kind="approach_velocity", **BALL),
+    SeparationVelocity(kind="separation_velocity", **BALL),
+    InverseEffectiveMass(kind="inverse_effective_mass", **BALL),
+    PeakForce(kind="peak_force", **BALL),
+    StepsAboveForce(kind="steps_above_force", threshold=1.0, **BALL),
+    ImpulseBalance(kind="impulse_balance"),
+    SteadyForce(kind="steady_force", last=0.02, **BALL),
+    SteadyPenetration(kind="steady_penetration", last=0.02, **BALL),
+    MaxPenetration(kind="max_penetration", **BALL),
+    SettlingTime(kind="settling_time", threshold=1e-3, **BALL),
+    EnergyByBounce(kind="energy_by_bounce", bounces=1, **OVER),
+    EnergyAfterBounces(kind="energy_after_bounces", bounces=1, **OVER),
+    ForceError(kind="force_error", last=0.02),
+    Optimality(kind="optimality"),
 ]
 OF_THE_REST = [
-    measure_specs.MomentumDrift(kind="momentum_drift"),
-    measure_specs.SimulatedDuration(kind="simulated_duration"),
-    measure_specs.FinalResidual(kind="final_residual", after=0.01),
-    law_specs.EnergyDrift(kind="energy_drift"),
-    motion_specs.Drift(kind="drift", after=0.0),
-    motion_specs.Overlap(kind="overlap", last=0.02),
+    MomentumDrift(kind="momentum_drift"),
+    SimulatedDuration(kind="simulated_duration"),
+    FinalResidual(kind="final_residual", after=0.01),
+    EnergyDrift(kind="energy_drift"),
+    Drift(kind="drift", after=0.0),
+    Overlap(kind="overlap", last=0.02),
 ]
 
 
@@ -67,7 +89,7 @@ def test_a_measure_of_contacts_says_that_there_are_none_to_measure(spec, free) -
 
 def test_a_measure_of_sweeps_says_that_none_were_asked_for(free) -> None:
     with pytest.raises(UsageError) as caught:
-        evaluate(measure_specs.ResidualBySweep(kind="residual_by_sweep", after=0.0), free)
+        evaluate(ResidualBySweep(kind="residual_by_sweep", after=0.0), free)
     assert str(caught.value) == SWEEPS
 
 
@@ -77,7 +99,7 @@ def test_a_measure_of_steps_and_poses_does_not_mind(spec, free) -> None:
 
 
 def test_the_verdict_of_a_claim_is_that_sentence(free) -> None:
-    measures = {"peak": measure_specs.PeakForce(kind="peak_force", **BALL)}
+    measures = {"peak": PeakForce(kind="peak_force", **BALL)}
     claim = ExpectSpec(name="it is gentle", measure="peak", at_most=10.0)
     (verdict,) = judge(measures, [claim], [SyntheticCell({}, free)])
     assert not verdict.passed

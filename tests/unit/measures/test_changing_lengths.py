@@ -13,9 +13,9 @@ from synthetic import GRAVITY, MASS, contacts, log_of, scene_of, spinning_log, t
 
 from lavendersim.clock import Clock
 from lavendersim.errors import UsageError
-from lavendersim.experiment.models import law_measures as law_specs
-from lavendersim.experiment.models.measures import MeasureSpec
 from lavendersim.measures import account, evaluate
+from lavendersim.measures.specs import optimality as specs
+from lavendersim.measures.specs.catalogue import MeasureSpec
 from lavendersim.measures.watch import NUMBERS
 
 FIRST = 10  # steps of 10 ms
@@ -78,7 +78,7 @@ def test_compliance_is_divided_by_the_square_of_each_step() -> None:
     rows = contacts([(3, impulse, 0.0), (20, impulse, 0.0)])
     rows["normal_velocity"] = -compliance * impulse / LENGTHS[rows["step"]] ** 2
     log.contact = recfunctions.append_fields(rows, "target", [0.0, 0.0], usemask=False)
-    found = evaluate(law_specs.Optimality(kind="optimality"), log)
+    found = evaluate(specs.Optimality(kind="optimality"), log)
     assert found[1] < 1e-15 * 0.5  # of the 0.5 m/s that cancel
 
 

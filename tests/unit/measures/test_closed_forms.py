@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 from synthetic import ball_and_floor
 
-from lavendersim.experiment.models.measure_base import ClosedForm
 from lavendersim.measures.closed_forms import evaluate_form
+from lavendersim.measures.specs.base import ClosedForm
 
 ROUND_OFF = 1e-14  # a handful of float64 operations
 

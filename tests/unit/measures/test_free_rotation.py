@@ -11,11 +11,11 @@ from scipy.integrate import solve_ivp
 from scipy.special import ellipj, ellipkinc, ellipkm1
 from synthetic import spinning_log
 
-from lavendersim.experiment.models import law_measures as specs
 from lavendersim.measures import evaluate
 from lavendersim.measures.elliptic import integral, jacobi, quarter_period
 from lavendersim.measures.free_rotation import free_rotation
 from lavendersim.measures.kinds.spinning import crossings
+from lavendersim.measures.specs import spinning as specs
 
 # sorted and unsorted, near both stable axes and the unstable one, both senses, equal moments
 CASES = [

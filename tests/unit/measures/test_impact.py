@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from synthetic import GRAVITY, MASS, ball_and_floor, trace_of
 
-from lavendersim.experiment.models import measures as specs
-from lavendersim.experiment.models.measure_base import ClosedForm
 from lavendersim.measures import evaluate
 from lavendersim.measures.kinds.impact import parabola_vertex
+from lavendersim.measures.specs import impact as specs
+from lavendersim.measures.specs.base import ClosedForm
 
 APEX = specs.FirstApex(kind="first_apex", body="ball", above="floor")
 IMPULSE = specs.ImpactImpulse(kind="impact_impulse", body="ball", other="floor")

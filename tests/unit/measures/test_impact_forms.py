@@ -10,10 +10,10 @@ import numpy.lib.recfunctions as recfunctions
 import pytest
 from synthetic import GRAVITY, log_of, scene_of
 
-from lavendersim.experiment.models import law_measures as specs
 from lavendersim.measures import evaluate
 from lavendersim.measures.cell_config import body as body_of
 from lavendersim.measures.impact_forms import velocities_after
+from lavendersim.measures.specs import spinning as specs
 
 RADIUS, MASS = 0.1, 2.0
 FLAT = [0.0, 0.0, 0.0]

@@ -10,9 +10,10 @@ import pytest
 from synthetic import RESIDUAL, SyntheticCell, trace_of
 
 from lavendersim.errors import TraceError
-from lavendersim.experiment.models.expect import ExpectSpec
-from lavendersim.experiment.models.measures import FinalResidual, ImpactImpulse, ResidualBySweep
 from lavendersim.measures import Verdict, judge, judge_nodes
+from lavendersim.measures.specs.convergence import FinalResidual, ResidualBySweep
+from lavendersim.measures.specs.expectation import ExpectSpec
+from lavendersim.measures.specs.impact import ImpactImpulse
 
 MEASURES = {
     "number": ImpactImpulse(kind="impact_impulse", body="ball"),

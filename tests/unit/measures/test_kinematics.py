@@ -10,8 +10,8 @@ import pytest
 from pydantic import ValidationError
 from synthetic import log_of, scene_of
 
-from lavendersim.experiment.models import kinematic_measures as specs
 from lavendersim.measures import evaluate
+from lavendersim.measures.specs import kinematics as specs
 
 CUBE = {"shape": {"kind": "box", "size": [0.2, 0.2, 0.2]}, "mass": 1.0}
 FLOOR = {"shape": {"kind": "plane", "normal": [0.0, 0.0, 1.0], "offset": 0.0}}

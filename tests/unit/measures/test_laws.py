@@ -10,8 +10,8 @@ import numpy.lib.recfunctions as recfunctions
 import pytest
 from synthetic import GRAVITY, MASS, contacts, log_of, scene_of, trace_of
 
-from lavendersim.experiment.models import law_measures as specs
 from lavendersim.measures import evaluate
+from lavendersim.measures.specs import laws as specs
 
 WEIGHT = MASS * GRAVITY / 100.0  # impulse of the ball's weight in a step of 10 ms [N s]
 FORCE = specs.ForceError(kind="force_error", last=0.05)

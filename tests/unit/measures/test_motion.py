@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from synthetic import GRAVITY, ball_and_floor, contacts, log_of, scene_of, trace_of
 
-from lavendersim.experiment.models import motion_measures as specs
 from lavendersim.measures import evaluate
+from lavendersim.measures.specs import motion as specs
 
 DT = 0.01
 FLOOR = {"shape": {"kind": "plane", "normal": [0.0, 0.0, 1.0], "offset": 0.0}}

@@ -11,8 +11,8 @@ import numpy.lib.recfunctions as recfunctions
 import pytest
 from synthetic import MASS, contacts, log_of, scene_of
 
-from lavendersim.experiment.models.law_measures import Optimality
 from lavendersim.measures import evaluate
+from lavendersim.measures.specs.optimality import Optimality
 
 SPEC = Optimality(kind="optimality")
 PUSHING, COMPLEMENTARY, CONE, SLIDING = range(4)

@@ -10,7 +10,6 @@ import pytest
 from scipy.spatial import ConvexHull
 from synthetic import contacts, log_of, scene_of
 
-from lavendersim.experiment.models.motion_measures import Overlap
 from lavendersim.geometry.rotations import rotation_matrices as rotations
 from lavendersim.measures import evaluate
 from lavendersim.measures.penetration import (
@@ -28,6 +27,7 @@ from lavendersim.measures.solids import (
     Placed,
     near_pairs,
 )
+from lavendersim.measures.specs.overlap import Overlap
 
 SEED = 20
 CORNERS = np.array(list(itertools.product((-1.0, 1.0), repeat=3)))

@@ -8,8 +8,16 @@ import numpy as np
 import pytest
 from synthetic import GRAVITY, MASS, RESIDUAL, trace_of
 
-from lavendersim.experiment.models import measures as specs
 from lavendersim.measures import evaluate
+from lavendersim.measures.specs.convergence import FinalResidual, ResidualBySweep
+from lavendersim.measures.specs.energy import EnergyAfterBounces, EnergyByBounce
+from lavendersim.measures.specs.steady import (
+    MaxPenetration,
+    SettlingTime,
+    SimulatedDuration,
+    SteadyForce,
+    SteadyPenetration,
+)
 
 
 def resting(rows: int = 41) -> object:
@@ -20,47 +28,47 @@ def resting(rows: int = 41) -> object:
 
 
 def test_steady_force_is_the_mean_of_the_last_window() -> None:
-    spec = specs.SteadyForce(kind="steady_force", body="ball", last=0.1)
+    spec = SteadyForce(kind="steady_force", body="ball", last=0.1)
     # ten forces of 20 N: nine at 20 - 1/9, one at 21; the window holds the last ten steps
     assert evaluate(spec, resting()) == pytest.approx(20.0, rel=1e-14)
 
 
 def test_furthest_force_is_the_value_furthest_from_the_mean() -> None:
-    spec = specs.SteadyForce(kind="steady_force", body="ball", last=0.1, statistic="furthest")
+    spec = SteadyForce(kind="steady_force", body="ball", last=0.1, statistic="furthest")
     assert evaluate(spec, resting()) == pytest.approx(21.0, rel=1e-14)
 
 
 def test_a_window_longer_than_the_run_is_no_answer() -> None:
-    spec = specs.SteadyForce(kind="steady_force", body="ball", last=5.0)
+    spec = SteadyForce(kind="steady_force", body="ball", last=5.0)
     assert math.isnan(evaluate(spec, resting()))
 
 
 def test_steady_penetration_with_and_without_the_slop() -> None:
-    spec = specs.SteadyPenetration(kind="steady_penetration", body="ball", last=0.1)
+    spec = SteadyPenetration(kind="steady_penetration", body="ball", last=0.1)
     assert evaluate(spec, resting()) == pytest.approx(0.003, rel=1e-14)
     beyond = spec.model_copy(update={"above_slop": True})
     assert evaluate(beyond, resting()) == pytest.approx(0.002, rel=1e-14)
 
 
 def test_penetration_of_several_contacts_is_the_deepest() -> None:
-    spec = specs.MaxPenetration(kind="max_penetration", body="ball")
+    spec = MaxPenetration(kind="max_penetration", body="ball")
     assert evaluate(spec, trace_of([0.0] * 3, [(1, 0.1, 0.002), (1, 0.1, 0.004)])) == 0.004
 
 
 def test_settling_time_counts_from_first_contact_to_the_last_step_above() -> None:
-    spec = specs.SettlingTime(kind="settling_time", body="ball", threshold=0.001)
+    spec = SettlingTime(kind="settling_time", body="ball", threshold=0.001)
     touching = [(2, 1.0, 0.004), (3, 1.0, 0.0005), (4, 1.0, 0.002), (5, 1.0, 0.0005)]
     # last step above is 4, below from step 5 on, first contact in step 2: 3 steps of 10 ms
     assert evaluate(spec, trace_of([0.0] * 8, touching)) == pytest.approx(0.03, rel=1e-12)
 
 
 def test_a_body_still_deep_at_the_end_has_not_settled() -> None:
-    spec = specs.SettlingTime(kind="settling_time", body="ball", threshold=0.001)
+    spec = SettlingTime(kind="settling_time", body="ball", threshold=0.001)
     assert math.isnan(evaluate(spec, trace_of([0.0] * 3, [(1, 1.0, 0.004), (2, 1.0, 0.004)])))
 
 
 def test_simulated_duration_is_the_time_of_the_last_row() -> None:
-    spec = specs.SimulatedDuration(kind="simulated_duration")
+    spec = SimulatedDuration(kind="simulated_duration")
     assert evaluate(spec, trace_of([0.0] * 41)) == pytest.approx(0.4, rel=1e-15)
 
 
@@ -75,23 +83,21 @@ def bouncing(apexes: list[float]) -> object:
 
 
 def test_energy_by_bounce_is_the_share_of_height_won_or_lost() -> None:
-    spec = specs.EnergyByBounce(kind="energy_by_bounce", body="ball", above="floor", bounces=3)
+    spec = EnergyByBounce(kind="energy_by_bounce", body="ball", above="floor", bounces=3)
     # energy m g (h + r) less m g r at rest: round-off of 2e-15 J / 20 J, a few times over
     expected = [-0.1, -0.2, 0.05]
     np.testing.assert_allclose(evaluate(spec, bouncing([0.9, 0.8, 1.05])), expected, atol=1e-14)
-    last = specs.EnergyAfterBounces(
-        kind="energy_after_bounces", body="ball", above="floor", bounces=3
-    )
+    last = EnergyAfterBounces(kind="energy_after_bounces", body="ball", above="floor", bounces=3)
     assert evaluate(last, bouncing([0.9, 0.8, 1.05])) == pytest.approx(0.05, abs=1e-14)
 
 
 def test_bounces_the_run_does_not_reach_are_nan() -> None:
-    spec = specs.EnergyByBounce(kind="energy_by_bounce", body="ball", above="floor", bounces=3)
+    spec = EnergyByBounce(kind="energy_by_bounce", body="ball", above="floor", bounces=3)
     assert np.isnan(evaluate(spec, bouncing([0.9, 0.8]))).tolist() == [False, False, True]
 
 
 def test_a_ball_still_rising_at_the_end_has_not_reached_its_apex() -> None:
-    spec = specs.EnergyByBounce(kind="energy_by_bounce", body="ball", above="floor", bounces=1)
+    spec = EnergyByBounce(kind="energy_by_bounce", body="ball", above="floor", bounces=1)
     log = trace_of([1.0, 0.0, 0.3, 0.6], [(1, 1.0, 0.0)], [0.0] * 4)
     assert np.isnan(evaluate(spec, log)).tolist() == [True]
 
@@ -99,9 +105,7 @@ def test_a_ball_still_rising_at_the_end_has_not_reached_its_apex() -> None:
 def test_kinetic_energy_counts() -> None:
     log = bouncing([0.9])
     log.step["kinetic_energy"][3] = MASS * GRAVITY * 0.1  # at the apex
-    spec = specs.EnergyAfterBounces(
-        kind="energy_after_bounces", body="ball", above="floor", bounces=1
-    )
+    spec = EnergyAfterBounces(kind="energy_after_bounces", body="ball", above="floor", bounces=1)
     assert evaluate(spec, log) == pytest.approx(0.0, abs=1e-14)
 
 
@@ -115,17 +119,15 @@ def with_residuals() -> object:
 
 
 def test_residual_by_sweep_of_the_first_step_after_a_time() -> None:
-    spec = specs.ResidualBySweep(kind="residual_by_sweep", after=0.02)  # step 3 ends at 0.03
+    spec = ResidualBySweep(kind="residual_by_sweep", after=0.02)  # step 3 ends at 0.03
     assert evaluate(spec, with_residuals()).tolist() == [1.0, 0.5, 0.25]
 
 
 def test_final_residual_of_the_same_step() -> None:
-    assert (
-        evaluate(specs.FinalResidual(kind="final_residual", after=0.02), with_residuals()) == 0.25
-    )
+    assert evaluate(FinalResidual(kind="final_residual", after=0.02), with_residuals()) == 0.25
 
 
 @pytest.mark.parametrize("after", [0.0, 9.0])  # a step without residuals; no step at all
 def test_residuals_that_were_not_logged_are_nan(after: float) -> None:
-    spec = specs.ResidualBySweep(kind="residual_by_sweep", after=after)
+    spec = ResidualBySweep(kind="residual_by_sweep", after=after)
     assert np.isnan(evaluate(spec, with_residuals())).all()

@@ -11,13 +11,13 @@ from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple, Protocol
 
 from lavendersim.errors import LavenderError
-from lavendersim.experiment.models.always import Always
-from lavendersim.experiment.models.expect import ExpectSpec
-from lavendersim.experiment.models.measures import MeasureSpec
 from lavendersim.measures import controls
 from lavendersim.measures.always import COMPLETE, PREFIX
 from lavendersim.measures.cell_judgements import judge_cell
 from lavendersim.measures.selection import coordinates_text, select, telling_axes
+from lavendersim.measures.specs.always import Always
+from lavendersim.measures.specs.catalogue import MeasureSpec
+from lavendersim.measures.specs.expectation import ExpectSpec
 from lavendersim.measures.sweep_judgements import judge_sweep
 from lavendersim.measures.values import Values
 from lavendersim.measures.verdict import Outcome, Verdict, failure

@@ -1,6 +1,6 @@
 """What every measure of a config has in common: where it is taken and the closed form beside it.
 
-Every kind may carry
+A kind is a subclass of `Measure` with a field `kind: Literal["its_name"]`. Every kind may carry
 
 - `at`: the cells in which the measure means something (all of them when absent), and
 - `over` or `against`: a closed form; the measure then becomes the fraction value / closed form, or
@@ -9,12 +9,12 @@ Every kind may carry
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from lavendersim.experiment.models.selection import Selection
+from lavendersim.measures.specs.selection import Selection
 from lavendersim.quantities.model import ConfigModel
 from lavendersim.quantities.names import BodyName
 from lavendersim.quantities.quantity import Quantity
@@ -45,6 +45,9 @@ class ClosedForm(ConfigModel):
 
 class Measure(ConfigModel):
     """What every kind of measure may carry."""
+
+    if TYPE_CHECKING:
+        kind: str  # of each subclass a Literal of its own
 
     at: Selection = Field(
         default_factory=dict, description="the cells it is taken in; all when absent"

@@ -1,4 +1,4 @@
-"""Kinds of measures that read where bodies are, from the logged poses alone: motion and overlap.
+"""Models of measures of where bodies are, from the logged poses alone.
 
 The solver's own columns (penetration, impulses) play no part in them.
 """
@@ -9,11 +9,9 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from lavendersim.experiment.models.measure_base import Measure, Seconds
+from lavendersim.measures.specs.base import Measure, Seconds
 from lavendersim.quantities.names import BodyName, PlaneName
 from lavendersim.quantities.quantity import Quantity
-
-Stride = Annotated[int, Quantity("", minimum=1, whole=True)]
 
 
 class ApexError(Measure):
@@ -34,16 +32,6 @@ class Drift(Measure):
     after: Seconds = Field(default=0.5, description="the time of the pose it is counted from [s]")
     bodies: tuple[BodyName, ...] = Field(
         default=(), description="whose centres; those of all movable bodies when absent"
-    )
-
-
-class Overlap(Measure):
-    """Deepest penetration [m] of any two bodies at the end of the run, from their geometry."""
-
-    kind: Literal["overlap"]
-    last: Seconds = Field(default=1.0, description="length of the window at the end [s]")
-    every: Stride = Field(
-        default=1, description="look at every k-th logged step, counted back from the last [-]"
     )
 
 
@@ -86,6 +74,3 @@ class PassedThrough(Measure):
     kind: Literal["passed_through"]
     body: BodyName = Field(description="the body that may pass")
     wall: BodyName = Field(description="a plane or a fixed box")
-
-
-MotionSpec = ApexError | Drift | Overlap | SlipDistance | Creep | EffectiveFriction | PassedThrough

@@ -1,4 +1,4 @@
-"""Kinds of measures that read how bodies move, from the logged poses alone: ways, speeds, turns."""
+"""Models of measures of how bodies move, from the logged poses alone."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from lavendersim.experiment.models.measure_base import Measure, Seconds
+from lavendersim.measures.specs.base import Measure, Seconds
 from lavendersim.quantities.names import BodyName
 from lavendersim.quantities.quantity import Quantity, Vector, Vector3, sentence_error
 
@@ -88,6 +88,3 @@ class Tilt(Measure):
     kind: Literal["tilt"]
     body: BodyName = Field(description="the body")
     axis: Direction = Field(default=(0.0, 0.0, 1.0), description="axis in the body's frame")
-
-
-KinematicSpec = Displacement | MeanVelocity | MeanAngularVelocity | TopSpeed | RestTime | Tilt

@@ -30,8 +30,8 @@ from typing import Annotated, Final, Literal
 from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from lavendersim.experiment.models.measure_base import ClosedForm
-from lavendersim.experiment.models.selection import Selection
+from lavendersim.measures.specs.base import ClosedForm
+from lavendersim.measures.specs.selection import Selection
 from lavendersim.quantities.model import ConfigModel
 from lavendersim.quantities.names import AxisName, MeasureName
 from lavendersim.quantities.quantity import Quantity

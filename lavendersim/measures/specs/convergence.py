@@ -1,0 +1,23 @@
+"""Models of measures of the residual of one step."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import Field
+
+from lavendersim.measures.specs.base import Measure, Seconds
+
+
+class ResidualBySweep(Measure):
+    """Residual [m/s] before sweep 1 and after each sweep (a row of numbers) of one step."""
+
+    kind: Literal["residual_by_sweep"]
+    after: Seconds = Field(description="the first step that ends after this time [s] is taken")
+
+
+class FinalResidual(Measure):
+    """Residual [m/s] after the last sweep of one step."""
+
+    kind: Literal["final_residual"]
+    after: Seconds = Field(description="the first step that ends after this time [s] is taken")

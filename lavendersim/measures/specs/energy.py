@@ -1,0 +1,33 @@
+"""Models of measures of the energy of a bouncing body."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from lavendersim.measures.specs.base import Measure
+from lavendersim.quantities.names import BodyName, PlaneName
+from lavendersim.quantities.quantity import Quantity
+
+
+class EnergyByBounce(Measure):
+    """Relative change of mechanical energy at the apex after bounce 1, 2, ... (a row)."""
+
+    kind: Literal["energy_by_bounce"]
+    body: BodyName = Field(description="the bouncing body; the only movable one")
+    above: PlaneName = Field(description="the plane it bounces on; energy is zero at rest on it")
+    bounces: Annotated[int, Quantity("", minimum=1, whole=True)] = Field(
+        description="how many bounces [-]"
+    )
+
+
+class EnergyAfterBounces(Measure):
+    """The last number of `energy_by_bounce`."""
+
+    kind: Literal["energy_after_bounces"]
+    body: BodyName = Field(description="the bouncing body; the only movable one")
+    above: PlaneName = Field(description="the plane it bounces on; energy is zero at rest on it")
+    bounces: Annotated[int, Quantity("", minimum=1, whole=True)] = Field(
+        description="how many bounces [-]"
+    )

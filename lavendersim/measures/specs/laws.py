@@ -1,0 +1,75 @@
+"""Models of measures that compare a log with a law: balance, conservation, the laws of contact.
+
+They read the log's sums (energies, momenta) and poses; what they are compared with is computed
+from the config alone.
+"""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import Field
+
+from lavendersim.measures.specs.base import Measure, Seconds
+from lavendersim.quantities.names import BodyName, PlaneName
+
+
+class ForceError(Measure):
+    """Largest |vertical contact force / weight - 1| [-] of what rests, in any step of a window."""
+
+    kind: Literal["force_error"]
+    body: BodyName | None = Field(
+        default=None,
+        description="one body and all its contacts; all movable bodies together when absent",
+    )
+    last: Seconds = Field(default=1.0, description="length of the window at the end [s]")
+
+
+class EnergyDrift(Measure):
+    """Largest |E/E0 - 1| [-] of the scene's kinetic and potential energy over the run."""
+
+    kind: Literal["energy_drift"]
+    body: BodyName | None = Field(
+        default=None, description="with `above`: the only movable body; it is at rest on the plane"
+    )
+    above: PlaneName | None = Field(
+        default=None, description="where its potential energy is zero; the world's origin if absent"
+    )
+
+
+class EnergyGain(Measure):
+    """Largest E/E0 - 1 [-] over the run: above 0 where energy was won."""
+
+    kind: Literal["energy_gain"]
+    body: BodyName | None = Field(
+        default=None, description="with `above`: the only movable body; it is at rest on the plane"
+    )
+    above: PlaneName | None = Field(
+        default=None, description="where its potential energy is zero; the world's origin if absent"
+    )
+
+
+class AngularMomentumDrift(Measure):
+    """Largest |L - L0| / |L0| [-] of the scene's angular momentum vector over the run."""
+
+    kind: Literal["angular_momentum_drift"]
+
+
+class LawViolation(Measure):
+    """Largest violation of one part of the law of contact in any step, as `/step` states it.
+
+    natural_map [m/s] of the law that was solved, the solver's own error; signorini [m/s],
+    cone [N s] and dissipation [J] of Signorini's and Coulomb's law, whichever was solved.
+    """
+
+    kind: Literal["law_violation"]
+    part: Literal["natural_map", "signorini", "cone", "dissipation"] = Field(
+        description="which part of the law"
+    )
+    after: Seconds = Field(default=0.0, description="[s] only steps that end after this time")
+
+
+class UnsolvedSteps(Measure):
+    """Number of steps whose residual stayed above the tolerance asked for."""
+
+    kind: Literal["unsolved_steps"]
