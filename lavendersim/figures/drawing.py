@@ -28,8 +28,10 @@ def describe(
     axes.set_title(title, loc="left")
     axes.set_xlabel(x_label)
     axes.set_ylabel(y_label)
-    axes.set_xscale(x_scale)
-    axes.set_yscale(y_scale)
+    if x_scale != "linear":  # as axes begin; to set it again would take ticks and labels away
+        axes.set_xscale(x_scale)
+    if y_scale != "linear":
+        axes.set_yscale(y_scale)
 
 
 def draw_levels(axes: Any, levels: Sequence[Any]) -> None:

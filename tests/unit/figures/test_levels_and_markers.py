@@ -11,22 +11,22 @@ from matplotlib.figure import Figure
 
 from lavendersim.experiment.models.figure import MeasureAgainstAxis
 from lavendersim.figures.against_axis import marker_size
-from lavendersim.figures.drawing import dress, legend, ticks_at_values
+from lavendersim.figures.drawing import draw_levels, legend, ticks_at_values
 
 
-def dressed(*levels: dict[str, Any]) -> Any:
+def with_levels(*levels: dict[str, Any]) -> Any:
     """Axes with nothing on them but a panel's levels and their legend."""
     labels = {"title": "one idea", "x_label": "there [m]", "y_label": "here [m]"}
     panel = labels | {"kind": "measure_against_axis", "measure": "m", "axis": "a", "levels": levels}
     axes = Figure().add_subplot()
-    dress(axes, MeasureAgainstAxis.model_validate(panel))
+    draw_levels(axes, MeasureAgainstAxis.model_validate(panel).levels)
     legend(axes)
     return axes
 
 
 def test_levels_of_one_label_are_drawn_alike_and_named_once() -> None:
     ends = ({"value": 4.0, "label": "bound"}, {"value": -4.0, "label": "bound"})
-    axes = dressed(*ends, {"value": 1.0, "label": "other"})
+    axes = with_levels(*ends, {"value": 1.0, "label": "other"})
     assert [text.get_text() for text in axes.get_legend().get_texts()] == ["bound", "other"]
     high, low, other = (line._dash_pattern for line in axes.lines)
     assert high == low != other
