@@ -1,4 +1,4 @@
-"""The recipes of docs/extending.md: each patch is applied to a copy of lavender, which is then used.
+"""The recipes of docs/extending.md: each patch is applied to a copy of lavender, and used there.
 
 A recipe is a section with a sentence `Touches N files.`, its patch as a `diff` block, and, as a
 `yaml` block, an experiment that only lavender with the patch takes and whose expectations it meets.
