@@ -17,6 +17,7 @@ import yaml
 from mcap.records import Attachment, Schema
 from numpy.typing import NDArray
 
+from lavendersim.cell import CellConfig
 from lavendersim.clock import Clock
 from lavendersim.errors import TraceError, UsageError
 from lavendersim.trace import decode, layout
@@ -152,10 +153,27 @@ class Trace:
         return self._attachment(AS_WRITTEN).decode()
 
     @cached_property
+    def config(self) -> CellConfig:
+        """The config of this cell with every default filled in.
+
+        TraceError where another version wrote it so that this one cannot read it.
+        """
+        data = self.resolved
+        try:
+            return CellConfig.from_dict(data)
+        except ValueError as error:  # pydantic's: a count, then a key and what is wrong with it
+            why = ": ".join(line.strip() for line in str(error).splitlines()[1:3])
+            raise TraceError(
+                f"{self.path}: its config was written by another version: {why}"
+            ) from None
+
+    @cached_property
     def resolved(self) -> dict[str, Any]:
-        """The config of this cell with every default filled in."""
+        """The config of this cell as plain data."""
         with damage(self.path, RESOLVED):
-            loaded: dict[str, Any] = yaml.safe_load(self._attachment(RESOLVED).decode())
+            loaded: dict[str, Any] = yaml.load(
+                self._attachment(RESOLVED), getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+            )
             return loaded
 
     def _read_metadata(self) -> dict[str, dict[str, str]]:

@@ -10,15 +10,20 @@ import numpy as np
 import pytest
 from laboratory import Bench, box, plane, planned, resolved, sphere
 
+from lavendersim.cell import CellEvent
 from lavendersim.scene.events import apply_event
 
 G, DT = 9.81, 1.0 / 240.0
 SLEEP_TIME = 0.1
 LOW, MIDDLE, HIGH, LONE, BALL, LIFT = range(1, 7)
-EVENT = {
-    "scale_mass": None, "velocity": None, "angular_velocity": None, "teleport": None,
-    "contact_cache": "keep",
-}  # fmt: skip
+EVENT = CellEvent(
+    at=0.0, body="low", scale_mass=None, velocity=None, angular_velocity=None, teleport=None,
+    contact_cache="keep", remove=False,
+)  # fmt: skip
+
+
+def happens(**changes) -> CellEvent:
+    return EVENT.model_copy(update=changes)
 
 
 def stack(ball=(50.0, 0.0, 50.0), velocity=(0.0, 0.0, 0.0), sleeping=True, **numerics) -> Bench:
@@ -110,7 +115,7 @@ def test_an_island_at_rest_again_sleeps_again() -> None:
 
 def test_what_stood_on_a_body_taken_away_falls() -> None:
     bench = slept()
-    apply_event(bench.engine, bench.scene, {**EVENT, "body": "low", "teleport": [9.0, 0.0, 0.1]})
+    apply_event(bench.engine, bench.scene, happens(body="low", teleport=(9.0, 0.0, 0.1)))
     bench.run(24)
     # 0.1 s of free fall: g t^2 / 2 = 0.049 m, less a step of it at most
     assert bench.engine.bodies["z"][HIGH] < 0.5 - 0.5 * G * (23 * DT) ** 2
@@ -125,7 +130,7 @@ def test_whoever_slept_beside_a_removed_body_wakes(removed, left) -> None:
     bench = slept()
     row = bench.scene.names.index(removed)
     place = bench.engine.bodies[["x", "y", "z"]][row].item()
-    apply_event(bench.engine, bench.scene, {**EVENT, "body": removed, "remove": True})
+    apply_event(bench.engine, bench.scene, happens(body=removed, remove=True))
     assert asleep(bench) == left
     bodies, velocities = bench.engine.bodies, bench.engine.velocities
     assert (bodies["inv_m"][row], bodies["own_inv_m"][row], bodies["kinematic"][row]) == (0, 0, 0)
@@ -152,7 +157,7 @@ def test_a_force_wakes_and_keeps_awake_as_long_as_it_acts(force) -> None:
 
 def test_a_changed_velocity_wakes() -> None:
     bench = slept()
-    apply_event(bench.engine, bench.scene, {**EVENT, "body": "high", "velocity": [0.0, 0.0, 1.0]})
+    apply_event(bench.engine, bench.scene, happens(body="high", velocity=(0.0, 0.0, 1.0)))
     bench.run(1)
     assert asleep(bench) == [LONE]
     assert bench.engine.bodies["z"][HIGH] > 0.5 + 0.9 * DT
@@ -160,7 +165,7 @@ def test_a_changed_velocity_wakes() -> None:
 
 def test_a_changed_mass_is_the_mass_it_wakes_with() -> None:
     bench = slept()
-    apply_event(bench.engine, bench.scene, {**EVENT, "body": "high", "scale_mass": 4.0})
+    apply_event(bench.engine, bench.scene, happens(body="high", scale_mass=4.0))
     assert asleep(bench) == [LONE]
     assert bench.engine.bodies["inv_m"][HIGH] == 0.25
     rows = bench.run(5)
