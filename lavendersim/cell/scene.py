@@ -5,7 +5,8 @@ from __future__ import annotations
 from pydantic import Field
 
 from lavendersim.cell.body import CellBody
-from lavendersim.quantities.model import ResolvedModel
+from lavendersim.engine.effects import SCENE_KEYS
+from lavendersim.quantities.model import ResolvedModel, declared
 from lavendersim.quantities.quantity import Vector3
 
 
@@ -19,7 +20,7 @@ class CellForce(ResolvedModel):
     torque: Vector3  # [N m] world frame
 
 
-class CellScene(ResolvedModel):
+class CellScene(declared("CellScene", ResolvedModel, SCENE_KEYS)):  # type: ignore[misc]
     """Gravity, the bodies in the order of the file, then those arranged, and the forces."""
 
     gravity: Vector3  # [m/s^2]

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from lavendersim.cell import CellBody
 
-from .classes import class_of, mix, ordered
+from .classes import Surface, class_of, mix, ordered
 from .colliders import colliders
 
 
@@ -17,11 +17,7 @@ class CandidatePair(NamedTuple):
     a: int
     b: int
     shape_pair: str
-    restitution: float
-    compliance: float
-    friction: float
-    torsional_friction: float
-    rolling_friction: float
+    surface: Surface  # mixed
 
 
 def candidate_pairs(bodies: Sequence[CellBody]) -> list[CandidatePair]:
@@ -36,5 +32,5 @@ def candidate_pairs(bodies: Sequence[CellBody]) -> list[CandidatePair]:
                 continue
             swap, name = ordered((one.kind, other.kind))
             a, b = (j, i) if swap else (i, j)
-            pairs.append(CandidatePair(a, b, name, *mix(one.surface, other.surface)))
+            pairs.append(CandidatePair(a, b, name, mix(one.surface, other.surface)))
     return pairs

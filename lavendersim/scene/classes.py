@@ -6,25 +6,29 @@ pair of classes.
 
 from __future__ import annotations
 
+import collections
 from collections.abc import Sequence
-from math import sqrt
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from lavendersim.engine.collide import SHAPE_PAIRS
+from lavendersim.engine.effects import SURFACE_KEYS
 
 from .colliders import Collider, is_movable
 
 _PAIR_BY_SHAPES = {pair.shapes: name for name, pair in SHAPE_PAIRS.items()}
 
 
-class Surface(NamedTuple):
-    """The properties of a surface, or of a pair of surfaces once mixed; names are those of PAIR."""
+_Declared: Any = getattr(collections, "namedtuple")(  # noqa: B009 - mypy reads it otherwise
+    "_Declared",
+    [key.name for key in SURFACE_KEYS],
+    defaults=[key.default for key in SURFACE_KEYS],
+)
 
-    restitution: float
-    compliance: float  # [m/N]
-    friction: float
-    torsional_friction: float  # [m]
-    rolling_friction: float  # [m]
+
+class Surface(_Declared):  # type: ignore[misc]  # its fields are known when it is composed
+    """The properties of a surface, or of a pair of surfaces once mixed: the keys of effects."""
+
+    __slots__ = ()
 
 
 class RowClass(NamedTuple):
@@ -53,17 +57,8 @@ class ClassPair(NamedTuple):
 
 
 def mix(one: Surface, other: Surface) -> Surface:
-    """Return what holds between two surfaces.
-
-    Compliances add (springs in series), friction is the geometric mean, the rest the larger one.
-    """
-    return Surface(
-        restitution=max(one.restitution, other.restitution),
-        compliance=one.compliance + other.compliance,
-        friction=sqrt(one.friction * other.friction),
-        torsional_friction=max(one.torsional_friction, other.torsional_friction),
-        rolling_friction=max(one.rolling_friction, other.rolling_friction),
-    )
+    """Return what holds between two surfaces, each property as its effect mixes it."""
+    return Surface(*(key.mix(a, b) for key, a, b in zip(SURFACE_KEYS, one, other, strict=True)))
 
 
 def class_of(row: Collider) -> RowClass:

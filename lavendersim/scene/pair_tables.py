@@ -41,7 +41,7 @@ def pair_tables(
         line["a"], line["b"], line["key"] = pair.a, pair.b, index
         line["kind"] = SHAPE_PAIRS[pair.shape_pair].kind
         for name in names:
-            line[name] = getattr(pair, name)
+            line[name] = getattr(pair.surface, name)
     return pairs, np.zeros((0, 0), template_dtype([]))
 
 

@@ -58,6 +58,7 @@ def test_every_module_of_effects_is_listed_once() -> None:
         "__init__",
         "decision",
         "effect",
+        "keys",
     }
     names = [effect.name for effect in EFFECTS]
     assert sorted(names) == sorted(stems)

@@ -9,8 +9,15 @@ import sys
 import pytest
 from sources import files, module_of, room_of
 
+from lavendersim.engine.effects import NAMES
+
 # Lists of what the engine has, which configs are read with.
-DECLARATIONS = {"lavendersim.engine", "lavendersim.engine.solvers"}
+DECLARATIONS = {
+    *("lavendersim.engine", "lavendersim.engine.solvers"),
+    *("lavendersim.engine.records", "lavendersim.engine.spec", "lavendersim.engine.effects"),
+    *(f"lavendersim.engine.effects.{part}" for part in ("decision", "effect", "keys")),
+    *(f"lavendersim.engine.effects.{name}" for name in NAMES),
+}
 HEAVY = {"numba", "llvmlite", "matplotlib", "rerun", "numpy", "scipy", "h5py"}
 VERSION = """
 from lavender_cli.main import main
@@ -46,7 +53,7 @@ def test_the_front_doors_load_nothing_heavy(code: str) -> None:
     assert loaded_after(code) & HEAVY == set()
 
 
-def test_reading_an_experiment_loads_no_engine() -> None:
+def test_reading_an_experiment_loads_no_kernel() -> None:
     loaded = loaded_after("from lavendersim import load_experiment")
     assert loaded & (HEAVY | {"mcap", "lavendersim.scene"}) == set()
     assert of_the_engine(loaded) <= DECLARATIONS

@@ -17,10 +17,10 @@ ROOMS = {
     "geometry": set(),
     "quantities": {"errors", "clock"},
     "cell": {"errors", "clock", "quantities", "engine"},  # of the engine: DECLARATIONS
-    "experiment": {"errors", "clock", "geometry", "quantities", "cell", "measures"},
-    "engine": set(),
+    "experiment": {"errors", "clock", "geometry", "quantities", "cell", "engine", "measures"},
+    "engine": {"quantities"},
     "scene": {"errors", "clock", "geometry", "quantities", "cell", "experiment", "engine"},
-    "trace": {"errors", "clock", "geometry", "quantities", "cell"},
+    "trace": {"errors", "clock", "geometry", "quantities", "cell", "engine"},
     "problems": {"errors", "engine"},
     "measures": {"errors", "clock", "geometry", "quantities", "cell", "trace"},
     "figures": {"errors", "geometry", "quantities", "cell", "experiment", "trace", "measures"},
@@ -37,7 +37,7 @@ ROOMS = {
     },
 }
 # Modules of the engine that list what it has, without numba: what configs may name.
-DECLARATIONS = {"lavendersim.engine.solvers"}
+DECLARATIONS = {"lavendersim.engine.effects", "lavendersim.engine.solvers"}
 # Who may import a library of others; what is not listed is imported by nobody.
 LIBRARIES = {
     "numba": {"engine"},
@@ -88,7 +88,7 @@ def test_a_room_imports_only_the_rooms_it_may(room: str) -> None:
 
 
 def test_configs_are_read_with_no_more_of_the_engine_than_its_lists() -> None:
-    rooms = ("cell", "experiment")
+    rooms = ("cell", "experiment", "trace")
     of_engine = [f for f in IMPORTS if f.room in rooms and f.target == "engine"]
     strangers = [str(f) for f in of_engine if f.module.rpartition(".")[0] not in DECLARATIONS]
     assert strangers == []
@@ -102,6 +102,11 @@ def test_a_library_is_known_to_its_rooms_only(library: str) -> None:
         if found.target == library and found.room not in LIBRARIES[library]
     ]
     assert strangers == []
+
+
+def test_of_the_engine_only_keys_of_effects_know_quantities() -> None:
+    files = {str(f.file) for f in IMPORTS if f.room == "engine" and f.target == "quantities"}
+    assert all(file.startswith("lavendersim/engine/effects/") for file in files)
 
 
 def test_one_file_knows_the_format_of_fclib() -> None:

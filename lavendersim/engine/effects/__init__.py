@@ -54,6 +54,10 @@ EFFECTS: Final[tuple[Effect, ...]] = tuple(
 BY_NAME: Final = {effect.name: effect for effect in EFFECTS}
 
 
+SURFACE_KEYS: Final = tuple(key for effect in EFFECTS for key in effect.surface_keys)
+SCENE_KEYS: Final = tuple(key for effect in EFFECTS for key in effect.scene_keys)
+
+
 def effects_of(spec: Spec) -> list[Effect]:
     """Return the effects of an engine, in order."""
     return [effect for effect in EFFECTS if spec.has(effect.name)]
@@ -99,6 +103,8 @@ __all__ = [
     "BY_NAME",
     "CHAINED",
     "EFFECTS",
+    "SCENE_KEYS",
+    "SURFACE_KEYS",
     "BodyFacts",
     "Column",
     "Decision",

@@ -6,6 +6,7 @@ velocities and its unknown an impulse, F = lambda/dt and d = c F.
 
 from .decision import Decision, Facts, by_pair
 from .effect import Effect, Fields, Hooks, kernel
+from .keys import COMPLIANCE, SurfaceKey, in_series
 
 
 def decide(facts: Facts) -> Decision:
@@ -31,6 +32,15 @@ EFFECT = Effect(
     name="compliance",
     decide=decide,
     per="contact",
+    surface_keys=(
+        SurfaceKey(
+            name="compliance",
+            type=COMPLIANCE,
+            default=0.0,
+            doc="[m/N] indentation per force; the two surfaces of a contact add",
+            mix=in_series,
+        ),
+    ),
     fields=Fields(
         pair=[("compliance", "f8")],  # c of the pair [m/N]
         contact=[("gamma", "f8")],  # [1/kg]

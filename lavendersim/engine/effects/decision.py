@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 MOST_PAIRS = 3  # in a sentence
@@ -42,6 +43,7 @@ class PairFacts(NamedTuple):
     rolling_friction: float = 0.0  # [m]
     shape_pair: str = ""  # name of the manifold
     row_pairs: int = 1  # how many pairs it stands for
+    surface: Mapping[str, float] = MappingProxyType({})  # every property, by the key of the config
 
     @property
     def resists_turning(self) -> bool:

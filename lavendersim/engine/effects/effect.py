@@ -17,6 +17,7 @@ from typing import Any, Final, Literal, NamedTuple
 from ..records import Field
 from ..spec import Spec
 from .decision import Decision, Facts
+from .keys import SceneKey, SurfaceKey
 
 Kernel = Any  # a compiled function
 Maker = Callable[..., Kernel]  # (spec, ...) -> kernel; what it is given beside the spec: see Hooks
@@ -113,6 +114,8 @@ class Effect:
     per: Literal["body", "contact"]  # what its cost grows with
     needs: tuple[str, ...] = ()  # effects without which it cannot be
     chosen_by: Choice | None = None
+    surface_keys: tuple[SurfaceKey, ...] = ()  # of a config: properties of surfaces
+    scene_keys: tuple[SceneKey, ...] = ()
     study_only: str = ""  # of a deliberate error, what it does: every run that has it says so
     fields: Fields = Fields()
     body_values: Callable[[Any], Mapping[str, Any]] | None = None  # of fields.body

@@ -9,6 +9,7 @@ a sweep needs both and nothing else of a body.
 from ..spec import Spec
 from .decision import Decision, Facts, PairFacts, by_pair
 from .effect import Column, Effect, Fields, Hooks, Kernel, kernel
+from .keys import COEFFICIENT, SurfaceKey, geometric_mean
 
 
 def _said(pair: PairFacts) -> str:
@@ -79,6 +80,15 @@ EFFECT = Effect(
     name="friction",
     decide=decide,
     per="contact",
+    surface_keys=(
+        SurfaceKey(
+            name="friction",
+            type=COEFFICIENT,
+            default=0.0,
+            doc="Coulomb coefficient mu; a pair takes the geometric mean sqrt(mu_a mu_b)",
+            mix=geometric_mean,
+        ),
+    ),
     needs=("contact_torque", "rotation"),
     fields=Fields(
         velocity=[(f"j{axes}", "f8") for axes in ("xx", "xy", "xz", "yy", "yz", "zz")],

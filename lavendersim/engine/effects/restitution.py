@@ -8,6 +8,7 @@ and so does the mistake of `capture_in_sweeps`.
 
 from .decision import Decision, Facts, by_pair
 from .effect import Effect, Fields, Hooks, kernel
+from .keys import SHARE, SurfaceKey, larger
 
 
 def decide(facts: Facts) -> Decision:
@@ -38,6 +39,15 @@ EFFECT = Effect(
     name="restitution",
     decide=decide,
     per="contact",
+    surface_keys=(
+        SurfaceKey(
+            name="restitution",
+            type=SHARE,
+            default=0.0,
+            doc="share of the approach speed given back, 0 to 1; a pair takes the larger",
+            mix=larger,
+        ),
+    ),
     fields=Fields(
         pair=[("restitution", "f8")],  # e of the pair, the larger of its surfaces' [-]
     ),

@@ -12,6 +12,7 @@ from math import sqrt
 
 from .decision import Decision, Facts, PairFacts, by_pair
 from .effect import Column, Effect, Fields, Hooks, kernel
+from .keys import LENGTH, SurfaceKey, larger
 
 # spin: angular velocity of B relative to A after the solve, about the tangents.
 
@@ -90,6 +91,15 @@ EFFECT = Effect(
     name="rolling_friction",
     decide=decide,
     per="contact",
+    surface_keys=(
+        SurfaceKey(
+            name="rolling_friction",
+            type=LENGTH,
+            default=0.0,
+            doc="[m] torque against rolling per normal force; a pair takes the larger",
+            mix=larger,
+        ),
+    ),
     needs=("friction",),
     fields=Fields(
         pair=[("rolling_friction", "f8")],  # c of the pair [m]

@@ -9,6 +9,7 @@ no other friction: mu may be 0, friction's block is there for its frame.
 
 from .decision import Decision, Facts, PairFacts, by_pair
 from .effect import Column, Effect, Fields, Hooks, kernel
+from .keys import LENGTH, SurfaceKey, larger
 
 # spin: angular velocity of B relative to A after the solve, about the normal.
 
@@ -78,6 +79,15 @@ EFFECT = Effect(
     name="torsional_friction",
     decide=decide,
     per="contact",
+    surface_keys=(
+        SurfaceKey(
+            name="torsional_friction",
+            type=LENGTH,
+            default=0.0,
+            doc="[m] torque about the normal per normal force; a pair takes the larger",
+            mix=larger,
+        ),
+    ),
     needs=("friction",),
     fields=Fields(
         pair=[("torsional_friction", "f8")],  # c of the pair [m]

@@ -7,9 +7,10 @@ from typing import Annotated, Any
 from pydantic import Field, Tag
 
 from lavendersim.cell.surface import Surface
+from lavendersim.engine.effects import SCENE_KEYS
 from lavendersim.experiment.models.arrangements import Arrangement
 from lavendersim.experiment.models.bodies import Body
-from lavendersim.quantities.model import ConfigModel
+from lavendersim.quantities.model import ConfigModel, declared
 from lavendersim.quantities.names import BodyName, NewName
 from lavendersim.quantities.quantity import Quantity, Vector, Vector3, either
 
@@ -73,7 +74,7 @@ class Force(ConfigModel):
     )
 
 
-class Scene(ConfigModel):
+class Scene(declared("Scene", ConfigModel, SCENE_KEYS)):  # type: ignore[misc]
     """What is there; bodies in the order in which they are written, then those arranged."""
 
     gravity: Gravity = Field(

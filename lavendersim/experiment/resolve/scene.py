@@ -8,13 +8,14 @@ from fractions import Fraction
 from lavendersim.cell.body import CellBody
 from lavendersim.cell.scene import CellForce, CellScene
 from lavendersim.cell.shapes import CellShape, Plane
+from lavendersim.engine.effects import SCENE_KEYS
 from lavendersim.experiment.checks.population import ARRANGEMENTS, BODIES, member_name
 from lavendersim.experiment.models.bodies import ArrangedBody, Body
 from lavendersim.experiment.models.scene import Force, Scene, TiltedGravity
 from lavendersim.experiment.resolve.arrangements import centres
 from lavendersim.experiment.resolve.placement import SceneError, released_position
 from lavendersim.experiment.resolve.shape import quaternion_of, resolve_shape
-from lavendersim.geometry.quaternions import IDENTITY, product, to_body
+from lavendersim.geometry.quaternions import IDENTITY, Quaternion, product, to_body, to_world
 from lavendersim.geometry.vectors import unit
 from lavendersim.quantities.quantity import Vector3
 
@@ -25,7 +26,9 @@ def resolve_scene(scene: Scene, timestep: Fraction, duration: float) -> CellScen
     """Fill in what the file leaves open; raises SceneError with the path of what to change."""
     gravity = gravity_vector(scene.gravity)
     bodies: dict[str, CellBody] = {}
+    written: dict[str, Quaternion] = {}  # orientation of the frame that the file means
     for name, body in scene.bodies.items():
+        written[name] = quaternion_of(body.orientation)
         try:
             bodies[name] = _body(body, scene, gravity, timestep)
         except SceneError as error:
@@ -38,9 +41,21 @@ def resolve_scene(scene: Scene, timestep: Fraction, duration: float) -> CellScen
         assert not isinstance(one.shape, Plane)
         places = centres(arrangement, one.shape, one.orientation)
         for number, position in enumerate(places, start=1):
-            bodies[member_name(name, number)] = one.model_copy(update={"position": position})
+            member = member_name(name, number)
+            bodies[member] = one.model_copy(update={"position": position})
+            written[member] = quaternion_of(arrangement.body.orientation)
     forces = tuple(_force(force, duration) for force in scene.forces)
-    return CellScene.model_construct(gravity=gravity, bodies=bodies, forces=forces)
+
+    def turned(name: str, vector: Vector3) -> Vector3:
+        """Return a vector of a body's frame as written in the frame of its principal axes."""
+        before, after = written[name], bodies[name].orientation
+        return vector if before == after else to_body(after, to_world(before, vector))
+
+    by_effect = {key.name: key.resolve(getattr(scene, key.name), turned) for key in SCENE_KEYS}
+    resolved: CellScene = CellScene.model_construct(
+        gravity=gravity, bodies=bodies, forces=forces, **by_effect
+    )
+    return resolved
 
 
 def gravity_vector(gravity: float | Vector3 | TiltedGravity) -> Vector3:

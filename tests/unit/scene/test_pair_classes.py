@@ -51,8 +51,8 @@ def crowd(seed: int, count: int, compounds: bool = False) -> list[dict]:
 
 
 def test_mixing() -> None:
-    one = Surface(0.2, 1e-6, 0.9, 0.01, 0.0)
-    other = Surface(0.7, 2e-6, 0.4, 0.0, 0.02)
+    one = Surface(restitution=0.2, compliance=1e-6, friction=0.9, torsional_friction=0.01)
+    other = Surface(restitution=0.7, compliance=2e-6, friction=0.4, rolling_friction=0.02)
     mixed = mix(one, other)
     assert mixed == mix(other, one)
     assert mixed.restitution == 0.7
@@ -63,19 +63,19 @@ def test_mixing() -> None:
 
 def test_equal_surfaces_keep_their_friction_to_the_last_bit() -> None:
     for mu in np.random.default_rng(1).uniform(0.0, 2.0, 1000):
-        surface = Surface(0.0, 0.0, float(mu), 0.0, 0.0)
+        surface = Surface(friction=float(mu))
         assert mix(surface, surface).friction == mu
 
 
 def test_smooth_surface_stays_smooth() -> None:
-    smooth, rough = Surface(0, 0, 0.0, 0, 0), Surface(0, 0, 1.0, 0, 0)
+    smooth, rough = Surface(friction=0.0), Surface(friction=1.0)
     assert mix(smooth, rough).friction == 0.0
 
 
 @pytest.mark.parametrize("seed", range(5))
 def test_classes_hold_every_pair_of_the_list(seed: int) -> None:
     bodies = bodies_of(*crowd(seed, 12))
-    listed = Counter((p.shape_pair, Surface(*p[3:])) for p in candidate_pairs(bodies))
+    listed = Counter((p.shape_pair, p.surface) for p in candidate_pairs(bodies))
     rows = colliders(bodies)
     classes = class_pairs(rows)
     counted: Counter = Counter()
@@ -102,7 +102,7 @@ def test_templates_say_what_the_list_says(seed: int) -> None:
         assert template["kind"] == SHAPE_PAIRS[pair.shape_pair].kind
         assert template["swap"] == (pair.a > pair.b)
         for name in ("friction", "restitution", "compliance"):
-            assert template[name] == getattr(pair, name)
+            assert template[name] == getattr(pair.surface, name)
     # What the list leaves out for what it is, not for whose part it is, has no template.
     known = {tuple(sorted((p.a, p.b))) for p in listed}
     rows = colliders(bodies)
