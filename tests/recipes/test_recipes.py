@@ -2,6 +2,7 @@
 
 A recipe is a section with a sentence `Touches N files.`, its patch as a `diff` block, and, as a
 `yaml` block, an experiment that only lavender with the patch takes and whose expectations it meets.
+One for another package has a `toml` block, its pyproject.toml, and a `python` block, its module.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ import re
 import shutil
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 from typing import NamedTuple
 
@@ -30,23 +32,26 @@ class Recipe(NamedTuple):
 
     name: str
     files: int  # as the page says
-    patch: str
-    experiment: str
+    blocks: dict[str, str]  # by language
+
+    @property
+    def experiment(self) -> str:
+        """The config that the recipe makes possible."""
+        return self.blocks["yaml"]
 
     def touched(self) -> set[str]:
-        """Return the files that the patch changes or makes."""
-        return set(re.findall(r"^\+\+\+ b/(.+)$", self.patch, re.MULTILINE))
+        """Return the files of lavender that it changes or adds."""
+        return set(re.findall(r"^\+\+\+ b/(.+)$", self.blocks.get("diff", ""), re.MULTILINE))
 
 
 def recipes() -> list[Recipe]:
-    """Return the recipes of the page: its sections with a patch."""
+    """Return the recipes of the page."""
     found = []
     for section in SECTION.finditer(PAGE.read_text()):
         blocks = {m["language"]: m["content"] for m in BLOCK.finditer(section["text"])}
-        if "diff" in blocks:
-            counts = re.findall(r"Touches\s(\d+)\sfiles?\.", section["text"])
-            assert len(counts) == 1, f"{section['name']} does not say how many files it touches"
-            found.append(Recipe(section["name"], int(counts[0]), blocks["diff"], blocks["yaml"]))
+        counts = re.findall(r"Touches\s(\d+)\sfiles?\.", section["text"])
+        assert len(counts) == ("diff" in blocks), f"{section['name']}: how many files?"
+        found.append(Recipe(section["name"], int(counts[0]) if counts else 0, blocks))
     return found
 
 
@@ -74,6 +79,22 @@ class Copy:
             text=True,
             check=True,
         )
+
+    def install(self, project: str, module: str) -> None:
+        """Do what pip does: put the module where Python finds it, with its entry points."""
+        about = tomllib.loads(project)["project"]
+        name = f"{about['name'].replace('-', '_')}-{about['version']}.dist-info"
+        metadata = self.folder / name
+        metadata.mkdir()
+        head = f"Metadata-Version: 2.1\nName: {about['name']}\nVersion: {about['version']}\n"
+        (metadata / "METADATA").write_text(head)
+        lines = []
+        for group, entries in about["entry-points"].items():
+            lines.append(f"[{group}]")
+            for key, value in entries.items():
+                lines.append(f"{key} = {value}")
+                (self.folder / f"{value}.py").write_text(module)
+        (metadata / "entry_points.txt").write_text("\n".join(lines))
 
     def lavender(self, *arguments: object) -> subprocess.CompletedProcess[str]:
         """Run the command line of the copy; -P: not that of the working directory."""
@@ -106,7 +127,10 @@ def test_a_recipe_works(recipe: Recipe, tmp_path: Path) -> None:
     config.write_text(recipe.experiment)
     before = copy.lavender("check", config)
     assert before.returncode == 2, before.stdout + before.stderr  # unknown to lavender as it is
-    copy.apply(recipe.patch)
+    if "diff" in recipe.blocks:
+        copy.apply(recipe.blocks["diff"])
+    else:
+        copy.install(recipe.blocks["toml"], recipe.blocks["python"])
     after = copy.lavender("run", config, "--plot")
     assert after.returncode == 0, after.stdout + after.stderr
     assert "pass" in after.stdout
