@@ -131,10 +131,8 @@ def run_cell(job: CellJob) -> CellOutcome:
     absent = absent_topics(job.plan)
     writer = TraceWriter(
         job.path,
-        scene.names,
-        job.config.as_dict(),
+        job.config,
         job.as_written,
-        scene.clock,
         metadata_of(job.plan, job.seeds),
         absent,
     )

@@ -1,4 +1,4 @@
-"""Bodies and their first poses enter, the URDF that viewers draw geometry from leaves.
+"""The URDF that viewers draw the geometry of a scene from.
 
 Links are named as the bodies and stand in the frames that /tf moves. A plane is a thin box whose
 top face is the plane; it is placed against the plane body's own pose, whatever that is.
@@ -7,11 +7,11 @@ top face is the plane; it is placed against the plane body's own pose, whatever 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
+from lavendersim.cell import CellBody, Plane
 from lavendersim.trace.layout import root_frame
 from lavendersim.trace.urdf_visuals import PLANE_THICKNESS, Matrix, Visual, visuals
 
@@ -24,29 +24,21 @@ STATIC_COLOUR = (170, 170, 170)
 MOST_VISUALS = 20_000
 
 
-def robot_description(
-    bodies: Sequence[str], shapes: Mapping[str, Mapping[str, Any]], poses: Matrix
-) -> str:
-    """Return the URDF of a scene.
-
-    shapes: body -> resolved body config (`shape`, `fixed`). poses: (bodies, 7), the first ones.
-    A shape this knows no geometry for is a link without a visual.
-    """
-    world = root_frame(bodies)
+def robot_description(bodies: Mapping[str, CellBody], poses: Matrix) -> str:
+    """Return the URDF of the bodies of a scene; poses: (bodies, 7), the first ones."""
+    world = root_frame(list(bodies))
     lines = ['<?xml version="1.0"?>', '<robot name="scene">', f"  <link name={quoteattr(world)}/>"]
     side = _plane_side(poses)
     left = MOST_VISUALS
-    for index, name in enumerate(bodies):
-        config = shapes.get(name, {})
-        shape = config.get("shape", {})
-        immovable = bool(config.get("fixed")) or shape.get("kind") == "plane"
+    for index, (name, body) in enumerate(bodies.items()):
+        immovable = body.fixed or isinstance(body.shape, Plane)
         colour = STATIC_COLOUR if immovable else PALETTE[index % len(PALETTE)]
-        drawn = visuals(shape, poses[index], side)
+        drawn = visuals(body.shape, poses[index], side)
         if len(drawn) > max(1, left):
             drawn = []
         left -= len(drawn)
         lines += [f"  <link name={quoteattr(name)}>", *_visuals(name, drawn, colour), "  </link>"]
-        still = immovable and not config.get("kinematic")
+        still = immovable and not body.kinematic
         lines += _joint(world, name, "fixed" if still else "floating")
     return "\n".join([*lines, "</robot>", ""])
 

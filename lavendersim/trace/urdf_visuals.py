@@ -1,4 +1,4 @@
-"""A shape of a resolved config enters; the <visual> elements that show it in its body leave.
+"""The URDF <visual> elements that show a shape in its body.
 
 URDF knows boxes, spheres and cylinders without files. A capsule is a cylinder and two spheres. A
 hull is drawn by its edges, thin cylinders: a mesh would be a file beside the log. Shapes are given
@@ -8,12 +8,23 @@ in the body's frame, so nothing here knows where the body is, but for planes.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from lavendersim.cell import (
+    Box,
+    Capsule,
+    CellCompound,
+    CellHull,
+    CellShape,
+    CellSimple,
+    Cylinder,
+    Plane,
+    Sphere,
+)
 from lavendersim.geometry.rotations import frame_along, rotation_matrix
 
 PLANE_THICKNESS = 0.02  # m; thin beside any body, thick enough to be seen edge-on
@@ -40,45 +51,45 @@ class Visual(NamedTuple):
         return f'<origin xyz="{numbers(self.position)}" rpy="{angles}"/>'
 
 
-def visuals(shape: Mapping[str, Any], pose: Matrix, plane_side: float) -> list[Visual]:
-    """Return what shows a shape; nothing for a kind that this does not know.
+def visuals(shape: CellShape, pose: Matrix, plane_side: float) -> list[Visual]:
+    """Return what shows a shape.
 
     pose: of the body, x y z qw qx qy qz. plane_side: of the square that stands for a plane [m].
     """
-    kind = shape.get("kind")
-    if kind == "plane":
+    if isinstance(shape, Plane):
         return [_plane(shape, pose, plane_side)]
-    if kind == "compound":
+    if isinstance(shape, CellCompound):
         return [
-            visual.within(np.array(part["position"], float), rotation_matrix(part["orientation"]))
-            for part in shape["parts"]
-            for visual in _solid(part["shape"])
+            visual.within(np.array(part.position, float), rotation_matrix(part.orientation))
+            for part in shape.parts
+            for visual in _solid(part.shape)
         ]
     return list(_solid(shape))
 
 
-def _solid(shape: Mapping[str, Any]) -> Iterator[Visual]:
-    kind = shape.get("kind")
-    if kind == "sphere":
-        yield _centred(_sphere(shape["radius"]))
-    elif kind == "box":
-        yield _centred(f'<box size="{numbers(shape["size"])}"/>')
-    elif kind in ("cylinder", "capsule"):
-        radius, length = float(shape["radius"]), float(shape["length"])
-        yield _centred(_cylinder(radius, length))
-        if kind == "capsule":
+def _solid(shape: CellSimple) -> Iterator[Visual]:
+    match shape:
+        case Sphere():
+            yield _centred(_sphere(shape.radius))
+        case Box():
+            yield _centred(f'<box size="{numbers(shape.size)}"/>')
+        case Cylinder():
+            yield _centred(_cylinder(shape.radius, shape.length))
+        case Capsule():
+            yield _centred(_cylinder(shape.radius, shape.length))
             for end in (-0.5, 0.5):
-                yield Visual(_sphere(radius), np.array([0.0, 0.0, end * length]), np.eye(3))
-    elif kind == "hull":
-        yield from _edges(shape)
+                place = np.array([0.0, 0.0, end * shape.length])
+                yield Visual(_sphere(shape.radius), place, np.eye(3))
+        case CellHull():
+            yield from _edges(shape)
 
 
-def _edges(hull: Mapping[str, Any]) -> Iterator[Visual]:
-    points = np.array(hull["points"], float)
+def _edges(hull: CellHull) -> Iterator[Visual]:
+    points = np.array(hull.points, float)
     radius = EDGE_SHARE * float(np.linalg.norm(points, axis=1).max())
     pairs = {
         (min(one, other), max(one, other))
-        for face in hull["faces"]
+        for face in hull.faces
         for one, other in zip(face, [*face[1:], face[0]], strict=True)
     }
     for one, other in sorted(pairs):
@@ -88,11 +99,11 @@ def _edges(hull: Mapping[str, Any]) -> Iterator[Visual]:
         yield Visual(_cylinder(radius, length), middle, frame_along(along / length))
 
 
-def _plane(shape: Mapping[str, Any], pose: Matrix, side: float) -> Visual:
+def _plane(shape: Plane, pose: Matrix, side: float) -> Visual:
     """Return a thin box whose top is the plane, placed against the plane body's own pose."""
-    normal = np.array([float(v) for v in shape["normal"]])
+    normal = np.array(shape.normal, float)
     normal /= np.linalg.norm(normal)
-    centre = normal * (float(shape["offset"]) - PLANE_THICKNESS / 2)
+    centre = normal * (shape.offset - PLANE_THICKNESS / 2)
     body = rotation_matrix(pose[3:])
     box = f'<box size="{numbers((side, side, PLANE_THICKNESS))}"/>'
     return Visual(box, body.T @ (centre - pose[:3]), body.T @ frame_along(normal))

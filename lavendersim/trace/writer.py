@@ -1,4 +1,4 @@
-"""Blocks of steps enter, a log file grows: the only writer of lavender's logs.
+"""The writer of logs: blocks of steps into the chunks of an MCAP file.
 
 Steps are cut into groups, and each group is two chunks, bulk then light; a log without poses and
 contacts has light ones only. A group closes with the
@@ -20,7 +20,7 @@ import yaml
 from mcap.records import Channel, Schema
 from numpy.typing import NDArray
 
-from lavendersim.clock import Clock
+from lavendersim.cell import CellConfig
 from lavendersim.trace import descriptors, layout
 from lavendersim.trace.container import INDEX_ENTRY, Container, Messages
 from lavendersim.trace.encode import Block, Encoded, Encoder
@@ -79,10 +79,8 @@ class TraceWriter:
     def __init__(
         self,
         path: str | Path,
-        bodies: Sequence[str],
-        resolved: Mapping[str, Any],
+        config: CellConfig,
         as_written: str,
-        clock: Clock,
         metadata: Mapping[str, Mapping[str, str]],
         absent: Mapping[str, str] | None = None,
     ) -> None:
@@ -91,17 +89,17 @@ class TraceWriter:
         if unknown := absent.keys() - layout.CHANNELS.keys():
             raise ValueError(f"no topics of a log: {sorted(unknown)}")
         self._topics = layout.CHANNELS.keys() - absent.keys()
-        self._bodies = list(bodies)
-        self._resolved = resolved
+        self._bodies = config.scene.bodies
+        clock = config.clock
         self._encoder: Encoder | None = None
         self._last_step = -1
         self._container = Container(Path(path))
-        text = yaml.safe_dump(dict(resolved), sort_keys=False, allow_unicode=True)
+        text = yaml.safe_dump(config.as_dict(), sort_keys=False, allow_unicode=True)
         self._container.attach(AS_WRITTEN, "application/yaml", as_written.encode())
         self._container.attach(RESOLVED, "application/yaml", text.encode())
         description = {
             "format": FORMAT,
-            "bodies": json.dumps(self._bodies),
+            "bodies": json.dumps(list(self._bodies)),
             "timestep": str(clock.timestep),
             ABSENT: json.dumps(absent, sort_keys=True),
         }
@@ -165,7 +163,7 @@ class TraceWriter:
 
     def _begin(self, block: Block) -> None:
         """Write the scene's geometry and open the streams: the columns are known now."""
-        self._encoder = encoder = Encoder(self._bodies, block, self._topics)
+        self._encoder = encoder = Encoder(list(self._bodies), block, self._topics)
         if "/robot_description" in self._topics:
             self._describe_geometry(block.pose[0].astype(np.float64))
         schemas, channels = [], []
@@ -196,8 +194,7 @@ class TraceWriter:
 
     def _describe_geometry(self, poses: NDArray[np.float64]) -> None:
         """Write the chunk of /robot_description; poses: of the initial state (bodies, 7)."""
-        shapes = self._resolved.get("scene", {}).get("bodies", {})
-        text = robot_description(self._bodies, shapes, poses).encode() + b"\0"
+        text = robot_description(self._bodies, poses).encode() + b"\0"
         schema = Schema(1, STRING_DEFINITION.encode(), "ros2msg", "std_msgs/msg/String")
         prologue = self._container.register([schema], [_channel("/robot_description", 1, "cdr")])
         head = bytes([0, 1, 0, 0]) + len(text).to_bytes(4, "little")  # CDR, little endian

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from fractions import Fraction
-
 import numpy as np
 import pytest
 from rerun.chunk import RrdReader
 
 from lavendersim import replay
-from lavendersim.clock import Clock
 from lavendersim.trace import Block, TraceWriter, open_trace
+from tests.made_cells import made_cell
 
 
 @pytest.mark.parametrize("contacts", [True, False])
@@ -18,9 +16,7 @@ def test_log_of_the_trace_room_is_replayed(one_ball, tmp_path, contacts):
     contact = one_ball.contact if contacts else one_ball.contact[:0]
     names = [name for name in one_ball.step.dtype.names if name != "time"]
     log = tmp_path / "log.mcap"
-    writer = TraceWriter(
-        log, one_ball.bodies, one_ball.resolved, "question: ?\n", Clock(Fraction(1, 240)), {}
-    )
+    writer = TraceWriter(log, made_cell(one_ball.resolved["scene"]["bodies"]), "question: ?\n", {})
     sweeps = np.zeros(0, [("step", "i8"), ("sweep", "i8"), ("residual", "f8")])
     writer.append(
         Block(step=one_ball.step[names], contact=contact, pose=one_ball.pose, residual=sweeps)

@@ -10,24 +10,19 @@ from typing import Any
 
 import numpy as np
 
-from lavendersim.clock import Clock
 from lavendersim.trace import Block, TraceWriter
 from lavendersim.trace.schema import CONTACT_COLUMNS, STEP_COLUMNS
+from tests.made_cells import made_cell
 
 BODIES = ["floor", "ball", "crate"]
 TIMESTEP = Fraction(1, 240)
 AS_WRITTEN = "question: does it bounce? # é\n"
-RESOLVED = {
-    "scene": {
-        "gravity": [0.0, 0.0, -9.81],
-        "bodies": {
-            "floor": {"shape": {"kind": "plane", "normal": [0.0, 0.0, 1.0], "offset": 0.0}},
-            "ball": {"shape": {"kind": "sphere", "radius": 0.1}, "mass": 1.0, "fixed": False},
-            "crate": {"shape": {"kind": "box", "size": [0.2, 0.3, 0.4]}, "mass": 2e-07},
-        },
-    },
-    "numerics": {"timestep": "1/240", "tolerance": None, "gain": 1e-09},
+SCENE: dict[str, Any] = {
+    "floor": {"shape": {"kind": "plane", "normal": [0.0, 0.0, 1.0], "offset": 0.0}},
+    "ball": {"shape": {"kind": "sphere", "radius": 0.1}},
+    "crate": {"shape": {"kind": "box", "size": [0.2, 0.3, 0.4]}, "mass": 2e-07},
 }
+CONFIG = made_cell(SCENE, numerics={"slop": 1e-09})
 METADATA = {"versions": {"numpy": "2", "engine": "abc"}, "plan": {"digest": "77"}}
 INTEGERS = ("step", "body_a", "body_b", "feature")
 
@@ -95,7 +90,7 @@ def write(
     absent: Mapping[str, str] | None = None,
 ) -> Path:
     """Write blocks as a log; status None leaves it as a killed run would."""
-    writer = TraceWriter(path, BODIES, RESOLVED, AS_WRITTEN, Clock(TIMESTEP), METADATA, absent)
+    writer = TraceWriter(path, CONFIG, AS_WRITTEN, METADATA, absent)
     for block in blocks:
         writer.append(block)
     if status is None:

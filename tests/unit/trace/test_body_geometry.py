@@ -13,9 +13,11 @@ from lavendersim.geometry.rotations import rotation_matrix
 from lavendersim.trace import urdf
 from lavendersim.trace.urdf import robot_description
 from lavendersim.trace.urdf_visuals import roll_pitch_yaw
+from tests.made_cells import made_body
 
 Vector = NDArray[np.float64]
 POSE = np.array([[0.3, 2.0, 1.0, 0.5, 0.5, -0.5, 0.5]])  # that of the body says nothing here
+PRINCIPAL = {"centre": [0.0, 0.0, 0.0], "axes": [1.0, 0.0, 0.0, 0.0]}
 TETRA = {
     "kind": "hull",
     "points": [
@@ -25,11 +27,12 @@ TETRA = {
         [-0.25, -0.25, 0.75],
     ],
     "faces": [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]],
+    **PRINCIPAL,
 }
 
 
 def described(shape: dict[str, Any], **body: Any) -> ET.Element:
-    return ET.fromstring(robot_description(["thing"], {"thing": {"shape": shape, **body}}, POSE))
+    return ET.fromstring(robot_description({"thing": made_body(shape, **body)}, POSE))
 
 
 def drawn(shape: dict[str, Any]) -> list[tuple[str, dict[str, str], Vector, Vector]]:
@@ -98,7 +101,9 @@ def test_parts_of_a_compound_are_placed_in_it() -> None:
         {"shape": sphere, "position": [1, 2, 3], "orientation": [1, 0, 0, 0]},
         {"shape": rod, "position": [0, 0, 1], "orientation": turn.tolist()},
     ]
-    ball, bar, low, high = drawn({"kind": "compound", "parts": parts})
+    ball, bar, low, high = drawn(
+        {"kind": "compound", "parts": parts, "centre": [0, 0, 0], "axes": [1, 0, 0, 0]}
+    )
     assert ball[2].tolist() == [1, 2, 3]
     np.testing.assert_allclose(bar[3] @ [0, 0, 1], [1, 0, 0], atol=1e-15)
     np.testing.assert_allclose(low[2], [-0.3, 0, 1], atol=1e-15)
@@ -120,8 +125,8 @@ def test_kinematic_body_is_free_to_move() -> None:
 def test_hulls_beyond_the_limit_have_no_visual(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(urdf, "MOST_VISUALS", 7)
     names = ["one", "two", "ball"]
-    ball = {"shape": {"kind": "sphere", "radius": 0.1}}
-    shapes = {"one": {"shape": TETRA}, "two": {"shape": TETRA}, "ball": ball}
-    robot = ET.fromstring(robot_description(names, shapes, np.repeat(POSE, 3, axis=0)))
+    ball = made_body({"kind": "sphere", "radius": 0.1})
+    bodies = {"one": made_body(TETRA), "two": made_body(TETRA), "ball": ball}
+    robot = ET.fromstring(robot_description(bodies, np.repeat(POSE, 3, axis=0)))
     counts = {link.attrib["name"]: len(link.findall("visual")) for link in robot.iter("link")}
     assert [counts[name] for name in names] == [6, 0, 1]

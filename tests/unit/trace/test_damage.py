@@ -28,7 +28,7 @@ def whole(block: Block, tmp_path_factory: pytest.TempPathFactory) -> bytes:
 def content(trace: Trace) -> tuple[object, ...]:
     tables = (trace.step, trace.contact, trace.pose, trace.residual)
     described = (trace.bodies, trace.timestep, trace.metadata, trace.status)
-    texts = (trace.as_written, trace.resolved)
+    texts = (trace.as_written, trace.config)
     return (*((t.dtype, t.tobytes()) for t in tables), *described, *texts)
 
 
@@ -80,7 +80,7 @@ def test_a_flipped_bit_in_a_killed_run_gives_a_prefix(tmp_path: Path, whole: byt
         assert trace.pose.tobytes() == truth.pose[:rows].tobytes()
         expected = truth.contact[np.isin(truth.contact["step"], steps)]
         assert trace.contact.tobytes() == expected.tobytes()
-        assert trace.resolved == truth.resolved
+        assert trace.config == truth.config
         described = {k: v for k, v in truth.metadata.items() if k != "lavender"}
         assert trace.metadata == described
 

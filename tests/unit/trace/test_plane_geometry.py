@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lavendersim.trace.urdf import PLANE_THICKNESS, robot_description
+from tests.made_cells import made_body
 
 Vector = NDArray[np.float64]
 
@@ -18,7 +19,7 @@ def test_a_planes_box_has_its_top_face_in_the_plane() -> None:
     half = np.sqrt(0.5)
     for pose in ([0, 0, 0, 1, 0, 0, 0], [0.15, 2, 1, half, 0, half, 0]):
         poses = np.array([pose], float)
-        robot = ET.fromstring(robot_description(["slope"], {"slope": {"shape": slope}}, poses))
+        robot = ET.fromstring(robot_description({"slope": made_body(slope)}, poses))
         origin = next(robot.iter("origin"))
         xyz, rpy = (np.array(origin.attrib[key].split(), float) for key in ("xyz", "rpy"))
         local = _rotation(*rpy)

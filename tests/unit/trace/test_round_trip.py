@@ -7,11 +7,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from sample import AS_WRITTEN, BODIES, METADATA, RESOLVED, TIMESTEP, run, split, write
+from sample import AS_WRITTEN, BODIES, CONFIG, METADATA, SCENE, TIMESTEP, run, split, write
 
 from lavendersim.clock import Clock
 from lavendersim.errors import TraceError
 from lavendersim.trace import Block, Trace, TraceWriter, open_trace
+from tests.made_cells import made_cell
 
 # enough for several groups: a step is some 400 B of the light stream, a group 128 KiB
 MANY = 900
@@ -39,7 +40,7 @@ def test_every_column_returns_bit_for_bit(tmp_path: Path) -> None:
 def test_what_describes_the_run_returns(tmp_path: Path) -> None:
     trace = open_trace(write(tmp_path / "run.mcap", [run(3)], "diverged: ball at step 2"))
     assert (trace.bodies, trace.timestep) == (BODIES, TIMESTEP)
-    assert (trace.resolved, trace.as_written) == (RESOLVED, AS_WRITTEN)
+    assert (trace.config, trace.as_written) == (CONFIG, AS_WRITTEN)
     assert trace.status == "diverged: ball at step 2"
     assert not trace.complete
     assert METADATA.items() <= trace.metadata.items()
@@ -48,7 +49,9 @@ def test_what_describes_the_run_returns(tmp_path: Path) -> None:
 def test_changes_of_the_timestep_return(tmp_path: Path) -> None:
     path = tmp_path / "run.mcap"
     clock = Clock.counted(TIMESTEP, [(2, Fraction(1, 3)), (7, Fraction(1, 1000))])
-    writer = TraceWriter(path, BODIES, RESOLVED, AS_WRITTEN, clock, METADATA)
+    # 2 / 240 s, and 5 / 3 s after them
+    changes = [{"at": 0.0083, "timestep": "1/3"}, {"at": 1.675, "timestep": "1/1000"}]
+    writer = TraceWriter(path, made_cell(SCENE, events=changes), AS_WRITTEN, METADATA)
     writer.append(run(10))
     writer.close("complete")
     trace = open_trace(path)

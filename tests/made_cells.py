@@ -1,0 +1,89 @@
+"""Cells in a few words, made without a file: bodies with every default filled in."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from typing import Any
+
+from lavendersim.cell import CellBody, CellConfig
+
+ORIGIN = [0.0, 0.0, 0.0]
+UPRIGHT = [1.0, 0.0, 0.0, 0.0]
+NUMERICS: dict[str, Any] = {
+    "timestep": "1/240",
+    "solver": "projected_gauss_seidel",
+    "sweeps": 22,
+    "over_relaxation": 1.0,
+    "order": "coloured",
+    "tolerance": None,
+    "warm_start": True,
+    "stabilisation_gain": 0.0,
+    "slop": 0.0,
+    "projection": 0.0,
+    "projection_sweeps": 22,
+    "restitution_threshold": 2.0,
+    "cache_distance": 0.02,
+    "cache_normal_cosine": 0.95,
+    "speculative": False,
+    "impacts": "captured",
+    "integrator": "semi_implicit_euler",
+    "friction_cone": "disc",
+    "sleeping": False,
+    "sleep_speed": 0.005,
+    "sleep_time": 0.5,
+}
+
+
+def body_data(shape: Mapping[str, Any], **given: Any) -> dict[str, Any]:
+    """Return one resolved body as data; 1 kg and unit moments of inertia unless given or fixed."""
+    kinematic = given.get("kinematic", False)
+    fixed = given.get("fixed", kinematic or shape["kind"] == "plane")
+    body = {
+        "shape": dict(shape),
+        "fixed": fixed,
+        "kinematic": kinematic,
+        "mass": None if fixed else 1.0,
+        "density": None,
+        "inertia": None if fixed else [1.0, 1.0, 1.0],
+        "surface": {},
+        "surface_velocity": ORIGIN,
+        "position": ORIGIN,
+        "release": None,
+        "orientation": UPRIGHT,
+        "velocity": ORIGIN,
+        "angular_velocity": ORIGIN,
+        "drag": {},
+    }
+    return {**body, **given}
+
+
+def made_body(shape: Mapping[str, Any], **given: Any) -> CellBody:
+    """Return one resolved body."""
+    return CellBody.model_validate_json(json.dumps(body_data(shape, **given)))
+
+
+def made_cell(
+    bodies: Mapping[str, Mapping[str, Any]],
+    gravity: Any = (0.0, 0.0, -9.81),
+    numerics: Mapping[str, Any] | None = None,
+    **sections: Any,
+) -> CellConfig:
+    """Return a cell of bodies, each the data of `body_data` or what is given to it.
+
+    sections: `events`, `duration`, `record`, `effects`, `study` in place of those of a plain cell.
+    """
+    cell = {
+        "scene": {
+            "gravity": list(gravity),
+            "bodies": {name: body_data(**body) for name, body in bodies.items()},
+            "forces": sections.pop("forces", []),
+        },
+        "events": [],
+        "duration": 1.0,
+        "numerics": {**NUMERICS, **(numerics or {})},
+        "record": {"residuals": "none", "problems": "none"},
+        "effects": {"force": False, "switches": {}},
+        "study": {"mistake": "none"},
+    }
+    return CellConfig.from_dict({**cell, **sections})
