@@ -12,8 +12,8 @@ from lavendersim.cell.choices import NO_MISTAKE
 from lavendersim.experiment.cell import Cell
 from lavendersim.experiment.models.cost import CostSpec
 from lavendersim.experiment.models.experiment import ExperimentConfig
-from lavendersim.experiment.models.figure import FigureSpec
 from lavendersim.experiment.models.overhead import PriceSpec
+from lavendersim.figures.specs.catalogue import FigureSpec
 from lavendersim.measures.specs.always import Always
 from lavendersim.measures.specs.catalogue import MeasureSpec
 from lavendersim.measures.specs.expectation import ExpectSpec

@@ -2,41 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Final
 
 from matplotlib.figure import Figure
 
 from lavendersim.errors import TraceError
-from lavendersim.experiment.models.figure import FigureSpec
-from lavendersim.figures import (
-    against_axis,
-    by_name,
-    row_against_index,
-    spinning_top,
-    stability_map,
-    time_series,
-)
+from lavendersim.figures import panels
 from lavendersim.figures.drawing import describe, draw_levels, legend, limit
 from lavendersim.figures.page import Page, blank, legend_below, write
+from lavendersim.figures.registration import FUNCTIONS
 from lavendersim.figures.series import series_of
+from lavendersim.figures.specs.catalogue import FigureSpec
 from lavendersim.figures.style import PANEL_HEIGHT, PANEL_WIDTH
 from lavendersim.measures.selection import select
 from lavendersim.measures.values import Values
 from lavendersim.measures.views import Cell
 
-PANELS: Final[dict[str, Callable[..., None]]] = {
-    "measure_against_axis": against_axis.draw_panel,
-    "row_against_index": row_against_index.draw_panel,
-    "time_series": time_series.draw_panel,
-    "free_rotation": spinning_top.draw_panel,
-    "measure_by_name": by_name.draw_panel,
-    "stability_map": stability_map.draw_panel,
-}
 SIDE_BY_SIDE: Final = 3  # panels in one row
 FEW_ENTRIES: Final = 4  # of a legend that finds space among the lines
 NARROWEST: Final = 6.8  # [inch] a single panel is wider, for its caption
+
+
+panels.load_all()
 
 
 def draw(run: Any, directory: Path) -> list[Path]:
@@ -93,16 +82,16 @@ def _grid(panels: int) -> tuple[int, int]:
 
 def _draw_panels(figure: Figure, experiment: Any, cells: Sequence[Cell], shared: bool) -> None:
     values = Values(experiment.measures)
-    panels = experiment.figure.panels
-    places = figure.subplots(*_grid(len(panels)), squeeze=False).ravel()
-    for axes in places[len(panels) :]:
+    shown_panels = experiment.figure.panels
+    places = figure.subplots(*_grid(len(shown_panels)), squeeze=False).ravel()
+    for axes in places[len(shown_panels) :]:
         axes.set_axis_off()
-    for axes, panel in zip(places, panels, strict=False):
+    for axes, panel in zip(places, shown_panels, strict=False):
         describe(axes, panel.title, panel.x_label, panel.y_label, panel.x_scale, panel.y_scale)
         draw_levels(axes, panel.levels)
         measure = experiment.measures.get(getattr(panel, "measure", ""))
         shown = select(cells, panel.at, measure.at if measure is not None else {})
-        PANELS[panel.kind](axes, panel, shown, values, experiment)
+        FUNCTIONS[type(panel)](axes, panel, shown, values, experiment)
         limit(axes, panel)
         if not shared:
             legend(axes)

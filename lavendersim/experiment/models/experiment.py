@@ -10,11 +10,11 @@ from pydantic import ConfigDict, Field, Tag
 from lavendersim.cell.choices import Preset, Switch
 from lavendersim.cell.numerics import Numerics
 from lavendersim.experiment.models.cost import CostSpec
-from lavendersim.experiment.models.figure import FigureSpec
 from lavendersim.experiment.models.overhead import PriceSpec
 from lavendersim.experiment.models.record import Record
 from lavendersim.experiment.models.scene import Scene
 from lavendersim.experiment.models.study import Study
+from lavendersim.figures.specs.catalogue import FigureSpec
 from lavendersim.measures.specs.always import Always
 from lavendersim.measures.specs.catalogue import MeasureSpec
 from lavendersim.measures.specs.expectation import ExpectSpec

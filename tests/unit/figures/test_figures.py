@@ -15,9 +15,9 @@ from matplotlib import style
 from synthetic import RESIDUAL, SyntheticCell, ball_and_floor, spinning_log, trace_of
 
 from lavendersim.errors import TraceError
-from lavendersim.experiment.models.figure import FigureSpec
 from lavendersim.figures import draw
 from lavendersim.figures.config_figure import compose
+from lavendersim.figures.specs.catalogue import FigureSpec
 from lavendersim.figures.style import DARK, STYLE
 from lavendersim.measures.specs.convergence import ResidualBySweep
 from lavendersim.measures.specs.impact import ImpactImpulse

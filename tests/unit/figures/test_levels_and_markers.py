@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from lavendersim.experiment.models.figure import MeasureAgainstAxis
-from lavendersim.figures.against_axis import marker_size
 from lavendersim.figures.drawing import draw_levels, legend, ticks_at_values
+from lavendersim.figures.panels.measure_against_axis import marker_size
+from lavendersim.figures.specs.measure_against_axis import MeasureAgainstAxis
 
 
 def with_levels(*levels: dict[str, Any]) -> Any:

@@ -11,8 +11,8 @@ import pytest
 from matplotlib import style
 from synthetic import SyntheticCell, ball_and_floor, trace_of
 
-from lavendersim.experiment.models.figure import FigureSpec
 from lavendersim.figures.config_figure import compose
+from lavendersim.figures.specs.catalogue import FigureSpec
 from lavendersim.figures.style import STYLE
 from lavendersim.measures.specs.impact import ImpactImpulse
 

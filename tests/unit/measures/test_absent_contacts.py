@@ -7,8 +7,8 @@ import pytest
 from synthetic import SyntheticCell, SyntheticTrace, trace_of
 
 from lavendersim.errors import UsageError
-from lavendersim.experiment.models.figure import TimeSeries
-from lavendersim.figures.time_series import window_of
+from lavendersim.figures.panels.time_series import window_of
+from lavendersim.figures.specs.time_series import TimeSeries
 from lavendersim.measures.judging import judge
 from lavendersim.measures.registry import evaluate
 from lavendersim.measures.specs.convergence import FinalResidual, ResidualBySweep

@@ -7,8 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from lavendersim.experiment.models.figure import FreeRotation
 from lavendersim.figures.drawing import draw_ideal
+from lavendersim.figures.registration import draws
+from lavendersim.figures.specs.free_rotation import FreeRotation
 from lavendersim.figures.style import look
 from lavendersim.measures import cell_config
 from lavendersim.measures.kinds.spinning import body_rates, exact_rotation, times
@@ -18,6 +19,7 @@ from lavendersim.measures.views import Cell
 POINTS = 1200  # of the exact solution
 
 
+@draws(FreeRotation)
 def draw_panel(
     axes: Any, panel: FreeRotation, cells: Sequence[Cell], values: Values, experiment: Any
 ) -> None:

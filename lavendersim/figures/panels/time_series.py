@@ -7,9 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from lavendersim.experiment.models.figure import TimeSeries
 from lavendersim.figures.drawing import draw_ideal
+from lavendersim.figures.registration import draws
 from lavendersim.figures.series import series_of
+from lavendersim.figures.specs.time_series import TimeSeries
 from lavendersim.figures.style import look
 from lavendersim.measures.closed_forms import evaluate_form
 from lavendersim.measures.columns import (
@@ -28,6 +29,7 @@ DRIFT_AFTER = 0.5  # [s] as the measure counts it
 MOST_MARKERS = 130  # beyond this many points markers run into a stripe; every k-th is marked
 
 
+@draws(TimeSeries)
 def draw_panel(
     axes: Any, panel: TimeSeries, cells: Sequence[Cell], values: Values, experiment: Any
 ) -> None:

@@ -7,10 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from lavendersim.experiment.models.figure import MeasureAgainstAxis
 from lavendersim.figures.drawing import draw_band, draw_ideal, ticks_at_values
 from lavendersim.figures.ideal import ideal_line
+from lavendersim.figures.registration import draws
 from lavendersim.figures.series import Band, band_along, series_of, swept_path
+from lavendersim.figures.specs.measure_against_axis import MeasureAgainstAxis
 from lavendersim.figures.style import DARK, GREY, look
 from lavendersim.measures.sweep_judgements import along_axis, first_rise
 from lavendersim.measures.values import Values
@@ -46,6 +47,7 @@ def _draw_orders(axes: Any, orders: Sequence[float], band: Band) -> None:
         )
 
 
+@draws(MeasureAgainstAxis)
 def draw_panel(
     axes: Any, panel: MeasureAgainstAxis, cells: Sequence[Cell], values: Values, experiment: Any
 ) -> None:

@@ -15,8 +15,9 @@ from matplotlib import colormaps
 from matplotlib.colors import LogNorm, Normalize
 from matplotlib.patches import Rectangle
 
-from lavendersim.experiment.models.figure import StabilityMap
+from lavendersim.figures.registration import draws
 from lavendersim.figures.series import by_value
+from lavendersim.figures.specs.stability_map import StabilityMap
 from lavendersim.figures.style import DARK, GREY
 from lavendersim.measures.values import Values
 from lavendersim.measures.views import Cell
@@ -26,6 +27,7 @@ COLOURS: Final = "cividis"  # told apart by colour-blind readers and in grey
 HALF_DARK: Final = 0.5  # luminance below which letters are white [-]
 
 
+@draws(StabilityMap)
 def draw_panel(
     axes: Any, panel: StabilityMap, cells: Sequence[Cell], values: Values, experiment: Any
 ) -> None:

@@ -8,14 +8,16 @@ from typing import Any
 import numpy as np
 from matplotlib.ticker import MaxNLocator
 
-from lavendersim.experiment.models.figure import RowAgainstIndex
 from lavendersim.figures.drawing import draw_band
+from lavendersim.figures.registration import draws
 from lavendersim.figures.series import band_of_rows, series_of
+from lavendersim.figures.specs.row_against_index import RowAgainstIndex
 from lavendersim.figures.style import look
 from lavendersim.measures.values import Values
 from lavendersim.measures.views import Cell, Floats
 
 
+@draws(RowAgainstIndex)
 def draw_panel(
     axes: Any, panel: RowAgainstIndex, cells: Sequence[Cell], values: Values, experiment: Any
 ) -> None:

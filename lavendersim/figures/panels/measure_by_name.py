@@ -7,8 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from lavendersim.experiment.models.figure import MeasureByName
+from lavendersim.figures.registration import draws
 from lavendersim.figures.series import by_value, series_of
+from lavendersim.figures.specs.measure_by_name import MeasureByName
 from lavendersim.figures.style import GREY, look
 from lavendersim.measures.values import Values
 from lavendersim.measures.views import Cell
@@ -16,6 +17,7 @@ from lavendersim.measures.views import Cell
 APART = 0.22  # rows between the series of one value
 
 
+@draws(MeasureByName)
 def draw_panel(
     axes: Any, panel: MeasureByName, cells: Sequence[Cell], values: Values, experiment: Any
 ) -> None:

@@ -1,0 +1,51 @@
+"""A logged quantity against time."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from lavendersim.figures.specs.base import Ideal, Number, Panel
+from lavendersim.quantities.names import BodyName, PlaneName
+from lavendersim.quantities.quantity import Quantity
+
+Column = Literal[
+    "penetration",
+    "normal_force",
+    "clearance",
+    "energy",
+    "residual",
+    "signorini",
+    "cone",
+    "dissipation",
+    "drift",
+    "overlap",
+]
+
+
+class TimeSeries(Panel):
+    """A logged quantity against time, one line with markers per cell."""
+
+    kind: Literal["time_series"]
+    column: Column = Field(
+        description="penetration [m], normal_force [N], clearance [m], energy [J], residual [m/s], "
+        "drift [m] of any centre from its place at 0.5 s, overlap [m] of any two bodies, from "
+        "poses, signorini [m/s], cone [N s], dissipation [J]: the worst contact's violation"
+    )
+    body: BodyName | None = Field(
+        default=None, description="the body, for penetration, normal_force and clearance"
+    )
+    above: PlaneName | None = Field(default=None, description="the plane, for clearance")
+    start: Literal["run", "first_contact"] = Field(
+        default="run", description="what time zero means on the x axis"
+    )
+    window: tuple[Number, Number] | None = Field(
+        default=None, description="[from, to] around that zero [s]"
+    )
+    every: Annotated[int, Quantity(whole=True, minimum=1)] = Field(
+        default=1, description="for overlap: every k-th logged step, counted back from the last [-]"
+    )
+    ideal: Ideal | None = Field(default=None, description="the constant it approaches")
+    factor: Number = Field(default=1.0, description="multiplies the values for display")
+    x_factor: Number = Field(default=1.0, description="multiplies the time for display (1000: ms)")
