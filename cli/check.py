@@ -60,7 +60,7 @@ def check(
             finished = run(experiment, runs, jobs, progress, prices=False)
         good = good and finished.good
         results.append(finished)
-        printing.warn_of_unsolved(finished)
+        printing.warn_of_not_converged(finished)
         cells += [
             {"experiment": experiment.name, "cell": cell.label, "status": cell.status}
             for cell in finished.run.cells

@@ -156,8 +156,10 @@ def _notes(row: dict[str, Any]) -> list[str]:
     notes += [MARKS[row["role"]]] if MARKS[row["role"]] else []
     if row["failed"]:
         return [*notes, f"FAILED: {row['failed']}"]
-    if row["unsolved_steps"]:
-        from lavendersim.runner.cost_errors import unsolved_steps
+    if row["not_converged_steps"]:
+        from lavendersim.runner.cost_errors import not_converged_steps
 
-        notes.append(unsolved_steps(row["unsolved_steps"], row["steps"], row["tolerance"]))
+        notes.append(
+            not_converged_steps(row["not_converged_steps"], row["steps"], row["tolerance"])
+        )
     return notes

@@ -91,12 +91,12 @@ def warn_of_mistakes(experiment: Any) -> None:
         typer.echo(f"{experiment.name}: {typer.style(said, fg=typer.colors.YELLOW)}", err=True)
 
 
-def warn_of_unsolved(finished: Any) -> None:
+def warn_of_not_converged(finished: Any) -> None:
     """Say on stderr which cells missed the accuracy asked for, the first few by name."""
-    for notice in finished.unsolved[:FAILURES_SHOWN]:
+    for notice in finished.not_converged[:FAILURES_SHOWN]:
         typer.echo(notice, err=True)
-    if len(finished.unsolved) > FAILURES_SHOWN:
-        more = len(finished.unsolved) - FAILURES_SHOWN
+    if len(finished.not_converged) > FAILURES_SHOWN:
+        more = len(finished.not_converged) - FAILURES_SHOWN
         typer.echo(f"{finished.run.name}: and {more} more cells, see results.csv", err=True)
 
 

@@ -36,7 +36,7 @@ def run(
         with printing.reporting(experiment.name) as progress:
             finished = run(experiment, runs, jobs, progress)
         good = good and finished.good
-        printing.warn_of_unsolved(finished)
+        printing.warn_of_not_converged(finished)
         figures = []
         if plot and experiment.is_drawn:
             from lavendersim.figures import draw

@@ -101,7 +101,7 @@ def accuracy(row: dict[str, Any]) -> str:
     if "worst_residual" not in row:
         return ""
     worst = f"residual <= {printing.digits(float(row['worst_residual']))} m/s"
-    if not row["unsolved_steps"]:
+    if not row["not_converged_steps"]:
         return worst
     asked = f"tolerance {printing.digits(row['tolerance'])} m/s"
-    return f"{worst} ({row['unsolved_steps']} of {row['steps']} steps above the {asked})"
+    return f"{worst} ({row['not_converged_steps']} of {row['steps']} steps above the {asked})"

@@ -23,7 +23,7 @@ _EXPERIMENT = re.compile(rb"^scene[ \t]*:", re.MULTILINE)
 _LARGEST_FILE = 1 << 20
 COMPLETES = "every cell completes"
 # Sentences about cells that missed the accuracy asked for; shown at the end, never a failure.
-_UNSOLVED = pytest.StashKey[list[str]]()
+_NOT_CONVERGED = pytest.StashKey[list[str]]()
 
 
 def _is_experiment(path: Path) -> bool:
@@ -55,7 +55,7 @@ def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> pytest.Col
 
 def pytest_terminal_summary(terminalreporter: Any, config: pytest.Config) -> None:
     """Say which cells missed the accuracy asked for, whatever became of their expectations."""
-    notices = config.stash.get(_UNSOLVED, [])
+    notices = config.stash.get(_NOT_CONVERGED, [])
     if notices:
         terminalreporter.section("accuracy asked for, not met")
         for notice in notices:
@@ -101,7 +101,7 @@ class ExperimentFile(pytest.File):
             factory: pytest.TempPathFactory = self.config._tmp_path_factory  # type: ignore[attr-defined]
             # Prices are read by people, on a quiet machine; nothing is expected of them.
             self._finished = run(experiment, factory.mktemp(self.path.stem), prices=False)
-            self.config.stash.setdefault(_UNSOLVED, []).extend(self._finished.unsolved)
+            self.config.stash.setdefault(_NOT_CONVERGED, []).extend(self._finished.not_converged)
         return self._finished
 
 

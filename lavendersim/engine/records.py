@@ -164,7 +164,7 @@ COUNTERS: Final[list[Field]] = [
     ("projection_sweeps", I8),  # and by the positional projection, 0: nothing had to move
     ("residual_contact", I8),  # contact with the largest residual, -1 without contacts
     ("residual", F8),  # of the last step [m/s]
-    ("unsolved", I8),  # 1 when that is above the tolerance asked for
+    ("not_converged", I8),  # 1 when that is above the tolerance asked for
     ("rows", I8),  # contacts of the last step that were recorded
     ("residual_row", I8),  # the one of them with the largest residual
     ("signorini", F8),  # largest violations of the last step, and the recorded contact, -1: none

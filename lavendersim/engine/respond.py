@@ -91,7 +91,7 @@ def make_pass_by(spec: Spec, log_contacts: Any) -> Any:
     def pass_by(contacts, velocities, params, counters, rows):
         counters.sweeps, counters.projection_sweeps = 0, 0
         counters.residual, counters.residual_contact = 0.0, -1
-        counters.unsolved, counters.stronge, counters.sharpen = 0, 0, 0
+        counters.not_converged, counters.stronge, counters.sharpen = 0, 0, 0
         counters.cached = 0
         if logs:
             log_contacts(contacts, 0, velocities, params, counters, rows)

@@ -24,7 +24,7 @@ class Accuracy(NamedTuple):
 
     worst_residual: float = 0.0  # [m/s] of any step
     tolerance: float | None = None  # [m/s] asked for; None: every step takes all its sweeps
-    unsolved: int = 0  # steps that ended above the tolerance
+    not_converged: int = 0  # steps whose solve ended above the tolerance
     worst: Mapping[str, Worst] = MappingProxyType({})  # by PARTS, those that the log has
 
     def after(
@@ -34,13 +34,13 @@ class Accuracy(NamedTuple):
 
         contact: rows of their contacts, names: of the bodies that these speak of.
         """
-        missed = self.unsolved
+        missed = self.not_converged
         if self.tolerance is not None:
-            missed += int(np.count_nonzero(step["unsolved"]))
+            missed += int(np.count_nonzero(step["not_converged"]))
         worst = np.max(step["residual"], initial=self.worst_residual)
         return self._replace(
             worst_residual=float(worst),
-            unsolved=missed,
+            not_converged=missed,
             worst={} if contact is None else self._worst(step, contact, names),
         )
 

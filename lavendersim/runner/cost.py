@@ -131,7 +131,7 @@ def _rows(
                 "order": order,
                 "law": law,
                 "worst_residual": error.residual,  # [m/s]
-                "unsolved_steps": error.unsolved,
+                "not_converged_steps": error.not_converged,
                 "steps": error.steps,
                 "failed": error.failed or ("" if spread else "it ends before timing begins"),
                 "ns_per_second": spread,  # of physics per simulated second
@@ -152,7 +152,7 @@ def _truth(settings: Sequence[Setting], errors: Sequence[SettingError]) -> dict[
             return {
                 **{**setting.knobs, "timestep": str(setting.timestep)},
                 "worst_residual": error.residual,
-                "unsolved_steps": error.unsolved,
+                "not_converged_steps": error.not_converged,
                 "steps": error.steps,
                 "failed": error.failed,
             }
@@ -172,7 +172,7 @@ def _finite(value: Any) -> Any:
 
 COLUMNS: Final = (
     *("role", "preset", "timestep", "solver", "sweeps", "tolerance", "warm_start"),
-    *("error", "worst_at", "order", "worst_residual", "unsolved_steps", "failed", "front"),
+    *("error", "worst_at", "order", "worst_residual", "not_converged_steps", "failed", "front"),
     *("median", "lower_quartile", "upper_quartile", "low", "high", "compile_s", "law"),
 )
 

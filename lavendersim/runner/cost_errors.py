@@ -52,7 +52,7 @@ class SettingError(NamedTuple):
     error: float  # relative, of the worst cell; NaN where there is none
     worst_at: str  # the coordinates of that cell; "" without a sweep
     residual: float  # [m/s] the worst of any step of any cell
-    unsolved: int  # steps above the tolerance asked for
+    not_converged: int  # steps above the tolerance asked for
     steps: int  # of all cells
     failed: str  # why the setting is no answer; "" where it is one
 
@@ -86,7 +86,7 @@ def _error_of(experiment: Experiment, run: SettingRun, truth: SettingRun | None)
         error=errors[worst] if errors else NAN,
         worst_at=labels[taken[worst]] if errors else "",
         residual=max(outcome.accuracy.worst_residual for outcome in run.outcomes),
-        unsolved=sum(outcome.accuracy.unsolved for outcome in run.outcomes),
+        not_converged=sum(outcome.accuracy.not_converged for outcome in run.outcomes),
         steps=sum(outcome.steps for outcome in run.outcomes),
         failed=_failure(experiment, run, errors),
     )
@@ -129,19 +129,19 @@ def _failure(experiment: Experiment, run: SettingRun, errors: Sequence[float]) -
         if outcome.status != "complete":
             return f"{cell.label}: {outcome.status}" if cell.label else outcome.status
     assert experiment.cost is not None
-    unsolved = sum(outcome.accuracy.unsolved for outcome in run.outcomes)
+    not_converged = sum(outcome.accuracy.not_converged for outcome in run.outcomes)
     steps = sum(outcome.steps for outcome in run.outcomes)
-    if unsolved > experiment.cost.unsolved * steps:
-        return unsolved_steps(unsolved, steps, run.setting.tolerance)
+    if not_converged > experiment.cost.unsolved * steps:
+        return not_converged_steps(not_converged, steps, run.setting.tolerance)
     if not errors or any(math.isnan(error) for error in errors):
         return "its log has no answer"
     unmet = _unmet(experiment, run)
     return f"not met: {unmet[0]}" if unmet else ""
 
 
-def unsolved_steps(unsolved: int, steps: int, tolerance: float | None) -> str:
+def not_converged_steps(not_converged: int, steps: int, tolerance: float | None) -> str:
     """Say how many steps ended above the tolerance they asked for."""
-    return f"{unsolved} of {steps} steps above {tolerance:g} m/s"
+    return f"{not_converged} of {steps} steps above {tolerance:g} m/s"
 
 
 class _Taken(Values):

@@ -19,7 +19,7 @@ from lavendersim.experiment import Experiment, load_experiment, resolved_yaml
 from lavendersim.measures import Values, Verdict, judge, meant_to_end_early
 
 from .environment import environment
-from .results import compile_seconds, measure_cells, unsolved_notices, write_results
+from .results import compile_seconds, convergence_notices, measure_cells, write_results
 from .run_directory import (
     CELLS,
     CONFIG,
@@ -62,9 +62,9 @@ class Finished(NamedTuple):
         return compile_seconds(self)
 
     @property
-    def unsolved(self) -> list[str]:
+    def not_converged(self) -> list[str]:
         """A sentence for every cell that missed the accuracy asked for; a warning, no failure."""
-        return unsolved_notices(self)
+        return convergence_notices(self)
 
 
 class Progress(NamedTuple):

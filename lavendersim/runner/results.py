@@ -16,7 +16,7 @@ from .run_directory import RESULTS, TABLE, Run
 
 # Columns of both tables, beside the measures: what a cell cost, and how well it was solved.
 COSTS = ("physics_us_per_step", "logging_us_per_step", "compile_s")
-ACCURACY = ("tolerance", "worst_residual", "unsolved_steps")  # m/s, m/s, number of steps
+ACCURACY = ("tolerance", "worst_residual", "not_converged_steps")  # m/s, m/s, number of steps
 # The largest of each in any step, and the bodies of the contact that has it.
 _WORST = [name for part in PARTS for name in (f"worst_{part}", f"worst_{part}_contact")]
 VIOLATIONS = tuple(name for name in _WORST if name not in ACCURACY)
@@ -80,7 +80,7 @@ def write_results(
                 "compile_s": outcome.compile_ns / 1e9,
                 "tolerance": outcome.accuracy.tolerance,
                 "worst_residual": outcome.accuracy.worst_residual,
-                "unsolved_steps": outcome.accuracy.unsolved,
+                "not_converged_steps": outcome.accuracy.not_converged,
                 **_violations(outcome.accuracy),
             }
         )
@@ -121,16 +121,16 @@ def compile_seconds(finished: Any) -> float:
     return total
 
 
-def unsolved_notices(finished: Any) -> list[str]:
+def convergence_notices(finished: Any) -> list[str]:
     """Return a sentence for every cell that did not reach the accuracy asked for."""
     notices = []
     for cell, outcome in zip(finished.run.cells, finished.outcomes, strict=True):
         accuracy = outcome.accuracy
-        if accuracy.unsolved:
+        if accuracy.not_converged:
             where = f"[{cell.label}]" if cell.label else ""
             notices.append(
-                f"{finished.run.name}{where}: {accuracy.unsolved} of {outcome.steps} steps ended "
-                f"above the tolerance {accuracy.tolerance:g} m/s, "
+                f"{finished.run.name}{where}: {accuracy.not_converged} of {outcome.steps} steps "
+                f"ended above the tolerance {accuracy.tolerance:g} m/s, "
                 f"worst {accuracy.worst_residual:.2g} m/s"
             )
     return notices

@@ -1,4 +1,4 @@
-"""A run's directory enters, a `Run` leaves: experiment, cells and their logs. No numba here."""
+"""A run on disk: its experiment, its cells and their logs. No numba here."""
 
 from __future__ import annotations
 
@@ -21,6 +21,8 @@ PRICES = "prices.csv"
 COST, COST_TABLE = "cost.json", "cost.csv"
 ENVIRONMENT, DONE, LATEST = "env.json", "DONE", "latest"
 RUNS = Path("runs")
+# Columns of the tables of older runs, and their names now.
+FORMER_NAMES = {"unsolved_steps": "not_converged_steps"}
 
 
 @dataclass(frozen=True)
@@ -93,12 +95,14 @@ class Run:
         """Return the table of results as it was written. UsageError while there is none."""
         if not self.finished:
             raise UsageError(f"{self.path}: this run did not finish; its logs are in cells/")
-        return _read_json(self.path / RESULTS)
+        return _renamed(_read_json(self.path / RESULTS), "cells")
 
     def cost(self) -> dict[str, Any] | None:
         """Return what accuracy costs, where it was taken; UsageError while it is not finished."""
         self.results()
-        return _read_json(self.path / COST) if (self.path / COST).exists() else None
+        if not (self.path / COST).exists():
+            return None
+        return _renamed(_read_json(self.path / COST), "rows")
 
 
 def _read_json(path: Path) -> dict[str, Any]:
@@ -107,6 +111,15 @@ def _read_json(path: Path) -> dict[str, Any]:
         table: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
     except ValueError as error:
         raise TraceError(f"{path}: damaged: {error}") from None
+    return table
+
+
+def _renamed(table: dict[str, Any], rows: str) -> dict[str, Any]:
+    """Return a table with the columns of older runs under the names that they have now."""
+    for row in (*table[rows], table.get("truth") or {}):
+        for former, name in FORMER_NAMES.items():
+            if former in row:
+                row[name] = row.pop(former)
     return table
 
 

@@ -18,20 +18,25 @@ from numpy.typing import NDArray
 from lavendersim.trace import layout
 from lavendersim.trace.index import ChunkContent
 from lavendersim.trace.layout import PackedField
-from lavendersim.trace.schema import HIGH_WORD, KINDS, NUMERIC_TYPES, Column
+from lavendersim.trace.schema import FORMER_NAMES, HIGH_WORD, KINDS, NUMERIC_TYPES, Column
 from lavendersim.trace.wire import NANOSECONDS, Bytes, Rows, Template, gather, padded_varints
 
 Table = NDArray[Any]
 
 
 def columns_in(schema: Schema, message: str) -> tuple[Column, ...]:
-    """Return the columns a descriptor names. ValueError for a type that is no column's."""
+    """Return the columns a descriptor names, by the names that they have now.
+
+    ValueError for a type that is no column's.
+    """
     files = descriptor_pb2.FileDescriptorSet.FromString(schema.data).file
     (found,) = (m for file in files for m in file.message_type if m.name == message)
     for field in found.field:
         if field.type not in KINDS:
             raise ValueError(f"field {field.name!r} of {message} has another type than lavender's")
-    return tuple(Column(f.name, KINDS[f.type], f.number, "") for f in found.field)
+    return tuple(
+        Column(FORMER_NAMES.get(f.name, f.name), KINDS[f.type], f.number, "") for f in found.field
+    )
 
 
 def _table(columns: Sequence[tuple[str, str]], count: int) -> Table:

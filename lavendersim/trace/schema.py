@@ -6,10 +6,10 @@
 | `/tf` | foxglove.FrameTransforms | protobuf | step: pose of every body in the world frame |
 | `/contacts` | foxglove.PointCloud | protobuf | step: all contacts, also when it has none |
 | `/step` | lavender.Step | protobuf | step: STEP_COLUMNS |
-| `/residuals` | lavender.Residuals | protobuf | step for which it was asked: RESIDUAL_COLUMNS |
+| `/residuals` | lavender.Residuals | protobuf | step of `record.residuals`: RESIDUAL_COLUMNS |
 | `/plot/*` | std_msgs/msg/Float64MultiArray | ros2msg, cdr | step: one number, for viewers |
 
-A log has the topics that its plan calls for: `/contacts` and `/plot/*` where something can touch,
+A log has the topics that its plan requires: `/contacts` and `/plot/*` where something can touch,
 `/residuals` where `record.residuals` asks for steps, the others always. The metadata record `trace`
 has under `absent` every topic that the log does without, and why.
 
@@ -50,6 +50,7 @@ class Column(NamedTuple):
     meaning: str
 
 
+FORMER_NAMES = {"unsolved": "not_converged"}  # of columns in older logs, and their names now
 _OF_THE_MESSAGE = "step"  # a row of a contact or a sweep has the number of its step there
 STEP_COLUMNS = tuple(
     sorted(

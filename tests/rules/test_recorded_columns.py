@@ -13,7 +13,7 @@ UNIT = re.compile(r"\[[^]]+\]")
 # Counts, indices, hashes and directions have no unit.
 WITHOUT_UNIT = {
     "step", "contact_count", "sweeps", "residual_contact", "state_hash", "sweep",
-    "awake", "stronge", "unsolved",
+    "awake", "stronge", "not_converged",
     "signorini_contact", "cone_contact", "dissipation_contact",
     "body_a", "body_b", "feature", "nx", "ny", "nz", "t1x", "t1y", "t1z",
 }  # fmt: skip

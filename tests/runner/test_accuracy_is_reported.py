@@ -15,7 +15,7 @@ from small_configs import write
 import lavendersim
 from lavendersim.runner import Finished
 from lavendersim.runner.accuracy import Accuracy
-from lavendersim.runner.results import unsolved_notices
+from lavendersim.runner.results import convergence_notices
 
 # Two balls, one on the other: W = [[1, -1], [-1, 2]]/m. One sweep without an impulse to start from
 # stops the lower ball, then has it carry half of the upper one's g dt: the lower contact is left
@@ -32,22 +32,22 @@ duration: 0.25
 sweep:
   sweeps: {path: numerics.sweeps, values: [1, 400]}
 measure:
-  unsolved: {kind: unsolved_steps}
+  not_converged: {kind: unsolved_steps}
 expect:
-  - {name: most steps may miss, measure: unsolved, at_most: 60}
+  - {name: most steps may miss, measure: not_converged, at_most: 60}
 """
 
 
-def rows(residuals: list[float], unsolved: list[int]) -> np.ndarray:
-    made = np.zeros(len(residuals), [("residual", "f8"), ("unsolved", "i8")])
-    made["residual"], made["unsolved"] = residuals, unsolved
+def rows(residuals: list[float], not_converged: list[int]) -> np.ndarray:
+    made = np.zeros(len(residuals), [("residual", "f8"), ("not_converged", "i8")])
+    made["residual"], made["not_converged"] = residuals, not_converged
     return made
 
 
 def test_steps_are_counted_and_the_worst_is_kept_over_blocks() -> None:
     first = Accuracy(tolerance=1e-8).after(rows([1e-9, 3e-7], [0, 1]))
     both = first.after(rows([2e-8, 1e-8], [1, 0]))
-    assert both == Accuracy(worst_residual=3e-7, tolerance=1e-8, unsolved=2)
+    assert both == Accuracy(worst_residual=3e-7, tolerance=1e-8, not_converged=2)
 
 
 def test_a_residual_that_is_not_a_number_stays_the_worst() -> None:
@@ -67,7 +67,7 @@ def finished_with(**cells: Accuracy) -> Any:
 
 def test_a_notice_names_cell_steps_tolerance_and_the_worst() -> None:
     missed = finished_with(count_30=Accuracy(9e-9, 1e-8, 0), count_100=Accuracy(3.1e-7, 1e-8, 36))
-    assert unsolved_notices(missed) == [
+    assert convergence_notices(missed) == [
         "towers[count=100]: 36 of 1200 steps ended above the tolerance 1e-08 m/s, worst 3.1e-07 m/s"
     ]
 
@@ -81,16 +81,16 @@ def towers(tmp_path_factory: pytest.TempPathFactory) -> Finished:
 def test_the_outcome_agrees_with_the_log(towers: Finished) -> None:
     for cell, outcome in zip(towers.run.cells, towers.outcomes, strict=True):
         step = cell.trace().step
-        assert outcome.accuracy.unsolved == np.count_nonzero(step["residual"] > 1e-9)
+        assert outcome.accuracy.not_converged == np.count_nonzero(step["residual"] > 1e-9)
         assert outcome.accuracy.worst_residual == step["residual"].max()
     hasty, patient = (outcome.accuracy for outcome in towers.outcomes)
-    assert 0 < hasty.unsolved <= 60
+    assert 0 < hasty.not_converged <= 60
     assert hasty.worst_residual >= 0.5 * 9.81 / 240 * (1 - 1e-12)
-    assert patient.unsolved == 0
+    assert patient.not_converged == 0
 
 
 def test_a_cell_that_missed_is_named_and_fails_nothing(towers: Finished) -> None:
-    (notice,) = towers.unsolved
+    (notice,) = towers.not_converged
     assert notice.startswith("towers[sweeps=1]: ")
     assert towers.good
 
@@ -101,10 +101,14 @@ def test_both_tables_hold_count_worst_and_tolerance(towers: Finished) -> None:
     for row, cell, outcome in zip(
         table, towers.run.results()["cells"], towers.outcomes, strict=True
     ):
-        assert int(row["unsolved_steps"]) == cell["unsolved_steps"] == outcome.accuracy.unsolved
+        assert (
+            int(row["not_converged_steps"])
+            == cell["not_converged_steps"]
+            == outcome.accuracy.not_converged
+        )
         assert float(row["worst_residual"]) == outcome.accuracy.worst_residual
         assert float(row["tolerance"]) == cell["tolerance"] == 1e-9
-        assert cell["measures"]["unsolved"] == cell["unsolved_steps"]
+        assert cell["measures"]["not_converged"] == cell["not_converged_steps"]
 
 
 def test_what_compiling_costs_stands_once_and_apart(towers: Finished) -> None:

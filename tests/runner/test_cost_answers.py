@@ -97,23 +97,23 @@ def test_of_two_errors_at_round_off_the_cheaper_is_on_the_front() -> None:
     assert front_of([row(50.0, 2e-15), row(20.0, 8e-15), row(10.0, 1e-6)]) == [2, 1]
 
 
-def outcome(steps: int, unsolved: int) -> CellOutcome:
-    return CellOutcome(0, "complete", steps, 0, 0, 0, Accuracy(2e-3, 1e-3, unsolved))
+def outcome(steps: int, not_converged: int) -> CellOutcome:
+    return CellOutcome(0, "complete", steps, 0, 0, 0, Accuracy(2e-3, 1e-3, not_converged))
 
 
 @pytest.mark.parametrize(
-    ("unsolved", "said"), [(0, ""), (2, ""), (3, "3 of 200 steps above 0.001 m/s")]
+    ("not_converged", "said"), [(0, ""), (2, ""), (3, "3 of 200 steps above 0.001 m/s")]
 )
 def test_a_setting_that_leaves_more_than_its_share_unsolved_has_failed(
-    unsolved: int, said: str
+    not_converged: int, said: str
 ) -> None:
     experiment = load_experiment_text(BALL, "ball.yaml")
     (setting, *_) = settings_of(experiment)
     asked = setting._replace(tolerance=1e-3)
     measured = [{"apex": 0.25, "sinking": 0.0}]
-    run_of = SettingRun(asked, [CELL], [outcome(200, unsolved)], measured)
+    run_of = SettingRun(asked, [CELL], [outcome(200, not_converged)], measured)
     (error,) = errors_of(experiment, [run_of])
-    assert (error.error, error.residual, error.unsolved) == (0.25, 2e-3, unsolved)
+    assert (error.error, error.residual, error.not_converged) == (0.25, 2e-3, not_converged)
     assert error.failed == said  # a hundredth, two of two hundred, may be
 
 

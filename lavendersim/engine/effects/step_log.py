@@ -78,7 +78,7 @@ def make(spec: Spec, log_pose, loggers):
         row.sweeps = counters.sweeps
         row.residual_contact = counters.residual_row
         if tolerance:
-            row.unsolved = counters.unsolved
+            row.not_converged = counters.not_converged
         row.residual = counters.residual
         log_bodies(bodies, velocities, row, poses[counters.step_rows], params)
         log_more(row, bodies, counters)
@@ -138,9 +138,9 @@ EFFECT = Effect(
             number=17,
         ),
         Column(
-            "unsolved",
+            "not_converged",
             "i8",
-            "1 when the residual stayed above the tolerance asked for",
+            "1 when the residual stayed above the tolerance of the config",
             number=18,
             when=lambda spec: spec.tolerance,
         ),

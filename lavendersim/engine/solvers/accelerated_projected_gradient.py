@@ -139,7 +139,7 @@ def make_shift(spec: Spec) -> Any:
 def make(spec: Spec) -> Any:
     """Return `kernel(contacts, order, count, bodies, velocities, space, params, counters, rows)`.
 
-    Writes counters.sweeps, .residual [m/s], .residual_contact and .unsolved of this step.
+    Writes counters.sweeps, .residual [m/s], .residual_contact and .not_converged of this step.
     """
     record_residuals = spec.has("residual_log")
     shifts = spec.has("friction") and spec.friction_cone != "convex"

@@ -7,7 +7,7 @@ takes over (`newton`); sweeps follow, so that impulses end inside their cones. B
 counted in operations, never in time: equal runs take equal decisions.
 
 A solve that would end above its tolerance calls it once more, LAST sweeps before the end, whatever
-the sweeps promise: what a step leaves unsolved, a cold first one above all, later steps only
+the sweeps promise: what a step leaves of the error, a cold first one above all, later steps only
 spread. In a large heap that is not affordable, and the call takes no step.
 
 A solve that begins near its solution is over after a sweep and pays for nothing else.
@@ -53,7 +53,7 @@ def allocate(spec: Spec, bodies: int, contacts: int) -> Any:
 def make(spec: Spec):
     """Return `kernel(contacts, order, count, bodies, velocities, space, params, counters, rows)`.
 
-    Writes counters.sweeps, .residual [m/s], .residual_contact and .unsolved of this step.
+    Writes counters.sweeps, .residual [m/s], .residual_contact and .not_converged of this step.
     """
     record_residuals = spec.has("residual_log")
     sweep, note, account = make_sweep(spec), make_note(spec), make_account(spec)

@@ -28,7 +28,7 @@ def allocate(spec: Spec, bodies: int, contacts: int) -> Any:
 def make(spec: Spec) -> Any:
     """Return `kernel(contacts, order, count, bodies, velocities, space, params, counters, rows)`.
 
-    Writes counters.sweeps, .residual [m/s], .residual_contact and .unsolved of this step.
+    Writes counters.sweeps, .residual [m/s], .residual_contact and .not_converged of this step.
     """
     if can_pack(spec):
         return make_solve_packed(spec, eight=True)

@@ -98,7 +98,7 @@ def make_act(spec: Spec) -> Any:
 def make(spec: Spec) -> Any:
     """Return `kernel(contacts, order, count, bodies, velocities, space, params, counters, rows)`.
 
-    Writes counters.sweeps, .residual [m/s], .residual_contact and .unsolved of this step.
+    Writes counters.sweeps, .residual [m/s], .residual_contact and .not_converged of this step.
     """
     record_residuals = spec.has("residual_log")
     note, account = make_note(spec), make_account(spec)

@@ -60,7 +60,7 @@ def make_move_on(spec: Spec):
 def make(spec: Spec):
     """Return `kernel(contacts, order, count, bodies, velocities, space, params, counters, rows)`.
 
-    Writes counters.sweeps, .residual [m/s], .residual_contact and .unsolved of this step.
+    Writes counters.sweeps, .residual [m/s], .residual_contact and .not_converged of this step.
     """
     friction = spec.has("friction")
     record_residuals = spec.has("residual_log")

@@ -60,10 +60,10 @@ def make_account(spec: Spec):
         counters.sweeps = sweeps
         counters.residual = residual
         counters.residual_contact = worst
-        counters.unsolved = 0
+        counters.not_converged = 0
         if asked:
             if params.tolerance >= 0.0:
                 if not residual <= params.tolerance:
-                    counters.unsolved = 1
+                    counters.not_converged = 1
 
     return kernel(account, spec)

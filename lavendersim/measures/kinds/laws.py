@@ -112,6 +112,6 @@ def law_violation(spec: specs.LawViolation, trace: Trace) -> float:
 @measure(specs.UnsolvedSteps)
 def unsolved_steps(spec: specs.UnsolvedSteps, trace: Trace) -> float:
     """Return how many steps ended above the tolerance asked for; NaN where none was asked for."""
-    if "unsolved" not in (trace.step.dtype.names or ()):
+    if "not_converged" not in (trace.step.dtype.names or ()):
         return NAN
-    return float(np.count_nonzero(trace.step["unsolved"]))
+    return float(np.count_nonzero(trace.step["not_converged"]))

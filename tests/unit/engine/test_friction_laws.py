@@ -52,14 +52,14 @@ def slid(cone: str) -> tuple[Bench, Any]:
 
 def test_the_convex_relaxation_lifts_what_slides() -> None:
     bench, rows = slid("convex")
-    assert rows.step["unsolved"][-1] == 0
+    assert rows.step["not_converged"][-1] == 0
     np.testing.assert_allclose(bench.velocity[1], [LIFTED, 0.0, MU * LIFTED], atol=ALLOWED)
     np.testing.assert_allclose(bench.spin[1], 0.0, atol=ALLOWED / 0.05)
 
 
 def test_coulombs_law_does_not() -> None:
     bench, rows = slid("disc")
-    assert rows.step["unsolved"][-1] == 0
+    assert rows.step["not_converged"][-1] == 0
     np.testing.assert_allclose(bench.velocity[1], [SPEED - MU * G * DT, 0.0, 0.0], atol=ALLOWED)
 
 
@@ -81,7 +81,7 @@ def test_what_sticks_sticks_under_both() -> None:
     for cone in ("convex", "disc"):
         bench = block(cone, slope=0.4)
         rows = bench.run(3)
-        assert (rows.step["unsolved"][1:] == 0).all()
+        assert (rows.step["not_converged"][1:] == 0).all()
         np.testing.assert_allclose(bench.velocity[1], 0.0, atol=3 * ALLOWED)
         pull = np.hypot(rows.contact["impulse_t1"], rows.contact["impulse_t2"])
         last = rows.contact["step"] == 3

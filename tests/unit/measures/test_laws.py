@@ -140,7 +140,7 @@ def test_unsolved_steps_are_counted_and_unknown_where_no_tolerance_was_asked_for
     spec = specs.UnsolvedSteps(kind="unsolved_steps")
     log = trace_of([0.0] * 4)
     assert math.isnan(evaluate(spec, log))
-    log.step = recfunctions.append_fields(log.step, "unsolved", [0, 1, 0, 1], usemask=False)
+    log.step = recfunctions.append_fields(log.step, "not_converged", [0, 1, 0, 1], usemask=False)
     assert evaluate(spec, log) == 2.0
 
 

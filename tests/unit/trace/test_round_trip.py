@@ -6,6 +6,7 @@ from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
+import numpy.lib.recfunctions as recfunctions
 import pytest
 from sample import AS_WRITTEN, BODIES, CONFIG, METADATA, SCENE, TIMESTEP, run, split, write
 
@@ -133,3 +134,11 @@ def test_a_block_that_contradicts_itself_is_refused(tmp_path: Path, fault: str) 
 def test_a_missing_file_is_named(tmp_path: Path) -> None:
     with pytest.raises(TraceError, match=r"none\.mcap: no such log"):
         open_trace(tmp_path / "none.mcap")
+
+
+def test_a_column_that_was_renamed_is_read_from_older_logs(tmp_path: Path) -> None:
+    block = run(5)
+    older = recfunctions.rename_fields(block.step, {"not_converged": "unsolved"})
+    trace = open_trace(write(tmp_path / "run.mcap", [block._replace(step=older)]))
+    assert "unsolved" not in (trace.step.dtype.names or ())
+    assert np.array_equal(trace.step["not_converged"], block.step["not_converged"])
