@@ -6,44 +6,38 @@ import hashlib
 import json
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
-
-from pydantic import ValidationError
+from typing import Any, Final
 
 from lavendersim.cell.config import CellConfig
 from lavendersim.errors import ConfigError, Defect
-from lavendersim.experiment.checks.always import check_always
-from lavendersim.experiment.checks.messages import report_errors
-from lavendersim.experiment.checks.references import check_names
-from lavendersim.experiment.checks.run import check_run
-from lavendersim.experiment.checks.scene import check_scene
-from lavendersim.experiment.checks.study import check_study
+from lavendersim.experiment.checks.reading import Reading
+from lavendersim.experiment.models.always import AlwaysSection
+from lavendersim.experiment.models.cost import CostSpec
 from lavendersim.experiment.models.experiment import CellSource
+from lavendersim.experiment.models.overhead import PriceSpec
 from lavendersim.experiment.resolve.cell import resolve_cell
 from lavendersim.experiment.resolve.placement import SceneError
 from lavendersim.experiment.sweeps.axes import Point
 from lavendersim.experiment.text.node import Node, Path, key_mark
 from lavendersim.experiment.text.report import Report
+from lavendersim.quantities.model import ConfigModel
 
-
-def check_cell(tree: Node, report: Report) -> None:
-    """Note what is wrong between the values of one cell, beyond the types of its values."""
-    check_scene(tree, report)
-    check_run(tree, report)
-    check_study(tree, report)
-    check_always(tree, report)
-    check_names(tree, CellSource, frozenset(), report)
+# Sections that are no part of a cell, with rules that its values may break.
+_BESIDE: Final[dict[str, type[ConfigModel]]] = {
+    "always": AlwaysSection,
+    "price": PriceSpec,
+    "cost": CostSpec,
+}
 
 
 def build_cell(root: Node, point: Point, report: Report) -> CellConfig | None:
     """Return the resolved config of one cell of the sweep, or None when something is wrong."""
     tree = point.tree(root)
-    try:
-        source = CellSource.model_validate(_own(tree))
-    except ValidationError as error:
-        report_errors(error, CellSource, tree, report)
-        source = None
-    check_cell(tree, report)
+    reading = Reading(tree, (), report)
+    for name, model in _BESIDE.items():
+        if (section := tree.entries.get(name)) is not None and section.entries:
+            reading.apply(model, section, (name,))
+    source = reading.read(CellSource, only=CellSource.model_fields)
     if not report.close_round() or source is None:
         return None
     try:
@@ -59,11 +53,6 @@ def _deepest(tree: Node, path: Path) -> Node:
     for step in path:
         tree = tree.get(step) or tree
     return tree
-
-
-def _own(tree: Node) -> dict[str, Any]:
-    """Return the data of the sections that make a cell."""
-    return {key: node.data for key, node in tree.entries.items() if key in CellSource.model_fields}
 
 
 @dataclass(frozen=True)

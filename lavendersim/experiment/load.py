@@ -10,14 +10,12 @@ import itertools
 import os
 from pathlib import Path
 
-from pydantic import ValidationError
-
 from lavendersim.errors import ConfigError, UsageError
-from lavendersim.experiment.cell import Cell, build_cell, check_cell
-from lavendersim.experiment.checks.messages import report_errors
-from lavendersim.experiment.checks.references import check_references, swept_values
+from lavendersim.experiment.cell import Cell, build_cell
+from lavendersim.experiment.checks.reading import Reading
 from lavendersim.experiment.experiment import Experiment
 from lavendersim.experiment.models.experiment import ExperimentConfig
+from lavendersim.experiment.models.tree import swept_values
 from lavendersim.experiment.sweeps import axes as sweep
 from lavendersim.experiment.sweeps.reduction import check_reduction, reduce
 from lavendersim.experiment.sweeps.solver_override import with_solver
@@ -94,13 +92,7 @@ def _check_first(
 ) -> ExperimentConfig | None:
     """Check the whole file, with the first value of every axis in its place."""
     tree = next(sweep.points(axes), sweep.Point(())).tree(root)
-    config: ExperimentConfig | None = None
-    try:
-        config = ExperimentConfig.model_validate(tree.data)
-    except ValidationError as error:
-        report_errors(error, ExperimentConfig, tree, report)
-    check_references(tree, ExperimentConfig, swept_values(root), report)
-    check_cell(tree, report)
+    config = Reading(tree, swept_values(root), report).read(ExperimentConfig)
     report.close_round()
     return config
 

@@ -5,16 +5,33 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any, Protocol
 
-from pydantic import BaseModel, ConfigDict, Field, create_model
+from pydantic import BaseModel, ConfigDict, Field, ValidationInfo, create_model, model_validator
 
 
 class ConfigModel(BaseModel):
     """A part of a config as written: no silent conversions.
 
-    Sequences arrive as tuples, mappings as dicts, ratios as `scalars.Ratio` (a float).
+    Sequences arrive as tuples, mappings as dicts, ratios as `scalars.Ratio` (a float). A file is
+    validated with a context (`experiment.checks.reading`) that knows where each mapping stands; it
+    is told which model reads it, and applies the model's rules there.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _enter(cls, data: Any, info: ValidationInfo) -> Any:
+        if info.context is not None:
+            info.context.enter(cls, data)
+        return data
+
+    @classmethod
+    def rules(cls, at: Any) -> None:
+        """Refuse what is wrong between values; at: the mapping in its file (`text.place.Place`).
+
+        Called before the values themselves are checked, so that a defect of one hides none of
+        another: a rule says nothing about values of a wrong type, those are refused elsewhere.
+        """
 
 
 class ResolvedModel(BaseModel):

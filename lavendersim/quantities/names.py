@@ -1,22 +1,37 @@
 """Name types: a field of such a type must name a body, plane, measure or axis that exists.
 
-The loader finds these fields by their annotation, in any model, and reports a name that does not
-exist at its own line with the nearest one that does.
+Which names exist is known to the file that is read: it is asked in the context of the validation.
 """
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, NamedTuple
+from dataclasses import dataclass
+from typing import Annotated, Any, Literal
 
-from pydantic import StringConstraints
+from pydantic import GetCoreSchemaHandler, StringConstraints, ValidationInfo
+from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 NamedKind = Literal["body", "plane", "measure", "axis", "surface"]
 
 
-class Refers(NamedTuple):
-    """Marks a text field as the name of something defined elsewhere in the same file."""
+@dataclass(frozen=True)
+class Refers:
+    """Marks a text as the name of something defined elsewhere in the same file."""
 
     to: NamedKind
+
+    def check(self, name: str, info: ValidationInfo) -> str:
+        """Return the name; refuse one that the file does not define."""
+        refusal = info.context.refusal_of(self.to, name) if info.context is not None else None
+        if refusal:
+            raise PydanticCustomError("name", "{sentence}", {"sentence": refusal})
+        return name
+
+    def __get_pydantic_core_schema__(
+        self, source: Any, handler: GetCoreSchemaHandler
+    ) -> CoreSchema:
+        """Check the name after its type."""
+        return core_schema.with_info_after_validator_function(self.check, handler(source))
 
 
 BodyName = Annotated[str, Refers("body")]

@@ -68,7 +68,7 @@ def body(shape: dict[str, Any], position=(0.0, 0.0, 0.0), **stated: Any) -> dict
     mass = None if fixed else stated.pop("mass", 1.0)
     inertia = None
     if shape["kind"] != "plane":
-        solid = resolve_shape(SOLID.validate_json(json.dumps(shape)))
+        solid = resolve_shape(SOLID.validate_json(json.dumps(shape), strict=False))
         shape = solid.shape.model_dump(mode="json")
         inertia = None if fixed else [mass * moment for moment in solid.inertia_per_mass]
     return {

@@ -14,8 +14,17 @@ from pydantic import ValidationError
 from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails
 
-from lavendersim.experiment.checks.walk import Model, Place, fields, places
+from lavendersim.experiment.checks.annotations import (
+    Model,
+    alternatives,
+    annotation_of,
+    below,
+    fields,
+    is_model,
+    kinds,
+)
 from lavendersim.experiment.text.node import BROKEN, Broken, Mark, Node, Path, key_mark
+from lavendersim.experiment.text.place import missing_key, name_of, place_of
 from lavendersim.experiment.text.report import Report
 from lavendersim.quantities.found import found, near, nearest, quoted
 
@@ -42,11 +51,12 @@ _SWITCHED = ["on", "off"]  # plain texts in YAML 1.2
 _SWITCHES = {"yes": "true", "on": "true", "no": "false", "off": "false"}
 
 
-def report_errors(error: ValidationError, model: Model, root: Node, report: Report) -> None:
-    """Note every error of a validation of `root` against `model`."""
-    described = {place.path: place for place in places(model, root) if not place.refers}
+def report_errors(
+    error: ValidationError, root: Node, models: Mapping[Path, Model], report: Report
+) -> None:
+    """Note every error of a validation of `root`; models: what each of its mappings was read as."""
     errors = error.errors(include_url=False)
-    replaced = _replaced_keys(errors, root, described)
+    replaced = _replaced_keys(errors, root, models)
     judged: set[Path] = set()  # a value that fits no form of a union has one error per form
     for item in errors:
         path, node = locate(root, item["loc"])
@@ -60,7 +70,7 @@ def report_errors(error: ValidationError, model: Model, root: Node, report: Repo
             continue
         if item["type"] == "too_short" and len(node.items) >= item["ctx"]["min_length"]:
             continue  # pydantic does not count the items that it refused
-        mark, sentence = _sentence(item, path, node, root, described)
+        mark, sentence = _sentence(item, path, node, root, models)
         report.add(mark, sentence)
 
 
@@ -76,62 +86,44 @@ def locate(root: Node, loc: tuple[str | int, ...]) -> tuple[Path, Node]:
     return tuple(path), node
 
 
-def name_of(path: Path) -> str:
-    """Return how a sentence calls the value at the path: its key, with the index in a list."""
-    keys = [index for index, step in enumerate(path) if isinstance(step, str)]
-    if not keys:
-        return "the file"
-    indices = "".join(f"[{step}]" for step in path[keys[-1] + 1 :])
-    return f"{path[keys[-1]]}{indices}"
-
-
-def place_of(path: Path) -> str:
-    """Return how a sentence calls the mapping at the path: all keys on the way."""
-    if not path:
-        return "the experiment"
-    dotted = "".join(f"[{step}]" if isinstance(step, int) else f".{step}" for step in path)
-    return dotted.lstrip(".")
-
-
-def missing_key(key: str, path: Path, meaning: str | None) -> str:
-    """Return the sentence for a key that a mapping lacks."""
-    return f"missing key {quoted(key)} in {place_of(path)}" + (f": {meaning}" if meaning else "")
-
-
 def _replaced_keys(
-    errors: list[ErrorDetails], root: Node, described: Mapping[Path, Place]
+    errors: list[ErrorDetails], root: Node, models: Mapping[Path, Model]
 ) -> set[tuple[Path, str | int]]:
     """Return the missing keys that are there, but misspelt: the unknown key says it all."""
     replaced: set[tuple[Path, str | int]] = set()
     for item in errors:
         if item["type"] == "extra_forbidden":
             path = locate(root, item["loc"])[0][:-1]
-            replaced.add((path, near(item["loc"][-1], _keys_at(described, path)) or ""))
+            replaced.add((path, near(item["loc"][-1], _keys_at(models, path)) or ""))
     return replaced
 
 
 def _sentence(
-    item: ErrorDetails, path: Path, node: Node, root: Node, described: Mapping[Path, Place]
+    item: ErrorDetails, path: Path, node: Node, root: Node, models: Mapping[Path, Model]
 ) -> tuple[Mark, str]:
     kind, context, value = item["type"], item.get("ctx", {}), item["input"]
     name, step = name_of(path), item["loc"][-1]
     if kind == "extra_forbidden":
         parent = root.get(*path[:-1]) or root
-        hint = nearest(step, _keys_at(described, path[:-1]))
+        hint = nearest(step, _keys_at(models, path[:-1]))
         sentence = f"unknown key {quoted(step)} in {place_of(path[:-1])}{hint}"
         return key_mark(parent, str(path[-1])), sentence
     if kind == "missing":
         if isinstance(step, int):
             return node.mark, f"{name}: expected at least {step + 1} items, {_count(node)}"
-        info = _keys_at(described, path).get(step)
+        info = _keys_at(models, path).get(step)
         return node.mark, missing_key(str(step), path, info.description if info else None)
+    if kind == "name":
+        if step != "[key]":
+            return node.mark, f"{name}: {context['sentence']}"
+        parent = root.get(*path[:-1]) or root
+        return key_mark(parent, str(path[-1])), f"{name_of(path[:-1])}: {context['sentence']}"
     if step == "[key]":
         parent = root.get(*path[:-1]) or root
         rule = 'use up to 64 letters, digits, "_" and "-", starting with a letter'
         return key_mark(parent, str(path[-1])), f"{quoted(path[-1])} cannot be a name; {rule}"
     if kind == "union_tag_not_found":
-        kinds = described[path].kinds if path in described else ()
-        return node.mark, missing_key("kind", path, f"one of {', '.join(kinds)}")
+        return node.mark, missing_key("kind", path, f"one of {', '.join(_kinds_at(models, path))}")
     if kind == "union_tag_invalid":
         tag = node.get("kind") or node
         if tag.text is None:
@@ -174,9 +166,17 @@ def _value_sentence(kind: str, context: Mapping[str, Any], value: Any, name: str
     return f"{name}: {kind.replace('_', ' ')}, found {found(value)}"
 
 
-def _keys_at(described: Mapping[Path, Place], path: Path) -> dict[str, FieldInfo]:
-    model = described[path].model if path in described else None
-    return fields(model) if model is not None else {}
+def _keys_at(models: Mapping[Path, Model], path: Path) -> dict[str, FieldInfo]:
+    return fields(models[path]) if path in models else {}
+
+
+def _kinds_at(models: Mapping[Path, Model], path: Path) -> list[str]:
+    """Return the kinds that a mapping may have, from the field of the model that holds it."""
+    holder = next(path[:k] for k in range(len(path) - 1, -1, -1) if path[:k] in models)
+    field, *rest = path[len(holder) :]
+    annotation = below(annotation_of(fields(models[holder])[str(field)]), tuple(rest))
+    forms = [member for member, _ in alternatives(annotation) if is_model(member)]
+    return [kind for form in forms for kind in kinds(form)]
 
 
 def _tags(context: Mapping[str, Any]) -> str:

@@ -7,10 +7,9 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from lavendersim.experiment.models.bodies import ArrangedBody
+from lavendersim.experiment.models.tree import MOST_BODIES
 from lavendersim.quantities.model import ConfigModel
 from lavendersim.quantities.quantity import Position, Quantity, Vector, Vector3
-
-MOST_BODIES = 100_000  # of a scene; their names alone are some megabytes
 
 Count = Annotated[int, Quantity(whole=True, minimum=1, maximum=MOST_BODIES)]
 Gap = Annotated[float, Quantity("m", minimum=0)]

@@ -9,6 +9,9 @@ from pydantic import Field, Tag
 from lavendersim.cell.body import Drag, Release
 from lavendersim.cell.surface import Surface
 from lavendersim.experiment.models.shapes import Orientation, Shape, Solid
+from lavendersim.experiment.models.tree import SOLIDS
+from lavendersim.experiment.text.place import Place
+from lavendersim.quantities.found import near
 from lavendersim.quantities.model import ConfigModel
 from lavendersim.quantities.names import SurfaceName
 from lavendersim.quantities.quantity import (
@@ -21,6 +24,9 @@ from lavendersim.quantities.quantity import (
     either,
 )
 
+_OF_MOVING = ("velocity", "angular_velocity")
+_OF_MOVABLE = ("mass", "density", "inertia", "drag")
+_OF_PLACES = ("position", "release", "orientation")
 STATIC_HINT = "a body that never moves has fixed: true"
 
 
@@ -70,6 +76,29 @@ class _Matter(ConfigModel):
     )
     drag: Drag = Field(default=Drag(), description="resistance of the medium")
 
+    @classmethod
+    def rules(cls, at: Place) -> None:
+        """What moves has one of mass and density; what does not has neither, and no motion."""
+        kind = at.node.text_at("shape", "kind")
+        if kind == "plane":
+            _plane_rules(at)
+        elif kind in SOLIDS:
+            cls.start_rules(at)
+            fixed, kinematic = at.node.is_true("fixed"), at.node.is_true("kinematic")
+            if fixed and kinematic:
+                later = max(at.key("fixed"), at.key("kinematic"))
+                at.refuse(later, f"{at} states both fixed and kinematic; keep one")
+            elif fixed or kinematic:
+                _immovable_rules(at, "fixed" if fixed else "kinematic")
+            else:
+                meaning = "[kg], or a density [kg/m^3], or fixed: true"
+                _exactly_one(at, ("mass", "density"), meaning)
+                _inertia_rules(at, kind)
+
+    @classmethod
+    def start_rules(cls, at: Place) -> None:
+        """Refuse a start that is none."""
+
 
 class Body(_Matter):
     """One rigid body. Planes are static; a movable body has exactly one of mass and density."""
@@ -80,6 +109,11 @@ class Body(_Matter):
         default=None, description="start above a plane, instead of position"
     )
 
+    @classmethod
+    def start_rules(cls, at: Place) -> None:
+        """A body that stands alone has one of position and release."""
+        _exactly_one(at, ("position", "release"), "[m], or a release above a plane")
+
 
 class ArrangedBody(_Matter):
     """A body that stands in several places: all that a body has but its position."""
@@ -87,3 +121,58 @@ class ArrangedBody(_Matter):
     shape: Annotated[Solid, Field(discriminator="kind")] = Field(
         description="sphere, box, capsule, cylinder, hull or compound"
     )
+
+
+def _immovable_rules(at: Place, word: str) -> None:
+    for key in (*_OF_MOVABLE, *(_OF_MOVING if word == "fixed" else ())):
+        if mark := at.written(key):
+            at.refuse(mark, f"{key}: {at} is {word}; a {word} body has no {_words(key)}")
+    if mark := at.written("release"):
+        goes = "stays" if word == "fixed" else "goes its own way"
+        at.refuse(mark, f"release: {at} is {word} and {goes}; state its position")
+
+
+def _inertia_rules(at: Place, kind: str) -> None:
+    inertia = at.get("inertia")
+    if inertia is None or inertia.content is None:
+        return
+    if kind in ("hull", "compound"):
+        at.refuse(at.key("inertia"), f"inertia: {at} is a {kind}; its shape says it, leave it out")
+        return
+    moments = [item.number for item in inertia.items]
+    numbers = sorted(moment for moment in moments if moment is not None)
+    # 1, 2, 3 is a flat body, the limit; written numbers may miss it by their round-off.
+    if len(numbers) == 3 and numbers[2] > (numbers[0] + numbers[1]) * (1.0 + 1e-12):
+        sentence = "inertia: no body has a moment above the sum of the other two"
+        largest = inertia.items[moments.index(numbers[2])]
+        at.refuse(largest.mark, f"{sentence}, found {numbers[2]:g}")
+
+
+def _plane_rules(at: Place) -> None:
+    always = f"{at} is a plane; planes are always fixed"
+    fixed = at.get("fixed")
+    if fixed is not None and fixed.content is False:
+        at.refuse(fixed.mark, f"fixed: {always}")
+    if at.node.is_true("kinematic"):
+        at.refuse(at.key("kinematic"), f"kinematic: {always}")
+    for key in (*_OF_MOVABLE, *_OF_MOVING, *_OF_PLACES):
+        if mark := at.written(key):
+            instead = "; its normal and offset say where it is" if key in _OF_PLACES else ""
+            sentence = f"{key}: {at} is a plane; a plane has no {_words(key)}{instead}"
+            at.refuse(mark, sentence)
+
+
+def _exactly_one(at: Place, keys: tuple[str, str], meaning: str) -> None:
+    first, second = at.written(keys[0]), at.written(keys[1])
+    if first and second:
+        at.refuse(max(first, second), f"{at} states both {keys[0]} and {keys[1]}; keep one")
+    elif not first and not second:
+        unknown = [key for key in at.node.entries if key not in Body.model_fields]
+        if at.node.torn or any(near(key, Body.model_fields) in keys for key in unknown):
+            at.doubt()  # a refused key may have been one of them
+        else:
+            at.lacks(keys[0], meaning)
+
+
+def _words(key: str) -> str:
+    return key.replace("_", " ")

@@ -7,16 +7,24 @@ experiment, held against what is true.
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Final, Literal
 
 from pydantic import Field, Tag
 
 from lavendersim.cell.choices import Solver
+from lavendersim.experiment.models.overhead import refuse_what_interrupts
+from lavendersim.experiment.models.tree import products
+from lavendersim.experiment.text.node import key_mark
+from lavendersim.experiment.text.place import Place
 from lavendersim.measures.specs.base import ClosedForm
 from lavendersim.quantities.model import ConfigModel
 from lavendersim.quantities.names import MeasureName
 from lavendersim.quantities.quantity import Quantity, either
 
+# Names of the grid's own axes.
+GRID_NAMES: Final = frozenset(
+    {"numerics", "preset", "timestep", "solver", "sweeps", "tolerance", "warm_start"}
+)
 FEWEST_REPEATS = 7  # of six samples the interval that holds the median is all of them
 FEW = "of fewer, one slow moment of the machine decides where the median lies"
 
@@ -111,3 +119,17 @@ class CostSpec(ConfigModel):
         default=0.0,
         description="[s] simulated time at which what is timed begins; it ends with the run",
     )
+
+    @classmethod
+    def rules(cls, at: Place) -> None:
+        """The scene is timed in one go, and its sweep leaves alone what the grid varies."""
+        refuse_what_interrupts(at, "a scene")
+        for product in products(at.root):
+            for name, axis in product.entries.items():
+                path = axis.get("path")
+                if path is not None and (path.text or "").split(".")[0] == "numerics":
+                    sentence = "numerics are varied by the section cost; leave them to that"
+                    at.refuse(path.mark, f"path: {sentence}")
+                elif name in GRID_NAMES:
+                    sentence = "the section cost has an axis of this name; rename this one"
+                    at.refuse(key_mark(product, name), f"{name}: {sentence}")

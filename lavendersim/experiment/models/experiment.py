@@ -2,63 +2,34 @@
 
 from __future__ import annotations
 
-from fractions import Fraction
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Final
 
 from pydantic import ConfigDict, Field, Tag
 
 from lavendersim.cell.choices import Preset, Switch
 from lavendersim.cell.numerics import Numerics
+from lavendersim.experiment.models.always import AlwaysSection
 from lavendersim.experiment.models.cost import CostSpec
+from lavendersim.experiment.models.events import Event
+from lavendersim.experiment.models.expectation_names import expectation_rules
 from lavendersim.experiment.models.overhead import PriceSpec
 from lavendersim.experiment.models.record import Record
 from lavendersim.experiment.models.scene import Scene
+from lavendersim.experiment.models.steps import step_rules
 from lavendersim.experiment.models.study import Study
+from lavendersim.experiment.text.place import Place
 from lavendersim.figures.specs.catalogue import FigureSpec
-from lavendersim.measures.specs.always import Always
 from lavendersim.measures.specs.catalogue import MeasureSpec
 from lavendersim.measures.specs.expectation import ExpectSpec
 from lavendersim.quantities.model import ConfigModel
-from lavendersim.quantities.names import BodyName, NewName
+from lavendersim.quantities.names import NewName
 from lavendersim.quantities.quantity import (
-    AngularVelocity,
-    Position,
     Quantity,
-    Velocity,
     either,
 )
 
-
-class Event(ConfigModel):
-    """A change to one body, or of the timestep, before the first step that starts at `at`."""
-
-    at: Annotated[float, Quantity("s", minimum=0)] = Field(description="[s] simulated time")
-    body: BodyName | None = Field(
-        default=None, description="name of a body; required but for a timestep"
-    )
-    timestep: Annotated[Fraction, Quantity("s", above=0, exact=True)] | None = Field(
-        default=None, description="[s] length of the steps from then on; stands without a body"
-    )
-    scale_mass: Annotated[float, Quantity(above=0)] | None = Field(
-        default=None, description="factor on mass and inertia"
-    )
-    teleport: Position | None = Field(
-        default=None, description="[m] new centre of mass; clears the body's cached contacts"
-    )
-    velocity: Velocity | None = Field(
-        default=None, description="[m/s] new velocity of the centre of mass"
-    )
-    angular_velocity: AngularVelocity | None = Field(
-        default=None, description="[rad/s] new angular velocity, world frame"
-    )
-    contact_cache: Literal["keep", "clear"] | None = Field(
-        default=None,
-        description="clear: every cached impulse is dropped, the next solve starts cold; "
-        "not stated: keep",
-    )
-    remove: bool | None = Field(
-        default=None, description="true: the body, which may be fixed, takes part in nothing more"
-    )
+# Solvers that no sweep visits contact by contact.
+_WITHOUT_SWEEPS: Final = ("jacobi", "accelerated_projected_gradient")
 
 
 class NumericsSource(Numerics):
@@ -135,6 +106,20 @@ class CellSource(ConfigModel):
         default=Study(), description="a known mistake, made on purpose; every run with one says so"
     )
 
+    @classmethod
+    def rules(cls, at: Place) -> None:
+        """The run has some steps and not too many; sweeps are ordered where there are any."""
+        step_rules(at)
+        solver = at.get("numerics", "solver")
+        for key, idle in (("over_relaxation", "1"), ("order", "coloured")):
+            value = at.get("numerics", key)
+            if solver is None or solver.text not in _WITHOUT_SWEEPS or value is None:
+                continue
+            if value.text != idle and value.number != 1:
+                mark = max(solver.mark, value.mark)  # swept values stand below what they replace
+                sentence = f"{solver.text} treats all contacts at once; expected {idle}"
+                at.refuse(mark, f"{key}: {sentence}")
+
 
 class Reduced(ConfigModel):
     """What of a slow experiment is run where time is short: its beginning."""
@@ -156,7 +141,7 @@ class ExperimentConfig(CellSource):
     )
     measure: dict[NewName, MeasureSpec] = Field(default={}, description="name: what each log gives")
     expect: tuple[ExpectSpec, ...] = Field(default=(), description="the claims that pytest checks")
-    always: Always | None = Field(
+    always: AlwaysSection | None = Field(
         default=None, description="what every step of every cell must keep; not judged if absent"
     )
     slow: bool = Field(
@@ -171,3 +156,9 @@ class ExperimentConfig(CellSource):
         default=None,
         description="what accuracy costs, for `lavender cost`: a grid, an error, a truth",
     )
+
+    @classmethod
+    def rules(cls, at: Place) -> None:
+        """Expectations have names of their own, and what must fail exists."""
+        super().rules(at)
+        expectation_rules(at)

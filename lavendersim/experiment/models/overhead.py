@@ -6,6 +6,9 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, Tag
 
+from lavendersim.experiment.models.tree import duration_of
+from lavendersim.experiment.text.node import Path, key_mark
+from lavendersim.experiment.text.place import Place
 from lavendersim.quantities.model import ConfigModel
 from lavendersim.quantities.quantity import Quantity, either
 
@@ -33,3 +36,22 @@ class PriceSpec(ConfigModel):
         default=0.0,
         description="[s] simulated time at which what is timed begins; it ends with the run",
     )
+
+    @classmethod
+    def rules(cls, at: Place) -> None:
+        """Every sample is the same steps of one cell, in one go."""
+        refuse_what_interrupts(at, "one cell", ("sweep",))
+
+
+def refuse_what_interrupts(at: Place, expected: str, *others: Path) -> None:
+    """Refuse what keeps a cell's steps from being timed in one go, and a beginning at its end."""
+    for path in (*others, ("events",), ("scene", "forces")):
+        other = at.root.get(*path)
+        if other is not None and (other.entries or other.items):
+            found = ".".join(map(str, path))
+            sentence = f"{at}: expected {expected} without events and forces, found {found}"
+            at.refuse(key_mark(at.root, str(at)), sentence)
+    start, length = at.node.number_at("from"), duration_of(at.root)
+    if start is not None and length is not None and start >= length > 0:
+        sentence = f"from: expected a time before the end (duration {length:g} s), found {start:g}"
+        at.refuse(at.node.entries["from"].mark, sentence)

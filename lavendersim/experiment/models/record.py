@@ -7,6 +7,8 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, Tag
 
 from lavendersim.cell.record import NONE, EverySteps
+from lavendersim.experiment.models.tree import duration_of
+from lavendersim.experiment.text.place import Place
 from lavendersim.quantities.model import ConfigModel
 from lavendersim.quantities.quantity import Quantity, either
 
@@ -16,6 +18,20 @@ class Window(ConfigModel):
 
     begin: Annotated[float, Quantity("s", minimum=0)] = Field(alias="from", description="[s]")
     end: Annotated[float, Quantity("s", minimum=0)] = Field(alias="to", description="[s]")
+
+    @classmethod
+    def rules(cls, at: Place) -> None:
+        """It ends after it begins, and begins in the run."""
+        begin, end = at.node.number_at("from"), at.node.number_at("to")
+        length = duration_of(at.root)
+        if begin is None or end is None:
+            return
+        if begin >= end:
+            sentence = f"to: expected a time after from ({begin:g} s), found {end:g}"
+            at.refuse(at.node.entries["to"].mark, sentence)
+        elif length is not None and begin > length:
+            sentence = f"from: {begin:g} s is after the end of the run, duration {length:g} s"
+            at.refuse(at.node.entries["from"].mark, sentence)
 
 
 def _residuals_form(value: Any) -> str | None:

@@ -10,6 +10,20 @@ from lavendersim.cell.surface import Surface
 from lavendersim.engine.effects import SCENE_KEYS
 from lavendersim.experiment.models.arrangements import Arrangement
 from lavendersim.experiment.models.bodies import Body
+from lavendersim.experiment.models.removals import removals
+from lavendersim.experiment.models.tree import (
+    MOST_BODIES,
+    body_node,
+    described,
+    duration_of,
+    immovable,
+    is_static,
+    member_name,
+    members,
+)
+from lavendersim.experiment.text.node import key_mark
+from lavendersim.experiment.text.place import Place
+from lavendersim.quantities.found import quoted
 from lavendersim.quantities.model import ConfigModel, declared
 from lavendersim.quantities.names import BodyName, NewName
 from lavendersim.quantities.quantity import Quantity, Vector, Vector3, either
@@ -32,6 +46,13 @@ class TiltedGravity(ConfigModel):
     azimuth_degrees: Annotated[float, Quantity("degree")] = Field(
         default=0.0, description="[degree] from x towards y: the direction in which it goes down"
     )
+
+    @classmethod
+    def rules(cls, at: Place) -> None:
+        """An angle is written once."""
+        tilt, slope = at.written("tilt_degrees"), at.written("slope")
+        if tilt and slope:
+            at.refuse(max(tilt, slope), "gravity states both tilt_degrees and slope; keep one")
 
 
 def _gravity_form(value: Any) -> str:
@@ -73,6 +94,32 @@ class Force(ConfigModel):
         default=_ZERO, description="[N m] world frame, right-handed"
     )
 
+    @classmethod
+    def rules(cls, at: Place) -> None:
+        """It acts on a body that can move, for a while of the run, before the body is removed."""
+        body, begin, end = at.get("body"), at.get("from"), at.get("to")
+        name, length = at.node.text_at("body"), duration_of(at.root)
+        if body is not None and (what := immovable(body_node(at.root, name), kinematic=True)):
+            at.refuse(body.mark, f'body: "{name}" is {what}; expected a movable body')
+        if not at.get("force") and not at.get("torque"):
+            at.refuse(at.node.mark, f"{at} does nothing; expected force or torque")
+        start = 0.0 if begin is None else begin.number
+        stop = end.number if end is not None else None
+        if start is None:
+            pass
+        elif begin is not None and length is not None and start > length > 0:
+            sentence = f"from: {start:g} s is after the end of the run, duration {length:g} s"
+            at.refuse(begin.mark, sentence)
+        elif end is not None and stop is not None and stop <= start:
+            sentence = f"to: expected a time after from ({start:g} s), found {stop:g}"
+            at.refuse(end.mark, sentence)
+        removal = removals(at.root).get(name or "")
+        if removal is not None and body is not None and end is None:
+            sentence = removal.sentence("body", name)
+            at.refuse(body.mark, f"{sentence}; expected to: {removal.at:g}")
+        elif removal is not None and end is not None and stop is not None and stop > removal.at:
+            at.refuse(end.mark, removal.sentence("to", name))
+
 
 class Scene(declared("Scene", ConfigModel, SCENE_KEYS)):  # type: ignore[misc]
     """What is there; bodies in the order in which they are written, then those arranged."""
@@ -89,6 +136,37 @@ class Scene(declared("Scene", ConfigModel, SCENE_KEYS)):  # type: ignore[misc]
         default={}, description="name: one body in many places; they are called name_1, name_2, ..."
     )
     forces: tuple[Force, ...] = Field(default=(), description="forces and torques over time")
+
+    @classmethod
+    def rules(cls, at: Place) -> None:
+        """Something can move; the bodies of arrangements are not too many, with own names."""
+        bodies = at.get("bodies")
+        if bodies is None or not isinstance(bodies.content, dict):
+            return
+        _arrangement_rules(at)
+        every = [body for _, body in described(at.root)]
+        if not every:
+            at.refuse(bodies.mark, "bodies: expected at least one movable body, found none")
+        elif all(map(is_static, every)):
+            sentence = "nothing can move here; expected at least one body that is not fixed"
+            at.refuse(at.key("bodies"), f"bodies: {sentence}")
+
+
+def _arrangement_rules(at: Place) -> None:
+    single, total = at.node.entries_at("bodies"), 0
+    arrangements = at.get("arrangements")
+    for name, arrangement in at.node.entries_at("arrangements").items():
+        assert arrangements is not None
+        count = members(arrangement)
+        total += count
+        mark = key_mark(arrangements, name)
+        if total > MOST_BODIES:
+            sentence = f"{name}: {total} bodies in arrangements, expected at most {MOST_BODIES}"
+            at.refuse(mark, sentence)
+            return
+        names = (member_name(name, number) for number in range(1, count + 1))
+        if clash := next((one for one in names if one in single), None):
+            at.refuse(mark, f"{name}: its body {quoted(clash)} has a namesake in bodies")
 
 
 __all__ = ["GRAVITY", "Body", "Force", "Gravity", "Scene", "Surface", "TiltedGravity"]

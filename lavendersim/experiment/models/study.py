@@ -9,10 +9,21 @@ preset and of no other section, and every run that makes one says so: `lavender 
 
 from __future__ import annotations
 
+from typing import Final
+
 from pydantic import Field
 
-from lavendersim.cell.choices import NO_MISTAKE, Mistake
+from lavendersim.cell.choices import CAPTURE_IN_SWEEPS, NO_MISTAKE, Mistake
+from lavendersim.experiment.text.place import Place
 from lavendersim.quantities.model import ConfigModel
+
+# What the numerics must state for a mistake to be one: key, value, and why.
+_PLACES: Final = {
+    CAPTURE_IN_SWEEPS: (
+        ("solver", "projected_gauss_seidel", "is a mistake in the loop of projected_gauss_seidel"),
+        ("impacts", "captured", "is a mistake of captured restitution"),
+    )
+}
 
 
 class Study(ConfigModel):
@@ -23,3 +34,15 @@ class Study(ConfigModel):
         description="a known mistake that is made on purpose; capture_in_sweeps: restitution is "
         "captured anew in every sweep, not once before the solve, and the bounce is lost",
     )
+
+    @classmethod
+    def rules(cls, at: Place) -> None:
+        """The numerics have a place for the mistake."""
+        mistake = at.get("mistake")
+        for key, expected, why in _PLACES.get(at.node.text_at("mistake") or "", ()):
+            value = at.root.get("numerics", key)
+            if mistake is None or value is None or value.text in (None, expected):
+                continue  # no text is refused elsewhere
+            sentence = f"mistake: {mistake.text} {why}; expected {key}: {expected}"
+            later = max(mistake.mark, value.mark)  # swept values stand below what they replace
+            at.refuse(later, f"{sentence}, found {value.text}")

@@ -8,7 +8,8 @@ from lavendersim.cell.config import CellConfig, CellEffects, CellStudy
 from lavendersim.cell.events import CellEvent, CellTimestep
 from lavendersim.cell.numerics import Numerics
 from lavendersim.cell.record import CellRecord, ResidualWindow
-from lavendersim.experiment.models.experiment import CellSource, Event, NumericsSource
+from lavendersim.experiment.models.events import Event
+from lavendersim.experiment.models.experiment import CellSource, NumericsSource
 from lavendersim.experiment.models.record import Record, Window
 from lavendersim.experiment.resolve.scene import resolve_scene
 

@@ -9,9 +9,9 @@ from lavendersim.cell.body import CellBody
 from lavendersim.cell.scene import CellForce, CellScene
 from lavendersim.cell.shapes import CellShape, Plane
 from lavendersim.engine.effects import SCENE_KEYS
-from lavendersim.experiment.checks.population import ARRANGEMENTS, BODIES, member_name
 from lavendersim.experiment.models.bodies import ArrangedBody, Body
 from lavendersim.experiment.models.scene import Force, Scene, TiltedGravity
+from lavendersim.experiment.models.tree import ARRANGEMENTS, BODIES, member_name
 from lavendersim.experiment.resolve.arrangements import centres
 from lavendersim.experiment.resolve.placement import SceneError, released_position
 from lavendersim.experiment.resolve.shape import quaternion_of, resolve_shape

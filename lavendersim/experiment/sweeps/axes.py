@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-from lavendersim.experiment.checks.references import products
+from lavendersim.experiment.models.tree import products
 from lavendersim.experiment.resolve.presets import with_preset
 from lavendersim.experiment.sweeps.paths import find_path
 from lavendersim.experiment.text.node import Node, Path, graft, key_mark

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, get_args, get_origin
 
-from lavendersim.experiment.checks.walk import (
+from lavendersim.experiment.checks.annotations import (
     Model,
     alternatives,
     annotation_of,

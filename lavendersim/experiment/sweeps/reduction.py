@@ -6,7 +6,7 @@ reduced: {duration: 5.0}
 
 from __future__ import annotations
 
-from lavendersim.experiment.checks.references import products
+from lavendersim.experiment.models.tree import products
 from lavendersim.experiment.text.node import Node, graft, key_mark
 from lavendersim.experiment.text.report import Report
 

@@ -76,6 +76,31 @@ class Node:
             return None
         return content
 
+    def entries_at(self, *path: str | int) -> dict[str, Node]:
+        """Return the entries of the mapping at a path; nothing where there is none."""
+        node = self.get(*path)
+        return node.entries if node is not None else {}
+
+    def items_at(self, *path: str | int) -> tuple[Node, ...]:
+        """Return the items of the list at a path; nothing where there is none."""
+        node = self.get(*path)
+        return node.items if node is not None else ()
+
+    def text_at(self, *path: str | int) -> str | None:
+        """Return the text at a path; None where there is none."""
+        node = self.get(*path)
+        return node.text if node is not None else None
+
+    def number_at(self, *path: str | int) -> float | None:
+        """Return the number at a path; None where there is none."""
+        node = self.get(*path)
+        return node.number if node is not None else None
+
+    def is_true(self, *path: str | int) -> bool:
+        """Tell whether `true` stands at a path."""
+        node = self.get(*path)
+        return node is not None and node.content is True
+
     @property
     def data(self) -> Any:
         """The plain value: scalars, tuples and dicts."""

@@ -12,12 +12,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Annotated, Literal, Self
 
 from pydantic import Field, model_validator
-from pydantic_core import PydanticCustomError
 
 from lavendersim.measures.specs.selection import Selection
 from lavendersim.quantities.model import ConfigModel
 from lavendersim.quantities.names import BodyName
-from lavendersim.quantities.quantity import Quantity
+from lavendersim.quantities.quantity import Quantity, sentence_error
 
 FormName = Literal[
     "newton_impulse",
@@ -62,8 +61,7 @@ class Measure(ConfigModel):
     @model_validator(mode="after")
     def _one_form(self) -> Self:
         if self.over is not None and self.against is not None:
-            sentence = "expected at most one of over, against"
-            raise PydanticCustomError("lavender", "{sentence}", {"sentence": sentence})
+            raise sentence_error("expected at most one of over, against")
         return self
 
 

@@ -28,13 +28,12 @@ from __future__ import annotations
 from typing import Annotated, Final, Literal
 
 from pydantic import Field, model_validator
-from pydantic_core import PydanticCustomError
 
 from lavendersim.measures.specs.base import ClosedForm
 from lavendersim.measures.specs.selection import Selection
 from lavendersim.quantities.model import ConfigModel
 from lavendersim.quantities.names import AxisName, MeasureName
-from lavendersim.quantities.quantity import Quantity
+from lavendersim.quantities.quantity import Quantity, sentence_error
 
 # How the name of a `fails` begins that says what lavender does not hold, but should.
 KNOWN_FAILURE: Final = "known failure"
@@ -57,9 +56,11 @@ class Equals(ConfigModel):
     @model_validator(mode="after")
     def _one_reference(self) -> Equals:
         if (self.value is None) == (self.closed_form is None):
-            raise _refusal("expected exactly one of value, closed_form")
+            raise sentence_error("expected exactly one of value, closed_form")
         if self.relative == 0.0 and self.absolute == 0.0:
-            raise _refusal("expected relative or absolute above 0; use `exactly` for no tolerance")
+            raise sentence_error(
+                "expected relative or absolute above 0; use `exactly` for no tolerance"
+            )
         return self
 
 
@@ -94,7 +95,7 @@ class Ratio(ConfigModel):
     @model_validator(mode="after")
     def _bounded(self) -> Ratio:
         if self.at_most is None and self.at_least is None:
-            raise _refusal("expected at_most or at_least")
+            raise sentence_error("expected at_most or at_least")
         return self
 
 
@@ -159,17 +160,19 @@ class ExpectSpec(ConfigModel):
         if self.fails is not None:
             if given or self.measure:
                 besides = ", ".join([*(["measure"] if self.measure else []), *given])
-                raise _refusal(f"expected nothing beside fails but name and at; found {besides}")
+                raise sentence_error(
+                    f"expected nothing beside fails but name and at; found {besides}"
+                )
             return self
         if not self.measure:
-            raise _refusal('missing key "measure": the measure the claim is about')
+            raise sentence_error('missing key "measure": the measure the claim is about')
         if len(given) != 1:
             kinds = ", ".join((*CELL_JUDGEMENTS, *SWEEP_JUDGEMENTS))
             found = ", ".join(given) if given else "none"
-            raise _refusal(f"expected exactly one judgement of {kinds}; found {found}")
+            raise sentence_error(f"expected exactly one judgement of {kinds}; found {found}")
         for bounds in (self.between, self.crosses and self.crosses.between):
             if bounds and bounds[0] > bounds[1]:
-                raise _refusal("expected the lower bound first in `between`")
+                raise sentence_error("expected the lower bound first in `between`")
         return self
 
     @property
@@ -187,7 +190,3 @@ class ExpectSpec(ConfigModel):
     def per_cell(self) -> bool:
         """True when each selected cell is judged alone (one test per cell)."""
         return self.judgement in CELL_JUDGEMENTS
-
-
-def _refusal(sentence: str) -> PydanticCustomError:
-    return PydanticCustomError("lavender", "{sentence}", {"sentence": sentence})

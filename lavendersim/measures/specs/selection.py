@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
+from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler, ValidationInfo
 from pydantic_core import CoreSchema, core_schema
 
 from lavendersim.quantities.names import AxisName
@@ -47,5 +47,21 @@ def _is_scalar(value: object) -> bool:
     return isinstance(value, bool | int | float | str)
 
 
+class _Selection:
+    """Tells the file that is read which values of its axes are meant."""
+
+    def check(self, value: object, info: ValidationInfo) -> object:
+        """Have every value looked for among the swept ones."""
+        if info.context is not None:
+            info.context.check_selection(value)
+        return value
+
+    def __get_pydantic_core_schema__(
+        self, source: Any, handler: GetCoreSchemaHandler
+    ) -> CoreSchema:
+        """Look at the mapping before its types are checked."""
+        return core_schema.with_info_before_validator_function(self.check, handler(source))
+
+
 Coordinate = Annotated[Any, _Coordinate()]
-Selection = dict[AxisName, Coordinate]
+Selection = Annotated[dict[AxisName, Coordinate], _Selection()]

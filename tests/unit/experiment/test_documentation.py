@@ -9,7 +9,7 @@ import pytest
 from pydantic import BaseModel
 
 from lavendersim.cell import Numerics
-from lavendersim.experiment.checks.walk import (
+from lavendersim.experiment.checks.annotations import (
     alternatives,
     annotation_of,
     field_name,

@@ -1,0 +1,138 @@
+"""One validation of a tree: pydantic's context, which knows the place of every mapping.
+
+    tree of nodes --plain data--> pydantic --errors--> sentences at their places
+                   \\_ where each mapping stands: rules, names, selections _/
+
+Models are entered before their values are checked, so their rules apply to what is there, and a
+defect of one value hides none of another.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from functools import cached_property
+from typing import Any, TypeVar
+
+from pydantic import BaseModel, ValidationError
+
+from lavendersim.experiment.checks.messages import report_errors
+from lavendersim.experiment.models.tree import BODIES, SOLIDS, body_names, swept_values
+from lavendersim.experiment.text.node import Mark, Node, Path
+from lavendersim.experiment.text.place import Place
+from lavendersim.experiment.text.report import Report
+from lavendersim.measures.specs.selection import ANY
+from lavendersim.quantities.found import nearest, quoted
+from lavendersim.quantities.model import ConfigModel
+from lavendersim.quantities.names import NamedKind
+from lavendersim.quantities.scalars import exact, written
+
+Read = TypeVar("Read", bound=ConfigModel)
+
+
+class Reading:
+    """One tree, as it is validated. axes: names of the axes of the sweep."""
+
+    def __init__(self, root: Node, axes: Collection[str], report: Report) -> None:
+        self.root = root
+        self.models: dict[Path, type[BaseModel]] = {}  # the model that each mapping is read as
+        self._report = report
+        self._nodes: dict[int, tuple[Node, Path]] = {}  # by the id of the mapping's plain data
+        self._noted: list[tuple[Mark, str]] = []
+        self._axes = axes
+
+    @cached_property
+    def _names(self) -> dict[NamedKind, Collection[str]]:
+        return {
+            "body": dict.fromkeys(body_names(self.root)),
+            "plane": self.root.entries_at(*BODIES),
+            "measure": self.root.entries_at("measure"),
+            "surface": self.root.entries_at("scene", "surfaces"),
+            "axis": self._axes,
+        }
+
+    @cached_property
+    def _swept(self) -> dict[str, list[Node]]:
+        return swept_values(self.root)
+
+    def read(self, model: type[Read], only: Collection[str] | None = None) -> Read | None:
+        """Return the tree as the model; None, with its defects in the report, where it is wrong.
+
+        only: sections to which that is limited; all of them if None.
+        """
+        data = self._plain(self.root, (), only)
+        try:
+            return model.model_validate(data, context=self)
+        except ValidationError as error:
+            report_errors(error, self.root, self.models, self._report)
+            return None
+        finally:
+            for mark, sentence in self._noted:
+                self._report.add(mark, sentence)
+
+    def _plain(self, node: Node, path: Path, only: Collection[str] | None = None) -> Any:
+        if isinstance(node.content, tuple):
+            return tuple(self._plain(item, (*path, k)) for k, item in enumerate(node.content))
+        if not isinstance(node.content, dict):
+            return node.content
+        data = {
+            key: self._plain(child, (*path, key))
+            for key, child in node.content.items()
+            if only is None or key in only
+        }
+        self._nodes[id(data)] = (node, path)
+        return data
+
+    def enter(self, model: type[ConfigModel], data: object) -> None:
+        """Apply the rules of a model to the mapping that is about to be read as it."""
+        if id(data) in self._nodes:
+            node, path = self._nodes[id(data)]
+            self.models[path] = model
+            self.apply(model, node, path)
+
+    def apply(self, model: type[ConfigModel], node: Node, path: Path) -> None:
+        """Apply the rules of a model to a mapping."""
+        model.rules(Place(node, path, self.root, self._refuse, self._report.doubt))
+
+    def _refuse(self, mark: Mark, sentence: str) -> None:
+        self._noted.append((mark, sentence))
+
+    def refusal_of(self, kind: NamedKind, name: str) -> str | None:
+        """Return why nothing, or nothing of this kind, is called so."""
+        known = self._names[kind]
+        if name not in known:
+            names = self._planes() if kind == "plane" else known
+            hint = nearest(name, names) or "; this file has none"
+            return f"no {kind} is called {quoted(name)}{hint}"
+        shape = self.root.text_at(*BODIES, name, "shape", "kind") if kind == "plane" else None
+        if shape in SOLIDS:
+            return f"{quoted(name)} is a {shape}, expected the name of a plane"
+        return None
+
+    def _planes(self) -> list[str]:
+        """Return the bodies that are planes, or may have been meant as one."""
+        bodies = self.root.entries_at(*BODIES)
+        return [name for name, b in bodies.items() if b.text_at("shape", "kind") not in SOLIDS]
+
+    def check_selection(self, data: object) -> None:
+        """Refuse values that their axis does not take."""
+        node, _ = self._nodes.get(id(data), (self.root, ()))
+        for axis, chosen in node.entries.items() if node is not self.root else ():
+            for value in chosen.items or (chosen,):
+                self._check_value(axis, value)
+
+    def _check_value(self, axis: str, value: Node) -> None:
+        values = self._swept.get(axis, [])
+        if not values or value.text == ANY or isinstance(value.content, tuple | dict):
+            return
+        if not any(same_value(value, other) for other in values):
+            unique = list(dict.fromkeys(written(other.data) for other in values))
+            among = ", ".join(unique[:16]) + (", ..." if len(unique) > 16 else "")
+            shown = written(value.data)
+            self._refuse(value.mark, f"{axis}: {shown} is not among the swept values {among}")
+
+
+def same_value(one: Node, other: Node) -> bool:
+    """Tell whether two swept values are equal as written: 1/500 equals 0.002, true not 1."""
+    if one.number is not None and other.number is not None:
+        return exact(one.number) == exact(other.number)
+    return type(one.content) is type(other.content) and one.data == other.data

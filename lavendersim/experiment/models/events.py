@@ -1,0 +1,104 @@
+"""Events as written: changes to one body, or of the timestep, at a time of the run."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Annotated, Final, Literal
+
+from pydantic import Field
+
+from lavendersim.experiment.models.removals import Removal, removals
+from lavendersim.experiment.models.tree import body_node, duration_of, immovable
+from lavendersim.experiment.text.node import Mark
+from lavendersim.experiment.text.place import Place
+from lavendersim.quantities.found import near
+from lavendersim.quantities.model import ConfigModel
+from lavendersim.quantities.names import BodyName
+from lavendersim.quantities.quantity import AngularVelocity, Position, Quantity, Velocity
+
+# What an event may do to a body; `remove` stands alone.
+_CHANGES: Final = ("scale_mass", "teleport", "velocity", "angular_velocity", "contact_cache")
+_EVERY_CHANGE: Final = (*_CHANGES, "remove")
+
+
+class Event(ConfigModel):
+    """A change to one body, or of the timestep, before the first step that starts at `at`."""
+
+    at: Annotated[float, Quantity("s", minimum=0)] = Field(description="[s] simulated time")
+    body: BodyName | None = Field(
+        default=None, description="name of a body; required but for a timestep"
+    )
+    timestep: Annotated[Fraction, Quantity("s", above=0, exact=True)] | None = Field(
+        default=None, description="[s] length of the steps from then on; stands without a body"
+    )
+    scale_mass: Annotated[float, Quantity(above=0)] | None = Field(
+        default=None, description="factor on mass and inertia"
+    )
+    teleport: Position | None = Field(
+        default=None, description="[m] new centre of mass; clears the body's cached contacts"
+    )
+    velocity: Velocity | None = Field(
+        default=None, description="[m/s] new velocity of the centre of mass"
+    )
+    angular_velocity: AngularVelocity | None = Field(
+        default=None, description="[rad/s] new angular velocity, world frame"
+    )
+    contact_cache: Literal["keep", "clear"] | None = Field(
+        default=None,
+        description="clear: every cached impulse is dropped, the next solve starts cold; "
+        "not stated: keep",
+    )
+    remove: bool | None = Field(
+        default=None, description="true: the body, which may be fixed, takes part in nothing more"
+    )
+
+    @classmethod
+    def rules(cls, at: Place) -> None:
+        """It happens in the run, to a body that is there and can take it, or to the timestep."""
+        time, name, length = at.node.number_at("at"), at.node.text_at("body"), duration_of(at.root)
+        if time is not None and length is not None and time > length > 0:
+            sentence = f"at: {time:g} s is after the end of the run, duration {length:g} s"
+            at.refuse(at.node.entries["at"].mark, sentence)
+        body = at.get("body")
+        if at.written("timestep"):
+            reason = f"{at} changes the timestep; what happens to a body is an event of its own"
+            _alone(at, ("body", *_EVERY_CHANGE), reason)
+        elif body is None or body.content is None:
+            _lacks_body(at)
+        elif at.node.is_true("remove"):
+            _alone(at, _CHANGES, f"{at} removes the body; expected no change")
+        else:
+            _change_rules(at, body.mark, name)
+        removal = removals(at.root).get(name or "")
+        late = removal is not None and time is not None and Removal(time, at.index) > removal
+        if late and removal is not None and body is not None:
+            at.refuse(body.mark, removal.sentence("body", name))
+
+
+def _change_rules(at: Place, mark: Mark, name: str | None) -> None:
+    target = body_node(at.root, name)
+    if what := immovable(target, kinematic=False):
+        at.refuse(mark, f'body: "{name}" is {what}; expected a movable body')
+    elif target is not None and target.is_true("kinematic") and at.get("scale_mass"):
+        sentence = f'scale_mass: "{name}" is kinematic; a kinematic body has no mass'
+        at.refuse(at.key("scale_mass"), sentence)
+    if not any(at.get(key) for key in _CHANGES):
+        changes = f"{', '.join(_CHANGES)} or remove"
+        at.refuse(at.node.mark, f"{at} changes nothing; expected {changes}")
+    cache = at.get("contact_cache")
+    if cache is not None and cache.text == "keep" and at.get("teleport"):
+        at.refuse(cache.mark, "contact_cache: a teleport always clears the body's cached contacts")
+
+
+def _lacks_body(at: Place) -> None:
+    """Without a body there is only a timestep to change; a misspelt key is refused elsewhere."""
+    unknown = at.node.entries.keys() - {"at", "body", "timestep", *_EVERY_CHANGE}
+    if not at.node.torn and not any(near(key, ("body", "timestep")) for key in unknown):
+        at.lacks("body", "name of a body, or else a timestep")
+
+
+def _alone(at: Place, others: tuple[str, ...], reason: str) -> None:
+    """Refuse the first of the keys that do not go with what the event does."""
+    other = next((key for key in others if at.get(key)), None)
+    if other is not None:
+        at.refuse(at.key(other), f"{other}: {reason}")

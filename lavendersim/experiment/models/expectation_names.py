@@ -1,0 +1,43 @@
+"""The rules between expectations: each has a name of its own, and what must fail exists."""
+
+from __future__ import annotations
+
+from lavendersim.experiment.text.node import Mark
+from lavendersim.experiment.text.place import Place
+from lavendersim.measures.specs.always import CHECKS, COMPLETES, DIVERGES, NONE
+from lavendersim.quantities.found import nearest, quoted
+
+
+def expectation_rules(at: Place) -> None:
+    """Refuse a name that stands twice, and what must fail but does not exist or is two things."""
+    first: dict[str, Mark] = {}
+    for item in at.node.items_at("expect"):
+        name = item.get("name")
+        if name is None or name.text is None:
+            continue
+        if name.text in first:
+            line = first[name.text].line
+            sentence = f"name: {quoted(name.text)} is the name of another expectation, line {line}"
+            at.refuse(name.mark, sentence)
+        first.setdefault(name.text, name.mark)
+    _control_rules(at)
+
+
+def _control_rules(at: Place) -> None:
+    items, always = at.node.items_at("expect"), at.get("always")
+    names = [item.text_at("name") for item in items if item.get("fails") is None]
+    claims = [name for name in names if name is not None]
+    checks = [COMPLETES, DIVERGES]
+    if always is not None:
+        checks += [check for check in CHECKS if always.text_at(check) != NONE]
+    for item in items:
+        fails = item.get("fails")
+        if fails is None or fails.text is None:
+            continue
+        called = quoted(fails.text)
+        if fails.text in claims and fails.text in checks:
+            sentence = f"{called} is an expectation and a check; rename the first"
+            at.refuse(fails.mark, f"fails: {sentence}")
+        elif fails.text not in claims and fails.text not in checks:
+            hint = nearest(fails.text, [*checks, *claims])
+            at.refuse(fails.mark, f"fails: no expectation or check is called {called}{hint}")
