@@ -10,6 +10,9 @@ from typing import Any
 
 import pytest
 from sources import ROOT
+from typer.main import get_group as click_group
+
+from lavender_cli.main import app
 
 DOCUMENTS = ROOT / "docs"
 # A fenced block: its language, its content. Python without a `text` block behind it prints nothing
@@ -28,16 +31,36 @@ def examples(document: Path) -> list[tuple[str, str]]:
     return found
 
 
-def test_reading_a_contact_prints_what_it_shows(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize("name", ["read-a-contact.md", "python.md"])
+def test_a_document_prints_what_it_shows(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "configs").symlink_to(ROOT / "configs")
     monkeypatch.chdir(tmp_path)
     names: dict[str, Any] = {}
-    blocks = examples(DOCUMENTS / "read-a-contact.md")
-    assert len(blocks) > 8
+    blocks = examples(DOCUMENTS / name)
+    assert blocks
     for source, shown in blocks:
         printed = io.StringIO()
         with contextlib.redirect_stdout(printed):
-            exec(compile(source, "read-a-contact.md", "exec"), names)
+            exec(compile(source, name, "exec"), names)
         assert printed.getvalue() == shown
+
+
+def test_every_command_is_documented() -> None:
+    """And none that is not there."""
+    found = set(re.findall(r"\blavender (\w+)", (DOCUMENTS / "commands.md").read_text()))
+    assert found - {"installed"} == set(click_group(app).commands)
+
+
+@pytest.mark.parametrize("page", sorted(ROOT.glob("*.md")), ids=lambda page: page.name)
+def test_links_of_pages_outside_of_the_site_lead_somewhere(page: Path) -> None:
+    """Those of the site are checked when it is built."""
+    targets = re.findall(r"\]\((?!https?:)([^)#]+)(?:#([^)]+))?\)", page.read_text())
+    for target, anchor in targets:
+        file = page.parent / target
+        assert file.exists(), target
+        if anchor:
+            heads = re.findall(r"^#+ (.+)$", file.read_text(), re.MULTILINE)
+            slugs = [re.sub(r"[^\w -]", "", head.lower()).replace(" ", "-") for head in heads]
+            assert anchor in slugs, f"{target}#{anchor}"
