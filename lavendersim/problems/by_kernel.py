@@ -1,4 +1,4 @@
-"""A contact problem enters, a solver's kernel of the engine runs on it, its solution leaves.
+"""A solver's kernel of the engine, run on a contact problem that has no scene.
 
 The kernels are composed for the operator `matrix` (`engine.coupling`); nothing else differs from
 what they do in a scene.
@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from lavendersim.engine.compile import compiling
-from lavendersim.engine.contact_problem import NOT_FINITE, SOLVED, SPENT, ContactProblem, Solution
+from lavendersim.engine.contact_problem import ContactProblem, Solution
 from lavendersim.engine.effects import row_fields
 from lavendersim.engine.kernel_cache import cached
 from lavendersim.engine.matrix_problem import contacts_of, coupling_of, make_solve
@@ -20,7 +20,7 @@ from lavendersim.engine.records import COUNTERS, PARAMETERS, dtype
 from lavendersim.engine.solvers.catalogue import SOLVERS
 from lavendersim.engine.spec import Spec
 
-from .residual import distances
+from .residual import judged
 
 
 def spec_of(solver: str, history: bool = False, friction_cone: str = "disc") -> Spec:
@@ -49,8 +49,8 @@ def solve_by_kernel(
     tolerance: `scaled` residual at which it stops [-], below 0: never; start: impulses (n, 3) to
     begin at [N s]; history: keep the residual at the start and after every sweep; over_relaxation:
     factor on the changes that sweeps make, 0 to 2 [-].
-    The kernel's own residual carries the round-off of all its sweeps; the last word is taken from
-    the impulses alone.
+    The kernel's own residual carries the round-off of all its sweeps; the residual that is
+    returned is computed from the impulses alone.
     """
     spec = spec_of(solver, history, friction_cone)
     spec = spec._replace(over_relaxation=over_relaxation != 1.0)
@@ -66,9 +66,6 @@ def solve_by_kernel(
     with compiling():
         _kernel(spec)(contacts, order, coupling_of(problem), workspace, params, counters, rows)
     impulses = np.stack([contacts[f"lambda_{k}"] for k in "n12"], axis=1)
-    scaled, local = distances(problem, impulses)
-    status = SOLVED if scaled <= max(tolerance, 0.0) else SPENT
-    if not np.isfinite(impulses).all():
-        status = NOT_FINITE
-    told = rows["residual"][: int(counters["residual_rows"][0])].copy()
-    return Solution(impulses, int(counters["sweeps"][0]), told, status, scaled, local)
+    residuals = rows["residual"][: int(counters["residual_rows"][0])].copy()
+    made = int(counters["sweeps"][0])
+    return judged(problem, impulses, max(tolerance, 0.0), made, residuals)

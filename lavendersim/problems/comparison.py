@@ -1,9 +1,10 @@
-"""Problems and solvers in; what each solver reached, and in what time, out.
+"""The comparison of solvers on contact problems: residual, error and time of each.
 
-A solver's own word is not taken: solved is what `residual` of the returned impulses says. Time is
-that of a whole call, from the problem to its solution, on the wall; compilation is in the first
-call, which is told apart. The residual that is reported is computed after the clock has stopped.
-Calls that other programs interrupted, as the processor's own time tells, count only where all are.
+A solver's own status does not count: a problem is solved where `residual` of the returned impulses
+is below the tolerance. Time is that of a whole call, from the problem to its solution, on the wall;
+compilation is in the first call, which is reported apart. The residual is computed after the clock
+has stopped. Calls that other programs interrupted, as the processor's own time shows, count only
+where all are.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
 Solve = Callable[..., Solution]
 Clock = Callable[[], float]
 
-MISSED = "tolerance missed"  # the solver says solved, the residual does not
+MISSED = "tolerance missed"  # by the solver solved, by the residual not
 # A call is repeated while that is cheap. Repeats of all calls on a problem take turns: what slows
 # the machine for a while slows every solver.
 MOST_REPEATS = 9
@@ -78,7 +79,7 @@ class Comparison(NamedTuple):
     name: str
     contacts: int
     attempts: tuple[Attempt, ...]
-    reference: str = ""  # one sentence: how sure the reference is; empty where none was asked for
+    reference: str = ""  # one sentence: how sure the reference is; empty where none was computed
     truth: str = ""  # its kind
 
     @property
@@ -101,7 +102,7 @@ def compare(
     """Yield a comparison per named problem, as soon as it is there.
 
     `solve(problem, solver, tolerance, sweeps)` is `problems.solve.solve` unless another is given;
-    referenced: hold velocities against those of `reference`, where it can say what is true.
+    referenced: hold velocities against those of `reference`, where it knows what is true.
     """
     call = solve or _solve()
     if busy is time.process_time and time.get_clock_info("process_time").resolution > FINE:
@@ -136,7 +137,7 @@ def _error(truth: Reference | None, problem: ContactProblem, solution: Solution)
 
 
 class _Call:
-    """A question to a solver, the last answer, and the times of all."""
+    """The arguments of repeated calls of a solver, their last solution and the times of all."""
 
     def __init__(
         self,
@@ -146,15 +147,15 @@ class _Call:
         sweeps: int | None,
         repeating: float = REPEATING,
     ) -> None:
-        self.question = (problem, solver, tolerance, sweeps)
+        self.arguments = (problem, solver, tolerance, sweeps)
         self._repeating = repeating  # [s]
         self.times: list[float] = []  # of all calls
         self.undisturbed: list[float] = []  # of those that nothing interrupted
-        self.answer: Solution
+        self.solution: Solution
 
     @property
     def is_cheap(self) -> bool:
-        """Whether to ask again: rarely what takes long."""
+        """Whether to call again: rarely what takes long."""
         enough = len(self.undisturbed) >= MOST_REPEATS or len(self.times) >= MOST_CALLS
         return not enough and sum(self.times) + self.times[0] < self._repeating
 
@@ -165,15 +166,15 @@ class _Call:
 
 
 class _Stopwatch(NamedTuple):
-    """Asks a solver between two looks at the clocks."""
+    """Calls a solver between two readings of the clocks."""
 
     solve: Solve
     now: Clock
     busy: Clock
 
-    def ask(self, call: _Call) -> None:
+    def time(self, call: _Call) -> None:
         begin, begin_busy = self.now(), self.busy()
-        call.answer = self.solve(*call.question)
+        call.solution = self.solve(*call.arguments)
         seconds, busy = self.now() - begin, self.busy() - begin_busy
         call.times.append(seconds)
         if busy >= UNDISTURBED * seconds:
@@ -190,16 +191,16 @@ def _compare(
     watch: _Stopwatch,
     truth: Reference | None,
 ) -> Comparison:
-    """Ask each solver once to compile it, then with the clock, then again in turns."""
+    """Call each solver once to compile it, then timed, then again in turns."""
     first = {solver: _Call(problem, solver, tolerance, 1) for solver in solvers}
     whole = {solver: _Call(problem, solver, tolerance, sweeps) for solver in solvers}
     for call in (*first.values(), *whole.values()):
-        watch.ask(call)
+        watch.time(call)
     steps = {solver: _steps(problem, solver, watch) if curves else [] for solver in solvers}
     calls = [*whole.values(), *(call for each in steps.values() for call in each)]
     while cheap := [call for call in calls if call.is_cheap]:
         for call in cheap:
-            watch.ask(call)
+            watch.time(call)
     attempts = (
         _judge(
             whole[solver],
@@ -209,17 +210,17 @@ def _compare(
         )
         for solver in solvers
     )
-    said = ("", "") if truth is None else (truth.status, truth.kind)
-    return Comparison(name, problem.contacts, tuple(attempts), *said)
+    status = ("", "") if truth is None else (truth.status, truth.kind)
+    return Comparison(name, problem.contacts, tuple(attempts), *status)
 
 
 def _steps(problem: ContactProblem, solver: str, watch: _Stopwatch) -> list[_Call]:
-    """Ask with twice as many sweeps each time, until more of them would be of no use."""
+    """Call with twice as many sweeps each time, until more of them would be of no use."""
     calls = []
     for doubling in range(MOST_DOUBLINGS + 1):
         calls.append(_Call(problem, solver, REACHED, 2**doubling, REPEATING_STEP))
-        watch.ask(calls[-1])
-        solution = calls[-1].answer
+        watch.time(calls[-1])
+        solution = calls[-1].solution
         scaled, _ = distances(problem, solution.impulses)
         if solution.sweeps < 2**doubling or scaled <= REACHED or calls[-1].times[0] > LONGEST_CALL:
             break
@@ -227,18 +228,18 @@ def _steps(problem: ContactProblem, solver: str, watch: _Stopwatch) -> list[_Cal
 
 
 def _point(call: _Call, truth: Reference | None) -> Point:
-    problem, _, _, budget = call.question
-    reached = distances(problem, call.answer.impulses)
-    error = _error(truth, problem, call.answer)
+    problem, _, _, budget = call.arguments
+    reached = distances(problem, call.solution.impulses)
+    error = _error(truth, problem, call.solution)
     timing = call.timing
-    return Point(budget or 0, call.answer.sweeps, timing.median, timing.repeats, *reached, error)
+    return Point(budget or 0, call.solution.sweeps, timing.median, timing.repeats, *reached, error)
 
 
 def _judge(
     call: _Call, first_call: float, points: Sequence[Point], truth: Reference | None
 ) -> Attempt:
-    problem, solver, tolerance, _ = call.question
-    solution = call.answer
+    problem, solver, tolerance, _ = call.arguments
+    solution = call.solution
     judged = residual(problem, solution.impulses)
     solved = judged.scaled <= tolerance
     status = SOLVED if solved else solution.status
@@ -261,7 +262,7 @@ def ratios(comparisons: Sequence[Comparison]) -> dict[str, list[float]]:
     """Return per solver its time over the best time, per problem; infinite where not solved.
 
     What performance profiles are made of (Dolan and More, 2002). A problem that nobody solved
-    counts as unsolved for everybody.
+    counts as not solved for everybody.
     """
     found: dict[str, list[float]] = {}
     for comparison in comparisons:

@@ -1,4 +1,4 @@
-"""Blocks of a scaled problem enter, a solver of their linear system leaves; and its price.
+"""LU factorisation of a scaled problem's linear system, with its nominal cost (`budget`).
 
     (diagonal + S^T M S) z = right,    S picks the rows that are kept
 By scipy's LU decompositions: a full one for small systems, SuperLU for the others.
@@ -19,7 +19,7 @@ from lavendersim.problems.scaled_problem import ScaledProblem
 # Up to this size [rows] a full decomposition is faster. Of larger ones, however full, the library
 # makes several threads, which wait for each other actively: on a busy machine 20 times as long.
 SMALL = 100
-# Price of a multiplication in each decomposition, and of an entry when filling [ns].
+# Cost of a multiplication in each decomposition, and of an entry when filling [ns].
 IN_FULL, IN_SPARSE, ENTRY = 0.1, 0.2, 10.0
 AXES = np.arange(3)
 
@@ -28,7 +28,7 @@ class Factor(NamedTuple):
     """A factorised system."""
 
     solve: Callable[[np.ndarray], np.ndarray]  # right side (n, 3) -> (n, 3), 0 where not kept
-    price: float  # [ns], `account`
+    cost: float  # [ns], `budget`
 
 
 def factorise(
@@ -36,7 +36,7 @@ def factorise(
 ) -> Factor:
     """Factorise; `blocks` (m, 3, 3), `keep` (n, 3) bool, `diagonal` (n, 3).
 
-    A singular system has answers that are not finite.
+    A singular system has solutions that are not finite.
     """
     kept = np.flatnonzero(keep)
     size = len(kept)
@@ -51,40 +51,40 @@ def factorise(
         i, j = np.concatenate([i, own]), np.concatenate([j, own])
         values = np.concatenate([values, diagonal.ravel()[kept]])
     if size <= SMALL:
-        answer, price = _full(size, i, j, values)
+        solution, cost = _full(size, i, j, values)
     else:
-        answer, price = _sparse(size, i, j, values)
+        solution, cost = _sparse(size, i, j, values)
 
     def solve(right: np.ndarray) -> np.ndarray:
         z = np.zeros(keep.size)
         if size:
-            z[kept] = answer(right.ravel()[kept])
+            z[kept] = solution(right.ravel()[kept])
         return z.reshape(-1, 3)
 
-    return Factor(solve, price + ENTRY * blocks.size)
+    return Factor(solve, cost + ENTRY * blocks.size)
 
 
-Answer = Callable[[np.ndarray], np.ndarray]
+Solve = Callable[[np.ndarray], np.ndarray]
 
 
-def _full(size: int, i: np.ndarray, j: np.ndarray, values: np.ndarray) -> tuple[Answer, float]:
+def _full(size: int, i: np.ndarray, j: np.ndarray, values: np.ndarray) -> tuple[Solve, float]:
     matrix = np.zeros((size, size), order="F")
     np.add.at(matrix, (i, j), values)
     if size == 0 or not np.isfinite(values).all():
         return _nothing, 0.0
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", linalg.LinAlgWarning)  # seen in the answer
+        warnings.simplefilter("ignore", linalg.LinAlgWarning)  # seen in the solution
         factors = linalg.lu_factor(matrix, overwrite_a=True, check_finite=False)
 
-    def answer(right: np.ndarray) -> np.ndarray:
+    def solution(right: np.ndarray) -> np.ndarray:
         with np.errstate(all="ignore"):
             z: np.ndarray = linalg.lu_solve(factors, right, check_finite=False)
         return z
 
-    return answer, IN_FULL * size**3 / 3.0
+    return solution, IN_FULL * size**3 / 3.0
 
 
-def _sparse(size: int, i: np.ndarray, j: np.ndarray, values: np.ndarray) -> tuple[Answer, float]:
+def _sparse(size: int, i: np.ndarray, j: np.ndarray, values: np.ndarray) -> tuple[Solve, float]:
     matrix = sparse.csc_matrix((values, (i, j)), shape=(size, size))
     try:
         # The pattern is symmetric and the diagonal is heavy: ordered and pivoted as such.

@@ -1,4 +1,4 @@
-"""FCLIB's HDF5 files in, contact problems out; and a problem of ours in, such a file out.
+"""Reader and writer of FCLIB's HDF5 files of contact problems (local and global form).
 
     /fclib_local /{spacedim, W, vectors/{q, mu}, info/{title, description, math_info}}
     /fclib_global/{spacedim, M, H, vectors/{f, w, mu}, info/...}
@@ -20,7 +20,7 @@ from scipy import sparse
 from lavendersim.engine.contact_problem import ContactProblem
 from lavendersim.errors import ProblemError
 from lavendersim.problems.matrices import DIMENSION, matrix_of, problem_of
-from lavendersim.problems.reduction import reduce_to_contacts
+from lavendersim.problems.reduced_problem import reduce_to_contacts
 
 SIGNATURE = b"\x89HDF\r\n\x1a\n"  # the first bytes of every HDF5 file
 LOCAL, GLOBAL = "fclib_local", "fclib_global"
@@ -41,7 +41,7 @@ def _h5py(file: Path) -> Any:
 
 
 def read_fclib(file: Path) -> ContactProblem:
-    """Read a problem, of the global form by its reduction; ProblemError where there is none."""
+    """Read a problem, the global form reduced to its contacts; ProblemError where there is none."""
     h5py = _h5py(file)
     try:
         with h5py.File(file, "r") as opened:
@@ -140,7 +140,7 @@ def _matrix(file: Path, parent: Any, name: str) -> Any:
                 f"{file}: expected {lines + 1} numbers in {where}/p that ascend from 0"
             )
         major, count = np.repeat(np.arange(lines), np.diff(p)), int(p[-1])
-    # nzmax says how much room there is: arrays may be longer than what is used of them.
+    # nzmax is a capacity: arrays may be longer than what is used of them.
     if min(len(major), len(i), len(x)) < count:
         raise ProblemError(f"{file}: expected {count} entries in {where}, its arrays are shorter")
     row, column = i[:count], major[:count]

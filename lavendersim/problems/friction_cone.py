@@ -1,4 +1,4 @@
-"""Points enter; their nearest points on Coulomb's cones, and how those move with them, leave.
+"""Projection onto Coulomb's friction cones, and the derivative of the projection.
 
     K: |x_t| <= mu x_n.   P(y) = y inside, 0 in the polar cone, else on the nearest generator
     g = (1, mu d) / hypot(1, mu),  d = y_t / |y_t|:   P(y) = (g . y) g

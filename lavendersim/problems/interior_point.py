@@ -1,4 +1,4 @@
-"""A scaled problem enters, impulses leave: an interior point method on De Saxce's form of it.
+"""An interior point method on De Saxce's form of the contact problem, scaled by Nesterov and Todd.
 
     z = A x + b + |z_t| e_n,  x o z = 0,  x and z in |.t| <= .n, with mu x_n and z_n / mu
 z is the velocity with De Saxce's shift, so the shift stands beside z and A stays as it is. Central
@@ -6,7 +6,7 @@ path x o z = m e; a step (dx, dz) linearises both with Nesterov and Todd's scali
     (A + C H) dx = C (m sigma x^-1 - z) - F,   dz = m sigma x^-1 - z - H dx,   C = I - e_n d_z^T
 with F = A x + b + |z_t| e_n - z and d_z the direction of z_t. Nothing is regularised: C H does it,
 redundant contacts or not. Where friction slides C H is not symmetric and steps may jam at the
-boundary; such a step is followed by one with the shift held, C = I, as if the problem were convex.
+boundary; after such a step one follows with the shift frozen, C = I, as if the problem were convex.
 It begins from the cone's axis whatever is known: what it finds depends on no other method.
 """
 
@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lavendersim.problems.account import Account
+from lavendersim.problems.budget import Budget
 from lavendersim.problems.factorise import factorise
 from lavendersim.problems.scaled_problem import ScaledProblem, multiply, scaled_residual, velocities
 from lavendersim.problems.semismooth_newton import newton_steps
@@ -35,17 +35,22 @@ MIRROR = np.array([1.0, -1.0, -1.0])
 TINY = 1e-300
 
 
-class Way(NamedTuple):
-    """How a run goes: where friction slides none of them always arrives."""
+class Strategy(NamedTuple):
+    """How a run is controlled: where friction slides none of them always converges."""
 
     begin: float  # x and z at first, against the largest free velocity
     share: float  # of the way to the boundary that a step may go [-]
     centred: float  # least product x o z of a contact, against the mean [-]
-    power: int  # of what a straight step leaves: the centring, Mehrotra's rule
+    power: int  # of what a straight step leaves over: the centring, Mehrotra's rule
 
 
-BOLD, CAREFUL = Way(1.0, 0.995, 0.02, 3), Way(1.0, 0.9, 0.1, 1)
-WAYS = (BOLD, CAREFUL, BOLD._replace(begin=1e4), CAREFUL._replace(begin=1e3))
+LONG_STEPS, SHORT_STEPS = Strategy(1.0, 0.995, 0.02, 3), Strategy(1.0, 0.9, 0.1, 1)
+STRATEGIES = (
+    LONG_STEPS,
+    SHORT_STEPS,
+    LONG_STEPS._replace(begin=1e4),
+    SHORT_STEPS._replace(begin=1e3),
+)
 
 
 class Cones(NamedTuple):
@@ -58,89 +63,99 @@ class Cones(NamedTuple):
     own: np.ndarray  # indices of the diagonal blocks
 
 
-def interior_point(p: ScaledProblem, account: Account, way: Way = BOLD) -> tuple[np.ndarray, float]:
+def interior_point(
+    p: ScaledProblem, budget: Budget, strategy: Strategy = LONG_STEPS
+) -> tuple[np.ndarray, float]:
     """Return impulses and their residual after at most `MOST` steps and a few of Newton's."""
-    rubs = p.mu > 0.0
-    cones = _on_circular_cones(p, rubs)
+    frictional = p.mu > 0.0
+    cones = _on_circular_cones(p, frictional)
     x, z = np.zeros_like(p.b), np.zeros_like(p.b)
-    x[:, 0] = z[:, 0] = way.begin
-    x[:, 0] *= np.where(rubs, p.mu, 1.0)
+    x[:, 0] = z[:, 0] = strategy.begin
+    x[:, 0] *= np.where(frictional, p.mu, 1.0)
     unit = float(np.sqrt((p.b * p.b).sum(axis=1).max()))
     best, least = np.zeros_like(p.b), float("inf")
-    held, stuck = False, 0
+    shift_frozen, stuck = False, 0
     for _ in range(MOST):
-        answer = unit * cones.to_impulse * x
-        residual = scaled_residual(p, answer, velocities(p, answer))
+        impulses = unit * cones.to_impulse * x
+        residual = scaled_residual(p, impulses, velocities(p, impulses))
         if residual < least:
-            best, least = answer, residual
-        if least <= account.tolerance or account.spent or stuck > PATIENCE:
+            best, least = impulses, residual
+        if least <= budget.tolerance or budget.spent or stuck > PATIENCE:
             break
-        there, length, price = _advance(p, cones, x, z, unit, held, way)
-        account.step(price, least)
+        there, length, cost = _advance(p, cones, x, z, unit, shift_frozen, strategy)
+        budget.step(cost, least)
         if there is None:
             break
         x, z = there
-        held = not held and length < JAMMED
+        shift_frozen = not shift_frozen and length < JAMMED
         stuck += length < NOWHERE
-    if least > account.tolerance:
-        return newton_steps(p, best, account, FINISHING_EPS, FINISHING)
+    if least > budget.tolerance:
+        return newton_steps(p, best, budget, FINISHING_EPS, FINISHING)
     return best, least
 
 
-def _on_circular_cones(p: ScaledProblem, rubs: np.ndarray) -> Cones:
+def _on_circular_cones(p: ScaledProblem, frictional: np.ndarray) -> Cones:
     to_impulse = np.ones_like(p.b)
-    to_impulse[:, 0] /= np.where(rubs, p.mu, 1.0)
+    to_impulse[:, 0] /= np.where(frictional, p.mu, 1.0)
     keep = np.ones(p.b.shape, dtype=bool)
-    keep[~rubs, 1:] = False
+    keep[~frictional, 1:] = False
     blocks = p.blocks * to_impulse[p.rows][:, :, None] * to_impulse[p.columns][:, None, :]
     return Cones(blocks, p.b, to_impulse, keep, np.flatnonzero(p.rows == p.columns))
 
 
 def _advance(
-    p: ScaledProblem, cones: Cones, x: np.ndarray, z: np.ndarray, unit: float, held: bool, way: Way
+    p: ScaledProblem,
+    cones: Cones,
+    x: np.ndarray,
+    z: np.ndarray,
+    unit: float,
+    shift_frozen: bool,
+    strategy: Strategy,
 ) -> tuple[tuple[np.ndarray, np.ndarray] | None, float, float]:
     mean = 0.5 * float((x * z).sum(axis=1).mean())
     side = np.hypot(z[:, 1], z[:, 2])
-    rubs = cones.keep[:, 1]
+    frictional = cones.keep[:, 1]
     F = cones.to_impulse * (multiply(p, cones.to_impulse * x) + cones.b / unit) - z
-    F[:, 0] += np.where(rubs, side, 0.0)
+    F[:, 0] += np.where(frictional, side, 0.0)
     F *= cones.keep
     H = _scaling(x, z)
     C = np.tile(np.eye(3), (p.contacts, 1, 1))
-    if not held:
-        C[:, 0, 1:] -= (rubs / np.where(side > 0.0, side, 1.0))[:, None] * z[:, 1:]
+    if not shift_frozen:
+        C[:, 0, 1:] -= (frictional / np.where(side > 0.0, side, 1.0))[:, None] * z[:, 1:]
     blocks = cones.blocks.copy()
     blocks[cones.own] += C @ H
     factor = factorise(p, blocks, cones.keep)
     inverse = MIRROR * x / np.maximum(_determinant(x), TINY)[:, None]
 
     def direction(centring: float) -> tuple[np.ndarray, np.ndarray]:
-        wanted = centring * mean * inverse - z
-        dx = factor.solve(np.einsum("nij,nj->ni", C, wanted) - F)
-        return dx, (wanted - np.einsum("nij,nj->ni", H, dx)) * cones.keep
+        target = centring * mean * inverse - z
+        dx = factor.solve(np.einsum("nij,nj->ni", C, target) - F)
+        return dx, (target - np.einsum("nij,nj->ni", H, dx)) * cones.keep
 
     straight, centred = direction(0.0), direction(1.0)
     if not all(np.isfinite(d).all() for d in (*straight, *centred)):
-        return None, 0.0, factor.price
+        return None, 0.0, factor.cost
     # Mehrotra's rule: centre by as much as the straight step would leave.
     length = min(1.0, _to_boundary(x, straight[0]), _to_boundary(z, straight[1]))
     left = ((x + length * straight[0]) * (z + length * straight[1])).sum(axis=1).mean()
-    centring = min(1.0, max((0.5 * float(left) / mean) ** way.power, LEAST_CENTRING))
+    centring = min(1.0, max((0.5 * float(left) / mean) ** strategy.power, LEAST_CENTRING))
     best, there = -1.0, (x, z)
     for share in (centring, *CENTRING):
         centring = max(centring, share)
         dx, dz = (s + centring * (c - s) for s, c in zip(straight, centred, strict=True))
-        length = min(1.0, way.share * _to_boundary(x, dx), way.share * _to_boundary(z, dz))
+        length = min(
+            1.0, strategy.share * _to_boundary(x, dx), strategy.share * _to_boundary(z, dz)
+        )
         for _ in range(TRIALS):
             new = x + length * dx, z + length * dz
-            if _is_centred(*new, way.centred):
+            if _is_centred(*new, strategy.centred):
                 break
             length *= BACK
         if length > 1.5 * best:
             best, there = length, new
         if length > JAMMED:
             break
-    return there, best, factor.price
+    return there, best, factor.cost
 
 
 def _determinant(x: np.ndarray) -> np.ndarray:

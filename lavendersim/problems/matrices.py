@@ -1,4 +1,4 @@
-"""A sparse matrix W in, a ContactProblem's 3x3 blocks by column out; and back.
+"""Conversion between a sparse Delassus matrix W and a ContactProblem's 3x3 blocks by column.
 
 W is taken as it is: what is not symmetric stays so. The block of every contact with itself is
 stored even where the file has none, since every solver looks there first.
@@ -55,7 +55,7 @@ def problem_of(matrix: Any, free: np.ndarray, mu: np.ndarray) -> ContactProblem:
 def matrix_of(problem: ContactProblem) -> Any:
     """Return W + gamma on the normal diagonal [1/kg], a (3n, 3n) scipy matrix by columns.
 
-    With it and `problem.q` the problem is `u = W r + q`, as others state it.
+    With it and `problem.q` the problem is `u = W r + q`, as other libraries write it.
     """
     softened = problem.blocks.copy()
     own = problem.row == problem.columns

@@ -1,6 +1,6 @@
-"""Impulses enter, and leave nearer to a solution: rounds of a convex problem, solved by Newton.
+"""A proximal point iteration: convex rounds, each solved by a semismooth Newton method.
 
-De Saxce's shift s = mu |v_t| is held for a round, and soft springs hold the impulses x^k:
+De Saxce's shift s = mu |v_t| is frozen for a round, and a proximal term centres it at x^k:
     G(y) = A (P(y) - x^k) + softness (y - x^k) + v^k + s e_n = 0,     x^k+1 = P(y)
 With y = x^k - (v^k + s e_n) / softness + A h, A-times the gradient of a convex function of h is G
 (for symmetric A; of others only the slope along a step is used). So Newton's method with an exact
@@ -17,14 +17,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lavendersim.problems.account import Account
+from lavendersim.problems.budget import Budget
 from lavendersim.problems.factorise import factorise
 from lavendersim.problems.friction_cone import derivative_root, project
 from lavendersim.problems.scaled_problem import ScaledProblem, multiply, scaled_residual, velocities
 from lavendersim.problems.semismooth_newton import newton_steps
 
 # Softness of the first round, of the second where the first failed, and the least [-].
-BOLD, SOFTEST, STIFFEST = 1e-3, 1e-2, 1e-8
+FIRST_SOFTNESS, SOFTEST, STIFFEST = 1e-3, 1e-2, 1e-8
 # Softness falls by this factor from round to round, by its root after one that failed [-].
 CUT = 0.03
 FAILURES = 6
@@ -48,32 +48,32 @@ class Line(NamedTuple):
     h: np.ndarray
     dy: np.ndarray
     dh: np.ndarray
-    held: np.ndarray
+    centre: np.ndarray
     mu: np.ndarray
     softness: float
 
     def slope(self, length: float) -> float:
         """Return the derivative of the convex function along the step; it grows with the length."""
-        answer = project(self.y + length * self.dy, self.mu) - self.held
-        return float(np.vdot(self.dy, answer + self.softness * (self.h + length * self.dh)))
+        impulses = project(self.y + length * self.dy, self.mu) - self.centre
+        return float(np.vdot(self.dy, impulses + self.softness * (self.h + length * self.dh)))
 
 
 def newton_rounds(
-    p: ScaledProblem, x: np.ndarray, account: Account, most: int = 60
+    p: ScaledProblem, x: np.ndarray, budget: Budget, most: int = 60
 ) -> tuple[np.ndarray, float]:
     """Return impulses and their residual after rounds of at most so many steps in all."""
     least = residual = scaled_residual(p, x, velocities(p, x))
-    softness, good, cut, failed, first = BOLD, SOFTEST / CUT, CUT, 0, True
-    begun = account.steps
-    while residual > account.tolerance and account.steps - begun < most and not account.spent:
+    softness, good, cut, failed, first = FIRST_SOFTNESS, SOFTEST / CUT, CUT, 0, True
+    begun = budget.steps
+    while residual > budget.tolerance and budget.steps - begun < most and not budget.spent:
         v = velocities(p, x)
-        worth = max(least, account.tolerance)
-        found, answer = _round(p, x, v, softness, EXACTNESS * softness * worth * worth, account)
-        reached = scaled_residual(p, answer, velocities(p, answer))
+        worth = max(least, budget.tolerance)
+        found, impulses = _round(p, x, v, softness, EXACTNESS * softness * worth * worth, budget)
+        reached = scaled_residual(p, impulses, velocities(p, impulses))
         if found and reached < (FIRST if first else WORSE) * least:
-            x, residual, good = answer, reached, softness
+            x, residual, good = impulses, reached, softness
             if residual < NEAR:
-                x, residual = newton_steps(p, x, account, softness, FINISHING)
+                x, residual = newton_steps(p, x, budget, softness, FINISHING)
             least = min(least, residual)
             softness = max(softness * cut, STIFFEST)
         else:
@@ -89,42 +89,42 @@ def newton_rounds(
 
 def _round(
     p: ScaledProblem,
-    held: np.ndarray,
+    centre: np.ndarray,
     v: np.ndarray,
     softness: float,
     enough: float,
-    account: Account,
+    budget: Budget,
 ) -> tuple[bool, np.ndarray]:
     pushed = v.copy()
     pushed[:, 0] += p.mu * np.hypot(v[:, 1], v[:, 2])
-    y, h = held - pushed / softness, np.zeros_like(held)
-    soft = np.full(held.shape, softness)
-    answer, first = project(y, p.mu), 0.0
+    y, h = centre - pushed / softness, np.zeros_like(centre)
+    soft = np.full(centre.shape, softness)
+    impulses, first = project(y, p.mu), 0.0
     for step in range(MOST):
-        gradient = answer - held + softness * h
+        gradient = impulses - centre + softness * h
         root = derivative_root(y, p.mu)
         reduced = np.matmul(np.matmul(root[p.rows].transpose(0, 2, 1), p.blocks), root[p.columns])
         factor = factorise(p, reduced, (root != 0.0).any(axis=1), soft)
         z = factor.solve(-np.einsum("nji,nj->ni", root, multiply(p, gradient)))
         dh = -(gradient + np.einsum("nij,nj->ni", root, z)) / softness
         dy = multiply(p, dh)
-        residual = scaled_residual(p, answer, velocities(p, answer))
-        account.step(factor.price, residual)
+        residual = scaled_residual(p, impulses, velocities(p, impulses))
+        budget.step(factor.cost, residual)
         if not np.isfinite(dy).all():
-            return False, held
-        if account.spent:
-            return False, answer
-        line = Line(y, h, dy, dh, held, p.mu, softness)
+            return False, centre
+        if budget.spent:
+            return False, impulses
+        line = Line(y, h, dy, dh, centre, p.mu, softness)
         gain = -0.5 * line.slope(0.0)
         first = first or gain
         if gain <= max(enough, ROUND_OFF * first):
             return True, project(y + dy, p.mu)
         if step == LOOK_BACK and gain > LOOKED_FOR * first:
-            return False, answer
+            return False, impulses
         length = _search(line, -2.0 * gain)
         y, h = y + length * dy, h + length * dh
-        answer = project(y, p.mu)
-    return False, answer
+        impulses = project(y, p.mu)
+    return False, impulses
 
 
 def _search(line: Line, slope: float) -> float:

@@ -1,4 +1,4 @@
-"""Paths in; the problem files among them, and the problem a file states, out."""
+"""Reading of contact problems from files and folders, in the format that their first bytes show."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A contact problem enters, its true answer leaves, as far as independent methods agree on it.
+"""The reference solution of a contact problem, as far as independent methods agree on it.
 
     sweeps             one contact after the other, or along a gradient, by the engine's kernels
     interior_point     from inside the cones, whatever else is known

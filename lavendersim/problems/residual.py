@@ -1,4 +1,4 @@
-"""A problem and impulses in; how far they are from a solution, free of units, out.
+"""The residual of impulses in a contact problem: natural map and its parts, free of units.
 
     u  = W r + q                      with gamma on W's normal diagonal and q = free + target e_n
     uh = u + mu |u_t| e_n             De Saxce and Feng, 1998: then  K* > uh  perp  r in K
@@ -25,10 +25,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lavendersim.engine.contact_problem import ContactProblem
+from lavendersim.engine.contact_problem import NOT_FINITE, SOLVED, SPENT, ContactProblem, Solution
 
 
-class Part(NamedTuple):
+class ResidualPart(NamedTuple):
     """The largest violation of one law and who has it."""
 
     largest: float  # [m/s]
@@ -40,10 +40,10 @@ class Residual(NamedTuple):
 
     scaled: float  # [-]
     local: float  # [-]
-    natural: Part
-    signorini: Part
-    cone: Part
-    dissipation: Part
+    natural: ResidualPart
+    signorini: ResidualPart
+    cone: ResidualPart
+    dissipation: ResidualPart
 
 
 def residual(problem: ContactProblem, impulses: np.ndarray) -> Residual:
@@ -64,10 +64,29 @@ def residual(problem: ContactProblem, impulses: np.ndarray) -> Residual:
 
 
 def distances(problem: ContactProblem, impulses: np.ndarray) -> tuple[float, float]:
-    """Return `scaled` and `local` of `impulses` alone, at less than half the price."""
+    """Return `scaled` and `local` of `impulses` alone, at less than half the cost."""
     with np.errstate(over="ignore", invalid="ignore"):
         u = contact_velocities(problem, impulses)
         return _distances(problem, _natural_maps(own_scales(problem), impulses, u, problem.mu))
+
+
+def judged(
+    problem: ContactProblem,
+    impulses: np.ndarray,
+    tolerance: float,
+    sweeps: int = 0,
+    history: np.ndarray | None = None,
+) -> Solution:
+    """Return the solution that impulses are, with a status that follows from them alone.
+
+    tolerance: `scaled` residual of what is called solved [-]; sweeps and history are passed on.
+    """
+    scaled, local = distances(problem, impulses)
+    status = SOLVED if scaled <= tolerance else SPENT
+    if not np.isfinite(impulses).all():
+        status = NOT_FINITE
+    residuals = np.empty(0) if history is None else history
+    return Solution(impulses, sweeps, residuals, status, scaled, local)
 
 
 def _natural_maps(
@@ -107,10 +126,10 @@ def natural_map(
     scales: np.ndarray, impulses: np.ndarray, u: np.ndarray, mu: np.ndarray
 ) -> np.ndarray:
     """Return c r - P_K(c r - uh), (n, 3) [m/s]; `scales` (n,) [1/kg]."""
-    held = scales[:, None] * impulses
+    scaled_impulses = scales[:, None] * impulses
     shifted = u.copy()
     shifted[:, 0] += mu * np.hypot(u[:, 1], u[:, 2])
-    missed: np.ndarray = held - project_on_cone(held - shifted, mu)
+    missed: np.ndarray = scaled_impulses - project_on_cone(scaled_impulses - shifted, mu)
     return missed
 
 
@@ -138,12 +157,12 @@ def project_on_cone(points: np.ndarray, mu: np.ndarray) -> np.ndarray:
 def _missing_dissipation(
     scales: np.ndarray, impulses: np.ndarray, u: np.ndarray, mu: np.ndarray
 ) -> np.ndarray:
-    held = scales[:, None] * impulses[:, 1:]
+    scaled_impulses = scales[:, None] * impulses[:, 1:]
     radius = mu * scales * np.maximum(impulses[:, 0], 0.0)
-    wanted = held - u[:, 1:]
-    length = np.hypot(wanted[:, 0], wanted[:, 1])
+    trial = scaled_impulses - u[:, 1:]
+    length = np.hypot(trial[:, 0], trial[:, 1])
     shrink = np.where(length > radius, radius / np.where(length > 0.0, length, 1.0), 1.0)
-    missing: np.ndarray = np.linalg.norm(held - shrink[:, None] * wanted, axis=1)
+    missing: np.ndarray = np.linalg.norm(scaled_impulses - shrink[:, None] * trial, axis=1)
     return missing
 
 
@@ -163,8 +182,8 @@ def _ratio(length: float, q: float) -> float:
     return 0.0 if length == 0.0 else float("inf")
 
 
-def _worst(violations: np.ndarray) -> Part:
+def _worst(violations: np.ndarray) -> ResidualPart:
     if len(violations) == 0:
-        return Part(0.0, -1)
+        return ResidualPart(0.0, -1)
     contact = int(np.argmax(violations))  # a NaN counts as the largest
-    return Part(float(violations[contact]), contact)
+    return ResidualPart(float(violations[contact]), contact)

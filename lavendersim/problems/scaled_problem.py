@@ -1,9 +1,9 @@
-"""A contact problem enters, the same problem without units leaves, for methods that factorise.
+"""A contact problem without units, scaled by its own diagonal, for methods that factorise.
 
     r = length x_i s_i,  u = length v_i / s_i,  s_i = 1 / sqrt(tr W_ii / 3),  length = | s q |
     v = A x + b,  A_ij = s_i W_ij s_j,  b = s q / length
 Each contact's own scale leaves its cone as it is and takes the mass ratios out of A's diagonal;
-`scaled_residual` is that of `residual`, of the problem as it was stated.
+`scaled_residual` is that of `residual`, of the problem as it was given.
 """
 
 from __future__ import annotations
@@ -89,9 +89,9 @@ def from_impulses(p: ScaledProblem, r: np.ndarray) -> np.ndarray:
 
 
 def scaled_residual(p: ScaledProblem, x: np.ndarray, v: np.ndarray) -> float:
-    """Return the residual of the stated problem [-]; `v` are the velocities of `x`."""
+    """Return the residual of the given problem [-]; `v` are the velocities of `x`."""
     shifted = v / p.s[:, None]
     shifted[:, 0] += p.mu * np.hypot(shifted[:, 1], shifted[:, 2])
-    held = p.common * p.s[:, None] * x
-    off = float(np.linalg.norm(held - project(held - shifted, p.mu))) * (p.length / p.q)
+    pushed = p.common * p.s[:, None] * x
+    off = float(np.linalg.norm(pushed - project(pushed - shifted, p.mu))) * (p.length / p.q)
     return off if np.isfinite(off) else float("inf")

@@ -1,4 +1,4 @@
-"""Impulses near a solution enter, and leave nearer: semismooth Newton steps on the natural map.
+"""Semismooth Newton steps on the natural map of the contact problem, regularised.
 
     F(x) = x - P(y),  y = x - v - mu |v_t| e_n,  v = A x + b       (De Saxce's form)
 Each step solves a neighbouring problem, with eps times the change of x added to the velocities:
@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lavendersim.problems.account import Account
+from lavendersim.problems.budget import Budget
 from lavendersim.problems.factorise import factorise
 from lavendersim.problems.friction_cone import derivative_root, project
 from lavendersim.problems.scaled_problem import ScaledProblem, scaled_residual, velocities
@@ -54,7 +54,7 @@ def look(p: ScaledProblem, x: np.ndarray) -> Place:
 
 
 def newton_steps(
-    p: ScaledProblem, x: np.ndarray, account: Account, eps: float = 1e-2, most: int = 20
+    p: ScaledProblem, x: np.ndarray, budget: Budget, eps: float = 1e-2, most: int = 20
 ) -> tuple[np.ndarray, float]:
     """Return impulses and their residual after at most so many steps; |F| never grows."""
     here = look(p, x)
@@ -64,9 +64,9 @@ def newton_steps(
         sizes.append(here.size)
         if step >= LOOK_BACK and here.size > LOOKED_FOR * sizes[step - LOOK_BACK]:
             break
-        if residual <= account.tolerance or account.spent or eps > LARGEST:
+        if residual <= budget.tolerance or budget.spent or eps > LARGEST:
             break
-        d, price = _direction(p, here, eps)
+        d, cost = _direction(p, here, eps)
         for length in LENGTHS:
             there = look(p, here.x + length * d)
             if there.size < here.size * (1.0 - ENOUGH * length):
@@ -78,7 +78,7 @@ def newton_steps(
                 break
         else:  # a NaN ends here too
             eps *= GROWS
-        account.step(price, residual)
+        budget.step(cost, residual)
     return here.x, residual
 
 
@@ -96,4 +96,4 @@ def _direction(p: ScaledProblem, here: Place, eps: float) -> tuple[np.ndarray, f
     factor = factorise(p, reduced, eigenvalues > 0.0, 1.0 - (1.0 - eps) * eigenvalues)
     right = np.einsum("nji,nj->ni", root, pushed - (1.0 - eps) * here.F)
     z = factor.solve(right)
-    return np.einsum("nij,nj->ni", root, z) - here.F, factor.price
+    return np.einsum("nij,nj->ni", root, z) - here.F, factor.cost

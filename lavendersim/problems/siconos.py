@@ -1,4 +1,4 @@
-"""A Siconos `.dat` file in; the contact problem it states, brought to local form, out.
+"""Reader of Siconos' `.dat` files of contact problems, brought to local form.
 
     local : dimension contacts <W>          q[3 n]           mu[n]
     global: dimension contacts <M> <H> f[m] w[3 n]           mu[n]
@@ -27,7 +27,7 @@ from scipy import sparse
 
 from lavendersim.engine.contact_problem import ContactProblem
 from lavendersim.problems.matrices import DIMENSION, problem_of
-from lavendersim.problems.reduction import reduce_to_contacts
+from lavendersim.problems.reduced_problem import reduce_to_contacts
 from lavendersim.problems.tokens import Tokens
 
 STORAGES = ("dense", "block", "sparse")
@@ -107,7 +107,7 @@ def _take_dense(tokens: Tokens, name: str, shape: tuple[int, int]) -> Any:
 
 def _take_blocks(tokens: Tokens, name: str, shape: tuple[int, int]) -> Any:
     count = tokens.whole(f"the number of blocks of {name}")
-    if count == 0:  # then the file says nothing more of the matrix
+    if count == 0:  # then nothing more of the matrix follows
         return sparse.coo_matrix(shape)
     sides = (
         tokens.whole(f"the rows of blocks of {name}", least=1),
@@ -194,17 +194,17 @@ def _take_header(tokens: Tokens, name: str, shape: tuple[int, int], origin: int)
     triplet = place > 0 and banner[place - 1] == "triplet"
     if triplet != (origin == TRIPLET):
         expected = "a triplet listing" if origin == TRIPLET else "a compressed listing"
-        raise tokens.wrong(f"expected {expected} of {name}, as its origin {origin} says")
+        raise tokens.wrong(f"expected {expected} of {name}, as its origin {origin} requires")
     if SHAPE.match(tokens.word()).groups() != (str(shape[0]), str(shape[1])):  # type: ignore[union-attr]
         raise tokens.wrong(f"expected the size of {name} again, {shape[0]}-by-{shape[1]}", -1)
-    told: dict[str, str] = {}
+    header: dict[str, str] = {}
     for key in ("nzmax", "nnz", "1-norm"):
         if tokens.peek(1) == [key]:
             tokens.word()
-            told[key] = tokens.word().rstrip(",")
-    if not told.get("nnz", "").isdigit():
+            header[key] = tokens.word().rstrip(",")
+    if not header.get("nnz", "").isdigit():
         raise tokens.wrong(f"expected the number of entries of {name}, as nnz: and a whole number")
-    return int(told["nnz"])
+    return int(header["nnz"])
 
 
 def _take_triplets(

@@ -1,7 +1,7 @@
-"""A contact problem and a solver's name enter; a solution leaves whose status can be believed.
+"""Solution of a contact problem by a solver's name, with a status judged from its impulses alone.
 
-Whatever a solver says of itself, `solved` is said of impulses alone, by `residual`. Contacts that
-no impulse can move (both bodies fixed, an empty row of W) are left out of what solvers see.
+Whatever status a solver reports, `solved` follows from `residual`. Contacts that no impulse can
+move (both bodies fixed, an empty row of W) are left out of the problem that is solved.
 """
 
 from __future__ import annotations
@@ -12,20 +12,20 @@ from functools import partial
 
 import numpy as np
 
-from lavendersim.engine.contact_problem import NOT_FINITE, SOLVED, SPENT, ContactProblem, Solution
+from lavendersim.engine.contact_problem import NOT_FINITE, SOLVED, ContactProblem, Solution
 from lavendersim.engine.solvers.catalogue import SOLVERS as KERNELS
 from lavendersim.errors import UsageError
 from lavendersim.problems.by_kernel import solve_by_kernel
-from lavendersim.problems.interior_point import WAYS
-from lavendersim.problems.residual import distances, own_scales
+from lavendersim.problems.interior_point import STRATEGIES
+from lavendersim.problems.residual import judged, own_scales
 from lavendersim.problems.search import Search
 
 Solver = Callable[[ContactProblem, float, int, "np.ndarray | None", bool], Solution]
 
-# Sweeps, or steps, at most where none are asked for. `auto` is limited by `AUTO` instead.
+# Sweeps, or steps, at most where no limit is given. `auto` is limited by `AUTO` instead.
 SWEEPS = 10_000
 AUTO_SWEEPS = 1_000_000
-# What `auto` may spend [ns], `account`.
+# What `auto` may spend [ns], `budget`.
 AUTO = 3e9
 
 
@@ -36,20 +36,20 @@ def _newton(search: Search) -> None:
 
 
 def _interior_point(search: Search) -> None:
-    """Begin inside the cones, one way after the other."""
-    for way in WAYS:
+    """Begin inside the cones, one strategy after the other."""
+    for strategy in STRATEGIES:
         if not search.over:
-            search.interior(way)
+            search.interior(strategy)
         if not search.over:
             search.rounds()
 
 
 def _whatever_does_it(search: Search) -> None:
     search.open()
-    search.go_on(WAYS)
+    search.go_on(STRATEGIES)
 
 
-def _by_search(plan: Callable[[Search], None], price: float = float("inf")) -> Solver:
+def _by_search(plan: Callable[[Search], None], cost: float = float("inf")) -> Solver:
     """Return the solver that makes a plan; it counts sweeps and steps alike as `sweeps`."""
 
     def solver(
@@ -59,7 +59,7 @@ def _by_search(plan: Callable[[Search], None], price: float = float("inf")) -> S
         start: np.ndarray | None = None,
         history: bool = False,
     ) -> Solution:
-        search = Search(problem, tolerance, sweeps, start, history, price)
+        search = Search(problem, tolerance, sweeps, start, history, cost)
         plan(search)
         return search.solution()
 
@@ -100,12 +100,13 @@ def solve(
         return Solution(begin, 0, np.empty(0), NOT_FINITE, float("inf"), float("inf"))
     moved = own_scales(problem) > 0.0
     if moved.all():
-        return judged(problem, _run(problem, solver, tolerance, sweeps, begin, history), tolerance)
+        found = _run(problem, solver, tolerance, sweeps, begin, history)
+        return judged(problem, found.impulses, tolerance, found.sweeps, found.history)
     part = _only(problem, moved)
     found = _run(part, solver, tolerance, sweeps, begin[moved], history)
     impulses = np.zeros((problem.contacts, 3))
     impulses[moved] = found.impulses
-    solution = judged(problem, found._replace(impulses=impulses), tolerance)
+    solution = judged(problem, impulses, tolerance, found.sweeps, found.history)
     if solution.status == SOLVED:
         return solution
     closing = np.where(moved, 0.0, problem.q[:, 0])
@@ -118,19 +119,6 @@ def solve(
     return solution
 
 
-def judged(problem: ContactProblem, solution: Solution, tolerance: float) -> Solution:
-    """Return the solution with its residual and whether it is one, from its impulses alone."""
-    scaled, local = distances(problem, solution.impulses)
-    status = solution.status
-    if scaled <= tolerance:
-        status = SOLVED
-    elif status == SOLVED:
-        status = SPENT
-    if not np.isfinite(solution.impulses).all():
-        status = NOT_FINITE
-    return solution._replace(status=status, scaled=scaled, local=local)
-
-
 def _run(
     problem: ContactProblem,
     solver: str,
@@ -140,8 +128,8 @@ def _run(
     history: bool,
 ) -> Solution:
     if not problem.q.any():  # no contacts, or none that needs an impulse
-        told = np.zeros(1 if history else 0)
-        return Solution(np.zeros((problem.contacts, 3)), 0, told, SOLVED, 0.0, 0.0)
+        residuals = np.zeros(1 if history else 0)
+        return Solution(np.zeros((problem.contacts, 3)), 0, residuals, SOLVED, 0.0, 0.0)
     if sweeps is None:
         sweeps = AUTO_SWEEPS if solver == "auto" else SWEEPS
     return SOLVERS[solver](problem, tolerance, sweeps, start, history)

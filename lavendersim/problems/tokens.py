@@ -1,7 +1,7 @@
-"""The text of a problem file in; its numbers, one after the other, out.
+"""A tokeniser of problem files: words and numbers one after the other, errors with their place.
 
 Numbers may be separated by any white space, and by the colons of CSparse's listings. What does not
-fit is told with file, line and column.
+fit is reported with file, line and column.
 """
 
 from __future__ import annotations

@@ -83,7 +83,7 @@ def test_equal_calls_give_equal_bits() -> None:
     assert first.impulses.tobytes() == second.impulses.tobytes()
 
 
-def test_an_impossible_problem_is_given_up_at_its_price() -> None:
+def test_an_impossible_problem_is_given_up_at_its_cost() -> None:
     """A cube between two walls is to leave both at 1 m/s: no motion does that."""
     between = wedge(0, 1, 0.3)
     problem = between._replace(target=np.full(between.contacts, -1.0))

@@ -10,10 +10,10 @@ from gauss_seidel import dense
 from made_problems import random_problem
 
 from lavendersim.problems import newton_rounds as rounds
-from lavendersim.problems.account import Account
+from lavendersim.problems.budget import Budget
 from lavendersim.problems.factorise import factorise
 from lavendersim.problems.friction_cone import derivative_root, project
-from lavendersim.problems.interior_point import WAYS, interior_point
+from lavendersim.problems.interior_point import STRATEGIES, interior_point
 from lavendersim.problems.newton_rounds import newton_rounds
 from lavendersim.problems.residual import project_on_cone, residual
 from lavendersim.problems.scaled_problem import (
@@ -107,10 +107,10 @@ def test_steps_converge_faster_than_any_ratio() -> None:
     problem = heap(3, 6, corners=1)
     p = scale(problem)
     near = solve(problem, "projected_gauss_seidel", 1e-4).impulses
-    account = Account(1e-13, 100)
-    x, reached = newton_steps(p, from_impulses(p, near), account)
+    budget = Budget(1e-13, 100)
+    x, reached = newton_steps(p, from_impulses(p, near), budget)
     assert reached <= 1e-13
-    told = np.array(account.history)
+    told = np.array(budget.history)
     assert len(told) <= 8
     assert told[-1] < 1e-2 * told[-2] < 1e-3 * told[-3]
     assert np.linalg.norm(look(p, x).F) < 1e-12
@@ -121,7 +121,7 @@ def test_steps_never_leave_the_natural_map_larger() -> None:
         p = scale(HARD[name]())
         x, sizes = np.zeros_like(p.b), [look(p, np.zeros_like(p.b)).size]
         for _ in range(10):
-            x, _ = newton_steps(p, x, Account(1e-12, 1), eps=1e-4)
+            x, _ = newton_steps(p, x, Budget(1e-12, 1), eps=1e-4)
             sizes.append(look(p, x).size)
         assert np.all(np.diff(sizes) <= 0.0), name
 
@@ -129,19 +129,19 @@ def test_steps_never_leave_the_natural_map_larger() -> None:
 def test_rounds_alone_carry_a_tower_that_rests() -> None:
     """Redundant corners, load from nothing: no sweeps before."""
     p = scale(stack(8, 12, mu=0.6, push=0.0))
-    account = Account(1e-11, 200)
-    x, reached = newton_rounds(p, np.zeros_like(p.b), account)
+    budget = Budget(1e-11, 200)
+    x, reached = newton_rounds(p, np.zeros_like(p.b), budget)
     assert reached <= 1e-11
     assert scaled_residual(p, x, velocities(p, x)) == reached
 
 
 @pytest.mark.parametrize(
-    "way", WAYS, ids=["bold", "careful", "bold from afar", "careful from afar"]
+    "strategy", STRATEGIES, ids=["long steps", "short steps", "long from afar", "short from afar"]
 )
-def test_an_interior_point_comes_down_from_inside_the_cones(way) -> None:
+def test_an_interior_point_comes_down_from_inside_the_cones(strategy) -> None:
     problem = stack(9, 10, ratio=1e3)
     p = scale(problem)
-    x, reached = interior_point(p, Account(1e-9, 200), way)
+    x, reached = interior_point(p, Budget(1e-9, 200), strategy)
     assert reached <= 1e-9
     # What gets there by the path pushes within its cones.
     assert (np.hypot(x[:, 1], x[:, 2]) <= p.mu * x[:, 0] + 1e-9 * np.abs(x).max()).all()
@@ -154,16 +154,16 @@ def test_rounds_hold_the_shift_of_what_slides(monkeypatch: pytest.MonkeyPatch) -
     """
     monkeypatch.setattr(rounds, "FINISHING", 0)
     p = scale(cube(BY_HAND["slides"][0]))
-    _, reached = newton_rounds(p, np.zeros_like(p.b), Account(1e-7, 200), 200)
+    _, reached = newton_rounds(p, np.zeros_like(p.b), Budget(1e-7, 200), 200)
     assert reached <= 1e-7
 
 
 def test_methods_stop_when_everything_is_spent() -> None:
     p = scale(heap(0, 10, mu=2.0))
     for method in (newton_steps, newton_rounds):
-        account = Account(1e-14, 4)
-        method(p, np.zeros_like(p.b), account)
-        assert account.steps == len(account.history) <= 4
-    account = Account(1e-14, 4)
-    interior_point(p, account)
-    assert account.steps == len(account.history) == 4
+        budget = Budget(1e-14, 4)
+        method(p, np.zeros_like(p.b), budget)
+        assert budget.steps == len(budget.history) <= 4
+    budget = Budget(1e-14, 4)
+    interior_point(p, budget)
+    assert budget.steps == len(budget.history) == 4

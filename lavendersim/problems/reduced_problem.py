@@ -1,4 +1,4 @@
-"""A problem stated with the bodies' velocities in; the same between its contacts alone out.
+"""Reduction of a problem in the bodies' velocities to its contacts alone (the Delassus operator).
 
     M v = H r + f,   u = H' v + w     =>     W = H' M^-1 H,   q = w + H' M^-1 f
 M need not be diagonal or symmetric; it is factorised once.
@@ -18,7 +18,7 @@ from lavendersim.errors import ProblemError
 from lavendersim.problems.matrices import problem_of
 
 # Columns solved for at a time: M^-1 H is as sparse as H for separate bodies, but is found as full
-# columns, which must not all be held at once.
+# columns, which must not all be in memory at once.
 BATCH = 256
 
 

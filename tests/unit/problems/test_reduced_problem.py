@@ -11,8 +11,8 @@ from made_problems import random_bodies
 from scipy import sparse
 
 from lavendersim.errors import ProblemError
-from lavendersim.problems import reduction
-from lavendersim.problems.reduction import reduce_to_contacts
+from lavendersim.problems import reduced_problem
+from lavendersim.problems.reduced_problem import reduce_to_contacts
 
 HERE = Path("bodies")
 
@@ -63,7 +63,7 @@ def test_contacts_without_a_common_body_have_no_block() -> None:
 def test_the_number_of_columns_at_a_time_does_not_matter(monkeypatch: pytest.MonkeyPatch) -> None:
     bodies = random_bodies(14)
     whole = reduce(bodies)
-    monkeypatch.setattr(reduction, "BATCH", 4)
+    monkeypatch.setattr(reduced_problem, "BATCH", 4)
     parts = reduce(bodies)
     for one, other in zip(whole, parts, strict=True):
         assert np.allclose(one, other, rtol=1e-14, atol=1e-14)
