@@ -1,4 +1,4 @@
-"""Shared by all tests: pytest's own test harness, and a small experiment."""
+"""Shared by all tests: pytest's own test harness, a small experiment, and what is quick."""
 
 from __future__ import annotations
 
@@ -9,6 +9,35 @@ import pytest
 from tests.drop_config import DROP
 
 pytest_plugins = ["pytester"]
+
+ROOT = Path(__file__).parents[1]
+# `pytest -m quick`: what must be seen before every commit. One claim of every layer, in at most two
+# minutes on two cores with kernels cold: no more than a handful of engines are compiled.
+QUICK = (
+    "tests/configs",
+    "tests/unit/cell",
+    "tests/unit/experiment",
+    "tests/unit/geometry",
+    "tests/unit/measures",
+    "tests/unit/scene",
+    "tests/unit/test_clock.py",
+    "tests/unit/trace",
+    "tests/rules/test_house_keeping.py",
+    "tests/rules/test_language.py",
+    "tests/rules/test_recorded_columns.py",
+    "tests/rules/test_walls.py",
+    "tests/physics/test_impulse_is_force_times_step.py",
+    "configs/chapter/normal_impulse.yaml",
+    "configs/chapter/impact_telemetry.yaml",
+)
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Mark the quick tests by the place they stand in."""
+    quick = [ROOT / place for place in QUICK]
+    for item in items:
+        if any(item.path.is_relative_to(place) for place in quick):
+            item.add_marker(pytest.mark.quick)
 
 
 @pytest.fixture
