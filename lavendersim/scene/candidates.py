@@ -3,24 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
 
 from lavendersim.cell import CellBody
+from lavendersim.cell.mixing import mixed
 
-from .classes import Surface, class_of, mix, ordered
+from .classes import RowPair, class_of, ordered
 from .colliders import colliders
 
 
-class CandidatePair(NamedTuple):
-    """Two bodies that may touch: rows of the body table in the order of the pair's kernel."""
-
-    a: int
-    b: int
-    shape_pair: str
-    surface: Surface  # mixed
-
-
-def candidate_pairs(bodies: Sequence[CellBody]) -> list[CandidatePair]:
+def candidate_pairs(bodies: Sequence[CellBody]) -> list[RowPair]:
     """Return every pair of rows of which one moves, in the order of the rows; for small scenes."""
     rows = colliders(bodies)
     classes = [class_of(row) for row in rows]
@@ -32,5 +23,5 @@ def candidate_pairs(bodies: Sequence[CellBody]) -> list[CandidatePair]:
                 continue
             swap, name = ordered((one.kind, other.kind))
             a, b = (j, i) if swap else (i, j)
-            pairs.append(CandidatePair(a, b, name, mix(one.surface, other.surface)))
+            pairs.append(RowPair(a, b, name, mixed(one.surface, other.surface)))
     return pairs

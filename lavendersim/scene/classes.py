@@ -6,29 +6,16 @@ pair of classes.
 
 from __future__ import annotations
 
-import collections
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
+from lavendersim.cell import Surface
+from lavendersim.cell.mixing import mixed
 from lavendersim.engine.collide import SHAPE_PAIRS
-from lavendersim.engine.effects import SURFACE_KEYS
 
 from .colliders import Collider, is_movable
 
 _PAIR_BY_SHAPES = {pair.shapes: name for name, pair in SHAPE_PAIRS.items()}
-
-
-_Declared: Any = getattr(collections, "namedtuple")(  # noqa: B009 - mypy reads it otherwise
-    "_Declared",
-    [key.name for key in SURFACE_KEYS],
-    defaults=[key.default for key in SURFACE_KEYS],
-)
-
-
-class Surface(_Declared):  # type: ignore[misc]  # its fields are known when it is composed
-    """The properties of a surface, or of a pair of surfaces once mixed: the keys of effects."""
-
-    __slots__ = ()
 
 
 class RowClass(NamedTuple):
@@ -43,29 +30,19 @@ class RowClass(NamedTuple):
         return (self.movable or other.movable) and "compound" not in (self.kind, other.kind)
 
 
-class ClassPair(NamedTuple):
-    """Two classes with rows that may touch, and the first such rows.
-
-    `a` and `b` are in the order that the kernel of the shape pair takes them.
-    """
+class RowPair(NamedTuple):
+    """Two rows that may touch, in the order that the kernel of their shape pair takes them."""
 
     a: int
     b: int
     shape_pair: str
-    surface: Surface
-    row_pairs: int  # how many
-
-
-def mix(one: Surface, other: Surface) -> Surface:
-    """Return what holds between two surfaces, each property as its effect mixes it."""
-    return Surface(*(key.mix(a, b) for key, a, b in zip(SURFACE_KEYS, one, other, strict=True)))
+    surface: Surface  # mixed
+    row_pairs: int = 1  # how many pairs of rows it stands for, of which it is the first
 
 
 def class_of(row: Collider) -> RowClass:
     """Return the class of one row."""
-    surface = row.body.surface
-    mixed = Surface(*(getattr(surface, name) for name in Surface._fields))
-    return RowClass(row.kind, mixed, is_movable(row.body))
+    return RowClass(row.kind, row.body.surface, is_movable(row.body))
 
 
 def classes_of(rows: Sequence[Collider]) -> tuple[list[RowClass], list[int]]:
@@ -82,7 +59,7 @@ def ordered(kinds: tuple[str, str]) -> tuple[bool, str]:
     return True, _PAIR_BY_SHAPES[kinds[1], kinds[0]]
 
 
-def class_pairs(rows: Sequence[Collider]) -> list[ClassPair]:
+def class_pairs(rows: Sequence[Collider]) -> list[RowPair]:
     """Return every pair of classes of which rows may touch, in the order of their first rows.
 
     Parts of one body do not touch each other; `row_pairs` counts theirs too.
@@ -107,5 +84,5 @@ def class_pairs(rows: Sequence[Collider]) -> list[ClassPair]:
             swap, name = ordered((rows[a].kind, rows[b].kind))
             if swap:
                 a, b = b, a
-            found.append(ClassPair(a, b, name, mix(one.surface, other.surface), count))
+            found.append(RowPair(a, b, name, mixed(one.surface, other.surface), count))
     return sorted(found, key=lambda pair: sorted((pair.a, pair.b)))

@@ -65,12 +65,7 @@ def facts_of(config: CellConfig, record: bool = True) -> Facts:
                 b=names[rows[pair.b].owner],
                 shape_pair=pair.shape_pair,
                 row_pairs=pair.row_pairs,
-                restitution=pair.surface.restitution,
-                compliance=pair.surface.compliance,
-                friction=pair.surface.friction,
-                torsional_friction=pair.surface.torsional_friction,
-                rolling_friction=pair.surface.rolling_friction,
-                surface=pair.surface._asdict(),
+                surface=pair.surface,
             )
             for pair in pairs
         ),

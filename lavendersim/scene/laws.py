@@ -1,18 +1,19 @@
-"""An effect's name enters; what it needs, and what chooses its law where one does, leaves."""
+"""What an effect needs, and which key of the config chooses its law where one does."""
 
 from __future__ import annotations
 
 from typing import Any, Final
 
+from lavendersim.cell import Surface
 from lavendersim.engine.effects import BY_NAME, BodyFacts, Facts, PairFacts
 
-# A scene in which boxes fall, touch and rub: what is off there, the numerics have switched off.
+# A scene in which boxes fall, touch and slide: what is off there, the numerics have switched off.
 BUSY: Final[dict[str, Any]] = {
     "bodies": tuple(
         BodyFacts(name, "box", movable=True, spins=True, round=False, size=1.0, least_size=1.0)
         for name in ("a", "b")
     ),
-    "pairs": (PairFacts("a", "b", restitution=1.0, compliance=0.0, friction=1.0),) * 2,
+    "pairs": (PairFacts("a", "b", Surface(restitution=1.0, compliance=0.0, friction=1.0)),) * 2,
     "pair_count": 2,
     "gravity": (0.0, 0.0, -1.0),
 }

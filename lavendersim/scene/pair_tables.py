@@ -11,6 +11,8 @@ from typing import Final
 
 import numpy as np
 
+from lavendersim.cell import Surface
+from lavendersim.cell.mixing import mixed
 from lavendersim.engine.collide import SHAPE_PAIRS
 from lavendersim.engine.collide.broad.broad_phase import template_dtype
 from lavendersim.engine.effects import surface_fields
@@ -19,7 +21,7 @@ from lavendersim.engine.removal import NO_PAIR
 from lavendersim.engine.spec import Spec
 
 from .candidates import candidate_pairs
-from .classes import Surface, classes_of, mix, ordered
+from .classes import classes_of, ordered
 from .colliders import Collider
 
 # Rows of pairs that a scene with a broad phase starts with, per body: a densely packed pile of
@@ -47,7 +49,7 @@ def pair_tables(
 
 def _surface_names(records: np.ndarray) -> list[str]:
     """Return the surface properties that records hold; absent effects have no column."""
-    return [name for name in Surface._fields if name in (records.dtype.names or ())]
+    return [name for name in Surface.model_fields if name in (records.dtype.names or ())]
 
 
 def _templates(spec: Spec, rows: Sequence[Collider]) -> tuple[np.ndarray, list[int]]:
@@ -60,7 +62,7 @@ def _templates(spec: Spec, rows: Sequence[Collider]) -> tuple[np.ndarray, list[i
             if not one.touches(other):
                 continue
             swap, name = ordered((one.kind, other.kind))
-            template, surface = templates[i, j], mix(one.surface, other.surface)
+            template, surface = templates[i, j], mixed(one.surface, other.surface)
             template["kind"], template["swap"] = SHAPE_PAIRS[name].kind, swap
             for field in names:
                 template[field] = getattr(surface, field)

@@ -12,7 +12,6 @@ from complementarity import Body, jacobian
 from laboratory import Bench, config
 
 from lavendersim.cell import Sphere
-from lavendersim.scene.candidates import candidate_pairs
 
 
 def inertia_of(shape, mass) -> np.ndarray:
@@ -34,7 +33,7 @@ class RowOracle:
         self.dt = float(self.numerics.timestep)
         gravity = np.array(cell.scene.gravity, float)
         self.speed_limit = self.numerics.restitution_threshold * np.linalg.norm(gravity) * self.dt
-        self.pairs = {(p.a, p.b): p for p in candidate_pairs(self.described)}
+        self.surfaces = [described.surface for described in self.described]
         self.centres = np.array([[row[k] for k in "xyz"] for row in engine.bodies])
         self.velocity = np.concatenate([bench.velocity, bench.spin], axis=1)
         self.inverse = np.zeros((6 * len(self.described),) * 2)
@@ -70,8 +69,8 @@ class RowOracle:
 
     def gamma(self, contacts: np.ndarray) -> np.ndarray:
         """Return c / dt^2 of every row."""
-        pairs = [self.pairs[c["body_a"], c["body_b"]] for c in contacts]
-        return np.array([pair.compliance for pair in pairs]) / self.dt**2
+        soft = np.array([surface.compliance for surface in self.surfaces])  # springs in series
+        return (soft[contacts["body_a"]] + soft[contacts["body_b"]]) / self.dt**2
 
     def target(self, contacts: np.ndarray) -> np.ndarray:
         """Return b + b_rest of every row."""
@@ -80,7 +79,8 @@ class RowOracle:
         approach = self.approach(contacts)
         for k, c in enumerate(contacts):
             if approach[k] < -self.speed_limit:
-                target[k] += self.pairs[c["body_a"], c["body_b"]].restitution * approach[k]
+                pair = self.surfaces[c["body_a"]], self.surfaces[c["body_b"]]
+                target[k] += max(surface.restitution for surface in pair) * approach[k]
         return target
 
     def problem(self, contacts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

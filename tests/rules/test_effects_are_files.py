@@ -24,7 +24,6 @@ from tests.drop_config import DROP
 LIST = "lavendersim/engine/effects/__init__.py"
 CHAINED = [effect for effect in EFFECTS if effect.hooks.accelerate or effect.hooks.capture]
 FACT = "a property of the scene, which predicates may ask for, has the same name"
-SHARED = "a property of pairs of surfaces, mixed for all effects alike, has the same name"
 ROW = "a soft row is a term in what every solver computes"
 LAW = "a row ahead of touching must be looked for, and its body's flight be kept"
 # Where else a name stands, as an identifier or a string, and why it must.
@@ -41,10 +40,7 @@ ELSEWHERE = {
         "scene/events.py": "forces begin and end during the run",
     },
     "compliance": {
-        "engine/effects/decision.py": FACT,
         "scene/laws.py": FACT,
-        "scene/classes.py": SHARED,
-        "scene/candidates.py": SHARED,
         "engine/effects/fast_bodies.py": "springs give energy back",
         "engine/contact.py": ROW,
         "engine/assemble.py": ROW,
@@ -58,10 +54,7 @@ ELSEWHERE = {
         "engine/solvers/accelerated_projected_gradient.py": ROW,
     },
     "restitution": {
-        "engine/effects/decision.py": FACT,
         "scene/laws.py": FACT,
-        "scene/classes.py": SHARED,
-        "scene/candidates.py": SHARED,
         "engine/effects/capture_in_sweeps.py": "makes a mistake with it",
         "engine/effects/fast_bodies.py": "more than 1 gives energy",
         "engine/effects/impact_energy.py": "takes the place of its law",

@@ -18,7 +18,7 @@ def decide(facts: Facts) -> Decision:
     """On when the section `study` asks for it and something bounces."""
     if facts.mistake != "capture_in_sweeps":
         return Decision(False, "restitution is captured once, before the solve")
-    if any(pair.restitution > 0.0 for pair in facts.pairs):
+    if any(pair.surface.restitution > 0.0 for pair in facts.pairs):
         return Decision(True, f"study-only, a known mistake: {STUDY_ONLY}")
     return Decision(False, "asked for, but every pair that may touch has restitution 0")
 

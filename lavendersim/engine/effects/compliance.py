@@ -4,18 +4,20 @@ c is the sum over the two surfaces (in series) [m/N]; divided by dt^2, not dt: t
 velocities and its unknown an impulse, F = lambda/dt and d = c F.
 """
 
-from .decision import Decision, Facts, by_pair
+from .decision import Decision, Facts, PairFacts, by_pair
 from .effect import Effect, Fields, Hooks, kernel
 from .keys import COMPLIANCE, SurfaceKey, in_series
 
 
+def _described(pair: PairFacts) -> str:
+    c = pair.surface.compliance
+    return f"compliance {c:g} m/N" if c > 0.0 else ""
+
+
 def decide(facts: Facts) -> Decision:
     """On when a pair that may touch is compliant."""
-    if any(pair.compliance > 0.0 for pair in facts.pairs):
-        said = by_pair(
-            facts.pairs, lambda p: f"compliance {p.compliance:g} m/N" if p.compliance > 0.0 else ""
-        )
-        return Decision(True, said)
+    if any(pair.surface.compliance > 0.0 for pair in facts.pairs):
+        return Decision(True, by_pair(facts.pairs, _described))
     return Decision(False, "every pair that may touch has compliance 0")
 
 

@@ -18,7 +18,7 @@ def decide(facts: Facts) -> Decision:
     if levered:
         return Decision(True, f"{named(levered)}: contact normals may miss the centre of mass")
     for pair in facts.pairs:
-        if pair.friction > 0.0:
+        if pair.surface.friction > 0.0:
             return Decision(True, f"{pair.a} and {pair.b}: friction acts off the centre of mass")
         if pair.resists_turning:
             return Decision(True, f"{pair.a} and {pair.b}: their contact resists turning")

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from types import MappingProxyType
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 MOST_PAIRS = 3  # in a sentence
@@ -28,7 +27,7 @@ class BodyFacts(NamedTuple):
 
 
 class PairFacts(NamedTuple):
-    """Two bodies that may touch, with the properties of their surfaces already mixed.
+    """Two bodies that may touch, and what holds between their surfaces.
 
     Bodies that are alike in shape, surface and movability share one entry, under the names of the
     first of them: the number of entries does not grow with the number of bodies.
@@ -36,19 +35,14 @@ class PairFacts(NamedTuple):
 
     a: str
     b: str
-    restitution: float
-    compliance: float
-    friction: float = 0.0
-    torsional_friction: float = 0.0  # [m]
-    rolling_friction: float = 0.0  # [m]
+    surface: Any  # of the contact: the surface keys of the effects, mixed
     shape_pair: str = ""  # name of the manifold
     row_pairs: int = 1  # how many pairs it stands for
-    surface: Mapping[str, float] = MappingProxyType({})  # every property, by the key of the config
 
     @property
     def resists_turning(self) -> bool:
         """Whether a contact of the pair passes on a torque of its own."""
-        return self.torsional_friction > 0.0 or self.rolling_friction > 0.0
+        return bool(self.surface.torsional_friction > 0.0 or self.surface.rolling_friction > 0.0)
 
 
 class Facts(NamedTuple):

@@ -66,9 +66,9 @@ def _source_of_energy(facts: Facts) -> str:
     if facts.stabilisation_gain > 0.0:
         return "stabilisation pushes bodies apart"
     for pair in facts.pairs:
-        if pair.compliance > 0.0:
+        if pair.surface.compliance > 0.0:
             return f"{pair.a} and {pair.b} are springs"
-        if pair.restitution > 1.0:
+        if pair.surface.restitution > 1.0:
             return f"{pair.a} and {pair.b} leave faster than they meet"
     return ""
 

@@ -13,14 +13,14 @@ from .keys import COEFFICIENT, SurfaceKey, geometric_mean
 
 
 def _said(pair: PairFacts) -> str:
-    if pair.friction > 0.0:
-        return f"sliding {pair.friction:g}"
+    if pair.surface.friction > 0.0:
+        return f"sliding {pair.surface.friction:g}"
     return "resistance to turning acts in friction's frame" if pair.resists_turning else ""
 
 
 def decide(facts: Facts) -> Decision:
     """On when a pair that may touch has a positive coefficient, or resists turning without one."""
-    if any(pair.friction > 0.0 or pair.resists_turning for pair in facts.pairs):
+    if any(pair.surface.friction > 0.0 or pair.resists_turning for pair in facts.pairs):
         return Decision(True, by_pair(facts.pairs, _said))
     return Decision(False, "every pair that may touch has coefficient 0")
 

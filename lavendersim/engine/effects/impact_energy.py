@@ -24,10 +24,10 @@ def decide(facts: Facts) -> Decision:
     """On where impacts at the surface may bounce and rub."""
     if facts.impacts != "at_surface":
         return Decision(False, f"impacts are {facts.impacts}")
-    if not any(pair.restitution > 0.0 for pair in facts.pairs):
+    if not any(pair.surface.restitution > 0.0 for pair in facts.pairs):
         return Decision(False, "every pair that may touch has restitution 0")
     for pair in facts.pairs:
-        if pair.friction > 0.0 or pair.resists_turning:
+        if pair.surface.friction > 0.0 or pair.resists_turning:
             return Decision(
                 True,
                 f"{pair.a} and {pair.b}: friction could make Newton's law of restitution give "

@@ -6,18 +6,20 @@ ever. At the surface, `impact_time` applies the law itself and only takes the co
 and so does the mistake of `capture_in_sweeps`.
 """
 
-from .decision import Decision, Facts, by_pair
+from .decision import Decision, Facts, PairFacts, by_pair
 from .effect import Effect, Fields, Hooks, kernel
 from .keys import SHARE, SurfaceKey, larger
 
 
+def _described(pair: PairFacts) -> str:
+    e = pair.surface.restitution
+    return f"coefficient {e:g}" if e > 0.0 else ""
+
+
 def decide(facts: Facts) -> Decision:
     """On when a pair that may touch has a positive coefficient."""
-    if any(pair.restitution > 0.0 for pair in facts.pairs):
-        said = by_pair(
-            facts.pairs, lambda p: f"coefficient {p.restitution:g}" if p.restitution > 0.0 else ""
-        )
-        return Decision(True, f"{said}; Newton's law")
+    if any(pair.surface.restitution > 0.0 for pair in facts.pairs):
+        return Decision(True, f"{by_pair(facts.pairs, _described)}; Newton's law")
     return Decision(False, "every pair that may touch has coefficient 0")
 
 

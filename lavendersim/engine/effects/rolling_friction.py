@@ -18,12 +18,13 @@ from .keys import LENGTH, SurfaceKey, larger
 
 
 def _said(pair: PairFacts) -> str:
-    return f"rolling friction {pair.rolling_friction:g} m" if pair.rolling_friction > 0.0 else ""
+    length = pair.surface.rolling_friction
+    return f"rolling friction {length:g} m" if length > 0.0 else ""
 
 
 def decide(facts: Facts) -> Decision:
     """On when a pair that may touch has a positive coefficient."""
-    if any(pair.rolling_friction > 0.0 for pair in facts.pairs):
+    if any(pair.surface.rolling_friction > 0.0 for pair in facts.pairs):
         return Decision(True, by_pair(facts.pairs, _said))
     return Decision(False, "every pair that may touch has rolling friction 0")
 

@@ -10,7 +10,7 @@ Kind = tuple[str, bool, str]
 
 def decide(facts: Facts) -> Decision:
     """On when a body spins at the start, is twisted, or can be turned by its contacts."""
-    rubbing = _touched(facts, [pair for pair in facts.pairs if pair.friction > 0.0])
+    rubbing = _touched(facts, [pair for pair in facts.pairs if pair.surface.friction > 0.0])
     resisting = _touched(facts, [pair for pair in facts.pairs if pair.resists_turning])
     turned: dict[str, list[str]] = {}
     for body in facts.bodies:

@@ -14,7 +14,7 @@ from .effect import Effect, Fields, kernel
 
 def is_smooth(pair: PairFacts) -> bool:
     """Whether contacts of the pair push along their normal alone."""
-    return pair.friction == 0.0 and not pair.resists_turning
+    return pair.surface.friction == 0.0 and not pair.resists_turning
 
 
 def decide(facts: Facts) -> Decision:

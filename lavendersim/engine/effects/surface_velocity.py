@@ -21,7 +21,7 @@ def decide(facts: Facts) -> Decision:
     moving = [body.name for body in facts.bodies if any(body.stated.surface_velocity)]
     if not moving:
         return Decision(False, "no surface moves in its body")
-    if any(pair.friction > 0.0 for pair in facts.pairs):
+    if any(pair.surface.friction > 0.0 for pair in facts.pairs):
         return Decision(True, f"{named(moving)}: the surface moves")
     return Decision(False, f"{named(moving)}: the surface moves, but nothing has friction")
 

@@ -15,14 +15,13 @@ from .keys import LENGTH, SurfaceKey, larger
 
 
 def _said(pair: PairFacts) -> str:
-    return (
-        f"torsional friction {pair.torsional_friction:g} m" if pair.torsional_friction > 0.0 else ""
-    )
+    length = pair.surface.torsional_friction
+    return f"torsional friction {length:g} m" if length > 0.0 else ""
 
 
 def decide(facts: Facts) -> Decision:
     """On when a pair that may touch has a positive coefficient."""
-    if any(pair.torsional_friction > 0.0 for pair in facts.pairs):
+    if any(pair.surface.torsional_friction > 0.0 for pair in facts.pairs):
         return Decision(True, by_pair(facts.pairs, _said))
     return Decision(False, "every pair that may touch has torsional friction 0")
 

@@ -14,7 +14,7 @@ from lavendersim.engine.collide import SHAPE_PAIRS
 from lavendersim.engine.spec import Spec
 from lavendersim.scene.build import build
 from lavendersim.scene.candidates import candidate_pairs
-from lavendersim.scene.classes import Surface, class_pairs, classes_of, mix
+from lavendersim.scene.classes import class_pairs, classes_of
 from lavendersim.scene.colliders import colliders
 from lavendersim.scene.facts import facts_of
 from lavendersim.scene.plan import plan_of
@@ -48,28 +48,6 @@ def crowd(seed: int, count: int, compounds: bool = False) -> list[dict]:
         stated["restitution"] = float(rng.choice([0.0, 0.8]))
         found.append(body(shapes[rng.integers(len(shapes))], **stated))
     return found
-
-
-def test_mixing() -> None:
-    one = Surface(restitution=0.2, compliance=1e-6, friction=0.9, torsional_friction=0.01)
-    other = Surface(restitution=0.7, compliance=2e-6, friction=0.4, rolling_friction=0.02)
-    mixed = mix(one, other)
-    assert mixed == mix(other, one)
-    assert mixed.restitution == 0.7
-    assert mixed.compliance == 1e-6 + 2e-6
-    assert mixed.friction == pytest.approx(0.6, rel=2e-16)
-    assert (mixed.torsional_friction, mixed.rolling_friction) == (0.01, 0.02)
-
-
-def test_equal_surfaces_keep_their_friction_to_the_last_bit() -> None:
-    for mu in np.random.default_rng(1).uniform(0.0, 2.0, 1000):
-        surface = Surface(friction=float(mu))
-        assert mix(surface, surface).friction == mu
-
-
-def test_smooth_surface_stays_smooth() -> None:
-    smooth, rough = Surface(friction=0.0), Surface(friction=1.0)
-    assert mix(smooth, rough).friction == 0.0
 
 
 @pytest.mark.parametrize("seed", range(5))
