@@ -12,7 +12,8 @@ from __future__ import annotations
 from typing import Any
 
 from .block import make_apply_vector, make_complete_block, make_relative_velocity
-from .compile import inner, kernel
+from .compile import chain, inner, kernel
+from .effects import made_by
 from .effects.smooth_contact import by_roughness, has_smooth
 from .records import SPHERE
 from .rotation import inverse_inertia_times
@@ -205,6 +206,8 @@ def make_append_contact(spec: Spec, capture):
     complete_spin: Any = make_complete_spin(spec) if spins else None
     turns_hard: Any = make_turns_hard(spec) if spins else None
     complete_row: Any = make_complete_row(spec) if smooth else None
+    preparing = made_by(spec, "prepare")
+    prepares, prepare = bool(preparing), chain(preparing, spec)
 
     def append_contact(contact, bodies, velocities, motion, pair, params):
         body_a, body_b = bodies[contact.a], bodies[contact.b]
@@ -224,6 +227,8 @@ def make_append_contact(spec: Spec, capture):
             if not rough:
                 k_n = complete_row(contact, body_a, body_b)
         contact.k_n = k_n
+        if prepares:
+            prepare(contact, va, vb, pair, params)
         contact.v_n_pre = normal_velocity(contact, va, vb)
         if forced:
             ma, mb = motion[contact.a], motion[contact.b]

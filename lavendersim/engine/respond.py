@@ -39,6 +39,8 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
     projects, project_positions = made_once(spec, "project")
     logs = spec.has("contact_log")
     keeps_free, keep_free = made_once(spec, "keep_free")
+    loads = made_by(spec, "preload")
+    loaded, preload = bool(loads), chain(loads, spec)
 
     def respond(
         bodies, velocities, motion, pseudo, contacts, count, cache, pairs, work, params, counters,
@@ -54,6 +56,10 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
                 note(contact, velocities[contact.a], velocities[contact.b])
         if strikes:
             strike(contacts, count, motion, params)
+        if loaded:
+            for c in range(count):
+                contact = contacts[c]
+                preload(contact, velocities[contact.a], velocities[contact.b])
         if keeps_free:
             keep_free(velocities, free)
         if warms:

@@ -46,6 +46,8 @@ def make_advance(spec: Spec) -> Any:
     pass_by: Any = make_pass_by(spec, log_contacts) if passes else None
     classify: Any = make_classify(spec) if keeps and touches else None
     integrate = make_integrate(spec)
+    starting = made_by(spec, "start_step")
+    starts, start_step = bool(starting), chain(starting, spec)
     sleeps, measure_speeds = made_once(spec, "measure_speeds")
     _, wake = made_once(spec, "wake")
     _, update_sleeping = made_once(spec, "update_sleeping")
@@ -69,6 +71,8 @@ def make_advance(spec: Spec) -> Any:
                     return ROWS_FULL
             if sleeps:
                 measure_speeds(bodies, velocities)
+            if starts:
+                start_step(bodies, velocities)
             if keeps:
                 begin(bodies, velocities, motion, params)
             if rubs:

@@ -178,6 +178,8 @@ CASES: dict[str, tuple[str, ...]] = {
     "torsional_friction": ("rough balls",),
     "rolling_friction": ("rough balls",),
     "surface_velocity": ("rough balls",),
+    "static_friction": ("rough balls",),
+    "cohesion": ("rough balls", "balls"),
     "midpoint": ("drifting balls",),
     "impact_time": ("flying brick",),
     "speculative": ("flying brick",),

@@ -12,7 +12,7 @@ import numpy as np
 from pydantic import Field, TypeAdapter
 
 from lavendersim.cell import CellConfig
-from lavendersim.engine.effects import EFFECTS
+from lavendersim.engine.effects import EFFECTS, SURFACE_KEYS
 from lavendersim.engine.engine import Engine, Rows
 from lavendersim.engine.records import ROWS_FULL
 from lavendersim.engine.spec import Spec
@@ -57,12 +57,11 @@ NUMERICS: dict[str, Any] = {
     "sleep_time": 0.5,
 }
 SOLID: TypeAdapter[Any] = TypeAdapter(Annotated[Solid, Field(discriminator="kind")])
-SURFACE = ("restitution", "compliance", "friction", "torsional_friction", "rolling_friction")
 
 
 def body(shape: dict[str, Any], position=(0.0, 0.0, 0.0), **stated: Any) -> dict[str, Any]:
     """Return one resolved body; mass 1 kg unless stated. Hulls and compounds: as written."""
-    surface = {name: stated.pop(name, 0.0) for name in SURFACE}
+    surface = {key.name: stated.pop(key.name, key.default) for key in SURFACE_KEYS}
     kinematic = stated.pop("kinematic", False)
     fixed = stated.pop("fixed", kinematic or shape["kind"] == "plane")
     mass = None if fixed else stated.pop("mass", 1.0)

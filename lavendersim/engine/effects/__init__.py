@@ -27,6 +27,8 @@ NAMES: Final = (
     "torsional_friction",
     "rolling_friction",
     "surface_velocity",
+    "static_friction",
+    "cohesion",
     "midpoint",
     "impact_time",
     "speculative",

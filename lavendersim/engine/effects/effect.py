@@ -52,7 +52,9 @@ class Fields:
 
 
 # Hooks that several effects may have.
-CHAINED: Final = ("accelerate", "capture", "contact_row", "step_row")
+CHAINED: Final = (
+    *("start_step", "accelerate", "prepare", "capture", "preload", "contact_row", "step_row"),
+)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -63,8 +65,11 @@ class Hooks:
     EFFECTS. Of the second group one effect has each: the step is made with it or without it.
     """
 
+    start_step: Maker | None = None  # (bodies, velocities), before forces act
     accelerate: Maker | None = None  # (body, velocity, params), before contacts are completed
+    prepare: Maker | None = None  # (contact, va, vb, pair, params), when it has frame and levers
     capture: Maker | None = None  # (contact, pair, params), once per contact and step
+    preload: Maker | None = None  # (contact, va, vb): impulses beside those of the solve, before it
     contact_row: Maker | None = None  # (out, contact, va, vb): fills the columns of a contact
     step_row: Maker | None = None  # (row, bodies, counters): fills the columns of a step
 
@@ -98,6 +103,15 @@ class Hooks:
     log_step: Maker | None = None  # made with (spec, log_pose, kernels of step_row)
 
 
+@dataclass(frozen=True, kw_only=True)
+class Balance:
+    """Its share in the balances of energy and momentum (`measures.account`), by log columns."""
+
+    pull: str = ""  # of a contact: impulse that draws its bodies together along n [N s]
+    stored: str = ""  # of a step: energy that it stores [J]
+    outer: tuple[str, ...] = ()  # of a step: impulse on movable bodies from others, x y z [N s]
+
+
 class Choice(NamedTuple):
     """The key of a config that chooses an effect: a law, which no coefficient turns off."""
 
@@ -116,6 +130,7 @@ class Effect:
     chosen_by: Choice | None = None
     surface_keys: tuple[SurfaceKey, ...] = ()  # of a config: properties of surfaces
     scene_keys: tuple[SceneKey, ...] = ()
+    balance: Balance = Balance()
     study_only: str = ""  # of a deliberate error, what it does: every run that has it says so
     fields: Fields = Fields()
     body_values: Callable[[Any], Mapping[str, Any]] | None = None  # of fields.body

@@ -1,0 +1,93 @@
+"""Cohesion: a contact that is closed draws its two bodies together with a bounded force F [N].
+
+While a contact is closed at the start of a step, the impulse F dt along the normal pulls A and B
+together before the solve, at the contact's own levers; the contact's laws then hold for lambda_n,
+which presses against it, so that no solver knows of cohesion:
+    net impulse on B along n = lambda_n - F dt,   0 <= lambda_n,   |lambda_t| <= mu lambda_n
+A contact at rest holds tensions up to F and opens above; its friction is Coulomb's with the force
+of cohesion added to the net load, mu (N + F). F is a contact's: a box on a floor has four.
+
+Closed: nearer than the slop, the distance within which contacts rest where they are (at least
+TOUCHING). Of two surfaces F is the geometric mean: a surface without cohesion sticks to nothing.
+"""
+
+from ..records import TOUCHING
+from ..spec import Spec
+from .decision import Decision, Facts, PairFacts, by_pair
+from .effect import Balance, Column, Effect, Fields, Hooks, Kernel, kernel
+from .keys import FORCE, SurfaceKey, geometric_mean
+
+
+def _reason(pair: PairFacts) -> str:
+    force = pair.surface.cohesion
+    return f"cohesion {force:g} N a contact" if force > 0.0 else ""
+
+
+def decide(facts: Facts) -> Decision:
+    """On when a pair that may touch draws together."""
+    if any(_reason(pair) for pair in facts.pairs):
+        return Decision(True, by_pair(facts.pairs, _reason))
+    return Decision(False, "every pair that may touch has cohesion 0")
+
+
+def make_capture(spec: Spec) -> Kernel:
+    """Return `kernel(contact, pair, params)`: the impulse of this step, 0 where it is open."""
+
+    def capture_cohesion(contact, pair, params):
+        contact.adhesion = 0.0
+        if contact.phi <= max(params.slop, TOUCHING):
+            contact.adhesion = pair.cohesion * params.dt
+
+    return kernel(capture_cohesion, spec)
+
+
+def make_preload(spec: Spec) -> Kernel:
+    """Return `kernel(contact, va, vb)`: draw the two bodies together."""
+    from ..contact import make_apply_impulse
+
+    apply_impulse = make_apply_impulse(spec)
+
+    def draw_together(contact, va, vb):
+        if contact.adhesion > 0.0:
+            apply_impulse(contact, va, vb, -contact.adhesion)
+
+    return kernel(draw_together, spec)
+
+
+def make_contact_row(spec: Spec) -> Kernel:
+    """Return `kernel(out, contact, va, vb)` that fills its columns of a contact."""
+
+    def log_cohesion(out, contact, va, vb):
+        out.adhesive_impulse = contact.adhesion
+
+    return kernel(log_cohesion, spec)
+
+
+EFFECT = Effect(
+    name="cohesion",
+    decide=decide,
+    per="contact",
+    surface_keys=(
+        SurfaceKey(
+            name="cohesion",
+            type=FORCE,
+            default=0.0,
+            doc="[N] largest tension that a contact holds; a pair takes the geometric mean",
+            mix=geometric_mean,
+        ),
+    ),
+    fields=Fields(
+        pair=[("cohesion", "f8")],  # F [N]
+        contact=[("adhesion", "f8")],  # F dt where it is closed [N s]
+    ),
+    contact_columns=(
+        Column(
+            "adhesive_impulse",
+            "f8",
+            "draws the bodies together; net normal impulse on B: impulse_n - adhesive_impulse",
+            "N s",
+        ),
+    ),
+    balance=Balance(pull="adhesive_impulse"),
+    hooks=Hooks(capture=make_capture, preload=make_preload, contact_row=make_contact_row),
+)

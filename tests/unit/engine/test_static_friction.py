@@ -1,0 +1,107 @@
+"""Static friction: a block holds up to atan(mu_s), and slides by mu(v) once it moves.
+
+    v' = v + dt g (sin - mu(v) cos),   mu(v) = mu_k + (mu_s - mu_k) / (1 + (v / v_s)^2)
+v the speed that the step begins with: the closed form is that recursion itself.
+"""
+
+from __future__ import annotations
+
+from math import atan, cos, sin
+
+import numpy as np
+import pytest
+from laboratory import Bench, box, plane, resolved
+
+G, DT = 9.81, 1.0 / 240.0
+KINETIC, STATIC, STRIBECK = 0.3, 0.6, 0.05
+SHARP = {"solver": "adaptive", "sweeps": 400, "tolerance": 1e-13}
+# Sweeps stop at 1e-13 m/s; what they leave may stay in the speed of all later steps.
+LEFT = 1e-13
+
+
+def mu(v: float) -> float:
+    return KINETIC + (STATIC - KINETIC) / (1.0 + (v / STRIBECK) ** 2)
+
+
+def block(tangent: float, speed: float = 0.0, **stated) -> Bench:
+    """A flat block of 1 kg on a floor under gravity that leans by a tangent."""
+    surface = {
+        "friction": KINETIC,
+        "static_friction": STATIC,
+        "stribeck_velocity": STRIBECK,
+    }
+    belt = stated.pop("belt", 0.0)
+    bodies = {
+        "floor": plane(surface_velocity=(belt, 0.0, 0.0), **surface),
+        "block": box(
+            (0.4, 0.4, 0.05),
+            (0.0, 0.0, 0.025),
+            velocity=(speed, 0.0, 0.0),
+            **surface,
+            **stated,
+        ),
+    }
+    lean = atan(tangent)
+    return Bench(resolved(bodies, (G * sin(lean), 0.0, -G * cos(lean)), **SHARP), None)
+
+
+def speeds(bench: Bench, steps: int) -> np.ndarray:
+    found = []
+    for _ in range(steps):
+        bench.run(1)
+        found.append(bench.velocity[1, 0])
+    return np.array(found)
+
+
+def recursion(tangent: float, speed: float, steps: int) -> np.ndarray:
+    lean, found = atan(tangent), []
+    for _ in range(steps):
+        speed = speed + DT * G * (sin(lean) - mu(speed) * cos(lean))
+        found.append(speed)
+    return np.array(found)
+
+
+def test_a_block_at_rest_holds_up_to_the_static_angle() -> None:
+    found = speeds(block(STATIC * 0.999), 120)
+    np.testing.assert_allclose(found, 0.0, atol=120 * LEFT)
+
+
+def test_a_block_slides_beyond_the_static_angle() -> None:
+    tangent = STATIC * 1.01
+    found = speeds(block(tangent), 120)
+    np.testing.assert_allclose(found, recursion(tangent, 0.0, 120), atol=1e-9)
+    assert found[-1] > 10.0 * STRIBECK
+
+
+def test_one_slope_holds_what_rests_and_speeds_up_what_slides() -> None:
+    """Between atan(mu_k) and atan(mu_s) both are lasting."""
+    tangent = 0.5 * (KINETIC + STATIC)
+    np.testing.assert_allclose(speeds(block(tangent), 60), 0.0, atol=60 * LEFT)
+    sliding = speeds(block(tangent, 1.0), 60)
+    np.testing.assert_allclose(sliding, recursion(tangent, 1.0, 60), rtol=1e-10)
+    # Fast, it slides as kinetic friction alone would let it: at 1 m/s and above mu differs by
+    # at most 0.3 / (1 + 20^2) = 7.5e-4, a two hundredth of tan - mu_k = 0.15.
+    a = G * (sin(atan(tangent)) - KINETIC * cos(atan(tangent)))
+    assert sliding[-1] - sliding[0] == pytest.approx(59 * DT * a, rel=5e-3)
+
+
+def test_the_coefficient_of_the_slip_is_logged() -> None:
+    rows = block(0.45, 1.0).run(2).contact
+    np.testing.assert_allclose(rows["friction"][rows["step"] == 1], mu(1.0), rtol=1e-14)
+
+
+def test_a_belt_carries_a_block_to_where_drag_balances_the_friction_of_its_slip() -> None:
+    """c v = mu(V - v) m g once nothing changes; there the slip is several times v_s."""
+    belt, drag = 1.0, 5.0
+    bench = block(0.0, belt=belt, drag={"linear": drag})
+    v = float(speeds(bench, 1200)[-1])
+    assert belt - v > 5.0 * STRIBECK
+    assert drag * v == pytest.approx(mu(belt - v) * G, rel=1e-9)
+
+
+def test_where_nothing_is_held_more_at_rest_the_effect_is_absent() -> None:
+    bodies = {
+        "floor": plane(friction=0.5, static_friction=0.4),
+        "block": box((0.4, 0.4, 0.05), (0.0, 0.0, 0.025), friction=0.5, static_friction=0.4),
+    }
+    assert "static_friction" not in Bench(resolved(bodies, (0.0, 0.0, -G)), None).spec.effects
