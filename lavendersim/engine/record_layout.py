@@ -12,7 +12,7 @@ from typing import Literal
 import numpy as np
 
 from .collide.convex.support import shapes_in
-from .effects import effects_of, row_fields
+from .effects import EFFECTS, effects_of, row_fields
 from .records import (
     BODY,
     CONTACT,
@@ -101,5 +101,6 @@ def allocate_pairs(spec: Spec, count: int) -> np.ndarray:
 
 
 def allocate_parameters() -> np.ndarray:
-    """Return one zeroed parameter record, shape (1,)."""
-    return np.zeros(1, dtype(PARAMETERS))
+    """Return one zeroed parameter record, shape (1,): the same in every engine."""
+    brought = [field for effect in EFFECTS for field in effect.fields.parameters]
+    return np.zeros(1, dtype(PARAMETERS, brought))

@@ -49,6 +49,7 @@ class Fields:
     contact: Sequence[Field] = ()
     contact_with: Callable[[Spec], Sequence[Field]] | None = None  # that depend on other effects
     cache: Sequence[Field] = ()  # of a contact, kept until the next step
+    parameters: Sequence[Field] = ()  # of the run: the key of the numerics that has the same name
 
 
 # Hooks that several effects may have.
@@ -153,6 +154,7 @@ class Effect:
             "pair": own.pair,
             "contact": [*own.contact, *dependent],
             "cache": own.cache,
+            "parameters": own.parameters,
         }
         found = {record: [name for name, _ in fields] for record, fields in groups.items()}
         rows = {
