@@ -1,4 +1,4 @@
-"""A contact problem enters; records that solvers work on, and the kernel that starts one, leave."""
+"""A contact problem stated by its Delassus matrix, as the records that a solver works on."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from .contact_problem import ContactProblem
 from .coupling import MATRIX_CONTACT, Coupling
 from .records import dtype
 from .solvers.catalogue import SOLVERS
+from .solvers.solver import ContactSystem
 from .spec import Spec
 
 
@@ -61,13 +62,17 @@ def contacts_of(problem: ContactProblem, spec: Spec, impulses: np.ndarray) -> np
     return contacts
 
 
+def system_of(contacts: np.ndarray, coupling: Coupling) -> ContactSystem:
+    """Return what a solver is given; bodies are not known, and no kernel of `matrix` reads them."""
+    order = np.arange(len(contacts))
+    return ContactSystem(contacts, order, len(contacts), order, coupling)
+
+
 def make_solve(spec: Spec) -> Any:
-    """Return `kernel(contacts, order, coupling, space, parameters, counter, rows)`."""
+    """Return `kernel(system, workspace, parameters, counters, residual_rows)`."""
     solve = SOLVERS[spec.solver].make(spec)
 
-    def solve_matrix(contacts, order, coupling, space, parameters, counter, rows):
-        count = contacts.shape[0]
-        # Bodies are not known: no kernel of this operator looks at them.
-        solve(contacts, order, count, order, coupling, space, parameters[0], counter[0], rows)
+    def solve_matrix(system, workspace, parameters, counters, residual_rows):
+        solve(system, workspace, parameters[0], counters[0], residual_rows)
 
     return kernel(solve_matrix, spec)

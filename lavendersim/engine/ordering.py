@@ -1,4 +1,4 @@
-"""Contacts enter, the order in which sweeps visit them leaves.
+"""The order in which sweeps visit contacts: greedy colouring of manifolds, or another.
 
     coloured    what the processor does best, see below; the default
     forward     as the contacts were found: by bodies, in the order of the file
@@ -18,6 +18,10 @@ contacts. Bodies with 63 manifolds and more share the last colour, which costs o
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
+import numpy as np
+
 from .compile import kernel
 from .spec import Spec
 
@@ -31,23 +35,41 @@ BUCKETS = COLOURS * MANIFOLD_ROWS
 MODULUS, MULTIPLIER = 2147483647, 48271
 
 
-def make(spec: Spec):
-    """Return `kernel(bodies, contacts, count, taken, buckets, keys, order)`.
+class Ordering(NamedTuple):
+    """The order of the sweeps, and what it is found with."""
 
-    taken: per body a bit set of colours in use; buckets: BUCKETS + 1 counts; keys, order: per row.
-    """
+    order: np.ndarray  # (contacts,) uint64, the row that is visited k-th
+    colour_mask: np.ndarray  # (bodies,) int64, bit set of the colours of a body's manifolds
+    bucket_ends: np.ndarray  # (BUCKETS + 1,) int64, rows before each bucket, then its end
+    bucket_of: np.ndarray  # (contacts,) int64, colour and place in the manifold
+
+
+def allocate_ordering(bodies: int, contacts: int) -> Ordering:
+    """Return arrays for so many bodies and contacts."""
+    return Ordering(
+        order=np.zeros(contacts, np.uint64),
+        colour_mask=np.zeros(bodies, np.int64),
+        bucket_ends=np.zeros(BUCKETS + 1, np.int64),
+        bucket_of=np.zeros(contacts, np.int64),
+    )
+
+
+def make(spec: Spec):
+    """Return `kernel(bodies, contacts, count, ordering)` that fills `ordering.order`."""
     if spec.order != "coloured":
         return _make_listed(spec)
 
-    def order_contacts(bodies, contacts, count, taken, buckets, keys, order):
+    def order_contacts(bodies, contacts, count, ordering):
+        order, colour_mask = ordering.order, ordering.colour_mask
+        bucket_ends, bucket_of = ordering.bucket_ends, ordering.bucket_of
         if count < FEWEST:
             for c in range(count):
                 order[c] = c
             return
         for i in range(bodies.shape[0]):
-            taken[i] = 0
+            colour_mask[i] = 0
         for k in range(BUCKETS + 1):
-            buckets[k] = 0
+            bucket_ends[k] = 0
         colour, row = 0, 0
         for c in range(count):
             contact = contacts[c]
@@ -55,25 +77,25 @@ def make(spec: Spec):
                 a, b = contact.a, contact.b
                 used = 0
                 if bodies[a].inv_m > 0.0:
-                    used |= taken[a]
+                    used |= colour_mask[a]
                 if bodies[b].inv_m > 0.0:
-                    used |= taken[b]
+                    used |= colour_mask[b]
                 colour = 0
                 while colour < COLOURS - 2 and (used >> colour) & 1:
                     colour += 1
-                taken[a] |= 1 << colour
-                taken[b] |= 1 << colour
+                colour_mask[a] |= 1 << colour
+                colour_mask[b] |= 1 << colour
                 row = 0
-            key = colour * MANIFOLD_ROWS + row
+            bucket = colour * MANIFOLD_ROWS + row
             row = min(row + 1, MANIFOLD_ROWS - 1)
-            keys[c] = key
-            buckets[key + 1] += 1
+            bucket_of[c] = bucket
+            bucket_ends[bucket + 1] += 1
         for k in range(BUCKETS):
-            buckets[k + 1] += buckets[k]
+            bucket_ends[k + 1] += bucket_ends[k]
         for c in range(count):
-            key = keys[c]
-            order[buckets[key]] = c
-            buckets[key] += 1
+            bucket = bucket_of[c]
+            order[bucket_ends[bucket]] = c
+            bucket_ends[bucket] += 1
 
     return kernel(order_contacts, spec)
 
@@ -81,9 +103,9 @@ def make(spec: Spec):
 def _make_listed(spec: Spec):
     backward = spec.order == "backward"
 
-    def list_contacts(bodies, contacts, count, taken, buckets, keys, order):
+    def list_contacts(bodies, contacts, count, ordering):
         for c in range(count):
-            order[c] = count - 1 - c if backward else c
+            ordering.order[c] = count - 1 - c if backward else c
 
     return kernel(list_contacts, spec)
 

@@ -1,4 +1,4 @@
-"""Contacts with geometry alone enter, velocities that respect them all leave.
+"""What the contacts of a step do to velocities: complete the rows, solve them, log them.
 
 append       each contact: frame, effective mass, what is captured once
 warm start   impulses of contacts that persist
@@ -17,12 +17,14 @@ from .contact import make_append_contact, make_apply_start
 from .effects import made_by, made_once
 from .integrate import make_classify
 from .solvers.catalogue import SOLVERS
+from .solvers.solver import ContactSystem
 from .spec import Spec
 
 
 def make_respond(spec: Spec, log_contacts: Any) -> Any:
-    """Return `kernel(bodies, velocities, motion, pseudo, contacts, count, cache, pairs, work,
-    params, counters, rows, residual_rows)`; log_contacts: the kernel of `contact_log`.
+    """Return `kernel(state, count, workspace, params, counters, log)`, see `memory`.
+
+    log_contacts: the kernel of `contact_log`.
     """
     append_contact = make_append_contact(spec, chain(made_by(spec, "capture"), spec))
     order_contacts = ordering.make(spec)
@@ -42,11 +44,10 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
     loads = made_by(spec, "preload")
     loaded, preload = bool(loads), chain(loads, spec)
 
-    def respond(
-        bodies, velocities, motion, pseudo, contacts, count, cache, pairs, work, params, counters,
-        rows, residual_rows,
-    ):  # fmt: skip
-        _, _, _, taken, buckets, keys, order, space, free, _, _ = work
+    def respond(state, count, workspace, params, counters, log):
+        bodies, velocities, motion = state.bodies, state.velocities, state.motion
+        contacts, cache, pairs = state.contacts, state.cache, state.pairs
+        order = workspace.ordering.order
         for c in range(count):
             contact, pair = contacts[c], pairs[contacts[c].pair]
             append_contact(contact, bodies, velocities, motion, pair, params)
@@ -61,7 +62,7 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
                 contact = contacts[c]
                 preload(contact, velocities[contact.a], velocities[contact.b])
         if keeps_free:
-            keep_free(velocities, free)
+            keep_free(velocities, workspace.free_velocities)
         if warms:
             match_contacts(contacts, count, bodies, cache, counters, params)
             for c in range(count):
@@ -69,37 +70,35 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
                 if contact.lambda_n > 0.0:
                     va, vb = velocities[contact.a], velocities[contact.b]
                     apply_start(contact, va, vb)
-        order_contacts(bodies, contacts, count, taken, buckets, keys, order)
+        order_contacts(bodies, contacts, count, workspace.ordering)
         if shuffles:
             shuffle(order, count, counters.step)
-        solve(contacts, order, count, bodies, velocities, space, params, counters, residual_rows)
+        system = ContactSystem(contacts, order, count, bodies, velocities)
+        solve(system, workspace.solver, params, counters, log.residual)
         if watched:
-            settle(
-                contacts, order, count, bodies, velocities, motion, space, params, counters,
-                residual_rows,
-            )  # fmt: skip
+            settle(system, motion, workspace.solver, params, counters, log.residual)
         if logs:
-            log_contacts(contacts, count, velocities, params, counters, rows)
+            log_contacts(contacts, count, velocities, params, counters, log)
         if warms:
             store_contacts(contacts, count, bodies, cache, counters, params)
         if projects:
             counters.projection_sweeps = project_positions(
-                contacts, order, count, velocities, pseudo, params
+                contacts, order, count, velocities, state.pseudo, params
             )
 
     return kernel(respond, spec)
 
 
 def make_pass_by(spec: Spec, log_contacts: Any) -> Any:
-    """Return `kernel(contacts, velocities, params, counters, rows)`: the same for no contact."""
+    """Return `kernel(contacts, velocities, params, counters, log)`: the same for no contact."""
     logs = spec.has("contact_log")
 
-    def pass_by(contacts, velocities, params, counters, rows):
+    def pass_by(contacts, velocities, params, counters, log):
         counters.sweeps, counters.projection_sweeps = 0, 0
         counters.residual, counters.residual_contact = 0.0, -1
         counters.not_converged, counters.stronge, counters.sharpen = 0, 0, 0
         counters.cached = 0
         if logs:
-            log_contacts(contacts, 0, velocities, params, counters, rows)
+            log_contacts(contacts, 0, velocities, params, counters, log)
 
     return kernel(pass_by, spec)

@@ -1,4 +1,4 @@
-"""The step on one screen. A `Spec` enters, the kernel `advance` composed for it leaves.
+"""The step on one screen: velocities first, then poses, by semi-implicit Euler (`make_advance`).
 
 accelerate   v += dt * forces
 collide      contacts at the pose the step begins with, and those the step may make
@@ -23,9 +23,9 @@ from .spec import Spec
 
 
 def make_advance(spec: Spec) -> Any:
-    """Compose `advance(bodies, velocities, motion, pseudo, bits, contacts, cache, pairs, work,
-    parameters, counter, rows, residual_rows, steps) -> status`; counter says how many steps are
-    done.
+    """Compose `advance(state, workspace, log, parameters, counters, steps) -> status` (`memory`).
+
+    parameters, counters: records of shape (1,); the latter say how many steps are done.
     """
     touches, record_residuals = bool(spec.shape_pairs), spec.has("residual_log")
     _, log_pose = made_once(spec, "log_pose")
@@ -52,22 +52,20 @@ def make_advance(spec: Spec) -> Any:
     _, wake = made_once(spec, "wake")
     _, update_sleeping = made_once(spec, "update_sleeping")
 
-    def advance(
-        bodies, velocities, motion, pseudo, bits, contacts, cache, pairs, work, parameters,
-        counter, rows, residual_rows, steps,
-    ):  # fmt: skip
-        points, normal, scratch, taken, _, _, _, _, _, templates, near = work
+    def advance(state, workspace, log, parameters, counter, steps):
+        bodies, velocities, pairs = state.bodies, state.velocities, state.pairs
+        contacts, motion = state.contacts, state.motion
         params, counters = parameters[0], counter[0]
         if records:
             if counters.started == 0:
-                log_step(bodies, velocities, bits, params, counters, rows)
+                log_step(bodies, velocities, params, counters, log)
         counters.started = 1
         for _ in range(steps):
             if records:
-                if counters.step_rows == rows[0].shape[0]:
+                if counters.step_rows == log.step.shape[0]:
                     return ROWS_FULL
             if record_residuals:
-                if counters.residual_rows + params.sweeps + 1 > residual_rows.shape[0]:
+                if counters.residual_rows + params.sweeps + 1 > log.residual.shape[0]:
                     return ROWS_FULL
             if sleeps:
                 measure_speeds(bodies, velocities)
@@ -81,20 +79,20 @@ def make_advance(spec: Spec) -> Any:
                 place_parts(bodies)
             listed = pairs.shape[0]
             if broad:
-                listed = find_pairs(bodies, velocities, pairs, templates, params, near)
+                listed = find_pairs(
+                    bodies, velocities, pairs, workspace.templates, params, workspace.broad_phase
+                )
             count = 0
             if touches:
                 if listed >= 0:
-                    count = collide(
-                        bodies, motion, pairs, listed, contacts, points, normal, scratch, params.dt
-                    )
+                    count = collide(state, listed, workspace, params.dt)
             full = RUNNING
             if listed < 0:
                 full = PAIRS_FULL
             elif count < 0:
                 full = CONTACTS_FULL
             if records:
-                if full == RUNNING and counters.contact_rows + count > rows[2].shape[0]:
+                if full == RUNNING and counters.contact_rows + count > log.contact.shape[0]:
                     full = ROWS_FULL
             if sleeps:
                 if full == RUNNING and wake(bodies, contacts, count, params):
@@ -111,23 +109,20 @@ def make_advance(spec: Spec) -> Any:
                 passed = False
                 if passes:
                     if count == 0:
-                        pass_by(contacts, velocities, params, counters, rows)
+                        pass_by(contacts, velocities, params, counters, log)
                         passed = True
                 if not passed:
-                    respond(
-                        bodies, velocities, motion, pseudo, contacts, count, cache, pairs, work,
-                        params, counters, rows, residual_rows,
-                    )  # fmt: skip
+                    respond(state, count, workspace, params, counters, log)
             if keeps and touches:
                 classify(contacts, count, motion, params)
             moved = counters.projection_sweeps > 0
-            diverged, cause = integrate(bodies, velocities, motion, pseudo, moved, params.dt)
+            diverged, cause = integrate(bodies, velocities, motion, state.pseudo, moved, params.dt)
             if sleeps:
-                update_sleeping(bodies, velocities, motion, contacts, count, taken, params)
+                update_sleeping(state, count, workspace.islands, params)
             counters.step += 1
             counters.contacts = count
             if records:
-                log_step(bodies, velocities, bits, params, counters, rows)
+                log_step(bodies, velocities, params, counters, log)
             if diverged >= 0:
                 counters.body, counters.cause = diverged, cause
                 return DIVERGED

@@ -15,7 +15,7 @@ from lavendersim.engine.compile import compiling
 from lavendersim.engine.contact_problem import ContactProblem, Solution
 from lavendersim.engine.effects import row_fields
 from lavendersim.engine.kernel_cache import cached
-from lavendersim.engine.matrix_problem import contacts_of, coupling_of, make_solve
+from lavendersim.engine.matrix_problem import contacts_of, coupling_of, make_solve, system_of
 from lavendersim.engine.records import COUNTERS, PARAMETERS, dtype
 from lavendersim.engine.solvers.catalogue import SOLVERS
 from lavendersim.engine.spec import Spec
@@ -61,10 +61,10 @@ def solve_by_kernel(
     params["over_relaxation"] = over_relaxation
     params["residuals_from"] = params["residuals_to"] = 1
     rows = np.zeros(sweeps + 1 if history else 0, dtype(row_fields(spec, "residual")))
-    order = np.arange(problem.contacts)
     workspace = SOLVERS[solver].allocate(spec, 0, problem.contacts)
     with compiling():
-        _kernel(spec)(contacts, order, coupling_of(problem), workspace, params, counters, rows)
+        system = system_of(contacts, coupling_of(problem))
+        _kernel(spec)(system, workspace, params, counters, rows)
     impulses = np.stack([contacts[f"lambda_{k}"] for k in "n12"], axis=1)
     residuals = rows["residual"][: int(counters["residual_rows"][0])].copy()
     made = int(counters["sweeps"][0])

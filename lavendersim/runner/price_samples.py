@@ -25,7 +25,7 @@ from lavendersim.scene.build import build
 SAMPLE_NS = 5_000_000  # shortest sample: ten thousand times what reading the clock takes
 FINE = 1e-6  # [s] resolution of a clock that times a sample to a thousandth or better
 # Rows are written before they are read: they need not be set back.
-_ROWS = ("_rows", "_pose_bits", "_residual_rows")
+_ROWS = ("log",)
 
 
 def clock() -> tuple[str, Callable[[], int]]:

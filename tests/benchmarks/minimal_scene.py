@@ -97,7 +97,7 @@ def arrays(engine):
     return (
         engine.bodies,
         engine.velocities,
-        engine.pairs,
+        engine.state.pairs,
         engine.contacts,
         engine.parameters,
         engine.counters,

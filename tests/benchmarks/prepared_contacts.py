@@ -21,6 +21,7 @@ from lavendersim.engine.kernel_cache import cached
 from lavendersim.engine.records import dtype
 from lavendersim.engine.solvers import SOLVER_NAMES
 from lavendersim.engine.solvers.catalogue import SOLVERS
+from lavendersim.engine.solvers.solver import ContactSystem
 from lavendersim.engine.spec import Spec
 from lavendersim.experiment import load_experiment_text
 from lavendersim.scene.build import build
@@ -28,7 +29,6 @@ from lavendersim.scene.plan import plan_of
 
 EVERY_SOLVER = tuple(SOLVER_NAMES)  # by name
 SCENES = Path(__file__).parents[2] / "configs" / "scenes"
-ORDER = 6  # of an engine's working arrays: the order of sweeps
 
 
 class Prepared(NamedTuple):
@@ -54,7 +54,7 @@ def next_step(engine: Engine, spec: Spec) -> Prepared:
     count = int(engine.counters["contacts"][0])
     return Prepared(
         engine.contacts[:count].copy(),
-        engine._work[ORDER][:count].copy(),
+        engine.workspace.ordering.order[:count].copy(),
         bodies,
         engine.velocities.copy(),
         engine.parameters,
@@ -112,10 +112,12 @@ class Solve:
         self._parameters["tolerance"] = -1.0 if tolerance is None else tolerance
         self._parameters["sweeps"] = 0
         self.workspace = SOLVERS[solver].allocate(spec, len(prepared.bodies), self.count)
+        system = ContactSystem(
+            self.contacts, prepared.order, self.count, prepared.bodies, self.velocities
+        )
+        residual_rows = np.zeros(0, dtype(row_fields(spec, "residual")))
         self._arguments = (
-            self.contacts, prepared.order, self.count, prepared.bodies, self.velocities,
-            self.workspace, self._parameters[0], self._counters[0],
-            np.zeros(0, dtype(row_fields(spec, "residual"))),
+            system, self.workspace, self._parameters[0], self._counters[0], residual_rows
         )  # fmt: skip
         kernel = cached(SOLVERS[solver].make, spec)
         kernel._cache.anew = anew

@@ -12,8 +12,8 @@ import numpy as np
 from lavendersim.engine.collide import SHAPE_PAIRS
 from lavendersim.engine.collide.scratch import allocate_scratch
 from lavendersim.engine.compile import kernel
-from lavendersim.engine.engine import MANIFOLD_POINTS
 from lavendersim.engine.kernel_cache import cached
+from lavendersim.engine.memory import MANIFOLD_POINTS
 from lavendersim.engine.record_layout import allocate_bodies
 from lavendersim.engine.records import POINT, TOUCHING, dtype
 from lavendersim.engine.spec import Spec

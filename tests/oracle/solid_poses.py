@@ -22,8 +22,8 @@ from lavendersim.engine.collide.convex.hull_geometry import hull_geometry
 from lavendersim.engine.collide.convex.separation import make_separation
 from lavendersim.engine.collide.scratch import allocate_scratch
 from lavendersim.engine.compile import kernel
-from lavendersim.engine.engine import MANIFOLD_POINTS
 from lavendersim.engine.kernel_cache import cached
+from lavendersim.engine.memory import MANIFOLD_POINTS
 from lavendersim.engine.record_layout import allocate_bodies
 from lavendersim.engine.records import POINT, dtype
 from lavendersim.engine.spec import Spec

@@ -34,7 +34,7 @@ def projected(world: Bench, spins: np.ndarray, gravity: float) -> float:
     if not world.engine.counters["projection_sweeps"][0]:
         return 0.0
     given_up = 0.0
-    for body, push, spin in zip(world.engine.bodies, world.engine.pseudo, spins, strict=True):
+    for body, push, spin in zip(world.engine.bodies, world.engine.state.pseudo, spins, strict=True):
         if body["inv_m"] > 0.0:
             moments = 1.0 / np.array([body["inv_ix"], body["inv_iy"], body["inv_iz"]])
             angle = float(np.linalg.norm([push["wx"], push["wy"], push["wz"]]))
@@ -54,7 +54,7 @@ def carried(world: Bench, before: np.ndarray, gravity: float) -> float:
     """
     dt = float(world.engine.parameters["dt"][0])
     given_up = 0.0
-    bodies, ways = world.engine.bodies, world.engine.motion
+    bodies, ways = world.engine.bodies, world.engine.state.motion
     for body, way, old, new in zip(bodies, ways, before, world.velocity, strict=True):
         if body["inv_m"] > 0.0 and way["held"] > 0:
             changed = 0.0 if way["tau"] < dt else abs(float(new[2] - old[2]))

@@ -43,7 +43,7 @@ def make_manifold(spec: Spec, names: tuple[str, ...]):
 
 
 def make(spec: Spec):
-    """Return `kernel(bodies, motion, pairs, listed, contacts, points, normal, scratch, dt)`: count.
+    """Return `kernel(state, listed, workspace, dt) -> count` of the step's contacts (`memory`).
 
     listed: rows of `pairs` in use; dt: the timestep [s]. Fast pairs get the contacts of where they
     meet, not of where they start (swept.py).
@@ -60,7 +60,10 @@ def make(spec: Spec):
     compound = spec.has("compound")
     sleeps, still = made_once(spec, "is_still")
 
-    def narrow_phase(bodies, motion, pairs, listed, contacts, points, normal, scratch, dt):
+    def narrow_phase(state, listed, workspace, dt):
+        bodies, motion, pairs = state.bodies, state.motion, state.pairs
+        contacts, points, normal = state.contacts, workspace.points, workspace.normal
+        scratch = workspace.collision
         total = 0
         margin = TOUCHING
         for p in range(listed):

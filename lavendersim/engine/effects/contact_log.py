@@ -19,11 +19,11 @@ def decide(facts: Facts) -> Decision:
 
 
 def make(spec: Spec, loggers):
-    """Return `kernel(contacts, count, velocities, params, counters, rows)`, right after the solve.
+    """Return `kernel(contacts, count, velocities, params, counters, log)`, right after the solve.
 
     loggers: kernels (out, contact, va, vb) of the effects that log more of a contact. v_n and the
     residual belong to the velocities and levers of the solve; turning changes both.
-    rows: (step rows, pose rows, contact rows); the caller guarantees room.
+    log: `memory.Log`; the caller guarantees room.
     """
     from ..compile import chain
     from ..residual import make_row_residual
@@ -35,9 +35,9 @@ def make(spec: Spec, loggers):
     watch_signorini, watch_coulomb = make_watch_signorini(spec), make_watch_coulomb(spec)
     log_more = chain(loggers, spec)
 
-    def log_contacts(contacts, count, velocities, params, counters, rows):
-        steps, _, contact_rows = rows
-        row = steps[counters.step_rows]
+    def log_contacts(contacts, count, velocities, params, counters, log):
+        contact_rows = log.contact
+        row = log.step[counters.step_rows]
         force, deepest = 0.0, 0.0
         written = 0
         counters.residual_row = -1

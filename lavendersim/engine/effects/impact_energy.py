@@ -51,7 +51,8 @@ def make_note(spec: Spec) -> Any:
 
 
 def make_settle(spec: Spec, solve: Any, classify: Any) -> Any:
-    """Return the kernel that `settle`s impacts; the arguments are those of a solver, and `motion`.
+    """Return the kernel that `settle`s impacts; `kernel(system, motion, workspace, params,
+    counters, residual_rows)`: the arguments of a solver, and `motion`.
 
     classify: the kernel of `integrate` that says which bodies are struck, and when.
 
@@ -112,7 +113,8 @@ def make_settle(spec: Spec, solve: Any, classify: Any) -> Any:
 
     forget_sweeps = kernel(forget_sweeps, spec)
 
-    def settle(contacts, order, count, bodies, velocities, motion, space, params, counters, rows):
+    def settle(system, motion, workspace, params, counters, rows):
+        contacts, count, velocities = system.contacts, system.count, system.velocities
         counters.stronge = 0
         if some_smooth:
             rubs = False
@@ -135,7 +137,7 @@ def make_settle(spec: Spec, solve: Any, classify: Any) -> Any:
         counters.stronge = 1
         aim(contacts, count, 1.0)
         forget_sweeps(counters, rows)
-        solve(contacts, order, count, bodies, velocities, space, params, counters, rows)
+        solve(system, workspace, params, counters, rows)
         total, size = work_of(contacts, count, velocities, motion, params)
         if total <= ROUND_OFF * size:
             return
@@ -144,7 +146,7 @@ def make_settle(spec: Spec, solve: Any, classify: Any) -> Any:
             share = 0.5 * (low + high)
             aim(contacts, count, share)
             forget_sweeps(counters, rows)
-            solve(contacts, order, count, bodies, velocities, space, params, counters, rows)
+            solve(system, workspace, params, counters, rows)
             total, size = work_of(contacts, count, velocities, motion, params)
             if total <= ROUND_OFF * size:
                 low = share
@@ -152,7 +154,7 @@ def make_settle(spec: Spec, solve: Any, classify: Any) -> Any:
                 high = share
         aim(contacts, count, low)
         forget_sweeps(counters, rows)
-        solve(contacts, order, count, bodies, velocities, space, params, counters, rows)
+        solve(system, workspace, params, counters, rows)
 
     return kernel(settle, spec)
 

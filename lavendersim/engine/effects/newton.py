@@ -12,31 +12,31 @@ from .effect import Choice, Effect, Fields
 FORCES = [
     *[
         (f"{name}_{axis}", "f8")
-        # lambda^k and the best so far [N s], the velocities seen, and those that a step adds [m/s].
-        for name in ("held", "best", "seen", "step")
+        # lambda^k and the best so far [N s], contact velocities and what a step adds [m/s].
+        for name in ("start", "best", "velocity", "step")
         for axis in "n12"
     ],
     ("shift", "f8"),  # De Saxce's, of this round [m/s]
-    ("lack", "f8"),  # what mu |v_t| is above it [m/s]
-    ("moved", "f8"),  # its change from the round before [m/s]
+    ("defect", "f8"),  # what mu |v_t| is above it [m/s]
+    ("shift_change", "f8"),  # its change from the round before [m/s]
     ("scale", "f8"),  # s
     ("stiff_n", "f8"),  # e along the normal and in the tangent plane [kg]
     ("stiff_t", "f8"),
 ]
 TORQUES = {  # by the effect that brings them: the same of psi, and the limits of a round [N m s]
     "torsional_friction": [
-        *[(f"{name}_n", "f8") for name in ("held_psi", "best_psi", "seen_w", "step_w")],
+        *[(f"{name}_n", "f8") for name in ("start_psi", "best_psi", "spin", "step_spin")],
         ("stiff_torsion", "f8"),  # e [kg m^2]
-        ("most_torsion", "f8"),
+        ("limit_torsion", "f8"),
     ],
     "rolling_friction": [
         *[
             (f"{name}_{k}", "f8")
-            for name in ("held_psi", "best_psi", "seen_w", "step_w")
+            for name in ("start_psi", "best_psi", "spin", "step_spin")
             for k in "12"
         ],
         ("stiff_roll", "f8"),
-        ("most_roll", "f8"),
+        ("limit_roll", "f8"),
     ],
 }
 # Shapes that touch each other, or a plane, in one point.
@@ -64,7 +64,7 @@ def decide(facts: Facts) -> Decision:
 
 def contact_fields(spec: Spec) -> list[Field]:
     """Return the columns of what is on its way: impulses, and the torques that there are."""
-    torques = [field for effect, held in TORQUES.items() if spec.has(effect) for field in held]
+    torques = [field for effect, own in TORQUES.items() if spec.has(effect) for field in own]
     return [*FORCES, *torques]
 
 

@@ -144,7 +144,7 @@ def make_wake(spec: Spec) -> Any:
 
 
 def make_doze(spec: Spec) -> Any:
-    """Return `kernel(bodies, velocities, motion, contacts, count, island, params)`.
+    """Return `kernel(state, count, island, params)`; state: see `memory`.
 
     At the end of a step: who has been at rest for how long, and which islands fall asleep. `pace`
     is that of the step's begin: what counts is a step behind. island: (bodies,) int64, overwritten.
@@ -177,7 +177,9 @@ def make_doze(spec: Spec) -> Any:
 
     join = kernel(join, spec)
 
-    def doze(bodies, velocities, motion, contacts, count, island, params):
+    def doze(state, count, island, params):
+        bodies, velocities, motion = state.bodies, state.velocities, state.motion
+        contacts = state.contacts
         restful = False
         for i in range(bodies.shape[0]):
             body = bodies[i]

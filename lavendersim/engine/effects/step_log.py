@@ -16,11 +16,10 @@ def decide(facts: Facts) -> Decision:
 
 
 def make(spec: Spec, log_pose, loggers):
-    """Return `kernel(bodies, velocities, bits, params, counters, rows)`, at the end of a step.
+    """Return `kernel(bodies, velocities, params, counters, log)`, at the end of a step.
 
     log_pose: the kernel of `pose_log`; loggers: kernels (row, bodies, counters) of the effects that
-    log more of a step. bits: uint64 views of the pose rows (n, bodies, 7) and the velocities
-    (bodies, words), for the state hash. rows: (step rows, pose rows, contact rows) with room.
+    log more of a step. log: `memory.Log`, with room.
     """
     from ..compile import chain
     from ..rotation import inertia_times
@@ -71,9 +70,9 @@ def make(spec: Spec, log_pose, loggers):
 
     log_bodies = kernel(log_bodies, spec)
 
-    def log_step(bodies, velocities, bits, params, counters, rows):
-        steps, poses, _ = rows
-        row = steps[counters.step_rows]
+    def log_step(bodies, velocities, params, counters, log):
+        poses = log.pose
+        row = log.step[counters.step_rows]
         row.step = counters.step
         row.sweeps = counters.sweeps
         row.residual_contact = counters.residual_row
@@ -82,7 +81,7 @@ def make(spec: Spec, log_pose, loggers):
         row.residual = counters.residual
         log_bodies(bodies, velocities, row, poses[counters.step_rows], params)
         log_more(row, bodies, counters)
-        pose_bits, velocity_bits = bits
+        pose_bits, velocity_bits = log.pose_bits, log.velocity_bits
         state_hash = 0xCBF29CE484222325 ^ row.step
         for i in range(poses.shape[1]):
             state_hash = hash_into(state_hash, pose_bits[counters.step_rows, i], 7)

@@ -1,6 +1,6 @@
 """Accelerated projected gradient on Coulomb's cone, around De Saxce's fixed point.
 
-For a held shift s = mu |w_t| e_n the problem is convex, min 1/2 r'W r + (q + s)'r over the cones:
+For a fixed shift s = mu |w_t| e_n the problem is convex, min 1/2 r'W r + (q + s)'r over the cones:
     x_k+1 = P_K(y_k - (w(y_k) + s) / (theta c)),   y_k+1 = x_k+1 + beta_k (x_k+1 - x_k)
 with Nesterov's beta_k and a diagonal metric c that W cannot exceed (`step_bound`), eased by theta
 while W along the last step allows it. The momentum is dropped where it leads uphill (O'Donoghue and
@@ -14,7 +14,7 @@ Without the shift (`friction_cone: convex`) it is the convex relaxation of the l
 from __future__ import annotations
 
 from math import sqrt
-from typing import Any
+from typing import Any, NamedTuple
 
 from ..compile import kernel
 from ..cone import project_cone
@@ -22,16 +22,16 @@ from ..coupling import make_contact_velocity
 from ..residual import make_residual
 from ..spec import Spec
 from . import step_bound
-from .jacobi import make_act
+from .jacobi import make_apply_changes
 from .solver import Solver
-from .sweep import make_account, make_note
+from .sweep import make_record_residual, make_report
 
 CONTACT_FIELDS = [
     *step_bound.CONTACT_FIELDS,
-    ("shift", "f8"),  # mu |w_t| as held [m/s]
-    *[(f"seen_{k}", "f8") for k in "n12"],  # velocity at the impulses before [m/s]
+    ("shift", "f8"),  # De Saxce's, mu |w_t| [m/s]
+    *[(f"velocity_{k}", "f8") for k in "n12"],  # velocity at the impulses before [m/s]
     *[(f"base_{k}", "f8") for k in "n12"],  # y of the last step [N s]
-    *[(f"pull_{k}", "f8") for k in "n12"],  # w(y) without shift [m/s]
+    *[(f"gradient_{k}", "f8") for k in "n12"],  # w(y) without shift [m/s]
     *[(f"change_{k}", "f8") for k in "n12"],  # of the impulse, in the last sweep [N s]
 ]
 
@@ -46,18 +46,23 @@ ROUND_OFF = 1e-9
 LOOK = 8
 
 
-def make_look(spec: Spec) -> Any:
-    """Return `kernel(contact, velocities, beta, theta) -> (along, bent, curved, held, off)`.
+class Progress(NamedTuple):
+    """What one contact's step, or the sum over contacts, says of the next step."""
 
-    One contact's step. along: gradient times change, for the restart; bent, curved: what W and
-    theta c say of the last step [J]; held, off: squared natural maps with the held shift and with
-    its change alone [m^2/s^2], in the metric's own units (divided by c).
-    """
+    uphill: float  # gradient times change: above 0 the momentum is dropped
+    curvature: float  # of W along the last step [J]
+    bound_curvature: float  # the same as c has it, without theta
+    natural_map: float  # squared, of the problem with the shift of now [m^2 kg/s^2]
+    shift_defect: float  # squared, of what the shift is off
+
+
+def make_advance(spec: Spec) -> Any:
+    """Return `kernel(contact, velocities, beta, theta) -> Progress`: one contact's step."""
     friction, compliant = spec.has("friction"), spec.has("compliance")
     shifts = spec.friction_cone != "convex"
     contact_velocity = make_contact_velocity(spec)
 
-    def look(contact, velocities, beta, theta):
+    def advance(contact, velocities, beta, theta):
         w, w1, w2 = contact_velocity(contact, velocities)
         n, one, two, mu = contact.lambda_n, 0.0, 0.0, 0.0
         if friction:
@@ -67,40 +72,45 @@ def make_look(spec: Spec) -> Any:
         bound = contact.bound
         # How W bends along the last step, x - y, beside what was assumed.
         dn, d1, d2 = n - contact.base_n, one - contact.base_1, two - contact.base_2
-        bent = dn * (w - contact.pull_n) + d1 * (w1 - contact.pull_1) + d2 * (w2 - contact.pull_2)
-        curved = bound * (dn * dn + d1 * d1 + d2 * d2)
-        # Natural map of the problem with the held shift, and what the shift is off.
+        curvature = (
+            dn * (w - contact.gradient_n)
+            + d1 * (w1 - contact.gradient_1)
+            + d2 * (w2 - contact.gradient_2)
+        )
+        bound_curvature = bound * (dn * dn + d1 * d1 + d2 * d2)
+        # Natural map of the problem with the shift of now, and what that is off.
         step = 1.0 / bound
         x, y, z = project_cone(n - step * (w + contact.shift), one - step * w1, two - step * w2, mu)
         x, y, z = x - n, y - one, z - two
-        held = bound * (x * x + y * y + z * z)
-        off = 0.0
+        natural_map = bound * (x * x + y * y + z * z)
+        shift_defect = 0.0
         if friction and shifts:
-            off = mu * sqrt(w1 * w1 + w2 * w2) - contact.shift
-            off = step * off * off
+            shift_defect = mu * sqrt(w1 * w1 + w2 * w2) - contact.shift
+            shift_defect = step * shift_defect * shift_defect
         # Velocities are linear in the impulses: those at y need no visit of their own.
         cn, c1, c2 = contact.change_n, contact.change_1, contact.change_2
         base_n, base_1, base_2 = n + beta * cn, one + beta * c1, two + beta * c2
-        pull_n = w + beta * (w - contact.seen_n)
-        pull_1 = w1 + beta * (w1 - contact.seen_1)
-        pull_2 = w2 + beta * (w2 - contact.seen_2)
-        contact.seen_n, contact.seen_1, contact.seen_2 = w, w1, w2
+        gradient_n = w + beta * (w - contact.velocity_n)
+        gradient_1 = w1 + beta * (w1 - contact.velocity_1)
+        gradient_2 = w2 + beta * (w2 - contact.velocity_2)
+        contact.velocity_n, contact.velocity_1, contact.velocity_2 = w, w1, w2
         contact.base_n, contact.base_1, contact.base_2 = base_n, base_1, base_2
-        contact.pull_n, contact.pull_1, contact.pull_2 = pull_n, pull_1, pull_2
+        contact.gradient_n = gradient_n
+        contact.gradient_1, contact.gradient_2 = gradient_1, gradient_2
         step = 1.0 / (theta * bound)
         x, y, z = project_cone(
-            base_n - step * (pull_n + contact.shift), base_1 - step * pull_1,
-            base_2 - step * pull_2, mu,
+            base_n - step * (gradient_n + contact.shift), base_1 - step * gradient_1,
+            base_2 - step * gradient_2, mu,
         )  # fmt: skip
         x, y, z = x - n, y - one, z - two
         contact.change_n, contact.change_1, contact.change_2 = x, y, z
         contact.lambda_n = n + x
         if friction:
             contact.lambda_1, contact.lambda_2 = one + y, two + z
-        along = (base_n - n - x) * x + (base_1 - one - y) * y + (base_2 - two - z) * z
-        return bound * along, bent, curved, held, off
+        uphill = (base_n - n - x) * x + (base_1 - one - y) * y + (base_2 - two - z) * z
+        return Progress(bound * uphill, curvature, bound_curvature, natural_map, shift_defect)
 
-    return kernel(look, spec)
+    return kernel(advance, spec)
 
 
 def make_begin(spec: Spec) -> Any:
@@ -116,8 +126,8 @@ def make_begin(spec: Spec) -> Any:
             if friction:
                 contact.base_1, contact.base_2 = contact.lambda_1, contact.lambda_2
             w, w1, w2 = contact_velocity(contact, velocities)
-            contact.seen_n, contact.seen_1, contact.seen_2 = w, w1, w2
-            contact.pull_n, contact.pull_1, contact.pull_2 = w, w1, w2
+            contact.velocity_n, contact.velocity_1, contact.velocity_2 = w, w1, w2
+            contact.gradient_n, contact.gradient_1, contact.gradient_2 = w, w1, w2
             contact.shift = 0.0
 
     return kernel(begin, spec)
@@ -137,57 +147,59 @@ def make_shift(spec: Spec) -> Any:
 
 
 def make(spec: Spec) -> Any:
-    """Return `kernel(contacts, order, count, bodies, velocities, space, params, counters, rows)`.
+    """Return `kernel(system, workspace, params, counters, residual_rows)`.
 
     Writes counters.sweeps, .residual [m/s], .residual_contact and .not_converged of this step.
     """
     record_residuals = spec.has("residual_log")
     shifts = spec.has("friction") and spec.friction_cone != "convex"
-    note, account = make_note(spec), make_account(spec)
+    record_residual, report = make_record_residual(spec), make_report(spec)
     residual, bound = make_residual(spec), step_bound.make_bound(spec)
-    begin, look, act = make_begin(spec), make_look(spec), make_act(spec)
+    begin, advance, apply_changes = make_begin(spec), make_advance(spec), make_apply_changes(spec)
     shift: Any = make_shift(spec) if shifts else None
 
-    def accelerated_projected_gradient(
-        contacts, order, count, bodies, velocities, space, params, counters, rows
-    ):
-        bound(contacts, count, space)
+    def accelerated_projected_gradient(system, workspace, params, counters, residual_rows):
+        contacts, count, velocities = system.contacts, system.count, system.velocities
+        bound(contacts, count, workspace)
         begin(contacts, count, velocities)
         if shifts:
             shift(contacts, count, velocities)
         largest, worst = residual(contacts, count, velocities)
         sweeps, measured = 0, True
         if record_residuals:
-            note(params, counters, rows, 0, largest)
-        theta, pace, beta = 1.0, 1.0, 0.0
+            record_residual(params, counters, residual_rows, 0, largest)
+        theta, momentum, beta = 1.0, 1.0, 0.0
         while sweeps < params.sweeps:
             if measured and (largest <= params.tolerance or largest != largest):
                 break
-            along, bent, curved, held, off = 0.0, 0.0, 0.0, 0.0, 0.0
+            uphill, curvature, bound_curvature = 0.0, 0.0, 0.0
+            natural_map, shift_defect = 0.0, 0.0
             for c in range(count):
-                p, q, r, s, t = look(contacts[c], velocities, beta, theta)
-                along, bent, curved = along + p, bent + q, curved + r
-                held, off = held + s, off + t
-            act(contacts, count, velocities)
+                own = advance(contacts[c], velocities, beta, theta)
+                uphill, curvature = uphill + own.uphill, curvature + own.curvature
+                bound_curvature += own.bound_curvature
+                natural_map += own.natural_map
+                shift_defect += own.shift_defect
+            apply_changes(contacts, count, velocities)
             sweeps += 1
-            allowed = bent <= theta * curved * (1.0 + ROUND_OFF)
+            allowed = curvature <= theta * bound_curvature * (1.0 + ROUND_OFF)
             theta = max(EASE * theta, LEAST) if allowed else min(theta / EASE**8, 1.0)
-            if along > 0.0 or not allowed:
-                pace, beta = 1.0, 0.0
+            if uphill > 0.0 or not allowed:
+                momentum, beta = 1.0, 0.0
             else:
-                longer = 0.5 * (1.0 + sqrt(1.0 + 4.0 * pace * pace))
-                pace, beta = longer, (pace - 1.0) / longer
+                longer = 0.5 * (1.0 + sqrt(1.0 + 4.0 * momentum * momentum))
+                momentum, beta = longer, (momentum - 1.0) / longer
             if shifts:
-                if held <= INEXACT * INEXACT * off:
+                if natural_map <= INEXACT * INEXACT * shift_defect:
                     shift(contacts, count, velocities)
             measured = record_residuals or sweeps % LOOK == 0
             if measured:
                 largest, worst = residual(contacts, count, velocities)
             if record_residuals:
-                note(params, counters, rows, sweeps, largest)
+                record_residual(params, counters, residual_rows, sweeps, largest)
         if not measured:
             largest, worst = residual(contacts, count, velocities)
-        account(params, counters, sweeps, largest, worst)
+        report(params, counters, sweeps, largest, worst)
 
     return kernel(accelerated_projected_gradient, spec)
 

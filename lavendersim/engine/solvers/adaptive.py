@@ -24,7 +24,7 @@ from ..spec import Spec
 from .newton.envelope import allocate_envelope
 from .newton.method import make_newton
 from .solver import Solver, no_workspace
-from .sweep import make_account, make_note, make_sweep
+from .sweep import make_record_residual, make_report, make_sweep
 
 # Sweeps between two looks at how fast they converge.
 LOOK = 8
@@ -51,38 +51,37 @@ def allocate(spec: Spec, bodies: int, contacts: int) -> Any:
 
 
 def make(spec: Spec):
-    """Return `kernel(contacts, order, count, bodies, velocities, space, params, counters, rows)`.
+    """Return `kernel(system, workspace, params, counters, residual_rows)`.
 
     Writes counters.sweeps, .residual [m/s], .residual_contact and .not_converged of this step.
     """
     record_residuals = spec.has("residual_log")
-    sweep, note, account = make_sweep(spec), make_note(spec), make_account(spec)
+    sweep, record_residual, report = make_sweep(spec), make_record_residual(spec), make_report(spec)
     residual = make_residual(spec)
-    hastens = spec.has("newton")
-    newton: Any = make_newton(spec) if hastens else None
+    uses_newton = spec.has("newton")
+    newton: Any = make_newton(spec) if uses_newton else None
 
-    def adaptive(
-        contacts, order, count, bodies, velocities, space, params, counters, residual_rows
-    ):
+    def adaptive(system, workspace, params, counters, residual_rows):
+        contacts, count, velocities = system.contacts, system.count, system.velocities
         largest, worst = 0.0, -1
         if record_residuals:
             largest, worst = residual(contacts, count, velocities)
-            note(params, counters, residual_rows, 0, largest)
+            record_residual(params, counters, residual_rows, 0, largest)
         sweeps, look, pause = 0, LOOK, LOOK
         sharp = SHARPNESS * params.tolerance
         aim = sharp if counters.sharpen == 1 else params.tolerance
         counters.sharpen = 0
-        measured, bold = False, True
+        measured, sticking_guess = False, True
         earlier = 0.0
         last = params.sweeps - LAST
         while sweeps < params.sweeps:
-            greatest = sweep(contacts, order, count, velocities, params)
+            greatest = sweep(system, params)
             sweeps += 1
             measured = False
             if record_residuals:
                 largest, worst = residual(contacts, count, velocities)
                 measured = True
-                note(params, counters, residual_rows, sweeps, largest)
+                record_residual(params, counters, residual_rows, sweeps, largest)
             # The residual is evaluated when the sweep's own changes say that it may be small.
             over = greatest == 0.0 or greatest != greatest
             if over or greatest <= aim:
@@ -91,7 +90,7 @@ def make(spec: Spec):
                     measured = True
                 if over or largest <= aim:
                     break
-            if hastens:
+            if uses_newton:
                 ends = False
                 if sweeps == last and sweeps > LOOK:
                     if not measured:
@@ -109,8 +108,8 @@ def make(spec: Spec):
                         if sweeps + needed > params.sweeps:
                             needed = max(needed, WORTH)
                         allowance = VISIT * count * needed
-                        steps, bold = newton(
-                            contacts, count, bodies, velocities, space, sharp, allowance, bold
+                        steps, sticking_guess = newton(
+                            system, workspace, sharp, allowance, sticking_guess
                         )
                         counters.newton_steps += steps
                         measured = False
@@ -122,7 +121,7 @@ def make(spec: Spec):
                     earlier = greatest
         if not measured:
             largest, worst = residual(contacts, count, velocities)
-        account(params, counters, sweeps, largest, worst)
+        report(params, counters, sweeps, largest, worst)
 
     return kernel(adaptive, spec)
 

@@ -25,7 +25,7 @@ def allocate(spec: Spec, bodies: int, contacts: int) -> Any:
 
 
 def make(spec: Spec) -> Any:
-    """Return `kernel(contacts, order, count, bodies, velocities, space, params, counters, rows)`.
+    """Return `kernel(system, workspace, params, counters, residual_rows)`.
 
     Writes counters.sweeps, .residual [m/s], .residual_contact and .not_converged of this step.
     """

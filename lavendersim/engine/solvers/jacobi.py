@@ -1,4 +1,4 @@
-"""Jacobi: all contacts answer the same velocities, then all impulses act at once.
+"""Jacobi: all contacts are updated at the same velocities, then all impulses act at once.
 
     r_n <- max(0, r_n - w_n / c),    r_t <- proj(r_t - w_t / c),  |r_t| <= mu r_n
 c is so stiff (`step_bound`) that together they cannot overshoot. Nothing depends on the order, and
@@ -18,7 +18,7 @@ from ..spec import Spec
 from ..spin_block import make_solve_spin, resists_turning
 from . import step_bound
 from .solver import Solver
-from .sweep import make_account, make_note
+from .sweep import make_record_residual, make_report
 
 CONTACT_FIELDS = [
     *step_bound.CONTACT_FIELDS,
@@ -30,14 +30,14 @@ CONTACT_FIELDS = [
 LOOK = 8
 
 
-def make_answer(spec: Spec) -> Any:
+def make_update(spec: Spec) -> Any:
     """Return `kernel(contact, velocities) -> change` [m/s]: the contact's own new impulse."""
     friction, compliant = spec.has("friction"), spec.has("compliance")
     project = make_project_section(spec)
     convex = friction and spec.friction_cone == "convex"
     contact_velocity = make_contact_velocity(spec)
 
-    def answer(contact, velocities):
+    def update(contact, velocities):
         w, w1, w2 = contact_velocity(contact, velocities)
         if compliant:
             w += contact.gamma * contact.lambda_n
@@ -63,10 +63,10 @@ def make_answer(spec: Spec) -> Any:
         # In this order a NaN stays.
         return max(abs(contact.change_n), change) * contact.bound
 
-    return kernel(answer, spec)
+    return kernel(update, spec)
 
 
-def make_act(spec: Spec) -> Any:
+def make_apply_changes(spec: Spec) -> Any:
     """Return `kernel(contacts, count, velocities) -> change` [m/s]: all changes reach velocities.
 
     change: of what resists turning, which follows; 0 without it.
@@ -75,7 +75,7 @@ def make_act(spec: Spec) -> Any:
     add_impulse = make_add_impulse(spec)
     spins, solve_spin = resists_turning(spec), make_solve_spin(spec)
 
-    def act(contacts, count, velocities):
+    def apply_changes(contacts, count, velocities):
         greatest = 0.0
         for c in range(count):
             contact = contacts[c]
@@ -92,35 +92,36 @@ def make_act(spec: Spec) -> Any:
                     greatest = turned
         return greatest
 
-    return kernel(act, spec)
+    return kernel(apply_changes, spec)
 
 
 def make(spec: Spec) -> Any:
-    """Return `kernel(contacts, order, count, bodies, velocities, space, params, counters, rows)`.
+    """Return `kernel(system, workspace, params, counters, residual_rows)`.
 
     Writes counters.sweeps, .residual [m/s], .residual_contact and .not_converged of this step.
     """
     record_residuals = spec.has("residual_log")
-    note, account = make_note(spec), make_account(spec)
+    record_residual, report = make_record_residual(spec), make_report(spec)
     residual, bound = make_residual(spec), step_bound.make_bound(spec)
-    answer, act = make_answer(spec), make_act(spec)
+    update, apply_changes = make_update(spec), make_apply_changes(spec)
 
-    def jacobi(contacts, order, count, bodies, velocities, space, params, counters, rows):
-        bound(contacts, count, space)
+    def jacobi(system, workspace, params, counters, residual_rows):
+        contacts, count, velocities = system.contacts, system.count, system.velocities
+        bound(contacts, count, workspace)
         largest, worst = residual(contacts, count, velocities)
         sweeps, measured = 0, True
         if record_residuals:
-            note(params, counters, rows, 0, largest)
+            record_residual(params, counters, residual_rows, 0, largest)
         while sweeps < params.sweeps:
             if measured and largest <= params.tolerance:
                 break
             greatest = 0.0
             for c in range(count):
-                change = answer(contacts[c], velocities)
+                change = update(contacts[c], velocities)
                 # A NaN is greater than anything.
                 if change > greatest or change != change:
                     greatest = change
-            turned = act(contacts, count, velocities)
+            turned = apply_changes(contacts, count, velocities)
             if turned > greatest or turned != turned:
                 greatest = turned
             sweeps += 1
@@ -128,12 +129,12 @@ def make(spec: Spec) -> Any:
             if measured:
                 largest, worst = residual(contacts, count, velocities)
             if record_residuals:
-                note(params, counters, rows, sweeps, largest)
+                record_residual(params, counters, residual_rows, sweeps, largest)
             if greatest == 0.0 or greatest != greatest:
                 break
         if not measured:
             largest, worst = residual(contacts, count, velocities)
-        account(params, counters, sweeps, largest, worst)
+        report(params, counters, sweeps, largest, worst)
 
     return kernel(jacobi, spec)
 

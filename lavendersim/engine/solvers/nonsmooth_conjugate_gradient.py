@@ -19,7 +19,7 @@ from ..coupling import make_add_impulse
 from ..residual import make_residual
 from ..spec import Spec
 from .solver import Solver
-from .sweep import make_account, make_note, make_sweep
+from .sweep import make_record_residual, make_report, make_sweep
 
 CONTACT_FIELDS = [
     ("start_n", "f8"),  # impulse before the sweep [N s]
@@ -58,24 +58,23 @@ def make_move_on(spec: Spec):
 
 
 def make(spec: Spec):
-    """Return `kernel(contacts, order, count, bodies, velocities, space, params, counters, rows)`.
+    """Return `kernel(system, workspace, params, counters, residual_rows)`.
 
     Writes counters.sweeps, .residual [m/s], .residual_contact and .not_converged of this step.
     """
     friction = spec.has("friction")
     record_residuals = spec.has("residual_log")
-    sweep, note, account = make_sweep(spec), make_note(spec), make_account(spec)
+    sweep, record_residual, report = make_sweep(spec), make_record_residual(spec), make_report(spec)
     residual = make_residual(spec)
     move_on = make_move_on(spec)
 
-    def nonsmooth_conjugate_gradient(
-        contacts, order, count, bodies, velocities, space, params, counters, residual_rows
-    ):
+    def nonsmooth_conjugate_gradient(system, workspace, params, counters, residual_rows):
+        contacts, count, velocities = system.contacts, system.count, system.velocities
         largest, worst = 0.0, -1
         previous, fresh = 0.0, True
         if record_residuals:
             largest, worst = residual(contacts, count, velocities)
-            note(params, counters, residual_rows, 0, largest)
+            record_residual(params, counters, residual_rows, 0, largest)
         sweeps = 0
         measured = False
         while sweeps < params.sweeps:
@@ -86,13 +85,13 @@ def make(spec: Spec):
                     contact.start_n = contact.lambda_n
                     if friction:
                         contact.start_1, contact.start_2 = contact.lambda_1, contact.lambda_2
-            greatest = sweep(contacts, order, count, velocities, params)
+            greatest = sweep(system, params)
             sweeps += 1
             measured = False
             if record_residuals:
                 largest, worst = residual(contacts, count, velocities)
                 measured = True
-                note(params, counters, residual_rows, sweeps, largest)
+                record_residual(params, counters, residual_rows, sweeps, largest)
             # The residual is evaluated when the sweep's own changes say that it may be small.
             if greatest <= params.tolerance or greatest == 0.0 or greatest != greatest:
                 if not measured:
@@ -124,7 +123,7 @@ def make(spec: Spec):
                 previous, fresh = squared, False
         if not measured:
             largest, worst = residual(contacts, count, velocities)
-        account(params, counters, sweeps, largest, worst)
+        report(params, counters, sweeps, largest, worst)
 
     return kernel(nonsmooth_conjugate_gradient, spec)
 

@@ -12,36 +12,35 @@ from ..compile import kernel
 from ..residual import make_residual
 from ..spec import Spec
 from .solver import Solver
-from .sweep import make_account, make_note, make_sweep
+from .sweep import make_record_residual, make_report, make_sweep
 
 
 def make(spec: Spec):
-    """Return `kernel(contacts, order, count, bodies, velocities, space, params, counters, rows)`.
+    """Return `kernel(system, workspace, params, counters, residual_rows)`.
 
     Writes counters.sweeps, .residual [m/s] and .residual_contact of this step.
     """
-    sweep, note, account = make_sweep(spec), make_note(spec), make_account(spec)
+    sweep, record_residual, report = make_sweep(spec), make_record_residual(spec), make_report(spec)
     residual = make_residual(spec)
     every_sweep = spec.has("residual_log") or spec.tolerance
     record_residuals = spec.has("residual_log")
     stop_early = spec.tolerance
 
-    def projected_gauss_seidel(
-        contacts, order, count, bodies, velocities, space, params, counters, residual_rows
-    ):
+    def projected_gauss_seidel(system, workspace, params, counters, residual_rows):
+        contacts, count, velocities = system.contacts, system.count, system.velocities
         largest, worst = 0.0, -1
         sweeps = 0
         if every_sweep:
             largest, worst = residual(contacts, count, velocities)
         while True:
             if record_residuals:
-                note(params, counters, residual_rows, sweeps, largest)
+                record_residual(params, counters, residual_rows, sweeps, largest)
             if sweeps == params.sweeps:
                 break
             if stop_early:
                 if largest <= params.tolerance:
                     break
-            greatest = sweep(contacts, order, count, velocities, params)
+            greatest = sweep(system, params)
             sweeps += 1
             if not record_residuals:
                 # Nothing changed, so nothing would change in the sweeps that are left.
@@ -51,7 +50,7 @@ def make(spec: Spec):
                 largest, worst = residual(contacts, count, velocities)
         if not every_sweep:
             largest, worst = residual(contacts, count, velocities)
-        account(params, counters, sweeps, largest, worst)
+        report(params, counters, sweeps, largest, worst)
 
     return kernel(projected_gauss_seidel, spec)
 

@@ -149,13 +149,13 @@ def _make_convex(spec: Spec):
             w1 *= params.over_relaxation
             w2 *= params.over_relaxation
         # The block's own solution, by elimination of the tangents.
-        held_1 = contact.i_11 * k_n1 + contact.i_12 * k_n2
-        held_2 = contact.i_12 * k_n1 + contact.i_22 * k_n2
-        left = 1.0 / contact.inv_k - held_1 * k_n1 - held_2 * k_n2
-        change_n = (held_1 * w1 + held_2 * w2 - w) / left
+        eliminated_1 = contact.i_11 * k_n1 + contact.i_12 * k_n2
+        eliminated_2 = contact.i_12 * k_n1 + contact.i_22 * k_n2
+        left = 1.0 / contact.inv_k - eliminated_1 * k_n1 - eliminated_2 * k_n2
+        change_n = (eliminated_1 * w1 + eliminated_2 * w2 - w) / left
         new_n = old_n + change_n
-        new_1 = old_1 - contact.i_11 * w1 - contact.i_12 * w2 - held_1 * change_n
-        new_2 = old_2 - contact.i_12 * w1 - contact.i_22 * w2 - held_2 * change_n
+        new_1 = old_1 - contact.i_11 * w1 - contact.i_12 * w2 - eliminated_1 * change_n
+        new_2 = old_2 - contact.i_12 * w1 - contact.i_22 * w2 - eliminated_2 * change_n
         if not (new_n >= 0.0 and new_1 * new_1 + new_2 * new_2 <= mu * mu * new_n * new_n):
             step = 1.0 / largest_response(contact)
             new_n, new_1, new_2 = project_cone(

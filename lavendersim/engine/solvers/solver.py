@@ -4,10 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
+
+import numpy as np
 
 from ..records import Field
 from ..spec import Spec
+
+
+class ContactSystem(NamedTuple):
+    """The contact problem of one step, as a solver finds it and leaves it."""
+
+    contacts: np.ndarray  # records; of them `count` are in use
+    order: np.ndarray  # in which sweeps visit them
+    count: int
+    bodies: np.ndarray
+    velocities: Any  # of the bodies; of the operator `matrix` its `coupling.Coupling`
 
 
 def no_workspace(spec: Spec, bodies: int, contacts: int) -> Any:
@@ -19,9 +31,9 @@ def no_workspace(spec: Spec, bodies: int, contacts: int) -> Any:
 class Solver:
     """One solver of the step's contact problem.
 
-    make: (spec) -> kernel(contacts, order, count, bodies, velocities, workspace, params, counters,
-        residual_rows), which changes the impulses of `contacts` and, consistent with them,
-        `velocities`, and writes what the step's row reports of a solve (`sweep.make_account`).
+    make: (spec) -> kernel(system, workspace, params, counters, residual_rows), which changes the
+        impulses of a ContactSystem and, consistent with them, its velocities, and reports the solve
+        in the counters (`sweep.make_report`).
     allocate: (spec, bodies, contacts) -> the arrays that the kernel works in, a record of arrays.
     contact_fields: columns of the contact record that the solver keeps.
     solves_matrix: whether the kernel of the operator `matrix` (`coupling`) is one, too.

@@ -11,7 +11,7 @@ from .row_update import make_solve_contact_velocity
 
 
 def make_sweep(spec: Spec):
-    """Return `kernel(contacts, order, count, velocities, params) -> greatest change` [m/s].
+    """Return `kernel(system, params) -> greatest change` [m/s].
 
     Symmetric sweeps go there and back: each leaves the order of the next one turned round.
     """
@@ -19,22 +19,23 @@ def make_sweep(spec: Spec):
     symmetric = spec.order == "symmetric"
     turn_round: Any = ordering.make_turn_round(spec) if symmetric else None
 
-    def sweep(contacts, order, count, velocities, params):
+    def sweep(system, params):
+        contacts, order, velocities = system.contacts, system.order, system.velocities
         greatest = 0.0
-        for c in range(count):
+        for c in range(system.count):
             contact = contacts[order[c]]
             change = solve_contact_velocity(contact, contacts, velocities, params)
             # A NaN is greater than anything.
             if change > greatest or change != change:
                 greatest = change
         if symmetric:
-            turn_round(order, count)
+            turn_round(order, system.count)
         return greatest
 
     return kernel(sweep, spec)
 
 
-def make_note(spec: Spec):
+def make_record_residual(spec: Spec):
     """Return `kernel(params, counters, rows, sweep, residual)`: a row of the history, if asked.
 
     None where no history is recorded.
@@ -42,21 +43,21 @@ def make_note(spec: Spec):
     if not spec.has("residual_log"):
         return None
 
-    def note(params, counters, rows, sweep, residual):
+    def record_residual(params, counters, rows, sweep, residual):
         step = counters.step + 1
         if params.residuals_from <= step <= params.residuals_to:
             row = rows[counters.residual_rows]
             row.step, row.sweep, row.residual = step, sweep, residual
             counters.residual_rows += 1
 
-    return kernel(note, spec)
+    return kernel(record_residual, spec)
 
 
-def make_account(spec: Spec):
+def make_report(spec: Spec):
     """Return `kernel(params, counters, sweeps, residual, worst)`: what the step's record tells."""
     asked = spec.tolerance
 
-    def account(params, counters, sweeps, residual, worst):
+    def report(params, counters, sweeps, residual, worst):
         counters.sweeps = sweeps
         counters.residual = residual
         counters.residual_contact = worst
@@ -66,4 +67,4 @@ def make_account(spec: Spec):
                 if not residual <= params.tolerance:
                     counters.not_converged = 1
 
-    return kernel(account, spec)
+    return kernel(report, spec)

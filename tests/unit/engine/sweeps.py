@@ -17,8 +17,8 @@ from lavendersim.engine.collide.manifold.point import place
 from lavendersim.engine.collide.narrow_phase import make_manifold
 from lavendersim.engine.collide.scratch import allocate_scratch
 from lavendersim.engine.compile import compiling, kernel
-from lavendersim.engine.engine import MANIFOLD_POINTS
 from lavendersim.engine.kernel_cache import cached
+from lavendersim.engine.memory import MANIFOLD_POINTS
 from lavendersim.engine.records import BOX, POINT, SPHERE, TOUCHING, VELOCITY, dtype
 from lavendersim.engine.spec import Spec
 

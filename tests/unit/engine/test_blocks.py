@@ -21,7 +21,8 @@ def heap():
 def run(block_steps: int = 512, capacity: int | None = None) -> Rows:
     bench = Bench(heap(), block_steps=block_steps)
     if capacity:
-        bench.engine.cache = bench.engine.cache[:0]
+        state = bench.engine.state
+        bench.engine.state = state._replace(cache=state.cache[:0])
         bench.engine._grow_contacts(capacity)
     rows = bench.run(STEPS)
     assert bench.status == 0

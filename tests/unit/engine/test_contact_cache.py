@@ -117,7 +117,7 @@ def test_a_new_point_does_not_take_the_impulse_of_one_that_persists():
     visited first and within reach, is new: the impulse belongs to corner 1."""
     bodies = {"floor": plane(), "block": box((0.01, 0.01, 0.01), (0.0, 0.0, 0.005))}
     bench, impulses = settled(bodies)
-    cache = bench.engine.cache
+    cache = bench.engine.state.cache
     kept = cache[cache["feature"] == 1].copy()
     cache[:1] = kept
     bench.engine.counters["cached"] = 1
@@ -131,9 +131,9 @@ def test_a_new_point_does_not_take_the_impulse_of_one_that_persists():
 def test_no_impulse_is_handed_on_twice():
     """All features renamed: four points find the four nearest, one each."""
     bench, impulses = settled(block())
-    bench.engine.cache["feature"] += 100
+    bench.engine.state.cache["feature"] += 100
     np.testing.assert_array_equal(bench.run(1).contact["impulse_n"], impulses)
     one_left, _ = settled({"floor": plane(), "block": box((0.01, 0.01, 0.01), (0.0, 0.0, 0.005))})
-    one_left.engine.cache["feature"] += 100
+    one_left.engine.state.cache["feature"] += 100
     one_left.engine.counters["cached"] = 1
     assert np.count_nonzero(one_left.run(1).contact["impulse_n"]) == 1

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from laboratory import Bench, box, plane, resolved
 
-from lavendersim.engine.solvers.newton.response import move_shift
+from lavendersim.engine.solvers.newton.response import update_shift
 
 G, DT, MU = 9.81, 1.0 / 240.0, 0.5
 TOLERANCE = 1e-9
@@ -86,19 +86,19 @@ def test_the_secant_ends_a_shift_that_closes_in_by_a_constant_factor(share):
     """Where slip answers the shift s with 1 + share s, the shift that it confirms is
     1/(1 - share); without the secant a share of the error is left by every round.
     """
-    contact = np.zeros(1, np.dtype([(name, "f8") for name in ("shift", "lack", "moved")]))
+    contact = np.zeros(1, np.dtype([(name, "f8") for name in ("shift", "defect", "shift_change")]))
     contact = contact.view(np.recarray)[0]
     end = 1.0 / (1.0 - share)
     for rounds in (1, 2):
-        move_shift(contact, 1.0 + share * contact.shift, False)
+        update_shift(contact, 1.0 + share * contact.shift, False)
         assert end - contact.shift == pytest.approx(share**rounds * end, rel=1e-14)
-    move_shift(contact, 1.0 + share * contact.shift, True)
+    update_shift(contact, 1.0 + share * contact.shift, True)
     assert contact.shift == pytest.approx(end, rel=1e-13)
 
 
 def test_a_rod_that_jams_is_solved():
     """Painleve's rod, 20 degrees from upright, slides on mu = 1.5 with its low end ahead: a shift
-    changes by more than half of what it lacks, and rounds alone leave 5e-4 m/s of 4 m/s.
+    changes by more than half of its defect, and rounds alone leave 5e-4 m/s of 4 m/s.
     """
     half = np.radians(-10.0)
     turn = (np.cos(half), 0.0, np.sin(half), 0.0)

@@ -57,11 +57,12 @@ def columns(cell: dict[str, Any], spec: Spec) -> dict[str, set[str]]:
     An array without a row, as the cache is where nothing is carried over, has no columns.
     """
     engine = Bench(cell, spec).engine
-    arrays = (engine.bodies, engine.velocities, engine.pairs, engine.contacts, engine.cache)
-    step_rows, _, contact_rows = engine._rows
+    arrays = engine.state[:5]  # bodies, velocities, pairs, contacts, cache
     return {
         group: set(array.dtype.names or ()) if len(array) else set()
-        for group, array in zip(RECORDS, (*arrays, contact_rows, step_rows), strict=True)
+        for group, array in zip(
+            RECORDS, (*arrays, engine.log.contact, engine.log.step), strict=True
+        )
     }
 
 

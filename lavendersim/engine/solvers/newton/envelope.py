@@ -28,9 +28,9 @@ class Envelope(NamedTuple):
     start: np.ndarray  # (6 bodies,) where a row's entries start in `values`
     values: np.ndarray  # (capacity,) entries, rows one after the other, diagonal last
     diagonal: np.ndarray  # (6 bodies,) D
-    gradient: np.ndarray  # (6 bodies,)
-    step: np.ndarray  # (6 bodies,)
-    moved: np.ndarray  # (6 bodies,)
+    gradient: np.ndarray  # (6 bodies,) g(v), see `minimise`
+    step: np.ndarray  # (6 bodies,) of the velocities, along which a length is searched for
+    change: np.ndarray  # (6 bodies,) of the velocities in this round: v - v^k
     mass: np.ndarray  # (bodies, 7) mass and world inertia xx xy xz yy yz zz, by position
     rows: np.ndarray  # (9, 6) rows n, t1, t2 of one contact: body A's, body B's, and scaled
 
@@ -56,9 +56,9 @@ def allocate_envelope(bodies: int, contacts: int, capacity: int) -> Envelope:
 
 
 @inner
-def _gather(contacts, count, space):
+def _gather(contacts, count, workspace):
     # Neighbours of every body that a contact joins to another movable one, by counting sort.
-    begin, neighbours, position = space.begin, space.neighbours, space.position
+    begin, neighbours, position = workspace.begin, workspace.neighbours, workspace.position
     bodies = position.shape[0]
     for i in range(bodies + 1):
         begin[i] = 0
@@ -92,17 +92,17 @@ def _gather(contacts, count, space):
 
 
 @inner
-def _walk(root, filled, space):
+def _walk(root, filled, workspace):
     # Number the component of `root` breadth first from position `filled` on.
-    position, visited = space.position, space.visited
+    position, visited = workspace.position, workspace.visited
     position[root] = filled
     visited[filled] = root
     head, tail = filled, filled + 1
     while head < tail:
         body = visited[head]
         head += 1
-        for k in range(space.begin[body], space.begin[body + 1]):
-            other = space.neighbours[k]
+        for k in range(workspace.begin[body], workspace.begin[body + 1]):
+            other = workspace.neighbours[k]
             if position[other] == -2:
                 position[other] = tail
                 visited[tail] = other
@@ -111,30 +111,30 @@ def _walk(root, filled, space):
 
 
 @inner
-def lay_out(contacts, count, space):
+def lay_out(contacts, count, workspace):
     """Number the bodies and lay out the rows; returns (bodies, entries, multiplications).
 
     The walk runs twice: its last body is an end of the component, a good place to begin.
     """
-    _gather(contacts, count, space)
-    position, visited, first = space.position, space.visited, space.first
+    _gather(contacts, count, workspace)
+    position, visited, first = workspace.position, workspace.visited, workspace.first
     filled = 0
     for root in range(position.shape[0]):
         if position[root] == -2:
-            end = _walk(root, filled, space)
+            end = _walk(root, filled, workspace)
             far = visited[end - 1]
             for k in range(filled, end):
                 position[visited[k]] = -2
-            filled = _walk(far, filled, space)
+            filled = _walk(far, filled, workspace)
     entries, work = 0, 0
     for p in range(filled):
         lowest = p
         body = visited[p]
-        for k in range(space.begin[body], space.begin[body + 1]):
-            lowest = min(lowest, position[space.neighbours[k]])
+        for k in range(workspace.begin[body], workspace.begin[body + 1]):
+            lowest = min(lowest, position[workspace.neighbours[k]])
         first[p] = lowest
         for k in range(DOF):
-            space.start[DOF * p + k] = entries
+            workspace.start[DOF * p + k] = entries
             length = DOF * (p - lowest) + k + 1
             entries += length
             work += length * length // 2
@@ -159,15 +159,15 @@ def _dot(values, i, j, length):
 
 
 @inner
-def factorise(bodies, space):
+def factorise(bodies, workspace):
     """Replace the matrix by L (unit diagonal not stored) and D; returns whether D is positive."""
-    values, start, diagonal = space.values, space.start, space.diagonal
+    values, start, diagonal = workspace.values, workspace.start, workspace.diagonal
     for row in range(DOF * bodies):
-        begin = DOF * space.first[row // DOF]
+        begin = DOF * workspace.first[row // DOF]
         base = start[row]
         # Row of L D first: entries of L scaled by D, column by column.
         for column in range(begin, row):
-            other = DOF * space.first[column // DOF]
+            other = DOF * workspace.first[column // DOF]
             low = max(begin, other)
             length = column - low
             at = base + column - begin
@@ -186,12 +186,12 @@ def factorise(bodies, space):
 
 
 @inner
-def solve_factorised(bodies, space, x):
+def solve_factorised(bodies, workspace, x):
     """Solve in place: x enters as the right side, leaves as the solution."""
-    values, start, diagonal = space.values, space.start, space.diagonal
+    values, start, diagonal = workspace.values, workspace.start, workspace.diagonal
     rows = DOF * bodies
     for row in range(rows):
-        begin = DOF * space.first[row // DOF]
+        begin = DOF * workspace.first[row // DOF]
         total = x[row]
         for column in range(begin, row):
             total -= values[start[row] + column - begin] * x[column]
@@ -199,7 +199,7 @@ def solve_factorised(bodies, space, x):
     for row in range(rows):
         x[row] /= diagonal[row]
     for row in range(rows - 1, -1, -1):
-        begin = DOF * space.first[row // DOF]
+        begin = DOF * workspace.first[row // DOF]
         known = x[row]
         for column in range(begin, row):
             x[column] -= values[start[row] + column - begin] * known

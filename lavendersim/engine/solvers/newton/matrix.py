@@ -10,20 +10,20 @@ from ...spec import Spec
 from ...spin_block import resists_turning
 from .envelope import DOF
 from .response import make_fill_rows, make_stiffness
-from .torques import make_add_turning
+from .torques import make_add_torque_block
 
 
 def make_assemble(spec: Spec):
-    """Return `kernel(contacts, count, size, space)`: fill the envelope with M + J^T E' J."""
+    """Return `kernel(contacts, count, size, workspace)`: fill the envelope with M + J^T E' J."""
     friction = spec.has("friction")
     fill_rows, stiffness = make_fill_rows(spec), make_stiffness(spec)
     directions = 3 if friction else 1
-    spins, add_turning = resists_turning(spec), make_add_turning(spec)
+    spins, add_torque_block = resists_turning(spec), make_add_torque_block(spec)
 
-    def add_block(space, p, q, rows_p, rows_q):
+    def add_block(workspace, p, q, rows_p, rows_q):
         # += rows_p^T E' rows_q on block row p and block column q <= p; E' rows_q are rows 6..8.
-        values, start, rows = space.values, space.start, space.rows
-        offset = DOF * (q - space.first[p])
+        values, start, rows = workspace.values, workspace.start, workspace.rows
+        offset = DOF * (q - workspace.first[p])
         for i in range(DOF):
             base = start[DOF * p + i] + offset
             for j in range(i + 1 if p == q else DOF):
@@ -34,8 +34,8 @@ def make_assemble(spec: Spec):
 
     add_block = kernel(add_block, spec)
 
-    def scale_rows(space, source, h_nn, h_n1, h_n2, h_11, h_12, h_22):
-        rows = space.rows
+    def scale_rows(workspace, source, h_nn, h_n1, h_n2, h_11, h_12, h_22):
+        rows = workspace.rows
         for j in range(DOF):
             n = rows[source, j]
             rows[6, j] = h_nn * n
@@ -47,13 +47,13 @@ def make_assemble(spec: Spec):
 
     scale_rows = kernel(scale_rows, spec)
 
-    def assemble(contacts, count, size, space):
-        values, start, mass = space.values, space.start, space.mass
+    def assemble(contacts, count, size, workspace):
+        values, start, mass = workspace.values, workspace.start, workspace.mass
         last = DOF * size - 1
-        for k in range(start[last] + last - DOF * space.first[size - 1] + 1):
+        for k in range(start[last] + last - DOF * workspace.first[size - 1] + 1):
             values[k] = 0.0
         for p in range(size):
-            offset = DOF * (p - space.first[p])
+            offset = DOF * (p - workspace.first[p])
             for i in range(3):
                 values[start[DOF * p + i] + offset + i] = mass[p, 0]
             values[start[DOF * p + 3] + offset + 3] = mass[p, 1]
@@ -68,21 +68,21 @@ def make_assemble(spec: Spec):
         for c in range(count):
             contact = contacts[c]
             h_nn, h_n1, h_n2, h_11, h_12, h_22 = stiffness(contact)
-            a = space.position[contact.a] if contact.inv_m_a > 0.0 else -1
-            b = space.position[contact.b] if contact.inv_m_b > 0.0 else -1
+            a = workspace.position[contact.a] if contact.inv_m_a > 0.0 else -1
+            b = workspace.position[contact.b] if contact.inv_m_b > 0.0 else -1
             if h_nn > 0.0:
-                fill_rows(contact, space.rows)
+                fill_rows(contact, workspace.rows)
                 if a >= 0:
-                    scale_rows(space, 0, h_nn, h_n1, h_n2, h_11, h_12, h_22)
-                    add_block(space, a, a, 0, 0)
+                    scale_rows(workspace, 0, h_nn, h_n1, h_n2, h_11, h_12, h_22)
+                    add_block(workspace, a, a, 0, 0)
                     if b > a:
-                        add_block(space, b, a, 3, 0)
+                        add_block(workspace, b, a, 3, 0)
                 if b >= 0:
-                    scale_rows(space, 3, h_nn, h_n1, h_n2, h_11, h_12, h_22)
-                    add_block(space, b, b, 3, 3)
+                    scale_rows(workspace, 3, h_nn, h_n1, h_n2, h_11, h_12, h_22)
+                    add_block(workspace, b, b, 3, 3)
                     if a > b:
-                        add_block(space, a, b, 0, 3)
+                        add_block(workspace, a, b, 0, 3)
             if spins:
-                add_turning(contact, a, b, space)
+                add_torque_block(contact, a, b, workspace)
 
     return kernel(assemble, spec)

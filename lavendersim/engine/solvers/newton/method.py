@@ -1,6 +1,6 @@
 """Newton's method on the augmented Lagrangian of a contact problem, factorised over the bodies.
 
-Around impulses lambda^k the next ones answer velocities v as stiff dampers would (`response`),
+Around impulses lambda^k the next ones respond to velocities v as stiff dampers do (`response`),
     lambda(v) = proj(lambda^k - E (J v + b + s)),    E = 1/(softness k) per row,
 onto Coulomb's cone, with De Saxce's shift s = mu |v_t^k| along the normal, without which the
 projection onto the cone would lift what slides. Held for a round, it leaves a convex problem
@@ -17,6 +17,7 @@ change their minds at a time, and stiffen.
 from __future__ import annotations
 
 from math import sqrt
+from typing import Any
 
 from ...compile import kernel
 from ...contact import make_apply_block
@@ -24,15 +25,15 @@ from ...residual import make_residual
 from ...spec import Spec
 from ...spin_block import resists_turning
 from .envelope import lay_out
-from .minimise import make_minimise, make_weigh
-from .response import make_answer, make_start
-from .torques import make_keep_torques, make_put_torques, make_restore
+from .minimise import make_assemble_mass, make_minimise
+from .response import make_projected_impulse, make_start
+from .torques import make_accept_torques, make_keep_torques, make_restore_torques
 
 # Newton steps in a call; fewer than these are not worth beginning.
 MOST_STEPS = 150
 FEWEST_STEPS = 12.0
 # Softness of the first round, of the second where the first failed, and the least [-].
-BOLD = 1e-6
+STICKING = 1e-6
 SOFTEST = 1e-2
 STIFFEST = 1e-8
 # Softness falls by this factor from round to round, by its root after one that failed: the same
@@ -53,23 +54,45 @@ EXACTNESS = 0.01
 ASSEMBLY = 1000
 
 
+def make_restore(spec: Spec, which: str, set_impulse: Any) -> Any:
+    """Return `kernel(contacts, count, velocities)`: impulses and torques as they were kept.
+
+    which: at the `start` of the round, or the `best` so far; velocities follow.
+    """
+    friction, spins = spec.has("friction"), resists_turning(spec)
+    restore_torques = make_restore_torques(spec, which)
+    kept_n, kept_1, kept_2 = (f"{which}_{axis}" for axis in "n12")
+
+    def restore(contacts, count, velocities):
+        for c in range(count):
+            contact = contacts[c]
+            one, two = 0.0, 0.0
+            if friction:
+                one, two = contact[kept_1], contact[kept_2]
+            set_impulse(contact, velocities, contact[kept_n], one, two)
+            if spins:
+                restore_torques(contact, velocities[contact.a], velocities[contact.b])
+
+    restore.__name__ = f"restore_{which}"  # each has a symbol of its own
+    restore.__qualname__ += f"_{which}"
+    return kernel(restore, spec)
+
+
 def make_newton(spec: Spec):
-    """Return `kernel(contacts, count, bodies, velocities, space, tolerance, allowance, bold)`.
+    """Return `kernel(system, workspace, tolerance, allowance, sticking_guess)`.
 
     It returns the number of steps, none when the system is larger than its arrays and no more than
-    fit into `allowance` multiplications, and whether the first round held, `bold`: taken to be at
-    rest. Impulses, torques and velocities leave consistent with each other.
+    fit into `allowance` multiplications, and whether the sticking guess, that all contacts are at
+    rest, still holds. Impulses, torques and velocities leave consistent with each other.
     """
     friction = spec.has("friction")
     residual, apply_block = make_residual(spec), make_apply_block(spec)
-    start, answer = make_start(spec), make_answer(spec)
-    weigh, minimise = make_weigh(spec), make_minimise(spec)
+    start, projected_impulse = make_start(spec), make_projected_impulse(spec)
+    assemble_mass, minimise = make_assemble_mass(spec), make_minimise(spec)
     spins = resists_turning(spec)
-    put_torques, keep_torques = make_put_torques(spec), make_keep_torques(spec)
-    give_back = make_restore(spec, "held")
-    go_back_to_torques = make_restore(spec, "best")
+    accept_torques, keep_torques = make_accept_torques(spec), make_keep_torques(spec)
 
-    def put(contact, velocities, n, one, two):
+    def set_impulse(contact, velocities, n, one, two):
         # Impulses in place of those there are, and velocities with them.
         change_n, change_1, change_2 = n - contact.lambda_n, 0.0, 0.0
         contact.lambda_n = n
@@ -79,35 +102,23 @@ def make_newton(spec: Spec):
         va, vb = velocities[contact.a], velocities[contact.b]
         apply_block(contact, va, vb, change_n, change_1, change_2)
 
-    put = kernel(put, spec)
+    set_impulse = kernel(set_impulse, spec)
 
     def accept(contacts, count, velocities):
         for c in range(count):
             contact = contacts[c]
-            n, one, two = answer(contact, 0.0)
+            n, one, two = projected_impulse(contact, 0.0)
             if friction:  # round-off may have left the cone
                 limit = contact.mu * n
                 squared = one * one + two * two
                 if squared > limit * limit:
                     scale = limit / sqrt(squared)
                     one, two = one * scale, two * scale
-            put(contact, velocities, n, one, two)
+            set_impulse(contact, velocities, n, one, two)
             if spins:
-                put_torques(contact, velocities[contact.a], velocities[contact.b])
+                accept_torques(contact, velocities[contact.a], velocities[contact.b])
 
     accept = kernel(accept, spec)
-
-    def take_back(contacts, count, velocities):
-        for c in range(count):
-            contact = contacts[c]
-            one, two = 0.0, 0.0
-            if friction:
-                one, two = contact.held_1, contact.held_2
-            put(contact, velocities, contact.held_n, one, two)
-            if spins:
-                give_back(contact, velocities[contact.a], velocities[contact.b])
-
-    take_back = kernel(take_back, spec)
 
     def keep(contacts, count):
         # The best impulses so far.
@@ -121,29 +132,20 @@ def make_newton(spec: Spec):
 
     keep = kernel(keep, spec)
 
-    def go_back(contacts, count, velocities):
-        # To those.
-        for c in range(count):
-            contact = contacts[c]
-            one, two = 0.0, 0.0
-            if friction:
-                one, two = contact.best_1, contact.best_2
-            put(contact, velocities, contact.best_n, one, two)
-            if spins:
-                go_back_to_torques(contact, velocities[contact.a], velocities[contact.b])
+    restore_start = make_restore(spec, "start", set_impulse)
+    restore_best = make_restore(spec, "best", set_impulse)
 
-    go_back = kernel(go_back, spec)
-
-    def newton(contacts, count, bodies, velocities, space, tolerance, allowance, bold):
-        size, entries, work = lay_out(contacts, count, space)
+    def newton(system, workspace, tolerance, allowance, sticking_guess):
+        contacts, count, velocities = system.contacts, system.count, system.velocities
+        size, entries, work = lay_out(contacts, count, workspace)
         if size == 0:
-            return 0, bold
-        if entries > space.values.shape[0]:
-            return 0, bold
+            return 0, sticking_guess
+        if entries > workspace.values.shape[0]:
+            return 0, sticking_guess
         most = min(float(MOST_STEPS), allowance / (work + ASSEMBLY * count))
         if most < FEWEST_STEPS:
-            return 0, bold
-        weigh(bodies, size, space)
+            return 0, sticking_guess
+        assemble_mass(system.bodies, size, workspace)
         # A gain of dI^2 softness k / 2 is what an impulse dI off the minimum costs.
         lightest = 1.0 / contacts[0].k_n
         for c in range(count):
@@ -152,18 +154,18 @@ def make_newton(spec: Spec):
         now, stalls = least, False
         keep(contacts, count)
         good, cut = SOFTEST / CUT, CUT
-        softness = BOLD if bold else SOFTEST
-        steps, failed, held = 0, 0, bold
+        softness = STICKING if sticking_guess else SOFTEST
+        steps, failed, guess_holds = 0, 0, sticking_guess
         while steps < most:
             off = max(least, tolerance)
-            at_rest = bold and steps == 0
+            at_rest = sticking_guess and steps == 0
             start(contacts, count, velocities, softness, at_rest, stalls)
             made, found = minimise(
-                contacts, count, size, space, EXACTNESS * softness * lightest * off * off
+                contacts, count, size, workspace, EXACTNESS * softness * lightest * off * off
             )
             steps += made
             better = False
-            if found:  # impulses that answer no minimum would be as large as E
+            if found:  # impulses of no minimum would be as large as E
                 accept(contacts, count, velocities)
                 largest, _ = residual(contacts, count, velocities)
                 if largest <= tolerance:
@@ -177,18 +179,18 @@ def make_newton(spec: Spec):
                         keep(contacts, count)
                     softness = max(softness * cut, STIFFEST)
                 else:
-                    take_back(contacts, count, velocities)
+                    restore_start(contacts, count, velocities)
             if not better:
                 failed += 1
                 if failed > FAILURES:
                     break
                 if at_rest:
-                    held = False
+                    guess_holds = False
                 else:
                     cut = sqrt(cut)
                 softness = good * cut
         if now > least:
-            go_back(contacts, count, velocities)
-        return steps, held
+            restore_best(contacts, count, velocities)
+        return steps, guess_holds
 
     return kernel(newton, spec)

@@ -1,7 +1,7 @@
 """One convex problem enters, its minimiser leaves: Newton steps with an exact search along each.
 
     g(v) = M (v - v^k) - J^T (lambda(v) - lambda^k)
-is the gradient of a convex function of the velocities, because every contact's answer lambda(v)
+is the gradient of a convex function of the velocities, because every projected impulse lambda(v)
 (`response`) is a projection. Its Hessian M + J^T E' J is sparse over bodies and positive
 definite however redundant the contacts are. Each step factorises it (`envelope`) and is shortened,
 or lengthened, to where the slope along it is nearly gone.
@@ -15,12 +15,12 @@ from ...spec import Spec
 from ...spin_block import resists_turning
 from .envelope import DOF, factorise, solve_factorised
 from .matrix import make_assemble
-from .response import make_answer, make_fill_rows
+from .response import make_fill_rows, make_projected_impulse
 from .torques import (
-    make_advance_turning,
+    make_advance_spin,
+    make_directional_spin,
     make_gather_torque,
-    make_look_round,
-    make_turn_slope,
+    make_torque_slope,
 )
 
 # Steps at most. The one that finds every contact in its final state is the last but one.
@@ -34,14 +34,14 @@ SLOPE_LEFT = 0.2
 LENGTHS = 40
 
 
-def make_weigh(spec: Spec):
-    """Return `kernel(bodies, size, space)`: masses and world inertias by position."""
+def make_assemble_mass(spec: Spec):
+    """Return `kernel(bodies, size, workspace)`: masses and world inertias by position."""
     turns = spec.has("rotation")
 
-    def weigh(bodies, size, space):
-        mass = space.mass
+    def assemble_mass(bodies, size, workspace):
+        mass = workspace.mass
         for p in range(size):
-            body = bodies[space.visited[p]]
+            body = bodies[workspace.visited[p]]
             mass[p, 0] = 1.0 / body.inv_m
             mass[p, 1], mass[p, 4], mass[p, 6] = 1.0, 1.0, 1.0
             mass[p, 2], mass[p, 3], mass[p, 5] = 0.0, 0.0, 0.0
@@ -50,26 +50,26 @@ def make_weigh(spec: Spec):
                 _, mass[p, 4], mass[p, 5] = inertia_times(body, 0.0, 1.0, 0.0)
                 _, _, mass[p, 6] = inertia_times(body, 0.0, 0.0, 1.0)
 
-    return kernel(weigh, spec)
+    return kernel(assemble_mass, spec)
 
 
 def make_minimise(spec: Spec):
-    """Return `kernel(contacts, count, size, space, enough) -> (steps, found)`.
+    """Return `kernel(contacts, count, size, workspace, enough) -> (steps, found)`.
 
-    Contacts stand at their `held` impulses and `seen` velocities and leave with the latter at the
-    minimum; enough: a further step need not gain more [J].
+    Contacts have their `start` impulses, and their `velocity` is brought to the minimum's; enough:
+    a further step need not gain more [J].
     """
     friction = spec.has("friction")
     directions = 3 if friction else 1
-    answer, fill_rows = make_answer(spec), make_fill_rows(spec)
+    projected_impulse, fill_rows = make_projected_impulse(spec), make_fill_rows(spec)
     assemble = make_assemble(spec)
     spins = resists_turning(spec)
-    gather_torque, look_round = make_gather_torque(spec), make_look_round(spec)
-    turn_slope, advance_turning = make_turn_slope(spec), make_advance_turning(spec)
+    gather_torque, directional_spin = make_gather_torque(spec), make_directional_spin(spec)
+    torque_slope, advance_spin = make_torque_slope(spec), make_advance_spin(spec)
 
-    def multiply(size, space, x, p, i):
+    def multiply(size, workspace, x, p, i):
         # Row i of block p of M x.
-        mass = space.mass
+        mass = workspace.mass
         at = DOF * p
         if i < 3:
             return mass[p, 0] * x[at + i]
@@ -82,29 +82,29 @@ def make_minimise(spec: Spec):
 
     multiply = kernel(multiply, spec)
 
-    def body_of(contact, space, side):
+    def body_of(contact, workspace, side):
         if side == 0:
-            return space.position[contact.a] if contact.inv_m_a > 0.0 else -1
-        return space.position[contact.b] if contact.inv_m_b > 0.0 else -1
+            return workspace.position[contact.a] if contact.inv_m_a > 0.0 else -1
+        return workspace.position[contact.b] if contact.inv_m_b > 0.0 else -1
 
     body_of = kernel(body_of, spec)
 
-    def gather(contacts, count, size, space):
-        # gradient = M moved - J^T (lambda - lambda^k)
-        gradient, rows = space.gradient, space.rows
+    def gather(contacts, count, size, workspace):
+        # gradient = M change - J^T (lambda - lambda^k)
+        gradient, rows = workspace.gradient, workspace.rows
         for p in range(size):
             for i in range(DOF):
-                gradient[DOF * p + i] = multiply(size, space, space.moved, p, i)
+                gradient[DOF * p + i] = multiply(size, workspace, workspace.change, p, i)
         for c in range(count):
             contact = contacts[c]
-            n, one, two = answer(contact, 0.0)
-            n -= contact.held_n
+            n, one, two = projected_impulse(contact, 0.0)
+            n -= contact.start_n
             if friction:
-                one, two = one - contact.held_1, two - contact.held_2
+                one, two = one - contact.start_1, two - contact.start_2
             if n != 0.0 or one != 0.0 or two != 0.0:
                 fill_rows(contact, rows)
                 for side in range(2):
-                    p = body_of(contact, space, side)
+                    p = body_of(contact, workspace, side)
                     if p >= 0:
                         for i in range(DOF):
                             total = n * rows[3 * side, i]
@@ -112,20 +112,20 @@ def make_minimise(spec: Spec):
                                 total += one * rows[3 * side + 1, i] + two * rows[3 * side + 2, i]
                             gradient[DOF * p + i] -= total
             if spins:
-                a, b = body_of(contact, space, 0), body_of(contact, space, 1)
+                a, b = body_of(contact, workspace, 0), body_of(contact, workspace, 1)
                 gather_torque(contact, a, b, gradient)
 
     gather = kernel(gather, spec)
 
-    def look_along(contacts, count, space):
+    def directional_derivative(contacts, count, workspace):
         # What the step adds to the velocities that contacts see.
-        rows, step = space.rows, space.step
+        rows, step = workspace.rows, workspace.step
         for c in range(count):
             contact = contacts[c]
             fill_rows(contact, rows)
             n, one, two = 0.0, 0.0, 0.0
             for side in range(2):
-                p = body_of(contact, space, side)
+                p = body_of(contact, workspace, side)
                 if p >= 0:
                     for i in range(DOF):
                         x = step[DOF * p + i]
@@ -137,34 +137,34 @@ def make_minimise(spec: Spec):
             if friction:
                 contact.step_1, contact.step_2 = one, two
             if spins:
-                a, b = body_of(contact, space, 0), body_of(contact, space, 1)
-                look_round(contact, a, b, step)
+                a, b = body_of(contact, workspace, 0), body_of(contact, workspace, 1)
+                directional_spin(contact, a, b, step)
 
-    look_along = kernel(look_along, spec)
+    directional_derivative = kernel(directional_derivative, spec)
 
     def slope_at(contacts, count, length):
         # The contacts' part of the derivative along the step; it grows with the length.
         total = 0.0
         for c in range(count):
             contact = contacts[c]
-            n, one, two = answer(contact, length)
-            total -= contact.step_n * (n - contact.held_n)
+            n, one, two = projected_impulse(contact, length)
+            total -= contact.step_n * (n - contact.start_n)
             if friction:
-                total -= contact.step_1 * (one - contact.held_1)
-                total -= contact.step_2 * (two - contact.held_2)
+                total -= contact.step_1 * (one - contact.start_1)
+                total -= contact.step_2 * (two - contact.start_2)
             if spins:
-                total += turn_slope(contact, length)
+                total += torque_slope(contact, length)
         return total
 
     slope_at = kernel(slope_at, spec)
 
-    def choose_length(contacts, count, size, space, slope):
+    def choose_length(contacts, count, size, workspace, slope):
         constant, linear = 0.0, 0.0
         for p in range(size):
             for i in range(DOF):
-                s = space.step[DOF * p + i]
-                constant += s * multiply(size, space, space.moved, p, i)
-                linear += s * multiply(size, space, space.step, p, i)
+                s = workspace.step[DOF * p + i]
+                constant += s * multiply(size, workspace, workspace.change, p, i)
+                linear += s * multiply(size, workspace, workspace.step, p, i)
         length, low, high = 1.0, 0.0, -1.0
         left = slope
         for _ in range(LENGTHS):
@@ -180,27 +180,27 @@ def make_minimise(spec: Spec):
 
     choose_length = kernel(choose_length, spec)
 
-    def minimise(contacts, count, size, space, enough):
+    def minimise(contacts, count, size, workspace, enough):
         rows = DOF * size
         first = 0.0
         for r in range(rows):
-            space.moved[r] = 0.0
+            workspace.change[r] = 0.0
         for c in range(count):
             contact = contacts[c]
             contact.step_n = 0.0
             if friction:
                 contact.step_1, contact.step_2 = 0.0, 0.0
         for done in range(MOST_STEPS):
-            gather(contacts, count, size, space)
-            assemble(contacts, count, size, space)
-            if not factorise(size, space):
+            gather(contacts, count, size, workspace)
+            assemble(contacts, count, size, workspace)
+            if not factorise(size, workspace):
                 return done, False
             for r in range(rows):
-                space.step[r] = -space.gradient[r]
-            solve_factorised(size, space, space.step)
+                workspace.step[r] = -workspace.gradient[r]
+            solve_factorised(size, workspace, workspace.step)
             slope = 0.0
             for r in range(rows):
-                slope += space.step[r] * space.gradient[r]
+                slope += workspace.step[r] * workspace.gradient[r]
             if done == 0:
                 first = slope
             if not slope < min(ROUND_OFF * first, -enough):
@@ -208,20 +208,20 @@ def make_minimise(spec: Spec):
             if done == LOOK_BACK:
                 if slope < LOOKED_FOR * first:
                     return done + 1, False
-            look_along(contacts, count, space)
-            length = choose_length(contacts, count, size, space, slope)
+            directional_derivative(contacts, count, workspace)
+            length = choose_length(contacts, count, size, workspace, slope)
             for r in range(rows):
-                space.moved[r] += length * space.step[r]
+                workspace.change[r] += length * workspace.step[r]
             for c in range(count):
                 contact = contacts[c]
-                contact.seen_n += length * contact.step_n
+                contact.velocity_n += length * contact.step_n
                 if friction:
-                    contact.seen_1 += length * contact.step_1
-                    contact.seen_2 += length * contact.step_2
+                    contact.velocity_1 += length * contact.step_1
+                    contact.velocity_2 += length * contact.step_2
                     contact.step_1, contact.step_2 = 0.0, 0.0
                 contact.step_n = 0.0
                 if spins:
-                    advance_turning(contact, length)
+                    advance_spin(contact, length)
         return MOST_STEPS, False
 
     return kernel(minimise, spec)

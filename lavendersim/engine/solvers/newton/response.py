@@ -1,7 +1,7 @@
-"""What Newton's method asks of contacts: their answer to velocities, and its derivative.
+"""The projected impulse of a contact, as a function of velocities, and its derivative.
 
-A contact answers the velocities w it sees, around the impulses lambda^k it holds, with the nearest
-impulse in Coulomb's cone, nearest in the metric 1/e:
+At contact velocity w, around the impulse lambda^k that a round begins with, it is the nearest in
+Coulomb's cone, nearest in the metric 1/e:
     lambda = proj(x),   x = s lambda^k - e w,   |lambda_t| <= mu lambda_n,
 s = 1/(1 + E gamma) and e = E s along the normal, where compliance gamma is; 1 and E elsewhere.
 """
@@ -16,19 +16,19 @@ from ...contact import make_smooth_velocity
 from ...effects.smooth_contact import by_roughness
 from ...spec import Spec
 from ...spin_block import resists_turning
-from .torques import make_hold_torques
+from .torques import make_start_torques
 
 
 def make_start(spec: Spec):
     """Return `kernel(contacts, count, velocities, softness, at_rest, stalls)`.
 
-    Rows stand at their impulses then. 1/softness is the stiffness of an answer, relative to the
-    row's own effective mass [-]; at_rest: what slides is taken to stop; stalls: shifts go on by the
-    secant of their last two.
+    A round begins, around the impulses of now. 1/softness is the stiffness of a projected impulse,
+    relative to the row's own effective mass [-]; at_rest: what slides is taken to stop;
+    stalls: shifts go on by the secant of their last two.
     """
     compliant = spec.has("compliance")
-    look = by_roughness(spec, _make_look_along_normal, _make_look)
-    spins, hold_torques = resists_turning(spec), make_hold_torques(spec)
+    start_velocity = by_roughness(spec, _make_start_normal, _make_start_block)
+    spins, start_torques = resists_turning(spec), make_start_torques(spec)
 
     def start(contacts, count, velocities, softness, at_rest, stalls):
         for c in range(count):
@@ -39,93 +39,95 @@ def make_start(spec: Spec):
             if compliant:
                 contact.scale = 1.0 / (1.0 + stiff * contact.gamma)
             contact.stiff_n = stiff * contact.scale
-            contact.held_n = contact.lambda_n
+            contact.start_n = contact.lambda_n
             if spins:
-                hold_torques(contact, va, vb, softness)
-            look(contact, va, vb, softness, at_rest, stalls)
+                start_torques(contact, va, vb, softness)
+            start_velocity(contact, va, vb, softness, at_rest, stalls)
 
     return kernel(start, spec)
 
 
-def _make_look_along_normal(spec: Spec):
+def _make_start_normal(spec: Spec):
     tangents = spec.has("friction")
     normal_velocity = make_smooth_velocity(spec)
 
-    def look_along_normal(contact, va, vb, softness, at_rest, stalls):
-        contact.seen_n = normal_velocity(contact, va, vb) + contact.target
+    def start_normal(contact, va, vb, softness, at_rest, stalls):
+        contact.velocity_n = normal_velocity(contact, va, vb) + contact.target
         if tangents:
-            contact.held_1, contact.held_2 = 0.0, 0.0
+            contact.start_1, contact.start_2 = 0.0, 0.0
 
-    return kernel(look_along_normal, spec)
+    return kernel(start_normal, spec)
 
 
-# Slopes of the lack over the shift that a secant is drawn for [-].
+# Slopes of the defect over the shift that a secant is drawn for [-].
 STEEPEST, FLATTEST = -2.0, -0.1
 
 
 @inner
-def move_shift(contact, slip, stalls):
+def update_shift(contact, slip, stalls):
     """Bring De Saxce's shift to mu |v_t|, `slip`, that the last one led to [m/s].
 
     A shift taken too small lifts the contact by the rest, which pushes it less, and friction then
     leaves it more slip: by itself the error falls by a constant factor a round, a half for a ball.
     The secant finds the end of that.
     """
-    lack = slip - contact.shift
-    change = lack
-    if stalls and contact.moved != 0.0:
-        slope = (lack - contact.lack) / contact.moved
+    defect = slip - contact.shift
+    change = defect
+    if stalls and contact.shift_change != 0.0:
+        slope = (defect - contact.defect) / contact.shift_change
         if STEEPEST < slope < FLATTEST:
-            change = -lack / slope
+            change = -defect / slope
     old = contact.shift
     contact.shift = max(old + change, 0.0)
-    contact.moved, contact.lack = contact.shift - old, lack
+    contact.shift_change, contact.defect = contact.shift - old, defect
 
 
-def _make_look(spec: Spec):
+def _make_start_block(spec: Spec):
     moving_surface = spec.has("surface_velocity")
     relative_velocity = make_relative_velocity(spec)
 
-    def look(contact, va, vb, softness, at_rest, stalls):
+    def start_block(contact, va, vb, softness, at_rest, stalls):
         x, y, z = relative_velocity(contact, va, vb)
-        contact.seen_n = contact.nx * x + contact.ny * y + contact.nz * z + contact.target
-        contact.seen_1 = contact.t1x * x + contact.t1y * y + contact.t1z * z
-        contact.seen_2 = contact.t2x * x + contact.t2y * y + contact.t2z * z
+        contact.velocity_n = contact.nx * x + contact.ny * y + contact.nz * z + contact.target
+        contact.velocity_1 = contact.t1x * x + contact.t1y * y + contact.t1z * z
+        contact.velocity_2 = contact.t2x * x + contact.t2y * y + contact.t2z * z
         if moving_surface:
-            contact.seen_1 += contact.surface_1
-            contact.seen_2 += contact.surface_2
+            contact.velocity_1 += contact.surface_1
+            contact.velocity_2 += contact.surface_2
         if at_rest:
-            contact.shift, contact.lack, contact.moved = 0.0, 0.0, 0.0
+            contact.shift, contact.defect, contact.shift_change = 0.0, 0.0, 0.0
         else:
-            squared = contact.seen_1 * contact.seen_1 + contact.seen_2 * contact.seen_2
-            move_shift(contact, contact.mu * sqrt(squared), stalls)
-            contact.seen_n += contact.shift
+            squared = (
+                contact.velocity_1 * contact.velocity_1 + contact.velocity_2 * contact.velocity_2
+            )
+            update_shift(contact, contact.mu * sqrt(squared), stalls)
+            contact.velocity_n += contact.shift
         contact.stiff_t = 1.0 / (softness * contact.k_t)
-        contact.held_1, contact.held_2 = contact.lambda_1, contact.lambda_2
+        contact.start_1, contact.start_2 = contact.lambda_1, contact.lambda_2
 
-    return kernel(look, spec)
+    return kernel(start_block, spec)
 
 
-def make_answer(spec: Spec):
+def make_projected_impulse(spec: Spec):
     """Return `kernel(contact, length) -> (lambda_n, lambda_1, lambda_2)` so far along the step."""
-    return by_roughness(spec, _make_smooth_answer, _make_rough_answer)
+    return by_roughness(spec, _make_frictionless_impulse, _make_frictional_impulse)
 
 
-def _make_smooth_answer(spec: Spec):
-    def answer_along_normal(contact, length):
-        n = contact.scale * contact.held_n
-        n -= contact.stiff_n * (contact.seen_n + length * contact.step_n)
+def _make_frictionless_impulse(spec: Spec):
+    def frictionless_impulse(contact, length):
+        n = contact.scale * contact.start_n
+        n -= contact.stiff_n * (contact.velocity_n + length * contact.step_n)
         return max(n, 0.0), 0.0, 0.0
 
-    return kernel(answer_along_normal, spec)
+    return kernel(frictionless_impulse, spec)
 
 
-def _make_rough_answer(spec: Spec):
-    def answer(contact, length):
-        n = contact.scale * contact.held_n
-        n -= contact.stiff_n * (contact.seen_n + length * contact.step_n)
-        one = contact.held_1 - contact.stiff_t * (contact.seen_1 + length * contact.step_1)
-        two = contact.held_2 - contact.stiff_t * (contact.seen_2 + length * contact.step_2)
+def _make_frictional_impulse(spec: Spec):
+    def projected_impulse(contact, length):
+        n = contact.scale * contact.start_n
+        n -= contact.stiff_n * (contact.velocity_n + length * contact.step_n)
+        one = contact.start_1 - contact.stiff_t * (contact.velocity_1 + length * contact.step_1)
+        two = contact.start_2 - contact.stiff_t * (contact.velocity_2 + length * contact.step_2)
         mu = contact.mu
         r = sqrt(one * one + two * two)
         if r <= mu * n:
@@ -137,29 +139,29 @@ def _make_rough_answer(spec: Spec):
         scale = mu * n / r
         return n, one * scale, two * scale
 
-    return kernel(answer, spec)
+    return kernel(projected_impulse, spec)
 
 
 def make_stiffness(spec: Spec):
-    """Return `kernel(contact) -> (h_nn, h_n1, h_n2, h_11, h_12, h_22)`: -d answer / d w."""
-    return by_roughness(spec, _make_smooth_stiffness, _make_rough_stiffness)
+    """Return `kernel(contact) -> (h_nn, h_n1, h_n2, h_11, h_12, h_22)`: -d lambda / d w."""
+    return by_roughness(spec, _make_frictionless_stiffness, _make_frictional_stiffness)
 
 
-def _make_smooth_stiffness(spec: Spec):
-    def stiffness_along_normal(contact):
-        n = contact.scale * contact.held_n - contact.stiff_n * contact.seen_n
+def _make_frictionless_stiffness(spec: Spec):
+    def frictionless_stiffness(contact):
+        n = contact.scale * contact.start_n - contact.stiff_n * contact.velocity_n
         return (contact.stiff_n if n > 0.0 else 0.0), 0.0, 0.0, 0.0, 0.0, 0.0
 
-    return kernel(stiffness_along_normal, spec)
+    return kernel(frictionless_stiffness, spec)
 
 
-def _make_rough_stiffness(spec: Spec):
+def _make_frictional_stiffness(spec: Spec):
     def stiffness(contact):
-        n = contact.scale * contact.held_n - contact.stiff_n * contact.seen_n
+        n = contact.scale * contact.start_n - contact.stiff_n * contact.velocity_n
         e_n = contact.stiff_n
         e_t, mu = contact.stiff_t, contact.mu
-        one = contact.held_1 - e_t * contact.seen_1
-        two = contact.held_2 - e_t * contact.seen_2
+        one = contact.start_1 - e_t * contact.velocity_1
+        two = contact.start_2 - e_t * contact.velocity_2
         r = sqrt(one * one + two * two)
         if r <= mu * n:
             return e_n, 0.0, 0.0, e_t, 0.0, e_t

@@ -1,7 +1,7 @@
-"""What Newton's method asks of torques: their answer to turning, its derivative, and its end.
+"""Torques in Newton's method: projected, their derivative, and what a round ends with.
 
-A contact that resists turning (`spin_block`) answers the relative angular velocity omega it sees,
-around the psi^k it holds, within limits that stand still in a round:
+A contact that resists turning (`spin_block`) has, at the relative angular velocity omega, around
+the psi^k that a round begins with, and within limits that stand still in a round:
     psi = proj(x),   x = psi^k - e omega,   |psi_n| <= c lambda_n^k,   |psi_t| <= c lambda_n^k,
 e = E = 1/(softness k) of either part. The round over, psi is brought within what the new lambda_n
 allows, and velocities follow: the residual judges impulses and torques that are in their cones.
@@ -19,61 +19,61 @@ from ...spin_block import make_apply_spin, resists_turning
 from .envelope import DOF
 
 
-def make_hold_torques(spec: Spec) -> Any:
+def make_start_torques(spec: Spec) -> Any:
     """Return `kernel(contact, va, vb, softness)`: what a round begins with."""
     torsional, rolling = spec.has("torsional_friction"), spec.has("rolling_friction")
 
-    def hold_torques(contact, va, vb, softness):
+    def start_torques(contact, va, vb, softness):
         x, y, z = vb.wx - va.wx, vb.wy - va.wy, vb.wz - va.wz
         if torsional:
-            contact.held_psi_n = contact.psi_n
-            contact.seen_w_n = contact.nx * x + contact.ny * y + contact.nz * z
-            contact.step_w_n = 0.0
+            contact.start_psi_n = contact.psi_n
+            contact.spin_n = contact.nx * x + contact.ny * y + contact.nz * z
+            contact.step_spin_n = 0.0
             contact.stiff_torsion = 1.0 / (softness * contact.k_torsion)
-            contact.most_torsion = contact.torsional * contact.lambda_n
+            contact.limit_torsion = contact.torsional * contact.lambda_n
         if rolling:
-            contact.held_psi_1, contact.held_psi_2 = contact.psi_1, contact.psi_2
-            contact.seen_w_1 = contact.t1x * x + contact.t1y * y + contact.t1z * z
-            contact.seen_w_2 = contact.t2x * x + contact.t2y * y + contact.t2z * z
-            contact.step_w_1, contact.step_w_2 = 0.0, 0.0
+            contact.start_psi_1, contact.start_psi_2 = contact.psi_1, contact.psi_2
+            contact.spin_1 = contact.t1x * x + contact.t1y * y + contact.t1z * z
+            contact.spin_2 = contact.t2x * x + contact.t2y * y + contact.t2z * z
+            contact.step_spin_1, contact.step_spin_2 = 0.0, 0.0
             contact.stiff_roll = 1.0 / (softness * contact.k_roll)
-            contact.most_roll = contact.rolling * contact.lambda_n
+            contact.limit_roll = contact.rolling * contact.lambda_n
 
-    return kernel(hold_torques, spec) if resists_turning(spec) else None
+    return kernel(start_torques, spec) if resists_turning(spec) else None
 
 
-def make_turn(spec: Spec) -> Any:
+def make_projected_torque(spec: Spec) -> Any:
     """Return `kernel(contact, length) -> (n, one, two)`: psi - psi^k so far along the step."""
     torsional, rolling = spec.has("torsional_friction"), spec.has("rolling_friction")
 
-    def turn(contact, length):
+    def projected_torque(contact, length):
         n, one, two = 0.0, 0.0, 0.0
         if torsional:
             if contact.torsional > 0.0:
-                most = contact.most_torsion
-                x = contact.seen_w_n + length * contact.step_w_n
-                x = contact.held_psi_n - contact.stiff_torsion * x
-                n = min(max(x, -most), most) - contact.held_psi_n
+                most = contact.limit_torsion
+                x = contact.spin_n + length * contact.step_spin_n
+                x = contact.start_psi_n - contact.stiff_torsion * x
+                n = min(max(x, -most), most) - contact.start_psi_n
         if rolling:
             if contact.rolling > 0.0:
-                most, e = contact.most_roll, contact.stiff_roll
-                one = contact.held_psi_1 - e * (contact.seen_w_1 + length * contact.step_w_1)
-                two = contact.held_psi_2 - e * (contact.seen_w_2 + length * contact.step_w_2)
+                most, e = contact.limit_roll, contact.stiff_roll
+                one = contact.start_psi_1 - e * (contact.spin_1 + length * contact.step_spin_1)
+                two = contact.start_psi_2 - e * (contact.spin_2 + length * contact.step_spin_2)
                 r = sqrt(one * one + two * two)
                 if r > most:
                     one, two = one * (most / r), two * (most / r)
-                one, two = one - contact.held_psi_1, two - contact.held_psi_2
+                one, two = one - contact.start_psi_1, two - contact.start_psi_2
         return n, one, two
 
-    return kernel(turn, spec) if resists_turning(spec) else None
+    return kernel(projected_torque, spec) if resists_turning(spec) else None
 
 
 def make_gather_torque(spec: Spec) -> Any:
     """Return `kernel(contact, a, b, gradient)`: -= S^T (psi - psi^k); a, b: positions, -1: none."""
-    turn = make_turn(spec)
+    projected_torque = make_projected_torque(spec)
 
     def gather_torque(contact, a, b, gradient):
-        n, one, two = turn(contact, 0.0)
+        n, one, two = projected_torque(contact, 0.0)
         if n != 0.0 or one != 0.0 or two != 0.0:
             x = contact.nx * n + contact.t1x * one + contact.t2x * two
             y = contact.ny * n + contact.t1y * one + contact.t2y * two
@@ -90,63 +90,63 @@ def make_gather_torque(spec: Spec) -> Any:
     return kernel(gather_torque, spec) if resists_turning(spec) else None
 
 
-def make_look_round(spec: Spec) -> Any:
+def make_directional_spin(spec: Spec) -> Any:
     """Return `kernel(contact, a, b, step)`: what the step adds to the turning that it sees."""
     torsional, rolling = spec.has("torsional_friction"), spec.has("rolling_friction")
 
-    def look_round(contact, a, b, step):
+    def directional_spin(contact, a, b, step):
         x, y, z = 0.0, 0.0, 0.0
         if a >= 0:
             x, y, z = -step[DOF * a + 3], -step[DOF * a + 4], -step[DOF * a + 5]
         if b >= 0:
             x, y, z = x + step[DOF * b + 3], y + step[DOF * b + 4], z + step[DOF * b + 5]
         if torsional:
-            contact.step_w_n = contact.nx * x + contact.ny * y + contact.nz * z
+            contact.step_spin_n = contact.nx * x + contact.ny * y + contact.nz * z
         if rolling:
-            contact.step_w_1 = contact.t1x * x + contact.t1y * y + contact.t1z * z
-            contact.step_w_2 = contact.t2x * x + contact.t2y * y + contact.t2z * z
+            contact.step_spin_1 = contact.t1x * x + contact.t1y * y + contact.t1z * z
+            contact.step_spin_2 = contact.t2x * x + contact.t2y * y + contact.t2z * z
 
-    return kernel(look_round, spec) if resists_turning(spec) else None
+    return kernel(directional_spin, spec) if resists_turning(spec) else None
 
 
-def make_turn_slope(spec: Spec) -> Any:
+def make_torque_slope(spec: Spec) -> Any:
     """Return `kernel(contact, length) -> the torques' part of the derivative along the step`."""
     torsional, rolling = spec.has("torsional_friction"), spec.has("rolling_friction")
-    turn = make_turn(spec)
+    projected_torque = make_projected_torque(spec)
 
-    def turn_slope(contact, length):
-        n, one, two = turn(contact, length)
+    def torque_slope(contact, length):
+        n, one, two = projected_torque(contact, length)
         total = 0.0
         if torsional:
-            total -= contact.step_w_n * n
+            total -= contact.step_spin_n * n
         if rolling:
-            total -= contact.step_w_1 * one + contact.step_w_2 * two
+            total -= contact.step_spin_1 * one + contact.step_spin_2 * two
         return total
 
-    return kernel(turn_slope, spec) if resists_turning(spec) else None
+    return kernel(torque_slope, spec) if resists_turning(spec) else None
 
 
-def make_advance_turning(spec: Spec) -> Any:
+def make_advance_spin(spec: Spec) -> Any:
     """Return `kernel(contact, length)`: the step, so much of it, is taken."""
     torsional, rolling = spec.has("torsional_friction"), spec.has("rolling_friction")
 
-    def advance_turning(contact, length):
+    def advance_spin(contact, length):
         if torsional:
-            contact.seen_w_n += length * contact.step_w_n
-            contact.step_w_n = 0.0
+            contact.spin_n += length * contact.step_spin_n
+            contact.step_spin_n = 0.0
         if rolling:
-            contact.seen_w_1 += length * contact.step_w_1
-            contact.seen_w_2 += length * contact.step_w_2
-            contact.step_w_1, contact.step_w_2 = 0.0, 0.0
+            contact.spin_1 += length * contact.step_spin_1
+            contact.spin_2 += length * contact.step_spin_2
+            contact.step_spin_1, contact.step_spin_2 = 0.0, 0.0
 
-    return kernel(advance_turning, spec) if resists_turning(spec) else None
+    return kernel(advance_spin, spec) if resists_turning(spec) else None
 
 
 @inner
-def _add(space, p, q, scale, xx, xy, xz, yy, yz, zz):
+def _add(workspace, p, q, scale, xx, xy, xz, yy, yz, zz):
     # += scale T on the turning of block row p and block column q <= p; p = q: its lower half.
-    values, start = space.values, space.start
-    offset = DOF * (q - space.first[p]) + 3
+    values, start = workspace.values, workspace.start
+    offset = DOF * (q - workspace.first[p]) + 3
     x, y, z = start[DOF * p + 3] + offset, start[DOF * p + 4] + offset, start[DOF * p + 5] + offset
     values[x] += scale * xx
     values[y] += scale * xy
@@ -160,22 +160,22 @@ def _add(space, p, q, scale, xx, xy, xz, yy, yz, zz):
         values[y + 2] += scale * yz
 
 
-def make_add_turning(spec: Spec) -> Any:
-    """Return `kernel(contact, a, b, space)`: += S^T E' S on the matrix, E' = -d psi / d omega."""
+def make_add_torque_block(spec: Spec) -> Any:
+    """Return `kernel(contact, a, b, workspace)`: matrix += S^T E' S, E' = -d psi / d omega."""
     torsional, rolling = spec.has("torsional_friction"), spec.has("rolling_friction")
 
-    def add_turning(contact, a, b, space):
+    def add_torque_block(contact, a, b, workspace):
         h_nn, h_11, h_12, h_22 = 0.0, 0.0, 0.0, 0.0
         if torsional:
-            if contact.torsional > 0.0:  # without, not even what turns at no rate is held
-                x = contact.held_psi_n - contact.stiff_torsion * contact.seen_w_n
-                if abs(x) <= contact.most_torsion:
+            if contact.torsional > 0.0:  # without, not even what turns at no rate is kept
+                x = contact.start_psi_n - contact.stiff_torsion * contact.spin_n
+                if abs(x) <= contact.limit_torsion:
                     h_nn = contact.stiff_torsion
         if rolling:
             if contact.rolling > 0.0:
-                e, most = contact.stiff_roll, contact.most_roll
-                one = contact.held_psi_1 - e * contact.seen_w_1
-                two = contact.held_psi_2 - e * contact.seen_w_2
+                e, most = contact.stiff_roll, contact.limit_roll
+                one = contact.start_psi_1 - e * contact.spin_1
+                two = contact.start_psi_2 - e * contact.spin_2
                 r = sqrt(one * one + two * two)
                 if r <= most:
                     h_11, h_22 = e, e
@@ -197,26 +197,26 @@ def make_add_turning(spec: Spec) -> Any:
             yz = h_nn * ny * nz + ay * pz + by * qz
             zz = h_nn * nz * nz + az * pz + bz * qz
             if a >= 0:
-                _add(space, a, a, 1.0, xx, xy, xz, yy, yz, zz)
+                _add(workspace, a, a, 1.0, xx, xy, xz, yy, yz, zz)
             if b >= 0:
-                _add(space, b, b, 1.0, xx, xy, xz, yy, yz, zz)
+                _add(workspace, b, b, 1.0, xx, xy, xz, yy, yz, zz)
             if a >= 0 and b >= 0:
-                _add(space, max(a, b), min(a, b), -1.0, xx, xy, xz, yy, yz, zz)
+                _add(workspace, max(a, b), min(a, b), -1.0, xx, xy, xz, yy, yz, zz)
 
-    return kernel(add_turning, spec) if resists_turning(spec) else None
+    return kernel(add_torque_block, spec) if resists_turning(spec) else None
 
 
-def make_put_torques(spec: Spec) -> Any:
-    """Return `kernel(contact, va, vb)`: psi as answered, within what the new lambda_n allows."""
+def make_accept_torques(spec: Spec) -> Any:
+    """Return `kernel(contact, va, vb)`: the projected psi, within what the new lambda_n allows."""
     if not resists_turning(spec):
         return None
-    turn, apply_spin = make_turn(spec), make_apply_spin(spec)
+    projected_torque, apply_spin = make_projected_torque(spec), make_apply_spin(spec)
     # An update without turning is the projection alone.
     torsional, project_torsion = made_once(spec, "solve_torsion")
     rolling, project_rolling = made_once(spec, "solve_rolling")
 
-    def put_torques(contact, va, vb):
-        n, one, two = turn(contact, 0.0)
+    def accept_torques(contact, va, vb):
+        n, one, two = projected_torque(contact, 0.0)
         if torsional:
             contact.psi_n += n
             n += project_torsion(contact, 0.0)
@@ -227,7 +227,7 @@ def make_put_torques(spec: Spec) -> Any:
             one, two = one + more_1, two + more_2
         apply_spin(contact, va, vb, n, one, two)
 
-    return kernel(put_torques, spec)
+    return kernel(accept_torques, spec)
 
 
 def make_keep_torques(spec: Spec) -> Any:
@@ -243,26 +243,28 @@ def make_keep_torques(spec: Spec) -> Any:
     return kernel(keep_torques, spec) if resists_turning(spec) else None
 
 
-def make_restore(spec: Spec, which: str) -> Any:
-    """Return `kernel(contact, va, vb)`: psi is what was `held`, or `best`; velocities follow."""
+def make_restore_torques(spec: Spec, which: str) -> Any:
+    """Return `kernel(contact, va, vb)`: psi as at the `start` of the round, or the `best` so far.
+
+    Velocities follow.
+    """
     if not resists_turning(spec):
         return None
     torsional, rolling = spec.has("torsional_friction"), spec.has("rolling_friction")
     apply_spin = make_apply_spin(spec)
-    held = which == "held"
+    kept_n, kept_1, kept_2 = (f"{which}_psi_{axis}" for axis in "n12")
 
     def restore(contact, va, vb):
         n, one, two = 0.0, 0.0, 0.0
         if torsional:
-            psi = contact.held_psi_n if held else contact.best_psi_n
+            psi = contact[kept_n]
             n, contact.psi_n = psi - contact.psi_n, psi
         if rolling:
-            psi_1 = contact.held_psi_1 if held else contact.best_psi_1
-            psi_2 = contact.held_psi_2 if held else contact.best_psi_2
+            psi_1, psi_2 = contact[kept_1], contact[kept_2]
             one, two = psi_1 - contact.psi_1, psi_2 - contact.psi_2
             contact.psi_1, contact.psi_2 = psi_1, psi_2
         apply_spin(contact, va, vb, n, one, two)
 
-    restore.__name__ = f"restore_{which}"  # each has a symbol of its own
+    restore.__name__ = f"restore_torques_{which}"  # each has a symbol of its own
     restore.__qualname__ += f"_{which}"
     return kernel(restore, spec)

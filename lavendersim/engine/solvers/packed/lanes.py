@@ -54,16 +54,16 @@ LANES, TRIPLE, TRIPLES = LanesType(), TripleType(), TriplesType()
 _MODELS = {LanesType: EIGHT, TripleType: FOUR, TriplesType: ir.ArrayType(EIGHT, 3)}
 
 
-def _is_held_as(kind: type, held: Any) -> None:
+def _represent(kind: type, vector: Any) -> None:
     class Model(models.PrimitiveModel):
         def __init__(self, manager: Any, front: Any) -> None:
-            super().__init__(manager, front, held)
+            super().__init__(manager, front, vector)
 
     register_model(kind)(Model)
 
 
-for _kind, _held in _MODELS.items():
-    _is_held_as(_kind, _held)
+for _kind, _vector in _MODELS.items():
+    _represent(_kind, _vector)
 
 
 def parts_of(builder: Any, triples: Any) -> list[Any]:

@@ -71,9 +71,9 @@ def allocate_packed(bodies: int, contacts: int, eight: bool) -> Packed:
 
 def _lines(numbers: int) -> np.ndarray:
     """Return zeros that begin with a line of the processor's cache."""
-    held = np.zeros(numbers + LINE)
-    begin = -held.ctypes.data // held.itemsize % LINE
-    return held[begin : begin + numbers]
+    padded = np.zeros(numbers + LINE)
+    begin = -padded.ctypes.data // padded.itemsize % LINE
+    return padded[begin : begin + numbers]
 
 
 def make_place(spec: Spec, eight: bool) -> Any:

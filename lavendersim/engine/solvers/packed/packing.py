@@ -135,7 +135,7 @@ def _make_pack_contact(spec: Spec, eight: bool) -> Any:
         put(rows, at, LAMBDA_2, contact.lambda_2)
         if smooth:
             if contact.rough == 0:
-                # It has a normal alone, and levers that leave out round-off: no answer across.
+                # It has a normal alone, and levers that leave out round-off: no impulse across.
                 put(rows, at, I_11, 0.0)
                 put(rows, at, I_12, 0.0)
                 put(rows, at, I_22, 0.0)
@@ -167,7 +167,7 @@ def _make_pack_bodies(spec: Spec) -> Any:
 
 
 def make_pack(spec: Spec, eight: bool) -> Any:
-    """Return `kernel(contacts, order, count, bodies, velocities, packed) -> slots`."""
+    """Return `kernel(system, packed) -> slots`."""
     pack_bodies, pack_contact = _make_pack_bodies(spec), _make_pack_contact(spec, eight)
     place = make_place(spec, eight)
 
@@ -180,11 +180,13 @@ def make_pack(spec: Spec, eight: bool) -> Any:
 
     fill_up: Any = kernel(fill, spec) if eight else None
 
-    def pack(contacts, order, count, bodies, velocities, packed):
+    def pack(system, packed):
+        contacts, order, bodies = system.contacts, system.order, system.bodies
+        velocities = system.velocities
         pack_bodies(bodies, velocities, packed)
         spare = bodies.shape[0] * STRIDE
         slot = 0
-        for k in range(count):
+        for k in range(system.count):
             contact = contacts[order[k]]
             a, b = contact.a, contact.b
             if eight:
@@ -210,14 +212,16 @@ def make_pack(spec: Spec, eight: bool) -> Any:
 
 
 def make_unpack(spec: Spec, eight: bool) -> Any:
-    """Return `kernel(contacts, order, count, bodies, velocities, packed)`: as the sweeps left them.
+    """Return `kernel(system, packed)`: as the sweeps left them.
 
     Impulses and velocities of the records; what is packed stays as it is.
     """
     place, step = make_place(spec, eight), WIDTH if eight else 1
 
-    def unpack(contacts, order, count, bodies, velocities, packed):
-        for k in range(count):
+    def unpack(system, packed):
+        contacts, order, bodies = system.contacts, system.order, system.bodies
+        velocities = system.velocities
+        for k in range(system.count):
             contact, at = contacts[order[k]], place(packed.slot[k])
             contact.lambda_n = take_one(packed.rows, at + LAMBDA_N * step)
             contact.lambda_1 = take_one(packed.rows, at + LAMBDA_1 * step)

@@ -19,7 +19,7 @@ from ...compile import kernel
 from ...residual import make_residual
 from ...spec import Spec
 from ...spin_block import resists_turning
-from ..sweep import make_account, make_note
+from ..sweep import make_record_residual, make_report
 from .lane_memory import (
     put_bodies,
     put_body,
@@ -187,25 +187,28 @@ def make_solve_packed(spec: Spec, eight: bool) -> Any:
     record_residuals, stop_early = spec.has("residual_log"), spec.tolerance
     pack, unpack = make_pack(spec, eight), make_unpack(spec, eight)
     sweep = make_sweep_packed(spec, eight)
-    residual, note, account = make_residual(spec), make_note(spec), make_account(spec)
+    residual, record_residual, report = (
+        make_residual(spec),
+        make_record_residual(spec),
+        make_report(spec),
+    )
 
-    def solve_packed(
-        contacts, order, count, bodies, velocities, space, params, counters, residual_rows
-    ):
+    def solve_packed(system, workspace, params, counters, residual_rows):
+        contacts, count, velocities = system.contacts, system.count, system.velocities
         largest, worst = 0.0, -1
         if record_residuals:
             largest, worst = residual(contacts, count, velocities)
-            note(params, counters, residual_rows, 0, largest)
-        slots = pack(contacts, order, count, bodies, velocities, space)
+            record_residual(params, counters, residual_rows, 0, largest)
+        slots = pack(system, workspace)
         sweeps, measured = 0, False
         while sweeps < params.sweeps:
-            greatest = sweep(space, slots)
+            greatest = sweep(workspace, slots)
             sweeps += 1
             measured = record_residuals
             if record_residuals:
-                unpack(contacts, order, count, bodies, velocities, space)
+                unpack(system, workspace)
                 largest, worst = residual(contacts, count, velocities)
-                note(params, counters, residual_rows, sweeps, largest)
+                record_residual(params, counters, residual_rows, sweeps, largest)
             # One that changes nothing is the last. A NaN is no change here; the residual has it.
             if greatest == 0.0:
                 break
@@ -213,14 +216,14 @@ def make_solve_packed(spec: Spec, eight: bool) -> Any:
                 # The residual is evaluated when the sweep's own changes say that it may be small.
                 if greatest <= params.tolerance:
                     if not measured:
-                        unpack(contacts, order, count, bodies, velocities, space)
+                        unpack(system, workspace)
                         largest, worst = residual(contacts, count, velocities)
                         measured = True
                     if largest <= params.tolerance:
                         break
         if not measured:
-            unpack(contacts, order, count, bodies, velocities, space)
+            unpack(system, workspace)
             largest, worst = residual(contacts, count, velocities)
-        account(params, counters, sweeps, largest, worst)
+        report(params, counters, sweeps, largest, worst)
 
     return kernel(solve_packed, spec)

@@ -1,0 +1,152 @@
+"""The engine's memory: every array that the kernel of a step reads or writes, by name.
+
+    State       what lasts from step to step
+    Workspace   what a step works in; of it only the broad phase's list lasts
+    Log         rows of the trace, until the caller takes them
+
+The records of the rows are in `records` and `record_layout`. What a spec has no use for is an array
+of no rows, or (): it takes part in no kernel.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from .collide.broad.broad_phase import allocate_broad_phase
+from .collide.convex.hull_geometry import HullGeometry
+from .collide.scratch import Scratch, allocate_scratch
+from .integrate import keeps_motion
+from .ordering import Ordering, allocate_ordering
+from .record_layout import (
+    cache_dtype,
+    contact_dtype,
+    contact_row_dtype,
+    residual_row_dtype,
+    step_row_dtype,
+)
+from .records import COUNTERS, MOTION, POINT, dtype
+from .solvers.catalogue import SOLVERS
+from .spec import Spec
+
+# Points of one manifold before reduction: two polygons of at most eight vertices each.
+MANIFOLD_POINTS = 16
+
+
+class State(NamedTuple):
+    """The scene, from step to step; n bodies and parts, p pairs, m contacts at most."""
+
+    bodies: np.ndarray  # (n,) pose, mass, shape
+    velocities: np.ndarray  # (n,) and what a sweep reads of a body beside them
+    pairs: np.ndarray  # (p,) bodies that may touch, ascending in `key`
+    contacts: np.ndarray  # (m,) rows in use: counters.contacts
+    cache: np.ndarray  # (m,) impulses of the last step's contacts: counters.cached
+    motion: np.ndarray  # (n,) MOTION: what a body did within the step
+    pseudo: np.ndarray  # (n,) pseudo-velocities of the positional projection, as velocities
+
+
+class Workspace(NamedTuple):
+    """What a step works in."""
+
+    points: np.ndarray  # (MANIFOLD_POINTS,) POINT: the manifold of one pair
+    normal: np.ndarray  # (3,) of that manifold
+    collision: Scratch
+    ordering: Ordering
+    islands: np.ndarray  # (n,) int64 label of a body's island, `islands`
+    solver: Any  # what the solver allocates
+    free_velocities: np.ndarray  # (n,) as velocities: before any contact impulse, `problem_log`
+    templates: Any  # (classes, classes) what pairs of two classes of bodies have in common
+    broad_phase: Any
+
+
+class Log(NamedTuple):
+    """Rows of the trace; counters say how many are in use."""
+
+    step: np.ndarray  # (steps,)
+    pose: np.ndarray  # (steps, n, 7) x y z qw qx qy qz
+    contact: np.ndarray  # (rows,)
+    residual: np.ndarray  # (rows,) of sweeps
+    pose_bits: np.ndarray  # `pose` as uint64, for the hash of the state
+    velocity_bits: np.ndarray  # (n, words) State.velocities as uint64
+
+
+def allocate_state(
+    spec: Spec, bodies: np.ndarray, velocities: np.ndarray, pairs: np.ndarray, capacity: int
+) -> State:
+    """Return the state of a scene with room for so many contacts."""
+    moving = len(bodies) if keeps_motion(spec) else 0
+    projected = len(bodies) if spec.has("projection") else 0
+    return State(
+        bodies=bodies,
+        velocities=velocities,
+        pairs=pairs,
+        contacts=np.zeros(capacity, contact_dtype(spec)),
+        cache=np.zeros(capacity if spec.has("warm_start") else 0, cache_dtype(spec)),
+        motion=np.zeros(moving, dtype(MOTION)),
+        pseudo=np.zeros(projected, velocities.dtype),
+    )
+
+
+def with_contacts(spec: Spec, state: State, capacity: int) -> State:
+    """Return a state with room for so many contacts; cached impulses stay."""
+    cache = np.zeros(capacity if spec.has("warm_start") else 0, state.cache.dtype)
+    if len(cache):
+        cache[: len(state.cache)] = state.cache
+    return state._replace(contacts=np.zeros(capacity, state.contacts.dtype), cache=cache)
+
+
+def allocate_workspace(
+    spec: Spec, state: State, hulls: HullGeometry | None, templates: np.ndarray | None
+) -> Workspace:
+    """Return the workspace of a state; templates: of the broad phase."""
+    bodies, near = len(state.bodies), spec.has("broad_phase")
+    empty = Workspace(
+        points=np.zeros(MANIFOLD_POINTS, dtype(POINT)),
+        normal=np.zeros(3),
+        collision=allocate_scratch(hulls),
+        ordering=allocate_ordering(bodies, 0),
+        islands=np.zeros(bodies if spec.has("sleeping") else 0, np.int64),
+        solver=(),
+        free_velocities=np.zeros(bodies if spec.has("problem_log") else 0, state.velocities.dtype),
+        templates=templates if near else (),
+        broad_phase=allocate_broad_phase(bodies, len(state.pairs)) if near else (),
+    )
+    return for_contacts(spec, empty, state)
+
+
+def for_contacts(spec: Spec, workspace: Workspace, state: State) -> Workspace:
+    """Return the workspace with room for the contacts of a state."""
+    bodies, capacity = len(state.bodies), len(state.contacts)
+    return workspace._replace(
+        ordering=allocate_ordering(bodies, capacity),
+        solver=SOLVERS[spec.solver].allocate(spec, bodies, capacity),
+    )
+
+
+def allocate_log(spec: Spec, state: State, poses: np.ndarray, steps: int, sweeps: int) -> Log:
+    """Return room for the rows of so many steps, and of so many sweeps in each.
+
+    poses: (n, 7) that a row has where nothing turns.
+    """
+    capacity, velocities = len(state.contacts), state.velocities
+    # A quarter of the worst case: full columns end a block early, they lose nothing.
+    contact_rows = max(capacity, steps * capacity // 4) if steps else 0
+    pose = np.repeat(poses[None], steps, axis=0)
+    return Log(
+        step=np.zeros(steps, step_row_dtype(spec)),
+        pose=pose,
+        contact=np.zeros(contact_rows, contact_row_dtype(spec)),
+        residual=np.zeros(max(steps, 1) * sweeps, residual_row_dtype()),
+        pose_bits=pose.view(np.uint64),
+        velocity_bits=velocities.view(np.uint64).reshape(len(velocities), -1),
+    )
+
+
+def allocate_counters() -> np.ndarray:
+    """Return the counters of an engine that has made no step, shape (1,)."""
+    counters = np.zeros(1, dtype(COUNTERS))
+    for name in ("residual_contact", "signorini_contact", "cone_contact", "dissipation_contact"):
+        counters[name] = -1
+    counters["residual_row"] = -1
+    return counters
