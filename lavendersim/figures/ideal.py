@@ -7,14 +7,14 @@ as well, such as a release height), the line goes straight from cell to cell.
 
 from __future__ import annotations
 
-import copy
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
+from lavendersim.cell import CellConfig
 from lavendersim.figures.series import band_along
 from lavendersim.measures.closed_forms import evaluate_form
 from lavendersim.measures.selection import group_by
@@ -28,7 +28,7 @@ def ideal_line(
     form: ClosedForm, cells: Sequence[Cell], axis: str, path: str | None, log_x: bool
 ) -> tuple[Floats, Floats]:
     """Return places on the axis and the closed form there, averaged over the other axes."""
-    coarse = band_along(cells, axis, lambda cell: evaluate_form(form, cell.trace().resolved))
+    coarse = band_along(cells, axis, lambda cell: evaluate_form(form, cell.trace().config))
     lines = (
         []
         if path is None
@@ -55,9 +55,9 @@ def _fine_line(
     for left, right in pairwise(ordered):
         ends = (float(left.coordinates[axis]), float(right.coordinates[axis]))
         inside = [float(place) for place in between(*ends, POINTS)]
-        found = [_patched(form, left.trace().resolved, path, place) for place in inside]
+        found = [_patched(form, left.trace().config, path, place) for place in inside]
         known = [value for value in found if value is not None]
-        target = evaluate_form(form, right.trace().resolved)
+        target = evaluate_form(form, right.trace().config)
         if len(known) < POINTS or not math.isclose(known[-1], target, rel_tol=1e-9, abs_tol=1e-12):
             return None
         places += inside
@@ -65,22 +65,27 @@ def _fine_line(
     return (np.array(places), np.array(values)) if places else None
 
 
-def _patched(
-    form: ClosedForm, resolved: Mapping[str, Any], path: str, number: float
-) -> float | None:
+def _patched(form: ClosedForm, cell: CellConfig, path: str, number: float) -> float | None:
     """Return the closed form with one number of the config replaced; None where it has no place."""
-    config = copy.deepcopy(dict(resolved))
-    *steps, last = path.split(".")
-    target: Any = config
     try:
-        for step in steps:
-            target = target[int(step)] if isinstance(target, list | tuple) else target[step]
-        if isinstance(target, list):
-            target[int(last)] = number
-        elif last in target:
-            target[last] = number
-        else:
-            return None
-        return evaluate_form(form, config)
+        return evaluate_form(form, _replaced(cell, path.split("."), number))
     except (KeyError, IndexError, TypeError, ValueError):
         return None
+
+
+def _replaced(part: Any, path: Sequence[str], number: float) -> Any:
+    """Return a part of a config with the number at a path replaced; KeyError where there is none.
+
+    Nothing is validated: the ideal between two swept values is drawn, never run.
+    """
+    if not path:
+        return number
+    step, *rest = path
+    if isinstance(part, tuple):
+        place = int(step)
+        return (*part[:place], _replaced(part[place], rest, number), *part[place + 1 :])
+    if isinstance(part, dict):
+        return part | {step: _replaced(part[step], rest, number)}
+    if step not in type(part).model_fields:
+        raise KeyError(step)
+    return part.model_copy(update={step: _replaced(getattr(part, step), rest, number)})

@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import io
 import math
-from collections.abc import Mapping
 from typing import Any, Final
 
 import numpy as np
 
+from lavendersim.cell import Box, CellHull, CellShape, CellSimple, Cylinder, Plane, Sphere
 from lavendersim.figures.style import DARK, GREY, LOOKS
-from lavendersim.geometry.rotations import rotation_matrices
+from lavendersim.geometry.rotations import rotation_matrices, rotation_matrix
+from lavendersim.geometry.shapes import half_space, pieces
 from lavendersim.measures.changes import removals
 
 WIDTH, HEIGHT, DPI = 1.6, 1.1, 100  # inch, inch, dots per inch: 160 x 110 dots
@@ -57,10 +58,10 @@ def thumbnail(trace: Any) -> bytes:
 
 def _view(trace: Any) -> tuple[np.ndarray, np.ndarray]:
     """Return the directions of the picture's right and of its up."""
-    bodies = trace.resolved["scene"]["bodies"]
-    movable = [i for i, name in enumerate(trace.bodies) if not bodies[name]["fixed"]]
+    bodies = trace.config.scene.bodies
+    movable = [i for i, name in enumerate(trace.bodies) if not bodies[name].fixed]
     centres = trace.pose[0, movable, :3]
-    gravity = np.asarray(trace.resolved["scene"]["gravity"], dtype=float)
+    gravity = np.asarray(trace.config.scene.gravity)
     pull = math.hypot(*gravity)
     up = -gravity / pull if pull > 0.0 else np.array([0.0, 0.0, 1.0])
     level = np.array([1.0, 0.0, 0.0]) - up[0] * up
@@ -83,9 +84,9 @@ def _outlines(
     """
     poses = trace.pose
     whole = np.flatnonzero(np.isfinite(poses).all(axis=(1, 2)))
-    shapes = [trace.resolved["scene"]["bodies"][name] for name in trace.bodies]
-    solid = [i for i, body in enumerate(shapes) if body["shape"]["kind"] != "plane"][:MOST_BODIES]
-    movable = {i for i in solid if not shapes[i]["fixed"]}
+    bodies = [trace.config.scene.bodies[name] for name in trace.bodies]
+    solid = [i for i, body in enumerate(bodies) if not isinstance(body.shape, Plane)][:MOST_BODIES]
+    movable = {i for i in solid if not bodies[i].fixed}
     outlines: list[np.ndarray] = []
     colours: list[str] = []
     if len(whole) == 0:
@@ -97,7 +98,7 @@ def _outlines(
         turns = rotation_matrices(pose[:, 3:])
         for i in sorted(solid, key=lambda i: -float(pose[i, :3] @ far)):
             if (i in movable or is_end) and not (is_end and i in gone):
-                corners = pose[i, :3] + _corners(shapes[i]["shape"]) @ turns[i].T
+                corners = pose[i, :3] + _corners(bodies[i].shape) @ turns[i].T
                 outlines.append(_hull(np.column_stack([corners @ right, corners @ up])))
                 own = LOOKS[i % len(LOOKS)].colour if is_end else BEFORE
                 colours.append(own if i in movable else FIXED)
@@ -113,36 +114,36 @@ def _grounds(trace: Any, right: np.ndarray, up: np.ndarray) -> list[tuple[np.nda
     """Return a point and a direction of every plane that is seen edge on."""
     found = []
     for name in trace.bodies:
-        shape = trace.resolved["scene"]["bodies"][name]["shape"]
-        if shape["kind"] != "plane":
+        shape = trace.config.scene.bodies[name].shape
+        if not isinstance(shape, Plane):
             continue
-        normal = np.asarray(shape["normal"], dtype=float)
-        normal /= math.hypot(*normal)
+        normal, offset = half_space(shape)
         flat = np.array([normal @ right, normal @ up])
         if math.hypot(*flat) > 0.99:
-            found.append((flat * float(shape["offset"]), np.array([-flat[1], flat[0]])))
+            found.append((flat * offset, np.array([-flat[1], flat[0]])))
     return found
 
 
-def _corners(shape: Mapping[str, Any]) -> np.ndarray:
+def _corners(shape: CellShape) -> np.ndarray:
     """Return points (n, 3) in the body's frame [m] whose convex hull is the shape, or nearly."""
-    kind = shape["kind"]
-    if kind == "box":
+    placed = [
+        piece.position + _corners_of(piece.shape) @ rotation_matrix(piece.orientation).T
+        for piece in pieces(shape)
+    ]
+    return np.concatenate(placed)
+
+
+def _corners_of(shape: CellSimple) -> np.ndarray:
+    if isinstance(shape, Box):
         signs = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
-        return np.asarray(0.5 * signs * np.asarray(shape["size"], dtype=float))
-    if kind == "hull":
-        return np.asarray(shape["points"], dtype=float)
-    if kind == "compound":
-        parts = []
-        for part in shape["parts"]:
-            turn = rotation_matrices(np.asarray([part["orientation"]], dtype=float))[0]
-            parts.append(np.asarray(part["position"]) + _corners(part["shape"]) @ turn.T)
-        return np.concatenate(parts)
-    radius, half = float(shape["radius"]), 0.5 * float(shape.get("length", 0.0))
+        return np.asarray(0.5 * signs * np.asarray(shape.size))
+    if isinstance(shape, CellHull):
+        return np.asarray(shape.points)
+    radius, half = shape.radius, 0.0 if isinstance(shape, Sphere) else 0.5 * shape.length
     angles = 2.0 * np.pi * np.arange(ROUND) / ROUND
     circle = radius * np.column_stack([np.cos(angles), np.sin(angles), np.zeros(ROUND)])
     end = np.array([0.0, 0.0, half])
-    if kind == "cylinder":
+    if isinstance(shape, Cylinder):
         return np.concatenate([circle + end, circle - end])
     # three great circles of a ball look round from everywhere at this size
     rings = [np.roll(circle, shift, axis=1) for shift in range(3)]

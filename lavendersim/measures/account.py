@@ -34,9 +34,10 @@ import math
 
 import numpy as np
 
-from lavendersim.measures import cell_config, changes
+from lavendersim.geometry.bodies import is_movable, mass_of, vector
+from lavendersim.geometry.shapes import bounding_radius
+from lavendersim.measures import changes
 from lavendersim.measures.columns import mechanical_energy
-from lavendersim.measures.extent import bounding_radius
 from lavendersim.measures.kinds.laws import impulses
 from lavendersim.measures.views import Floats, Rows, Trace
 
@@ -112,7 +113,7 @@ def momentum_gap(trace: Trace) -> Floats:
     momentum = np.column_stack([trace.step[f"momentum_{axis}"] for axis in "xyz"])
     # counted in steps: logged times are whole nanoseconds
     dt = trace.clock.elapsed(trace.step["step"][:-1], trace.step["step"][1:])
-    gravity, mass = cell_config.gravity(trace.resolved), changes.masses(trace)
+    gravity, mass = vector(trace.config.scene.gravity), changes.masses(trace)
     forces = changes.forces(trace)
     outer, size = _impulses(trace)
     expected = (mass[1:, None] * gravity + forces[1:]) * dt[:, None] + outer[1:]
@@ -133,8 +134,8 @@ def _impulses(trace: Trace) -> tuple[Floats, Floats]:
     outer, size = np.zeros((len(trace.step), 3)), np.zeros(len(trace.step))
     if contacts is None or len(contacts) == 0:
         return outer, size
-    configs = {one.name: one for one in cell_config.bodies(trace.resolved)}
-    movable = np.array([configs[name].movable for name in trace.bodies], dtype=float)
+    bodies = trace.config.scene.bodies
+    movable = np.array([is_movable(bodies[name]) for name in trace.bodies], dtype=float)
     vectors = impulses(contacts)
     sign = movable[contacts["body_b"]] - movable[contacts["body_a"]]  # 0 between two movable ones
     for axis in range(3):
@@ -144,20 +145,20 @@ def _impulses(trace: Trace) -> tuple[Floats, Floats]:
 
 def _own_weight(trace: Trace) -> float:
     """Return the sum of m |g| times the radius of each movable body [J]."""
-    pull = math.hypot(*cell_config.gravity(trace.resolved))
-    bodies = [one for one in cell_config.bodies(trace.resolved) if one.movable]
-    return pull * sum(one.mass * bounding_radius(one.shape) for one in bodies)
+    pull = math.hypot(*trace.config.scene.gravity)
+    bodies = [one for one in trace.config.scene.bodies.values() if is_movable(one)]
+    return pull * sum(mass_of(one) * bounding_radius(one.shape) for one in bodies)
 
 
 def _lifted(trace: Trace) -> Floats:
     """Return the most that the projection can lift in each step [J]."""
     contacts = contacts_of_log(trace)
-    share = cell_config.numerics(trace.resolved, "projection")
-    pull = math.hypot(*cell_config.gravity(trace.resolved))
+    share = trace.config.numerics.projection
+    pull = math.hypot(*trace.config.scene.gravity)
     if contacts is None or len(contacts) == 0 or share == 0.0 or pull == 0.0:
         return np.zeros(len(trace.step))
     dt = trace.clock.lengths(contacts["step"])
     deep = -(contacts["separation"] + contacts["normal_velocity"] * dt)
-    opened = share * np.maximum(deep - cell_config.numerics(trace.resolved, "slop"), 0.0)
+    opened = share * np.maximum(deep - trace.config.numerics.slop, 0.0)
     lifted: Floats = pull * changes.masses(trace) * by_step(trace, contacts, opened)
     return lifted

@@ -84,7 +84,7 @@ def _equals(expectation: ExpectSpec, numbers: Floats, trace: Trace) -> Outcome:
     assert expectation.equals is not None
     spec = expectation.equals
     if spec.closed_form is not None:
-        target = evaluate_form(spec.closed_form, trace.resolved)
+        target = evaluate_form(spec.closed_form, trace.config)
         expected = f"{target!r} ({spec.closed_form.form})"
     else:
         assert spec.value is not None

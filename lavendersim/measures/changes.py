@@ -1,4 +1,4 @@
-"""The resolved config of a cell and its log in; what forces and events put into it, by step, out.
+"""What the forces and events of a config put into each step of its log: work, energy, mass.
 
 Arrays have one entry per logged step; entry k belongs to the step that ends in state k, entry 0 to
 none. Forces and events act before the first step that starts at their time or later.
@@ -6,12 +6,11 @@ none. Forces and events act before the first step that starts at their time or l
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
+from lavendersim.cell import CellEvent, CellForce
 from lavendersim.clock import written
-from lavendersim.measures import cell_config
+from lavendersim.geometry.bodies import is_movable, mass_of, principal_inertia, vector
 from lavendersim.measures.views import Floats, Trace
 
 
@@ -21,55 +20,56 @@ def row_after(trace: Trace, time: float) -> int:
     return int(np.searchsorted(trace.step["step"], done + 1))
 
 
-def events_of_bodies(trace: Trace) -> list[dict[str, Any]]:
-    """Return the events that change a body, as they are written."""
-    events = trace.resolved.get("events") or ()
-    return [event for event in events if event.get("timestep") is None]
+def events_of_bodies(trace: Trace) -> list[CellEvent]:
+    """Return the events that change a body, in the order of the config."""
+    return [event for event in trace.config.events if isinstance(event, CellEvent)]
 
 
 def removals(trace: Trace) -> dict[str, int]:
     """Return the row of the first step without it, for each body that is removed."""
-    gone = [event for event in events_of_bodies(trace) if event.get("remove")]
-    return {event["body"]: row_after(trace, event["at"]) for event in gone}
+    gone = [event for event in events_of_bodies(trace) if event.remove]
+    return {event.body: row_after(trace, event.at) for event in gone}
 
 
 def masses(trace: Trace) -> Floats:
     """Return the mass of everything movable [kg] in each state."""
-    movable = {one.name: one.mass for one in cell_config.bodies(trace.resolved) if one.movable}
+    bodies = trace.config.scene.bodies.items()
+    movable = {name: mass_of(body) for name, body in bodies if is_movable(body)}
     total = np.full(len(trace.step), sum(movable.values()))
     for event in _in_order(trace):
-        scale = 0.0 if event.get("remove") else event.get("scale_mass")
-        if scale is not None and event["body"] in movable:
-            before = movable[event["body"]]
-            movable[event["body"]] = before * scale
-            total[row_after(trace, event["at"]) :] += movable[event["body"]] - before
+        scale = 0.0 if event.remove else event.scale_mass
+        if scale is not None and event.body in movable:
+            before = movable[event.body]
+            movable[event.body] = before * scale
+            total[row_after(trace, event.at) :] += movable[event.body] - before
     return total
 
 
 def forces(trace: Trace) -> Floats:
     """Return the sum of the forces of the config [N] in each step (n, 3)."""
     total = np.zeros((len(trace.step), 3))
-    for force in trace.resolved["scene"].get("forces") or ():
-        total[_acting(trace, force)] += np.asarray(force["force"], dtype=float)
+    for force in trace.config.scene.forces:
+        total[_acting(trace, force)] += vector(force.force)
     return total
 
 
 def work_of_forces(trace: Trace) -> Floats:
     """Return the work of the forces and torques of the config [J] in each step."""
     work = np.zeros(len(trace.step))
-    for force in trace.resolved["scene"].get("forces") or ():
-        body = list(trace.bodies).index(force["body"])
+    for force in trace.config.scene.forces:
+        body = list(trace.bodies).index(force.body)
         acts = np.zeros(len(work), dtype=bool)
         acts[_acting(trace, force)] = True
-        way = np.diff(trace.pose[:, body, :3], axis=0, prepend=trace.pose[:1, body, :3])
+        displacement = np.diff(trace.pose[:, body, :3], axis=0, prepend=trace.pose[:1, body, :3])
         for event in _in_order(trace):
-            row = row_after(trace, event["at"])
-            jumps = event["body"] == force["body"] and event.get("teleport") is not None
-            if jumps and 0 < row < len(way):
-                way[row] -= np.asarray(event["teleport"]) - trace.pose[row - 1, body, :3]
-        done = way @ np.asarray(force["force"], dtype=float)
-        if any(force["torque"]):
-            done = done + _turns(trace.pose[:, body, 3:]) @ np.asarray(force["torque"], dtype=float)
+            row = row_after(trace, event.at)
+            if event.teleport is None or event.body != force.body:
+                continue
+            if 0 < row < len(displacement):
+                displacement[row] -= vector(event.teleport) - trace.pose[row - 1, body, :3]
+        done = displacement @ vector(force.force)
+        if any(force.torque):
+            done = done + _turns(trace.pose[:, body, 3:]) @ vector(force.torque)
         work += np.where(acts, done, 0.0)
     return work
 
@@ -83,34 +83,34 @@ def given_by_events(trace: Trace) -> Floats:
     scene's. A body that is removed is one whose mass becomes 0 times as large.
     """
     given = np.zeros(len(trace.step))
-    gravity = cell_config.gravity(trace.resolved)
-    configs = {one.name: one for one in cell_config.bodies(trace.resolved)}
-    scaled = dict.fromkeys(configs, 1.0)
+    gravity = vector(trace.config.scene.gravity)
+    bodies = trace.config.scene.bodies
+    scaled = dict.fromkeys(bodies, 1.0)
     moved: dict[tuple[str, int], Floats] = {}  # where an event of the same time put it
     for event in _in_order(trace):
-        name, row = event["body"], row_after(trace, event["at"])
-        config = configs[name]
-        scale = 0.0 if event.get("remove") else event.get("scale_mass")
+        name, row = event.body, row_after(trace, event.at)
+        body = bodies[name]
+        scale = 0.0 if event.remove else event.scale_mass
         if row == 0 and scale is not None:  # in a part of the log before this one
             scaled[name] *= scale
-        if not config.movable or not 0 < row < len(given):
+        if not is_movable(body) or not 0 < row < len(given):
             continue
         place = moved.get((name, row), trace.pose[row - 1, list(trace.bodies).index(name), :3])
-        mass = config.mass * scaled[name]
+        mass = mass_of(body) * scaled[name]
         if scale is not None:
             kinetic = float(trace.step["kinetic_energy"][row - 1]) if scale > 1.0 else 0.0
             given[row] += (scale - 1.0) * (kinetic - mass * float(gravity @ place))
             scaled[name] *= scale
             mass *= scale
-        if event.get("teleport") is not None:
-            target = np.asarray(event["teleport"], dtype=float)
+        if event.teleport is not None:
+            target = vector(event.teleport)
             given[row] -= mass * float(gravity @ (target - place))
             moved[name, row] = target
-        if event.get("velocity") is not None:
-            given[row] += 0.5 * mass * float(np.square(event["velocity"]).sum())
-        if event.get("angular_velocity") is not None:
-            largest = scaled[name] * float(np.max(config.principal_inertia))
-            given[row] += 0.5 * largest * float(np.square(event["angular_velocity"]).sum())
+        if event.velocity is not None:
+            given[row] += 0.5 * mass * float(np.square(event.velocity).sum())
+        if event.angular_velocity is not None:
+            largest = scaled[name] * float(np.max(principal_inertia(body)))
+            given[row] += 0.5 * largest * float(np.square(event.angular_velocity).sum())
     return given
 
 
@@ -118,20 +118,20 @@ def unknown_momentum(trace: Trace) -> np.ndarray:
     """Return in which steps an event changed a momentum that no log has."""
     unknown = np.zeros(len(trace.step), dtype=bool)
     for event in _in_order(trace):
-        row = row_after(trace, event["at"])
-        changes = event.get("velocity") is not None or event.get("scale_mass") is not None
-        if (changes or event.get("remove")) and row < len(unknown):
+        row = row_after(trace, event.at)
+        changes = event.velocity is not None or event.scale_mass is not None
+        if (changes or event.remove) and row < len(unknown):
             unknown[row] = True
     return unknown
 
 
-def _in_order(trace: Trace) -> list[dict[str, Any]]:
-    """Return the events of bodies by their time; those of one time as they are written."""
-    return sorted(events_of_bodies(trace), key=lambda event: event["at"])
+def _in_order(trace: Trace) -> list[CellEvent]:
+    """Return the events of bodies by their time; those of one time in the order of the config."""
+    return sorted(events_of_bodies(trace), key=lambda event: event.at)
 
 
-def _acting(trace: Trace, force: dict[str, Any]) -> slice:
-    return slice(row_after(trace, force["from"]), row_after(trace, force["to"]))
+def _acting(trace: Trace, force: CellForce) -> slice:
+    return slice(row_after(trace, force.begin), row_after(trace, force.end))
 
 
 def _turns(quaternions: Floats) -> Floats:

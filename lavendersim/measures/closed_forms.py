@@ -1,4 +1,4 @@
-"""The resolved config of a cell and a formula's name in; the number the formula gives out.
+"""Closed forms of impacts, drops and steady penetration, from the config of a cell alone.
 
 Nothing recorded by a run is read here, so a closed form is an independent judge.
 
@@ -20,138 +20,146 @@ Projection off (P = 0): D = c N / beta.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
-from typing import Any, Final
+from collections.abc import Callable
+from typing import Final
 
 import numpy as np
 
-from lavendersim.measures.cell_config import BodyConfig, body, gravity, numerics
+from lavendersim.cell import Box, CellBody, CellConfig
+from lavendersim.geometry.bodies import (
+    extent_along,
+    inverse_inertia,
+    inverse_mass,
+    lowest_point,
+    mass_of,
+    rotation_of,
+    vector,
+)
+from lavendersim.geometry.shapes import half_space
 from lavendersim.measures.specs.base import ClosedForm
 from lavendersim.measures.views import Floats
 
-Resolved = Mapping[str, Any]
+
+def evaluate_form(form: ClosedForm, cell: CellConfig) -> float:
+    """Return the closed form's value in a cell, SI units."""
+    bodies = tuple(cell.scene.bodies[name] for name in form.bodies)
+    return FORMS[form.form](cell, *bodies)
 
 
-def evaluate_form(form: ClosedForm, resolved: Resolved) -> float:
-    """Return the closed form's value in the cell of this resolved config, SI units."""
-    bodies = tuple(body(resolved, name) for name in form.bodies)
-    return FORMS[form.form](resolved, *bodies)
-
-
-def clearance(moving: BodyConfig, plane: BodyConfig) -> float:
+def clearance(moving: CellBody, plane: CellBody) -> float:
     """Return the gap [m] between a body's surface and a plane at the configured pose."""
-    normal = plane.normal
-    return float(normal @ moving.position) - plane.offset - moving.extent(normal)
+    normal, offset = half_space(plane.shape)
+    return float(normal @ vector(moving.position)) - offset - extent_along(moving, -normal)
 
 
-def contact_geometry(a: BodyConfig, b: BodyConfig) -> tuple[Floats, Floats]:
+def contact_geometry(a: CellBody, b: CellBody) -> tuple[Floats, Floats]:
     """Return the contact point [m] on A's side and the unit normal from A to B."""
-    kinds = (a.shape["kind"], b.shape["kind"])
+    kinds = (a.shape.kind, b.shape.kind)
     if kinds[0] == "plane":
-        normal = a.normal
-        return b.lowest(normal), normal
+        normal = half_space(a.shape).normal
+        return lowest_point(b, normal), normal
     if kinds == ("sphere", "sphere"):
-        normal = b.position - a.position
+        normal = vector(b.position) - vector(a.position)
         normal = normal / math.sqrt(float(normal @ normal))
-        return a.position + a.extent(normal) * normal, normal
-    if kinds == ("box", "sphere"):
-        return _box_sphere(a, b)
+        return vector(a.position) + extent_along(a, normal) * normal, normal
+    if isinstance(a.shape, Box) and kinds[1] == "sphere":
+        return _box_sphere(a, a.shape, b)
     if kinds[1] == "plane" or kinds == ("sphere", "box"):
         point, normal = contact_geometry(b, a)
         return point, -normal
     raise ValueError(f"no closed contact geometry for {kinds[0]} and {kinds[1]}")
 
 
-def _box_sphere(box: BodyConfig, sphere: BodyConfig) -> tuple[Floats, Floats]:
-    half = 0.5 * np.asarray(box.shape["size"], dtype=float)
-    local = box.rotation.T @ (sphere.position - box.position)
+def _box_sphere(body: CellBody, box: Box, sphere: CellBody) -> tuple[Floats, Floats]:
+    half, turn = 0.5 * vector(box.size), rotation_of(body)
+    local = turn.T @ (vector(sphere.position) - vector(body.position))
     nearest = np.clip(local, -half, half)
-    apart = box.rotation @ (local - nearest)
+    apart = turn @ (local - nearest)
     distance = math.sqrt(float(apart @ apart))
     if distance == 0.0:
         raise ValueError("the sphere's centre lies inside the box: no closed contact geometry")
-    return box.position + box.rotation @ nearest, apart / distance
+    return vector(body.position) + turn @ nearest, apart / distance
 
 
-def normal_velocity(a: BodyConfig, b: BodyConfig) -> float:
+def normal_velocity(a: CellBody, b: CellBody) -> float:
     """Return v_n [m/s] of B relative to A at the configured contact."""
     point, normal = contact_geometry(a, b)
-    velocity_a = a.velocity + np.cross(a.angular_velocity, point - a.position)
-    velocity_b = b.velocity + np.cross(b.angular_velocity, point - b.position)
+    velocity_a, velocity_b = (
+        vector(one.velocity) + np.cross(one.angular_velocity, point - vector(one.position))
+        for one in (a, b)
+    )
     return float(normal @ (velocity_b - velocity_a))
 
 
-def inverse_effective_mass(resolved: Resolved, a: BodyConfig, b: BodyConfig) -> float:
+def inverse_effective_mass(cell: CellConfig, a: CellBody, b: CellBody) -> float:
     """Return k_n [1/kg]."""
     point, normal = contact_geometry(a, b)
-    total = a.inverse_mass + b.inverse_mass
+    total = inverse_mass(a) + inverse_mass(b)
     for one in (a, b):
-        lever = np.cross(point - one.position, normal)
-        total += float(lever @ one.inverse_inertia @ lever)
+        lever = np.cross(point - vector(one.position), normal)
+        total += float(lever @ inverse_inertia(one) @ lever)
     return total
 
 
-def newton_impulse(resolved: Resolved, a: BodyConfig, b: BodyConfig) -> float:
+def newton_impulse(cell: CellConfig, a: CellBody, b: CellBody) -> float:
     """Return Newton's impulse j [N s]; exactly 0 for a pair that separates."""
-    k_n = inverse_effective_mass(resolved, a, b)
+    k_n = inverse_effective_mass(cell, a, b)
     return max(0.0, -(1.0 + pair_restitution(a, b)) * normal_velocity(a, b) / k_n)
 
 
-def newton_separation_velocity(resolved: Resolved, a: BodyConfig, b: BodyConfig) -> float:
+def newton_separation_velocity(cell: CellConfig, a: CellBody, b: CellBody) -> float:
     """Return v_n [m/s] after the impact: -e v_n, or v_n itself for a pair that separates."""
     before = normal_velocity(a, b)
     return -pair_restitution(a, b) * before if before < 0.0 else before
 
 
-def impact_speed(resolved: Resolved, moving: BodyConfig, plane: BodyConfig) -> float:
+def impact_speed(cell: CellConfig, moving: CellBody, plane: CellBody) -> float:
     """Return the speed [m/s] of a body dropped from rest when it reaches the plane."""
-    return math.sqrt(2.0 * _pull(resolved, plane) * clearance(moving, plane))
+    return math.sqrt(2.0 * _pull(cell, plane) * clearance(moving, plane))
 
 
-def drop_impulse(resolved: Resolved, moving: BodyConfig, plane: BodyConfig) -> float:
+def drop_impulse(cell: CellConfig, moving: CellBody, plane: CellBody) -> float:
     """Return the impulse [N s] that turns the impact speed v into e v."""
-    speed = impact_speed(resolved, moving, plane)
-    return (1.0 + pair_restitution(moving, plane)) * moving.mass * speed
+    speed = impact_speed(cell, moving, plane)
+    return (1.0 + pair_restitution(moving, plane)) * mass_of(moving) * speed
 
 
-def rebound_height(resolved: Resolved, moving: BodyConfig, plane: BodyConfig) -> float:
+def rebound_height(cell: CellConfig, moving: CellBody, plane: CellBody) -> float:
     """Return e^2 h [m]."""
     return pair_restitution(moving, plane) ** 2 * clearance(moving, plane)
 
 
-def release_height(resolved: Resolved, moving: BodyConfig, plane: BodyConfig) -> float:
+def release_height(cell: CellConfig, moving: CellBody, plane: CellBody) -> float:
     """Return the clearance h [m] a body starts from."""
     return clearance(moving, plane)
 
 
-def weight(resolved: Resolved, *bodies: BodyConfig) -> float:
+def weight(cell: CellConfig, *bodies: CellBody) -> float:
     """Return the summed weight [N] of the bodies."""
-    pull = gravity(resolved)
-    return math.sqrt(float(pull @ pull)) * sum(one.mass for one in bodies)
+    pull = vector(cell.scene.gravity)
+    return math.sqrt(float(pull @ pull)) * sum(mass_of(one) for one in bodies)
 
 
-def slop(resolved: Resolved) -> float:
+def slop(cell: CellConfig) -> float:
     """Return the penetration [m] that is left alone."""
-    return numerics(resolved, "slop")
+    return cell.numerics.slop
 
 
-def steady_penetration_above_slop(
-    resolved: Resolved, moving: BodyConfig, plane: BodyConfig
-) -> float:
+def steady_penetration_above_slop(cell: CellConfig, moving: CellBody, plane: CellBody) -> float:
     """Return d - slop [m] at rest, see the module's derivation."""
-    left = 1.0 - numerics(resolved, "projection")
-    load = moving.mass * _pull(resolved, plane)
-    indentation = (moving.compliance + plane.compliance) * load
-    return left * indentation / (1.0 - left * (1.0 - numerics(resolved, "stabilisation_gain")))
+    left = 1.0 - cell.numerics.projection
+    load = mass_of(moving) * _pull(cell, plane)
+    indentation = (moving.surface.compliance + plane.surface.compliance) * load
+    return left * indentation / (1.0 - left * (1.0 - cell.numerics.stabilisation_gain))
 
 
-def pair_restitution(a: BodyConfig, b: BodyConfig) -> float:
-    """Return e of two surfaces: the livelier one decides."""
-    return max(a.restitution, b.restitution)
+def pair_restitution(a: CellBody, b: CellBody) -> float:
+    """Return e of two surfaces: the larger one."""
+    return max(a.surface.restitution, b.surface.restitution)
 
 
-def _pull(resolved: Resolved, plane: BodyConfig) -> float:
-    return -float(plane.normal @ gravity(resolved))
+def _pull(cell: CellConfig, plane: CellBody) -> float:
+    return -float(half_space(plane.shape).normal @ vector(cell.scene.gravity))
 
 
 FORMS: Final[dict[str, Callable[..., float]]] = {

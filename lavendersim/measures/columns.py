@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from lavendersim.cell import Sphere
 from lavendersim.errors import UsageError
 from lavendersim.geometry.rotations import rotation_matrix, unit_quaternion
-from lavendersim.measures import cell_config
+from lavendersim.geometry.shapes import extent, half_space
 from lavendersim.measures.views import Floats, Rows, Trace
 
 
@@ -39,14 +40,14 @@ def deepest_by_step(trace: Trace, rows: Rows) -> Floats:
 
 def clearance_by_step(trace: Trace, body: str, plane: str) -> Floats:
     """Return the gap [m] between a body's surface and a plane in every logged state."""
-    moving = cell_config.body(trace.resolved, body)
-    ground = cell_config.body(trace.resolved, plane)
+    shape = trace.config.scene.bodies[body].shape
+    normal, offset = half_space(trace.config.scene.bodies[plane].shape)
     poses = trace.pose[:, list(trace.bodies).index(body), :]
-    heights: Floats = poses[:, :3] @ ground.normal - ground.offset
-    if moving.shape["kind"] == "sphere":
-        return np.asarray(heights - moving.extent(ground.normal), dtype=np.float64)
+    heights: Floats = poses[:, :3] @ normal - offset
+    if isinstance(shape, Sphere):
+        return np.asarray(heights - shape.radius, dtype=np.float64)
     turns = [rotation_matrix(unit_quaternion(pose[3:])) for pose in poses]
-    gaps: Floats = heights - np.array([moving.extent(ground.normal, turn) for turn in turns])
+    gaps: Floats = heights - np.array([extent(shape, turn, -normal) for turn in turns])
     return gaps
 
 

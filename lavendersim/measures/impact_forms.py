@@ -1,4 +1,4 @@
-"""The resolved config of one impact in; the velocities it leaves, in closed form, out.
+"""Velocities after one impact of a body with a plane, in closed form (Newton's restitution).
 
 A body flies under gravity g and meets a plane once, with one point of its surface. With the gap
 phi, the normal n and r from the centre to the point, it arrives at the t of
@@ -13,41 +13,42 @@ where |u|/k_t <= mu j (stick), else J_t = -mu j u/|u| (slip; the direction of u 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 
-from lavendersim.measures import cell_config
-from lavendersim.measures.cell_config import BodyConfig
+from lavendersim.cell import CellBody, CellConfig, Plane, Sphere
+from lavendersim.geometry.bodies import inverse_inertia, inverse_mass, lowest_point, mass_of, vector
+from lavendersim.geometry.shapes import half_space
 from lavendersim.measures.closed_forms import clearance, pair_restitution
 from lavendersim.measures.views import Floats
 
 
 def velocities_after(
-    resolved: Mapping[str, Any], body: str, plane: str, time: float
+    cell: CellConfig, body: str, plane: str, time: float
 ) -> tuple[Floats, Floats] | None:
     """Return v [m/s] and omega [rad/s] of a body at a time [s] after its only impact.
 
-    None where this has no closed form: a turning or rough body that is no sphere, no impact before
-    that time, or a second one.
+    None where this has no closed form: no plane, a turning or frictional body that is no sphere,
+    no impact before that time, or a second one.
     """
-    moving, ground = cell_config.body(resolved, body), cell_config.body(resolved, plane)
-    gravity = cell_config.gravity(resolved)
-    friction = math.sqrt(moving.friction * ground.friction)
-    is_sphere = moving.shape["kind"] == "sphere"
-    if not is_sphere and (friction > 0.0 or np.any(moving.angular_velocity)):
+    moving, ground = cell.scene.bodies[body], cell.scene.bodies[plane]
+    if not isinstance(ground.shape, Plane):
         return None
-    pull = float(ground.normal @ gravity)
-    arrival = _arrival(clearance(moving, ground), float(ground.normal @ moving.velocity), pull)
+    gravity, normal = vector(cell.scene.gravity), half_space(ground.shape).normal
+    friction = math.sqrt(moving.surface.friction * ground.surface.friction)
+    if not isinstance(moving.shape, Sphere) and (friction > 0.0 or any(moving.angular_velocity)):
+        return None
+    pull = float(normal @ gravity)
+    start = vector(moving.velocity)
+    arrival = _arrival(clearance(moving, ground), float(normal @ start), pull)
     if arrival is None or arrival > time:
         return None
-    before = moving.velocity + gravity * arrival
+    before = start + gravity * arrival
     impulse, lever = _impulse(moving, ground, before, friction)
-    velocity = before + impulse / moving.mass
-    turn = moving.angular_velocity + moving.inverse_inertia @ np.cross(lever, impulse)
-    up = float(ground.normal @ velocity)
-    if pull < 0.0 and time - arrival >= -2.0 * up / pull:
+    velocity = before + impulse / mass_of(moving)
+    turn = vector(moving.angular_velocity) + inverse_inertia(moving) @ np.cross(lever, impulse)
+    separation = float(normal @ velocity)
+    if pull < 0.0 and time - arrival >= -2.0 * separation / pull:
         return None
     return velocity + gravity * (time - arrival), turn
 
@@ -66,13 +67,14 @@ def _arrival(gap: float, speed: float, pull: float) -> float | None:
 
 
 def _impulse(
-    moving: BodyConfig, ground: BodyConfig, velocity: Floats, friction: float
+    moving: CellBody, ground: CellBody, velocity: Floats, friction: float
 ) -> tuple[Floats, Floats]:
     """Return the impulse on the body [N s] and the lever from its centre [m]."""
-    normal = ground.normal
-    lever = moving.lowest(normal) - moving.position
+    normal = half_space(ground.shape).normal
+    lever = lowest_point(moving, normal) - vector(moving.position)
     cross = np.cross(lever, normal)
-    k_n = moving.inverse_mass + float(cross @ moving.inverse_inertia @ cross)
+    inverse = inverse_inertia(moving)
+    k_n = inverse_mass(moving) + float(cross @ inverse @ cross)
     at_point = velocity + np.cross(moving.angular_velocity, lever)
     v_n = float(normal @ at_point)
     size = max(0.0, -(1.0 + pair_restitution(moving, ground)) * v_n / k_n)
@@ -81,7 +83,7 @@ def _impulse(
         return impulse, lever
     slip = at_point - v_n * normal
     speed = math.sqrt(float(slip @ slip))
-    k_t = moving.inverse_mass + float(lever @ lever) * moving.inverse_inertia[0, 0]
+    k_t = inverse_mass(moving) + float(lever @ lever) * float(inverse[0, 0])
     if speed > 0.0:
         impulse = impulse - min(speed / k_t, friction * size) * slip / speed
     return impulse, lever

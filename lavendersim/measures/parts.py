@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from lavendersim.cell import CellConfig
 from lavendersim.clock import Clock
 from lavendersim.measures.views import Floats, Rows, Trace
 
@@ -22,7 +23,7 @@ class Part(NamedTuple):
     contact: Rows
     pose: Floats
     bodies: Sequence[str]
-    resolved: Mapping[str, Any]
+    config: CellConfig
     clock: Clock
     absent: Mapping[str, str]
     residual: Any = ()  # no measure of a single step asks for sweeps
@@ -35,7 +36,7 @@ class Part(NamedTuple):
 
 def parts_of(trace: Trace, states: int) -> Iterator[tuple[int, Trace]]:
     """Yield the first states of a log in parts, each with how many were in the parts before."""
-    context = (trace.bodies, trace.resolved, trace.clock, trace.absent)
+    context = (trace.bodies, trace.config, trace.clock, trace.absent)
     step, pose = trace.step[:states], trace.pose[:states]
     begin, none = 0, None
     for contact in trace.contacts_in_parts():

@@ -26,7 +26,7 @@ def evaluate(spec: MeasureSpec, trace: Trace) -> Value:
     form = spec.over or spec.against
     if form is None:
         return value
-    ideal = evaluate_form(form, trace.resolved)
+    ideal = evaluate_form(form, trace.config)
     if ideal == 0.0:
         return float("nan")
     fraction: Value = value / ideal

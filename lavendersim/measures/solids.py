@@ -1,4 +1,4 @@
-"""A resolved config and logged poses in; solids in place, their reach and which may overlap out.
+"""The solids of a scene at their logged poses: how far they reach, and which may overlap.
 
 A body's size is three numbers: sphere (radius, 0, 0), box its half edges, capsule and cylinder
 (radius, 0, half length along the body's z).
@@ -6,14 +6,15 @@ A body's size is three numbers: sphere (radius, 0, 0), box its half edges, capsu
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Final, NamedTuple
 
 import numpy as np
 
+from lavendersim.cell import Box, Capsule, CellScene, CellShape, Cylinder, Plane, Sphere
+from lavendersim.geometry.bodies import is_movable
 from lavendersim.geometry.rotations import rotation_matrices
-from lavendersim.measures import cell_config
+from lavendersim.geometry.shapes import HalfSpace, half_space
 from lavendersim.measures.views import Floats
 
 SPHERE, BOX, CAPSULE, CYLINDER, OTHER = range(5)
@@ -48,36 +49,30 @@ class Solids:
         return Placed(chosen[:, :3], rotation_matrices(chosen[:, 3:]), self.size)
 
 
-class Ground(NamedTuple):
-    """A plane: the points n . x <= offset are inside."""
-
-    normal: Floats
-    offset: float
-
-
-def solids_of(resolved: Mapping[str, Any], names: list[str]) -> tuple[Solids, list[Ground]]:
-    """Return the solids and the planes of a scene."""
+def solids_of(scene: CellScene, names: list[str]) -> tuple[Solids, list[HalfSpace]]:
+    """Return the solids and the planes of a scene, the bodies in the order of these names."""
     columns, kinds, sizes, movable, grounds = [], [], [], [], []
     for column, name in enumerate(names):
-        body = cell_config.body(resolved, name)
-        if body.shape["kind"] == "plane":
-            grounds.append(Ground(body.normal, body.offset))
+        body = scene.bodies[name]
+        if isinstance(body.shape, Plane):
+            grounds.append(half_space(body.shape))
             continue
         columns.append(column)
-        kinds.append(KINDS.get(body.shape["kind"], OTHER))
+        kinds.append(KINDS.get(body.shape.kind, OTHER))
         sizes.append(_size(body.shape))
-        movable.append(body.movable)
+        movable.append(is_movable(body))
     table = np.array(sizes, dtype=np.float64).reshape(-1, 3)
     return Solids(np.array(columns, int), np.array(kinds, int), table, np.array(movable)), grounds
 
 
-def _size(shape: Mapping[str, Any]) -> tuple[float, ...]:
-    if shape["kind"] == "sphere":
-        return float(shape["radius"]), 0.0, 0.0
-    if shape["kind"] == "box":
-        return tuple(0.5 * float(edge) for edge in shape["size"])
-    if shape["kind"] in KINDS:
-        return float(shape["radius"]), 0.0, 0.5 * float(shape["length"])
+def _size(shape: CellShape) -> tuple[float, ...]:
+    match shape:
+        case Sphere():
+            return shape.radius, 0.0, 0.0
+        case Box():
+            return tuple(0.5 * edge for edge in shape.size)
+        case Capsule() | Cylinder():
+            return shape.radius, 0.0, 0.5 * shape.length
     return 0.0, 0.0, 0.0
 
 

@@ -9,6 +9,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from lavendersim.cell import CellConfig
 from lavendersim.clock import Clock
 
 Floats = NDArray[np.float64]
@@ -47,7 +48,7 @@ class Trace(Protocol):
         """Names of the bodies in the order of their indices."""
 
     @property
-    def resolved(self) -> Mapping[str, Any]:
+    def config(self) -> CellConfig:
         """The cell's config with every default filled in."""
 
     @property

@@ -20,10 +20,10 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from lavendersim.measures import cell_config
+from lavendersim.geometry.bodies import is_movable
+from lavendersim.geometry.shapes import thickness
 from lavendersim.measures.account import EnergyAccount, contacts_of_log, momentum_gap
 from lavendersim.measures.changes import events_of_bodies, row_after
-from lavendersim.measures.extent import thickness
 from lavendersim.measures.kinds.optimality import friction_of
 from lavendersim.measures.specs.always import CHECKS, DERIVED, FINITE, NONE, Always
 from lavendersim.measures.views import Floats, Rows, Trace
@@ -83,7 +83,7 @@ def bound_of(check: str, always: Always, trace: Trace) -> float:
     stated = getattr(always, check)
     if stated != DERIVED:
         return float(stated)
-    bodies = [one for one in cell_config.bodies(trace.resolved) if one.movable]
+    bodies = [one for one in trace.config.scene.bodies.values() if is_movable(one)]
     return SHARE_OF_THICKNESS * min((thickness(one.shape) for one in bodies), default=math.inf)
 
 
@@ -141,7 +141,7 @@ def _speed(trace: Trace) -> Numbers:
     pose, step = trace.pose, trace.step["step"]
     fastest, who = np.zeros(len(step)), np.zeros(len(step), dtype=int)
     dt = trace.clock.elapsed(step[:-1], step[1:])
-    jumps = {event["body"] for event in events_of_bodies(trace) if event["teleport"]}
+    jumps = {event.body for event in events_of_bodies(trace) if event.teleport}
     for body, name in enumerate(trace.bodies):
         speed = np.sqrt((np.diff(pose[:, body, :3], axis=0) ** 2).sum(axis=1)) / dt
         if name in jumps:
@@ -155,8 +155,8 @@ def _speed(trace: Trace) -> Numbers:
 def _without_jumps(trace: Trace, name: str, speed: Floats) -> Floats:
     """Return speeds without those of steps in which the config moved the body."""
     for event in events_of_bodies(trace):
-        row = row_after(trace, event["at"])
-        if event["body"] == name and event["teleport"] and 0 < row <= len(speed):
+        row = row_after(trace, event.at)
+        if event.body == name and event.teleport and 0 < row <= len(speed):
             speed[row - 1] = 0.0
     return speed
 
@@ -170,11 +170,10 @@ def _impulses(trace: Trace) -> Numbers:
     excess = np.maximum(-pushed, 0.0)
     held = np.maximum(pushed, 0.0)
     if "impulse_t1" in names:
-        mu = friction_of(
-            contacts, [cell_config.body(trace.resolved, b).friction for b in trace.bodies]
-        )
+        bodies = trace.config.scene.bodies
+        mu = friction_of(contacts, [bodies[name].surface.friction for name in trace.bodies])
         first, second = contacts["impulse_t1"], contacts["impulse_t2"]
-        pyramid = trace.resolved["numerics"].get("friction_cone") == "pyramid"
+        pyramid = trace.config.numerics.friction_cone == "pyramid"
         size = np.maximum(abs(first), abs(second)) if pyramid else np.hypot(first, second)
         excess = np.maximum(excess, size - mu * held)
     # divided by its arm [m], an angular impulse is compared with the normal one

@@ -1,4 +1,4 @@
-"""A trace, its shapes and their extent enter; the layout of the viewer leaves.
+"""The layout of the viewer: the bodies beside the plots, or alone.
 
 +----------------------+-------------+
 |                      | force [N]   |

@@ -1,4 +1,4 @@
-"""A trace enters; poses, contacts, forces and plots leave as rerun columns on `sim_time`.
+"""Poses, contacts, forces and plots of a log, as rerun columns on `sim_time`.
 
 Columns are sent in blocks of many steps: a call per step costs rerun some 20 us and a chunk of its
 own, a block costs the same once. A step without contacts sends an empty list, which clears the
@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 import rerun as rr
 
+from lavendersim.cell import Plane
 from lavendersim.replay.force_scale import CONTACT_KEY, ForceScale
 from lavendersim.replay.removal import clear_removed
 from lavendersim.replay.scene import BODIES, GRIDS, WORLD, Extent, entity
@@ -131,10 +132,10 @@ def send(stream: rr.RecordingStream, trace: Trace, room: Extent, scale: ForceSca
 
 
 def _send_poses(stream: rr.RecordingStream, trace: Trace, times: npt.NDArray[Any]) -> None:
-    given = trace.resolved["scene"]["bodies"]
+    given = trace.config.scene.bodies
     pose = trace.pose
     for body, name in enumerate(trace.bodies):
-        if given[name]["shape"]["kind"] == "plane":
+        if isinstance(given[name].shape, Plane):
             continue  # drawn in the world's frame
         # A diverged run's last rows may hold NaN, which no viewer can place.
         rows = np.flatnonzero(np.isfinite(pose[:, body]).all(axis=1))

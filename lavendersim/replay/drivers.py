@@ -1,4 +1,4 @@
-"""The machine enters; the viewer's program leaves, or one clear sentence why it cannot draw here.
+"""The viewer's program, and whether this machine has a Vulkan driver and a display for it.
 
 The viewer draws with Vulkan. A driver announces itself by a small JSON file that the Vulkan loader
 looks for in the directories of the loader's specification; software drivers (lavapipe) too.

@@ -1,4 +1,4 @@
-"""Recorded contact forces enter; how long their arrows are drawn, and the sentence that says so.
+"""How long the arrows of contact forces are drawn, and the sentence that tells the scale.
 
 A resting weight of 10 N and an impact of 2 kN are in the same recording. The arrow of the typical
 lasting contact gets a readable length; longer ones are cut and coloured, never shrunk in secret.

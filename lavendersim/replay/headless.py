@@ -1,4 +1,4 @@
-"""A trace enters; a picture of rerun's viewer leaves, drawn without a display.
+"""A picture of rerun's viewer, drawn without a display.
 
 The viewer runs as a child process in its headless mode, opens the recording from a file and is
 steered over its local port. Every wait is bounded and the child is ended on every way out.

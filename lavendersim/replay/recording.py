@@ -1,4 +1,4 @@
-"""A trace enters; a rerun recording with its blueprint leaves, to a stream or a file."""
+"""The rerun recording of a log with its blueprint, to a stream or a file."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def new_stream(title: str) -> rr.RecordingStream:
 
 def record(trace: Trace, stream: rr.RecordingStream, title: str) -> None:
     """Send the whole trace and the layout of the viewer to `stream`."""
-    bodies = scene.shapes(trace.resolved)
+    bodies = scene.shapes(trace.config)
     room = scene.extent(trace, bodies)
     # Where nothing can touch there are no contacts to place and no forces to scale.
     touching = "/contacts" not in trace.absent

@@ -1,4 +1,4 @@
-"""Shapes and their poses enter; their extent and rerun's static geometry leave.
+"""The extent of a scene, and its static geometry in rerun.
 
 Entities are `bodies/<name>`. Each body is a coordinate frame of the same name below the world's, so
 that its pose (see columns.py) moves whatever is drawn in it.

@@ -1,37 +1,20 @@
-"""A resolved config enters; the geometry of its bodies leaves, each in its own frame."""
+"""The geometry of a cell's bodies as it is drawn: planes, or convex pieces in the body's frame."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
+
+from lavendersim.cell import CellBody, CellConfig, Plane
+from lavendersim.geometry.bodies import is_movable
+from lavendersim.geometry.shapes import Piece, bounding_radius, half_space, pieces
 
 Vector = npt.NDArray[np.float64]
 
 UP = np.array([0.0, 0.0, 1.0])
 XYZW = [1, 2, 3, 0]  # of a quaternion w x y z: the order that rerun takes
-UPRIGHT = np.array([1.0, 0.0, 0.0, 0.0])
-
-
-class Piece(NamedTuple):
-    """One convex solid: its shape as resolved, and where it stands in the body."""
-
-    shape: Mapping[str, Any]
-    position: Vector  # [m]
-    quaternion: Vector  # w x y z
-
-    @property
-    def kind(self) -> str:
-        """Name of the shape."""
-        return str(self.shape["kind"])
-
-    @property
-    def reach(self) -> float:
-        """Largest distance [m] of the piece's surface from the centre of its body."""
-        return float(np.linalg.norm(self.position)) + _radius(self.shape)
 
 
 class Shape(NamedTuple):
@@ -43,43 +26,17 @@ class Shape(NamedTuple):
     pieces: tuple[Piece, ...]
     normal: Vector
     offset: float
-
-    @property
-    def reach(self) -> float:
-        """Largest distance [m] of the body's surface from its centre."""
-        return max((piece.reach for piece in self.pieces), default=0.0)
+    reach: float  # [m] largest distance of the surface from the centre; 0 for a plane
 
 
-def shapes(resolved: Mapping[str, Any]) -> list[Shape]:
-    """Geometry of every body of a resolved config, in its order."""
-    return [_shape(name, body) for name, body in resolved["scene"]["bodies"].items()]
+def shapes(cell: CellConfig) -> list[Shape]:
+    """Return the geometry of every body of a cell, in its order."""
+    return [_shape(name, body) for name, body in cell.scene.bodies.items()]
 
 
-def _shape(name: str, body: Mapping[str, Any]) -> Shape:
-    given = body["shape"]
-    kind = given["kind"]
-    fixed = kind == "plane" or bool(body.get("fixed", False))
-    if kind == "plane":
-        direction = np.array(given["normal"], dtype=np.float64)
-        normal = direction / np.linalg.norm(direction)
-        return Shape(name, kind, fixed, (), normal, float(given["offset"]))
-    pieces = tuple(
-        Piece(part["shape"], _floats(part["position"]), _floats(part["orientation"]))
-        for part in given.get("parts", ())
-    )
-    return Shape(name, kind, fixed, pieces or (Piece(given, np.zeros(3), UPRIGHT),), UP, 0.0)
-
-
-def _floats(values: Any) -> Vector:
-    return np.array(values, dtype=np.float64)
-
-
-def _radius(shape: Mapping[str, Any]) -> float:
-    """Return the radius [m] of the sphere about its centre that holds a solid."""
-    kind = shape["kind"]
-    if kind == "box":
-        return 0.5 * math.hypot(*shape["size"])
-    if kind == "hull":
-        return max(math.hypot(*point) for point in shape["points"])
-    radius, half = float(shape["radius"]), 0.5 * float(shape.get("length", 0.0))
-    return math.hypot(radius, half) if kind == "cylinder" else radius + half
+def _shape(name: str, body: CellBody) -> Shape:
+    shape, fixed = body.shape, not is_movable(body)
+    if isinstance(shape, Plane):
+        normal, offset = half_space(shape)
+        return Shape(name, shape.kind, fixed, (), normal, offset, 0.0)
+    return Shape(name, shape.kind, fixed, pieces(shape), UP, 0.0, bounding_radius(shape))

@@ -1,4 +1,4 @@
-"""Pieces of a body enter; rerun's archetypes that draw them leave, one for each kind of piece."""
+"""The rerun archetypes that draw the pieces of a body: one for each kind of piece."""
 
 from __future__ import annotations
 
@@ -9,8 +9,10 @@ from typing import Any, NamedTuple
 import numpy as np
 import rerun as rr
 
+from lavendersim.cell import Box, Capsule, CellHull, Cylinder, Sphere
 from lavendersim.geometry.rotations import rotated
-from lavendersim.replay.shapes import XYZW, Piece, Vector
+from lavendersim.geometry.shapes import Piece
+from lavendersim.replay.shapes import XYZW, Vector
 
 # Of the faces of a movable hull: forces act at surfaces and point into bodies, so they must be seen
 # through them.
@@ -38,44 +40,50 @@ class Look(NamedTuple):
 
 def archetypes(pieces: Sequence[Piece], look: Look) -> dict[str, list[Any]]:
     """Return by kind what draws all pieces of that kind, in the body's frame."""
-    kinds = dict.fromkeys(piece.kind for piece in pieces)
-    return {kind: _draw(kind, [p for p in pieces if p.kind == kind], look) for kind in kinds}
+    kinds = dict.fromkeys(piece.shape.kind for piece in pieces)
+    return {kind: _draw([p for p in pieces if p.shape.kind == kind], look) for kind in kinds}
 
 
-def _draw(kind: str, pieces: Sequence[Piece], look: Look) -> list[Any]:
-    if kind == "hull":
-        return _hulls(pieces, look)
+def _draw(pieces: Sequence[Piece], look: Look) -> list[Any]:
+    """Return what draws pieces of one kind."""
+    shapes = [piece.shape for piece in pieces]
+    hulls = [shape for shape in shapes if isinstance(shape, CellHull)]
+    if hulls:
+        return _hulls(pieces, hulls, look)
     centres = np.array([piece.position for piece in pieces])
-    turns = np.array([piece.quaternion[XYZW] for piece in pieces])
-    if kind == "box":
-        sizes = np.array([piece.shape["size"] for piece in pieces], dtype=np.float64)
+    turns = np.array([piece.orientation[XYZW] for piece in pieces])
+    boxes = [shape for shape in shapes if isinstance(shape, Box)]
+    if boxes:
+        sizes = np.array([box.size for box in boxes])
         return [rr.Boxes3D(half_sizes=sizes / 2, centers=centres, quaternions=turns, **look.words)]
-    radii = np.array([float(piece.shape["radius"]) for piece in pieces])
-    if kind == "sphere":
+    balls = [shape for shape in shapes if isinstance(shape, Sphere)]
+    if balls:
+        radii = np.array([ball.radius for ball in balls])
         return [rr.Ellipsoids3D(radii=radii, centers=centres, quaternions=turns, **look.words)]
-    lengths = np.array([float(piece.shape["length"]) for piece in pieces])
+    bars = [shape for shape in shapes if isinstance(shape, Capsule | Cylinder)]
+    radii, lengths = np.array([[bar.radius, bar.length] for bar in bars]).T
     size: dict[str, Any] = {"lengths": lengths, "radii": radii, "quaternions": turns}
-    if kind == "cylinder":
+    if isinstance(bars[0], Cylinder):
         return [rr.Cylinders3D(**size, centers=centres, **look.words)]
     # rerun's capsules begin in their origin
     begins = [
-        piece.position - rotated(piece.quaternion, np.array([0.0, 0.0, 0.5 * length]))
+        piece.position - rotated(piece.orientation, np.array([0.0, 0.0, 0.5 * length]))
         for piece, length in zip(pieces, lengths, strict=True)
     ]
     return [rr.Capsules3D(**size, translations=np.array(begins), **look.words)]
 
 
-def _hulls(pieces: Sequence[Piece], look: Look) -> list[Any]:
+def _hulls(pieces: Sequence[Piece], hulls: Sequence[CellHull], look: Look) -> list[Any]:
     """Return the faces of all hulls as one mesh, and their edges as lines."""
     corners: list[Vector] = []
     triangles: list[tuple[int, int, int]] = []
     edges: list[Vector] = []
-    for piece in pieces:
+    for piece, hull in zip(pieces, hulls, strict=True):
         first = sum(len(points) for points in corners)
-        local = np.array(piece.shape["points"], dtype=np.float64)
-        points = piece.position + rotated(piece.quaternion, local)
+        local = np.array(hull.points)
+        points = piece.position + rotated(piece.orientation, local)
         corners.append(points)
-        for face in piece.shape["faces"]:
+        for face in hull.faces:
             loop = [int(corner) for corner in face]
             edges.append(points[[*loop, loop[0]]])
             fan = pairwise(loop[1:])

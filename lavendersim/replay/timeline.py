@@ -1,4 +1,4 @@
-"""A simulated time enters; what is logged meanwhile stands at that time in the recording."""
+"""The timeline of simulated time: what is logged within `at_time` stands at that time."""
 
 from __future__ import annotations
 

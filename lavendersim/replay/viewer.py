@@ -1,4 +1,4 @@
-"""A trace enters; an open rerun window leaves, at a moment where one is asked for.
+"""An open rerun window, at a moment where one is requested.
 
 A blueprint cannot say where the time cursor stands (rerun 0.41: TimePanel has no such field), so
 the viewer is told over its port once it has the recording.

@@ -32,8 +32,7 @@ class Bounds:
         absent: Mapping[str, str],
     ) -> None:
         self._watch = Watch(always, STOPPING) if always is not None and always.stop else None
-        resolved = {} if self._watch is None else config.as_dict()
-        self._cell = (bodies, resolved, clock, absent)
+        self._cell = (bodies, config, clock, absent)
         self._last: tuple[Rows, Floats] | None = None  # the state before the block's
 
     def within(self, block: Block) -> tuple[Block, str]:

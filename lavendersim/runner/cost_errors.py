@@ -105,7 +105,7 @@ def _cell_error(
     if truth is not None:
         true = truth.measured[place].get(spec.measure)
     elif isinstance(true, ClosedForm):
-        true = evaluate_form(true, run.cells[place].trace().resolved)
+        true = evaluate_form(true, run.cells[place].trace().config)
     if isinstance(value, str) or isinstance(true, str):
         return NAN  # the log could not answer
     return relative_error(value, true, spec.scale)

@@ -14,7 +14,7 @@ ROOMS = {
     "__init__": {"experiment", "runner", "simulator", "trace"},  # public names, imported when used
     "errors": set(),
     "clock": set(),
-    "geometry": set(),
+    "geometry": {"quantities", "cell"},
     "quantities": {"errors", "clock"},
     "cell": {"errors", "clock", "quantities", "engine"},  # of the engine: DECLARATIONS
     "experiment": {

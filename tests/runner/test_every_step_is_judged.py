@@ -67,7 +67,7 @@ class Falsified:
         self.step, self.pose, self.contact = trace.step.copy(), trace.pose.copy(), trace.contact
         self.contact = trace.contact.copy()
         self.bodies, self.clock = trace.bodies, trace.clock
-        self.resolved, self.absent, self.status = trace.resolved, trace.absent, trace.status
+        self.config, self.absent, self.status = trace.config, trace.absent, trace.status
 
     def trace(self) -> Any:
         return self

@@ -119,7 +119,7 @@ def test_a_thumbnail_shows_it_as_long_as_it_is_there(finished: Finished) -> None
     log = trace(finished, "off", at=0.3)
     shown = []
     for states in (73, 74):
-        whole = (log.bodies, log.resolved, log.clock, log.absent)
+        whole = (log.bodies, log.config, log.clock, log.absent)
         part = Part(log.step[:states], log.contact, log.pose[:states], *whole)
         picture = imread(io.BytesIO(thumbnail(part)))[:, :, :3]
         shown.append(bool((np.abs(picture - to_rgb(LOOKS[GUEST].colour)).max(axis=2) < 0.01).any()))

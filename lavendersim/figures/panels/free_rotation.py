@@ -11,7 +11,6 @@ from lavendersim.figures.drawing import draw_ideal
 from lavendersim.figures.registration import draws
 from lavendersim.figures.specs.free_rotation import FreeRotation
 from lavendersim.figures.style import look
-from lavendersim.measures import cell_config
 from lavendersim.measures.kinds.spinning import body_rates, exact_rotation, times
 from lavendersim.measures.values import Values
 from lavendersim.measures.views import Cell
@@ -27,8 +26,8 @@ def draw_panel(
     if not cells:
         return
     trace = cells[0].trace()
-    moving = cell_config.body(trace.resolved, panel.body)
-    time, rates = times(trace), body_rates(trace, moving)
+    moving = trace.config.scene.bodies[panel.body]
+    time, rates = times(trace), body_rates(trace, panel.body)
     fine = np.linspace(time[0], time[-1], POINTS)
     exact = exact_rotation(moving).angular_velocity(fine)
     chosen = np.linspace(0, len(time) - 1, panel.markers).astype(int)

@@ -52,7 +52,7 @@ def draw_panel(
                 zorder=3,
             )
             if panel.ideal is not None and index == number == 0 and len(time):
-                ideal = evaluate_form(panel.ideal.closed_form, cell.trace().resolved)
+                ideal = evaluate_form(panel.ideal.closed_form, cell.trace().config)
                 ends = np.array([time[0], time[-1]]) * panel.x_factor
                 level = [ideal * panel.factor] * 2
                 draw_ideal(axes, ends, level, panel.ideal.label, order=4.0)

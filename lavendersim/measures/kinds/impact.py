@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from lavendersim.measures import cell_config
+from lavendersim.geometry.bodies import is_movable, mass_of, vector
 from lavendersim.measures.changes import events_of_bodies
 from lavendersim.measures.columns import (
     clearance_by_step,
@@ -126,13 +126,11 @@ def impulse_balance(spec: specs.ImpulseBalance, trace: Trace) -> float:
     and where an event changes a mass or removes one.
     """
     events = events_of_bodies(trace)
-    configs = {one.name: one for one in cell_config.bodies(trace.resolved)}
-    gone = [configs[event["body"]] for event in events if event.get("remove")]
-    if any(event.get("scale_mass") is not None for event in events) or any(
-        one.movable for one in gone
-    ):
+    bodies = trace.config.scene.bodies
+    gone = [bodies[event.body] for event in events if event.remove]
+    if any(event.scale_mass is not None for event in events) or any(map(is_movable, gone)):
         return NAN
-    movable = np.array([configs[name].movable for name in trace.bodies])
+    movable = np.array([is_movable(bodies[name]) for name in trace.bodies])
     rows = trace.contact
     outer = rows[movable[rows["body_a"]] != movable[rows["body_b"]]]
     first, last = 1, len(trace.step) - 1
@@ -145,13 +143,13 @@ def impulse_balance(spec: specs.ImpulseBalance, trace: Trace) -> float:
     size = math.sqrt(float(impulse @ impulse))
     if size == 0.0:
         return NAN
-    mass = sum(one.mass for one in configs.values())
+    mass = sum(mass_of(one) for one in bodies.values())
     momentum = _momentum(trace)
     # counted in steps: logged times are whole nanoseconds, 1e-7 of a step
     steps = trace.step["step"]
     time = float(trace.clock.elapsed(steps[first - 1], steps[last]))
     gained = momentum[last] - momentum[first - 1]
-    gap = impulse + mass * time * cell_config.gravity(trace.resolved) - gained
+    gap = impulse + mass * time * vector(trace.config.scene.gravity) - gained
     return math.sqrt(float(gap @ gap)) / size
 
 

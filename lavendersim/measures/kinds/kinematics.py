@@ -9,8 +9,8 @@ import math
 
 import numpy as np
 
+from lavendersim.geometry.bodies import is_movable
 from lavendersim.geometry.rotations import rotation_matrix, unit_quaternion
-from lavendersim.measures import cell_config
 from lavendersim.measures.registration import measure
 from lavendersim.measures.specs import kinematics as specs
 from lavendersim.measures.views import Floats, Trace
@@ -101,7 +101,7 @@ def _way(
 
 def _speeds(trace: Trace, bodies: tuple[str, ...]) -> tuple[Floats, Floats]:
     """Return the fastest centre's speed [m/s] between neighbouring states, and when they end."""
-    names = bodies or [one.name for one in cell_config.bodies(trace.resolved) if one.movable]
+    names = bodies or [name for name, body in trace.config.scene.bodies.items() if is_movable(body)]
     columns = [list(trace.bodies).index(name) for name in names]
     ways = np.diff(trace.pose[:, columns, :3], axis=0)
     steps = np.asarray(trace.step["step"])

@@ -6,7 +6,9 @@ import math
 
 import numpy as np
 
-from lavendersim.measures import cell_config, changes
+from lavendersim.geometry.bodies import is_movable, mass_of, vector
+from lavendersim.geometry.shapes import half_space
+from lavendersim.measures import changes
 from lavendersim.measures.columns import clearance_by_step, last_window, mechanical_energy
 from lavendersim.measures.registration import measure
 from lavendersim.measures.specs import laws as specs
@@ -23,14 +25,14 @@ def force_error(spec: specs.ForceError, trace: Trace) -> float:
     movable and fixed bodies, since the others cancel, and m is what can move in that step. NaN
     without gravity or a movable body, and for a run shorter than the window.
     """
-    configs = {one.name: one for one in cell_config.bodies(trace.resolved)}
-    gravity = cell_config.gravity(trace.resolved)
+    bodies = trace.config.scene.bodies
+    gravity = vector(trace.config.scene.gravity)
     pull = math.sqrt(float(gravity @ gravity))
-    names = [spec.body] if spec.body else [name for name, one in configs.items() if one.movable]
+    names = [spec.body] if spec.body else [name for name, one in bodies.items() if is_movable(one)]
     carried = np.array([name in names for name in trace.bodies])
     rows = np.flatnonzero(last_window(trace, spec.last))
     masses = changes.masses(trace)[rows]
-    weight = pull * (np.full(len(rows), configs[spec.body].mass) if spec.body else masses)
+    weight = pull * (np.full(len(rows), mass_of(bodies[spec.body])) if spec.body else masses)
     if not np.all(weight > 0.0) or len(rows) == 0:
         return NAN
     contacts = trace.contact
@@ -73,11 +75,11 @@ def _energy_change(spec: specs.EnergyDrift | specs.EnergyGain, trace: Trace) -> 
     energy = mechanical_energy(trace)
     if spec.body is not None and spec.above is not None:
         # resting on the plane: the potential energy of the start less m g times the clearance
-        moving = cell_config.body(trace.resolved, spec.body)
-        plane = cell_config.body(trace.resolved, spec.above)
-        pull = -float(plane.normal @ cell_config.gravity(trace.resolved))
+        scene = trace.config.scene
+        normal = half_space(scene.bodies[spec.above].shape).normal
+        weight = mass_of(scene.bodies[spec.body]) * -float(normal @ vector(scene.gravity))
         height = float(clearance_by_step(trace, spec.body, spec.above)[0])
-        at_rest = float(trace.step["potential_energy"][0]) - moving.mass * pull * height
+        at_rest = float(trace.step["potential_energy"][0]) - weight * height
         energy = energy - at_rest
     return energy / energy[0] - 1.0 if energy[0] != 0.0 else np.array([NAN])
 

@@ -6,7 +6,9 @@ import math
 
 import numpy as np
 
-from lavendersim.measures import cell_config
+from lavendersim.cell import Box, Plane
+from lavendersim.geometry.bodies import is_movable, rotation_of, vector
+from lavendersim.geometry.shapes import half_space
 from lavendersim.measures.closed_forms import clearance, pair_restitution
 from lavendersim.measures.columns import clearance_by_step, last_window, one_timestep
 from lavendersim.measures.kinds.impact import parabola_vertex
@@ -37,8 +39,8 @@ def apex_error(spec: specs.ApexError, trace: Trace) -> float:
         return NAN
     one_timestep(trace, top - 1, top + 1, "apex_error")
     apex = parabola_vertex(*(float(height) for height in heights[top - 1 : top + 2]))
-    moving = cell_config.body(trace.resolved, spec.body)
-    plane = cell_config.body(trace.resolved, spec.above)
+    bodies = trace.config.scene.bodies
+    moving, plane = bodies[spec.body], bodies[spec.above]
     restitution = pair_restitution(moving, plane)
     ideal = restitution ** (2 * spec.bounce) * clearance(moving, plane)
     return abs(apex / ideal - 1.0) if ideal > 0.0 else NAN
@@ -61,7 +63,7 @@ def drift_by_step(trace: Trace, after: float, bodies: tuple[str, ...] = ()) -> F
     rows = np.flatnonzero(time > after - 2e-9)
     if len(rows) < 2:
         return np.zeros(0)
-    names = bodies or [one.name for one in cell_config.bodies(trace.resolved) if one.movable]
+    names = bodies or [name for name, body in trace.config.scene.bodies.items() if is_movable(body)]
     columns = [list(trace.bodies).index(name) for name in names]
     centres = trace.pose[rows[0] :, columns, :3]
     distances: Floats = np.sqrt(((centres - centres[0]) ** 2).sum(axis=2)).max(axis=1)
@@ -96,12 +98,12 @@ def effective_friction(spec: specs.EffectiveFriction, trace: Trace) -> float:
     UsageError where the timestep changes within the window.
     """
     window = _window(trace, spec.last)
-    plane = cell_config.body(trace.resolved, spec.on)
-    pull = cell_config.gravity(trace.resolved)
-    into = -float(plane.normal @ pull)
+    normal = half_space(trace.config.scene.bodies[spec.on].shape).normal
+    pull = vector(trace.config.scene.gravity)
+    into = -float(normal @ pull)
     if window is None or window[1] - window[0] < 2 or into <= 0.0:
         return NAN
-    along = pull + into * plane.normal
+    along = pull + into * normal
     size = math.sqrt(float(along @ along))
     if size == 0.0:
         return NAN
@@ -116,14 +118,15 @@ def effective_friction(spec: specs.EffectiveFriction, trace: Trace) -> float:
 @measure(specs.PassedThrough)
 def passed_through(spec: specs.PassedThrough, trace: Trace) -> float:
     """Return how far [m] the centre came behind the middle of the wall; negative: never."""
-    wall = cell_config.body(trace.resolved, spec.wall)
+    wall = trace.config.scene.bodies[spec.wall]
     centres = trace.pose[:, list(trace.bodies).index(spec.body), :3]
-    if wall.shape["kind"] == "plane":
-        return float(np.max(wall.offset - centres @ wall.normal))
-    if wall.shape["kind"] != "box":
+    if isinstance(wall.shape, Plane):
+        normal, offset = half_space(wall.shape)
+        return float(np.max(offset - centres @ normal))
+    if not isinstance(wall.shape, Box):
         return NAN
-    local = (centres - wall.position) @ wall.rotation
-    outside = np.abs(local[0]) - 0.5 * np.asarray(wall.shape["size"], dtype=float)
+    local = (centres - vector(wall.position)) @ rotation_of(wall)
+    outside = np.abs(local[0]) - 0.5 * vector(wall.shape.size)
     edge = int(np.argmax(outside))
     side = -np.sign(local[0, edge])
     return float(np.max(side * local[:, edge])) if outside[edge] > 0.0 else NAN

@@ -17,7 +17,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from lavendersim.measures import cell_config
+from lavendersim.geometry.bodies import inverse_mass
 from lavendersim.measures.registration import measure
 from lavendersim.measures.specs.optimality import Optimality
 from lavendersim.measures.views import Floats, Rows, Trace
@@ -36,11 +36,11 @@ def optimality(spec: Optimality, trace: Trace) -> Floats:
     steps = contacts["step"]
     if len(steps) == 0 or "target" not in contacts.dtype.names:
         return np.array([NAN])
-    configs = [cell_config.body(trace.resolved, name) for name in trace.bodies]
+    bodies = [trace.config.scene.bodies[name] for name in trace.bodies]
     dt = trace.clock.lengths(steps)
     residual = np.asarray(trace.step["residual"])[np.searchsorted(trace.step["step"], steps)]
-    gamma = _summed(contacts, [one.compliance for one in configs]) / dt**2
-    least = _summed(contacts, [one.inverse_mass for one in configs])
+    gamma = _summed(contacts, [one.surface.compliance for one in bodies]) / dt**2
+    least = _summed(contacts, [inverse_mass(one) for one in bodies])
     pushed = (contacts["inverse_effective_mass"] + gamma) * contacts["impulse_n"]
     away = contacts["normal_velocity"] + contacts["target"] + gamma * contacts["impulse_n"]
     violations = [
@@ -48,7 +48,7 @@ def optimality(spec: Optimality, trace: Trace) -> Floats:
         np.maximum(np.abs(np.minimum(pushed, away)) - residual, 0.0),
     ]
     if "impulse_t1" in (contacts.dtype.names or ()):
-        mu = friction_of(contacts, [one.friction for one in configs])
+        mu = friction_of(contacts, [one.surface.friction for one in bodies])
         cone, sliding = _friction(trace, contacts, least, mu)
         violations += [cone, np.maximum(sliding - residual, 0.0)]
     return np.array([float(np.max(one)) for one in violations])
@@ -72,11 +72,10 @@ def _friction(trace: Trace, contacts: Rows, scale: Floats, mu: Floats) -> tuple[
     limit = scale * mu * np.maximum(contacts["impulse_n"], 0.0)
     held = scale[:, None] * np.column_stack([contacts["impulse_t1"], contacts["impulse_t2"]])
     slip = np.column_stack([contacts["slip_t1"], contacts["slip_t2"]])
-    bodies = trace.resolved["scene"]["bodies"].values()
-    if any(any(one.get("surface_velocity") or ()) for one in bodies):
+    if any(any(one.surface_velocity) for one in trace.config.scene.bodies.values()):
         slip = slip * NAN
     wanted = held - slip
-    if trace.resolved["numerics"].get("friction_cone") == "pyramid":
+    if trace.config.numerics.friction_cone == "pyramid":
         sizes = np.abs(held).max(axis=1)
         nearest = np.clip(wanted, -limit[:, None], limit[:, None])
     else:

@@ -6,10 +6,11 @@ from typing import Any
 
 import numpy as np
 
+from lavendersim.geometry.shapes import HalfSpace
 from lavendersim.measures.columns import last_window
 from lavendersim.measures.penetration import depths
 from lavendersim.measures.registration import measure
-from lavendersim.measures.solids import Ground, Placed, near_pairs, reach, solids_of
+from lavendersim.measures.solids import Placed, near_pairs, reach, solids_of
 from lavendersim.measures.specs.overlap import Overlap
 from lavendersim.measures.views import Floats, Trace
 
@@ -30,7 +31,7 @@ def overlap(spec: Overlap, trace: Trace) -> float:
 
 def overlap_of_rows(trace: Trace, rows: Any) -> Floats:
     """Return the deepest penetration [m] of any two bodies in each of these rows of the log."""
-    solids, grounds = solids_of(trace.resolved, list(trace.bodies))
+    solids, grounds = solids_of(trace.config.scene, list(trace.bodies))
     poses = trace.pose
     deepest = np.zeros(len(rows))
     for index, row in enumerate(rows):
@@ -45,7 +46,7 @@ def overlap_of_rows(trace: Trace, rows: Any) -> Floats:
 
 
 def _with_planes(
-    kind: np.ndarray, placed: Placed, movable: np.ndarray, grounds: list[Ground]
+    kind: np.ndarray, placed: Placed, movable: np.ndarray, grounds: list[HalfSpace]
 ) -> list[float]:
     found = [0.0]
     for normal, offset in grounds:

@@ -6,9 +6,16 @@ import math
 
 import numpy as np
 
+from lavendersim.cell import CellBody
+from lavendersim.geometry.bodies import (
+    is_movable,
+    mass_of,
+    principal_inertia,
+    rotation_of,
+    vector,
+)
 from lavendersim.geometry.rotations import rotation_matrices
-from lavendersim.measures import cell_config
-from lavendersim.measures.cell_config import BodyConfig
+from lavendersim.geometry.shapes import bounding_radius
 from lavendersim.measures.columns import one_timestep
 from lavendersim.measures.free_rotation import FreeRotation, free_rotation
 from lavendersim.measures.impact_forms import velocities_after
@@ -27,16 +34,17 @@ def velocity_error(spec: specs.VelocityError, trace: Trace) -> float:
     v and omega follow from the logged momenta and pose. NaN where another body can move, or the
     impact has no closed form.
     """
-    moving = cell_config.body(trace.resolved, spec.body)
+    moving = trace.config.scene.bodies[spec.body]
     time = float(times(trace)[-1])
-    ideal = velocities_after(trace.resolved, spec.body, spec.other, time)
+    ideal = velocities_after(trace.config, spec.body, spec.other, time)
     if ideal is None or not _alone(trace, moving):
         return NAN
-    velocity = np.array([float(trace.step[f"momentum_{axis}"][-1]) for axis in "xyz"]) / moving.mass
-    omega = body_rates(trace, moving)[-1] @ rotation_matrices(_pose(trace, moving)[-1:, 3:])[0].T
+    momentum = np.array([float(trace.step[f"momentum_{axis}"][-1]) for axis in "xyz"])
+    turn = rotation_matrices(_pose(trace, spec.body)[-1:, 3:])[0]
+    omega = body_rates(trace, spec.body)[-1] @ turn.T
     return max(
-        math.dist(velocity, ideal[0]),
-        moving.radius * math.dist(omega, ideal[1]),
+        math.dist(momentum / mass_of(moving), ideal[0]),
+        bounding_radius(moving.shape) * math.dist(omega, ideal[1]),
     )
 
 
@@ -46,14 +54,15 @@ def angular_velocity_error(spec: specs.AngularVelocityError, trace: Trace) -> fl
 
     NaN where another body can move or the body does not turn.
     """
-    moving = cell_config.body(trace.resolved, spec.body)
-    if not _alone(trace, moving) or not np.any(moving.angular_velocity):
+    moving = trace.config.scene.bodies[spec.body]
+    if not _alone(trace, moving) or not any(moving.angular_velocity):
         return NAN
     time = times(trace)
     rows = time <= (spec.until if spec.until is not None else math.inf)
     exact = exact_rotation(moving).angular_velocity(time[rows])
-    gaps = body_rates(trace, moving)[rows] - exact
-    first = math.sqrt(float(moving.angular_velocity @ moving.angular_velocity))
+    gaps = body_rates(trace, spec.body)[rows] - exact
+    omega = vector(moving.angular_velocity)
+    first = math.sqrt(float(omega @ omega))
     return float(np.sqrt((gaps**2).sum(axis=1)).max()) / first
 
 
@@ -64,11 +73,11 @@ def flip_time_error(spec: specs.FlipTimeError, trace: Trace) -> float:
     Between two samples of opposite sign the middle component of omega is the cubic through them and
     their neighbours, whose root is found by bisection. UsageError where the timestep changes.
     """
-    moving = cell_config.body(trace.resolved, spec.body)
-    if not _alone(trace, moving) or not np.any(moving.angular_velocity):
+    moving = trace.config.scene.bodies[spec.body]
+    if not _alone(trace, moving) or not any(moving.angular_velocity):
         return NAN
     exact = exact_rotation(moving)
-    rate = body_rates(trace, moving)[:, exact.middle_axis]
+    rate = body_rates(trace, spec.body)[:, exact.middle_axis]
     ideal = exact.flip_times(spec.flips)
     length = one_timestep(trace, 0, len(rate) - 1, "flip_time_error")
     found = crossings(rate)[: spec.flips] * length
@@ -97,9 +106,10 @@ def crossings(values: Floats) -> Floats:
     return np.array(places)
 
 
-def exact_rotation(moving: BodyConfig) -> FreeRotation:
+def exact_rotation(moving: CellBody) -> FreeRotation:
     """Return Jacobi's solution that starts as the config says."""
-    return free_rotation(moving.principal_inertia, moving.rotation.T @ moving.angular_velocity)
+    omega = rotation_of(moving).T @ vector(moving.angular_velocity)
+    return free_rotation(principal_inertia(moving), omega)
 
 
 def times(trace: Trace) -> Floats:
@@ -107,19 +117,20 @@ def times(trace: Trace) -> Floats:
     return trace.clock.elapsed(trace.step["step"][0], trace.step["step"])
 
 
-def body_rates(trace: Trace, moving: BodyConfig) -> Floats:
-    """Return omega in the body's own axes [rad/s] (n, 3), from angular momentum and pose."""
-    pose = _pose(trace, moving)
+def body_rates(trace: Trace, body: str) -> Floats:
+    """Return omega in a body's own axes [rad/s] (n, 3), from angular momentum and pose."""
+    pose = _pose(trace, body)
     momentum = np.column_stack([trace.step[f"momentum_{axis}"] for axis in "xyz"])
     spin = angular_momentum(trace) - np.cross(pose[:, :3], momentum)
     rates: Floats = np.einsum("nji,nj->ni", rotation_matrices(pose[:, 3:]), spin)
-    return rates / moving.principal_inertia
+    return rates / principal_inertia(trace.config.scene.bodies[body])
 
 
-def _pose(trace: Trace, moving: BodyConfig) -> Floats:
-    pose: Floats = trace.pose[:, list(trace.bodies).index(moving.name)]
+def _pose(trace: Trace, body: str) -> Floats:
+    pose: Floats = trace.pose[:, list(trace.bodies).index(body)]
     return pose
 
 
-def _alone(trace: Trace, moving: BodyConfig) -> bool:
-    return moving.movable and sum(one.movable for one in cell_config.bodies(trace.resolved)) == 1
+def _alone(trace: Trace, moving: CellBody) -> bool:
+    bodies = trace.config.scene.bodies.values()
+    return is_movable(moving) and sum(map(is_movable, bodies)) == 1

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from lavendersim.measures.cell_config import numerics
 from lavendersim.measures.columns import (
     contacts_of,
     deepest_by_step,
@@ -38,7 +37,7 @@ def steady_penetration(spec: specs.SteadyPenetration, trace: Trace) -> float:
     depths = deepest_by_step(trace, rows)[last_window(trace, spec.last)]
     if len(depths) == 0 or len(rows) == 0:
         return NAN
-    above = numerics(trace.resolved, "slop") if spec.above_slop else 0.0
+    above = trace.config.numerics.slop if spec.above_slop else 0.0
     return float(depths.mean()) - above
 
 

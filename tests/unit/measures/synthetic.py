@@ -11,8 +11,10 @@ from typing import Any
 import numpy as np
 import numpy.lib.recfunctions as recfunctions
 
+from lavendersim.cell import CellConfig
 from lavendersim.clock import Clock
 from lavendersim.measures.free_rotation import free_rotation
+from tests.oracle.cells import cell
 
 STEP = [
     ("step", "i8"),
@@ -87,6 +89,11 @@ class SyntheticTrace:
     resolved: Mapping[str, Any] = field(default_factory=ball_and_floor)
     clock: Clock = field(default_factory=lambda: Clock(Fraction(1, 100)))
     status: str = "complete"
+
+    @property
+    def config(self) -> CellConfig:
+        """The cell of what `resolved` says, complete."""
+        return cell(self.resolved)
 
 
 @dataclass

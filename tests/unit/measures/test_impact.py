@@ -133,7 +133,7 @@ def test_balance_counts_the_impulse_on_the_movable_side() -> None:
 
 def test_balance_is_unknown_when_a_mass_changes_on_the_way() -> None:
     log = falling_log(6.0)
-    log.resolved = ball_and_floor() | {"events": [{"at": 0.0, "scale_mass": 1.05}]}
+    log.resolved = ball_and_floor() | {"events": [{"at": 0.0, "body": "ball", "scale_mass": 1.05}]}
     assert math.isnan(evaluate(specs.ImpulseBalance(kind="impulse_balance"), log))
 
 

@@ -13,7 +13,9 @@ from typing import Any
 
 import numpy as np
 
+from lavendersim.cell import CellConfig
 from lavendersim.clock import Clock
+from tests.oracle.cells import cell
 
 G = 9.81
 STEP_FIELDS = [
@@ -49,6 +51,11 @@ class SyntheticTrace:
     complete: bool = True
     path: Path = Path("cells/ball_and_box.mcap")
     clock: Clock = field(default_factory=lambda: Clock(Fraction(1, 240)))
+
+    @property
+    def config(self) -> CellConfig:
+        """The cell of what `resolved` says, complete."""
+        return cell(self.resolved)
 
 
 def ball_and_box(steps: int = 480) -> SyntheticTrace:

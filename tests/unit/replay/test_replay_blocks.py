@@ -28,7 +28,7 @@ class CountingStream:
 @pytest.mark.parametrize("steps", [0, 99, 199, 200, 480, 1000])
 def test_blocks_have_100_to_200_steps_except_the_last(steps):
     trace, stream = single_ball(steps), CountingStream()
-    room = scene.extent(trace, scene.shapes(trace.resolved))
+    room = scene.extent(trace, scene.shapes(trace.config))
     columns.send(stream, trace, room, force_scale(trace.contact, room.diagonal))
     assert set(stream.rows) == {
         "bodies/ball",

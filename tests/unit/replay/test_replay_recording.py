@@ -208,7 +208,7 @@ def views_in(part):
 
 def views_of(trace):
     """The kinds of views in the blueprint of a trace, and the title of the view of the scene."""
-    bodies = scene.shapes(trace.resolved)
+    bodies = scene.shapes(trace.config)
     room = scene.extent(trace, bodies)
     scale = None if trace.absent else force_scale(contacts_of(trace), room.diagonal)
     views = views_in(blueprint(trace, bodies, room, scale).root_container)

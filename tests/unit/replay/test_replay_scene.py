@@ -7,6 +7,7 @@ import pytest
 
 from lavendersim.replay import scene
 from lavendersim.replay.blueprint import eye_position
+from tests.oracle.cells import cell
 
 ROOM = scene.Extent(np.array([-1.0, -1.0, 0.0]), np.array([1.0, 1.0, 1.0]))
 SLOPE = [-0.5, 0.0, np.sqrt(0.75)]
@@ -14,7 +15,7 @@ SLOPE = [-0.5, 0.0, np.sqrt(0.75)]
 
 def plane(normal, offset=0.0):
     body = {"shape": {"kind": "plane", "normal": normal, "offset": offset}}
-    return scene.shapes({"scene": {"bodies": {"plane": body}}})[0]
+    return scene.shapes(cell({"scene": {"bodies": {"plane": body}}}))[0]
 
 
 @pytest.mark.parametrize("normal", [[0, 0, 1], [0, 1, 0], [-1, 0, 0], SLOPE])
@@ -29,7 +30,7 @@ def test_normal_is_normalised():
 
 
 def test_extent_holds_every_sphere_over_the_whole_trace(one_ball):
-    room = scene.extent(one_ball, scene.shapes(one_ball.resolved))
+    room = scene.extent(one_ball, scene.shapes(one_ball.config))
     height = one_ball.pose[:, 1, 2]
     assert room.low.tolist() == [-0.1, -0.1, height.min() - 0.1]
     assert room.high.tolist() == [0.1, 0.1, height.max() + 0.1]

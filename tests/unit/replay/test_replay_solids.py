@@ -10,6 +10,7 @@ import rerun as rr
 
 from lavendersim.replay.shapes import Shape, shapes
 from lavendersim.replay.solids import Look, archetypes
+from tests.oracle.cells import cell
 
 LOOK = Look((1, 2, 3), False, "thing", True)
 TURN = [0.5, 0.5, 0.5, 0.5]  # w x y z: x to y, y to z, z to x
@@ -26,7 +27,8 @@ TETRA = {
 
 
 def shape_of(shape: dict[str, Any]) -> Shape:
-    return shapes({"scene": {"bodies": {"thing": {"shape": shape, "fixed": False}}}})[0]
+    bodies = {"thing": {"shape": shape, "mass": 1.0}}
+    return shapes(cell({"scene": {"bodies": bodies}}))[0]
 
 
 def placed(*of: dict[str, Any]) -> Shape:
