@@ -26,6 +26,7 @@ from typing import Final
 import numpy as np
 
 from lavendersim.cell import Box, CellBody, CellConfig
+from lavendersim.cell.mixing import mixed
 from lavendersim.geometry.bodies import (
     extent_along,
     inverse_inertia,
@@ -149,13 +150,13 @@ def steady_penetration_above_slop(cell: CellConfig, moving: CellBody, plane: Cel
     """Return d - slop [m] at rest, see the module's derivation."""
     left = 1.0 - cell.numerics.projection
     load = mass_of(moving) * _pull(cell, plane)
-    indentation = (moving.surface.compliance + plane.surface.compliance) * load
-    return left * indentation / (1.0 - left * (1.0 - cell.numerics.stabilisation_gain))
+    indentation = mixed(moving.surface, plane.surface).compliance * load
+    return float(left * indentation / (1.0 - left * (1.0 - cell.numerics.stabilisation_gain)))
 
 
 def pair_restitution(a: CellBody, b: CellBody) -> float:
-    """Return e of two surfaces: the larger one."""
-    return max(a.surface.restitution, b.surface.restitution)
+    """Return e of a contact between two bodies."""
+    return float(mixed(a.surface, b.surface).restitution)
 
 
 def _pull(cell: CellConfig, plane: CellBody) -> float:

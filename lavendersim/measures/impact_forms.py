@@ -17,6 +17,7 @@ import math
 import numpy as np
 
 from lavendersim.cell import CellBody, CellConfig, Plane, Sphere
+from lavendersim.cell.mixing import mixed
 from lavendersim.geometry.bodies import inverse_inertia, inverse_mass, lowest_point, mass_of, vector
 from lavendersim.geometry.shapes import half_space
 from lavendersim.measures.closed_forms import clearance, pair_restitution
@@ -35,7 +36,7 @@ def velocities_after(
     if not isinstance(ground.shape, Plane):
         return None
     gravity, normal = vector(cell.scene.gravity), half_space(ground.shape).normal
-    friction = math.sqrt(moving.surface.friction * ground.surface.friction)
+    friction = float(mixed(moving.surface, ground.surface).friction)
     if not isinstance(moving.shape, Sphere) and (friction > 0.0 or any(moving.angular_velocity)):
         return None
     pull = float(normal @ gravity)

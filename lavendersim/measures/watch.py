@@ -171,7 +171,7 @@ def _impulses(trace: Trace) -> Numbers:
     held = np.maximum(pushed, 0.0)
     if "impulse_t1" in names:
         bodies = trace.config.scene.bodies
-        mu = friction_of(contacts, [bodies[name].surface.friction for name in trace.bodies])
+        mu = friction_of(contacts, [bodies[name].surface for name in trace.bodies])
         first, second = contacts["impulse_t1"], contacts["impulse_t2"]
         pyramid = trace.config.numerics.friction_cone == "pyramid"
         size = np.maximum(abs(first), abs(second)) if pyramid else np.hypot(first, second)

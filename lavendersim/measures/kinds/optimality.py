@@ -17,6 +17,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from lavendersim.cell import Surface
+from lavendersim.cell.mixing import mixed
 from lavendersim.geometry.bodies import inverse_mass
 from lavendersim.measures.registration import measure
 from lavendersim.measures.specs.optimality import Optimality
@@ -48,7 +50,7 @@ def optimality(spec: Optimality, trace: Trace) -> Floats:
         np.maximum(np.abs(np.minimum(pushed, away)) - residual, 0.0),
     ]
     if "impulse_t1" in (contacts.dtype.names or ()):
-        mu = friction_of(contacts, [one.surface.friction for one in bodies])
+        mu = friction_of(contacts, [one.surface for one in bodies])
         cone, sliding = _friction(trace, contacts, least, mu)
         violations += [cone, np.maximum(sliding - residual, 0.0)]
     return np.array([float(np.max(one)) for one in violations])
@@ -61,10 +63,19 @@ def _summed(contacts: Rows, of_bodies: list[float]) -> Floats:
     return total
 
 
-def friction_of(contacts: Rows, of_bodies: list[float]) -> Floats:
-    """Return mu of each contact by the config: the geometric mean of its two surfaces."""
-    values = np.array(of_bodies)
-    mu: Floats = np.sqrt(values[contacts["body_a"]] * values[contacts["body_b"]])
+def friction_of(contacts: Rows, surfaces: list[Surface]) -> Floats:
+    """Return mu of each contact by the config; surfaces: of the bodies by their rows."""
+    different = list(dict.fromkeys(surfaces))
+    number = {surface: row for row, surface in enumerate(different)}
+    rows = np.array([number[surface] for surface in surfaces])
+    pair = rows[contacts["body_a"]] * len(different) + rows[contacts["body_b"]]
+    table = np.zeros(len(different) ** 2)
+    present = np.zeros(len(table), dtype=bool)
+    present[pair] = True
+    for one in np.flatnonzero(present):
+        a, b = divmod(int(one), len(different))
+        table[one] = mixed(different[a], different[b]).friction
+    mu: Floats = table[pair]
     return mu
 
 

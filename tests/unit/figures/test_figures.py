@@ -228,9 +228,9 @@ def test_the_text_stays_inside_the_page() -> None:
     [
         (
             "lavendersim.figures.config_figure",
-            ("numba", "rerun", "matplotlib.pyplot", "lavendersim.engine"),
+            ("numba", "rerun", "matplotlib.pyplot", "lavendersim.engine.engine"),
         ),
-        ("lavendersim.measures", ("numba", "rerun", "matplotlib", "lavendersim.engine")),
+        ("lavendersim.measures", ("numba", "rerun", "matplotlib", "lavendersim.engine.engine")),
         ("lavendersim.figures", ("numba", "rerun", "matplotlib")),
     ],
 )
