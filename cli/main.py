@@ -6,6 +6,7 @@ import os
 import signal
 import sys
 import traceback
+import warnings
 from typing import Annotated
 
 import typer
@@ -63,7 +64,14 @@ def lavender(
 
 def main() -> None:
     """Run the command line; exit 0 good, 1 a check failed, 2 usage, 3 salvaged, 4 internal, 130."""
-    from lavendersim.errors import LavenderError
+    from lavendersim.errors import ConfigWarning, LavenderError
+
+    python_format = warnings.formatwarning
+    warnings.formatwarning = lambda message, category, *where, **line: (
+        f"{message}\n"  # it begins with the place in the config
+        if issubclass(category, ConfigWarning)
+        else python_format(message, category, *where, **line)
+    )
 
     if hasattr(signal, "SIGPIPE") and not sys.stdout.isatty():
         # As other tools do: a reader that has seen enough ends the writer, without a message.

@@ -40,6 +40,10 @@ class ConfigError(LavenderError):
         super().__init__("\n".join(str(defect) for defect in self.defects))
 
 
+class ConfigWarning(FutureWarning):
+    """A config file uses a spelling that the next version refuses; the message has its place."""
+
+
 class ProblemError(LavenderError):
     """A file that states a contact problem is not what its format says, or cannot be read."""
 

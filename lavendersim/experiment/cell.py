@@ -14,7 +14,7 @@ from lavendersim.experiment.checks.reading import Reading
 from lavendersim.experiment.models.always import AlwaysSection
 from lavendersim.experiment.models.cost import CostSpec
 from lavendersim.experiment.models.experiment import CellSource
-from lavendersim.experiment.models.overhead import PriceSpec
+from lavendersim.experiment.models.overhead import OverheadSpec
 from lavendersim.experiment.resolve.cell import resolve_cell
 from lavendersim.experiment.resolve.placement import SceneError
 from lavendersim.experiment.sweeps.axes import Point
@@ -25,7 +25,7 @@ from lavendersim.quantities.model import ConfigModel
 # Sections that are no part of a cell, with rules that its values may break.
 _BESIDE: Final[dict[str, type[ConfigModel]]] = {
     "always": AlwaysSection,
-    "price": PriceSpec,
+    "overhead": OverheadSpec,
     "cost": CostSpec,
 }
 

@@ -12,7 +12,7 @@ from lavendersim.cell.choices import NO_MISTAKE
 from lavendersim.experiment.cell import Cell
 from lavendersim.experiment.models.cost import CostSpec
 from lavendersim.experiment.models.experiment import ExperimentConfig
-from lavendersim.experiment.models.overhead import PriceSpec
+from lavendersim.experiment.models.overhead import OverheadSpec
 from lavendersim.figures.specs.catalogue import FigureSpec
 from lavendersim.measures.specs.always import Always
 from lavendersim.measures.specs.catalogue import MeasureSpec
@@ -68,9 +68,9 @@ class Experiment:
         return self.config.figure
 
     @property
-    def price(self) -> PriceSpec | None:
-        """How the price of every effect is taken, if it is."""
-        return self.config.price
+    def overhead(self) -> OverheadSpec | None:
+        """How the overhead of every effect is measured, if it is."""
+        return self.config.overhead
 
     @property
     def cost(self) -> CostSpec | None:
@@ -80,7 +80,7 @@ class Experiment:
     @property
     def is_drawn(self) -> bool:
         """Whether there is anything to draw."""
-        return self.figure is not None or self.price is not None
+        return self.figure is not None or self.overhead is not None
 
     @property
     def switches_effects(self) -> bool:

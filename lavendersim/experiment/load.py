@@ -19,6 +19,7 @@ from lavendersim.experiment.models.tree import swept_values
 from lavendersim.experiment.sweeps import axes as sweep
 from lavendersim.experiment.sweeps.reduction import check_reduction, reduce
 from lavendersim.experiment.sweeps.solver_override import with_solver
+from lavendersim.experiment.text.former import with_new_spellings
 from lavendersim.experiment.text.node import Node, key_mark
 from lavendersim.experiment.text.parse import LARGEST_FILE, decode, parse
 from lavendersim.experiment.text.report import Report
@@ -66,6 +67,7 @@ def _load(
     if not isinstance(root.content, dict):
         report.add(root.mark, f"expected a mapping with scene and duration, {_found(root)}")
         raise ConfigError(report.defects)
+    root = with_new_spellings(root, name)
     check_reduction(root, report)
     root, shortened = reduce(root) if reduced else (root, False)
     root = with_solver(root, solver) if solver is not None else root

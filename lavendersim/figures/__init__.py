@@ -16,7 +16,7 @@ def draw(run: Any, directory: Path) -> list[Path]:
     from lavendersim.figures.config_figure import draw as draw_page
 
     paths = draw_page(run, directory)
-    if getattr(run.experiment, "price", None) is not None:
+    if getattr(run.experiment, "overhead", None) is not None:
         paths += draw_prices([run], directory)
     if callable(getattr(run, "cost", None)) and run.cost() is not None:
         from lavendersim.figures.work_precision import draw_work_precision

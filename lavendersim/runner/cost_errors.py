@@ -131,7 +131,7 @@ def _failure(experiment: Experiment, run: SettingRun, errors: Sequence[float]) -
     assert experiment.cost is not None
     not_converged = sum(outcome.accuracy.not_converged for outcome in run.outcomes)
     steps = sum(outcome.steps for outcome in run.outcomes)
-    if not_converged > experiment.cost.unsolved * steps:
+    if not_converged > experiment.cost.not_converged * steps:
         return not_converged_steps(not_converged, steps, run.setting.tolerance)
     if not errors or any(math.isnan(error) for error in errors):
         return "its log has no answer"

@@ -114,7 +114,7 @@ def load_all(paths: list[Path], reduced: bool = False) -> list[Experiment]:
     for path in find_configs(paths):
         try:
             experiment = load_experiment(path, reduced)
-            if experiment.price is not None:
+            if experiment.overhead is not None:
                 from .prices import check_price  # late: other configs load without numba
 
                 check_price(experiment)
@@ -167,7 +167,7 @@ def run(
     """Run every cell of an experiment and judge its expectations; take prices where it asks.
 
     root: where run directories are made. jobs: processes; the logs are the same for any number.
-    prices: false leaves out what a section `price` asks for. closing: called with the results
+    prices: false leaves out what a section `overhead` asks for. closing: called with the results
     before the run counts as finished. A cell that diverges or breaks a bound of `always` ends
     there, with a readable log; the others go on.
     """
@@ -226,7 +226,7 @@ def run(
     raw = judge(*claims, experiment.always, always) if experiment.controls else verdicts
     result = Finished(finished, outcomes, verdicts, raw)
     priced = None
-    if prices and experiment.price is not None:
+    if prices and experiment.overhead is not None:
         priced = take_prices(experiment, jobs, progress.pricing)
         write_prices(directory / PRICES, priced)
     write_results(result, measured, priced)

@@ -70,12 +70,12 @@ def samples_beyond(count: int) -> int:
 
 
 def check_price(experiment: Experiment) -> None:
-    """Raise ConfigError where the section `price` names what is no effect."""
+    """Raise ConfigError where the section `overhead` names what is no effect."""
     known = names_of_effects()
     defects = [
         experiment.cells()[0].defect(
-            ("price", "effects", place),
-            f"price.effects: no effect is called {quoted(name)}{nearest(name, known)}",
+            ("overhead", "effects", place),
+            f"overhead.effects: no effect is called {quoted(name)}{nearest(name, known)}",
         )
         for place, name in enumerate(_named(experiment))
         if name not in known
@@ -85,7 +85,7 @@ def check_price(experiment: Experiment) -> None:
 
 
 def _named(experiment: Experiment) -> tuple[str, ...]:
-    spec = experiment.price
+    spec = experiment.overhead
     return () if spec is None or spec.effects == "all" else tuple(spec.effects)
 
 
@@ -96,7 +96,7 @@ def take_prices(
 
     workers: processes that compile. report: called with what is done, how far, and of how many.
     """
-    spec = experiment.price
+    spec = experiment.overhead
     assert spec is not None
     (cell,) = experiment.cells()
     pairs = pairs_of(cell.config, _named(experiment))

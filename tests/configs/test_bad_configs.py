@@ -76,7 +76,7 @@ MADE: dict[str, tuple[bytes, tuple[str, ...]]] = {
 }
 TOP_KEYS = (
     "valid here: scene, events, numerics, duration, record, effects, study, question, expected, "
-    "sweep, measure, expect, always, slow, reduced, figure, price, cost"
+    "sweep, measure, expect, always, slow, reduced, figure, overhead, cost"
 )
 
 

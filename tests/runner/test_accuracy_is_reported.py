@@ -32,7 +32,7 @@ duration: 0.25
 sweep:
   sweeps: {path: numerics.sweeps, values: [1, 400]}
 measure:
-  not_converged: {kind: unsolved_steps}
+  not_converged: {kind: not_converged_steps}
 expect:
   - {name: most steps may miss, measure: not_converged, at_most: 60}
 """

@@ -30,7 +30,7 @@ scene:
       release: {above: floor, clearance: 0.05}
 numerics: chapter
 duration: 0.5
-price: {effects: [gravity, drag, contact_log], repeats: 6}
+overhead: {effects: [gravity, drag, contact_log], repeats: 6}
 """
 EVERY = BALL.replace("[gravity, drag, contact_log]", "all")
 PLAIN = 100.0  # [ns/step] of the scene's own plan
@@ -214,5 +214,5 @@ def test_names_that_are_no_effects_are_refused_at_their_place(tmp_path: Path) ->
         load_all([config])
     (defect,) = refused.value.defects
     assert str(defect) == (
-        f'{config}:11:19: price.effects: no effect is called "gravty"; did you mean "gravity"?'
+        f'{config}:11:22: overhead.effects: no effect is called "gravty"; did you mean "gravity"?'
     )

@@ -106,7 +106,7 @@ class CostSpec(ConfigModel):
     warm_start: Annotated[tuple[bool, ...], Field(min_length=1)] = Field(
         default=(True, False), description="true, false or both"
     )
-    unsolved: Annotated[float, Quantity(minimum=0, maximum=1)] = Field(
+    not_converged: Annotated[float, Quantity(minimum=0, maximum=1)] = Field(
         default=0.01,
         description="share of steps that may end above the tolerance before a setting has failed",
     )

@@ -12,7 +12,7 @@ from lavendersim.experiment.models.always import AlwaysSection
 from lavendersim.experiment.models.cost import CostSpec
 from lavendersim.experiment.models.events import Event
 from lavendersim.experiment.models.expectation_names import expectation_rules
-from lavendersim.experiment.models.overhead import PriceSpec
+from lavendersim.experiment.models.overhead import OverheadSpec
 from lavendersim.experiment.models.record import Record
 from lavendersim.experiment.models.scene import Scene
 from lavendersim.experiment.models.steps import step_rules
@@ -151,7 +151,9 @@ class ExperimentConfig(CellSource):
     )
     reduced: Reduced | None = Field(default=None, description="of a slow experiment: what is run")
     figure: FigureSpec | None = Field(default=None, description="what `lavender plot` draws")
-    price: PriceSpec | None = Field(default=None, description="what each effect costs is taken")
+    overhead: OverheadSpec | None = Field(
+        default=None, description="what each effect costs is measured, after the run"
+    )
     cost: CostSpec | None = Field(
         default=None,
         description="what accuracy costs, for `lavender cost`: a grid, an error, a truth",

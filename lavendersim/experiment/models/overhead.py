@@ -1,4 +1,4 @@
-"""The `price` section of a config in; a validated PriceSpec out: what is timed, and how often."""
+"""The section `overhead`: what each effect costs in this scene; what is timed, and how often."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ EffectNames = Annotated[
 ]
 
 
-class PriceSpec(ConfigModel):
+class OverheadSpec(ConfigModel):
     """What each effect costs in this scene: taken by `lavender run`, after the cells."""
 
     effects: EffectNames = Field(default="all", description="all, or names of effects")

@@ -24,6 +24,7 @@ from lavendersim.experiment.experiment import Experiment
 from lavendersim.experiment.load import load_experiment_text
 from lavendersim.experiment.models.cost import CostSpec
 from lavendersim.experiment.resolve.presets import DEFAULT, PRESETS, specified_numerics
+from lavendersim.experiment.text.former import with_new_spellings
 from lavendersim.experiment.text.parse import parse
 from lavendersim.quantities.scalars import Ratio, written
 
@@ -35,7 +36,7 @@ FINER: Final = 8  # the truth's timestep is the grid's finest over this
 TRUTH_TOLERANCE: Final = 1e-12  # [m/s] a thousandth of the default's
 TRUTH_SWEEPS: Final = 10_000
 # What the experiment that sweeps the grid does without: they speak of the own sweep, not of it.
-_LEFT_OUT: Final = ("expect", "figure", "price", "cost")
+_LEFT_OUT: Final = ("expect", "figure", "overhead", "cost")
 
 Role = Literal["grid", "stated", "chapter", "truth"]
 
@@ -117,6 +118,7 @@ def over_the_grid(experiment: Experiment, settings: list[Setting]) -> Experiment
     """Return the experiment with every setting as a product of its sweep."""
     root, _ = parse(experiment.text.encode(), experiment.name)
     assert root is not None
+    root = with_new_spellings(root, experiment.name)
     data = {key: value for key, value in root.data.items() if key not in _LEFT_OUT}
     data.setdefault("numerics", "default")
     own = data.pop("sweep", None) or {}

@@ -111,8 +111,8 @@ def law_violation(spec: specs.LawViolation, trace: Trace) -> float:
     return float(np.max(trace.step[column][late]))
 
 
-@measure(specs.UnsolvedSteps)
-def unsolved_steps(spec: specs.UnsolvedSteps, trace: Trace) -> float:
+@measure(specs.NotConvergedSteps)
+def not_converged_steps(spec: specs.NotConvergedSteps, trace: Trace) -> float:
     """Return how many steps ended above the tolerance asked for; NaN where none was asked for."""
     if "not_converged" not in (trace.step.dtype.names or ()):
         return NAN

@@ -69,7 +69,7 @@ class LawViolation(Measure):
     after: Seconds = Field(default=0.0, description="[s] only steps that end after this time")
 
 
-class UnsolvedSteps(Measure):
+class NotConvergedSteps(Measure):
     """Number of steps whose residual stayed above the tolerance asked for."""
 
-    kind: Literal["unsolved_steps"]
+    kind: Literal["not_converged_steps"]

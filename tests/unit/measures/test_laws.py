@@ -136,8 +136,8 @@ def test_angular_momentum_is_compared_as_a_vector() -> None:
     assert math.isnan(evaluate(spec, log))
 
 
-def test_unsolved_steps_are_counted_and_unknown_where_no_tolerance_was_asked_for() -> None:
-    spec = specs.UnsolvedSteps(kind="unsolved_steps")
+def test_steps_that_did_not_converge_are_unknown_where_no_tolerance_is_specified() -> None:
+    spec = specs.NotConvergedSteps(kind="not_converged_steps")
     log = trace_of([0.0] * 4)
     assert math.isnan(evaluate(spec, log))
     log.step = recfunctions.append_fields(log.step, "not_converged", [0, 1, 0, 1], usemask=False)
