@@ -147,7 +147,7 @@ def slop(cell: CellConfig) -> float:
 
 
 def steady_penetration_above_slop(cell: CellConfig, moving: CellBody, plane: CellBody) -> float:
-    """Return d - slop [m] at rest, see the module's derivation."""
+    """Return d - slop [m] at rest on a compliant contact."""
     left = 1.0 - cell.numerics.projection
     load = mass_of(moving) * _pull(cell, plane)
     indentation = mixed(moving.surface, plane.surface).compliance * load

@@ -63,7 +63,7 @@ class MeanAngularVelocity(_Along):
 
 
 class TopSpeed(Measure):
-    """Greatest speed [m/s] of any centre: its way between neighbouring states over their time."""
+    """Greatest speed [m/s] of any centre: displacement between neighbouring states over time."""
 
     kind: Literal["top_speed"]
     after: Seconds = Field(default=0.0, description="[s] only motion after this time")

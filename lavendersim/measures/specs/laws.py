@@ -38,7 +38,7 @@ class EnergyDrift(Measure):
 
 
 class EnergyGain(Measure):
-    """Largest E/E0 - 1 [-] over the run: above 0 where energy was won."""
+    """Largest E/E0 - 1 [-] over the run: above 0 where energy was gained."""
 
     kind: Literal["energy_gain"]
     body: BodyName | None = Field(
@@ -56,7 +56,7 @@ class AngularMomentumDrift(Measure):
 
 
 class LawViolation(Measure):
-    """Largest violation of one part of the law of contact in any step, as `/step` states it.
+    """Largest violation of one part of the law of contact in any step, as `/step` reports it.
 
     natural_map [m/s] of the law that was solved, the solver's own error; signorini [m/s],
     cone [N s] and dissipation [J] of Signorini's and Coulomb's law, whichever was solved.
@@ -70,6 +70,6 @@ class LawViolation(Measure):
 
 
 class NotConvergedSteps(Measure):
-    """Number of steps whose residual stayed above the tolerance asked for."""
+    """Number of steps that did not converge: their residual stayed above the tolerance."""
 
     kind: Literal["not_converged_steps"]

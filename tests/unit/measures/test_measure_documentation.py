@@ -1,0 +1,37 @@
+"""docs/measures.md has the tables that the models and functions of the measures give."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import get_args
+
+import pytest
+
+from lavendersim.measures.closed_forms import FORMS
+from lavendersim.measures.documentation import TABLES, with_tables
+from lavendersim.measures.registration import FUNCTIONS
+from lavendersim.measures.registry import evaluate
+from lavendersim.measures.specs.base import FormName
+from lavendersim.measures.specs.catalogue import KINDS
+
+DOCUMENT = Path(__file__).parents[3] / "docs/measures.md"
+
+
+def test_the_document_has_the_tables_of_the_models() -> None:
+    """To make them anew: python -m lavendersim.measures.documentation docs/measures.md."""
+    text = DOCUMENT.read_text(encoding="utf-8")
+    assert with_tables(text) == text
+
+
+@pytest.mark.parametrize("name", TABLES)
+def test_every_table_stands_in_the_document_once(name: str) -> None:
+    assert DOCUMENT.read_text(encoding="utf-8").count(f"<!-- table of {name} -->\n") == 1
+
+
+def test_every_kind_has_a_function_and_every_function_a_kind() -> None:
+    assert callable(evaluate)  # importing it has registered the functions
+    assert set(FUNCTIONS) == set(KINDS.values())
+
+
+def test_every_closed_form_can_be_named_in_a_config() -> None:
+    assert set(get_args(FormName)) == set(FORMS)
