@@ -92,7 +92,7 @@ def warn_of_mistakes(experiment: Any) -> None:
 
 
 def warn_of_not_converged(finished: Any) -> None:
-    """Say on stderr which cells missed the accuracy asked for, the first few by name."""
+    """List on stderr the cells whose steps did not all converge, the first few by name."""
     for notice in finished.not_converged[:FAILURES_SHOWN]:
         typer.echo(notice, err=True)
     if len(finished.not_converged) > FAILURES_SHOWN:

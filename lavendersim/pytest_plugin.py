@@ -1,4 +1,4 @@
-"""Config files enter pytest, one test item per judged expectation leaves.
+"""YAML experiments as pytest items: one for each judged expectation.
 
 A YAML file is an experiment when it has a `scene:` at its top level; other YAML files are left
 alone. The experiment runs once, when its first selected item does; its logs are kept in pytest's
@@ -22,7 +22,7 @@ _EXPERIMENT = re.compile(rb"^scene[ \t]*:", re.MULTILINE)
 # Experiments are small; a larger YAML file is somebody's data.
 _LARGEST_FILE = 1 << 20
 COMPLETES = "every cell completes"
-# Sentences about cells that missed the accuracy asked for; shown at the end, never a failure.
+# Sentences about cells whose steps did not all converge; shown at the end, never a failure.
 _NOT_CONVERGED = pytest.StashKey[list[str]]()
 
 
@@ -54,10 +54,10 @@ def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> pytest.Col
 
 
 def pytest_terminal_summary(terminalreporter: Any, config: pytest.Config) -> None:
-    """Say which cells missed the accuracy asked for, whatever became of their expectations."""
+    """List the cells whose steps did not all converge, whatever became of their expectations."""
     notices = config.stash.get(_NOT_CONVERGED, [])
     if notices:
-        terminalreporter.section("accuracy asked for, not met")
+        terminalreporter.section("steps that did not converge")
         for notice in notices:
             terminalreporter.write_line(notice)
 
@@ -99,7 +99,7 @@ class ExperimentFile(pytest.File):
 
             experiment = load_experiment(self.path, self._reduced)
             factory: pytest.TempPathFactory = self.config._tmp_path_factory  # type: ignore[attr-defined]
-            # Prices are read by people, on a quiet machine; nothing is expected of them.
+            # Overheads are read by people, on a quiet machine; nothing is expected of them.
             self._finished = run(experiment, factory.mktemp(self.path.stem), prices=False)
             self.config.stash.setdefault(_NOT_CONVERGED, []).extend(self._finished.not_converged)
         return self._finished

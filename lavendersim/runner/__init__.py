@@ -1,4 +1,4 @@
-"""The whole line, left to right: config, scene, engine, trace, measures. Keeps runs on disk."""
+"""Runs experiments from config to verdict, and keeps runs on disk."""
 
 from .experiment_run import Finished, Progress, find_configs, load_all, run
 from .run_directory import RUNS, Run, RunCell, list_runs, open_run

@@ -1,4 +1,4 @@
-"""Rows of a cell's steps enter; how far they were solved, and who was worst, leaves."""
+"""How far the steps of a cell converged, and which contact had the largest residual."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-# What a step states the largest of, beside the logged contact that has it: columns of /step.
+# Of what /step has the largest value, and the logged contact that has it.
 PARTS: Final = ("residual", "signorini", "cone", "dissipation")
 
 
@@ -20,10 +20,10 @@ class Worst(NamedTuple):
 
 
 class Accuracy(NamedTuple):
-    """How far the steps of a cell were solved, and how far they keep the law."""
+    """How far the steps of a cell converged, and how far they keep the law of contact."""
 
     worst_residual: float = 0.0  # [m/s] of any step
-    tolerance: float | None = None  # [m/s] asked for; None: every step takes all its sweeps
+    tolerance: float | None = None  # [m/s] of the config; None: every step takes all its sweeps
     not_converged: int = 0  # steps whose solve ended above the tolerance
     worst: Mapping[str, Worst] = MappingProxyType({})  # by PARTS, those that the log has
 

@@ -1,4 +1,4 @@
-"""Runs one cell by its plan: engine, events and bounds in one loop, block by block into the log."""
+"""One cell run by its plan: engine, events and bounds in one loop, block by block into the log."""
 
 from __future__ import annotations
 
@@ -66,12 +66,12 @@ def block_of(rows: Rows, clock: Clock) -> Block:
 def metadata_of(plan: Plan, seeds: str) -> dict[str, dict[str, str]]:
     """Return what the log says about the engine that made it, and where it was overridden."""
     forced: dict[str, dict[str, str]] = {"forced": {**plan.forced}} if plan.forced else {}
-    mistakes = {
-        effect.name: f"a known mistake on purpose: {effect.study_only}"
+    errors = {
+        effect.name: f"a deliberate error: {effect.study_only}"
         for effect in EFFECTS
         if plan.spec.has(effect.name) and effect.study_only
     }
-    study: dict[str, dict[str, str]] = {"study-only": mistakes} if mistakes else {}
+    study: dict[str, dict[str, str]] = {"study-only": errors} if errors else {}
     return {
         "versions": versions(),
         "engine": {

@@ -1,4 +1,4 @@
-"""An experiment with a `cost` section enters; a run of its grid leaves, with what accuracy costs.
+"""What accuracy costs: a grid of settings, each with its error against a truth and its time.
 
 settings -> one run of all of them -> errors against the truth -> times -> front -> targets
 Errors come from logs, times from engines that keep none. `cost.json` has every number and every

@@ -1,4 +1,4 @@
-"""The settings of a grid and what was measured in their cells enter; how wrong each is leaves.
+"""The error of each setting of a cost grid: of the timestep, of the solver and of the model.
 
 Three errors stand apart, none hides another:
     timestep   |measure - truth| / scale, and the order p of error ~ timestep^p between neighbours

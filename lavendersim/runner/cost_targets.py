@@ -1,4 +1,4 @@
-"""Timed settings enter; the front of the cheapest, and a sentence for every target, leave."""
+"""The Pareto front of timed settings, and the cheapest setting that reaches each target."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ def _answer(rows: Sequence[Row], target: float) -> dict[str, Any]:
 
 
 def _as_cheap(rows: Sequence[Row], best: int, target: float) -> int:
-    """Count the other settings that reach a target and whose times cannot be told from the best."""
+    """Count the other settings that reach a target no slower than the best, within its spread."""
     most = rows[best]["ns_per_second"]["high"]
     return sum(
         row["ns_per_second"]["low"] <= most

@@ -1,4 +1,4 @@
-"""The cells of some settings enter; what a simulated second costs in each leaves, repeat by repeat.
+"""What a simulated second costs in each setting of a grid, repeat by repeat.
 
     compile all -> an engine a cell, at the step where timing begins -> rounds, forwards and back
 Every round visits every setting, so that a slow minute of the machine falls on all of them. An

@@ -1,4 +1,4 @@
-"""The machine and the versions of a run leave, as plain data, for `env.json`. Not for the log."""
+"""The machine and the versions of a run, as plain data for `env.json`; never for the log."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Jobs enter, each with its outcome leaves, from this process or from a pool of them."""
+"""Runs cells in this process or in a pool of them, and compiles several plans at once."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Experiments enter; run directories with logs, results and verdicts leave.
+"""Runs an experiment: a directory with logs, results and verdicts.
 
 load -> plan -> run every cell -> measure and judge -> results -> DONE -> latest
 """
@@ -51,10 +51,10 @@ class Finished(NamedTuple):
 
     @property
     def ended_early(self) -> list[RunCell]:
-        """The cells that did not complete, but for those that a negative control wants so."""
-        wanted = meant_to_end_early(self.run.experiment.controls, self.run.cells)
+        """The cells that did not complete, but for those that a negative control expects so."""
+        expected = meant_to_end_early(self.run.experiment.controls, self.run.cells)
         ended = [cell for cell in self.run.cells if cell.status != "complete"]
-        return [cell for cell in ended if cell.index not in wanted]
+        return [cell for cell in ended if cell.index not in expected]
 
     @property
     def compile_s(self) -> float:
@@ -63,7 +63,7 @@ class Finished(NamedTuple):
 
     @property
     def not_converged(self) -> list[str]:
-        """A sentence for every cell that missed the accuracy asked for; a warning, no failure."""
+        """A sentence for every cell whose steps did not all converge; a warning, no failure."""
         return convergence_notices(self)
 
 
@@ -107,7 +107,7 @@ def load_all(paths: list[Path], reduced: bool = False) -> list[Experiment]:
 
     reduced: slow experiments at their reduced length.
 
-    Effects that are switched by hand are among them: whether they can be, the scene's plan tells.
+    Among them are effects switched by hand that cannot be: the plan of the scene decides.
     """
     experiments: list[Experiment] = []
     defects: list[Defect] = []

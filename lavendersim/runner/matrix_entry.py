@@ -1,8 +1,8 @@
-"""A finished run of a case by one solver in; its entry of the matrix out, as plain data.
+"""One entry of the solver matrix: what became of a case by one solver.
 
 passes         every claim is met, declared failures too: what fails elsewhere is held here
 known failure  nothing fails but what the case declares; it is no pass
-fails          something else does; told is the first, in the order of the file
+fails          something else does; the first is named, in the order of the file
 beyond bounds  a cell was stopped at the first step that broke a bound of `always`
 diverged       a cell ended where its numbers did
 refused        the case cannot be put to this solver

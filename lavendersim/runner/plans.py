@@ -1,6 +1,6 @@
-"""The cells of a sweep enter; the plan each is run by leaves, one for all cells that can share it.
+"""The plan of every cell of a sweep, one for all cells that can share a compiled engine.
 
-Cells that differ in a coefficient share one compiled engine: the union of what they call for. Cells
+Cells that differ in a coefficient share one compiled engine: the union of what they require. Cells
 that differ in a choice between laws (`Plan.choices`: solver, integrator, shape of the cone, ...) or
 in the effects that are switched by hand cannot, so they are grouped by these choices, and there is
 one union, and one compilation, a group.

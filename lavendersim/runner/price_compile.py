@@ -1,4 +1,4 @@
-"""Measures what each engine takes to compile [s], and leaves its kernel ready to be called.
+"""What each engine takes to compile [s]; afterwards its kernel is ready to be called.
 
 The time is one compilation's in a process of its own, since kernels share parts that a process
 compiles once; it is the processor's, kept with the kernel, and not taken again.

@@ -1,7 +1,7 @@
-"""For every effect the two engines whose difference is its overhead.
+"""The two engines of every effect whose difference in time is its overhead.
 
-Off and on differ in one effect. What the effect needs is in both, so that prices add up: rolling
-friction is priced on top of friction. Where there is no such pair, a sentence says why:
+Off and on differ in one effect. What the effect needs is in both, so that overheads add up: rolling
+friction is timed on top of friction. Where there is no such pair, a sentence says why:
     the numerics chose it, or chose otherwise     another law, no price of carrying one
     other effects of the plan need it             it cannot be left out alone
 """
@@ -102,7 +102,7 @@ def _everything(plans: Plans) -> list[Pair]:
     physics = [effect.name for effect in agreeing if not _is_log(effect)]
     logs = [effect.name for effect in agreeing if _is_log(effect)]
     whole = plans.silent.including(*physics)
-    reason = "every effect whose law the numerics have, idle where the scene does not call for it"
+    reason = "every effect whose law the numerics have, idle where the scene does not require it"
     return [
         Pair(ALL, False, reason, False, plans.silent, whole),
         Pair(ALL_RECORDED, False, reason, False, plans.silent, whole.including(*logs)),

@@ -1,4 +1,4 @@
-"""Measures what the steps of an engine cost, sample by sample.
+"""What the steps of an engine cost, sample by sample.
 
 A sample is the same steps of the same motion every time: the engine is set back to the state in
 which they begin. Time is the processor's own in this thread, where the system counts it finely:
@@ -60,10 +60,10 @@ class Timed:
         self.engine = build(config, spec).engine(spec, min(steps, BLOCK_STEPS))
         self._run(first)
         self.engine.take_rows()
-        self._held = dict(vars(self.engine))
+        self._begin_state = dict(vars(self.engine))
         self._contents = [
             (array, array.copy())
-            for name, value in self._held.items()
+            for name, value in self._begin_state.items()
             if name not in _ROWS
             for array in _arrays(value)
         ]
@@ -71,7 +71,7 @@ class Timed:
 
     def set_back(self) -> None:
         """Return to the state in which the timed steps begin."""
-        vars(self.engine).update(self._held)
+        vars(self.engine).update(self._begin_state)
         for array, content in self._contents:
             array[...] = content
 

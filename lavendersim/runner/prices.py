@@ -1,4 +1,4 @@
-"""A cell enters; a table of what each effect costs in it leaves: off, on, and their difference.
+"""The overhead of each effect in a cell: its steps without it, with it, and their difference.
 
 compile every engine -> take each to where timing begins -> rounds of pairs, off and on in turn
 Both engines of a pair are sampled right after each other, in alternating order, and the price is

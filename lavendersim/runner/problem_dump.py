@@ -1,4 +1,4 @@
-"""Dumps the contact problems of certain steps as FCLIB files.
+"""The contact problems of certain steps, written as FCLIB files while a cell runs.
 
 `record: {problems: every 10}` makes `problems/<cell>/step_000010.hdf5`, `step_000020.hdf5`, ... in
 the run's directory. The impulses that the step's last solve left are FCLIB's first guess: how

@@ -1,4 +1,4 @@
-"""The measures, verdicts and timings of a run enter; `results.json` and `results.csv` leave."""
+"""The tables of a finished run: `results.json` and `results.csv`."""
 
 from __future__ import annotations
 
@@ -122,7 +122,7 @@ def compile_seconds(finished: Any) -> float:
 
 
 def convergence_notices(finished: Any) -> list[str]:
-    """Return a sentence for every cell that did not reach the accuracy asked for."""
+    """Return a sentence for every cell with steps that did not converge to its tolerance."""
     notices = []
     for cell, outcome in zip(finished.run.cells, finished.outcomes, strict=True):
         accuracy = outcome.accuracy

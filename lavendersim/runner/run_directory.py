@@ -34,17 +34,17 @@ class RunCell:
     coordinates: Mapping[str, Any]
     path: Path
     status: str
-    _held: list[Trace] = field(default_factory=list, repr=False, compare=False)
+    _open: list[Trace] = field(default_factory=list, repr=False, compare=False)
 
     def trace(self) -> Trace:
         """Open the cell's log; its columns are read when they are first asked for."""
-        if not self._held:
-            self._held.append(open_trace(self.path, allow_incomplete=True))
-        return self._held[0]
+        if not self._open:
+            self._open.append(open_trace(self.path, allow_incomplete=True))
+        return self._open[0]
 
     def release(self) -> None:
         """Forget the columns read so far (a large sweep does not fit into memory at once)."""
-        self._held.clear()
+        self._open.clear()
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""An experiment and a cell's coordinates enter; what was drawn at random for the cell leaves.
+"""What was drawn at random for a cell, in words for its log.
 
 Only the jitter of a grid is drawn; a resolved cell holds the places that came of it, not its seed.
 """

@@ -1,4 +1,4 @@
-"""Cases and solvers in; an entry for every case and solver out, as they finish.
+"""Every case run by every solver: the entries of a matrix, as they finish.
 
 Every entry is a run of its own, in a directory of its own, made in another process: a case that
 breaks its process off loses nothing else. Solver by solver, so that what an interrupted matrix

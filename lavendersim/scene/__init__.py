@@ -1,1 +1,1 @@
-"""A resolved config enters; mass properties, engine arrays and the plan leave."""
+"""What a config makes: mass properties, the engine's arrays, and the plan of its effects."""

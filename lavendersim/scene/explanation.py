@@ -1,4 +1,4 @@
-"""A plan enters; all there is to say about it leaves as data: reasons, records, log, kernels.
+"""A plan explained as data: reasons, record fields, log columns and kernels of every effect.
 
 What an effect brings is read from its own module and from what the engine is composed of with it
 and without it. Nothing is compiled.

@@ -1,4 +1,4 @@
-"""What a config switches by hand enters with what its scene calls for; what is on at last leaves.
+"""The effects that a config switches by hand, against what its scene requires.
 
     on    an effect that is not called for is compiled in, with the coefficients that the scene
           states, and so is whatever it needs

@@ -1,4 +1,4 @@
-"""The log of a run: blocks of steps enter an MCAP file, columns leave it. The only room with mcap.
+"""The log of a run as an MCAP file: its writer, its reader and its recovery.
 
 What stands in the file: `schema`. Written by `TraceWriter`, read by `open_trace`, and `recover`
 makes a readable file of what a killed run left.

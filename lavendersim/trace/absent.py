@@ -1,7 +1,7 @@
-"""A sentence enters; the table of a channel that a log does without leaves.
+"""The empty table of a topic that a log does without.
 
 The table is empty, so whatever counts or loops over its rows needs to know nothing; whatever asks
-for one of its columns is told in that sentence why there is none.
+for one of its columns gets that sentence as the reason.
 """
 
 from __future__ import annotations

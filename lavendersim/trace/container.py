@@ -1,4 +1,4 @@
-"""Chunk payloads enter, an MCAP file leaves: records, indexes and checksums, written as they come.
+"""An MCAP file written as it comes: records, indexes and checksums around chunk payloads.
 
     magic Header Attachment.. Metadata.. (Chunk MessageIndex..).. Metadata DataEnd  summary  Footer
 

@@ -1,4 +1,4 @@
-"""Checked chunks enter, columns leave: the mirror of `encode`, by the same layouts.
+"""The columns of checked chunks: the mirror of `encode`, by the same layouts.
 
 Columns are those the file names: the fields of its lavender.Step and lavender.Residuals
 descriptors, and the `fields` of its PointCloud messages. A file whose messages have those columns
@@ -151,8 +151,8 @@ def decode_contacts(
     offsets = entries["offset"].astype(np.int64)
     rows = _matching(head, chunk.data, offsets)
     counts = _counts(head, rows, stride)
-    stated = np.ascontiguousarray(head.take(rows, "data_length")[:, 0]).view(np.uint8)
-    if not np.array_equal(stated.reshape(len(rows), -1), padded_varints(counts * stride)):
+    written = np.ascontiguousarray(head.take(rows, "data_length")[:, 0]).view(np.uint8)
+    if not np.array_equal(written.reshape(len(rows), -1), padded_varints(counts * stride)):
         raise ValueError("a point cloud contradicts its length")
     points = gather(chunk.data, _tails(offsets + len(head), counts, stride), stride)
     packed = points.view(layout.packed_dtype(fields, stride))[:, 0]

@@ -1,4 +1,4 @@
-"""Columns enter, protobuf descriptor sets leave: what the log's schema records carry.
+"""The protobuf descriptor sets that the schema records of a log carry.
 
 Built as data, so there is no generated code and no protoc. The foxglove messages repeat the public
 definitions (https://github.com/foxglove/foxglove-sdk, schemas/proto) field by field.

@@ -1,4 +1,4 @@
-"""A block of steps enters, the bytes of its two streams leave: whole MCAP Message records.
+"""The bytes of a block of steps: whole MCAP Message records, in a light and a bulk stream.
 
 Per block, never per message: sizes from the counts, offsets by cumulative sum, then one scatter
 for the fixed part of each kind of message and one for each kind of row that follows it.

@@ -1,4 +1,4 @@
-"""A finished file enters, what stands where in it leaves: from its summary.
+"""What stands where in a finished log, from its summary; every record is checked.
 
 Nothing is trusted: a record must be, byte for byte, what writing the parsed record again gives
 (which includes the CRC of an attachment), a chunk must match its index entry and its CRC, and the

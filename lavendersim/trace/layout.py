@@ -1,4 +1,4 @@
-"""Columns and body names enter, the byte layout of each message leaves; writer and reader share it.
+"""The byte layout of every message; writer and reader share it.
 
 Every layout is a whole MCAP Message record (opcode, length, channel, sequence, log and publish
 time, data), so a chunk is filled by copying rows. Slots: `sequence`, `clock` (log and publish

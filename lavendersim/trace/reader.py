@@ -1,4 +1,4 @@
-"""A log file enters, columns leave, each loaded when it is first asked for.
+"""The reader of logs: columns, each loaded when it is first asked for.
 
 Reading `step` or `residual` touches the light chunks only; `contact` and `pose` the bulk ones.
 """
@@ -89,7 +89,7 @@ class Trace:
     def residual(self) -> NDArray[Any]:
         """One row per sweep of the steps that were asked for: step, sweep, residual [m/s].
 
-        Without /residuals an empty table, which says why where a column is asked of it.
+        Without /residuals an empty table, which gives the reason where a column is asked of it.
         """
         if "/residuals" in self.absent:
             return absent_table(self.why_not("/residuals"))
@@ -119,7 +119,7 @@ class Trace:
     def contact(self) -> NDArray[Any]:
         """One row per contact and step: `step`, the file's columns, and `time` [s].
 
-        Without /contacts an empty table, which says why where a column is asked of it.
+        Without /contacts an empty table, which gives the reason where a column is asked of it.
         """
         if "/contacts" in self.absent:
             return absent_table(self.why_not("/contacts"))
@@ -144,7 +144,7 @@ class Trace:
                 yield decode.decode_contacts(chunk, fields, stride, frame)
 
     def why_not(self, topic: str) -> str:
-        """Return the sentence that says why this log has no such topic."""
+        """Return the reason why this log has no such topic, as a sentence."""
         return f"{self.path}: this log has no {topic}: {self.absent[topic]}"
 
     @cached_property

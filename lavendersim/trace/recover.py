@@ -1,4 +1,4 @@
-"""A killed or damaged log enters, a well-formed one leaves: its whole part, said to be one."""
+"""Makes a well-formed log, marked as recovered, of the whole part of a killed or damaged one."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A killed run's file enters, its whole part leaves: found by walking the records from the start.
+"""The whole part of a killed run's log, found by walking its records from the start.
 
 What is not whole, or fails a check, ends the walk; what counts ends at the last light chunk, for
 the writer puts a light chunk behind the bulk chunk of the same steps.

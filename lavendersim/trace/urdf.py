@@ -1,4 +1,4 @@
-"""The URDF that viewers draw the geometry of a scene from.
+"""The URDF from which viewers draw the geometry of a scene.
 
 Links are named as the bodies and stand in the frames that /tf moves. A plane is a thin box whose
 top face is the plane; it is placed against the plane body's own pose, whatever that is.

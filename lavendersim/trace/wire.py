@@ -1,4 +1,4 @@
-"""Rows of bytes enter, packed messages leave: fixed layouts whose slots numpy fills all at once.
+"""Fixed protobuf layouts whose slots numpy fills for many messages at once.
 
 A message whose layout does not change from step to step is one template: constant bytes (tags,
 lengths, names) with holes (slots) in it. Writing n messages is tiling the template n times and

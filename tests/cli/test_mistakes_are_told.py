@@ -51,7 +51,7 @@ def test_plan_says_it_of_the_cells_that_make_it(mistaken: Path) -> None:
 def test_the_log_and_show_say_it_of_the_cells_that_make_it(mistaken: Path) -> None:
     right, wrong = (cell.trace().metadata for cell in open_run(None, mistaken / "runs").cells)
     assert "study-only" not in right
-    assert wrong["study-only"]["capture_in_sweeps"].startswith("a known mistake on purpose: ")
+    assert wrong["study-only"]["capture_in_sweeps"].startswith("a deliberate error: ")
     assert not right["plan"]["capture_in_sweeps"].startswith("on")
     lines = lavender("show", where=mistaken).stdout.splitlines()
     plan = lines.index("plan of m=capture_in_sweeps")

@@ -88,7 +88,7 @@ def test_an_accuracy_that_was_missed_is_said_and_fails_nothing(pytester: pytest.
     result.assert_outcomes(passed=2)
     result.stdout.fnmatch_lines(
         [
-            "*accuracy asked for, not met*",
+            "*steps that did not converge*",
             "drop: * of 120 steps ended above the tolerance 1e-09 m/s*",
         ]
     )

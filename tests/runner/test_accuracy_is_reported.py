@@ -1,4 +1,4 @@
-"""A run says which steps missed the accuracy asked for, how far, and goes on all the same."""
+"""A run reports which steps did not converge, by how far, and goes on all the same."""
 
 from __future__ import annotations
 
