@@ -42,7 +42,7 @@ def run(
             from lavendersim.figures import draw
 
             figures = draw(finished.run, finished.run.path / "figures")
-        if experiment.price is not None:
+        if experiment.overhead is not None:
             priced.append(finished.run)
         if as_json:
             tables.append({**finished.run.results(), "run": finished.run.path, "figures": figures})
