@@ -23,11 +23,12 @@ class Release(ConfigModel):
     )
     phase: Annotated[Fraction, Quantity(minimum=0, exact=True)] = Field(
         default=Fraction(0),
-        description="share of the fall of one step at impact, sqrt(2 g h) dt, added to the gap",
+        description="adds phase * sqrt(2 g h) * timestep to the gap h: where in a step the impact "
+        "falls",
     )
     at: Annotated[tuple[float, float], Vector(2, Quantity("m"))] | None = Field(
         default=None,
-        description="[m] x and y of the centre; not stated: on the plane's normal through 0",
+        description="[m] x and y of the centre; none: on the plane's normal through 0",
     )
 
 

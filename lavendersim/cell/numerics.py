@@ -21,22 +21,36 @@ class Numerics(ConfigModel):
     timestep: Annotated[Fraction, Quantity("s", above=0, exact=True)] = Field(
         default=Fraction(1, 240), description="[s] a ratio such as 1/480 is kept exactly"
     )
-    solver: Solver = Field(default="adaptive", description="the solver of the contact problem")
+    solver: Solver = Field(
+        default="adaptive",
+        description="`projected_gauss_seidel`, `block_gauss_seidel` (its sweeps on packed "
+        "contacts, faster from a few on), `coloured_gauss_seidel` (eight at a time), "
+        "`nonsmooth_conjugate_gradient`, `jacobi`, `accelerated_projected_gradient`, or "
+        "`adaptive`: what each step requires",
+    )
     sweeps: Annotated[int, Quantity(whole=True, minimum=1, maximum=1_000_000)] = Field(
-        default=50, description="most velocity sweeps per step"
+        default=50,
+        description="most velocity sweeps per step; one that changes nothing is the last",
     )
     over_relaxation: Annotated[float, Quantity(above=0, below=2)] = Field(
-        default=1.0, description="factor on the changes that velocity sweeps make; 1: none"
+        default=1.0,
+        description="factor on the changes that sweeps make; impulses are projected afterwards",
     )
-    order: Order = Field(default="coloured", description="in which sweeps visit contacts")
+    order: Order = Field(
+        default="coloured",
+        description="in which sweeps visit contacts: `coloured`, `forward`, `backward`, "
+        "`symmetric` or `random`",
+    )
     tolerance: Annotated[float, Quantity("m/s", above=0)] | None = Field(
         default=1e-9, description="[m/s] residual at which sweeping stops early; null: never"
     )
-    warm_start: bool = Field(default=True, description="start a solve from the cached impulses")
+    warm_start: bool = Field(
+        default=True, description="start from the cached impulses of matched contacts"
+    )
     # No gain: projection alone removes penetration, so resting correction never becomes bounce.
     stabilisation_gain: Annotated[float, Quantity(minimum=0)] = Field(
         default=0.0,
-        description="beta: share of (penetration - slop) per step that becomes bias velocity",
+        description="beta: the bias velocity is beta / dt * (penetration - slop)",
     )
     slop: Annotated[float, Quantity("m", minimum=0)] = Field(
         default=1e-7, description="[m] penetration that is left alone"
@@ -48,7 +62,7 @@ class Numerics(ConfigModel):
         default=20, description="sweeps of the positional projection per step"
     )
     restitution_threshold: Annotated[float, Quantity("g dt", minimum=0)] = Field(
-        default=2.0, description="[g dt] approach speed above which restitution acts"
+        default=2.0, description="[g dt] approach speed above which captured restitution acts"
     )
     cache_distance: Annotated[float, Quantity("m", minimum=0)] = Field(
         default=0.02, description="[m] largest distance between a contact and its cached match"
@@ -58,23 +72,25 @@ class Numerics(ConfigModel):
         description="smallest cosine between a contact's normal and its cached match's",
     )
     speculative: bool = Field(
-        default=True, description="contacts are made ahead of touching; a gap may close, no more"
+        default=True,
+        description="contacts are made ahead of touching: a gap may close within a step, and no "
+        "more",
     )
     impacts: Impacts = Field(
         default="at_surface",
-        description="when restitution acts: captured (at the start of the step that finds the "
-        "contact) or at_surface (at the time within the step when the surfaces meet)",
+        description="when restitution acts: `captured`, at the start of the step that finds the "
+        "contact, or `at_surface`, at the time within the step when the surfaces meet",
     )
     integrator: Integrator = Field(
-        default="midpoint", description="how poses follow from velocities between contacts"
+        default="midpoint",
+        description="of poses between contacts: `semi_implicit_euler` or `midpoint`",
     )
     friction_cone: FrictionCone = Field(
         default="disc",
-        description="disc: Coulomb's law; for study pyramid: each tangent on its own; convex: the "
-        "relaxation that lifts what slides",
+        description="the law of friction: `disc`, or for study `pyramid` or `convex`; see below",
     )
     sleeping: bool = Field(
-        default=False, description="bodies that have come to rest are left out until touched"
+        default=False, description="bodies at rest are left out until something disturbs them"
     )
     sleep_speed: Annotated[float, Quantity("m/s", minimum=0)] = Field(
         default=0.005,

@@ -61,7 +61,8 @@ class Grid(ConfigModel):
     )
     jitter: Annotated[float, Quantity("m", minimum=0)] = Field(
         default=0.0,
-        description="[m] every centre is moved by up to so much along each axis, evenly drawn",
+        description="[m] every centre is moved by up to so much along each axis, evenly drawn "
+        "(Python's Mersenne twister)",
     )
     seed: Annotated[int, Quantity(whole=True, minimum=0, maximum=2**53)] = Field(
         default=0, description="of the jitter: equal seeds give equal scenes"

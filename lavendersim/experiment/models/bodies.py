@@ -45,14 +45,15 @@ class _Matter(ConfigModel):
     """What bodies have in common, whether they stand alone or are arranged."""
 
     mass: Annotated[float, Quantity("kg", above=0, hint=STATIC_HINT)] | None = Field(
-        default=None, description="[kg]"
+        default=None, description="[kg] of a movable body, which has this or a density"
     )
     density: Annotated[float, Quantity("kg/m^3", above=0)] | None = Field(
-        default=None, description="[kg/m^3]"
+        default=None, description="[kg/m^3] instead of a mass"
     )
     inertia: Annotated[Vector3, Vector(3, Quantity("kg m^2", above=0))] | None = Field(
         default=None,
-        description="[kg m^2] moments about the body's x, y, z; not stated: of a homogeneous solid",
+        description="[kg m^2] moments about the body's x, y, z; none: of a homogeneous solid, as "
+        "hulls and compounds are",
     )
     fixed: bool = Field(default=False, description="true: never moves, has no mass")
     kinematic: bool = Field(
@@ -60,21 +61,26 @@ class _Matter(ConfigModel):
         description="true: keeps its velocity and angular velocity whatever touches it, no mass",
     )
     surface: SurfaceOf = Field(
-        default=Surface(), description="name of one of scene.surfaces, or its properties in place"
+        default=Surface(),
+        description="name of one of `scene.surfaces`, or its properties in place; all 0",
     )
     surface_velocity: Velocity = Field(
         default=(0.0, 0.0, 0.0),
-        description="[m/s] of the surface in the body's frame, added in contacts: conveyors",
+        description="[m/s] of the surface in the body's frame, as of a conveyor's belt; what of it "
+        "lies along a contact's normal says nothing",
     )
     orientation: Orientation = Field(
         default=(1.0, 0.0, 0.0, 0.0),
-        description="quaternion w x y z, or axis and degrees; is normalised",
+        description="quaternion w x y z, or `{axis: [x, y, z], degrees: 30}`; both are normalised",
     )
     velocity: Velocity = Field(default=(0.0, 0.0, 0.0), description="[m/s] of the centre of mass")
     angular_velocity: AngularVelocity = Field(
         default=(0.0, 0.0, 0.0), description="[rad/s] world frame, right-handed"
     )
-    drag: Drag = Field(default=Drag(), description="resistance of the medium")
+    drag: Drag = Field(
+        default=Drag(),
+        description="force -(linear + quadratic |v|) v and torque -angular omega of the medium",
+    )
 
     @classmethod
     def rules(cls, at: Place) -> None:
@@ -104,9 +110,12 @@ class Body(_Matter):
     """One rigid body. Planes are static; a movable body has exactly one of mass and density."""
 
     shape: Shape = Field(description="plane, sphere, box, capsule, cylinder, hull or compound")
-    position: Position | None = Field(default=None, description="[m] centre of mass, world frame")
+    position: Position | None = Field(
+        default=None,
+        description="[m] centre of mass, world frame; of planes neither this nor a release",
+    )
     release: Release | None = Field(
-        default=None, description="start above a plane, instead of position"
+        default=None, description="start above a plane, instead of a position; of what can move"
     )
 
     @classmethod

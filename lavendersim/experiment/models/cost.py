@@ -66,16 +66,19 @@ SolverNames = Annotated[
 class CostError(ConfigModel):
     """What is wrong in a run: |measure - truth| / scale, the worst over cells and rows."""
 
-    measure: MeasureName = Field(description="the measure that is held against the truth")
+    measure: MeasureName = Field(
+        description="the measure that is compared with the truth; of a row of numbers the worst "
+        "counts"
+    )
     truth: Truth = Field(
         default=0.0,
-        description="a number in the measure's unit, a closed form, or finest: the measure at an "
+        description="a number, a closed form `{form, bodies}`, or `finest`: the measure at an "
         "eighth of the grid's finest timestep, solved to 1e-12 m/s",
     )
     scale: Annotated[float, Quantity(above=0)] | None = Field(
         default=None,
-        description="[measure's unit] what an error of 100 % is; |truth| where it is not stated, "
-        "and 1 for a truth of 0",
+        description="[measure's unit] what an error of 100 % is; none: |truth|, or 1 for a truth "
+        "of 0",
     )
 
 
@@ -86,8 +89,8 @@ class CostSpec(ConfigModel):
     presets: Annotated[tuple[Literal["chapter", "default"], ...], Field(min_length=1)] | None = (
         Field(
             default=None,
-            description="presets whose other numerics (the laws) are compared; the config's alone "
-            "if not stated",
+            description="presets whose other numerics (the laws) are compared; none: the config's "
+            "alone",
         )
     )
     timesteps: Annotated[tuple[Timestep, ...], Field(min_length=1)] = Field(
@@ -97,11 +100,11 @@ class CostSpec(ConfigModel):
     solvers: SolverNames = Field(default="all", description="all, or names of solvers")
     sweeps: Annotated[tuple[Sweeps, ...], Field(min_length=1)] = Field(
         default=(2, 4, 8, 16, 32, 64),
-        description="sweeps per step of solvers that take as many as they are given",
+        description="of solvers that take all sweeps they are given; their tolerance is null",
     )
     tolerances: Annotated[tuple[Tolerance, ...], Field(min_length=1)] = Field(
         default=(1e-3, 1e-6, 1e-9),
-        description="[m/s] of solvers that sweep until a tolerance is reached (adaptive)",
+        description="[m/s] of `adaptive`, which sweeps until it is there",
     )
     warm_start: Annotated[tuple[bool, ...], Field(min_length=1)] = Field(
         default=(True, False), description="true, false or both"
@@ -111,9 +114,11 @@ class CostSpec(ConfigModel):
         description="share of steps that may end above the tolerance before a setting has failed",
     )
     targets: Annotated[tuple[Share, ...], Field(min_length=1)] = Field(
-        default=(0.01, 0.001), description="errors whose cheapest setting is told; 0.01 is 1 %"
+        default=(0.01, 0.001), description="errors whose cheapest setting is reported; 0.01 is 1 %"
     )
-    repeats: Repeats = Field(default=9, description="rounds; every round times every setting")
+    repeats: Repeats = Field(
+        default=9, description="rounds, 7 or more; every round times every setting"
+    )
     begin: Annotated[float, Quantity("s", minimum=0)] = Field(
         alias="from",
         default=0.0,

@@ -26,16 +26,18 @@ class Event(ConfigModel):
 
     at: Annotated[float, Quantity("s", minimum=0)] = Field(description="[s] simulated time")
     body: BodyName | None = Field(
-        default=None, description="name of a body; required but for a timestep"
+        default=None,
+        description="a body that is not fixed; required but for a timestep, and `remove` takes any",
     )
     timestep: Annotated[Fraction, Quantity("s", above=0, exact=True)] | None = Field(
-        default=None, description="[s] length of the steps from then on; stands without a body"
+        default=None,
+        description="[s] length of the steps from then on; an event of its own, without a body",
     )
     scale_mass: Annotated[float, Quantity(above=0)] | None = Field(
-        default=None, description="factor on mass and inertia"
+        default=None, description="factor on mass and inertia; not of kinematic bodies"
     )
     teleport: Position | None = Field(
-        default=None, description="[m] new centre of mass; clears the body's cached contacts"
+        default=None, description="[m] new centre of mass; drops the body's cached impulses"
     )
     velocity: Velocity | None = Field(
         default=None, description="[m/s] new velocity of the centre of mass"
@@ -45,11 +47,12 @@ class Event(ConfigModel):
     )
     contact_cache: Literal["keep", "clear"] | None = Field(
         default=None,
-        description="clear: every cached impulse is dropped, the next solve starts cold; "
-        "not stated: keep",
+        description="`keep`, or `clear`: every cached impulse is dropped, the next solve starts "
+        "cold; none: keep",
     )
     remove: bool | None = Field(
-        default=None, description="true: the body, which may be fixed, takes part in nothing more"
+        default=None,
+        description="true: the body takes part in nothing more; no event or force may follow",
     )
 
     @classmethod

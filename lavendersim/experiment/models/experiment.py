@@ -93,14 +93,15 @@ class CellSource(ConfigModel):
     scene: Scene = Field(description="gravity, surfaces and bodies")
     events: tuple[Event, ...] = Field(default=(), description="changes during the run")
     numerics: NumericsOf = Field(
-        default="default", description="name of a preset, or a mapping of values that may name one"
+        default="default",
+        description="how it is simulated: a preset, or values that differ from one",
     )
     duration: Annotated[float, Quantity("s", above=0)] = Field(
         description="[s] simulated time of a run"
     )
     record: Record = Field(default=Record(), description="what is logged beyond every step")
     effects: Effects = Field(
-        default=Effects(), description="effect or shape pair: on or off, against the plan"
+        default=Effects(), description="effects forced in or kept out, against the plan; for study"
     )
     study: Study = Field(
         default=Study(), description="a known mistake, made on purpose; every run with one says so"
@@ -136,8 +137,8 @@ class ExperimentConfig(CellSource):
     expected: str = Field(default="", description="the expected result and why, in words")
     sweep: SweepOf = Field(
         default={},
-        description="axis name: path and values; cells are the product, the first axis slowest; "
-        "a list of such mappings is the union of their products, in order",
+        description="axis name: path and values; cells are the product, the first axis slowest; a "
+        "list of such mappings is the union of their products, in order",
     )
     measure: dict[NewName, MeasureSpec] = Field(default={}, description="name: what each log gives")
     expect: tuple[ExpectSpec, ...] = Field(default=(), description="the claims that pytest checks")

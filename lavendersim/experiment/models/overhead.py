@@ -27,7 +27,9 @@ EffectNames = Annotated[
 class OverheadSpec(ConfigModel):
     """What each effect costs in this scene: taken by `lavender run`, after the cells."""
 
-    effects: EffectNames = Field(default="all", description="all, or names of effects")
+    effects: EffectNames = Field(
+        default="all", description="or a list of names, as `lavender plan` shows them"
+    )
     repeats: Annotated[int, Quantity(whole=True, minimum=1, maximum=1000)] = Field(
         default=9, description="rounds; every round visits every effect, on and off, in turn"
     )

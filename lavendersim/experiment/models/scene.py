@@ -38,10 +38,11 @@ class TiltedGravity(ConfigModel):
         default=GRAVITY, description="[m/s^2]"
     )
     tilt_degrees: Annotated[float, Quantity("degree", minimum=0, maximum=180)] | None = Field(
-        default=None, description="[degree] angle from -z; not stated: 0, or by the slope"
+        default=None,
+        description="[degree] angle from -z; 0 where neither this nor `slope` is given",
     )
     slope: Annotated[float, Quantity(minimum=0)] | None = Field(
-        default=None, description="tangent of that angle, instead of tilt_degrees"
+        default=None, description="tangent of that angle, instead of `tilt_degrees`"
     )
     azimuth_degrees: Annotated[float, Quantity("degree")] = Field(
         default=0.0, description="[degree] from x towards y: the direction in which it goes down"
@@ -85,7 +86,7 @@ class Force(ConfigModel):
     end: Annotated[float, Quantity("s", minimum=0)] | None = Field(
         default=None,
         alias="to",
-        description="[s] until the first step that starts then; not stated: to the end of the run",
+        description="[s] until the first step that starts then; none: to the end of the run",
     )
     force: Annotated[Vector3, Vector(3, Quantity("N"))] = Field(
         default=_ZERO, description="[N] on the centre of mass, world frame"
@@ -126,14 +127,15 @@ class Scene(declared("Scene", ConfigModel, SCENE_KEYS)):  # type: ignore[misc]
 
     gravity: Gravity = Field(
         default=GRAVITY,
-        description="[m/s^2] magnitude along -z, a vector [gx, gy, gz], or its tilt",
+        description="[m/s^2] magnitude along -z, a vector `[gx, gy, gz]`, or its tilt",
     )
     surfaces: dict[NewName, Surface] = Field(
-        default={}, description="named surfaces, shared by bodies"
+        default={}, description="name: properties, for several bodies"
     )
     bodies: dict[NewName, Body] = Field(description="name of the body: its properties")
     arrangements: dict[NewName, Arrangement] = Field(
-        default={}, description="name: one body in many places; they are called name_1, name_2, ..."
+        default={},
+        description="name: one body in many places (name_1, name_2, ...), behind `bodies`",
     )
     forces: tuple[Force, ...] = Field(default=(), description="forces and torques over time")
 

@@ -69,7 +69,8 @@ class Part(ConfigModel):
     )
     orientation: Orientation = Field(
         default=(1.0, 0.0, 0.0, 0.0),
-        description="part to compound: quaternion w x y z, or axis and degrees; is normalised",
+        description="part to compound: quaternion w x y z, or `{axis, degrees}`; both are "
+        "normalised",
     )
 
 

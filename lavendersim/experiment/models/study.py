@@ -31,8 +31,8 @@ class Study(ConfigModel):
 
     mistake: Mistake = Field(
         default=NO_MISTAKE,
-        description="a known mistake that is made on purpose; capture_in_sweeps: restitution is "
-        "captured anew in every sweep, not once before the solve, and the bounce is lost",
+        description="`capture_in_sweeps`: every sweep captures restitution anew, from the velocity "
+        "that it finds, and the bounce is lost",
     )
 
     @classmethod

@@ -9,15 +9,13 @@ import pytest
 from pydantic import BaseModel
 
 from lavendersim.cell import Numerics
-from lavendersim.experiment.checks.annotations import (
-    alternatives,
-    annotation_of,
-    field_name,
-    is_model,
-    kinds,
-)
+from lavendersim.experiment.checks.annotations import field_name, kinds
 from lavendersim.experiment.models.experiment import ExperimentConfig
+from lavendersim.experiment.reference import models_below, render
 from lavendersim.experiment.resolve.presets import PRESETS
+from lavendersim.figures.specs.catalogue import FigureSpec
+from lavendersim.measures.specs.catalogue import MeasureSpec
+from lavendersim.measures.specs.expectation import ExpectSpec
 from lavendersim.quantities.scalars import resolve, written
 
 TEXT = (Path(__file__).parents[3] / "docs" / "config.md").read_text(encoding="utf-8")
@@ -27,26 +25,22 @@ ROWS = {
     if len(cells := line.split("|")) == 6 and cells[1].startswith(" `")
 }
 # Kinds of these are listed by `lavender schema`.
-ELSEWHERE = {"measure", "expect", "figure"}
+ELSEWHERE = models_below(
+    tuple[MeasureSpec, ExpectSpec, FigureSpec]  # type: ignore[valid-type]
+)
+MODELS = [model for model in models_below(ExperimentConfig) if model not in ELSEWHERE]
 
 
-def models_below(annotation: object) -> set[type[BaseModel]]:
-    """Every model that a config of this type may hold."""
-    found: set[type[BaseModel]] = set()
-    for member, _ in alternatives(annotation):
-        if is_model(member):
-            found.add(member)
-            for name, info in member.model_fields.items():
-                if name not in ELSEWHERE:
-                    found |= models_below(annotation_of(info))
-        else:
-            for inner in getattr(member, "__args__", ()):
-                if inner is not Ellipsis and not isinstance(inner, str):
-                    found |= models_below(inner)
-    return found
+def test_the_tables_are_those_of_the_models() -> None:
+    """python -m lavendersim.experiment.reference docs/config.md writes them."""
+    assert render(TEXT) == TEXT
 
 
-MODELS = sorted(models_below(ExperimentConfig), key=lambda model: model.__name__)
+def test_every_model_has_a_table_or_is_described_in_words() -> None:
+    tables = re.findall(r"<!-- \w+: ([\w ]+) -->", TEXT)
+    shown = {name for names in tables for name in names.split()}
+    in_words = {"ArrangedBody", "Axis", "AxisAngle", "Effects", "Record", "Reduced", "Window"}
+    assert {model.__name__ for model in MODELS} - shown == {*in_words, "NumericsSource"}
 
 
 def test_models_are_found() -> None:

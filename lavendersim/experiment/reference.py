@@ -1,0 +1,128 @@
+"""The tables of docs/config.md, written from the models: keys, defaults, meaning with unit.
+
+    python -m lavendersim.experiment.reference docs/config.md
+
+A table stands between two comments; the first names its models, and what stands between is
+replaced. Whatever an effect declares as a key of a config is a field of a model, and so in a table.
+
+    <!-- keys: Scene -->          key | default | meaning, one row a field
+    <!-- kinds: Tower Grid -->    the same for models that a `kind` chooses
+    <!-- presets: Numerics -->    key | one column a preset | meaning
+    <!-- end -->
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+from collections.abc import Iterator
+from fractions import Fraction
+from pathlib import Path
+from typing import Any, get_args
+
+from pydantic import BaseModel
+from pydantic.fields import FieldInfo
+
+from lavendersim.cell.numerics import Numerics
+from lavendersim.experiment.checks.annotations import (
+    alternatives,
+    annotation_of,
+    fields,
+    is_model,
+    kinds,
+)
+from lavendersim.experiment.models.experiment import ExperimentConfig
+from lavendersim.experiment.resolve.presets import PRESETS
+from lavendersim.quantities.scalars import written
+
+_TABLE = re.compile(r"(<!-- (keys|kinds|presets): ([\w ]+) -->\n).*?(<!-- end -->)", re.DOTALL)
+
+
+def render(text: str) -> str:
+    """Return a page with every table written anew."""
+    models = {model.__name__: model for model in models_below(ExperimentConfig)}
+    models["Numerics"] = Numerics
+    tables = {"keys": keys_table, "kinds": kinds_table, "presets": presets_table}
+
+    def table(found: re.Match[str]) -> str:
+        head, form, names, end = found.groups()
+        rows = tables[form](*(models[name] for name in names.split()))
+        lines = "".join(f"| {' | '.join(row)} |\n" for row in rows)
+        return f"{head}\n{lines}\n{end}"
+
+    return _TABLE.sub(table, text)
+
+
+def models_below(annotation: Any) -> list[type[BaseModel]]:
+    """Return every model that a config of this type may hold, each once."""
+    found: dict[type[BaseModel], None] = {}
+    for member, _ in alternatives(annotation):
+        if is_model(member) and member not in found:
+            found[member] = None
+            for info in member.model_fields.values():
+                found |= dict.fromkeys(models_below(annotation_of(info)))
+        elif not is_model(member):
+            for inner in get_args(member):
+                if inner is not Ellipsis and not isinstance(inner, str):
+                    found |= dict.fromkeys(models_below(inner))
+    return list(found)
+
+
+def keys_table(*models: type[BaseModel]) -> Iterator[list[str]]:
+    """Yield the rows of a table of the models' keys."""
+    yield from (["key", "default", "meaning"], ["---", "---", "---"])
+    for model in models:
+        for key, info in fields(model).items():
+            yield [f"`{key}`", _default(info), _meaning(info)]
+
+
+def kinds_table(*models: type[BaseModel]) -> Iterator[list[str]]:
+    """Yield the rows of a table of kinds, and below each one those of its keys."""
+    yield from (["`kind`", "key", "default", "meaning"], ["---", "---", "---", "---"])
+    for model in models:
+        doc = " ".join((model.__doc__ or "").split())
+        yield [f"`{kinds(model)[0]}`", "", "", _escaped(doc)]
+        for key, info in fields(model).items():
+            if key != "kind":
+                yield ["", f"`{key}`", _default(info), _meaning(info)]
+
+
+def presets_table(model: type[BaseModel]) -> Iterator[list[str]]:
+    """Yield the rows of a table of the model's keys with the numbers of every preset."""
+    yield ["key", *(f"`{name}`" for name in PRESETS), "meaning"]
+    yield ["---"] * (len(PRESETS) + 2)
+    for key, info in fields(model).items():
+        numbers = [_value(getattr(preset, key)) for preset in PRESETS.values()]
+        yield [f"`{key}`", *numbers, _meaning(info)]
+
+
+def _default(info: FieldInfo) -> str:
+    if info.is_required():
+        return "required"
+    value = info.get_default(call_default_factory=True, validated_data={})
+    if isinstance(value, BaseModel):
+        return "its defaults"
+    if value is None or (isinstance(value, str | tuple | dict) and not value):
+        return "none"
+    return f"`{value}`" if isinstance(value, str) else _value(value)
+
+
+def _value(value: object) -> str:
+    """Return a value as a config writes it, without a needless zero: 1e-6."""
+    if isinstance(value, tuple) and all(isinstance(item, Fraction | int | float) for item in value):
+        return f"[{', '.join(_value(item) for item in value)}]"
+    return re.sub(r"e([-+])0", r"e\1", written(value))
+
+
+def _meaning(info: FieldInfo) -> str:
+    return _escaped(info.description or "")
+
+
+def _escaped(text: str) -> str:
+    return text.replace("|", r"\|")
+
+
+if __name__ == "__main__":
+    for name in sys.argv[1:]:
+        page = Path(name)
+        page.write_text(render(page.read_text(encoding="utf-8")), encoding="utf-8")
