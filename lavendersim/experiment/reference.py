@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import re
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from fractions import Fraction
 from pathlib import Path
 from typing import Any, get_args
@@ -42,7 +42,11 @@ def render(text: str) -> str:
     """Return a page with every table written anew."""
     models = {model.__name__: model for model in models_below(ExperimentConfig)}
     models["Numerics"] = Numerics
-    tables = {"keys": keys_table, "kinds": kinds_table, "presets": presets_table}
+    tables: dict[str, Callable[..., Iterator[list[str]]]] = {
+        "keys": keys_table,
+        "kinds": kinds_table,
+        "presets": presets_table,
+    }
 
     def table(found: re.Match[str]) -> str:
         head, form, names, end = found.groups()

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import replace
-from typing import Any, Final
+from typing import Final
 
 from lavendersim.errors import ConfigWarning
 from lavendersim.experiment.text.node import Mark, Node, Path, graft, key_mark
@@ -17,7 +17,8 @@ KEYS: Final[dict[Path, str]] = {
     ("cost", "unsolved"): "not_converged",
 }
 KINDS: Final = {"unsolved_steps": "not_converged_steps"}  # of measures
-_SHOWN: dict[str, Any] = {}  # a file that is read twice is warned of once
+# A file that is read twice is warned of once.
+_SHOWN: dict[str | tuple[str, type[Warning], int], int] = {}
 
 
 def with_new_spellings(root: Node, name: str) -> Node:
