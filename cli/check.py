@@ -57,7 +57,7 @@ def check(
     for experiment in experiments:
         printing.warn_of_mistakes(experiment)
         with printing.reporting(experiment.name) as progress:
-            finished = run(experiment, runs, jobs, progress, prices=False)
+            finished = run(experiment, runs, jobs, progress, overheads=False)
         good = good and finished.good
         results.append(finished)
         printing.warn_of_not_converged(finished)

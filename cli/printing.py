@@ -130,11 +130,11 @@ def reporting(name: str) -> Iterator[Any]:
 
     if not sys.stderr.isatty():
 
-        def said(what: str, done: int, total: int) -> None:
+        def report(what: str, done: int, total: int) -> None:
             if done == 0:
                 typer.echo(f"{name}: {what}, {total} in all", err=True)
 
-        yield Progress(compiling=compiling, pricing=said)
+        yield Progress(compiling=compiling, timing=report)
         return
     from rich.console import Console
     from rich.progress import MofNCompleteColumn, TimeRemainingColumn
@@ -147,7 +147,7 @@ def reporting(name: str) -> Iterator[Any]:
         def cell_done(done: int, total: int) -> None:
             bar.update(task, completed=done, total=total)
 
-        def pricing(what: str, done: int, total: int) -> None:
+        def timing(what: str, done: int, total: int) -> None:
             bar.update(task, description=f"{name}: {what}", completed=done, total=total)
 
-        yield Progress(compiling=compiling, cell_done=cell_done, pricing=pricing)
+        yield Progress(compiling=compiling, cell_done=cell_done, timing=timing)

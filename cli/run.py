@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from lavender_cli import prices, printing
+from lavender_cli import overheads, printing
 
 Configs = Annotated[
     list[Path], typer.Argument(metavar="CONFIG...", help="Config files, or folders of them.")
@@ -30,7 +30,7 @@ def run(
 
     # Every file is read before the first run, so a defect anywhere leaves nothing half done.
     experiments = load_all(configs)
-    good, tables, priced = True, [], []
+    good, tables, with_overheads = True, [], []
     for experiment in experiments:
         printing.warn_of_mistakes(experiment)
         with printing.reporting(experiment.name) as progress:
@@ -43,19 +43,19 @@ def run(
 
             figures = draw(finished.run, finished.run.path / "figures")
         if experiment.overhead is not None:
-            priced.append(finished.run)
+            with_overheads.append(finished.run)
         if as_json:
             tables.append({**finished.run.results(), "run": finished.run.path, "figures": figures})
             continue
         printing.print_summary(finished)
-        prices.print_table(finished.run)
+        overheads.print_table(finished.run)
         for figure in figures:
             typer.echo(f"  figure {figure}")
-    if plot and len(priced) > 1:
-        from lavendersim.figures import draw_prices
+    if plot and len(with_overheads) > 1:
+        from lavendersim.figures import draw_overheads
 
-        for figure in draw_prices(priced, priced[-1].path / "figures"):
-            typer.echo(f"  figure of all prices {figure}", err=as_json)
+        for figure in draw_overheads(with_overheads, with_overheads[-1].path / "figures"):
+            typer.echo(f"  figure of all overheads {figure}", err=as_json)
     if as_json:
         printing.as_json(tables)
     if not good:

@@ -100,7 +100,7 @@ class ExperimentFile(pytest.File):
             experiment = load_experiment(self.path, self._reduced)
             factory: pytest.TempPathFactory = self.config._tmp_path_factory  # type: ignore[attr-defined]
             # Overheads are read by people, on a quiet machine; nothing is expected of them.
-            self._finished = run(experiment, factory.mktemp(self.path.stem), prices=False)
+            self._finished = run(experiment, factory.mktemp(self.path.stem), overheads=False)
             self.config.stash.setdefault(_NOT_CONVERGED, []).extend(self._finished.not_converged)
         return self._finished
 

@@ -8,7 +8,7 @@ from typing import Any
 
 
 def draw(run: Any, directory: Path) -> list[Path]:
-    """Draw the figures of a run (`.experiment`, `.cells`): its own, its prices', its cost's.
+    """Draw the figures of a run (`.experiment`, `.cells`): its own, its overheads', its cost's.
 
     Returns the files written. matplotlib is imported here and not before: it takes a quarter of a
     second.
@@ -17,7 +17,7 @@ def draw(run: Any, directory: Path) -> list[Path]:
 
     paths = draw_page(run, directory)
     if getattr(run.experiment, "overhead", None) is not None:
-        paths += draw_prices([run], directory)
+        paths += draw_overheads([run], directory)
     if callable(getattr(run, "cost", None)) and run.cost() is not None:
         from lavendersim.figures.work_precision import draw_work_precision
 
@@ -25,9 +25,9 @@ def draw(run: Any, directory: Path) -> list[Path]:
     return paths
 
 
-def draw_prices(runs: Sequence[Any], directory: Path) -> list[Path]:
+def draw_overheads(runs: Sequence[Any], directory: Path) -> list[Path]:
     """Draw what effects cost in the scenes of some runs, side by side; returns the files."""
-    from lavendersim.figures.prices import draw_prices as draw_page
+    from lavendersim.figures.overheads import draw_overheads as draw_page
 
     return draw_page(runs, directory)
 

@@ -24,9 +24,9 @@ from .cost_targets import answers, front_of
 from .cost_times import Clocked, Times, times_of
 from .environment import machine
 from .experiment_run import Finished, Progress, run
-from .price_samples import clock
-from .prices import Spread
+from .overheads import Spread
 from .run_directory import COST, COST_TABLE, RUNS
+from .timed_engine import clock
 
 
 class Costed(NamedTuple):
@@ -79,7 +79,7 @@ def take_cost(
         spec = experiment.cost
         assert spec is not None
         rounds = repeats or spec.repeats
-        times = times_of(clocked, spec.begin, rounds, jobs, progress.pricing)
+        times = times_of(clocked, spec.begin, rounds, jobs, progress.timing)
         laws = [law_of(one.cells[0].config) for one in clocked]
         rows = _rows(experiment, settings, errors, times, laws)
         table = {
@@ -103,7 +103,7 @@ def take_cost(
         (finished.run.path / COST).write_text(text, encoding="utf-8")
         _write_csv(finished.run.path / COST_TABLE, tables[0]["rows"])
 
-    finished = run(grid, root, jobs, progress, prices=False, closing=closing)
+    finished = run(grid, root, jobs, progress, overheads=False, closing=closing)
     return Costed(finished, tables[0])
 
 

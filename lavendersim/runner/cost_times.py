@@ -17,8 +17,8 @@ from lavendersim.engine.spec import Spec
 from lavendersim.experiment.cell import Cell
 from lavendersim.scene.plan import plan_of_cell, union
 
-from .price_compile import compile_times
-from .price_samples import SAMPLE_NS, Diverged, Timed
+from .compile_times import compile_times
+from .timed_engine import SAMPLE_NS, Diverged, Timed
 
 Report = Callable[[str, int, int], None]
 

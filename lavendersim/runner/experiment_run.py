@@ -25,7 +25,7 @@ from .run_directory import (
     CONFIG,
     DONE,
     ENVIRONMENT,
-    PRICES,
+    OVERHEADS,
     RESOLVED,
     RUNS,
     Run,
@@ -72,7 +72,7 @@ class Progress(NamedTuple):
 
     compiling: Callable[[Any], None] = lambda plan: None
     cell_done: Callable[[int, int], None] = lambda done, total: None
-    pricing: Callable[[str, int, int], None] = lambda what, done, total: None
+    timing: Callable[[str, int, int], None] = lambda what, done, total: None
 
 
 # What adds to a run's directory: it is given the run and the measures of its cells.
@@ -115,9 +115,9 @@ def load_all(paths: list[Path], reduced: bool = False) -> list[Experiment]:
         try:
             experiment = load_experiment(path, reduced)
             if experiment.overhead is not None:
-                from .prices import check_price  # late: other configs load without numba
+                from .overheads import check_overheads  # late: other configs load without numba
 
-                check_price(experiment)
+                check_overheads(experiment)
             if experiment.config.record.problems != NONE:
                 from .problem_dump import check_problems  # late: other configs load without numba
 
@@ -161,13 +161,13 @@ def run(
     root: Path | str = RUNS,
     jobs: int = 1,
     progress: Progress = Progress(),  # noqa: B008 - immutable
-    prices: bool = True,
+    overheads: bool = True,
     closing: Closing = lambda finished, measured: None,
 ) -> Finished:
-    """Run every cell of an experiment and judge its expectations; take prices where it asks.
+    """Run every cell of an experiment and judge its expectations; take overheads where it asks.
 
     root: where run directories are made. jobs: processes; the logs are the same for any number.
-    prices: false leaves out what a section `overhead` asks for. closing: called with the results
+    overheads: false leaves out what a section `overhead` asks for. closing: called with the results
     before the run counts as finished. A cell that diverges or breaks a bound of `always` ends
     there, with a readable log; the others go on.
     """
@@ -175,13 +175,13 @@ def run(
 
     from .cell import CellJob
     from .executor import outcomes_of
+    from .overheads import check_overheads, take_overheads, write_overheads
     from .plans import distinct, shared_plans
-    from .prices import check_price, take_prices, write_prices
     from .problem_dump import check_problems
 
     if not isinstance(experiment, Experiment):
         experiment = load_experiment(experiment)
-    check_price(experiment)
+    check_overheads(experiment)
     check_problems(experiment)
     cells = experiment.cells()
     plans = shared_plans(cells)
@@ -225,11 +225,11 @@ def run(
     verdicts = judge(*claims, experiment.always, always, experiment.controls)
     raw = judge(*claims, experiment.always, always) if experiment.controls else verdicts
     result = Finished(finished, outcomes, verdicts, raw)
-    priced = None
-    if prices and experiment.overhead is not None:
-        priced = take_prices(experiment, jobs, progress.pricing)
-        write_prices(directory / PRICES, priced)
-    write_results(result, measured, priced)
+    table = None
+    if overheads and experiment.overhead is not None:
+        table = take_overheads(experiment, jobs, progress.timing)
+        write_overheads(directory / OVERHEADS, table)
+    write_results(result, measured, table)
     _write_json(directory / ENVIRONMENT, environment(*(plan.spec for plan in distinct(plans))))
     closing(result, measured)
     (directory / DONE).write_text("")

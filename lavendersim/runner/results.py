@@ -61,7 +61,7 @@ def _finite(value: Any) -> Any:
 
 
 def write_results(
-    finished: Any, measured: list[dict[str, Any]], prices: dict[str, Any] | None = None
+    finished: Any, measured: list[dict[str, Any]], overheads: dict[str, Any] | None = None
 ) -> None:
     """Write the tables of a finished run; numbers keep all their digits."""
     run = finished.run
@@ -93,7 +93,7 @@ def write_results(
         "compile_s": compile_seconds(finished),
         "checks": [verdict._asdict() for verdict in finished.verdicts],
         "passed": finished.good,
-        **({} if prices is None else {"prices": prices}),
+        **({} if overheads is None else {"overheads": overheads}),
     }
     text = json.dumps(_finite(table), indent=1, allow_nan=False) + "\n"
     (run.path / RESULTS).write_text(text, encoding="utf-8")

@@ -17,12 +17,17 @@ from lavendersim.trace import Trace, open_trace
 
 CONFIG, RESOLVED = "config.yaml", "resolved.yaml"
 CELLS, RESULTS, TABLE = "cells.json", "results.json", "results.csv"
-PRICES = "prices.csv"
+OVERHEADS = "overheads.csv"
 COST, COST_TABLE = "cost.json", "cost.csv"
 ENVIRONMENT, DONE, LATEST = "env.json", "DONE", "latest"
 RUNS = Path("runs")
-# Columns of the tables of older runs, and their names now.
-FORMER_NAMES = {"unsolved_steps": "not_converged_steps"}
+# Keys of the tables of older runs, and their names now.
+FORMER_NAMES = {
+    "unsolved_steps": "not_converged_steps",
+    "prices": "overheads",
+    "price": "overhead",
+    "called_for": "required",
+}
 
 
 @dataclass(frozen=True)
@@ -116,11 +121,17 @@ def _read_json(path: Path) -> dict[str, Any]:
 
 def _renamed(table: dict[str, Any], rows: str) -> dict[str, Any]:
     """Return a table with the columns of older runs under the names that they have now."""
-    for row in (*table[rows], table.get("truth") or {}):
-        for former, name in FORMER_NAMES.items():
-            if former in row:
-                row[name] = row.pop(former)
+    _rename(table)
+    overheads = table.get("overheads") or {"rows": []}
+    for row in (*table[rows], *overheads["rows"], table.get("truth") or {}):
+        _rename(row)
     return table
+
+
+def _rename(row: dict[str, Any]) -> None:
+    for former, name in FORMER_NAMES.items():
+        if former in row:
+            row[name] = row.pop(former)
 
 
 def is_run_directory(path: Path) -> bool:

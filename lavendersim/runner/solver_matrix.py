@@ -79,7 +79,7 @@ def make_entry(pair: Pair) -> Entry:
     case, solver = pair.case.name, pair.solver
     try:
         experiment = load_experiment(pair.case.path, pair.case.reduced, solver)
-        return entry_of(case, solver, run(experiment, pair.root, prices=False))
+        return entry_of(case, solver, run(experiment, pair.root, overheads=False))
     except ConfigError as error:
         return without_run(case, solver, REFUSED, error.defects[0].message)
     except UsageError:

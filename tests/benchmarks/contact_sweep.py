@@ -27,7 +27,7 @@ from typing import Any, NamedTuple
 
 from lavendersim.figures.contact_cost import draw_contact_cost
 from lavendersim.runner.environment import environment
-from lavendersim.runner.price_samples import clock
+from lavendersim.runner.timed_engine import clock
 
 from .prepared_contacts import EVERY_SOLVER, Solve, pile, prepare, pyramid
 

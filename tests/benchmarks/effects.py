@@ -6,7 +6,7 @@ pruned      the engine that the plan composes for the scene
 full        the same with every effect whose law the numerics have, idle
 by hand     `minimal_scene`, the drop in one function, on the engine's arrays
 registers   `minimal_drop`, one ball that never leaves the registers
-The price of every single effect is `lavender run configs/effects`; here are the bars. All of a
+The overhead of every single effect is `lavender run configs/effects`; here are the bars. All of a
 scene are timed in turn, in alternating order; a ratio is the median of the ratios of one round.
 A drop is timed from fresh arrays in one call, as its hand-written kernels are; a stack again and
 again from one state, in the processor's own time where the system counts it finely.
@@ -26,8 +26,8 @@ from typing import Any, NamedTuple
 
 from lavendersim.engine.records import TOUCHING
 from lavendersim.runner.environment import environment
-from lavendersim.runner.price_pairs import ALL, pairs_of
-from lavendersim.runner.price_samples import Timed
+from lavendersim.runner.overhead_pairs import ALL, pairs_of
+from lavendersim.runner.timed_engine import Timed
 
 from .engine import (
     DROP_BAR,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from lavendersim.engine.effects import EFFECTS
-from lavendersim.runner.price_pairs import names_of_effects
+from lavendersim.runner.overhead_pairs import names_of_effects
 from tests.benchmarks import effects
 
 # Laws that the chapter's numerics exclude, and what needs them.

@@ -22,15 +22,15 @@ cost:
 
 
 @pytest.fixture
-def priced(drop: Path) -> Path:
+def costed(drop: Path) -> Path:
     drop.write_text(drop.read_text() + COST)
     return drop
 
 
 def test_a_grid_gives_a_table_a_figure_and_a_sentence_a_target(
-    priced: Path, tmp_path: Path
+    costed: Path, tmp_path: Path
 ) -> None:
-    done = lavender("cost", priced, where=tmp_path)
+    done = lavender("cost", costed, where=tmp_path)
     assert done.returncode == 0, done.stderr
     lines = done.stdout.splitlines()
     assert "medians of 7 interleaved repeats" in lines[0]
@@ -47,16 +47,16 @@ def test_a_grid_gives_a_table_a_figure_and_a_sentence_a_target(
 
 
 def test_a_target_prints_what_is_to_be_pasted_and_nothing_else(
-    priced: Path, tmp_path: Path
+    costed: Path, tmp_path: Path
 ) -> None:
-    done = lavender("cost", priced, "--target", "50%", "--no-plot", where=tmp_path)
+    done = lavender("cost", costed, "--target", "50%", "--no-plot", where=tmp_path)
     assert done.returncode == 0, done.stderr
     assert done.stdout.startswith("numerics: ")
     assert done.stdout.count("\n") == 1
     assert "50 % costs" in done.stderr
-    priced.write_text(priced.read_text().replace("numerics: chapter\n", done.stdout))
-    assert load_experiment(priced).cells()
-    missed = lavender("cost", priced, "--target", "1e-9%", "--no-plot", where=tmp_path)
+    costed.write_text(costed.read_text().replace("numerics: chapter\n", done.stdout))
+    assert load_experiment(costed).cells()
+    missed = lavender("cost", costed, "--target", "1e-9%", "--no-plot", where=tmp_path)
     assert missed.returncode == 1
     assert missed.stdout == ""
     assert "no setting of the grid reaches 1e-09 %: the nearest is " in missed.stderr
@@ -70,18 +70,18 @@ def test_in_a_folder_those_with_a_section_are_meant(drop: Path, tmp_path: Path) 
     done = lavender("cost", folder, where=tmp_path)
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr == f"{folder}: no config in this folder has a section cost\n"
-    priced = (folder / "drop.yaml").read_text() + COST
-    (folder / "priced.yaml").write_text(priced)
+    costed = (folder / "drop.yaml").read_text() + COST
+    (folder / "costed.yaml").write_text(costed)
     done = lavender("cost", folder, "--target", "50%", "--no-plot", where=tmp_path)
     assert done.returncode == 0, done.stderr
     assert done.stdout.count("\n") == 1
-    assert "priced: " in done.stderr
+    assert "costed: " in done.stderr
     assert "drop: " not in done.stderr
 
 
-def test_json_has_every_sample_and_the_answers(priced: Path, tmp_path: Path) -> None:
+def test_json_has_every_sample_and_the_answers(costed: Path, tmp_path: Path) -> None:
     done = lavender(
-        "cost", priced, "--json", "--no-plot", "--repeats", "8", "--target", "50 %", where=tmp_path
+        "cost", costed, "--json", "--no-plot", "--repeats", "8", "--target", "50 %", where=tmp_path
     )
     assert done.returncode == 0, done.stderr
     (table,) = json.loads(done.stdout)
@@ -121,17 +121,17 @@ def test_what_cannot_be_asked_is_refused_with_a_sentence(
     change: tuple[str, str],
     arguments: tuple[str, ...],
     said: str | None,
-    priced: Path,
+    costed: Path,
     tmp_path: Path,
 ) -> None:
-    text = priced.read_text().replace(*change)
+    text = costed.read_text().replace(*change)
     if said is None:
         text = text.partition("#")[0]
         said = "{file}:1:1: no section cost: it says which measure is held against which truth"
-    priced.write_text(text)
-    done = lavender("cost", priced, *arguments, where=tmp_path)
+    costed.write_text(text)
+    done = lavender("cost", costed, *arguments, where=tmp_path)
     assert (done.returncode, done.stdout) == (2, "")
-    begin, _, end = said.replace("{file}", str(priced)).partition("{any}")
+    begin, _, end = said.replace("{file}", str(costed)).partition("{any}")
     assert done.stderr.startswith(begin)
     assert done.stderr.rstrip("\n").endswith(end)
     assert done.stderr.count("\n") == 1

@@ -6,7 +6,7 @@
 
 A change of words that is meant goes through `renames.json`: a list of [pattern, replacement] pairs
 of regular expressions, applied to the texts of both sides before they are compared. Hashes and
-verdicts are compared as they stand. Slow configs are run at their reduced length, prices are not
+verdicts are compared as they stand. Slow configs are run at their reduced length, overheads are not
 taken. Hashes are those of one machine and one set of library versions, so the file that is written
 belongs beside neither the sources nor another machine's.
 """
@@ -37,7 +37,7 @@ def outcome(path: Path, jobs: int) -> dict[str, Any]:
     """Return how each cell of a config ended, with its last state hash, and every verdict."""
     experiment = load_experiment(path, True)
     with tempfile.TemporaryDirectory() as root:
-        finished = run(experiment, root, jobs, prices=False)
+        finished = run(experiment, root, jobs, overheads=False)
         cells = {}
         for cell in finished.run.cells:
             trace = open_trace(cell.path, allow_incomplete=True)

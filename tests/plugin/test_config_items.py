@@ -109,10 +109,10 @@ def test_a_diverged_cell_fails_even_where_nothing_is_expected(pytester: pytest.P
     result.stdout.fnmatch_lines(["*diverged: body ball is no longer finite after step *"])
 
 
-def test_pytest_takes_no_prices(pytester: pytest.Pytester) -> None:
-    pytester.makefile(".yaml", drop=DROP + "price: {effects: [drag]}\n")
+def test_pytest_takes_no_overheads(pytester: pytest.Pytester) -> None:
+    pytester.makefile(".yaml", drop=DROP + "overhead: {effects: [drag]}\n")
     result = run(pytester, "--basetemp", str(pytester.path / "kept"))
     result.assert_outcomes(passed=2)
     (results,) = (pytester.path / "kept").rglob("results.json")
-    assert "prices" not in json.loads(results.read_text())
-    assert not list((pytester.path / "kept").rglob("prices.csv"))
+    assert "overheads" not in json.loads(results.read_text())
+    assert not list((pytester.path / "kept").rglob("overheads.csv"))

@@ -9,7 +9,7 @@ import pytest
 
 from lavendersim.experiment import load_experiment_text
 from lavendersim.figures.work_precision import compose
-from lavendersim.runner import cost_times, price_samples
+from lavendersim.runner import cost_times, timed_engine
 from lavendersim.runner.cost_times import Clocked, times_of
 
 BALL = """\
@@ -66,8 +66,8 @@ class RealWorld(World):
     """The processor's own clock, and work that it sees; a compilation is cut to 0.1 s."""
 
     def take(self, nanoseconds: int) -> None:
-        end = price_samples.clock()[1]() + min(nanoseconds, 10**8)
-        while price_samples.clock()[1]() < end:
+        end = timed_engine.clock()[1]() + min(nanoseconds, 10**8)
+        while timed_engine.clock()[1]() < end:
             pass
 
 
@@ -77,7 +77,7 @@ def clocked() -> Clocked:
 
 
 def use(world: World, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(price_samples, "build", world.build)
+    monkeypatch.setattr(timed_engine, "build", world.build)
     monkeypatch.setattr(
         cost_times,
         "compile_times",
@@ -95,7 +95,7 @@ def test_a_simulated_second_costs_its_steps_and_nothing_of_the_compilation(
 ) -> None:
     world = World(ns_per_step)
     use(world, monkeypatch)
-    monkeypatch.setattr(price_samples, "clock", lambda: ("fake", lambda: world.now))
+    monkeypatch.setattr(timed_engine, "clock", lambda: ("fake", lambda: world.now))
     (times,) = times_of([clocked()], 0.0, 7, 1, silent)
     assert times.samples == pytest.approx([ns_per_step * RATE] * 7, rel=1e-12)
     assert times.compile_s == COMPILING / 1e9  # it has a number of its own
@@ -119,7 +119,7 @@ def test_the_real_clock_sees_what_a_slow_kernel_burns(monkeypatch: pytest.Monkey
 def test_timing_begins_at_its_step_and_ends_with_the_run(monkeypatch: pytest.MonkeyPatch) -> None:
     world = World(1000)
     use(world, monkeypatch)
-    monkeypatch.setattr(price_samples, "clock", lambda: ("fake", lambda: world.now))
+    monkeypatch.setattr(timed_engine, "clock", lambda: ("fake", lambda: world.now))
     (times,) = times_of([clocked()], 0.3, 7, 1, silent)
     assert times.seconds == pytest.approx(0.2)
     assert times.samples == pytest.approx([1000 * RATE] * 7, rel=1e-12)
@@ -158,8 +158,8 @@ def test_several_cells_of_a_setting_cost_their_mean(monkeypatch: pytest.MonkeyPa
         return world.build(resolved, spec)
 
     use(clock, monkeypatch)
-    monkeypatch.setattr(price_samples, "build", build)
-    monkeypatch.setattr(price_samples, "clock", lambda: ("fake", lambda: clock.now))
+    monkeypatch.setattr(timed_engine, "build", build)
+    monkeypatch.setattr(timed_engine, "clock", lambda: ("fake", lambda: clock.now))
     (cell,) = clocked().cells
     (times,) = times_of([Clocked([cell, cell], [STEPS, STEPS])], 0.0, 7, 1, silent)
     assert times.samples == pytest.approx([2000 * RATE] * 7, rel=1e-12)

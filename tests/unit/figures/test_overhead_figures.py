@@ -1,4 +1,4 @@
-"""The figure of prices: every effect has its place, every number its mark, every gap its reason."""
+"""The figure of overheads: every effect has a place, every number a mark, every gap a reason."""
 
 from __future__ import annotations
 
@@ -10,35 +10,35 @@ import pytest
 from matplotlib import style
 from matplotlib.figure import Figure
 
-from lavendersim.figures import draw, draw_prices
-from lavendersim.figures.prices import CALLED, IDLE, MOVES, compose
+from lavendersim.figures import draw, draw_overheads
+from lavendersim.figures.overheads import IDLE, MOVES, REQUIRED, compose
 from lavendersim.figures.style import STYLE
 
 
-def row(effect: str, price: float, half: float = 0.25, **others: Any) -> dict[str, Any]:
-    """One row of a table of prices, `price` +- `half` ns."""
-    spread = {"median": price, "low": price - half, "high": price + half}
+def row(effect: str, overhead: float, half: float = 0.25, **others: Any) -> dict[str, Any]:
+    """One row of a table of overheads, `overhead` +- `half` ns."""
+    spread = {"median": overhead, "low": overhead - half, "high": overhead + half}
     return {
         "effect": effect,
-        "called_for": False,
+        "required": False,
         "unit": "body",
         "why_not": "",
         "same_motion": True,
-        "within_noise": abs(price) <= half,
-        "price": spread,
+        "within_noise": abs(overhead) <= half,
+        "overhead": spread,
         "compile_s_off": 2.0,
         "compile_s_on": 3.0,
     } | others
 
 
 def gap(effect: str, why_not: str) -> dict[str, Any]:
-    return {"effect": effect, "called_for": True, "unit": "body", "why_not": why_not}
+    return {"effect": effect, "required": True, "unit": "body", "why_not": why_not}
 
 
 ROWS = (
     row("drag", 2.5),
-    row("gravity", 400.0, called_for=True, same_motion=False),
-    row("step_log", 70.0, called_for=True),
+    row("gravity", 400.0, required=True, same_motion=False),
+    row("step_log", 70.0, required=True),
     row("friction", -0.1, unit="contact"),
     gap("rotation", "friction needs it"),
 )
@@ -54,13 +54,13 @@ def table(*rows: dict[str, Any]) -> dict[str, Any]:
     }
 
 
-def run_of(name: str, prices: dict[str, Any] | None) -> Any:
-    results = {} if prices is None else {"prices": prices}
+def run_of(name: str, overheads: dict[str, Any] | None) -> Any:
+    results = {} if overheads is None else {"overheads": overheads}
     return SimpleNamespace(
         name=name,
         results=lambda: results,
         cells=(),
-        experiment=SimpleNamespace(name=name, figure=None, price=object()),
+        experiment=SimpleNamespace(name=name, figure=None, overhead=object()),
     )
 
 
@@ -72,12 +72,12 @@ def page(*tables: tuple[str, dict[str, Any]]) -> Figure:
 
 
 def marks(axes: Any) -> dict[float, Any]:
-    """Markers by their place along the axis of prices."""
+    """Markers by their place along the axis of overheads."""
     lines = [line for line in axes.lines if line.get_marker() in ("o", "s")]
     return {float(line.get_xdata()[0]): line for line in lines}
 
 
-def test_a_price_is_drawn_at_its_number_with_its_interval() -> None:
+def test_an_overhead_is_drawn_at_its_number_with_its_interval() -> None:
     axes = page(("sphere", table())).axes[0]
     found = marks(axes)
     assert set(found) == {2.5, 400.0, 70.0, -0.1}
@@ -85,15 +85,15 @@ def test_a_price_is_drawn_at_its_number_with_its_interval() -> None:
     assert [2.25, 2.75] in [list(bar) for bar in bars]
     names = [text.get_text() for text in axes.get_yticklabels()]
     assert names == ["drag", "gravity", "step log", "friction", "rotation"]
-    places = [found[price].get_ydata()[0] for price in (2.5, 400.0, 70.0, -0.1)]
+    places = [found[overhead].get_ydata()[0] for overhead in (2.5, 400.0, 70.0, -0.1)]
     assert places == [0, 1, 2, 3]
 
 
 def test_colour_tells_who_calls_shape_the_unit_and_a_hollow_mark_noise() -> None:
     found = marks(page(("sphere", table())).axes[0])
-    colours = [found[price].get_color() for price in (2.5, 400.0, 70.0, -0.1)]
-    assert colours == [IDLE, MOVES, CALLED, IDLE]
-    assert [found[price].get_marker() for price in (2.5, 400.0, -0.1)] == ["o", "o", "s"]
+    colours = [found[overhead].get_color() for overhead in (2.5, 400.0, 70.0, -0.1)]
+    assert colours == [IDLE, MOVES, REQUIRED, IDLE]
+    assert [found[overhead].get_marker() for overhead in (2.5, 400.0, -0.1)] == ["o", "o", "s"]
     assert [found[p].get_markerfacecolor() == "white" for p in (2.5, 400.0, -0.1)] == [
         False,
         False,
@@ -101,14 +101,14 @@ def test_colour_tells_who_calls_shape_the_unit_and_a_hollow_mark_noise() -> None
     ]
 
 
-def test_an_effect_without_a_price_says_why_in_its_row() -> None:
+def test_an_effect_without_an_overhead_says_why_in_its_row() -> None:
     texts = page(("sphere", table())).axes[0].texts
     assert [(text.get_text(), text.get_position()[1]) for text in texts] == [
         ("friction needs it", 4)
     ]
 
 
-def test_small_and_negative_prices_are_on_the_page_beside_large_ones() -> None:
+def test_small_and_negative_overheads_are_on_the_page_beside_large_ones() -> None:
     axes = page(("sphere", table())).axes[0]
     low, high = axes.get_xlim()
     assert low < -0.35
@@ -120,14 +120,14 @@ def test_several_scenes_share_the_names_of_effects() -> None:
     more = table(row("drag", 1.0), row("newton", 7.0))
     figure = page(("sphere", table()), ("pile", more))
     assert len(figure.axes) == 3  # a panel a scene, and compile times
-    places = {price: line.get_ydata()[0] for price, line in marks(figure.axes[1]).items()}
+    places = {overhead: line.get_ydata()[0] for overhead, line in marks(figure.axes[1]).items()}
     assert places == {1.0: 0, 7.0: 5}
     legend = figure.axes[2].get_legend()
     assert legend is not None
     assert {text.get_text() for text in legend.texts} == {"sphere", "pile"}
 
 
-def test_compile_times_stand_beside_the_prices() -> None:
+def test_compile_times_stand_beside_the_overheads() -> None:
     axes = page(("sphere", table(row("drag", 1.0, compile_s_on=4.5)))).axes[1]
     lines = [(list(line.get_xdata()), list(line.get_ydata())) for line in axes.lines]
     assert ([4.5], [0]) in lines
@@ -140,18 +140,18 @@ def test_the_caption_says_machine_repeats_and_spread() -> None:
         assert part in caption
 
 
-@pytest.mark.parametrize("prices", [table(), None])
-def test_a_run_without_a_figure_section_draws_its_prices_if_it_has_any(
-    prices: dict[str, Any] | None, tmp_path: Path
+@pytest.mark.parametrize("overheads", [table(), None])
+def test_a_run_without_a_figure_section_draws_its_overheads_if_it_has_any(
+    overheads: dict[str, Any] | None, tmp_path: Path
 ) -> None:
-    written = draw(run_of("sphere", prices), tmp_path)
+    written = draw(run_of("sphere", overheads), tmp_path)
     names = [path.name for path in written]
-    assert names == ([] if prices is None else ["sphere_prices.png", "sphere_prices.svg"])
+    assert names == ([] if overheads is None else ["sphere_overheads.png", "sphere_overheads.svg"])
     assert all(path.stat().st_size > 1000 for path in written)
 
 
-def test_equal_prices_give_equal_files(tmp_path: Path) -> None:
+def test_equal_overheads_give_equal_files(tmp_path: Path) -> None:
     runs = [run_of("sphere", table()), run_of("stack", table()), run_of("pile", None)]
-    first, second = (draw_prices(runs, tmp_path / name) for name in ("a", "b"))
-    assert [path.name for path in first] == ["prices.png", "prices.svg"]
+    first, second = (draw_overheads(runs, tmp_path / name) for name in ("a", "b"))
+    assert [path.name for path in first] == ["overheads.png", "overheads.svg"]
     assert [path.read_bytes() for path in first] == [path.read_bytes() for path in second]

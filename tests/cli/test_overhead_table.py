@@ -1,4 +1,4 @@
-"""The printed table of prices: units, notes and reasons stand in the row they belong to."""
+"""The printed table of overheads: units, notes and reasons stand in the row they belong to."""
 
 from __future__ import annotations
 
@@ -7,16 +7,16 @@ from typing import Any
 
 import pytest
 
-from lavender_cli.prices import print_table
+from lavender_cli.overheads import print_table
 
 SPREAD = {"median": 2.04, "low": -0.3, "high": 1234.4}
-PRICED: dict[str, Any] = {
-    "called_for": False,
+ROW: dict[str, Any] = {
+    "required": False,
     "why_not": "",
     "unit": "body",
     "off": {"median": 150.0},
     "on": {"median": 152.04},
-    "price": SPREAD,
+    "overhead": SPREAD,
     "within_noise": True,
     "same_motion": True,
     "contacts_off": 0.0,
@@ -36,27 +36,29 @@ def printed(capsys: pytest.CaptureFixture[str], *rows: dict[str, Any]) -> list[s
         "processor": "a processor",
         "rows": list(rows),
     }
-    print_table(SimpleNamespace(results=lambda: {"prices": table}))
+    print_table(SimpleNamespace(results=lambda: {"overheads": table}))
     return capsys.readouterr().out.splitlines()
 
 
-def test_a_row_has_its_price_with_unit_interval_and_compile_times(
+def test_a_row_has_its_overhead_with_unit_interval_and_compile_times(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    above, header, line = printed(capsys, {**PRICED, "effect": "drag"})
+    above, header, line = printed(capsys, {**ROW, "effect": "drag"})
     assert "1 movable body, 0.125 contacts a step, 960 steps; medians of 9 repeats" in above
-    assert header.split()[:2] == ["effect", "scene"]
+    assert header.split()[:2] == ["effect", "required"]
     assert line.split("  ")[1:2] == ["drag"]
     words = ["no", "150.0", "152.0", "2.0 /b", "-0.3 to 1234", "4.0/5.2", "within noise"]
     places = [line.index(word) for word in words]
     assert places == sorted(places)
 
 
-def test_what_else_a_price_depends_on_stands_behind_it(capsys: pytest.CaptureFixture[str]) -> None:
+def test_what_else_an_overhead_depends_on_follows_it(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
     row = {
-        **PRICED,
+        **ROW,
         "effect": "gravity",
-        "called_for": True,
+        "required": True,
         "unit": "contact",
         "within_noise": False,
         "same_motion": False,
@@ -70,12 +72,12 @@ def test_what_else_a_price_depends_on_stands_behind_it(capsys: pytest.CaptureFix
     assert "noise" not in line
 
 
-def test_a_row_without_a_price_says_why(capsys: pytest.CaptureFixture[str]) -> None:
-    row = {"effect": "rotation", "called_for": True, "why_not": "friction needs it"}
-    lines = printed(capsys, {**PRICED, "effect": "drag"}, row)
+def test_a_row_without_an_overhead_says_why(capsys: pytest.CaptureFixture[str]) -> None:
+    row = {"effect": "rotation", "required": True, "why_not": "friction needs it"}
+    lines = printed(capsys, {**ROW, "effect": "drag"}, row)
     assert lines[-1].split() == ["rotation", "yes", "friction", "needs", "it"]
 
 
-def test_a_run_without_prices_prints_nothing(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_run_without_overheads_prints_nothing(capsys: pytest.CaptureFixture[str]) -> None:
     print_table(SimpleNamespace(results=lambda: {}))
     assert capsys.readouterr().out == ""

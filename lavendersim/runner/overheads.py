@@ -1,7 +1,7 @@
-"""The overhead of each effect in a cell: its steps without it, with it, and their difference.
+"""The overhead of each effect in a cell: interleaved timing of engines without and with it.
 
 compile every engine -> take each to where timing begins -> rounds of pairs, off and on in turn
-Both engines of a pair are sampled right after each other, in alternating order, and the price is
+Both engines of a pair are sampled right after each other, in alternating order, and the overhead is
 the median of their differences: a slow minute of the machine falls on both.
 """
 
@@ -23,10 +23,10 @@ from lavendersim.experiment.cell import Cell
 from lavendersim.quantities.found import nearest, quoted
 from lavendersim.scene.colliders import is_movable
 
+from .compile_times import compile_times
 from .environment import processor
-from .price_compile import compile_times
-from .price_pairs import Pair, names_of_effects, pairs_of
-from .price_samples import Diverged, Timed, clock
+from .overhead_pairs import Pair, names_of_effects, pairs_of
+from .timed_engine import Diverged, Timed, clock
 
 Report = Callable[[str, int, int], None]
 OUTSIDE: Final = 0.025  # largest probability that the median lies beyond either end of the interval
@@ -69,7 +69,7 @@ def samples_beyond(count: int) -> int:
     return beyond
 
 
-def check_price(experiment: Experiment) -> None:
+def check_overheads(experiment: Experiment) -> None:
     """Raise ConfigError where the section `overhead` names what is no effect."""
     known = names_of_effects()
     defects = [
@@ -89,7 +89,7 @@ def _named(experiment: Experiment) -> tuple[str, ...]:
     return () if spec is None or spec.effects == "all" else tuple(spec.effects)
 
 
-def take_prices(
+def take_overheads(
     experiment: Experiment, workers: int = 1, report: Report = lambda what, done, total: None
 ) -> dict[str, Any]:
     """Return what the effects of an experiment's only cell cost, as plain data.
@@ -107,7 +107,7 @@ def take_prices(
         cell.config,
         specs,
         workers,
-        lambda done, total: report("compiling engines for prices", done, total),
+        lambda done, total: report("compiling engines for overheads", done, total),
     )
     first = ceil(Fraction(repr(spec.begin)) / cell.config.numerics.timestep)
     steps = cell.config.steps - first
@@ -143,7 +143,7 @@ def _rounds(
     """Return (off, on) of every repeat, by effect [ns/step]."""
     samples: dict[str, list[tuple[float, float]]] = {pair.effect: [] for pair in pairs}
     for repeat in range(repeats):
-        report("rounds of prices", repeat, repeats)
+        report("rounds of overheads", repeat, repeats)
         for pair in pairs:
             if pair.off is None or pair.on is None:
                 continue
@@ -154,7 +154,7 @@ def _rounds(
             else:
                 earlier = off.sample()
                 samples[pair.effect].append((earlier, on.sample()))
-    report("rounds of prices", repeats, repeats)
+    report("rounds of overheads", repeats, repeats)
     return samples
 
 
@@ -172,7 +172,7 @@ def _table(
         (
             timed[spec].contacts
             for pair in pairs
-            for spec in ((pair.on,) if pair.called_for else (pair.off, pair.on))
+            for spec in ((pair.on,) if pair.required else (pair.off, pair.on))
             if spec is not None
         ),
         0.0,
@@ -203,7 +203,7 @@ def _row(
     units = contacts if by_contact else max(bodies, 1)
     row: dict[str, Any] = {
         "effect": pair.effect,
-        "called_for": pair.called_for,
+        "required": pair.required,
         "reason": pair.reason,
         "unit": "contact" if by_contact else "body",
         "units": units,
@@ -222,7 +222,7 @@ def _row(
         "compile_s_on": seconds[pair.on],
         "off": Spread.of([before for before, _ in samples]).per(units),  # ns per unit and step
         "on": Spread.of([after for _, after in samples]).per(units),
-        "price": difference.per(units),
+        "overhead": difference.per(units),
         "within_noise": difference.low <= 0.0 <= difference.high,
         "samples_off": [before for before, _ in samples],  # ns per step
         "samples_on": [after for _, after in samples],
@@ -230,19 +230,20 @@ def _row(
 
 
 COLUMNS: Final = (
-    *("effect", "called_for", "unit", "units", "off", "on", "price", "low", "high"),
+    *("effect", "required", "unit", "units", "off", "on", "overhead", "low", "high"),
     *("within_noise", "same_motion", "contacts_off", "contacts_on"),
     *("compile_s_off", "compile_s_on", "on_top_of", "why_not", "reason"),
 )
 
 
-def write_prices(path: Path, prices: dict[str, Any]) -> None:
-    """Write a table of prices as CSV: medians and ends of intervals, ns per unit and step."""
+def write_overheads(path: Path, overheads: dict[str, Any]) -> None:
+    """Write a table of overheads as CSV: medians and ends of intervals, ns per unit and step."""
     with path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, COLUMNS, restval="", extrasaction="ignore")
         writer.writeheader()
-        for row in prices["rows"]:
-            price = row.get("price", {})
-            medians = {name: row[name]["median"] for name in ("off", "on", "price") if name in row}
-            ends = {name: price[name] for name in ("low", "high") if name in price}
+        for row in overheads["rows"]:
+            overhead = row.get("overhead", {})
+            spreads = {name: row[name] for name in ("off", "on", "overhead") if name in row}
+            medians = {name: spread["median"] for name, spread in spreads.items()}
+            ends = {name: overhead[name] for name in ("low", "high") if name in overhead}
             writer.writerow({**row, "on_top_of": " ".join(row["on_top_of"]), **ends, **medians})

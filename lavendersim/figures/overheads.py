@@ -1,4 +1,4 @@
-"""Runs with prices in; a page with a panel per scene and one of compile times, as PNG and SVG, out.
+"""What effects cost: a panel per scene with the overhead of each, and one of compile times.
 
     effect |  scene 1, ns   |  scene 2, ns   |  compile time, s
     drag   |      o         |        -o-     |   o s
@@ -23,61 +23,61 @@ ROW: Final = 0.27  # [inch]
 SCENE_WIDTH, COMPILE_WIDTH, NAMES_WIDTH = 3.6, 2.6, 2.0  # [inch]
 GAPS: Final = (0.08, 0.04167)  # [inch] around a panel
 LINEAR: Final = 1.0  # [ns] below, the axis is linear: noise goes through zero
-IDLE, MOVES, CALLED = look(0).colour, look(1).colour, look(4).colour
+IDLE, MOVES, REQUIRED = look(0).colour, look(1).colour, look(4).colour
 MARKERS: Final = {"body": "o", "contact": "s"}
 CAPTION: Final = (
     "Nanoseconds a step that an effect adds, per body (circles) or per contact (squares): medians "
     "of {repeats} interleaved repeats, with the interval that holds the median in 19 of 20 cases; "
-    "hollow where that reaches zero. Blue: the scene does not call for it, and the engine carries "
-    "it idle through the same motion. Orange: the scene calls for it. Vermilion: the motion "
+    "hollow where that reaches zero. Blue: the scene does not require it, and the engine carries "
+    "it idle through the same motion. Orange: the scene requires it. Vermilion: the motion "
     "without it is another. The axis is linear within ±1 ns and logarithmic outside. Right: what "
     "the engine with the effect takes to compile, once; lines, the engine of the plan alone. "
     "{processor}."
 )
 
 
-def draw_prices(runs: Sequence[Any], directory: Path) -> list[Path]:
-    """Write one figure for all runs that have prices; returns its files, none without any.
+def draw_overheads(runs: Sequence[Any], directory: Path) -> list[Path]:
+    """Write one figure for all runs that have overheads; returns its files, none without any.
 
-    A run has `.name` and `.results()`. One run gives `<name>_prices`, several give `prices`.
+    A run has `.name` and `.results()`. One run gives `<name>_overheads`, several give `overheads`.
     """
-    priced = [(str(run.name), run.results()["prices"]) for run in runs if _has_prices(run)]
-    if not priced:
+    tables = [
+        (str(run.name), table)
+        for run in runs
+        if (table := run.results().get("overheads")) is not None
+    ]
+    if not tables:
         return []
-    stem = f"{priced[0][0]}_prices" if len(priced) == 1 else "prices"
-    return write(Path(directory) / stem, compose, priced)
+    stem = f"{tables[0][0]}_overheads" if len(tables) == 1 else "overheads"
+    return write(Path(directory) / stem, compose, tables)
 
 
-def _has_prices(run: Any) -> bool:
-    return "prices" in run.results()
-
-
-def compose(priced: Sequence[tuple[str, dict[str, Any]]]) -> Figure:
+def compose(tables: Sequence[tuple[str, dict[str, Any]]]) -> Figure:
     """Return the page as a matplotlib Figure."""
-    effects = list(dict.fromkeys(row["effect"] for _, table in priced for row in table["rows"]))
+    effects = list(dict.fromkeys(row["effect"] for _, table in tables for row in table["rows"]))
     places = {effect: place for place, effect in enumerate(effects)}
-    width = NAMES_WIDTH + SCENE_WIDTH * len(priced) + COMPILE_WIDTH
-    repeats = sorted({table["repeats"] for _, table in priced})
-    processors = sorted({table["processor"] for _, table in priced})
+    width = NAMES_WIDTH + SCENE_WIDTH * len(tables) + COMPILE_WIDTH
+    repeats = sorted({table["repeats"] for _, table in tables})
+    processors = sorted({table["processor"] for _, table in tables})
     caption = CAPTION.format(
         repeats=" or ".join(map(str, repeats)), processor="Processor: " + ", ".join(processors)
     )
     height = ROW * (len(effects) + 1) + 1.1
     figure = blank(Page(caption, width, height, gaps=GAPS))
-    widths = [*(SCENE_WIDTH for _ in priced), COMPILE_WIDTH]
+    widths = [*(SCENE_WIDTH for _ in tables), COMPILE_WIDTH]
     axes = figure.subplots(1, len(widths), squeeze=False, sharey=True, width_ratios=widths)[0]
     axes[0].set_yticks(list(places.values()), labels=[name.replace("_", " ") for name in effects])
     axes[0].set_ylim(len(effects) - 0.4, -0.6)  # in the order of the step, from the top
-    for panel, (name, table) in zip(axes, priced, strict=False):
+    for panel, (name, table) in zip(axes, tables, strict=False):
         _draw_scene(panel, name, table, places)
-    _draw_compile_times(axes[-1], priced, places)
+    _draw_compile_times(axes[-1], tables, places)
     return figure
 
 
 def _draw_scene(axes: Any, name: str, table: dict[str, Any], places: dict[str, int]) -> None:
     bodies, contacts = table["bodies"], table["contacts_per_step"]
     title = f"{name}: {bodies} {'body' if bodies == 1 else 'bodies'}, {contacts:.3g} contacts"
-    describe(axes, title, "price [ns per body or contact and step]", "")
+    describe(axes, title, "overhead [ns per body or contact and step]", "")
     axes.set_xscale("symlog", linthresh=LINEAR)
     axes.axvline(0.0, color=DARK, linewidth=1.1)
     for row in table["rows"]:
@@ -85,10 +85,10 @@ def _draw_scene(axes: Any, name: str, table: dict[str, Any], places: dict[str, i
         if row["why_not"]:
             _write_why_not(axes, place, row["why_not"])
             continue
-        price, colour = row["price"], _colour(row)
-        axes.plot([price["low"], price["high"]], [place, place], color=colour, linewidth=1.6)
+        overhead, colour = row["overhead"], _colour(row)
+        axes.plot([overhead["low"], overhead["high"]], [place, place], color=colour, linewidth=1.6)
         axes.plot(
-            price["median"],
+            overhead["median"],
             place,
             linestyle="none",
             marker=MARKERS[row["unit"]],
@@ -111,11 +111,11 @@ def _short(value: float, _: int) -> str:
 def _colour(row: dict[str, Any]) -> str:
     if not row["same_motion"]:
         return MOVES
-    return CALLED if row["called_for"] else IDLE
+    return REQUIRED if row["required"] else IDLE
 
 
 def _write_why_not(axes: Any, place: int, why_not: str) -> None:
-    """Say in the row why it has no number."""
+    """Write into the row why it has no number."""
     axes.text(
         0.02,
         place,
@@ -129,11 +129,11 @@ def _write_why_not(axes: Any, place: int, why_not: str) -> None:
 
 
 def _draw_compile_times(
-    axes: Any, priced: Sequence[tuple[str, dict[str, Any]]], places: dict[str, int]
+    axes: Any, tables: Sequence[tuple[str, dict[str, Any]]], places: dict[str, int]
 ) -> None:
     describe(axes, "compile time", "compile time [s]", "")
     handles = []
-    for index, (name, table) in enumerate(priced):
+    for index, (name, table) in enumerate(tables):
         shown = look(index + 2)  # the first two colours mean something else on this page
         rows = [row for row in table["rows"] if not row["why_not"]]
         marks: dict[str, Any] = {"linestyle": "none", "marker": shown.marker, "color": shown.colour}
@@ -143,7 +143,7 @@ def _draw_compile_times(
             **marks,
             markersize=5.5,
         )
-        alone = min((row["compile_s_off"] for row in rows if not row["called_for"]), default=None)
+        alone = min((row["compile_s_off"] for row in rows if not row["required"]), default=None)
         if alone is not None:
             axes.axvline(alone, color=shown.colour, linewidth=1.1)
         handles.append(Line2D([], [], label=name, **marks))

@@ -1,8 +1,8 @@
 """The two engines of every effect whose difference in time is its overhead.
 
 Off and on differ in one effect. What the effect needs is in both, so that overheads add up: rolling
-friction is timed on top of friction. Where there is no such pair, a sentence says why:
-    the numerics chose it, or chose otherwise     another law, no price of carrying one
+friction is measured on top of friction. Where there is no such pair, a sentence says why:
+    the numerics chose it, or chose otherwise     another law, no overhead of carrying one
     other effects of the plan need it             it cannot be left out alone
 """
 
@@ -26,7 +26,7 @@ class Pair(NamedTuple):
     """Two engines that differ in an effect; without them, why there are none."""
 
     effect: str
-    called_for: bool
+    required: bool
     reason: str  # of the plan
     of_contacts: bool  # it works on contacts; else on bodies
     off: Spec | None = None

@@ -1,4 +1,4 @@
-"""Prices mean what they say: differences of an effect alone, of the same steps, on quiet ground."""
+"""An overhead is the difference that one effect makes, over the same steps, on a quiet machine."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ import pytest
 from lavendersim.engine.spec import Spec
 from lavendersim.errors import ConfigError
 from lavendersim.experiment import load_experiment_text
-from lavendersim.runner import load_all, open_run, prices, run
-from lavendersim.runner.price_pairs import ALL, names_of_effects, pairs_of
-from lavendersim.runner.price_samples import Diverged, Timed
+from lavendersim.runner import load_all, open_run, overheads, run
+from lavendersim.runner.overhead_pairs import ALL, names_of_effects, pairs_of
+from lavendersim.runner.timed_engine import Diverged, Timed
 from lavendersim.scene.laws import needs
 from lavendersim.scene.plan import plan_of
 
@@ -53,30 +53,30 @@ class Costed:
 
 @pytest.fixture
 def costed(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(prices, "Timed", Costed)
+    monkeypatch.setattr(overheads, "Timed", Costed)
     monkeypatch.setattr(
-        prices,
+        overheads,
         "compile_times",
         lambda resolved, specs, workers, progress: {s: float(len(s.effects)) for s in specs},
     )
 
 
 def rows_of(text: str) -> dict[str, Any]:
-    table = prices.take_prices(load_experiment_text(text, "ball.yaml"))
+    table = overheads.take_overheads(load_experiment_text(text, "ball.yaml"))
     return {row["effect"]: row for row in table["rows"]}
 
 
 @pytest.mark.usefixtures("costed")
-def test_a_price_is_the_difference_that_the_effect_alone_makes() -> None:
+def test_an_overhead_is_the_difference_that_the_effect_alone_makes() -> None:
     for name, row in rows_of(EVERY).items():
         if row["why_not"] or name.startswith("all effects"):
             continue
         # Off and on are neighbours in a round and take turns: a machine that loses 0.01 ns a sample
         # shifts half of the differences up by that, and half down.
         cost = COST.get(name, 1.0) + (1.0 if name == "step_log" else 0.0)  # its poses come with it
-        assert row["price"]["median"] == pytest.approx(cost, abs=1e-9), name
-        assert row["price"]["low"] == pytest.approx(cost - 0.01, abs=1e-9), name
-        assert row["price"]["high"] == pytest.approx(cost + 0.01, abs=1e-9), name
+        assert row["overhead"]["median"] == pytest.approx(cost, abs=1e-9), name
+        assert row["overhead"]["low"] == pytest.approx(cost - 0.01, abs=1e-9), name
+        assert row["overhead"]["high"] == pytest.approx(cost + 0.01, abs=1e-9), name
         assert not row["within_noise"]
         assert row["compile_s_on"] > row["compile_s_off"]
         assert len(row["samples_off"]) == len(row["samples_on"]) == 6
@@ -86,12 +86,12 @@ def test_a_price_is_the_difference_that_the_effect_alone_makes() -> None:
 def test_another_motion_is_called_one_and_a_carried_effect_is_not() -> None:
     rows = rows_of(BALL)
     assert set(rows) == {"gravity", "drag", "contact_log"}
-    assert (rows["gravity"]["called_for"], rows["gravity"]["same_motion"]) == (True, False)
-    assert (rows["drag"]["called_for"], rows["drag"]["same_motion"]) == (False, True)
+    assert (rows["gravity"]["required"], rows["gravity"]["same_motion"]) == (True, False)
+    assert (rows["drag"]["required"], rows["drag"]["same_motion"]) == (False, True)
 
 
 @pytest.mark.usefixtures("costed")
-def test_a_price_below_the_machines_noise_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_overhead_below_the_machines_noise_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
     noise = iter([0.0, 9.0, -7.0, 4.0, -6.0, 8.0] * 100)
     monkeypatch.setattr(Costed, "sample", lambda self: PLAIN + next(noise))
     rows = rows_of(BALL)
@@ -99,7 +99,7 @@ def test_a_price_below_the_machines_noise_says_so(monkeypatch: pytest.MonkeyPatc
 
 
 @pytest.mark.usefixtures("costed")
-def test_where_an_effect_has_no_price_the_row_says_why(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_where_an_effect_has_no_overhead_the_row_says_why(monkeypatch: pytest.MonkeyPatch) -> None:
     rows = rows_of(EVERY)
     assert set(rows) >= set(names_of_effects())
     assert rows["midpoint"]["why_not"] == "numerics.integrator chooses another law"
@@ -114,11 +114,11 @@ def test_where_an_effect_has_no_price_the_row_says_why(monkeypatch: pytest.Monke
             raise Diverged
         return Costed(resolved, spec, first, steps)
 
-    monkeypatch.setattr(prices, "Timed", diverges)
+    monkeypatch.setattr(overheads, "Timed", diverges)
     rows = rows_of(BALL)
     assert rows["gravity"]["why_not"] == "the scene flies apart without it"
-    assert "price" not in rows["gravity"]
-    assert rows["drag"]["price"]["median"] == pytest.approx(COST["drag"])
+    assert "overhead" not in rows["gravity"]
+    assert rows["drag"]["overhead"]["median"] == pytest.approx(COST["drag"])
 
 
 @pytest.mark.parametrize("numerics", ["chapter", "default"])
@@ -176,15 +176,15 @@ def test_intervals_hold_the_median_in_nineteen_of_twenty_cases() -> None:
     # P(at most k of n fair coins show heads) <= 1/40: by the table of the binomial distribution,
     # n = 9: 10/512 for k = 1, 46/512 for k = 2; n = 6: 1/64 for k = 0, 7/64 for k = 1; n = 25:
     # k = 7 gives 0.0216, k = 8 0.0539.
-    assert [prices.samples_beyond(n) for n in (1, 3, 6, 9, 25)] == [0, 0, 0, 1, 7]
+    assert [overheads.samples_beyond(n) for n in (1, 3, 6, 9, 25)] == [0, 0, 0, 1, 7]
 
 
-def test_a_run_leaves_its_prices_in_json_and_csv(tmp_path: Path) -> None:
+def test_a_run_leaves_its_overheads_in_json_and_csv(tmp_path: Path) -> None:
     config = tmp_path / "ball.yaml"
     config.write_text(BALL.replace("repeats: 6", "repeats: 2"))
     finished = run(config, tmp_path / "runs")
     assert finished.good
-    table = open_run(finished.run.path).results()["prices"]
+    table = open_run(finished.run.path).results()["overheads"]
     rows = {row["effect"]: row for row in table["rows"]}
     assert set(rows) == {"gravity", "drag", "contact_log"}
     assert (table["bodies"], table["steps"], table["repeats"]) == (1, 120, 2)
@@ -197,14 +197,18 @@ def test_a_run_leaves_its_prices_in_json_and_csv(tmp_path: Path) -> None:
     assert not rows["gravity"]["same_motion"]
     assert rows["contact_log"]["same_motion"]
     assert (rows["gravity"]["contacts_off"], rows["gravity"]["contacts_on"] > 0.0) == (0.0, True)
-    with (finished.run.path / "prices.csv").open(newline="") as file:
+    with (finished.run.path / "overheads.csv").open(newline="") as file:
         written = {row["effect"]: row for row in csv.DictReader(file)}
-    assert {name: float(row["price"]) for name, row in written.items()} == {
-        name: row["price"]["median"] for name, row in rows.items()
+    assert {name: float(row["overhead"]) for name, row in written.items()} == {
+        name: row["overhead"]["median"] for name, row in rows.items()
     }
     json.dumps(table, allow_nan=False)
-    kept = run(config, tmp_path / "runs", prices=False)
-    assert "prices" not in kept.run.results()
+    results = finished.run.path / "results.json"
+    former = results.read_text().replace('"overheads"', '"prices"').replace('"overhead"', '"price"')
+    results.write_text(former.replace('"required"', '"called_for"'))
+    assert open_run(finished.run.path).results()["overheads"] == table
+    kept = run(config, tmp_path / "runs", overheads=False)
+    assert "overheads" not in kept.run.results()
 
 
 def test_names_that_are_no_effects_are_refused_at_their_place(tmp_path: Path) -> None:

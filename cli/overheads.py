@@ -1,4 +1,4 @@
-"""The prices of a run enter, a table for people leaves: what each effect costs, off and on."""
+"""The table of a run's overheads: what each effect costs a step, off and on."""
 
 from __future__ import annotations
 
@@ -6,24 +6,24 @@ from typing import Any
 
 import typer
 
-HEADER = ("effect", "scene calls", "off", "on", "price", "interval", "compile off/on s", "")
+HEADER = ("effect", "required", "off", "on", "overhead", "interval", "compile off/on s", "")
 
 
 def print_table(run: Any) -> None:
-    """Print what each effect costs, where the run has prices; nothing where it has none."""
-    prices = run.results().get("prices")
-    if prices is None:
+    """Print what each effect costs, where the run has overheads; nothing where it has none."""
+    overheads = run.results().get("overheads")
+    if overheads is None:
         return
     typer.echo(
-        f"  prices in ns per body (/b) or contact (/c) and step: {prices['bodies']} movable "
-        f"{'body' if prices['bodies'] == 1 else 'bodies'}, {prices['contacts_per_step']:.3g} "
-        f"contacts a step, {prices['steps']} steps; medians of {prices['repeats']} repeats, "
-        f"interval: where the median lies in 19 of 20 cases; {prices['processor']}"
+        f"  overheads in ns per body (/b) or contact (/c) and step: {overheads['bodies']} movable "
+        f"{'body' if overheads['bodies'] == 1 else 'bodies'}, {overheads['contacts_per_step']:.3g} "
+        f"contacts a step, {overheads['steps']} steps; medians of {overheads['repeats']} repeats, "
+        f"interval: where the median lies in 19 of 20 cases; {overheads['processor']}"
     )
-    rows = [HEADER, *(_cells(row) for row in prices["rows"])]
+    rows = [HEADER, *(_cells(row) for row in overheads["rows"])]
     widths = [max(len(row[column]) for row in rows if len(row) > 3) for column in range(7)]
     for row in rows:
-        if len(row) == 3:  # no price, and why
+        if len(row) == 3:  # no overhead, and why
             typer.echo(f"  {row[0]:{widths[0]}}  {row[1]:{widths[1]}}  {row[2]}")
             continue
         numbers = "  ".join(f"{row[column]:>{widths[column]}}" for column in range(2, 7))
@@ -31,17 +31,17 @@ def print_table(run: Any) -> None:
 
 
 def _cells(row: dict[str, Any]) -> tuple[str, ...]:
-    called = "yes" if row["called_for"] else "no"
+    required = "yes" if row["required"] else "no"
     if row["why_not"]:
-        return (row["effect"], called, row["why_not"])
-    price = row["price"]
+        return (row["effect"], required, row["why_not"])
+    overhead = row["overhead"]
     return (
         row["effect"],
-        called,
+        required,
         _short(row["off"]["median"]),
         _short(row["on"]["median"]),
-        f"{_short(price['median'])} /{row['unit'][0]}",
-        f"{_short(price['low'])} to {_short(price['high'])}",
+        f"{_short(overhead['median'])} /{row['unit'][0]}",
+        f"{_short(overhead['low'])} to {_short(overhead['high'])}",
         f"{row['compile_s_off']:.1f}/{row['compile_s_on']:.1f}",
         ", ".join(_notes(row)),
     )
