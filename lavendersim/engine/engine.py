@@ -51,6 +51,7 @@ class Engine:
         poses: np.ndarray,
         templates: np.ndarray | None = None,
         hulls: HullGeometry | None = None,
+        links: np.ndarray | None = None,
         block_steps: int = BLOCK_STEPS,
     ) -> None:
         lacking = {
@@ -69,7 +70,7 @@ class Engine:
         self._kernel = advance_for(spec)
         self._entry: Any = None  # its machine code for the types of these arrays, once known
         capacity = max(4, min(4 * len(pairs), 1024))
-        self.state = memory.allocate_state(spec, bodies, velocities, pairs, capacity)
+        self.state = memory.allocate_state(spec, bodies, velocities, pairs, links, capacity)
         self.workspace = memory.allocate_workspace(spec, self.state, hulls, templates)
         self.log = self._allocate_log()
 
@@ -177,6 +178,8 @@ class Engine:
         self.wake(body)
         self.forget_contacts(body)
         rows = removal.rows_of(self.bodies, body)
+        links = self.state.links
+        links["active"][(links["a"] == body) | (links["b"] == body)] = 0
         removal.hold_still(self.bodies, self.velocities, rows)
         if self.spec.has("broad_phase"):
             templates = removal.make_untouchable(self.bodies, self.workspace.templates, rows)

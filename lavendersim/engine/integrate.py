@@ -54,6 +54,23 @@ def make_begin(spec: Spec, accelerate: Any) -> Any:
     return kernel(begin, spec)
 
 
+def make_finish(spec: Spec) -> Any:
+    """Return `kernel(bodies, velocities, motion, params)`: `begin` for what acts between bodies."""
+    torque = spec.has("rotation")
+
+    def finish(bodies, velocities, motion, params):
+        for i in range(bodies.shape[0]):
+            body, v, m = bodies[i], velocities[i], motion[i]
+            if body.inv_m > 0.0:
+                m.dvx, m.dvy, m.dvz = v.vx - m.vx, v.vy - m.vy, v.vz - m.vz
+                speed = sqrt(v.vx * v.vx + v.vy * v.vy + v.vz * v.vz)
+                if torque:
+                    speed += body.bound * sqrt(v.wx * v.wx + v.wy * v.wy + v.wz * v.wz)
+                m.reach = params.dt * speed
+
+    return kernel(finish, spec)
+
+
 def make_undo(spec: Spec) -> Any:
     """Return `kernel(velocities, motion)`: velocities as before `begin`, for a step begun again."""
     torque = spec.has("rotation")

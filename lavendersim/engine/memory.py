@@ -20,6 +20,7 @@ from .collide.scratch import Scratch, allocate_scratch
 from .integrate import keeps_motion
 from .ordering import Ordering, allocate_ordering
 from .record_layout import (
+    allocate_links,
     cache_dtype,
     contact_dtype,
     contact_row_dtype,
@@ -44,6 +45,7 @@ class State(NamedTuple):
     cache: np.ndarray  # (m,) impulses of the last step's contacts: counters.cached
     motion: np.ndarray  # (n,) MOTION: what a body did within the step
     pseudo: np.ndarray  # (n,) pseudo-velocities of the positional projection, as velocities
+    links: np.ndarray  # what effects join two bodies by
 
 
 class Workspace(NamedTuple):
@@ -72,7 +74,12 @@ class Log(NamedTuple):
 
 
 def allocate_state(
-    spec: Spec, bodies: np.ndarray, velocities: np.ndarray, pairs: np.ndarray, capacity: int
+    spec: Spec,
+    bodies: np.ndarray,
+    velocities: np.ndarray,
+    pairs: np.ndarray,
+    links: np.ndarray | None,
+    capacity: int,
 ) -> State:
     """Return the state of a scene with room for so many contacts."""
     moving = len(bodies) if keeps_motion(spec) else 0
@@ -85,6 +92,7 @@ def allocate_state(
         cache=np.zeros(capacity if spec.has("warm_start") else 0, cache_dtype(spec)),
         motion=np.zeros(moving, dtype(MOTION)),
         pseudo=np.zeros(projected, velocities.dtype),
+        links=allocate_links(spec, 0) if links is None else links,
     )
 
 

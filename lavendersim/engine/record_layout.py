@@ -17,6 +17,7 @@ from .records import (
     BODY,
     CONTACT,
     HULL_BODY,
+    LINK,
     ORIENTED_BODY,
     PAIR,
     PARAMETERS,
@@ -27,7 +28,7 @@ from .records import (
 from .solvers.catalogue import SOLVERS
 from .spec import Spec
 
-Record = Literal["body", "velocity", "pair", "contact", "cache"]
+Record = Literal["body", "velocity", "pair", "contact", "link", "cache"]
 
 
 def body_dtype(spec: Spec) -> np.dtype:
@@ -98,6 +99,11 @@ def allocate_velocities(spec: Spec, count: int) -> np.ndarray:
 def allocate_pairs(spec: Spec, count: int) -> np.ndarray:
     """Return zeroed pair records."""
     return np.zeros(count, pair_dtype(spec))
+
+
+def allocate_links(spec: Spec, count: int) -> np.ndarray:
+    """Return zeroed records of what joins two bodies."""
+    return np.zeros(count, dtype(LINK, _of_effects(spec, "link")))
 
 
 def allocate_parameters() -> np.ndarray:

@@ -113,6 +113,9 @@ CONTACT: Final[list[Field]] = [
     ("lambda_n", F8),  # accumulated impulse on B along n, A gets the opposite [N s]
 ]
 
+# Two bodies that an effect joins; it adds what it keeps of them.
+LINK: Final[list[Field]] = [("a", I8), ("b", I8), ("active", I8)]  # 0 once one of them is removed
+
 # Angular parts of a row: the lever r x n of each body and what a unit impulse does to its omega.
 LEVER: Final[list[Field]] = [
     *[(f"lever_{body}{axis}", F8) for body in "ab" for axis in "xyz"],  # r x n [m]

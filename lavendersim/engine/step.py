@@ -15,7 +15,14 @@ from typing import Any
 from .collide import narrow_phase
 from .compile import chain, composing, kernel
 from .effects import made_by, made_once
-from .integrate import keeps_motion, make_begin, make_classify, make_integrate, make_undo
+from .integrate import (
+    keeps_motion,
+    make_begin,
+    make_classify,
+    make_finish,
+    make_integrate,
+    make_undo,
+)
 from .kernel_cache import cached
 from .records import CONTACTS_FULL, DIVERGED, PAIRS_FULL, ROWS_FULL, RUNNING, WOKEN
 from .respond import make_pass_by, make_respond
@@ -46,6 +53,9 @@ def make_advance(spec: Spec) -> Any:
     pass_by: Any = make_pass_by(spec, log_contacts) if passes else None
     classify: Any = make_classify(spec) if keeps and touches else None
     integrate = make_integrate(spec)
+    linked, act_between = made_once(spec, "act_between")
+    _, log_links = made_once(spec, "link_row")
+    finish: Any = make_finish(spec) if linked and keeps else None
     starting = made_by(spec, "start_step")
     starts, start_step = bool(starting), chain(starting, spec)
     sleeps, measure_speeds = made_once(spec, "measure_speeds")
@@ -58,6 +68,8 @@ def make_advance(spec: Spec) -> Any:
         params, counters = parameters[0], counter[0]
         if records:
             if counters.started == 0:
+                if linked:
+                    log_links(log.step[counters.step_rows], state.links, bodies)
                 log_step(bodies, velocities, params, counters, log)
         counters.started = 1
         for _ in range(steps):
@@ -73,6 +85,9 @@ def make_advance(spec: Spec) -> Any:
                 start_step(bodies, velocities)
             if keeps:
                 begin(bodies, velocities, motion, params)
+                if linked:
+                    act_between(state.links, bodies, velocities, motion, params)
+                    finish(bodies, velocities, motion, params)
             if rubs:
                 refresh(bodies, velocities)
             if compound:
@@ -105,6 +120,8 @@ def make_advance(spec: Spec) -> Any:
                 for i in range(bodies.shape[0]):
                     if bodies[i].inv_m > 0.0:
                         accelerate(bodies[i], velocities[i], params)
+            if linked and not keeps:
+                act_between(state.links, bodies, velocities, motion, params)
             if touches:
                 passed = False
                 if passes:
@@ -122,6 +139,8 @@ def make_advance(spec: Spec) -> Any:
             counters.step += 1
             counters.contacts = count
             if records:
+                if linked:
+                    log_links(log.step[counters.step_rows], state.links, bodies)
                 log_step(bodies, velocities, params, counters, log)
             if diverged >= 0:
                 counters.body, counters.cause = diverged, cause

@@ -36,7 +36,7 @@ import numpy as np
 
 from lavendersim.geometry.bodies import is_movable, mass_of, vector
 from lavendersim.geometry.shapes import bounding_radius
-from lavendersim.measures import changes
+from lavendersim.measures import changes, shares
 from lavendersim.measures.columns import mechanical_energy
 from lavendersim.measures.kinds.laws import impulses
 from lavendersim.measures.views import Floats, Rows, Trace
@@ -68,7 +68,7 @@ class EnergyAccount:
         trace: a log, or the next part of one: the last state that was counted, without its
         contacts, and what follows.
         """
-        potential = trace.step["potential_energy"]
+        potential = trace.step["potential_energy"] + shares.stored(trace)
         if not self._begun:
             self._begun = True
             self._lowest = math.inf
@@ -76,7 +76,7 @@ class EnergyAccount:
             self._first_kinetic = float(trace.step["kinetic_energy"][0])
             self._own_weight = _own_weight(trace)
         work, events = changes.work_of_forces(trace), changes.given_by_events(trace)
-        given = _summed(self._given, work + events + _lifted(trace))
+        given = _summed(self._given, work + events + _lifted(trace) + _pulled(trace))
         own = mechanical_energy(trace) - given
         lowest = np.minimum(np.minimum.accumulate(own), self._lowest)
         lowest_potential = np.minimum(np.minimum.accumulate(potential), self._lowest_potential)
@@ -101,6 +101,14 @@ class EnergyAccount:
         return result
 
 
+def _pulled(trace: Trace) -> Floats:
+    """Return the energy that contacts gain in each step by drawing their bodies together [J]."""
+    contacts = contacts_of_log(trace)
+    if contacts is None or not shares.pull(contacts).any():
+        return np.zeros(len(trace.step))
+    return by_step(trace, contacts, shares.given_by_pull(contacts))
+
+
 def _summed(before: float, numbers: Floats) -> Floats:
     """Return the running sum behind what was summed before, rounded as if it were one."""
     sums: Floats = np.cumsum(np.concatenate(([before], numbers)))[1:]
@@ -116,6 +124,8 @@ def momentum_gap(trace: Trace) -> Floats:
     gravity, mass = vector(trace.config.scene.gravity), changes.masses(trace)
     forces = changes.forces(trace)
     outer, size = _impulses(trace)
+    others = shares.outer_impulse(trace)
+    outer, size = outer + others, size + np.sqrt((others**2).sum(axis=1))
     expected = (mass[1:, None] * gravity + forces[1:]) * dt[:, None] + outer[1:]
     lack = np.diff(momentum, axis=0) - expected
     carried = np.sqrt(2.0 * mass * trace.step["kinetic_energy"])

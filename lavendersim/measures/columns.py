@@ -8,6 +8,7 @@ from lavendersim.cell import Sphere
 from lavendersim.errors import UsageError
 from lavendersim.geometry.rotations import rotation_matrix, unit_quaternion
 from lavendersim.geometry.shapes import extent, half_space
+from lavendersim.measures import shares
 from lavendersim.measures.views import Floats, Rows, Trace
 
 
@@ -24,10 +25,18 @@ def contacts_of(trace: Trace, body: str, other: str | None = None) -> Rows:
 
 
 def summed_by_step(trace: Trace, rows: Rows, field: str) -> Floats:
-    """Return the sum of a contact field in every logged step; 0 where there is no contact."""
+    """Return the sum of a contact field in every logged step; 0 where there is no contact.
+
+    Normal impulses and forces are net: less what draws the bodies together.
+    """
     positions = np.searchsorted(trace.step["step"], rows["step"])
     sums = np.zeros(len(trace.step))
-    np.add.at(sums, positions, rows[field])
+    numbers = rows[field]
+    if field in ("impulse_n", "force_n") and shares.pull(rows).any():
+        numbers = shares.net_impulse_n(rows)
+        if field == "force_n":
+            numbers = numbers / trace.clock.lengths(rows["step"])
+    np.add.at(sums, positions, numbers)
     return sums
 
 
@@ -92,4 +101,5 @@ def row_after(trace: Trace, seconds: float) -> int | None:
 def mechanical_energy(trace: Trace) -> Floats:
     """Return kinetic plus potential energy [J] in every logged state."""
     energy: Floats = trace.step["kinetic_energy"] + trace.step["potential_energy"]
+    energy = energy + shares.stored(trace)
     return energy

@@ -11,8 +11,13 @@ import numpy as np
 from lavendersim.cell import CellConfig, CellForce, CellRecord, Numerics
 from lavendersim.clock import Clock, written
 from lavendersim.engine.collide.convex.hull_geometry import HullGeometry
+from lavendersim.engine.effects import effects_of
 from lavendersim.engine.engine import Engine
-from lavendersim.engine.record_layout import allocate_parameters, allocate_velocities
+from lavendersim.engine.record_layout import (
+    allocate_links,
+    allocate_parameters,
+    allocate_velocities,
+)
 from lavendersim.engine.spec import Spec
 
 from .body_rows import body_table, pose_of
@@ -40,6 +45,7 @@ class Scene(NamedTuple):
     templates: np.ndarray  # (classes, classes) what their pairs have in common; see `pair_tables`
     hulls: HullGeometry
     forces: tuple[CellForce, ...]  # `events` lets them act
+    links: np.ndarray  # what effects join bodies by
     numerics: Numerics
 
     def engine(self, spec: Spec, block_steps: int | None = None) -> Engine:
@@ -54,6 +60,7 @@ class Scene(NamedTuple):
             self.poses,
             self.templates,
             self.hulls,
+            self.links,
             **extra,
         )
 
@@ -129,5 +136,20 @@ def build(config: CellConfig, spec: Spec) -> Scene:
         templates=templates,
         hulls=hulls,
         forces=config.scene.forces,
+        links=link_table(config, spec, bodies),
         numerics=config.numerics,
     )
+
+
+def link_table(config: CellConfig, spec: Spec, bodies: np.ndarray) -> np.ndarray:
+    """Return the records of what effects join bodies by; none where no effect does."""
+    places = {name: row for row, name in enumerate(config.scene.bodies)}
+    joining = [effect.links for effect in effects_of(spec) if effect.links]
+    described = [one for links in joining for one in links(config.scene, places)]
+    table = allocate_links(spec, len(described))
+    for record, one in zip(table, described, strict=True):
+        record["active"] = 1
+        for name, value in one.items():
+            record[name] = value
+        bodies["joined"][[one["a"], one["b"]]] = 1
+    return table

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from math import hypot
 
 from lavendersim.cell import CellConfig, CellEvent, CellShape
-from lavendersim.engine.effects import BodyFacts, Facts, PairFacts
+from lavendersim.engine.effects import EFFECTS, BodyFacts, Facts, PairFacts
 
 from .classes import class_pairs
 from .colliders import bounding_radius, colliders, is_movable, parts_of
@@ -23,6 +23,9 @@ def _body_facts(config: CellConfig) -> Iterator[BodyFacts]:
         events.setdefault(event.body, []).append(event)
     pushed = {force.body for force in config.scene.forces if any(force.force)}
     twisted = {force.body for force in config.scene.forces if any(force.torque)}
+    acting = [one for effect in EFFECTS if effect.acts_on for one in effect.acts_on(config.scene)]
+    pulled = {name for name, _ in acting}
+    turned = {name for name, turns in acting if turns}
     for name, body in config.scene.bodies.items():
         inertia = body.inertia or (0.0, 0.0, 0.0)
         own = events.get(name, ())
@@ -41,6 +44,8 @@ def _body_facts(config: CellConfig) -> Iterator[BodyFacts]:
             stated=body,
             force=name in pushed,
             torque=name in twisted,
+            pulled=name in pulled,
+            twisted=name in turned,
             parts=len(parts_of(body.shape)),
         )
 
@@ -80,6 +85,7 @@ def facts_of(config: CellConfig, record: bool = True) -> Facts:
         integrator=numerics.integrator,
         solver=numerics.solver,
         friction_cone=numerics.friction_cone,
+        scene=config.scene,
         sleeping=numerics.sleeping,
         events=bool(changes_of_bodies(config)),
         record=record,

@@ -178,6 +178,7 @@ CASES: dict[str, tuple[str, ...]] = {
     "torsional_friction": ("rough balls",),
     "rolling_friction": ("rough balls",),
     "surface_velocity": ("rough balls",),
+    "spring": ("rough balls",),
     "static_friction": ("rough balls",),
     "cohesion": ("rough balls", "balls"),
     "midpoint": ("drifting balls",),

@@ -18,6 +18,7 @@ NAMES: Final = (
     "gravity",
     "external_force",
     "drag",
+    "spring",
     "rotation",
     "gyroscopic",
     "kinematic",

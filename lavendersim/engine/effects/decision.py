@@ -20,6 +20,8 @@ class BodyFacts(NamedTuple):
     speed: float = 0.0  # largest stated [m/s]
     size: float = 0.0  # radius of the sphere about its centre that holds it [m], planes: inf
     least_size: float = 0.0  # of the smallest of its parts, where it has some; planes: inf
+    pulled: bool = False  # an effect with keys of its own in the scene pulls it
+    twisted: bool = False  # and turns it
     stated: Any = None  # the body as the config of the cell has it
     force: bool = False  # a force acts on it at some time
     torque: bool = False
@@ -57,6 +59,7 @@ class Facts(NamedTuple):
     pair_count: int = 0  # pairs of bodies that may touch
     speculative: bool = False
     impacts: str = "captured"
+    scene: Any = None  # of the config, for effects with keys of their own in it
     mistake: str = "none"  # made on purpose, for study
     integrator: str = "semi_implicit_euler"
     friction_cone: str = "disc"

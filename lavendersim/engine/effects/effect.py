@@ -9,7 +9,7 @@ Declarations load without numba: a maker imports what its kernel is made of when
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from dataclasses import fields as dataclass_fields
 from typing import Any, Final, Literal, NamedTuple
@@ -48,6 +48,7 @@ class Fields:
     pair: Sequence[Field] = ()
     contact: Sequence[Field] = ()
     contact_with: Callable[[Spec], Sequence[Field]] | None = None  # that depend on other effects
+    link: Sequence[Field] = ()  # of what joins two bodies, beside LINK
     cache: Sequence[Field] = ()  # of a contact, kept until the next step
     parameters: Sequence[Field] = ()  # of the run: the key of the numerics that has the same name
 
@@ -68,6 +69,8 @@ class Hooks:
 
     start_step: Maker | None = None  # (bodies, velocities), before forces act
     accelerate: Maker | None = None  # (body, velocity, params), before contacts are completed
+    act_between: Maker | None = None  # (links, bodies, velocities, motion, params), after forces
+    link_row: Maker | None = None  # (row, links, bodies): fills the columns of a step
     prepare: Maker | None = None  # (contact, va, vb, pair, params), when it has frame and levers
     capture: Maker | None = None  # (contact, pair, params), once per contact and step
     preload: Maker | None = None  # (contact, va, vb): impulses beside those of the solve, before it
@@ -131,6 +134,8 @@ class Effect:
     chosen_by: Choice | None = None
     surface_keys: tuple[SurfaceKey, ...] = ()  # of a config: properties of surfaces
     scene_keys: tuple[SceneKey, ...] = ()
+    acts_on: Callable[[Any], Iterable[tuple[str, bool]]] | None = None  # bodies, whether it turns
+    links: Callable[[Any, dict[str, int]], list[dict[str, Any]]] | None = None  # of a scene
     balance: Balance = Balance()
     study_only: str = ""  # of a deliberate error, what it does: every run that has it says so
     fields: Fields = Fields()

@@ -57,6 +57,8 @@ def _source_of_energy(facts: Facts) -> str:
     for body in facts.bodies:
         if body.force or body.torque:
             return f"a force or torque acts on {body.name}"
+        if body.pulled:
+            return f"a force between bodies acts on {body.name}"
         if body.kinematic and (body.spins or body.speed > 0.0):
             return f"{body.name} moves as its velocity says"
         if body.stated is not None and any(body.stated.surface_velocity):

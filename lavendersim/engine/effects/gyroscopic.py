@@ -24,7 +24,9 @@ def decide(facts: Facts) -> Decision:
     uneven = [
         body.name
         for body in facts.bodies
-        if body.movable and not body.round and (body.spins or body.torque or bool(facts.pairs))
+        if body.movable
+        and not body.round
+        and (body.spins or body.torque or body.twisted or bool(facts.pairs))
     ]
     if uneven:
         return Decision(True, f"{named(uneven)}: unequal principal inertias and may turn")

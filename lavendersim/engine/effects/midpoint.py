@@ -15,7 +15,7 @@ def decide(facts: Facts) -> Decision:
     from . import EFFECTS  # by the time it is asked, all are there
 
     for effect in EFFECTS:
-        if effect.hooks.accelerate and effect.decide(facts).on:
+        if (effect.hooks.accelerate or effect.hooks.act_between) and effect.decide(facts).on:
             name = effect.name.replace("_", " ")
             return Decision(True, f"integrator is midpoint and {name} accelerates bodies")
     return Decision(False, "free bodies keep their velocity, any integrator moves them alike")

@@ -34,6 +34,8 @@ def _turned_by(body: BodyFacts, touches: bool, rubbing: set[Kind], resisting: se
         return ""
     if body.torque:
         return "a torque from the config"
+    if body.twisted:
+        return "a force off its centre exerts a torque"
     if touches and body.shape != "sphere":
         return "a contact off the centre of mass exerts a torque"
     if _kind(body) in rubbing:

@@ -63,13 +63,17 @@ def make_set_pace(spec: Spec) -> Any:
 
 def make_is_pushed(spec: Spec) -> Any:
     """Return `kernel(body) -> whether a force or torque from the config acts on it now`."""
-    force = spec.has("external_force")
+    from . import effects_of
+
+    force, joins = spec.has("external_force"), any(effect.links for effect in effects_of(spec))
 
     def is_pushed(body):
         pushed = False
         if force:
             pushed = body.fx != 0.0 or body.fy != 0.0 or body.fz != 0.0
             pushed = pushed or body.tx != 0.0 or body.ty != 0.0 or body.tz != 0.0
+        if joins:
+            pushed = pushed or body.joined == 1
         return pushed
 
     return kernel(is_pushed, spec)

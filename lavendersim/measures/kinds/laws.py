@@ -8,7 +8,7 @@ import numpy as np
 
 from lavendersim.geometry.bodies import is_movable, mass_of, vector
 from lavendersim.geometry.shapes import half_space
-from lavendersim.measures import changes
+from lavendersim.measures import changes, shares
 from lavendersim.measures.columns import clearance_by_step, last_window, mechanical_energy
 from lavendersim.measures.registration import measure
 from lavendersim.measures.specs import laws as specs
@@ -49,7 +49,7 @@ def force_error(spec: specs.ForceError, trace: Trace) -> float:
 def impulses(contacts: Rows) -> Floats:
     """Return the impulse vector on B of each contact [N s] (n, 3), friction included."""
     normals = np.column_stack([contacts[f"n{axis}"] for axis in "xyz"])
-    total: Floats = normals * contacts["impulse_n"][:, None]
+    total: Floats = normals * shares.net_impulse_n(contacts)[:, None]
     if "impulse_t1" in (contacts.dtype.names or ()):
         first = np.column_stack([contacts[f"t1{axis}"] for axis in "xyz"])
         second = np.cross(normals, first)  # the frame (n, t1, t2) is right-handed

@@ -1,0 +1,252 @@
+"""Springs: a damped spring between a point of one body and a point of another.
+
+    F = k (l - l_0) + c l',   along d, the unit vector from A's point to B's; l their distance
+Each spring takes F at the end of the step (implicit Euler), where bodies move with their new
+velocity, and in the middle of it (implicit midpoint), where they move with the mean of old and new;
+l is followed to first order in dt along d:
+    J = dt (k (l - l_0) + s v) / (1 + dt w s K),   s = w k dt + c,   w = 1 or 1/2
+    K = 1/m_A + 1/m_B + (r_A x d) . I_A^-1 (r_A x d) + (r_B x d) . I_B^-1 (r_B x d)
+v: rate of l once other forces have acted, for w = 1/2 its mean with the rate at the step's start.
+A gets J d, B the opposite. Both are stable for any k, c and dt; the midpoint rule keeps the energy
+of a spring that keeps its direction, Euler's takes from it. Springs act one after the other, after
+other forces; what they join does not sleep.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import sqrt
+from typing import Annotated, Any
+
+from pydantic import Field as ModelField
+
+from lavendersim.quantities.model import ConfigModel
+from lavendersim.quantities.names import BodyName
+from lavendersim.quantities.quantity import Quantity, Vector, Vector3
+
+from ..records import ORIENTED_BODY
+from ..spec import Spec
+from .decision import Decision, Facts, named
+from .effect import Balance, Column, Effect, Fields, Hooks, Kernel, kernel
+from .keys import SceneKey, Turn
+
+_CENTRE: Vector3 = (0.0, 0.0, 0.0)
+Point = Annotated[Vector3, Vector(3, Quantity("m"))]
+
+
+class Spring(ConfigModel):
+    """A damped spring between two points, each of a body."""
+
+    a: BodyName = ModelField(description="name of a body")
+    b: BodyName = ModelField(description="name of another body")
+    point_a: Point = ModelField(default=_CENTRE, description="[m] in the frame of a")
+    point_b: Point = ModelField(default=_CENTRE, description="[m] in the frame of b")
+    stiffness: Annotated[float, Quantity("N/m", minimum=0)] = ModelField(
+        description="[N/m] force per stretch"
+    )
+    damping: Annotated[float, Quantity("N s/m", minimum=0)] = ModelField(
+        default=0.0, description="[N s/m] force per rate of length"
+    )
+    rest_length: Annotated[float, Quantity("m", minimum=0)] = ModelField(
+        default=0.0, description="[m] length without force"
+    )
+
+
+def resolve(springs: tuple[Spring, ...], turn: Turn) -> tuple[Spring, ...]:
+    """Return springs with their points in the frames of principal axes."""
+    return tuple(
+        one.model_copy(
+            update={"point_a": turn(one.a, one.point_a), "point_b": turn(one.b, one.point_b)}
+        )
+        for one in springs
+    )
+
+
+def acts_on(scene: Any) -> Iterator[tuple[str, bool]]:
+    """Yield the bodies that springs pull, and whether they turn them."""
+    for one in scene.springs:
+        yield one.a, any(one.point_a)
+        yield one.b, any(one.point_b)
+
+
+def links(scene: Any, rows: dict[str, int]) -> list[dict[str, Any]]:
+    """Return the record of every spring; rows: of the bodies, by name."""
+    return [
+        {
+            "a": rows[one.a],
+            "b": rows[one.b],
+            "stiffness": one.stiffness,
+            "damping": one.damping,
+            "rest_length": one.rest_length,
+            **{f"a{axis}": value for axis, value in zip("xyz", one.point_a, strict=True)},
+            **{f"b{axis}": value for axis, value in zip("xyz", one.point_b, strict=True)},
+        }
+        for one in scene.springs
+    ]
+
+
+def decide(facts: Facts) -> Decision:
+    """On when a spring pulls a body that moves."""
+    springs = facts.scene.springs if facts.scene is not None else ()
+    movable = {body.name for body in facts.bodies if body.movable}
+    pulling = [f"{one.a} and {one.b}" for one in springs if {one.a, one.b} & movable]
+    if pulling:
+        return Decision(True, f"{named(pulling)}: joined by a spring")
+    return Decision(False, "no spring joins a body that moves")
+
+
+def make_place(spec: Spec) -> Kernel:
+    """Return `kernel(link, body_a, body_b) -> (length, d, r_a, r_b)`; d 0 at length 0."""
+    from ..rotation import to_world
+
+    def place(link, body_a, body_b):
+        rax, ray, raz = to_world(body_a, link.ax, link.ay, link.az)
+        rbx, rby, rbz = to_world(body_b, link.bx, link.by, link.bz)
+        x = body_b.x + rbx - body_a.x - rax
+        y = body_b.y + rby - body_a.y - ray
+        z = body_b.z + rbz - body_a.z - raz
+        length = sqrt(x * x + y * y + z * z)
+        scale = 1.0 / length if length > 0.0 else 0.0
+        return length, (x * scale, y * scale, z * scale), (rax, ray, raz), (rbx, rby, rbz)
+
+    return kernel(place, spec)
+
+
+def make_act(spec: Spec) -> Kernel:
+    """Return `kernel(links, bodies, velocities, motion, params)`: springs change velocities."""
+    from ..rotation import inverse_inertia_times
+
+    place = make_place(spec)
+    turns, midpoint = spec.has("rotation"), spec.has("midpoint")
+    w = 0.5 if midpoint else 1.0
+
+    def act(links, bodies, velocities, motion, params):
+        dt = params.dt
+        for k in range(links.shape[0]):
+            link = links[k]
+            link.force, link.px, link.py, link.pz = 0.0, 0.0, 0.0, 0.0
+            if link.active == 0:
+                continue
+            body_a, body_b = bodies[link.a], bodies[link.b]
+            va, vb = velocities[link.a], velocities[link.b]
+            length, d, ra, rb = place(link, body_a, body_b)
+            dx, dy, dz = d
+            response = body_a.inv_m + body_b.inv_m
+            rate = dx * (vb.vx - va.vx) + dy * (vb.vy - va.vy) + dz * (vb.vz - va.vz)
+            if turns:
+                lax, lay, laz = (
+                    ra[1] * dz - ra[2] * dy,
+                    ra[2] * dx - ra[0] * dz,
+                    ra[0] * dy - ra[1] * dx,
+                )
+                lbx, lby, lbz = (
+                    rb[1] * dz - rb[2] * dy,
+                    rb[2] * dx - rb[0] * dz,
+                    rb[0] * dy - rb[1] * dx,
+                )
+                tax, tay, taz = inverse_inertia_times(body_a, lax, lay, laz)
+                tbx, tby, tbz = inverse_inertia_times(body_b, lbx, lby, lbz)
+                response += lax * tax + lay * tay + laz * taz + lbx * tbx + lby * tby + lbz * tbz
+                rate += lbx * vb.wx + lby * vb.wy + lbz * vb.wz
+                rate -= lax * va.wx + lay * va.wy + laz * va.wz
+            if midpoint:
+                ma, mb = motion[link.a], motion[link.b]
+                first = dx * (mb.vx - ma.vx) + dy * (mb.vy - ma.vy) + dz * (mb.vz - ma.vz)
+                if turns:
+                    first += lbx * mb.wx + lby * mb.wy + lbz * mb.wz
+                    first -= lax * ma.wx + lay * ma.wy + laz * ma.wz
+                rate = 0.5 * (rate + first)
+            if response > 0.0:
+                s = w * link.stiffness * dt + link.damping
+                force = link.stiffness * (length - link.rest_length) + s * rate
+                force /= 1.0 + dt * w * s * response
+                link.force = force
+                j = dt * force
+                px, py, pz = j * dx, j * dy, j * dz
+                link.px, link.py, link.pz = px, py, pz
+                va.vx += px * body_a.inv_m
+                va.vy += py * body_a.inv_m
+                va.vz += pz * body_a.inv_m
+                vb.vx -= px * body_b.inv_m
+                vb.vy -= py * body_b.inv_m
+                vb.vz -= pz * body_b.inv_m
+                if turns:
+                    va.wx, va.wy, va.wz = va.wx + j * tax, va.wy + j * tay, va.wz + j * taz
+                    vb.wx, vb.wy, vb.wz = vb.wx - j * tbx, vb.wy - j * tby, vb.wz - j * tbz
+
+    return kernel(act, spec)
+
+
+def make_link_row(spec: Spec) -> Kernel:
+    """Return `kernel(row, links, bodies)` that fills its columns of a step."""
+    place = make_place(spec)
+
+    def log_springs(row, links, bodies):
+        energy, most, stretched = 0.0, 0.0, 0.0
+        x, y, z = 0.0, 0.0, 0.0
+        for k in range(links.shape[0]):
+            link = links[k]
+            if link.active == 0:
+                continue
+            body_a, body_b = bodies[link.a], bodies[link.b]
+            length, _, _, _ = place(link, body_a, body_b)
+            stretch = length - link.rest_length
+            energy += 0.5 * link.stiffness * stretch * stretch
+            if abs(stretch) > abs(stretched):
+                stretched = stretch
+            if abs(link.force) > abs(most):
+                most = link.force
+            sign = 0.0
+            if body_a.inv_m > 0.0 and body_b.inv_m == 0.0:
+                sign = 1.0
+            elif body_b.inv_m > 0.0 and body_a.inv_m == 0.0:
+                sign = -1.0
+            x, y, z = x + sign * link.px, y + sign * link.py, z + sign * link.pz
+        row.spring_energy, row.spring_force, row.spring_stretch = energy, most, stretched
+        row.spring_impulse_x, row.spring_impulse_y, row.spring_impulse_z = x, y, z
+
+    return kernel(log_springs, spec)
+
+
+_OUTER = "of springs on movable bodies from those that do not move, world"
+
+EFFECT = Effect(
+    name="spring",
+    decide=decide,
+    per="body",
+    scene_keys=(
+        SceneKey(
+            name="springs",
+            type=tuple[Spring, ...],
+            default=(),
+            doc="damped springs between points of two bodies",
+            resolve=resolve,
+        ),
+    ),
+    acts_on=acts_on,
+    links=links,
+    fields=Fields(
+        body=[*ORIENTED_BODY, ("joined", "i8")],  # 1: a spring pulls it
+        link=[
+            ("stiffness", "f8"),  # k [N/m]
+            ("damping", "f8"),  # c [N s/m]
+            ("rest_length", "f8"),  # l_0 [m]
+            *[(f"{end}{axis}", "f8") for end in "ab" for axis in "xyz"],  # points, body frame [m]
+            ("force", "f8"),  # of this step, positive where it pulls [N]
+            *[(f"p{axis}", "f8") for axis in "xyz"],  # impulse on A in this step, world [N s]
+        ],
+    ),
+    step_columns=(
+        Column("spring_energy", "f8", "energy that springs store", "J", number=27),
+        Column("spring_impulse_x", "f8", f"impulse {_OUTER} x", "N s", number=28),
+        Column("spring_impulse_y", "f8", f"impulse {_OUTER} y", "N s", number=29),
+        Column("spring_impulse_z", "f8", f"impulse {_OUTER} z", "N s", number=30),
+        Column("spring_force", "f8", "of the spring with the largest; it pulls", "N", number=31),
+        Column("spring_stretch", "f8", "largest length less rest length", "m", number=32),
+    ),
+    balance=Balance(
+        stored="spring_energy",
+        outer=("spring_impulse_x", "spring_impulse_y", "spring_impulse_z"),
+    ),
+    hooks=Hooks(act_between=make_act, link_row=make_link_row),
+)

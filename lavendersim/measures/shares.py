@@ -1,0 +1,61 @@
+"""Shares of effects in the balances of energy and momentum, by the log columns that they declare.
+
+Which columns these are stands with each effect (`engine.effects.effect.Balance`); a log has the
+columns of the effects that its run had.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from lavendersim.engine.effects import EFFECTS
+from lavendersim.measures.views import Floats, Rows, Trace
+
+PULLS = [effect.balance.pull for effect in EFFECTS if effect.balance.pull]
+STORED = [effect.balance.stored for effect in EFFECTS if effect.balance.stored]
+OUTER = [effect.balance.outer for effect in EFFECTS if effect.balance.outer]
+
+
+def _present(rows: Rows, names: list[str]) -> list[str]:
+    columns = rows.dtype.names or ()
+    return [name for name in names if name in columns]
+
+
+def pull(contacts: Rows) -> Floats:
+    """Return the impulse that draws the bodies of each contact together along n [N s] (n,)."""
+    total = np.zeros(len(contacts))
+    for name in _present(contacts, PULLS):
+        total += contacts[name]
+    return total
+
+
+def net_impulse_n(contacts: Rows) -> Floats:
+    """Return the normal impulse on B of each contact, less what draws together [N s] (n,)."""
+    if not _present(contacts, PULLS):
+        pressing: Floats = contacts["impulse_n"]
+        return pressing
+    net: Floats = contacts["impulse_n"] - pull(contacts)
+    return net
+
+
+def given_by_pull(contacts: Rows) -> Floats:
+    """Return the energy that contacts gain by drawing their bodies together [J] (n,)."""
+    gained: Floats = -pull(contacts) * contacts["normal_velocity"]
+    return gained
+
+
+def stored(trace: Trace) -> Floats:
+    """Return the energy that effects store in every logged state [J]."""
+    total = np.zeros(len(trace.step))
+    for name in _present(trace.step, STORED):
+        total += trace.step[name]
+    return total
+
+
+def outer_impulse(trace: Trace) -> Floats:
+    """Return the impulse on everything movable from what is not, beside contacts [N s] (n, 3)."""
+    total = np.zeros((len(trace.step), 3))
+    for names in OUTER:
+        if _present(trace.step, list(names)):
+            total += np.column_stack([trace.step[name] for name in names])
+    return total
