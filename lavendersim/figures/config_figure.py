@@ -16,9 +16,9 @@ from lavendersim.figures.registration import FUNCTIONS
 from lavendersim.figures.series import series_of
 from lavendersim.figures.specs.catalogue import FigureSpec
 from lavendersim.figures.style import PANEL_HEIGHT, PANEL_WIDTH
+from lavendersim.measures.interfaces import Cell
 from lavendersim.measures.selection import select
 from lavendersim.measures.values import Values
-from lavendersim.measures.views import Cell
 
 SIDE_BY_SIDE: Final = 3  # panels in one row
 FEW_ENTRIES: Final = 4  # of a legend that finds space among the lines

@@ -17,9 +17,9 @@ import numpy as np
 from lavendersim.cell import CellConfig
 from lavendersim.figures.series import band_along
 from lavendersim.measures.closed_forms import evaluate_form
+from lavendersim.measures.interfaces import Cell, Floats
 from lavendersim.measures.selection import group_by
 from lavendersim.measures.specs.base import ClosedForm
-from lavendersim.measures.views import Cell, Floats
 
 POINTS = 24  # per interval between two swept values
 

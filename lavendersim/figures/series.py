@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from lavendersim.measures.views import Cell, Floats
+from lavendersim.measures.interfaces import Cell, Floats
 from lavendersim.quantities.scalars import written
 
 

@@ -1,7 +1,7 @@
-"""A cell that was run and its experiment's `always` section in; one Outcome per check out.
+"""Outcomes of the checks of every step (`always`) over the log of a cell.
 
 A check is broken by the first state whose number is above its bound, or is not a number. What is
-told is that state: step, time, whose it is, and the command that shows it. A cell that broke a
+reported is that state: step, time, its bodies, and the command that shows it. A cell that broke a
 bound was stopped there: it is the last state of its log.
 """
 
@@ -12,11 +12,11 @@ from typing import NamedTuple
 import numpy as np
 
 from lavendersim.errors import LavenderError
-from lavendersim.measures.parts import parts_of
+from lavendersim.measures.interfaces import Cell, Trace
+from lavendersim.measures.sections import sections_of
 from lavendersim.measures.specs.always import BEYOND_BOUNDS, Always
+from lavendersim.measures.step_checks import CheckedSteps, StepChecks, checks_of
 from lavendersim.measures.verdict import Outcome, failure
-from lavendersim.measures.views import Cell, Trace
-from lavendersim.measures.watch import Watch, Watched, checks_of
 
 COMPLETE = "complete"
 PREFIX = "always: "
@@ -44,7 +44,7 @@ def outcomes_of(always: Always, cell: Cell) -> dict[str, Outcome]:
 class _Worst(NamedTuple):
     """What became of one check over a log."""
 
-    check: Watched
+    check: CheckedSteps
     number: float  # the largest; NaN where one is none
     first: str = ""  # where and how the first state is that breaks it; nothing where none does
     time: float = 0.0  # [s] of that state
@@ -52,9 +52,9 @@ class _Worst(NamedTuple):
 
 def _worst(always: Always, trace: Trace, states: int) -> dict[str, _Worst]:
     found: dict[str, _Worst] = {}
-    watch = Watch(always)
-    for before, part in parts_of(trace, states):
-        for one in watch.over(part):
+    checks = StepChecks(always)
+    for before, section in sections_of(trace, states):
+        for one in checks.over(section):
             numbers = one.numbers[1 if before else 0 :]
             known = found.get(one.check, _Worst(one, 0.0))
             known = known._replace(number=float(np.max(numbers, initial=known.number)))
@@ -62,17 +62,17 @@ def _worst(always: Always, trace: Trace, states: int) -> dict[str, _Worst]:
             if len(broken) and not known.first:
                 row = int(broken[0]) + (1 if before else 0)
                 known = known._replace(
-                    first=_place(one, part, row), time=float(part.step["time"][row])
+                    first=_place(one, section, row), time=float(section.step["time"][row])
                 )
             found[one.check] = known
     return found
 
 
-def _place(one: Watched, part: Trace, row: int) -> str:
-    whose = one.bodies(row)
-    step, time = int(part.step["step"][row]), float(part.step["time"][row])
+def _place(one: CheckedSteps, section: Trace, row: int) -> str:
+    bodies = one.bodies(row)
+    step, time = int(section.step["step"][row]), float(section.step["time"][row])
     number = f"{float(one.numbers[row]):.6g}{one.unit}"
-    return f"first in step {step}, t = {time:.9g} s: {number}{f', {whose}' if whose else ''}"
+    return f"first in step {step}, t = {time:.9g} s: {number}{f', {bodies}' if bodies else ''}"
 
 
 def _outcome(one: _Worst, ended: str, cell: Cell) -> Outcome:

@@ -1,4 +1,4 @@
-"""A measure's value in one cell and an expectation in; the Outcome out.
+"""Judgements of a measure in one cell: between, at_most, at_least, exactly, equals, row.
 
 A row of numbers is held number by number. NaN fails every judgement: all comparisons are written
 so that only a true `<=` passes.
@@ -12,9 +12,9 @@ from typing import Final
 import numpy as np
 
 from lavendersim.measures.closed_forms import evaluate_form
+from lavendersim.measures.interfaces import Floats, Trace, Value
 from lavendersim.measures.specs.expectation import Equals, ExpectSpec
 from lavendersim.measures.verdict import Outcome
-from lavendersim.measures.views import Floats, Trace, Value
 
 NO_TOLERANCE = "none"
 

@@ -11,7 +11,7 @@ import numpy as np
 from lavendersim.cell import CellEvent, CellForce
 from lavendersim.clock import written
 from lavendersim.geometry.bodies import is_movable, mass_of, principal_inertia, vector
-from lavendersim.measures.views import Floats, Trace
+from lavendersim.measures.interfaces import Floats, Trace
 
 
 def row_after(trace: Trace, time: float) -> int:

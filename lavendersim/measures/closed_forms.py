@@ -37,8 +37,8 @@ from lavendersim.geometry.bodies import (
     vector,
 )
 from lavendersim.geometry.shapes import half_space
+from lavendersim.measures.interfaces import Floats
 from lavendersim.measures.specs.base import ClosedForm
-from lavendersim.measures.views import Floats
 
 
 def evaluate_form(form: ClosedForm, cell: CellConfig) -> float:

@@ -1,4 +1,4 @@
-"""A log in; columns that several measures and figures share out, one number per logged step."""
+"""Columns of a log that several measures and figures share: one number per logged step."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from lavendersim.errors import UsageError
 from lavendersim.geometry.rotations import rotation_matrix, unit_quaternion
 from lavendersim.geometry.shapes import extent, half_space
 from lavendersim.measures import shares
-from lavendersim.measures.views import Floats, Rows, Trace
+from lavendersim.measures.interfaces import Floats, Rows, Trace
 
 
 def contacts_of(trace: Trace, body: str, other: str | None = None) -> Rows:

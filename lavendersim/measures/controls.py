@@ -1,4 +1,4 @@
-"""Negative controls (`fails`) and the verdicts on everything else in; their own verdicts out.
+"""Negative controls (`fails`): verdicts on claims that must fail, from those on everything else.
 
 A control passes when exactly what it names fails, in each of its cells, and nothing else does
 there. What it names is then judged by the control alone and stands in no list of its own: a failure
@@ -28,7 +28,7 @@ class Trial(NamedTuple):
 
 
 def of_completion(control: ExpectSpec) -> bool:
-    """Tell whether the control asks for a cell that does not complete."""
+    """Tell whether the control requires a cell that does not complete."""
     return control.fails in (COMPLETES, DIVERGES)
 
 
@@ -76,8 +76,8 @@ def trials(
             continue
         axes = telling_axes(chosen, control.at)
         for cell in chosen:
-            told = [axis for axis in cell.coordinates if axis in axes]
-            where = coordinates_text(cell.coordinates, told)
+            shown = [axis for axis in cell.coordinates if axis in axes]
+            where = coordinates_text(cell.coordinates, shown)
             node = f"{control.name} at {where}" if where else control.name
             made.append(Trial(control, node, (cell,)))
     return made

@@ -13,7 +13,7 @@ import math
 
 import numpy as np
 
-from lavendersim.measures.views import Floats
+from lavendersim.measures.interfaces import Floats
 
 MOST_HALVINGS = 30  # each step of the mean squares the distance; 6 are typical, 10 much
 

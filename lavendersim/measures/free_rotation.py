@@ -1,4 +1,4 @@
-"""Principal moments and a first angular velocity in; Jacobi's exact free rotation out.
+"""Free rotation of a rigid body, exactly: Jacobi's solution of Euler's equations.
 
 Euler's equations I1 w1' = (I2 - I3) w2 w3 (cyclic), I1 <= I2 <= I3, have with the invariants
 2E = sum I w^2, L^2 = sum I^2 w^2 and L^2 >= 2 E I2 the solution (Landau and Lifshitz, section 37)
@@ -19,7 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from lavendersim.measures.elliptic import integral, jacobi, quarter_period
-from lavendersim.measures.views import Floats
+from lavendersim.measures.interfaces import Floats
 
 
 @dataclass(frozen=True)
@@ -79,7 +79,7 @@ def free_rotation(moments: Floats, omega: Floats) -> FreeRotation:
         a3 = math.sqrt(q / (i3 * (i3 - i1)))
         rate = math.sqrt((i3 - i2) * q / (i1 * i2 * i3))
         m1 = (i3 - i1) * d / ((i3 - i2) * q)
-    # I1 w1' = (I2 - I3) w2 w3 asks this product of the three signs
+    # I1 w1' = (I2 - I3) w2 w3 requires this product of the three signs
     product = math.copysign(1.0, i3 - i2)
     s3 = math.copysign(1.0, w3)
     # on the separatrix cn = dn > 0: the sign of w1 is its own, and that of w2 follows

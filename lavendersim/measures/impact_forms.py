@@ -21,7 +21,7 @@ from lavendersim.cell.mixing import mixed
 from lavendersim.geometry.bodies import inverse_inertia, inverse_mass, lowest_point, mass_of, vector
 from lavendersim.geometry.shapes import half_space
 from lavendersim.measures.closed_forms import clearance, pair_restitution
-from lavendersim.measures.views import Floats
+from lavendersim.measures.interfaces import Floats
 
 
 def velocities_after(

@@ -1,4 +1,4 @@
-"""An experiment's claims and the logs of its cells in; one Verdict per claim out.
+"""Verdicts on the claims of an experiment, from the logs of its cells.
 
 A claim is an expectation in one cell or across cells, a check of `always` in one cell, or a
 negative control. `judge_nodes` gives the same claims from the config alone, so a test runner can
@@ -14,15 +14,15 @@ from lavendersim.errors import LavenderError
 from lavendersim.measures import controls
 from lavendersim.measures.always import COMPLETE, PREFIX
 from lavendersim.measures.cell_judgements import judge_cell
+from lavendersim.measures.interfaces import Cell
 from lavendersim.measures.selection import coordinates_text, select, telling_axes
 from lavendersim.measures.specs.always import Always
 from lavendersim.measures.specs.catalogue import MeasureSpec
 from lavendersim.measures.specs.expectation import ExpectSpec
+from lavendersim.measures.step_checks import checks_of
 from lavendersim.measures.sweep_judgements import judge_sweep
 from lavendersim.measures.values import Values
 from lavendersim.measures.verdict import Outcome, Verdict, failure
-from lavendersim.measures.views import Cell
-from lavendersim.measures.watch import checks_of
 
 Measures = Mapping[str, MeasureSpec]
 # By the cell's index: the outcome of each of its checks.
@@ -141,8 +141,8 @@ def _outcome(expectation: ExpectSpec, cells: Sequence[Cell], values: Values) -> 
     try:
         for cell in cells:
             if (status := cell.trace().status) != COMPLETE:
-                said = f"{cell.label or 'the cell'}: {status}"
-                return failure("a complete run", said, follows=True)
+                ended = f"{cell.label or 'the cell'}: {status}"
+                return failure("a complete run", ended, follows=True)
         if expectation.per_cell:
             row = values.row(expectation.measure, cells[0])
             return judge_cell(expectation, row, cells[0].trace())

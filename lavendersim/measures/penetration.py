@@ -1,4 +1,4 @@
-"""Pairs of solids in place in; how deep each pair overlaps, from geometry alone, out.
+"""Depth of overlap of two solids in place, from geometry alone: separating axes, nearest points.
 
 The depth is the shortest translation that parts the two solids, negative where they are apart (then
 no more than the distance between them). All functions are vectorised over pairs.
@@ -18,8 +18,8 @@ from typing import Final
 
 import numpy as np
 
+from lavendersim.measures.interfaces import Floats
 from lavendersim.measures.solids import BOX, CAPSULE, SPHERE, Placed
-from lavendersim.measures.views import Floats
 
 PARALLEL: Final = 1e-8
 AHEAD = np.array([1, 2, 0])  # the next axis, cyclically

@@ -14,8 +14,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, Final, TypeVar
 
+from lavendersim.measures.interfaces import Trace, Value
 from lavendersim.measures.specs.base import Measure
-from lavendersim.measures.views import Trace, Value
 
 Spec = TypeVar("Spec", bound=Measure)
 Returned = TypeVar("Returned", bound=Value)

@@ -9,10 +9,10 @@ import numpy as np
 
 from lavendersim.measures import kinds
 from lavendersim.measures.closed_forms import evaluate_form
+from lavendersim.measures.interfaces import Trace, Value
 from lavendersim.measures.registration import FUNCTIONS
 from lavendersim.measures.selection import selects
 from lavendersim.measures.specs.catalogue import MeasureSpec
-from lavendersim.measures.views import Trace, Value
 
 kinds.load_all()
 

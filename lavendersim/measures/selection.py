@@ -1,4 +1,4 @@
-"""A selection (`at: {axis: value}`) and the coordinates of cells in; which cells are meant out."""
+"""Which cells of a sweep a selection (`at: {axis: value}`) means, and their grouping by axes."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 from typing import Any, TypeVar
 
+from lavendersim.measures.interfaces import Cell
 from lavendersim.measures.specs.selection import ANY
-from lavendersim.measures.views import Cell
 from lavendersim.quantities.scalars import written
 
 SomeCell = TypeVar("SomeCell", bound=Cell)

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from lavendersim.engine.effects import EFFECTS
-from lavendersim.measures.views import Floats, Rows, Trace
+from lavendersim.measures.interfaces import Floats, Rows, Trace
 
 PULLS = [effect.balance.pull for effect in EFFECTS if effect.balance.pull]
 STORED = [effect.balance.stored for effect in EFFECTS if effect.balance.stored]

@@ -15,7 +15,7 @@ from lavendersim.cell import Box, Capsule, CellScene, CellShape, Cylinder, Plane
 from lavendersim.geometry.bodies import is_movable
 from lavendersim.geometry.rotations import rotation_matrices
 from lavendersim.geometry.shapes import HalfSpace, half_space
-from lavendersim.measures.views import Floats
+from lavendersim.measures.interfaces import Floats
 
 SPHERE, BOX, CAPSULE, CYLINDER, OTHER = range(5)
 KINDS: Final = {"sphere": SPHERE, "box": BOX, "capsule": CAPSULE, "cylinder": CYLINDER}

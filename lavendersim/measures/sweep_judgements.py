@@ -1,4 +1,4 @@
-"""A measure's values in many cells and an expectation in; one Outcome across the cells out."""
+"""Judgements of a measure across cells: trends, ratios, orders of convergence, crossings."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from typing import Final
 
 import numpy as np
 
+from lavendersim.measures.interfaces import Cell, Floats
 from lavendersim.measures.selection import group_by, select
 from lavendersim.measures.specs.expectation import Crosses, ExpectSpec, Order, Ratio
 from lavendersim.measures.verdict import Outcome, failure
-from lavendersim.measures.views import Cell, Floats
 from lavendersim.quantities.scalars import written
 
 NO_TOLERANCE = "none"

@@ -1,4 +1,4 @@
-"""The measures of an experiment in; each one's numbers in each cell out, taken once and kept."""
+"""The measures of an experiment in its cells, each taken once and kept."""
 
 from __future__ import annotations
 
@@ -6,13 +6,13 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
+from lavendersim.measures.interfaces import Cell, Floats
 from lavendersim.measures.registry import evaluate
 from lavendersim.measures.specs.catalogue import MeasureSpec
-from lavendersim.measures.views import Cell, Floats
 
 
 class Values:
-    """Rows of numbers by measure and cell, however many expectations and panels ask for them."""
+    """Rows of numbers by measure and cell, however many expectations and panels need them."""
 
     def __init__(self, measures: Mapping[str, MeasureSpec]) -> None:
         self.measures = measures

@@ -1,4 +1,4 @@
-"""What a judgement says: passed or not, with everything a person needs to see why."""
+"""The verdict on one claim: passed or not, with everything that a person needs to see why."""
 
 from __future__ import annotations
 

@@ -140,7 +140,7 @@ def _send_poses(stream: rr.RecordingStream, trace: Trace, times: npt.NDArray[Any
         # A diverged run's last rows may hold NaN, which no viewer can place.
         rows = np.flatnonzero(np.isfinite(pose[:, body]).all(axis=1))
         if len(rows) and (pose[rows, body] == pose[rows[0], body]).all():
-            rows = rows[:1]  # it never moves: one row says it
+            rows = rows[:1]  # it never moves: one row is enough
         for block in blocks(len(rows)):
             here = rows[block]
             columns = rr.Transform3D.columns(

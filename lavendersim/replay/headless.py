@@ -1,7 +1,7 @@
 """A picture of rerun's viewer, drawn without a display.
 
 The viewer runs as a child process in its headless mode, opens the recording from a file and is
-steered over its local port. Every wait is bounded and the child is ended on every way out.
+steered over its local port. Every wait is bounded and the child is ended whatever happens.
 """
 
 from __future__ import annotations
@@ -95,11 +95,11 @@ class _Viewer:
             raise self._failure(f"did not answer ({error})") from error
 
     def _failure(self, what: str) -> LavenderError:
-        said = self._log.read_text(encoding="utf-8", errors="replace")
-        if any(sign in said for sign in VIEWER_HAS_NO_DRIVER):
+        output = self._log.read_text(encoding="utf-8", errors="replace")
+        if any(sign in output for sign in VIEWER_HAS_NO_DRIVER):
             return MissingDriverError(NO_DRIVER)
-        lines = [line for line in said.splitlines() if "panicked" in line or "ERROR" in line]
-        return LavenderError("; it said: ".join([f"rerun's viewer {what}", *lines[:1]]))
+        lines = [line for line in output.splitlines() if "panicked" in line or "ERROR" in line]
+        return LavenderError("; it reported: ".join([f"rerun's viewer {what}", *lines[:1]]))
 
 
 @contextmanager

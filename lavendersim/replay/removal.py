@@ -1,4 +1,4 @@
-"""Bodies that are removed on the way vanish from the picture at that time.
+"""Bodies that are removed during a run vanish from the picture at that time.
 
 What is static in rerun cannot be cleared: a body that will be gone is drawn at the first time.
 """

@@ -56,7 +56,7 @@ class Extent(NamedTuple):
 
 
 def entity(name: str) -> str:
-    """Entity path of a body; its last part is the body's name, escaped as rerun asks."""
+    """Entity path of a body; its last part is the body's name, escaped as rerun requires."""
     return rr.new_entity_path([BODIES, name])
 
 
@@ -80,7 +80,7 @@ def extent(trace: Trace, bodies: Iterable[Shape]) -> Extent:
 def draw(stream: rr.RecordingStream, trace: Trace, bodies: Sequence[Shape], room: Extent) -> None:
     """Log every body's geometry, and the path its centre takes, once.
 
-    As static data, but for what is removed on the way: that can be cleared (`clear_removed`).
+    As static data, but for what is removed during the run: that can be cleared (`clear_removed`).
     """
     stream.log("/", rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
     gone = removed(trace)

@@ -1,7 +1,7 @@
 """An open rerun window, at a moment where one is requested.
 
 A blueprint cannot say where the time cursor stands (rerun 0.41: TimePanel has no such field), so
-the viewer is told over its port once it has the recording.
+the time is sent to the viewer's port once it has the recording.
 """
 
 from __future__ import annotations

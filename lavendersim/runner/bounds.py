@@ -13,10 +13,10 @@ import numpy as np
 
 from lavendersim.cell import CellConfig
 from lavendersim.clock import Clock
-from lavendersim.measures.parts import Part
+from lavendersim.measures.interfaces import Floats, Rows
+from lavendersim.measures.sections import Section
 from lavendersim.measures.specs.always import BEYOND_BOUNDS, STOPPING, Always
-from lavendersim.measures.views import Floats, Rows
-from lavendersim.measures.watch import Watch, Watched
+from lavendersim.measures.step_checks import CheckedSteps, StepChecks
 from lavendersim.trace import Block
 
 
@@ -31,7 +31,7 @@ class Bounds:
         clock: Clock,
         absent: Mapping[str, str],
     ) -> None:
-        self._watch = Watch(always, STOPPING) if always is not None and always.stop else None
+        self._watch = StepChecks(always, STOPPING) if always is not None and always.stop else None
         self._cell = (bodies, config, clock, absent)
         self._last: tuple[Rows, Floats] | None = None  # the state before the block's
 
@@ -45,9 +45,9 @@ class Bounds:
             again = 1
             step = np.concatenate([self._last[0], step])
             pose = np.concatenate([self._last[1], pose])
-        part = Part(step, block.contact, pose, *self._cell)
+        part = Section(step, block.contact, pose, *self._cell)
         self._last = step[-1:].copy(), pose[-1:].copy()
-        first: tuple[int, Watched] | None = None
+        first: tuple[int, CheckedSteps] | None = None
         for check in self._watch.over(part):
             beyond = np.flatnonzero(check.numbers[again:] > check.bound)
             if len(beyond) and (first is None or beyond[0] + again < first[0]):
@@ -68,7 +68,7 @@ def _cut(block: Block, states: int) -> Block:
     return Block(block.step[:states], contact, block.pose[:states], residual)
 
 
-def _sentence(check: Watched, row: int, part: Part) -> str:
+def _sentence(check: CheckedSteps, row: int, part: Section) -> str:
     """Say which bound was broken, by how much, where and when."""
     step = int(part.step["step"][row])
     whose = check.bodies(row)

@@ -11,7 +11,7 @@ import pytest
 import lavendersim
 from lavendersim.measures import outcomes_of
 from lavendersim.measures.specs.always import STOPPING
-from lavendersim.measures.watch import Watch
+from lavendersim.measures.step_checks import StepChecks
 from lavendersim.runner import Finished, bounds
 
 # A ball in free flight: after k steps of 1/240 s it is g k / 240 fast, and in step k its centre
@@ -67,7 +67,7 @@ def test_without_a_bound_nothing_stops(tmp_path: Path) -> None:
     assert [outcome.steps for outcome in finished.outcomes] == [240, 240, 240]
 
 
-# A ball that bounces, is pushed, thrown, moved and made heavier: every part of the energy account
+# A ball that bounces, is pushed, thrown, moved and made heavier: every term of the energy balance
 # is at work, and 1,200 steps are several blocks of rows.
 BUSY = """\
 scene:
@@ -91,19 +91,19 @@ def test_blocks_are_judged_as_the_log_is(tmp_path: Path, monkeypatch: pytest.Mon
     """The numbers of the parts are those of the whole log, bit for bit."""
     parts: dict[str, list[np.ndarray]] = {}
 
-    class Kept(Watch):
+    class Kept(StepChecks):
         def over(self, trace):
             again = 1 if trace.step["step"][0] > 0 or parts else 0
             for check in super().over(trace):
                 parts.setdefault(check.check, []).append(check.numbers[again:])
                 yield check
 
-    monkeypatch.setattr(bounds, "Watch", Kept)
+    monkeypatch.setattr(bounds, "StepChecks", Kept)
     finished = run(tmp_path, BUSY)
     assert finished.good
     (cell,) = finished.run.cells
     always = finished.run.experiment.always
-    whole = {one.check: one.numbers for one in Watch(always, STOPPING).over(cell.trace())}
+    whole = {one.check: one.numbers for one in StepChecks(always, STOPPING).over(cell.trace())}
     assert len(parts["energy"]) >= 3
     for check, numbers in whole.items():
         assert np.array_equal(np.concatenate(parts[check]), numbers, equal_nan=True), check

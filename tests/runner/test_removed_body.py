@@ -18,7 +18,7 @@ from matplotlib.image import imread
 import lavendersim
 from lavendersim.figures.style import LOOKS
 from lavendersim.figures.thumbnail import thumbnail
-from lavendersim.measures.parts import Part
+from lavendersim.measures.sections import Section
 from lavendersim.runner.experiment_run import Finished
 from lavendersim.trace import Trace, open_trace
 
@@ -120,7 +120,7 @@ def test_a_thumbnail_shows_it_as_long_as_it_is_there(finished: Finished) -> None
     shown = []
     for states in (73, 74):
         whole = (log.bodies, log.config, log.clock, log.absent)
-        part = Part(log.step[:states], log.contact, log.pose[:states], *whole)
+        part = Section(log.step[:states], log.contact, log.pose[:states], *whole)
         picture = imread(io.BytesIO(thumbnail(part)))[:, :, :3]
         shown.append(bool((np.abs(picture - to_rgb(LOOKS[GUEST].colour)).max(axis=2) < 0.01).any()))
     assert shown == [True, False]

@@ -109,7 +109,7 @@ class Hooks:
 
 @dataclass(frozen=True, kw_only=True)
 class Balance:
-    """Its share in the balances of energy and momentum (`measures.account`), by log columns."""
+    """Its share in the balances of energy and momentum (`measures.balance`), by log columns."""
 
     pull: str = ""  # of a contact: impulse that draws its bodies together along n [N s]
     stored: str = ""  # of a step: energy that it stores [J]

@@ -11,9 +11,9 @@ from lavendersim.figures.drawing import draw_ideal
 from lavendersim.figures.registration import draws
 from lavendersim.figures.specs.free_rotation import FreeRotation
 from lavendersim.figures.style import look
+from lavendersim.measures.interfaces import Cell
 from lavendersim.measures.kinds.spinning import body_rates, exact_rotation, times
 from lavendersim.measures.values import Values
-from lavendersim.measures.views import Cell
 
 POINTS = 1200  # of the exact solution
 

@@ -13,9 +13,9 @@ from lavendersim.figures.registration import draws
 from lavendersim.figures.series import Band, band_along, series_of, swept_path
 from lavendersim.figures.specs.measure_against_axis import MeasureAgainstAxis
 from lavendersim.figures.style import DARK, GREY, look
+from lavendersim.measures.interfaces import Cell
 from lavendersim.measures.sweep_judgements import along_axis, first_rise
 from lavendersim.measures.values import Values
-from lavendersim.measures.views import Cell
 
 
 def marker_size(index: int, count: int) -> float:

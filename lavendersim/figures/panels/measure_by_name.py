@@ -11,8 +11,8 @@ from lavendersim.figures.registration import draws
 from lavendersim.figures.series import by_value, series_of
 from lavendersim.figures.specs.measure_by_name import MeasureByName
 from lavendersim.figures.style import GREY, look
+from lavendersim.measures.interfaces import Cell
 from lavendersim.measures.values import Values
-from lavendersim.measures.views import Cell
 
 APART = 0.22  # rows between the series of one value
 

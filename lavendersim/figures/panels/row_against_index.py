@@ -13,8 +13,8 @@ from lavendersim.figures.registration import draws
 from lavendersim.figures.series import band_of_rows, series_of
 from lavendersim.figures.specs.row_against_index import RowAgainstIndex
 from lavendersim.figures.style import look
+from lavendersim.measures.interfaces import Cell, Floats
 from lavendersim.measures.values import Values
-from lavendersim.measures.views import Cell, Floats
 
 
 @draws(RowAgainstIndex)

@@ -19,8 +19,8 @@ from lavendersim.figures.registration import draws
 from lavendersim.figures.series import by_value
 from lavendersim.figures.specs.stability_map import StabilityMap
 from lavendersim.figures.style import DARK, GREY
+from lavendersim.measures.interfaces import Cell
 from lavendersim.measures.values import Values
-from lavendersim.measures.views import Cell
 from lavendersim.quantities.scalars import written
 
 COLOURS: Final = "cividis"  # told apart by colour-blind readers and in grey

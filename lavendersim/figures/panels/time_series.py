@@ -20,10 +20,10 @@ from lavendersim.measures.columns import (
     mechanical_energy,
     summed_by_step,
 )
+from lavendersim.measures.interfaces import Cell, Floats, Rows, Trace
 from lavendersim.measures.kinds.motion import drift_by_step
 from lavendersim.measures.kinds.overlap import overlap_of_rows
 from lavendersim.measures.values import Values
-from lavendersim.measures.views import Cell, Floats, Rows, Trace
 
 DRIFT_AFTER = 0.5  # [s] as the measure counts it
 MOST_MARKERS = 130  # beyond this many points markers run into a stripe; every k-th is marked

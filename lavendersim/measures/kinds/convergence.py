@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from lavendersim.measures.columns import row_after
+from lavendersim.measures.interfaces import Floats, Trace
 from lavendersim.measures.registration import measure
 from lavendersim.measures.specs import convergence as specs
-from lavendersim.measures.views import Floats, Trace
 
 
 @measure(specs.ResidualBySweep)

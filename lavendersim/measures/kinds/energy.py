@@ -12,9 +12,9 @@ from lavendersim.measures.columns import (
     mechanical_energy,
     pushing_runs,
 )
+from lavendersim.measures.interfaces import Floats, Trace
 from lavendersim.measures.registration import measure
 from lavendersim.measures.specs import energy as specs
-from lavendersim.measures.views import Floats, Trace
 
 
 @measure(specs.EnergyByBounce)

@@ -19,9 +19,9 @@ from lavendersim.measures.columns import (
     runs_of,
     summed_by_step,
 )
+from lavendersim.measures.interfaces import Floats, Rows, Trace
 from lavendersim.measures.registration import measure
 from lavendersim.measures.specs import impact as specs
-from lavendersim.measures.views import Floats, Rows, Trace
 
 NAN = float("nan")
 

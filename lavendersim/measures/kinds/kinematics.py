@@ -11,9 +11,9 @@ import numpy as np
 
 from lavendersim.geometry.bodies import is_movable
 from lavendersim.geometry.rotations import rotation_matrix, unit_quaternion
+from lavendersim.measures.interfaces import Floats, Trace
 from lavendersim.measures.registration import measure
 from lavendersim.measures.specs import kinematics as specs
-from lavendersim.measures.views import Floats, Trace
 
 NAN = float("nan")
 ROUNDED = 2e-9  # [s] logged times are rounded down to nanoseconds
@@ -21,16 +21,16 @@ ROUNDED = 2e-9  # [s] logged times are rounded down to nanoseconds
 
 @measure(specs.Displacement)
 def displacement(spec: specs.Displacement, trace: Trace) -> float:
-    """Return the way [m] of the centre along the direction; NaN when the run ends before."""
+    """Return how far [m] the centre came along the direction; NaN when the run ends before."""
     rows = _rows(trace, spec.begin, spec.end)
-    return _way(trace, spec, rows) if rows else NAN
+    return _displacement(trace, spec, rows) if rows else NAN
 
 
 @measure(specs.MeanVelocity)
 def mean_velocity(spec: specs.MeanVelocity, trace: Trace) -> float:
-    """Return that way over its time [m/s]."""
+    """Return that displacement over its time [m/s]."""
     rows = _rows(trace, spec.begin, spec.end)
-    return _way(trace, spec, rows) / _seconds(trace, *rows) if rows else NAN
+    return _displacement(trace, spec, rows) / _seconds(trace, *rows) if rows else NAN
 
 
 @measure(specs.MeanAngularVelocity)
@@ -92,7 +92,7 @@ def _seconds(trace: Trace, first: int, last: int) -> float:
     return float(trace.clock.elapsed(trace.step["step"][first], trace.step["step"][last]))
 
 
-def _way(
+def _displacement(
     trace: Trace, spec: specs.Displacement | specs.MeanVelocity, rows: tuple[int, int]
 ) -> float:
     centres = trace.pose[list(rows), list(trace.bodies).index(spec.body), :3]
@@ -103,10 +103,10 @@ def _speeds(trace: Trace, bodies: tuple[str, ...]) -> tuple[Floats, Floats]:
     """Return the fastest centre's speed [m/s] between neighbouring states, and when they end."""
     names = bodies or [name for name, body in trace.config.scene.bodies.items() if is_movable(body)]
     columns = [list(trace.bodies).index(name) for name in names]
-    ways = np.diff(trace.pose[:, columns, :3], axis=0)
+    displacements = np.diff(trace.pose[:, columns, :3], axis=0)
     steps = np.asarray(trace.step["step"])
     seconds = trace.clock.elapsed(steps[:-1], steps[1:])
-    speeds: Floats = np.sqrt((ways**2).sum(axis=2)).max(axis=1) / seconds
+    speeds: Floats = np.sqrt((displacements**2).sum(axis=2)).max(axis=1) / seconds
     return speeds, np.asarray(trace.step["time"])[1:]
 
 

@@ -10,9 +10,9 @@ from lavendersim.geometry.bodies import is_movable, mass_of, vector
 from lavendersim.geometry.shapes import half_space
 from lavendersim.measures import changes, shares
 from lavendersim.measures.columns import clearance_by_step, last_window, mechanical_energy
+from lavendersim.measures.interfaces import Floats, Rows, Trace
 from lavendersim.measures.registration import measure
 from lavendersim.measures.specs import laws as specs
-from lavendersim.measures.views import Floats, Rows, Trace
 
 NAN = float("nan")
 

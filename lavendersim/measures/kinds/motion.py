@@ -11,10 +11,10 @@ from lavendersim.geometry.bodies import is_movable, rotation_of, vector
 from lavendersim.geometry.shapes import half_space
 from lavendersim.measures.closed_forms import clearance, pair_restitution
 from lavendersim.measures.columns import clearance_by_step, last_window, one_timestep
+from lavendersim.measures.interfaces import Floats, Trace
 from lavendersim.measures.kinds.impact import parabola_vertex
 from lavendersim.measures.registration import measure
 from lavendersim.measures.specs import motion as specs
-from lavendersim.measures.views import Floats, Trace
 
 NAN = float("nan")
 

@@ -20,9 +20,9 @@ import numpy as np
 from lavendersim.cell import Surface
 from lavendersim.cell.mixing import mixed
 from lavendersim.geometry.bodies import inverse_mass
+from lavendersim.measures.interfaces import Floats, Rows, Trace
 from lavendersim.measures.registration import measure
 from lavendersim.measures.specs.optimality import Optimality
-from lavendersim.measures.views import Floats, Rows, Trace
 
 NAN = float("nan")
 

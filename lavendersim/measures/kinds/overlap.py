@@ -8,11 +8,11 @@ import numpy as np
 
 from lavendersim.geometry.shapes import HalfSpace
 from lavendersim.measures.columns import last_window
+from lavendersim.measures.interfaces import Floats, Trace
 from lavendersim.measures.penetration import depths
 from lavendersim.measures.registration import measure
 from lavendersim.measures.solids import Placed, near_pairs, reach, solids_of
 from lavendersim.measures.specs.overlap import Overlap
-from lavendersim.measures.views import Floats, Trace
 
 NAN = float("nan")
 

@@ -10,9 +10,9 @@ from lavendersim.measures.columns import (
     last_window,
     summed_by_step,
 )
+from lavendersim.measures.interfaces import Trace
 from lavendersim.measures.registration import measure
 from lavendersim.measures.specs import steady as specs
-from lavendersim.measures.views import Trace
 
 NAN = float("nan")
 

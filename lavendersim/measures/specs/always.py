@@ -8,7 +8,7 @@
 A key that is not stated has a default; `none` leaves a check out. That the state is finite is
 always checked. A cell ends with the first step that breaks a bound (`stop`). How each number is
 taken, and why it stays within round-off where a run is right, stands in `lavendersim/measures`:
-`account` and `watch`.
+`balance` and `step_checks`.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ class Always(ConfigModel):
 
     energy: Share = Field(
         default=1e-6,
-        description="most mechanical energy won after any state, as a share of what is at play",
+        description="most mechanical energy gained after any state, as a share of what is at play",
     )
     penetration: Depth = Field(
         default=DERIVED,

@@ -10,7 +10,7 @@ from lavendersim.measures.specs.base import Measure, Seconds
 from lavendersim.quantities.names import BodyName
 from lavendersim.quantities.quantity import Quantity
 
-# |omega| dt of the step's rotation must stay small for a flip to be told from the samples around it
+# |omega| dt of a step must stay small for a flip to be found between the samples around it
 Flips = Annotated[int, Quantity("", minimum=1, whole=True)]
 
 

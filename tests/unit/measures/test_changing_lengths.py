@@ -13,10 +13,10 @@ from synthetic import GRAVITY, MASS, contacts, log_of, scene_of, spinning_log, t
 
 from lavendersim.clock import Clock
 from lavendersim.errors import UsageError
-from lavendersim.measures import account, evaluate
+from lavendersim.measures import balance, evaluate
 from lavendersim.measures.specs import optimality as specs
 from lavendersim.measures.specs.catalogue import MeasureSpec
-from lavendersim.measures.watch import NUMBERS
+from lavendersim.measures.step_checks import NUMBERS
 
 FIRST = 10  # steps of 10 ms
 CLOCK = Clock(Fraction(1, 100), [(Fraction(1, 10), Fraction(1, 50))])
@@ -87,9 +87,9 @@ def test_momentum_is_balanced_over_the_length_of_each_step() -> None:
     log.step["momentum_z"] = -MASS * GRAVITY * TIMES
     log.step["kinetic_energy"] = 0.5 * MASS * (GRAVITY * TIMES) ** 2
     log.absent = {"/contacts": "nothing can touch"}
-    assert account.momentum_gap(log).max() < 1e-15
+    assert balance.momentum_imbalance(log).max() < 1e-15
     log.clock = Clock(Fraction(1, 100))
-    assert account.momentum_gap(log).max() > 0.01
+    assert balance.momentum_imbalance(log).max() > 0.01
 
 
 def bouncing(apex: int) -> Any:

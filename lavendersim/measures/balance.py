@@ -1,4 +1,4 @@
-"""A log in; for every step what of its energy and of its momentum nothing accounts for, out.
+"""Balances of energy and momentum: what of each step neither forces nor impulses explain.
 
 Energy. Let a step take velocities v' to v = v' + (g + F/m) dt + j/m and places by v dt. With the
 potential -m g . x and the work F . v dt of the forces of the config, the energy it creates is
@@ -38,8 +38,8 @@ from lavendersim.geometry.bodies import is_movable, mass_of, vector
 from lavendersim.geometry.shapes import bounding_radius
 from lavendersim.measures import changes, shares
 from lavendersim.measures.columns import mechanical_energy
+from lavendersim.measures.interfaces import Floats, Rows, Trace
 from lavendersim.measures.kinds.laws import impulses
-from lavendersim.measures.views import Floats, Rows, Trace
 
 
 def contacts_of_log(trace: Trace) -> Rows | None:
@@ -54,8 +54,8 @@ def by_step(trace: Trace, contacts: Rows, numbers: Floats) -> Floats:
     return sums
 
 
-class EnergyAccount:
-    """What a run has won, state by state; the states of a log may come in several parts."""
+class EnergyBalance:
+    """The energy a run has gained, state by state; a log may come in several sections."""
 
     def __init__(self) -> None:
         self._begun = False
@@ -63,9 +63,9 @@ class EnergyAccount:
         self._own_weight = self._first_potential = self._first_kinetic = 0.0
 
     def created(self, trace: Trace) -> Floats:
-        """Return, in every state, the energy won since it was lowest over that at play [-].
+        """Return, in every state, the energy gained since it was lowest over that at play [-].
 
-        trace: a log, or the next part of one: the last state that was counted, without its
+        trace: a log, or its next section: the last state that was counted, without its
         contacts, and what follows.
         """
         potential = trace.step["potential_energy"] + shares.stored(trace)
@@ -115,8 +115,8 @@ def _summed(before: float, numbers: Floats) -> Floats:
     return sums
 
 
-def momentum_gap(trace: Trace) -> Floats:
-    """Return what each step's change of momentum lacks, over what enters its balance [-]."""
+def momentum_imbalance(trace: Trace) -> Floats:
+    """Return the part of each step's change of momentum without a cause, over all causes [-]."""
     gaps = np.zeros(len(trace.step))
     momentum = np.column_stack([trace.step[f"momentum_{axis}"] for axis in "xyz"])
     # counted in steps: logged times are whole nanoseconds
@@ -127,11 +127,11 @@ def momentum_gap(trace: Trace) -> Floats:
     others = shares.outer_impulse(trace)
     outer, size = outer + others, size + np.sqrt((others**2).sum(axis=1))
     expected = (mass[1:, None] * gravity + forces[1:]) * dt[:, None] + outer[1:]
-    lack = np.diff(momentum, axis=0) - expected
+    imbalance = np.diff(momentum, axis=0) - expected
     carried = np.sqrt(2.0 * mass * trace.step["kinetic_energy"])
     enters = size[1:] + carried[1:] + carried[:-1]
     enters += (mass[1:] * math.hypot(*gravity) + np.sqrt((forces[1:] ** 2).sum(axis=1))) * dt
-    lengths = np.sqrt((lack**2).sum(axis=1))
+    lengths = np.sqrt((imbalance**2).sum(axis=1))
     with np.errstate(invalid="ignore", divide="ignore"):
         gaps[1:] = np.where(lengths == 0.0, 0.0, lengths / enters)
     gaps[changes.unknown_momentum(trace)] = 0.0

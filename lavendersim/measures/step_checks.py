@@ -1,13 +1,13 @@
-"""The log of a cell and its `always` section in; for every check a number in every state out.
+"""The checks of every step (`always`): for each a number in every state of a log, and its bound.
 
 finite       how many numbers of a state or its contacts are not finite
-energy       won since it was lowest, of what is at play (`account`)
+energy       gained since it was lowest, of what is at play (`balance`)
 penetration  the deepest of the step [m]
 impulses     the largest of -lambda_n and |lambda_t| - mu lambda_n of a contact, |psi_n| and |psi_t|
              against their own limits likewise, over the largest normal impulse of the step
-momentum     what of its change nothing accounts for (`account`)
+momentum     the part of its change without a cause (`balance`)
 residual     of the step [m/s]
-speed        way of a body's centre over the step's time, the largest [m/s]
+speed        displacement of a body's centre over the step's time, the largest [m/s]
 
 mu is the config's; the limits of torsional and rolling friction are those of the contact's row.
 """
@@ -22,54 +22,54 @@ import numpy as np
 
 from lavendersim.geometry.bodies import is_movable
 from lavendersim.geometry.shapes import thickness
-from lavendersim.measures.account import EnergyAccount, contacts_of_log, momentum_gap
+from lavendersim.measures.balance import EnergyBalance, contacts_of_log, momentum_imbalance
 from lavendersim.measures.changes import events_of_bodies, row_after
+from lavendersim.measures.interfaces import Floats, Rows, Trace
 from lavendersim.measures.kinds.optimality import friction_of
 from lavendersim.measures.specs.always import CHECKS, DERIVED, FINITE, NONE, Always
-from lavendersim.measures.views import Floats, Rows, Trace
 
 ENERGY: Final = "energy"  # the one check that needs what went before
 SHARE_OF_THICKNESS = 0.1  # a body that sank by a tenth of itself has left the place it stood in
 
 
-class Watched(NamedTuple):
+class CheckedSteps(NamedTuple):
     """One check of a log."""
 
     check: str
     unit: str  # behind a number, with a blank before it where there is one
     bound: float
     numbers: Floats  # in every state; above the bound, or NaN, where it is broken
-    bodies: Callable[[int], str]  # row of the log -> whose it is, nothing where nobody's
+    bodies: Callable[[int], str]  # row of the log -> its bodies, in words; empty where none
 
 
-class Watch:
-    """The checks of a run; the states of its log may come in several parts.
+class StepChecks:
+    """The checks of a run; the states of its log may come in several sections.
 
-    A part after the first begins with the last state of the one before, without its contacts.
+    A section after the first begins with the last state of the one before, without its contacts.
     """
 
     def __init__(self, always: Always, checks: Container[str] = CHECKS) -> None:
         """checks: those of CHECKS that may be made; the others are left out."""
-        self._always, self._account = always, EnergyAccount()
+        self._always, self._energy = always, EnergyBalance()
         self._checks = [check for check in checks_of(always) if check in checks]
         self._bounds: dict[str, float] = {}
 
-    def over(self, trace: Trace) -> Iterator[Watched]:
-        """Yield the checks that are made of a log or its next part, in the order of CHECKS."""
+    def over(self, trace: Trace) -> Iterator[CheckedSteps]:
+        """Yield the checks that are made of a log or its next section, in the order of CHECKS."""
         for check in self._checks:
             if check not in self._bounds:
                 self._bounds[check] = bound_of(check, self._always, trace)
             numbers, bodies = self._numbers(check, trace)
-            yield Watched(check, UNITS[check], self._bounds[check], numbers, bodies)
+            yield CheckedSteps(check, UNITS[check], self._bounds[check], numbers, bodies)
 
     def _numbers(self, check: str, trace: Trace) -> Numbers:
         if check == ENERGY:
-            return self._account.created(trace), _nobody
+            return self._energy.created(trace), _no_body
         return NUMBERS[check](trace)
 
 
 def checks_of(always: Always | None) -> tuple[str, ...]:
-    """Return the checks that a config asks for, from the config alone."""
+    """Return the checks that a config requires."""
     if always is None:
         return ()
     stated = {name: getattr(always, name) for name in CHECKS if name != FINITE}
@@ -90,7 +90,7 @@ def bound_of(check: str, always: Always, trace: Trace) -> float:
 Numbers = tuple[Floats, Callable[[int], str]]
 
 
-def _nobody(row: int) -> str:
+def _no_body(row: int) -> str:
     return ""
 
 
@@ -114,13 +114,13 @@ def _finite(trace: Trace) -> Numbers:
 
 
 def _momentum(trace: Trace) -> Numbers:
-    return momentum_gap(trace), _nobody
+    return momentum_imbalance(trace), _no_body
 
 
 def _penetration(trace: Trace) -> Numbers:
     contacts = contacts_of_log(trace)
     if contacts is None:
-        return np.zeros(len(trace.step)), _nobody
+        return np.zeros(len(trace.step)), _no_body
     return _of_contacts(trace, contacts, contacts["penetration"])
 
 
@@ -139,7 +139,7 @@ def _residual(trace: Trace) -> Numbers:
 
 def _speed(trace: Trace) -> Numbers:
     pose, step = trace.pose, trace.step["step"]
-    fastest, who = np.zeros(len(step)), np.zeros(len(step), dtype=int)
+    fastest, body_of_row = np.zeros(len(step)), np.zeros(len(step), dtype=int)
     dt = trace.clock.elapsed(step[:-1], step[1:])
     jumps = {event.body for event in events_of_bodies(trace) if event.teleport}
     for body, name in enumerate(trace.bodies):
@@ -148,8 +148,8 @@ def _speed(trace: Trace) -> Numbers:
             speed = _without_jumps(trace, name, speed)
         # NaN is faster than anything, and stays
         above = ~((speed <= fastest[1:]) | np.isnan(fastest[1:]))
-        fastest[1:][above], who[1:][above] = speed[above], body
-    return fastest, lambda row: trace.bodies[int(who[row])]
+        fastest[1:][above], body_of_row[1:][above] = speed[above], body
+    return fastest, lambda row: trace.bodies[int(body_of_row[row])]
 
 
 def _without_jumps(trace: Trace, name: str, speed: Floats) -> Floats:
@@ -164,28 +164,28 @@ def _without_jumps(trace: Trace, name: str, speed: Floats) -> Floats:
 def _impulses(trace: Trace) -> Numbers:
     contacts = contacts_of_log(trace)
     if contacts is None or len(contacts) == 0:
-        return np.zeros(len(trace.step)), _nobody
+        return np.zeros(len(trace.step)), _no_body
     pushed = contacts["impulse_n"]
     names = contacts.dtype.names or ()
     excess = np.maximum(-pushed, 0.0)
-    held = np.maximum(pushed, 0.0)
+    pressing = np.maximum(pushed, 0.0)
     if "impulse_t1" in names:
         bodies = trace.config.scene.bodies
         mu = friction_of(contacts, [bodies[name].surface for name in trace.bodies])
         first, second = contacts["impulse_t1"], contacts["impulse_t2"]
         pyramid = trace.config.numerics.friction_cone == "pyramid"
         size = np.maximum(abs(first), abs(second)) if pyramid else np.hypot(first, second)
-        excess = np.maximum(excess, size - mu * held)
+        excess = np.maximum(excess, size - mu * pressing)
     # divided by its arm [m], an angular impulse is compared with the normal one
-    for name, parts in (
+    for name, components in (
         ("torsional_friction", ("angular_impulse_n",)),
         ("rolling_friction", ("angular_impulse_t1", "angular_impulse_t2")),
     ):
         if name in names:
-            size = np.hypot.reduce([contacts[part] for part in parts])
+            size = np.hypot.reduce([contacts[one] for one in components])
             arm = contacts[name]
             with np.errstate(invalid="ignore", divide="ignore"):
-                beyond = np.where(size > 0.0, size / arm - held, 0.0)
+                beyond = np.where(size > 0.0, size / arm - pressing, 0.0)
             excess = np.maximum(excess, beyond)
     rows = np.searchsorted(trace.step["step"], contacts["step"])
     largest = np.zeros(len(trace.step))

@@ -1,4 +1,4 @@
-"""What a measure, a judgement or a figure may ask of a log and of a sweep's cell; types alone."""
+"""What measures, judgements and figures need of a log and of a cell of a sweep: types alone."""
 
 from __future__ import annotations
 

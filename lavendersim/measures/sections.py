@@ -1,7 +1,7 @@
-"""A log in; its states in parts out, as much at a time as memory holds.
+"""A log in sections of states, as much at a time as memory holds.
 
-A part after the first begins with the last state of the one before, without its contacts: what is
-taken over each step finds both its ends.
+A section after the first begins with the last state of the one before, without its contacts: what
+is taken over each step finds both its ends.
 """
 
 from __future__ import annotations
@@ -13,11 +13,11 @@ import numpy as np
 
 from lavendersim.cell import CellConfig
 from lavendersim.clock import Clock
-from lavendersim.measures.views import Floats, Rows, Trace
+from lavendersim.measures.interfaces import Floats, Rows, Trace
 
 
-class Part(NamedTuple):
-    """Some states of a run as measures of single steps read them; see `views.Trace`."""
+class Section(NamedTuple):
+    """Some states of a run as measures of single steps read them; see `interfaces.Trace`."""
 
     step: Rows
     contact: Rows
@@ -26,16 +26,16 @@ class Part(NamedTuple):
     config: CellConfig
     clock: Clock
     absent: Mapping[str, str]
-    residual: Any = ()  # no measure of a single step asks for sweeps
+    residual: Any = ()  # no measure of a single step needs sweeps
     status: str = "complete"
 
     def contacts_in_parts(self) -> Iterator[Rows]:
-        """Yield all contacts: a part fits into memory."""
+        """Yield all contacts: a section fits into memory."""
         yield self.contact
 
 
-def parts_of(trace: Trace, states: int) -> Iterator[tuple[int, Trace]]:
-    """Yield the first states of a log in parts, each with how many were in the parts before."""
+def sections_of(trace: Trace, states: int) -> Iterator[tuple[int, Trace]]:
+    """Yield the first states of a log in sections, each with how many went before it."""
     context = (trace.bodies, trace.config, trace.clock, trace.absent)
     step, pose = trace.step[:states], trace.pose[:states]
     begin, none = 0, None
@@ -45,12 +45,12 @@ def parts_of(trace: Trace, states: int) -> Iterator[tuple[int, Trace]]:
             continue
         end = int(np.searchsorted(step["step"], contact["step"][-1], "right"))
         if end == begin:
-            break  # contacts of states that are not asked for
+            break  # contacts of states that are not wanted
         again = max(begin - 1, 0)
         mine = contact[: np.searchsorted(contact["step"], step["step"][end - 1], "right")]
-        yield begin, Part(step[again:end], mine, pose[again:end], *context)
+        yield begin, Section(step[again:end], mine, pose[again:end], *context)
         begin = end
     if begin < len(step):
         again = max(begin - 1, 0)
         without = trace.contact if none is None else none
-        yield begin, Part(step[again:], without, pose[again:], *context)
+        yield begin, Section(step[again:], without, pose[again:], *context)
