@@ -218,7 +218,7 @@ def run(
     finally:
         _write_index(directory, experiment, pending, ended)
     outcomes = [ended[job.path]._replace(cell=job.cell) for job in pending]
-    finished = Run(directory)
+    finished = Run(directory, {cell.index: cell.config for cell in cells})
     values = Values(experiment.measures)
     measured, always = measure_cells(finished, experiment, values)
     claims = (experiment.measures, experiment.expectations, finished.cells, values)

@@ -11,6 +11,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+from lavendersim.cell import CellConfig
 from lavendersim.errors import TraceError, UsageError
 from lavendersim.experiment import Experiment, load_experiment_text
 from lavendersim.trace import Trace, open_trace
@@ -39,12 +40,13 @@ class RunCell:
     coordinates: Mapping[str, Any]
     path: Path
     status: str
+    config: CellConfig | None = field(default=None, repr=False, compare=False)  # of its own process
     _open: list[Trace] = field(default_factory=list, repr=False, compare=False)
 
     def trace(self) -> Trace:
         """Open the cell's log; its columns are read when they are first asked for."""
         if not self._open:
-            self._open.append(open_trace(self.path, allow_incomplete=True))
+            self._open.append(open_trace(self.path, allow_incomplete=True, config=self.config))
         return self._open[0]
 
     def release(self) -> None:
@@ -54,9 +56,13 @@ class RunCell:
 
 @dataclass(frozen=True)
 class Run:
-    """A run on disk."""
+    """A run on disk.
+
+    configs: of its cells by their index, in the process that ran them; others read them from logs.
+    """
 
     path: Path
+    configs: Mapping[int, CellConfig] = field(default_factory=dict, repr=False, compare=False)
 
     @cached_property
     def experiment(self) -> Experiment:
@@ -87,6 +93,7 @@ class Run:
                 coordinates[row["index"]],
                 self.path / row["file"],
                 row["status"],
+                self.configs.get(row["index"]),
             )
             for row in self._index["cells"]
         )

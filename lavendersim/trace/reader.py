@@ -50,8 +50,12 @@ INCOMPLETE = "incomplete"
 class Trace:
     """One run's log. The columns and their units stand in `schema`."""
 
-    def __init__(self, path: Path, index: FileIndex, finished: bool) -> None:
+    def __init__(
+        self, path: Path, index: FileIndex, finished: bool, config: CellConfig | None = None
+    ) -> None:
         self.path = path
+        if config is not None:
+            self.config = config
         self._index = index
         with damage(path, "the metadata"):
             self.metadata = self._read_metadata()
@@ -158,7 +162,7 @@ class Trace:
 
         TraceError where another version wrote it so that this one cannot read it.
         """
-        data = self.resolved
+        data = self.config_data()
         try:
             return CellConfig.from_dict(data)
         except ValueError as error:  # pydantic's: a count, then a key and what is wrong with it
@@ -167,9 +171,8 @@ class Trace:
                 f"{self.path}: its config was written by another version: {why}"
             ) from None
 
-    @cached_property
-    def resolved(self) -> dict[str, Any]:
-        """The config of this cell as plain data."""
+    def config_data(self) -> dict[str, Any]:
+        """Return the config of this cell as the plain data that the log holds."""
         with damage(self.path, RESOLVED):
             loaded: dict[str, Any] = yaml.load(
                 self._attachment(RESOLVED), getattr(yaml, "CSafeLoader", yaml.SafeLoader)
@@ -217,8 +220,12 @@ def _clock(description: dict[str, str]) -> Clock:
     return Clock.counted(first, [(done, Fraction(timestep)) for done, timestep in changes])
 
 
-def open_trace(path: str | Path, allow_incomplete: bool = False) -> Trace:
+def open_trace(
+    path: str | Path, allow_incomplete: bool = False, config: CellConfig | None = None
+) -> Trace:
     """Return the log at `path`, its columns not yet read.
+
+    config: that of its cell, where the caller has it already; it is not read from the log then.
 
     TraceError when the file is missing, damaged, or unfinished. With `allow_incomplete` a killed
     run is read up to its last whole group of steps; its status is `incomplete`.
@@ -227,9 +234,9 @@ def open_trace(path: str | Path, allow_incomplete: bool = False) -> Trace:
     if not path.is_file():
         raise TraceError(f"{path}: no such log")
     try:
-        return Trace(path, read_summary(path), finished=True)
+        return Trace(path, read_summary(path), finished=True, config=config)
     except TraceError:
         if not allow_incomplete:
             raise
     with damage(path, "the log"):
-        return Trace(path, scan(path).entries, finished=False)
+        return Trace(path, scan(path).entries, finished=False, config=config)

@@ -47,10 +47,11 @@ def recover(path: str | Path, out: str | Path) -> RecoveryReport:
 
 
 def _is_whole(path: Path) -> bool:
-    """Tell whether every column of a log can be read."""
+    """Whether every column of a log can be read."""
     try:
         trace = open_trace(path)
-        for name in ("step", "contact", "pose", "residual", "as_written", "resolved"):
+        trace.config_data()
+        for name in ("step", "contact", "pose", "residual", "as_written"):
             if name != "pose" or "/tf" not in trace.absent:
                 getattr(trace, name)
     except TraceError:

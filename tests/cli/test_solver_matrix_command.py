@@ -98,7 +98,7 @@ def test_the_log_was_made_by_the_solver_it_says(
     for one in json.loads(done.stdout)["entries"]:
         trace = open_trace(folder / one["log"])
         assert trace.metadata["engine"]["solver"] == one["solver"]
-        assert trace.resolved["numerics"]["solver"] == one["solver"]
+        assert trace.config.numerics.solver == one["solver"]
 
 
 def test_the_page_has_an_entry_for_every_case_and_solver(
