@@ -43,7 +43,7 @@ def half_space(shape: CellShape) -> HalfSpace:
 def bounding_radius(shape: CellShape) -> float:
     """Return the radius of the sphere about the centre of mass that holds the shape; planes: inf.
 
-    Of a compound an upper bound: its parts' own spheres are held.
+    Of a compound an upper bound: it holds the spheres of its parts.
     """
     match shape:
         case Plane():

@@ -1,6 +1,6 @@
 """Judgements of a measure in one cell: between, at_most, at_least, exactly, equals, row.
 
-A row of numbers is held number by number. NaN fails every judgement: all comparisons are written
+A row of numbers is judged number by number. NaN fails every judgement: all comparisons are written
 so that only a true `<=` passes.
 """
 

@@ -79,7 +79,7 @@ def judgements() -> Iterator[str]:
 
 
 def checks() -> Iterator[str]:
-    """Yield the lines of the table of what every step is held to."""
+    """Yield the lines of the table of the checks of every step."""
     yield from _head("key", "default", "meaning")
     for name, info in Always.model_fields.items():
         default = str(info.default).lower() if isinstance(info.default, bool) else info.default

@@ -45,7 +45,7 @@ def sections_of(trace: Trace, states: int) -> Iterator[tuple[int, Trace]]:
             continue
         end = int(np.searchsorted(step["step"], contact["step"][-1], "right"))
         if end == begin:
-            break  # contacts of states that are not wanted
+            break  # contacts of states beyond those
         again = max(begin - 1, 0)
         mine = contact[: np.searchsorted(contact["step"], step["step"][end - 1], "right")]
         yield begin, Section(step[again:end], mine, pose[again:end], *context)

@@ -26,14 +26,14 @@ def same(left: Any, right: Any) -> bool:
 
 def selects(selection: Mapping[str, Any], coordinates: Mapping[str, Any]) -> bool:
     """Tell whether a cell is meant: it has every axis named, at (one of) the values named."""
-    for axis, wanted in selection.items():
+    for axis, chosen in selection.items():
         if axis not in coordinates:
             return False
-        if wanted == ANY:
+        if chosen == ANY:
             continue
         found = coordinates[axis]
-        choices = wanted if isinstance(wanted, list | tuple) else (wanted,)
-        if not (same(wanted, found) or any(same(choice, found) for choice in choices)):
+        choices = chosen if isinstance(chosen, list | tuple) else (chosen,)
+        if not (same(chosen, found) or any(same(choice, found) for choice in choices)):
             return False
     return True
 

@@ -72,17 +72,17 @@ def checks_of(always: Always | None) -> tuple[str, ...]:
     """Return the checks that a config requires."""
     if always is None:
         return ()
-    stated = {name: getattr(always, name) for name in CHECKS if name != FINITE}
-    return tuple(name for name in CHECKS if name == FINITE or stated[name] != NONE)
+    bounds = {name: getattr(always, name) for name in CHECKS if name != FINITE}
+    return tuple(name for name in CHECKS if name == FINITE or bounds[name] != NONE)
 
 
 def bound_of(check: str, always: Always, trace: Trace) -> float:
     """Return the bound of a check in a cell."""
     if check == FINITE:
         return 0.0
-    stated = getattr(always, check)
-    if stated != DERIVED:
-        return float(stated)
+    specified = getattr(always, check)
+    if specified != DERIVED:
+        return float(specified)
     bodies = [one for one in trace.config.scene.bodies.values() if is_movable(one)]
     return SHARE_OF_THICKNESS * min((thickness(one.shape) for one in bodies), default=math.inf)
 

@@ -102,7 +102,7 @@ def angular_momentum(trace: Trace) -> Floats:
 def law_violation(spec: specs.LawViolation, trace: Trace) -> float:
     """Return the largest violation in any step; NaN without a step after the time.
 
-    Also where the log does not state it: nothing could touch, or, of Coulomb's parts, rub.
+    Also where the log does not have it: nothing could touch, or nothing has friction.
     """
     column = "residual" if spec.part == "natural_map" else spec.part
     late = trace.step["time"] > spec.after

@@ -81,18 +81,18 @@ def friction_of(contacts: Rows, surfaces: list[Surface]) -> Floats:
 
 def _friction(trace: Trace, contacts: Rows, scale: Floats, mu: Floats) -> tuple[Floats, Floats]:
     limit = scale * mu * np.maximum(contacts["impulse_n"], 0.0)
-    held = scale[:, None] * np.column_stack([contacts["impulse_t1"], contacts["impulse_t2"]])
+    scaled = scale[:, None] * np.column_stack([contacts["impulse_t1"], contacts["impulse_t2"]])
     slip = np.column_stack([contacts["slip_t1"], contacts["slip_t2"]])
     if any(any(one.surface_velocity) for one in trace.config.scene.bodies.values()):
         slip = slip * NAN
-    wanted = held - slip
+    trial = scaled - slip
     if trace.config.numerics.friction_cone == "pyramid":
-        sizes = np.abs(held).max(axis=1)
-        nearest = np.clip(wanted, -limit[:, None], limit[:, None])
+        sizes = np.abs(scaled).max(axis=1)
+        nearest = np.clip(trial, -limit[:, None], limit[:, None])
     else:
-        sizes = np.sqrt((held**2).sum(axis=1))
-        lengths = np.sqrt((wanted**2).sum(axis=1))
+        sizes = np.sqrt((scaled**2).sum(axis=1))
+        lengths = np.sqrt((trial**2).sum(axis=1))
         with np.errstate(divide="ignore", invalid="ignore"):
             shrink = np.where(lengths > limit, limit / lengths, 1.0)
-        nearest = wanted * shrink[:, None]
-    return np.maximum(sizes - limit, 0.0), np.sqrt(((held - nearest) ** 2).sum(axis=1))
+        nearest = trial * shrink[:, None]
+    return np.maximum(sizes - limit, 0.0), np.sqrt(((scaled - nearest) ** 2).sum(axis=1))

@@ -1,11 +1,11 @@
-"""The `always` section of a config in; the bounds that every step of every cell is held to out.
+"""The `always` section of a config: bounds that every step of every cell must keep.
 
     always:
       energy: 1e-6
       penetration: 0.001
       speed: none
 
-A key that is not stated has a default; `none` leaves a check out. That the state is finite is
+A key that is not given has a default; `none` leaves a check out. That the state is finite is
 always checked. A cell ends with the first step that breaks a bound (`stop`). How each number is
 taken, and why it stays within round-off where a run is right, stands in `lavendersim/measures`:
 `balance` and `step_checks`.

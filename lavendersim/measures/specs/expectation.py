@@ -1,4 +1,4 @@
-"""One entry of a config's `expect` section in; a validated ExpectSpec out.
+"""The `expect` section of a config: claims about measures, and negative controls.
 
 An expectation names a measure, selects cells with `at`, and carries exactly one judgement. It has
 no `kind`: the judgement's own key says it, so the config reads as a sentence:
@@ -15,9 +15,9 @@ A negative control says `fails` instead of a measure and a judgement:
 
 It names an expectation of the file, a check of `always`, or `completes` (a cell that diverges), and
 passes when exactly that fails, and nothing else does, in every cell that it selects. One whose name
-begins with `known failure` says what is not held yet, and would rather not pass.
+begins with `known failure` names what lavender does not reach yet, but should.
 
-What this asks of the loader: `sweep` is one mapping of axes or a list of such mappings. A list is
+How `sweep` is read: `sweep` is one mapping of axes or a list of such mappings. A list is
 the union of the products, in order; an axis absent from a product keeps the config's own value
 and is absent from the coordinates of its cells. An axis with a single value is allowed.
 Names of expectations are unique within a file (they become test ids).
@@ -177,7 +177,7 @@ class ExpectSpec(ConfigModel):
 
     @property
     def known_failure(self) -> bool:
-        """Whether this tells of what is not held, not of what must not be: by its name."""
+        """Whether its name says that lavender does not reach this yet, but should."""
         return self.fails is not None and self.name.startswith(KNOWN_FAILURE)
 
     @property
