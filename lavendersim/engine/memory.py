@@ -27,12 +27,9 @@ from .record_layout import (
     residual_row_dtype,
     step_row_dtype,
 )
-from .records import COUNTERS, MOTION, POINT, dtype
+from .records import COUNTERS, MOTION, dtype
 from .solvers.catalogue import SOLVERS
 from .spec import Spec
-
-# Points of one manifold before reduction: two polygons of at most eight vertices each.
-MANIFOLD_POINTS = 16
 
 
 class State(NamedTuple):
@@ -51,8 +48,6 @@ class State(NamedTuple):
 class Workspace(NamedTuple):
     """What a step works in."""
 
-    points: np.ndarray  # (MANIFOLD_POINTS,) POINT: the manifold of one pair
-    normal: np.ndarray  # (3,) of that manifold
     collision: Scratch
     ordering: Ordering
     islands: np.ndarray  # (n,) int64 label of a body's island, `islands`
@@ -110,8 +105,6 @@ def allocate_workspace(
     """Return the workspace of a state; templates: of the broad phase."""
     bodies, near = len(state.bodies), spec.has("broad_phase")
     empty = Workspace(
-        points=np.zeros(MANIFOLD_POINTS, dtype(POINT)),
-        normal=np.zeros(3),
         collision=allocate_scratch(hulls),
         ordering=allocate_ordering(bodies, 0),
         islands=np.zeros(bodies if spec.has("sleeping") else 0, np.int64),

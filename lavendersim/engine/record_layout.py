@@ -11,12 +11,11 @@ from typing import Literal
 
 import numpy as np
 
-from .collide.convex.support import shapes_in
+from .collide.shapes import shapes_in
 from .effects import EFFECTS, effects_of, row_fields
 from .records import (
     BODY,
     CONTACT,
-    HULL_BODY,
     LINK,
     ORIENTED_BODY,
     PAIR,
@@ -34,9 +33,9 @@ Record = Literal["body", "velocity", "pair", "contact", "link", "cache"]
 def body_dtype(spec: Spec) -> np.dtype:
     """Return the record of a body; orientation and hulls only where some shape has them."""
     shapes = shapes_in(spec)
-    oriented = not shapes <= {"plane", "sphere"}
-    base = [*BODY, *(ORIENTED_BODY if oriented else []), *(HULL_BODY if "hull" in shapes else [])]
-    return dtype(base, _of_effects(spec, "body"))
+    oriented = ORIENTED_BODY if any(shape.oriented for shape in shapes) else []
+    of_shapes = [field for shape in shapes for field in shape.fields]
+    return dtype(BODY, oriented, of_shapes, _of_effects(spec, "body"))
 
 
 def velocity_dtype(spec: Spec) -> np.dtype:

@@ -13,7 +13,6 @@ from lavendersim.engine.collide import SHAPE_PAIRS
 from lavendersim.engine.collide.scratch import allocate_scratch
 from lavendersim.engine.compile import kernel
 from lavendersim.engine.kernel_cache import cached
-from lavendersim.engine.memory import MANIFOLD_POINTS
 from lavendersim.engine.record_layout import allocate_bodies
 from lavendersim.engine.records import POINT, TOUCHING, dtype
 from lavendersim.engine.spec import Spec
@@ -36,14 +35,14 @@ def _every_pose(pair: str) -> Any:
     def compose(spec: Spec) -> Any:
         manifold = SHAPE_PAIRS[pair].make(spec)
 
-        def every_pose(first, second, found, normals, counts, points, normal, scratch):
+        def every_pose(first, second, found, normals, counts, scratch):
             for i in range(first.shape[0]):
-                count = manifold(first[i], second[i], points, normal, scratch, TOUCHING)
+                count = manifold(first[i], second[i], TOUCHING, scratch)
                 counts[i] = count
                 for k in range(3):
-                    normals[i, k] = normal[k]
+                    normals[i, k] = scratch.manifold.normal[k]
                 for k in range(count):
-                    row, point = found[4 * i + k], points[k]
+                    row, point = found[4 * i + k], scratch.manifold.points[k]
                     row.x, row.y, row.z = point.x, point.y, point.z
                     row.phi, row.feature = point.phi, point.feature
 
@@ -78,8 +77,7 @@ def manifolds(pair: str, first: np.ndarray, second: np.ndarray) -> list[Manifold
     found, normals = np.zeros(4 * count, dtype(POINT)), np.full((count, 3), np.nan)
     counts = np.zeros(count, np.int64)
     scratch = allocate_scratch()
-    points, normal = np.zeros(MANIFOLD_POINTS, dtype(POINT)), np.zeros(3)
-    _every_pose(pair)(first, second, found, normals, counts, points, normal, scratch)
+    _every_pose(pair)(first, second, found, normals, counts, scratch)
     assert counts.max(initial=0) <= 4
     results = []
     for i in range(count):

@@ -23,7 +23,6 @@ from lavendersim.engine.collide.convex.separation import make_separation
 from lavendersim.engine.collide.scratch import allocate_scratch
 from lavendersim.engine.compile import kernel
 from lavendersim.engine.kernel_cache import cached
-from lavendersim.engine.memory import MANIFOLD_POINTS
 from lavendersim.engine.record_layout import allocate_bodies
 from lavendersim.engine.records import POINT, dtype
 from lavendersim.engine.spec import Spec
@@ -54,19 +53,19 @@ class Sample(NamedTuple):
 
 @cache
 def every_pose(spec: Spec = EVERY_SHAPE) -> Any:
-    """Return `kernel(kind, first, second, found, normals, counts, points, normal, scratch, m)`."""
+    """Return `kernel(kind, first, second, found, normals, counts, margin, scratch)`."""
 
     def compose(spec: Spec) -> Any:
         manifold = narrow_phase.make_manifold(spec, spec.shape_pairs)
 
-        def run(kind, first, second, found, normals, counts, points, normal, scratch, margin):
+        def run(kind, first, second, found, normals, counts, margin, scratch):
             for i in range(first.shape[0]):
-                count = manifold(kind, first[i], second[i], points, normal, scratch, margin)
+                count = manifold(kind, first[i], second[i], margin, scratch)
                 counts[i] = count
                 for k in range(3):
-                    normals[i, k] = normal[k]
+                    normals[i, k] = scratch.manifold.normal[k]
                 for k in range(count):
-                    row, point = found[4 * i + k], points[k]
+                    row, point = found[4 * i + k], scratch.manifold.points[k]
                     row.x, row.y, row.z = point.x, point.y, point.z
                     row.phi, row.feature = point.phi, point.feature
 
@@ -84,8 +83,8 @@ def every_separation() -> Any:
 
         def run(kind, first, second, found, scratch):
             for i in range(first.shape[0]):
-                distance, nx, ny, nz = separation(kind, first[i], second[i], scratch)
-                found[i, 0], found[i, 1], found[i, 2], found[i, 3] = distance, nx, ny, nz
+                distance, n = separation(kind, first[i], second[i], scratch)
+                found[i, 0], found[i, 1], found[i, 2], found[i, 3] = distance, n.x, n.y, n.z
 
         return kernel(run, spec)
 
@@ -98,11 +97,8 @@ def manifolds(sample: Sample, margin: float, spec: Spec = EVERY_SHAPE) -> list[p
     found, normals = np.zeros(4 * count, dtype(POINT)), np.full((count, 3), np.nan)
     counts = np.zeros(count, np.int64)
     scratch = allocate_scratch(hull_geometry(sample.hulls))
-    points, normal = np.zeros(MANIFOLD_POINTS, dtype(POINT)), np.zeros(3)
     kind = SHAPE_PAIRS[sample.pair].kind
-    every_pose(spec)(
-        kind, sample.first, sample.second, found, normals, counts, points, normal, scratch, margin
-    )
+    every_pose(spec)(kind, sample.first, sample.second, found, normals, counts, margin, scratch)
     assert counts.max(initial=0) <= 4
     results = []
     for i in range(count):

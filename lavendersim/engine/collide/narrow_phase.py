@@ -1,25 +1,36 @@
-"""Pairs enter; contact rows with geometry alone (point, n, phi, feature) leave.
+"""Narrow phase: contact points, normals and separations of the pairs that the broad phase lists.
 
-Only the manifolds that a scene's shapes call for are compiled in.
+Only the manifolds that a scene's shapes require are compiled in.
 """
 
 from __future__ import annotations
 
 from typing import Any
 
-from ..compile import kernel
+from ..compile import inner, kernel
 from ..effects import made_once
 from ..records import TOUCHING
 from ..spec import Spec
-from . import SHAPE_PAIRS
+from ..vectors import Vec3
+from .pairs import SHAPE_PAIRS
 from .swept import make_is_fast, make_swept_manifold
 
 
+@inner
+def displacement(of_a, of_b, share, dt):
+    """Displacement of B relative to A in the step [m], with a share of its change of velocity."""
+    return Vec3(
+        (of_b.vx - of_a.vx + share * (of_b.dvx - of_a.dvx)) * dt,
+        (of_b.vy - of_a.vy + share * (of_b.dvy - of_a.dvy)) * dt,
+        (of_b.vz - of_a.vz + share * (of_b.dvz - of_a.dvz)) * dt,
+    )
+
+
 def make_manifold(spec: Spec, names: tuple[str, ...]):
-    """Return `kernel(kind, a, b, points, normal, scratch, margin) -> count` for these pairs."""
+    """Return `kernel(kind, a, b, margin, scratch) -> count` for these pairs."""
     if not names:
 
-        def no_manifold(kind, a, b, points, normal, scratch, margin):
+        def no_manifold(kind, a, b, margin, scratch):
             return 0
 
         return kernel(no_manifold, spec)
@@ -27,16 +38,16 @@ def make_manifold(spec: Spec, names: tuple[str, ...]):
     own_kind, own_manifold = own.kind, own.make(spec)
     if len(names) == 1:
 
-        def only_manifold(kind, a, b, points, normal, scratch, margin):
-            return own_manifold(a, b, points, normal, scratch, margin)
+        def only_manifold(kind, a, b, margin, scratch):
+            return own_manifold(a, b, margin, scratch)
 
         return kernel(only_manifold, spec)
     others = make_manifold(spec, names[1:])
 
-    def manifold(kind, a, b, points, normal, scratch, margin):
+    def manifold(kind, a, b, margin, scratch):
         if kind == own_kind:
-            return own_manifold(a, b, points, normal, scratch, margin)
-        return others(kind, a, b, points, normal, scratch, margin)
+            return own_manifold(a, b, margin, scratch)
+        return others(kind, a, b, margin, scratch)
 
     manifold.__qualname__ += f"_{names[0]}"  # each link of the chain has a symbol of its own
     return kernel(manifold, spec)
@@ -45,11 +56,11 @@ def make_manifold(spec: Spec, names: tuple[str, ...]):
 def make(spec: Spec):
     """Return `kernel(state, listed, workspace, dt) -> count` of the step's contacts (`memory`).
 
-    listed: rows of `pairs` in use; dt: the timestep [s]. Fast pairs get the contacts of where they
-    meet, not of where they start (swept.py).
-    -1 when the contact rows are full. Contacts ahead of touching are looked for as far as the two
-    bodies' points can move in the step, each by itself: another contact may stop either. Two that
-    cannot move make none; with `sleeping` there are such pairs.
+    listed: rows of the pairs in use; dt: the timestep [s]. Fast pairs get the contacts of where
+    they meet, not of where they start (swept.py).
+    -1 when the contact rows are full. Speculative contacts are looked for as far as the two bodies'
+    points can move in the step, each by itself: another contact may stop either. Two that cannot
+    move make none; with `sleeping` there are such pairs.
     """
     manifold = make_manifold(spec, spec.shape_pairs)
     ahead = spec.has("speculative")
@@ -61,9 +72,9 @@ def make(spec: Spec):
     sleeps, still = made_once(spec, "is_still")
 
     def narrow_phase(state, listed, workspace, dt):
-        bodies, motion, pairs = state.bodies, state.motion, state.pairs
-        contacts, points, normal = state.contacts, workspace.points, workspace.normal
+        bodies, motion, pairs, contacts = state.bodies, state.motion, state.pairs, state.contacts
         scratch = workspace.collision
+        points, normal = scratch.manifold.points, scratch.manifold.normal
         total = 0
         margin = TOUCHING
         for p in range(listed):
@@ -74,26 +85,20 @@ def make(spec: Spec):
             if sleeps:
                 if still(bodies[owner_i]) and still(bodies[owner_j]):
                     continue
-            fast, met = False, 0.0
-            dx, dy, dz = 0.0, 0.0, 0.0
+            fast, until_impact = False, 0.0
+            d = Vec3(0.0, 0.0, 0.0)
             if ahead:
                 ma, mb = motion[owner_i], motion[owner_j]
                 margin = TOUCHING + ma.reach + mb.reach
             if sweeps:
-                ma, mb = motion[owner_i], motion[owner_j]
-                dx = (mb.vx - ma.vx + share * (mb.dvx - ma.dvx)) * dt
-                dy = (mb.vy - ma.vy + share * (mb.dvy - ma.dvy)) * dt
-                dz = (mb.vz - ma.vz + share * (mb.dvz - ma.dvz)) * dt
-                fast = is_fast(bodies[i], bodies[j], dx, dy, dz)
+                d = displacement(motion[owner_i], motion[owner_j], share, dt)
+                fast = is_fast(bodies[i], bodies[j], d)
                 if fast:
-                    count, met = swept_manifold(
-                        pairs[p].kind, bodies[i], bodies[j], dx, dy, dz, points, normal, scratch,
-                        margin,
-                    )  # fmt: skip
+                    count, until_impact = swept_manifold(
+                        pairs[p].kind, bodies[i], bodies[j], d, margin, scratch
+                    )
             if not fast:
-                count = manifold(
-                    pairs[p].kind, bodies[i], bodies[j], points, normal, scratch, margin
-                )
+                count = manifold(pairs[p].kind, bodies[i], bodies[j], margin, scratch)
             if total + count > contacts.shape[0]:
                 return -1
             for k in range(count):
@@ -107,10 +112,10 @@ def make(spec: Spec):
                 contact.phi = point.phi
                 if sweeps:
                     # Across n B's surface is met where B will be then.
-                    along = dx * normal[0] + dy * normal[1] + dz * normal[2]
-                    contact.beside_x = met * (dx - along * normal[0])
-                    contact.beside_y = met * (dy - along * normal[1])
-                    contact.beside_z = met * (dz - along * normal[2])
+                    along = d.x * normal[0] + d.y * normal[1] + d.z * normal[2]
+                    contact.beside_x = until_impact * (d.x - along * normal[0])
+                    contact.beside_y = until_impact * (d.y - along * normal[1])
+                    contact.beside_z = until_impact * (d.z - along * normal[2])
                 total += 1
         return total
 

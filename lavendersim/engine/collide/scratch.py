@@ -1,6 +1,6 @@
-"""The tables of a scene's hulls enter; the small arrays that collision kernels fill anew leave.
+"""Scratch memory of collision kernels: one set per thread, overwritten by every pair.
 
-Kernels allocate nothing: every array they need lies here, one set per thread.
+Kernels allocate nothing: every array they need lies here, under its name.
 """
 
 from __future__ import annotations
@@ -11,47 +11,70 @@ import numpy as np
 
 from ..records import POINT, dtype
 from .convex.hull_geometry import HullGeometry, hull_geometry
+from .records import FACE, PLANE_OF_FEATURE, SEPARATION, VECTOR, VERTEX
 
-# Corners of the polygon that stands for a cylinder's cap (features.py).
+# Points of one manifold before reduction: two polygons of at most eight vertices each.
+MANIFOLD_POINTS = 16
+# Corners of the polygon that stands for a cylinder's cap (shapes/cylinder.py).
 CAP_CORNERS = 8
-# Support points and faces of the expanding polytope: a convex polyhedron with v corners has at most
+# Vertices of a simplex, and one that waits for acceptance (gjk.py).
+SIMPLEX_VERTICES = 4
+NEW_VERTEX = 4
+# Vertices and faces of the expanding polytope: a convex polyhedron with v corners has at most
 # 2 v - 4 triangles; faces that were cut off keep their rows.
 EPA_VERTICES = 128
 EPA_FACES = 1024
 
 
-class Mesh(NamedTuple):
-    """The expanding polytope (polytope.py)."""
+class Manifold(NamedTuple):
+    """What a pair's kernel writes: contact points that share a normal."""
 
-    corners: np.ndarray  # (EPA_VERTICES, 9) like simplex
-    planes: np.ndarray  # (EPA_FACES, 4) outward normal and offset of each face
-    triangles: np.ndarray  # (EPA_FACES, 7) three corners, three neighbours, alive
-    visible: np.ndarray  # (EPA_FACES,) faces seen from the new corner
-    stack: np.ndarray  # (EPA_FACES,) faces whose neighbours are still to be looked at
-    starts: np.ndarray  # (EPA_VERTICES,) new face that leaves a corner of the horizon
+    points: np.ndarray  # (MANIFOLD_POINTS,) POINT
+    normal: np.ndarray  # (3,) unit, from A to B
+
+
+class BoxFrame(NamedTuple):
+    """A box while two of them are compared: axis i is the row axes[i], in world coordinates."""
+
+    axes: np.ndarray  # (3, 3)
+    half: np.ndarray  # (3,) half edge lengths [m]
+    centre: np.ndarray  # (3,) [m]
+    offset: np.ndarray  # (3,) from A's centre to B's, along these axes [m]
+
+
+class Polytope(NamedTuple):
+    """The expanding polytope (polytope.py): a closed mesh of triangles."""
+
+    vertices: np.ndarray  # (EPA_VERTICES,) VERTEX
+    faces: np.ndarray  # (EPA_FACES,) FACE
+    corners: np.ndarray  # (EPA_FACES, 3) vertices of a face, turning left seen from outside
+    neighbours: np.ndarray  # (EPA_FACES, 3) faces across its edges: edge k leads from corner k
+    queue: np.ndarray  # (EPA_FACES,) faces seen from the new vertex
+    horizon: np.ndarray  # (EPA_VERTICES,) new face whose edge on the horizon begins there, or -1
+
+
+class Outline(NamedTuple):
+    """A feature's loop of corners or two ends, and the plane that it lies in."""
+
+    corners: np.ndarray  # (n,) VECTOR
+    plane: np.ndarray  # (1,) PLANE_OF_FEATURE
 
 
 class Scratch(NamedTuple):
     """Small arrays that each pair overwrites, and the hulls' tables, which stay as they are."""
 
-    frame_a: np.ndarray
-    frame_b: np.ndarray
-    cosines: np.ndarray
-    half_a: np.ndarray
-    half_b: np.ndarray
-    offset_a: np.ndarray
-    offset_b: np.ndarray
+    manifold: Manifold
+    box_a: BoxFrame
+    box_b: BoxFrame
+    cosines: np.ndarray  # (3, 3) of the angles between axes of A and of B
     hulls: HullGeometry
-    simplex: np.ndarray  # (5, 9) corners w = a - b with their a, b; row 4 waits for acceptance
-    weights: np.ndarray  # (4,) barycentric coordinates of the simplex's nearest point
-    result: np.ndarray  # (10,) n, separation, point of A, point of B (gjk.py)
-    nearest: np.ndarray  # (6,) point of A, point of B, while `ascend` looks for better ones
-    mesh: Mesh
-    frame: np.ndarray  # (9,) t1, t2, n of a manifold
-    loop_a: np.ndarray  # (n, 3) corners of A's feature
-    loop_b: np.ndarray
-    plane_a: np.ndarray  # (7,) outward normal, a point of the plane, radius of a disc
-    plane_b: np.ndarray
+    simplex: np.ndarray  # (SIMPLEX_VERTICES + 1,) VERTEX
+    weights: np.ndarray  # (SIMPLEX_VERTICES,) barycentric coordinates of the nearest point
+    separation: np.ndarray  # (1,) SEPARATION, what GJK and EPA found
+    best: np.ndarray  # (1,) SEPARATION, while `ascend` looks for a better one
+    polytope: Polytope
+    outline_a: Outline
+    outline_b: Outline
     polygon: np.ndarray  # POINT rows: two polygons being cut
 
 
@@ -60,32 +83,37 @@ def allocate_scratch(geometry: HullGeometry | None = None) -> Scratch:
     hulls = hull_geometry() if geometry is None else geometry
     longest = max(int(np.diff(hulls.loop_start).max()), CAP_CORNERS)
     most = int(np.diff(hulls.vertex_start).max())
+
+    def box() -> BoxFrame:
+        return BoxFrame(
+            axes=np.zeros((3, 3)), half=np.zeros(3), centre=np.zeros(3), offset=np.zeros(3)
+        )
+
+    def outline() -> Outline:
+        return Outline(
+            corners=np.zeros(longest, dtype(VECTOR)), plane=np.zeros(1, dtype(PLANE_OF_FEATURE))
+        )
+
     return Scratch(
-        frame_a=np.zeros((3, 3)),
-        frame_b=np.zeros((3, 3)),
+        manifold=Manifold(points=np.zeros(MANIFOLD_POINTS, dtype(POINT)), normal=np.zeros(3)),
+        box_a=box(),
+        box_b=box(),
         cosines=np.zeros((3, 3)),
-        half_a=np.zeros(3),
-        half_b=np.zeros(3),
-        offset_a=np.zeros(3),
-        offset_b=np.zeros(3),
         hulls=hulls,
-        simplex=np.zeros((5, 9)),
-        weights=np.zeros(4),
-        result=np.zeros(10),
-        nearest=np.zeros(6),
-        mesh=Mesh(
-            corners=np.zeros((EPA_VERTICES, 9)),
-            planes=np.zeros((EPA_FACES, 4)),
-            triangles=np.zeros((EPA_FACES, 7), np.int64),
-            visible=np.zeros(EPA_FACES, np.int64),
-            stack=np.zeros(EPA_FACES, np.int64),
-            starts=np.zeros(EPA_VERTICES, np.int64),
+        simplex=np.zeros(SIMPLEX_VERTICES + 1, dtype(VERTEX)),
+        weights=np.zeros(SIMPLEX_VERTICES),
+        separation=np.zeros(1, dtype(SEPARATION)),
+        best=np.zeros(1, dtype(SEPARATION)),
+        polytope=Polytope(
+            vertices=np.zeros(EPA_VERTICES, dtype(VERTEX)),
+            faces=np.zeros(EPA_FACES, dtype(FACE)),
+            corners=np.zeros((EPA_FACES, 3), np.int64),
+            neighbours=np.zeros((EPA_FACES, 3), np.int64),
+            queue=np.zeros(EPA_FACES, np.int64),
+            horizon=np.zeros(EPA_VERTICES, np.int64),
         ),
-        frame=np.zeros(9),
-        loop_a=np.zeros((longest, 3)),
-        loop_b=np.zeros((longest, 3)),
-        plane_a=np.zeros(7),
-        plane_b=np.zeros(7),
+        outline_a=outline(),
+        outline_b=outline(),
         # A polygon of n corners cut by m sides has at most n + m; one more for the nearest point.
         polygon=np.zeros(max(2 * (2 * longest + 2), most), dtype(POINT)),
     )

@@ -1,18 +1,19 @@
-"""Two bodies and their velocities enter; the manifold of their meeting within the step leaves.
+"""Swept contacts: two fast bodies touch where they meet within the step, at their time of impact.
 
 A contact made from the pose at the start of a step has that pose's normal. A body that moves by
 more than half its size before the step is over may pass beside what the normal points to (a wall's
-edge) and would hit a ghost. For such pairs B is moved along the relative way d = (v_B - v_A) dt to
-where the surfaces meet, the manifold is taken there, and B is put back:
+edge) and would hit a ghost. For such pairs B is moved along the relative displacement
+d = (v_B - v_A) dt to where the surfaces meet, the manifold is taken there, and B is put back:
 
     f(t) = distance with B at x_B + t d, 0 <= t <= 1; convex where both shapes are, f' = n . d
     t <- t - (f - TOUCHING/2) / (n . d)        Newton's method: from before a root never beyond it
 
-Beyond the nearest approach n . d >= 0: then they do not meet. If they come within the margin the
-manifold is taken at the nearest approach, where the way is across the normal and the contact stops
-nothing that moves as foreseen; else there is none.
+This is conservative advancement (B. Mirtich, 1996) for bodies that do not rotate. Beyond the
+nearest approach n . d >= 0: then they do not meet. If they come within the margin the manifold is
+taken at the nearest approach, where d is across the normal and the contact stops nothing that moves
+as foreseen; else there is none.
 
-What leaves is a contact of the start of the step: phi = gap there - t n . d, so that with the
+The result is a contact of the start of the step: phi = gap there - t n . d, so that with the
 velocities as they are phi + v_n t dt is the gap at t. Points are where they are relative to A's
 centre at t: A's surface is at p - n phi/2 as ever. Relative to B's centre B's surface is at
 
@@ -26,99 +27,115 @@ could bring together. Parts move with the velocity of their owner's centre.
 
 from __future__ import annotations
 
-from ..compile import kernel
+from typing import NamedTuple
+
+from ..compile import inner, kernel
 from ..effects.fast_bodies import FAST
 from ..records import PLANE, TOUCHING
 from ..spec import Spec
-from . import SHAPE_PAIRS
+from ..vectors import Vec3, dot, plus_scaled, position
 from .convex.separation import make_separation
-from .convex.support import make_radius
-from .manifold.point import copy_point, place
+from .manifold.point import copy_point, place, put_manifold_normal
+from .pairs import SHAPE_PAIRS
 from .pairs.convex import NEAREST
+from .records import put_position
+from .shapes import make_radius
 
 ANY_MARGIN = 1e100  # [m]
-# Newton's steps: a few for an impact; a graze halves the way left in each, and 1e-9 of 1 m is 30.
+# Newton's steps: a few for an impact; a graze halves what is left in each, and 1e-9 of 1 m is 30.
 ADVANCES = 64
-# Halvings on the way to the nearest approach, and how nearly across the normal it must be [-].
+# Halvings towards the nearest approach, and how nearly across the normal it must be [-].
 APPROACHES, ACROSS = 30, 1e-3
 # Least cosine between the manifold's normal and that of the distance [-]: 2.6 degrees.
-ALIKE = 0.999
+ALIGNED = 0.999
+
+
+class Meeting(NamedTuple):
+    """Where two bodies meet or are nearest."""
+
+    t: float  # share of the displacement, 0 ... 1
+    gap: float  # there [m]; they touch when it is TOUCHING at most
+    normal: Vec3  # there
 
 
 def make_is_fast(spec: Spec):
-    """Return `kernel(a, b, dx, dy, dz)`: whether the way relative to each other exceeds FAST R.
+    """Return `kernel(a, b, d)`: whether the displacement d relative to each other exceeds FAST R.
 
     Never with a plane: its normal is the same from everywhere.
     """
 
-    def is_fast(a, b, dx, dy, dz):
+    def is_fast(a, b, d):
         if a.shape == PLANE or b.shape == PLANE:
             return False
         far = FAST * min(a.bound, b.bound)
-        return dx * dx + dy * dy + dz * dz > far * far
+        return dot(d, d) > far * far
 
     return kernel(is_fast, spec)
 
 
-def make_gap(spec: Spec, manifold):
-    """Return `kernel(kind, a, b, points, normal, scratch) -> (distance, nx, ny, nz)`.
+@inner
+def between_cores(a, found, grown, n):
+    """Return the point half way between two surfaces; grown: the radius of A's less that of B's."""
+    return Vec3(
+        a.x + 0.5 * (found.ax + found.bx + grown * n.x),
+        a.y + 0.5 * (found.ay + found.by + grown * n.y),
+        a.z + 0.5 * (found.az + found.bz + grown * n.z),
+    )
 
-    points[0] is then the middle of the nearest points, where the two do not overlap.
+
+def make_gap(spec: Spec, manifold):
+    """Return `kernel(kind, a, b, scratch) -> (distance, n)`.
+
+    The first point of `scratch.manifold` is then between the witness points, where the two do not
+    overlap.
     """
     # The general walk is a second or two of compiling: only where a pair needs it.
     pairs = [SHAPE_PAIRS[name] for name in spec.shape_pairs]
     if all(pair.closed_form or "plane" in pair.shapes for pair in pairs):
 
-        def closed_gap(kind, a, b, points, normal, scratch):
-            count = manifold(kind, a, b, points, normal, scratch, ANY_MARGIN)
+        def closed_gap(kind, a, b, scratch):
+            count = manifold(kind, a, b, ANY_MARGIN, scratch)
+            points, normal = scratch.manifold.points, scratch.manifold.normal
             for k in range(1, count):
                 if points[k].phi < points[0].phi:
                     copy_point(points[k], points[0])
-            return points[0].phi, normal[0], normal[1], normal[2]
+            return points[0].phi, Vec3(normal[0], normal[1], normal[2])
 
         return kernel(closed_gap, spec)
     separation, radius = make_separation(spec), make_radius(spec)
 
-    def general_gap(kind, a, b, points, normal, scratch):
-        gap, nx, ny, nz = separation(kind, a, b, scratch)
-        core, grown = scratch.result, radius(a) - radius(b)
-        place(
-            points[0],
-            a.x + 0.5 * (core[4] + core[7] + grown * nx),
-            a.y + 0.5 * (core[5] + core[8] + grown * ny),
-            a.z + 0.5 * (core[6] + core[9] + grown * nz),
-            gap,
-            NEAREST,
-        )
-        return gap, nx, ny, nz
+    def general_gap(kind, a, b, scratch):
+        gap, n = separation(kind, a, b, scratch)
+        middle = between_cores(a, scratch.separation[0], radius(a) - radius(b), n)
+        place(scratch.manifold.points[0], middle, gap, NEAREST)
+        return gap, n
 
     return kernel(general_gap, spec)
 
 
 def make_meeting(spec: Spec, manifold):
-    """Return `kernel(kind, a, b, dx, dy, dz, points, normal, scratch) -> (t, gap, nx, ny, nz)`.
+    """Return `kernel(kind, a, b, d, scratch) -> Meeting`: move B along d to where it touches A.
 
-    Moves B to where it first touches A, or is nearest; t in 0 ... 1 of the way d. They touch there
-    when gap <= TOUCHING.
+    Or to where it is nearest.
     """
     gap_at = make_gap(spec, manifold)
 
-    def meeting(kind, a, b, dx, dy, dz, points, normal, scratch):
-        x, y, z = b.x, b.y, b.z
-        gap, nx, ny, nz = gap_at(kind, a, b, points, normal, scratch)
-        closing = -(dx * nx + dy * ny + dz * nz)
+    def meeting(kind, a, b, d, scratch):
+        start = position(b)
+        gap, n = gap_at(kind, a, b, scratch)
+        closing = -dot(d, n)
         before, t = 0.0, 0.0
         for _ in range(ADVANCES):
             # Asked so that numbers that are none end it.
             if not (gap > TOUCHING and closing > 0.0 and t < 1.0):
                 break
             before, t = t, min(t + (gap - 0.5 * TOUCHING) / closing, 1.0)
-            b.x, b.y, b.z = x + t * dx, y + t * dy, z + t * dz
-            gap, nx, ny, nz = gap_at(kind, a, b, points, normal, scratch)
-            closing = -(dx * nx + dy * ny + dz * nz)
+            put_position(b, plus_scaled(start, t, d))
+            gap, n = gap_at(kind, a, b, scratch)
+            closing = -dot(d, n)
         if gap > TOUCHING and closing < 0.0 and t > 0.0:
             # They closed before and part now: halve what lies between.
-            slow = ACROSS * ACROSS * (dx * dx + dy * dy + dz * dz)
+            slow = ACROSS * ACROSS * dot(d, d)
             after = t
             for _ in range(APPROACHES):
                 if closing <= 0.0:
@@ -128,56 +145,58 @@ def make_meeting(spec: Spec, manifold):
                 else:
                     before = t
                 t = 0.5 * (before + after)
-                b.x, b.y, b.z = x + t * dx, y + t * dy, z + t * dz
-                gap, nx, ny, nz = gap_at(kind, a, b, points, normal, scratch)
-                closing = -(dx * nx + dy * ny + dz * nz)
-        return t, gap, nx, ny, nz
+                put_position(b, plus_scaled(start, t, d))
+                gap, n = gap_at(kind, a, b, scratch)
+                closing = -dot(d, n)
+        return Meeting(t, gap, n)
 
     return kernel(meeting, spec)
 
 
-def make_swept_manifold(spec: Spec, manifold):
-    """Return `kernel(kind, a, b, dx, dy, dz, points, normal, scratch, margin) -> (count, t)`.
+@inner
+def put_back_to_start(point, met, n, along):
+    """Make a point of the manifold where bodies meet one of the start of the step.
 
-    manifold: `narrow_phase.make_manifold(spec, spec.shape_pairs)`. d: way of B relative to A in the
-    step [m]; t: share of it up to the meeting, 0 for bodies that touch already. margin: TOUCHING at
-    least, see above. The rows of a and b are left as they were.
+    along: n . d, with n the normal of the manifold.
+    """
+    phi = point.phi + max(-met.t * along, 0.0)
+    if met.gap > TOUCHING:  # what passes is not to be stopped, were the normal a little askew
+        phi = max(phi, TOUCHING - along)
+    place(point, plus_scaled(point, 0.5 * (phi - point.phi), n), phi, point.feature)
+
+
+def make_swept_manifold(spec: Spec, manifold):
+    """Return `kernel(kind, a, b, d, margin, scratch) -> (count, t)`.
+
+    manifold: `narrow_phase.make_manifold(spec, spec.shape_pairs)`. d: displacement of B relative to
+    A in the step [m]; t: the share of it up to the impact, 0 for bodies that touch already. margin:
+    TOUCHING at least, see above. The rows of a and b are left as they were.
     """
     meeting, gap_at = make_meeting(spec, manifold), make_gap(spec, manifold)
 
-    def swept_manifold(kind, a, b, dx, dy, dz, points, normal, scratch, margin):
-        x, y, z = b.x, b.y, b.z
-        t, gap, nx, ny, nz = meeting(kind, a, b, dx, dy, dz, points, normal, scratch)
+    def swept_manifold(kind, a, b, d, margin, scratch):
+        points, normal = scratch.manifold.points, scratch.manifold.normal
+        start = position(b)
+        met = meeting(kind, a, b, d, scratch)
+        t, n = met.t, met.normal
         count = 0
-        if gap <= margin:
-            count = manifold(kind, a, b, points, normal, scratch, margin)
-            if t > 0.0 and nx * nx + ny * ny + nz * nz > 0.5:
-                alike = nx * normal[0] + ny * normal[1] + nz * normal[2]
-                if count == 0 or alike < ALIKE:
-                    # Edge by edge the manifold may prefer a face, which the way leads along or
-                    # into, and find nothing on it. How they meet or pass the distance tells.
-                    gap_at(kind, a, b, points, normal, scratch)
-                    normal[0], normal[1], normal[2] = nx, ny, nz
+        if met.gap <= margin:
+            count = manifold(kind, a, b, margin, scratch)
+            if t > 0.0 and dot(n, n) > 0.5:
+                cosine = n.x * normal[0] + n.y * normal[1] + n.z * normal[2]
+                if count == 0 or cosine < ALIGNED:
+                    # Edge by edge the manifold may prefer a face, which d leads along or into, and
+                    # find nothing on it. How they meet or pass the distance tells.
+                    gap_at(kind, a, b, scratch)
+                    put_manifold_normal(scratch.manifold, n)
                     count = 1
-        b.x, b.y, b.z = x, y, z
+        put_position(b, start)
         if count == 0 or t == 0.0:
             return count, 0.0
-        along = dx * normal[0] + dy * normal[1] + dz * normal[2]
-        way = max(-t * along, 0.0)
+        n = Vec3(normal[0], normal[1], normal[2])
+        along = dot(d, n)
         for k in range(count):
-            point = points[k]
-            phi = point.phi + way
-            if gap > TOUCHING:  # what passes is not to be stopped, were the normal a little askew
-                phi = max(phi, TOUCHING - along)
-            half = 0.5 * (phi - point.phi)
-            place(
-                point,
-                point.x + half * normal[0],
-                point.y + half * normal[1],
-                point.z + half * normal[2],
-                phi,
-                point.feature,
-            )
+            put_back_to_start(points[k], met, n, along)
         return count, t
 
     return kernel(swept_manifold, spec)

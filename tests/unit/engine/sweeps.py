@@ -13,14 +13,14 @@ import poses
 
 from lavendersim.engine.collide import SHAPE_PAIRS, swept
 from lavendersim.engine.collide.convex.separation import make_separation
-from lavendersim.engine.collide.manifold.point import place
+from lavendersim.engine.collide.manifold.point import place, put_manifold_normal
 from lavendersim.engine.collide.narrow_phase import make_manifold
 from lavendersim.engine.collide.scratch import allocate_scratch
 from lavendersim.engine.compile import compiling, kernel
 from lavendersim.engine.kernel_cache import cached
-from lavendersim.engine.memory import MANIFOLD_POINTS
-from lavendersim.engine.records import BOX, POINT, SPHERE, TOUCHING, VELOCITY, dtype
+from lavendersim.engine.records import BOX, SPHERE, TOUCHING, VELOCITY, dtype
 from lavendersim.engine.spec import Spec
+from lavendersim.engine.vectors import Vec3
 
 DT = 1.0 / 60.0  # [s]
 CLOSED = ("sphere_box", "sphere_sphere")
@@ -43,11 +43,11 @@ def askew_manifold(spec: Spec, sine: float) -> Any:
     """Return a manifold of one point whose normal is turned about z, away from the true one."""
     separation, cosine = make_separation(spec), sqrt(1.0 - sine * sine)
 
-    def askew(kind, a, b, points, normal, scratch, margin):
-        gap, nx, ny, nz = separation(kind, a, b, scratch)
-        normal[0], normal[1] = cosine * nx - sine * ny, sine * nx + cosine * ny
-        normal[2] = nz
-        place(points[0], 0.0, 0.0, 0.0, gap, 0)
+    def askew(kind, a, b, margin, scratch):
+        gap, n = separation(kind, a, b, scratch)
+        turned = Vec3(cosine * n.x - sine * n.y, sine * n.x + cosine * n.y, n.z)
+        put_manifold_normal(scratch.manifold, turned)
+        place(scratch.manifold.points[0], Vec3(0.0, 0.0, 0.0), gap, 0)
         return 1
 
     return kernel(askew, spec)
@@ -64,11 +64,11 @@ def swept_kernel(pairs: tuple[str, ...], sine: float) -> Any:
         swept_manifold = swept.make_swept_manifold(spec, manifold)
         is_fast = swept.make_is_fast(spec)
 
-        def sweep(kind, bodies, velocities, dt, points, normal, scratch, margin):
+        def sweep(kind, bodies, velocities, dt, margin, scratch):
             a, b, va, vb = bodies[0], bodies[1], velocities[0], velocities[1]
-            dx, dy, dz = (vb.vx - va.vx) * dt, (vb.vy - va.vy) * dt, (vb.vz - va.vz) * dt
-            fast = is_fast(a, b, dx, dy, dz)
-            count, t = swept_manifold(kind, a, b, dx, dy, dz, points, normal, scratch, margin)
+            d = Vec3((vb.vx - va.vx) * dt, (vb.vy - va.vy) * dt, (vb.vz - va.vz) * dt)
+            fast = is_fast(a, b, d)
+            count, t = swept_manifold(kind, a, b, d, margin, scratch)
             return count, t * dt, fast
 
         return kernel(sweep, spec)
@@ -103,13 +103,13 @@ class Pair:
 
     def sweep(self, margin: float = TOUCHING, sine: float = 0.0) -> Sweep:
         """Return what the kernel finds; it must leave the bodies as they were."""
-        points, normal = np.zeros(MANIFOLD_POINTS, dtype(POINT)), np.zeros(3)
+        scratch = allocate_scratch()
+        points, normal = scratch.manifold
         before = self.bodies.copy()
         with compiling():
             count, time, fast = swept_kernel(self.pairs, sine)(
-                self.kind, self.bodies, self.velocities, DT, points, normal, allocate_scratch(),
-                margin,
-            )  # fmt: skip
+                self.kind, self.bodies, self.velocities, DT, margin, scratch
+            )
         assert self.bodies.tobytes() == before.tobytes()
         places = np.column_stack([points[axis][:count] for axis in "xyz"])
         v_n = float(self.relative @ normal)

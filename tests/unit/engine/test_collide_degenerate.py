@@ -14,7 +14,7 @@ import solids
 
 from lavendersim.engine.collide import SHAPE_PAIRS
 from lavendersim.engine.collide.convex.hull_geometry import UNIT_BOX, hull_geometry
-from lavendersim.engine.collide.manifold.outline import cut_straight
+from lavendersim.engine.collide.manifold.polygon_clip import HalfPlane, cut_straight
 from lavendersim.engine.collide.scratch import allocate_scratch
 from lavendersim.engine.record_layout import allocate_bodies
 from lavendersim.engine.records import POINT, TOUCHING, dtype
@@ -110,6 +110,6 @@ def test_a_polygon_whose_corners_alternate_about_a_cut_stays_in_its_rows():
     rows["x"][:half] = np.where(np.arange(half) % 2 == 0, -1e-17, 1e-17)
     rows["y"][:half] = np.arange(half)
     rows["feature"] = -1
-    kept = cut_straight(rows[:room], 0, half, half, 1.0, 0.0, 0.0, 0)
+    kept = cut_straight(rows[:room], 0, half, HalfPlane(1.0, 0.0, 0.0), 0)
     assert half - 2 <= kept <= half
     assert (rows["feature"][room:] == -1).all()

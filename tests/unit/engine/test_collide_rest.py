@@ -14,7 +14,7 @@ import pytest
 import solid_poses
 
 from lavendersim.engine.collide import SHAPE_PAIRS
-from lavendersim.engine.collide.manifold.features import LEVEL
+from lavendersim.engine.collide.shapes.cylinder import LEVEL
 from lavendersim.engine.record_layout import allocate_bodies
 from lavendersim.engine.records import TOUCHING
 

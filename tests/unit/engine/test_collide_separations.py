@@ -15,7 +15,7 @@ import solids
 from lavendersim.engine.collide import SHAPE_PAIRS
 from lavendersim.engine.collide.convex.epa import ROUND_SHARE, ROUND_SIZE
 from lavendersim.engine.collide.convex.separation import FACE_SHARE
-from lavendersim.engine.collide.manifold.overlay import PARALLEL
+from lavendersim.engine.collide.manifold.patch import PARALLEL
 from lavendersim.engine.collide.pairs.box_box import EDGE_SHARE, EDGE_SIZE
 from lavendersim.engine.records import TOUCHING
 

@@ -15,6 +15,7 @@ import pytest
 
 from lavendersim.engine.collide.manifold.point import keep_four
 from lavendersim.engine.records import POINT, dtype
+from lavendersim.engine.vectors import Vec3
 
 
 def area(points):
@@ -41,7 +42,7 @@ def reduce_to_four(plane_points, phi):
     points["x"][: len(phi)], points["y"][: len(phi)] = plane_points.T
     points["phi"][: len(phi)] = phi
     points["feature"][: len(phi)] = np.arange(len(phi))
-    count = keep_four(points, len(phi), 0.0, 0.0, 1.0)
+    count = keep_four(points, len(phi), Vec3(0.0, 0.0, 1.0))
     return points[:count]
 
 

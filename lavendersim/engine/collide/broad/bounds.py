@@ -1,4 +1,4 @@
-"""A body enters; how far it reaches leaves: the half edges of its box in the world, its next step.
+"""How far a point of a body can move in the next step: a bound for speculative contacts.
 
     reach = |v| dt + |omega| R dt + 2 |g| dt^2,   R radius about the centre of mass that holds it
 
@@ -12,50 +12,7 @@ from __future__ import annotations
 from math import sqrt
 
 from ...compile import kernel
-from ...records import BOX, CAPSULE, CYLINDER
 from ...spec import Spec
-from ..convex.support import shapes_in
-
-
-def make_half_extents(spec: Spec):
-    """Return `kernel(body) -> (ex, ey, ez)`: half edges of its axis-aligned box in the world [m].
-
-    Boxes, capsules and cylinders get their least box, all others that of their bounding sphere.
-    """
-    shapes = shapes_in(spec)
-    boxes, capsules, cylinders = "box" in shapes, "capsule" in shapes, "cylinder" in shapes
-
-    def half_extents(body):
-        bound = body.bound
-        if boxes:
-            if body.shape == BOX:
-                return (
-                    abs(body.r00) * body.hx + abs(body.r01) * body.hy + abs(body.r02) * body.hz,
-                    abs(body.r10) * body.hx + abs(body.r11) * body.hy + abs(body.r12) * body.hz,
-                    abs(body.r20) * body.hx + abs(body.r21) * body.hy + abs(body.r22) * body.hz,
-                )
-        if capsules:
-            if body.shape == CAPSULE:
-                return (
-                    abs(body.r02) * body.hz + body.hx,
-                    abs(body.r12) * body.hz + body.hx,
-                    abs(body.r22) * body.hz + body.hx,
-                )
-        if cylinders:
-            if body.shape == CYLINDER:
-                # A disc with axis u reaches sqrt(1 - u_x^2) of its radius along x. By the other two
-                # columns: no cancellation where u is nearly x.
-                return (
-                    abs(body.r02) * body.hz
-                    + sqrt(body.r00 * body.r00 + body.r01 * body.r01) * body.hx,
-                    abs(body.r12) * body.hz
-                    + sqrt(body.r10 * body.r10 + body.r11 * body.r11) * body.hx,
-                    abs(body.r22) * body.hz
-                    + sqrt(body.r20 * body.r20 + body.r21 * body.r21) * body.hx,
-                )
-        return bound, bound, bound
-
-    return kernel(half_extents, spec)
 
 
 def make_reach(spec: Spec):

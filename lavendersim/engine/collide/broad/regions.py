@@ -19,7 +19,8 @@ from math import sqrt
 from ...compile import kernel
 from ...records import COMPOUND, F8, PLANE, TOUCHING, Field
 from ...spec import Spec
-from .bounds import make_half_extents, make_reach
+from ..shapes import make_half_extents
+from .bounds import make_reach
 
 # Larger: fewer lists, more pairs that are looked at in vain. For packed spheres stirred at 1 m/s
 # (tests/benchmarks/broad_phase.py) a step costs the same from 0.25 to 0.4, with 4 to 16 steps, and
@@ -55,15 +56,15 @@ def make_holds(spec: Spec):
                 owner = body.owner
             need = reach(bodies[owner], velocities[owner], params) + TOUCHING
             dx, dy, dz = abs(body.x - region.x), abs(body.y - region.y), abs(body.z - region.z)
-            ex, ey, ez = half_extents(body)
+            half = half_extents(body)
             left = region.radius - need
             # Asked so that a number that is none fails.
             if not (
                 left >= 0.0
                 and dx * dx + dy * dy + dz * dz <= left * left
-                and dx + (ex + need) <= region.ex
-                and dy + (ey + need) <= region.ey
-                and dz + (ez + need) <= region.ez
+                and dx + (half.x + need) <= region.ex
+                and dy + (half.y + need) <= region.ey
+                and dz + (half.z + need) <= region.ez
             ):
                 return False
         return True
@@ -101,11 +102,11 @@ def make_place_regions(spec: Spec):
                     owner = body.owner
                 v, half_way = velocities[owner], 0.5 * STEPS * params.dt
                 ahead_x, ahead_y, ahead_z = v.vx * half_way, v.vy * half_way, v.vz * half_way
-            ex, ey, ez = half_extents(body)
+            half = half_extents(body)
             region.x, region.y, region.z = body.x + ahead_x, body.y + ahead_y, body.z + ahead_z
-            region.ex = ex + grow + abs(ahead_x)
-            region.ey = ey + grow + abs(ahead_y)
-            region.ez = ez + grow + abs(ahead_z)
+            region.ex = half.x + grow + abs(ahead_x)
+            region.ey = half.y + grow + abs(ahead_y)
+            region.ez = half.z + grow + abs(ahead_z)
             region.radius = grow + sqrt(ahead_x * ahead_x + ahead_y * ahead_y + ahead_z * ahead_z)
 
     return kernel(place_regions, spec)

@@ -1,9 +1,12 @@
-"""Two overlapping convex cores enter; the direction that parts them soonest leaves.
+"""Penetration depth and direction of two overlapping convex cores: the expanding polytope, EPA.
 
-Van den Bergen's expanding polytope: inside the set M of differences a - b a polytope grows. Its
-face nearest to the origin, at the height d along n, asks for the support h of M along n. The depth
-lies between the least d and the least h seen; they meet at a face of M. The heights are signed, so
-the first polytope need not hold the origin: bodies that only just touch are no special case.
+G. van den Bergen, Proximity queries and penetration depth computation on 3D game objects, Game
+Developers Conference (2001).
+
+Inside the Minkowski difference M a polytope grows. Its face nearest to the origin, at the height d
+along n, asks for the support h of M along n. The depth lies between the least d and the least h
+seen; they meet at a face of M. The heights are signed, so the first polytope need not hold the
+origin: bodies that only just touch are no special case.
 """
 
 from __future__ import annotations
@@ -11,11 +14,13 @@ from __future__ import annotations
 import numpy as np
 
 from ...compile import inner, kernel, once
-from ..scratch import EPA_VERTICES
+from ...vectors import dot, minus, position, scaled
+from ..records import copy_vertex, normal_of, put_normal
+from ..scratch import EPA_VERTICES, SIMPLEX_VERTICES
 from .gjk import make_difference
-from .polytope import flood, grow, join, nearest_face, put_face
+from .polytope import NOT_SEEN, flood, grow, join, nearest_face, put_face
 from .simplex import nearest_on_triangle
-from .tetrahedron import above_plane, make_tetrahedron, swap_rows
+from .tetrahedron import above_plane, make_tetrahedron, swap_vertices
 
 # Where least height and least support count as equal, as a share of the sizes [-]. Round cores have
 # no last face: there it is this larger share, and one of the depth; `separation.ascend` does the
@@ -23,109 +28,113 @@ from .tetrahedron import above_plane, make_tetrahedron, swap_rows
 FLAT_SIZE = 1e-13
 ROUND_SIZE = 1e-5
 ROUND_SHARE = 1e-3
-# A corner sees a face from this share of the sizes on; beneath it lies in the face's plane.
+# A vertex sees a face from this share of the sizes on; beneath it lies in the face's plane.
 SEEN = 1e-14
 # Faces belong together when their normals' cosine is above this [-].
-SAME_WAY = 0.999
+ALIGNED = 0.999
 
-# The faces of the first tetrahedron: three corners, the neighbours across the edges between them.
-FIRST = np.array([[0, 1, 2, 1, 2, 3], [0, 3, 1, 3, 2, 0], [1, 3, 2, 1, 3, 0], [2, 3, 0, 2, 1, 0]])
+# The faces of the first tetrahedron: their vertices, and the neighbours across their edges.
+FIRST_CORNERS = np.array([[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]])
+FIRST_NEIGHBOURS = np.array([[1, 2, 3], [3, 2, 0], [1, 3, 0], [2, 1, 0]])
 
 
 @inner
-def nearest_in_face(corners, i, j, k, x, y, z):
-    """Point of the triangle i j k nearest to (x, y, z): (squared distance, three weights)."""
-    px, py, pz, wi, wj, wk = nearest_on_triangle(
-        corners[i, 0] - x,
-        corners[i, 1] - y,
-        corners[i, 2] - z,
-        corners[j, 0] - x,
-        corners[j, 1] - y,
-        corners[j, 2] - z,
-        corners[k, 0] - x,
-        corners[k, 1] - y,
-        corners[k, 2] - z,
+def nearest_in_face(vertices, i, j, k, place):
+    """Point of the triangle i j k nearest to a place: (squared distance, `OnTriangle`)."""
+    found = nearest_on_triangle(
+        minus(position(vertices[i]), place),
+        minus(position(vertices[j]), place),
+        minus(position(vertices[k]), place),
     )
-    return px * px + py * py + pz * pz, wi, wj, wk
+    return dot(found.point, found.point), found
 
 
 @inner
-def write_witness(mesh, result, faces, chosen, depth, slack):
-    """Write the points of A and B where the ray along `result[:3]` leaves the polytope.
+def write_witness(polytope, found, count, chosen, depth, slack):
+    """Write the points of A and B where the ray along the normal `found` leaves the polytope.
 
     A face of M may be several triangles: of those in the plane of the face that parts the bodies
-    the one that the ray goes through is taken. chosen: corners of that face when it was found.
+    the one that the ray goes through is taken. chosen: vertices of that face when it was found.
     """
-    corners, triangles, planes = mesh.corners, mesh.triangles, mesh.planes
-    nx, ny, nz = result[0], result[1], result[2]
-    x, y, z = nx * depth, ny * depth, nz * depth
+    vertices, faces, corners = polytope.vertices, polytope.faces, polytope.corners
+    n = normal_of(found)
+    exit_point = scaled(depth, n)
     i, j, k = chosen
-    best, wi, wj, wk = nearest_in_face(corners, i, j, k, x, y, z)
-    for t in range(faces):
-        if triangles[t, 6] and abs(planes[t, 3] - depth) <= slack:
-            cosine = nx * planes[t, 0] + ny * planes[t, 1] + nz * planes[t, 2]
-            if cosine > SAME_WAY:
-                ti, tj, tk = triangles[t, 0], triangles[t, 1], triangles[t, 2]
-                distance, ui, uj, uk = nearest_in_face(corners, ti, tj, tk, x, y, z)
+    best, on = nearest_in_face(vertices, i, j, k, exit_point)
+    for t in range(count):
+        if faces[t].alive and abs(faces[t].offset - depth) <= slack:
+            if dot(n, normal_of(faces[t])) > ALIGNED:
+                ti, tj, tk = corners[t, 0], corners[t, 1], corners[t, 2]
+                distance, on_t = nearest_in_face(vertices, ti, tj, tk, exit_point)
                 if distance < best:
-                    best, i, j, k, wi, wj, wk = distance, ti, tj, tk, ui, uj, uk
-    for axis in range(6):
-        result[4 + axis] = (
-            wi * corners[i, 3 + axis] + wj * corners[j, 3 + axis] + wk * corners[k, 3 + axis]
-        )
+                    best, i, j, k, on = distance, ti, tj, tk, on_t
+    p, q, r = vertices[i], vertices[j], vertices[k]
+    found.ax = on.p * p.ax + on.q * q.ax + on.r * r.ax
+    found.ay = on.p * p.ay + on.q * q.ay + on.r * r.ay
+    found.az = on.p * p.az + on.q * q.az + on.r * r.az
+    found.bx = on.p * p.bx + on.q * q.bx + on.r * r.bx
+    found.by = on.p * p.by + on.q * q.by + on.r * r.by
+    found.bz = on.p * p.bz + on.q * q.bz + on.r * r.bz
+
+
+@inner
+def put_tetrahedron(polytope):
+    """Make the faces of the first four vertices; returns how many."""
+    height, _ = above_plane(polytope.vertices, 3)
+    if height > 0.0:
+        swap_vertices(polytope.vertices, 1, 2)  # the fourth vertex lies behind 0 1 2
+    count = len(FIRST_CORNERS)
+    for t in range(count):
+        put_face(polytope, t, FIRST_CORNERS[t, 0], FIRST_CORNERS[t, 1], FIRST_CORNERS[t, 2])
+        join(polytope, t, FIRST_NEIGHBOURS[t, 0], FIRST_NEIGHBOURS[t, 1], FIRST_NEIGHBOURS[t, 2])
+        polytope.faces[t].seen_by = NOT_SEEN
+    return count
 
 
 @once
 def make_epa(spec):
-    """Return `kernel(a, b, ox, oy, oz, count, curved, scratch)`, which fills `scratch.result`.
+    """Return `kernel(a, b, offset, count, curved, scratch)`, which fills `scratch.separation`.
 
-    `count` rows of `scratch.simplex` come from GJK; curved: whether one of the cores is round.
+    The first `count` vertices of `scratch.simplex` come from GJK; curved: whether one of the cores
+    is round.
     """
     difference, tetrahedron = make_difference(spec), make_tetrahedron(spec)
 
-    def epa(a, b, ox, oy, oz, count, curved, scratch):
-        mesh, tables = scratch.mesh, scratch.hulls
-        corners, triangles, planes = mesh.corners, mesh.triangles, mesh.planes
+    def epa(a, b, offset, count, curved, scratch):
+        polytope, hulls, found = scratch.polytope, scratch.hulls, scratch.separation[0]
+        vertices, faces, corners = polytope.vertices, polytope.faces, polytope.corners
         size = a.bound + b.bound
-        for row in range(count):
-            for k in range(9):
-                corners[row, k] = scratch.simplex[row, k]
-        tetrahedron(a, b, ox, oy, oz, count, corners, tables)
-        height, _, _, _ = above_plane(corners, 3)
-        if height > 0.0:
-            swap_rows(corners, 1, 2)  # the fourth corner lies behind 0 1 2
-        faces = len(FIRST)
-        for t in range(faces):
-            i, j, k = FIRST[t, 0], FIRST[t, 1], FIRST[t, 2]
-            put_face(corners, triangles, planes, t, i, j, k)
-            join(triangles, t, FIRST[t, 3], FIRST[t, 4], FIRST[t, 5])
-            mesh.visible[t] = -1
-        result, chosen = scratch.result, (0, 1, 2)
+        for k in range(count):
+            copy_vertex(scratch.simplex[k], vertices[k])
+        tetrahedron(a, b, offset, count, vertices, hulls)
+        face_count = put_tetrahedron(polytope)
+        chosen = (0, 1, 2)
         least, slack = 1e300, 0.0
-        for corner in range(4, EPA_VERTICES):
-            t = nearest_face(triangles, planes, faces)
-            d = planes[t, 3]
+        for vertex in range(SIMPLEX_VERTICES, EPA_VERTICES):
+            t = nearest_face(faces, face_count)
+            d = faces[t].offset
             if d >= least - slack:
                 break
-            nx, ny, nz = planes[t, 0], planes[t, 1], planes[t, 2]
-            new = corners[corner]
-            difference(a, b, ox, oy, oz, nx, ny, nz, tables, new)
-            h = nx * new[0] + ny * new[1] + nz * new[2]
+            n = normal_of(faces[t])
+            new = vertices[vertex]
+            difference(a, b, offset, n, hulls, new)
+            h = dot(n, position(new))
             if h < least:
                 least = h
-                chosen = (triangles[t, 0], triangles[t, 1], triangles[t, 2])
-                result[0], result[1], result[2], result[3] = nx, ny, nz, -h
+                chosen = (corners[t, 0], corners[t, 1], corners[t, 2])
+                put_normal(found, n)
+                found.distance = -h
                 slack = FLAT_SIZE * size
                 if curved:
                     slack = ROUND_SIZE * size + ROUND_SHARE * abs(least)
             if h - d <= slack:
                 break
-            seen = flood(mesh, new, t, corner, SEEN * size)
-            grown = grow(mesh, corner, faces, seen, corner)
+            seen = flood(polytope, vertex, t, SEEN * size)
+            grown = grow(polytope, vertex, face_count, seen)
             if grown < 0:
-                faces -= faces  # the mesh is torn: what was found so far must do
+                face_count = 0  # the mesh is torn: what was found so far must do
                 break
-            faces = grown
-        write_witness(mesh, result, faces, chosen, least, slack)
+            face_count = grown
+        write_witness(polytope, found, face_count, chosen, least, slack)
 
     return kernel(epa, spec)

@@ -1,22 +1,27 @@
-"""Two convex cores enter; their distance, nearest points and normal leave, or that they overlap.
+"""Distance of two convex cores, their nearest points and normal, or that they overlap: GJK.
 
-Gilbert, Johnson and Keerthi's walk through the differences w = a - b of points of the two cores,
-whose set M holds the origin exactly when the cores overlap. v is the point of the current simplex
-nearest to the origin; the support point of M against v joins the simplex until it comes no nearer:
+E. G. Gilbert, D. W. Johnson and S. S. Keerthi, A fast procedure for computing the distance between
+complex objects in three-dimensional space, IEEE J. Robotics and Automation 4 (1988) 193.
+
+The Minkowski difference M of the cores, all w = a - b of their points, holds the origin exactly
+when they overlap. v is the point of the current simplex nearest to the origin; the support point of
+M against v joins the simplex until it comes no nearer:
 
     |v|^2 - v . w <= (rounding)        with v . w / |v| a lower bound of the distance at any time
 
-Coordinates: the world's axes, origin at A's centre; B's centre lies at the offset (ox, oy, oz).
-result: 0..2 n from A to B, 3 separation of the cores [m], 4..6 point of A, 7..9 point of B.
+Coordinates: the world's axes, origin at A's centre; B's centre lies at `offset`.
 """
 
 from __future__ import annotations
 
 from math import sqrt
 
-from ...compile import kernel, once
+from ...compile import inner, kernel, once
+from ...vectors import Vec3, dot, length, negative, position
+from ..records import copy_vertex
+from ..scratch import NEW_VERTEX
+from ..shapes import make_support
 from .simplex import drop_weightless, nearest_on_simplex
-from .support import make_support
 
 # What the walk found out.
 APART, FARTHER, OVERLAPPING = 0, 1, 2
@@ -24,7 +29,7 @@ APART, FARTHER, OVERLAPPING = 0, 1, 2
 ROUNDS = 100
 # Remaining gap of the squared distance, relative [-]: the distance is then right to half of it.
 GAP = 1e-14
-# Round-off of the corners' coordinates: a few units in the last place of the sizes [-].
+# Round-off of the vertices' coordinates: a few units in the last place of the sizes [-].
 GRAIN = 2e-15
 # Closer than this share of the shapes' sizes the direction of v is round-off: they touch [-].
 CLOSE = 1e-11
@@ -32,82 +37,99 @@ CLOSE = 1e-11
 
 @once
 def make_difference(spec):
-    """Return `kernel(a, b, ox, oy, oz, dx, dy, dz, tables, row)`: support of A - B along d."""
+    """Return `kernel(a, b, offset, direction, hulls, vertex)`: the support mapping of A - B.
+
+    vertex: where the VERTEX that is farthest along `direction` is written.
+    """
     support = make_support(spec)
 
-    def difference(a, b, ox, oy, oz, dx, dy, dz, tables, row):
-        ax, ay, az = support(a, dx, dy, dz, tables)
-        bx, by, bz = support(b, -dx, -dy, -dz, tables)
-        bx, by, bz = bx + ox, by + oy, bz + oz
-        row[0], row[1], row[2] = ax - bx, ay - by, az - bz
-        row[3], row[4], row[5] = ax, ay, az
-        row[6], row[7], row[8] = bx, by, bz
+    def difference(a, b, offset, direction, hulls, vertex):
+        p = support(a, direction, hulls)
+        q = support(b, negative(direction), hulls)
+        bx, by, bz = q.x + offset.x, q.y + offset.y, q.z + offset.z
+        vertex.x, vertex.y, vertex.z = p.x - bx, p.y - by, p.z - bz
+        vertex.ax, vertex.ay, vertex.az = p.x, p.y, p.z
+        vertex.bx, vertex.by, vertex.bz = bx, by, bz
 
     return kernel(difference, spec)
 
 
+@inner
+def is_known(vertices, count):
+    """Whether the new vertex is one of the first `count`."""
+    new = vertices[NEW_VERTEX]
+    for k in range(count):
+        old = vertices[k]
+        if old.x == new.x and old.y == new.y and old.z == new.z:
+            return True
+    return False
+
+
+@inner
+def write_separation(found, v, distance, vertices, weights, count):
+    """Write the normal against v, the distance and the witness points of a simplex."""
+    found.nx, found.ny, found.nz = -v.x / distance, -v.y / distance, -v.z / distance
+    found.distance = distance
+    ax = ay = az = bx = by = bz = 0.0
+    for k in range(count):
+        vertex, weight = vertices[k], weights[k]
+        ax += weight * vertex.ax
+        ay += weight * vertex.ay
+        az += weight * vertex.az
+        bx += weight * vertex.bx
+        by += weight * vertex.by
+        bz += weight * vertex.bz
+    found.ax, found.ay, found.az = ax, ay, az
+    found.bx, found.by, found.bz = bx, by, bz
+
+
 @once
 def make_gjk(spec):
-    """Return `kernel(a, b, ox, oy, oz, reach, scratch) -> (APART | FARTHER | OVERLAPPING, count)`.
+    """Return `kernel(a, b, offset, reach, scratch) -> (APART | FARTHER | OVERLAPPING, count)`.
 
-    FARTHER: the cores are more than `reach` apart [m], nothing else is known. OVERLAPPING (or
-    touching): the first `count` rows of `scratch.simplex` hold the origin, to round-off.
+    APART: `scratch.separation` is filled. FARTHER: the cores are more than `reach` apart [m],
+    nothing else is known. OVERLAPPING (or touching): the first `count` vertices of
+    `scratch.simplex` hold the origin, to round-off.
     """
     difference = make_difference(spec)
 
-    def gjk(a, b, ox, oy, oz, reach, scratch):
-        corners, weights, result = scratch.simplex, scratch.weights, scratch.result
+    def gjk(a, b, offset, reach, scratch):
+        vertices, weights = scratch.simplex, scratch.weights
         size = a.bound + b.bound
-        new = corners[4]
-        x, y, z = -ox, -oy, -oz
-        if x * x + y * y + z * z < 1e-24 * size * size:
-            x, y, z = size, 0.0, 0.0
+        new = vertices[NEW_VERTEX]
+        v = negative(offset)
+        if dot(v, v) < 1e-24 * size * size:
+            v = Vec3(size, 0.0, 0.0)
         squared = 1e300
         count, bound, grain = 0, 0.0, GRAIN * size
         for _ in range(ROUNDS):
-            difference(a, b, ox, oy, oz, -x, -y, -z, scratch.hulls, new)
-            along = x * new[0] + y * new[1] + z * new[2]
-            length = sqrt(x * x + y * y + z * z)
-            if along > reach * length:
+            difference(a, b, offset, negative(v), scratch.hulls, new)
+            along = dot(v, position(new))
+            distance = length(v)
+            if along > reach * distance:
                 return FARTHER, 0
-            bound = max(bound, along / length)
+            bound = max(bound, along / distance)
             if count > 0:
-                if squared - along <= GAP * squared + 1e-16 * size * length:
+                if squared - along <= GAP * squared + 1e-16 * size * distance:
                     break
-                known = False
-                for k in range(count):
-                    if (
-                        corners[k, 0] == new[0]
-                        and corners[k, 1] == new[1]
-                        and corners[k, 2] == new[2]
-                    ):
-                        known = True
-                if known:
+                if is_known(vertices, count):
                     break
-            # Row 4 waits: when the new corner brings nothing the old simplex must still be there.
-            for k in range(9):
-                corners[count, k] = new[k]
-            inside, px, py, pz = nearest_on_simplex(corners, count + 1, weights, grain)
+            # The new vertex waits: when it brings nothing the old simplex must still be there.
+            copy_vertex(new, vertices[count])
+            inside, p = nearest_on_simplex(vertices, count + 1, weights, grain)
             if inside and bound <= grain:
                 return OVERLAPPING, 4
-            nearer = px * px + py * py + pz * pz
+            nearer = dot(p, p)
             # Inside after a proof of distance is round-off of a thin simplex; so is no gain.
             if inside or not nearer < squared:
                 # Restore the weights of the old simplex.
-                nearest_on_simplex(corners, count, weights, grain)
+                nearest_on_simplex(vertices, count, weights, grain)
                 break
-            x, y, z, squared = px, py, pz, nearer
-            count = drop_weightless(corners, count + 1, weights)
+            v, squared = p, nearer
+            count = drop_weightless(vertices, count + 1, weights)
             if squared <= CLOSE * CLOSE * size * size:
                 return OVERLAPPING, count
-        length = sqrt(squared)
-        result[0], result[1], result[2] = -x / length, -y / length, -z / length
-        result[3] = length
-        for axis in range(6):
-            total = 0.0
-            for k in range(count):
-                total += weights[k] * corners[k, 3 + axis]
-            result[4 + axis] = total
+        write_separation(scratch.separation[0], v, sqrt(squared), vertices, weights, count)
         return APART, count
 
     return kernel(gjk, spec)

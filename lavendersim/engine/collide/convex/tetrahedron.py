@@ -1,14 +1,15 @@
-"""A simplex of differences enters; four corners that span a volume leave, for EPA to start from.
+"""The first polytope of EPA: four vertices of the Minkowski difference that span a volume.
 
-GJK ends with one to four corners of the set M of differences a - b (gjk.py). Whatever of them spans
-a line, a plane and a volume is kept; the rest is looked for across what there is.
+GJK ends with one to four vertices (gjk.py). Whatever of them spans a line, a plane and a volume is
+kept; the rest is looked for across what there is.
 """
 
 from __future__ import annotations
 
-from math import sqrt
-
 from ...compile import inner, kernel, once
+from ...vectors import Vec3, cross, dot, length, minus, position, scaled
+from ..records import copy_vertex
+from ..scratch import NEW_VERTEX
 from .gjk import make_difference
 
 # A simplex thinner than this share of the sizes is built anew [-].
@@ -16,134 +17,122 @@ THIN = 1e-9
 
 
 @inner
-def off_line(corners, i, j, k):
-    """Squared distance of corner k from the line through i and j."""
-    ux = corners[j, 0] - corners[i, 0]
-    uy = corners[j, 1] - corners[i, 1]
-    uz = corners[j, 2] - corners[i, 2]
-    wx = corners[k, 0] - corners[i, 0]
-    wy = corners[k, 1] - corners[i, 1]
-    wz = corners[k, 2] - corners[i, 2]
-    cx, cy, cz = uy * wz - uz * wy, uz * wx - ux * wz, ux * wy - uy * wx
-    return (cx * cx + cy * cy + cz * cz) / (ux * ux + uy * uy + uz * uz)
+def off_point(vertices, i, k):
+    """Squared distance of vertex k from vertex i."""
+    d = minus(position(vertices[k]), position(vertices[i]))
+    return dot(d, d)
 
 
 @inner
-def above_plane(corners, k):
-    """Height of corner k over the plane of the corners 0, 1, 2, and that plane's unnormalised n."""
-    ux = corners[1, 0] - corners[0, 0]
-    uy = corners[1, 1] - corners[0, 1]
-    uz = corners[1, 2] - corners[0, 2]
-    wx = corners[2, 0] - corners[0, 0]
-    wy = corners[2, 1] - corners[0, 1]
-    wz = corners[2, 2] - corners[0, 2]
-    nx, ny, nz = uy * wz - uz * wy, uz * wx - ux * wz, ux * wy - uy * wx
-    height = (
-        nx * (corners[k, 0] - corners[0, 0])
-        + ny * (corners[k, 1] - corners[0, 1])
-        + nz * (corners[k, 2] - corners[0, 2])
-    )
-    return height / sqrt(nx * nx + ny * ny + nz * nz), nx, ny, nz
+def off_line(vertices, i, j, k):
+    """Squared distance of vertex k from the line through i and j."""
+    p = position(vertices[i])
+    u = minus(position(vertices[j]), p)
+    c = cross(u, minus(position(vertices[k]), p))
+    return dot(c, c) / dot(u, u)
 
 
 @inner
-def copy_row(corners, source, target):
-    """Copy one corner."""
-    for k in range(9):
-        corners[target, k] = corners[source, k]
+def above_plane(vertices, k):
+    """Height of vertex k over the plane of 0, 1, 2, and that plane's normal n, not normalised."""
+    p = position(vertices[0])
+    n = cross(minus(position(vertices[1]), p), minus(position(vertices[2]), p))
+    return dot(n, minus(position(vertices[k]), p)) / length(n), n
 
 
 @inner
-def swap_rows(corners, i, j):
-    """Exchange two corners."""
-    for k in range(9):
-        corners[i, k], corners[j, k] = corners[j, k], corners[i, k]
+def swap_vertices(vertices, i, j):
+    """Exchange two vertices."""
+    p, q = vertices[i], vertices[j]
+    p.x, q.x = q.x, p.x
+    p.y, q.y = q.y, p.y
+    p.z, q.z = q.z, p.z
+    p.ax, q.ax = q.ax, p.ax
+    p.ay, q.ay = q.ay, p.ay
+    p.az, q.az = q.az, p.az
+    p.bx, q.bx = q.bx, p.bx
+    p.by, q.by = q.by, p.by
+    p.bz, q.bz = q.bz, p.bz
+
+
+@inner
+def along_an_axis(side):
+    """One of the six directions along the world's axes."""
+    s = 1.0 if side & 1 else -1.0
+    return Vec3(s if side < 2 else 0.0, s if side // 2 == 1 else 0.0, s if side > 3 else 0.0)
+
+
+@inner
+def across_line(u):
+    """Two directions across u and each other, as long as u's larger components."""
+    if abs(u.x) <= abs(u.y) and abs(u.x) <= abs(u.z):
+        p = Vec3(0.0, -u.z, u.y)
+    elif abs(u.y) <= abs(u.z):
+        p = Vec3(u.z, 0.0, -u.x)
+    else:
+        p = Vec3(-u.y, u.x, 0.0)
+    return p, scaled(1.0 / length(u), cross(u, p))
 
 
 @once
 def make_tetrahedron(spec):
-    """Return `kernel(a, b, ox, oy, oz, count, corners, tables)`: it makes corners 0..3 a volume.
+    """Return `kernel(a, b, offset, count, vertices, hulls)`: it makes vertices 0..3 a volume.
 
-    It keeps what it can of the `count` corners of GJK's simplex, now in `corners`.
+    It keeps what it can of the `count` vertices of GJK's simplex, now in `vertices`.
     """
     difference = make_difference(spec)
 
-    def tetrahedron(a, b, ox, oy, oz, count, corners, tables):
+    def tetrahedron(a, b, offset, count, vertices, hulls):
         thin = (THIN * (a.bound + b.bound)) ** 2
-        # The second corner: of those there are, else of six supports, the farthest from the first.
+        new = vertices[NEW_VERTEX]
+        # The second vertex: of those there are, else of six supports, the farthest from the first.
         best, chosen = -1.0, 1
         for k in range(1, count):
-            d = (
-                (corners[k, 0] - corners[0, 0]) ** 2
-                + (corners[k, 1] - corners[0, 1]) ** 2
-                + (corners[k, 2] - corners[0, 2]) ** 2
-            )
+            d = off_point(vertices, 0, k)
             if d > best:
                 best, chosen = d, k
         if best > thin:
-            swap_rows(corners, 1, chosen)
+            swap_vertices(vertices, 1, chosen)
         else:
             count = 1
             for side in range(6):
-                s = 1.0 if side & 1 else -1.0
-                dx, dy, dz = (
-                    s if side < 2 else 0.0,
-                    s if side // 2 == 1 else 0.0,
-                    s if side > 3 else 0.0,
-                )
-                difference(a, b, ox, oy, oz, dx, dy, dz, tables, corners[4])
-                d = (
-                    (corners[4, 0] - corners[0, 0]) ** 2
-                    + (corners[4, 1] - corners[0, 1]) ** 2
-                    + (corners[4, 2] - corners[0, 2]) ** 2
-                )
+                difference(a, b, offset, along_an_axis(side), hulls, new)
+                d = off_point(vertices, 0, NEW_VERTEX)
                 if d > best:
                     best = d
-                    copy_row(corners, 4, 1)
+                    copy_vertex(new, vertices[1])
         # The third: farthest from the line.
         best, chosen = -1.0, 2
         for k in range(2, count):
-            d = off_line(corners, 0, 1, k)
+            d = off_line(vertices, 0, 1, k)
             if d > best:
                 best, chosen = d, k
         if best > thin:
-            swap_rows(corners, 2, chosen)
+            swap_vertices(vertices, 2, chosen)
         else:
             count = 2
-            ux = corners[1, 0] - corners[0, 0]
-            uy = corners[1, 1] - corners[0, 1]
-            uz = corners[1, 2] - corners[0, 2]
-            if abs(ux) <= abs(uy) and abs(ux) <= abs(uz):
-                px, py, pz = 0.0, -uz, uy
-            elif abs(uy) <= abs(uz):
-                px, py, pz = uz, 0.0, -ux
-            else:
-                px, py, pz = -uy, ux, 0.0
-            scale = 1.0 / sqrt(ux * ux + uy * uy + uz * uz)
-            qx = (uy * pz - uz * py) * scale
-            qy = (uz * px - ux * pz) * scale
-            qz = (ux * py - uy * px) * scale
+            p, q = across_line(minus(position(vertices[1]), position(vertices[0])))
             for side in range(4):
                 s = 1.0 if side & 1 else -1.0
-                dx, dy, dz = (px, py, pz) if side < 2 else (qx, qy, qz)
-                difference(a, b, ox, oy, oz, s * dx, s * dy, s * dz, tables, corners[4])
-                d = off_line(corners, 0, 1, 4)
+                direction = scaled(s, p if side < 2 else q)
+                difference(a, b, offset, direction, hulls, new)
+                d = off_line(vertices, 0, 1, NEW_VERTEX)
                 if d > best:
                     best = d
-                    copy_row(corners, 4, 2)
+                    copy_vertex(new, vertices[2])
         # The fourth: farthest from the plane.
         if count == 4:
-            height, nx, ny, nz = above_plane(corners, 3)
+            height, n = above_plane(vertices, 3)
             if height * height > thin:
                 return
-        height, nx, ny, nz = above_plane(corners, 2)
+        height, n = above_plane(vertices, 2)
         best = -1.0
         for side in range(2):
             s = 1.0 if side else -1.0
-            difference(a, b, ox, oy, oz, s * nx, s * ny, s * nz, tables, corners[4])
-            height, _, _, _ = above_plane(corners, 4)
+            difference(a, b, offset, scaled(s, n), hulls, new)
+            height, _ = above_plane(vertices, NEW_VERTEX)
             if abs(height) > best:
                 best = abs(height)
-                copy_row(corners, 4, 3)
+                copy_vertex(new, vertices[3])
 
     return kernel(tetrahedron, spec)

@@ -1,22 +1,23 @@
-"""Manifold points enter, the four that span most area leave.
+"""Contact points of a manifold, and its reduction to the four that span most area.
 
-A narrow-phase kernel writes candidate points into a small scratch array and returns how many; the
-normal is shared by the manifold. `keep_four` reduces without moving points, so a resting box keeps
-the support polygon that matters for its balance.
+A pair's kernel writes candidate points and returns how many; the normal is shared by the manifold.
+`keep_four` chooses among them without moving any, so a resting box keeps the support polygon that
+matters for its balance.
 """
 
 from __future__ import annotations
 
 from ...compile import inner
+from ...vectors import cross, dot, minus, position
 
 # Points that `keep_four` exchanges at most: three are kept beside the deepest, most fit at once.
 EXCHANGES = 4
 
 
 @inner
-def place(point, x, y, z, phi, feature):
+def place(point, p, phi, feature):
     """Write one candidate point."""
-    point.x, point.y, point.z = x, y, z
+    point.x, point.y, point.z = p.x, p.y, p.z
     point.phi = phi
     point.feature = feature
 
@@ -33,47 +34,45 @@ def copy_point(source, target):
 @inner
 def swap_points(a, b):
     """Exchange two points."""
-    ax, ay, az, phi, feature = a.x, a.y, a.z, a.phi, a.feature
+    p, phi, feature = position(a), a.phi, a.feature
     in_line, out_line = a.in_line, a.out_line
     copy_point(b, a)
-    place(b, ax, ay, az, phi, feature)
+    place(b, p, phi, feature)
     b.in_line, b.out_line = in_line, out_line
 
 
 @inner
-def signed_area(p, q, r, nx, ny, nz):
+def signed_area(p, q, r, n):
     """Twice the area of triangle p q r, positive when it turns left about n [m^2]."""
-    ux, uy, uz = q.x - p.x, q.y - p.y, q.z - p.z
-    wx, wy, wz = r.x - p.x, r.y - p.y, r.z - p.z
-    return nx * (uy * wz - uz * wy) + ny * (uz * wx - ux * wz) + nz * (ux * wy - uy * wx)
+    return dot(n, cross(minus(q, p), minus(r, p)))
 
 
 @inner
-def quadrilateral(p, q, r, s, nx, ny, nz):
+def quadrilateral(p, q, r, s, n):
     """Twice the area spanned by four points in any order, if none lies between the others [m^2].
 
     The diagonals of the largest of the three loops through them: |pr x qs| and its like.
     """
-    pq = signed_area(p, q, r, nx, ny, nz) + signed_area(p, r, s, nx, ny, nz)
-    pr = signed_area(p, r, q, nx, ny, nz) + signed_area(p, q, s, nx, ny, nz)
-    ps = signed_area(p, q, s, nx, ny, nz) + signed_area(p, s, r, nx, ny, nz)
+    pq = signed_area(p, q, r, n) + signed_area(p, r, s, n)
+    pr = signed_area(p, r, q, n) + signed_area(p, q, s, n)
+    ps = signed_area(p, q, s, n) + signed_area(p, s, r, n)
     return max(abs(pq), max(abs(pr), abs(ps)))
 
 
 @inner
-def exchange(points, count, nx, ny, nz):
+def exchange(points, count, n):
     """Replace each of points 1..3 by one of the others while that spans more.
 
     A body half over an edge keeps both ends of it, so that it is carried up to the edge.
     """
-    best = quadrilateral(points[0], points[1], points[2], points[3], nx, ny, nz)
+    best = quadrilateral(points[0], points[1], points[2], points[3], n)
     for _ in range(EXCHANGES):
         out, chosen = -1, -1
         for k in range(1, 4):
             p = points[2 if k == 1 else 1]
             q = points[2 if k == 3 else 3]
             for i in range(4, count):
-                area = quadrilateral(points[0], p, q, points[i], nx, ny, nz)
+                area = quadrilateral(points[0], p, q, points[i], n)
                 if area > best * (1.0 + 1e-9):
                     best, out, chosen = area, k, i
         if out < 0:
@@ -82,7 +81,7 @@ def exchange(points, count, nx, ny, nz):
 
 
 @inner
-def keep_four(points, count, nx, ny, nz):
+def keep_four(points, count, n):
     """Order `points` so that the first four are the deepest and the largest quadrilateral with it.
 
     The deepest point comes first, the farthest from it second, then the one that makes the largest
@@ -99,34 +98,46 @@ def keep_four(points, count, nx, ny, nz):
     swap_points(points[0], points[deepest])
     best, chosen = -1.0, 1
     for i in range(1, count):
-        dx, dy, dz = (
-            points[i].x - points[0].x,
-            points[i].y - points[0].y,
-            points[i].z - points[0].z,
-        )
-        distance = dx * dx + dy * dy + dz * dz
+        d = minus(points[i], points[0])
+        distance = dot(d, d)
         if distance > best * (1.0 + 1e-9):
             best, chosen = distance, i
     swap_points(points[1], points[chosen])
     best, chosen = -1.0, 2
     for i in range(2, count):
-        area = abs(signed_area(points[0], points[1], points[i], nx, ny, nz))
+        area = abs(signed_area(points[0], points[1], points[i], n))
         if area > best * (1.0 + 1e-9):
             best, chosen = area, i
     swap_points(points[2], points[chosen])
-    turn = signed_area(points[0], points[1], points[2], nx, ny, nz)
+    turn = signed_area(points[0], points[1], points[2], n)
     side = 1.0 if turn >= 0.0 else -1.0
     best, chosen = 0.0, -1
     for i in range(3, count):
         # Outside an edge of the triangle the area with that edge is negative.
         gain = 0.0
-        gain = max(gain, -side * signed_area(points[0], points[1], points[i], nx, ny, nz))
-        gain = max(gain, -side * signed_area(points[1], points[2], points[i], nx, ny, nz))
-        gain = max(gain, -side * signed_area(points[2], points[0], points[i], nx, ny, nz))
+        gain = max(gain, -side * signed_area(points[0], points[1], points[i], n))
+        gain = max(gain, -side * signed_area(points[1], points[2], points[i], n))
+        gain = max(gain, -side * signed_area(points[2], points[0], points[i], n))
         if gain > best * (1.0 + 1e-9) + 1e-18:
             best, chosen = gain, i
     if chosen < 0:
         return 3
     swap_points(points[3], points[chosen])
-    exchange(points, count, nx, ny, nz)
+    exchange(points, count, n)
     return 4
+
+
+@inner
+def put_manifold_normal(manifold, n):
+    """Write the normal that all points share."""
+    manifold.normal[0], manifold.normal[1], manifold.normal[2] = n.x, n.y, n.z
+
+
+@inner
+def write_manifold(manifold, rows, count, n):
+    """Write at most four of the first `count` candidates, and their normal; returns how many."""
+    put_manifold_normal(manifold, n)
+    count = keep_four(rows, count, n)
+    for k in range(count):
+        copy_point(rows[k], manifold.points[k])
+    return count

@@ -1,4 +1,4 @@
-"""Two boxes A and B enter; up to four points leave. Separating axes, then face clipping or edges.
+"""Manifold of two boxes A and B: up to four points, by separating axes and face clipping or edges.
 
                  n (reference face)
                  ^      . incident face
@@ -23,10 +23,18 @@ import numpy as np
 
 from ...compile import inner, kernel
 from ...records import TOUCHING
+from ...vectors import Vec3, cross, divided, dot, minus, negative, plus_scaled
 from ..convex.gjk import APART, make_gjk
 from ..convex.separation import FACE_SHARE
-from ..manifold.clip import clip_incident_face
-from ..manifold.point import keep_four, place
+from ..manifold.box_clip import (
+    BOX_NAMES,
+    ReferenceFace,
+    axis_of,
+    centre_of,
+    clip_incident_face,
+)
+from ..manifold.point import keep_four, place, put_manifold_normal
+from ..records import normal_of
 from ..shape_pair import ShapePair
 
 # A face is kept while its penetration is at most this much deeper than the edges': a share of the
@@ -41,34 +49,42 @@ FACE_SIZE = 1e-6
 # Boxes farther apart than this share of the smallest half edge have their true distance looked for;
 # nearer, a face that separates most and meets the other box is as near as it is for stacking [-].
 FAR = 0.1
-# Features of edge pairs start behind those of faces, whose six by six choices take 64 numbers each.
-EDGE_FEATURES = 36 * 64
-# Nine pairs of edges of sixteen choices each come before the nearest points of boxes far apart.
-NEAREST_FEATURE = EDGE_FEATURES + 9 * 16
+# Names: faces of A, faces of B, nine pairs of edges of sixteen choices each, witness points.
+EDGE_FEATURES = 2 * BOX_NAMES
+EDGE_CHOICES = 16
+NEAREST_FEATURE = EDGE_FEATURES + 9 * EDGE_CHOICES
 
 
 @inner
-def half_edges(box, out):
-    """Write the half edge lengths of `box` [m]."""
-    out[0], out[1], out[2] = box.hx, box.hy, box.hz
+def load_box(body, d, box):
+    """Write what is compared of a box; d: from A's centre to B's [m]."""
+    axes, half, centre, offset = box.axes, box.half, box.centre, box.offset
+    half[0], half[1], half[2] = body.hx, body.hy, body.hz
+    centre[0], centre[1], centre[2] = body.x, body.y, body.z
+    axes[0, 0], axes[0, 1], axes[0, 2] = body.r00, body.r10, body.r20
+    axes[1, 0], axes[1, 1], axes[1, 2] = body.r01, body.r11, body.r21
+    axes[2, 0], axes[2, 1], axes[2, 2] = body.r02, body.r12, body.r22
+    for i in range(3):
+        offset[i] = d.x * axes[i, 0] + d.y * axes[i, 1] + d.z * axes[i, 2]
 
 
 @inner
-def frame_of(box, out):
-    """Write the axes of `box` as rows: out[i] is its i-th axis in world coordinates."""
-    out[0, 0], out[0, 1], out[0, 2] = box.r00, box.r10, box.r20
-    out[1, 0], out[1, 1], out[1, 2] = box.r01, box.r11, box.r21
-    out[2, 0], out[2, 1], out[2, 2] = box.r02, box.r12, box.r22
+def load_cosines(box_a, box_b, C):
+    """Write the cosines of the angles between the axes of A and those of B."""
+    for i in range(3):
+        for j in range(3):
+            C[i, j] = dot(axis_of(box_a, i), axis_of(box_b, j))
 
 
 @inner
-def deepest_face(t, ha, hb, C, transposed):
-    """Least penetrated face of the box whose frame `t` is in: (separation, axis)."""
+def deepest_face(box, other_half, C, transposed):
+    """Least penetrated face of a box: (separation, axis); C[own axis, other] or transposed."""
+    t, half = box.offset, box.half
     best, axis = -np.inf, 0
     for i in range(3):
-        reach = ha[i]
+        reach = half[i]
         for j in range(3):
-            reach += hb[j] * abs(C[j, i] if transposed else C[i, j])
+            reach += other_half[j] * abs(C[j, i] if transposed else C[i, j])
         s = abs(t[i]) - reach
         if s > best:
             best, axis = s, i
@@ -76,8 +92,9 @@ def deepest_face(t, ha, hb, C, transposed):
 
 
 @inner
-def deepest_edges(t, ha, hb, C):
+def deepest_edges(box_a, hb, C):
     """Least penetrated pair of edges: (separation, edge of A * 3 + edge of B), -1 without any."""
+    t, ha = box_a.offset, box_a.half
     best, chosen = -np.inf, -1
     for i in range(3):
         i1, i2 = (i + 1) % 3, (i + 2) % 3
@@ -99,130 +116,136 @@ def deepest_edges(t, ha, hb, C):
 
 
 @inner
-def edge_contact(a, b, fa, fb, ha, hb, edges, separation, points, normal):
+def supporting_edge(box, axis, n, toward):
+    """Middle of the edge along `axis` that is farthest along toward * n, and which one it is.
+
+    toward: 1 for A, -1 for B. The second result has bit 0 and 1 set where the edge lies on the
+    side that n looks to, along the next axis and the one after.
+    """
+    p, which = centre_of(box), 0
+    for k in range(3):
+        if k != axis:
+            u = axis_of(box, k)
+            along = dot(u, n)
+            half = box.half[k]
+            p = plus_scaled(p, toward * half if along > 0.0 else -toward * half, u)
+            which += (1 if along > 0.0 else 0) << (0 if k == (axis + 1) % 3 else 1)
+    return p, which
+
+
+@inner
+def edge_contact(box_a, box_b, edges, separation, manifold):
     """Nearest points of one edge of A and one of B; the contact lies half way between them."""
     i, j = edges // 3, edges % 3
-    ux, uy, uz = fa[i, 0], fa[i, 1], fa[i, 2]
-    wx, wy, wz = fb[j, 0], fb[j, 1], fb[j, 2]
-    nx, ny, nz = uy * wz - uz * wy, uz * wx - ux * wz, ux * wy - uy * wx
-    length = sqrt(nx * nx + ny * ny + nz * nz)
-    nx, ny, nz = nx / length, ny / length, nz / length
-    dx, dy, dz = b.x - a.x, b.y - a.y, b.z - a.z
-    if nx * dx + ny * dy + nz * dz < 0.0:
-        nx, ny, nz = -nx, -ny, -nz
-    # The supporting edge of each box: the middle of the edge farthest along n (A) or -n (B).
-    px, py, pz = a.x, a.y, a.z
-    qx, qy, qz = b.x, b.y, b.z
-    feature = EDGE_FEATURES + edges * 16
-    for k in range(3):
-        if k != i:
-            along = fa[k, 0] * nx + fa[k, 1] * ny + fa[k, 2] * nz
-            side = ha[k] if along > 0.0 else -ha[k]
-            px, py, pz = px + side * fa[k, 0], py + side * fa[k, 1], pz + side * fa[k, 2]
-            feature += (1 if along > 0.0 else 0) << (0 if k == (i + 1) % 3 else 1)
-        if k != j:
-            along = fb[k, 0] * nx + fb[k, 1] * ny + fb[k, 2] * nz
-            side = -hb[k] if along > 0.0 else hb[k]
-            qx, qy, qz = qx + side * fb[k, 0], qy + side * fb[k, 1], qz + side * fb[k, 2]
-            feature += (4 if along > 0.0 else 0) << (0 if k == (j + 1) % 3 else 1)
+    u, w = axis_of(box_a, i), axis_of(box_b, j)
+    n = cross(u, w)
+    n = divided(n, sqrt(dot(n, n)))
+    if dot(n, minus(centre_of(box_b), centre_of(box_a))) < 0.0:
+        n = negative(n)
+    p, of_a = supporting_edge(box_a, i, n, 1.0)
+    q, of_b = supporting_edge(box_b, j, n, -1.0)
+    feature = EDGE_FEATURES + edges * EDGE_CHOICES + of_a + 4 * of_b
     # p + s u and q + r w nearest to each other: two linear equations in s and r.
-    dx, dy, dz = qx - px, qy - py, qz - pz
-    cosine = ux * wx + uy * wy + uz * wz
-    du = dx * ux + dy * uy + dz * uz
-    dw = dx * wx + dy * wy + dz * wz
+    d, cosine = minus(q, p), dot(u, w)
+    du, dw = dot(d, u), dot(d, w)
     scale = 1.0 / (1.0 - cosine * cosine)
-    s = min(max((du - cosine * dw) * scale, -ha[i]), ha[i])
-    r = min(max((cosine * du - dw) * scale, -hb[j]), hb[j])
-    normal[0], normal[1], normal[2] = nx, ny, nz
-    place(
-        points[0],
-        0.5 * (px + s * ux + qx + r * wx),
-        0.5 * (py + s * uy + qy + r * wy),
-        0.5 * (pz + s * uz + qz + r * wz),
-        separation,
-        feature,
+    half_a, half_b = box_a.half[i], box_b.half[j]
+    s = min(max((du - cosine * dw) * scale, -half_a), half_a)
+    r = min(max((cosine * du - dw) * scale, -half_b), half_b)
+    put_manifold_normal(manifold, n)
+    middle = Vec3(
+        0.5 * (p.x + s * u.x + q.x + r * w.x),
+        0.5 * (p.y + s * u.y + q.y + r * w.y),
+        0.5 * (p.z + s * u.z + q.z + r * w.z),
     )
+    place(manifold.points[0], middle, separation, feature)
     return 1
 
 
 @inner
-def nearest_contact(a, nearest, points, normal):
-    """Two boxes that are far apart have one point, between the nearest ones that GJK found."""
-    normal[0], normal[1], normal[2] = nearest[0], nearest[1], nearest[2]
-    place(
-        points[0],
-        a.x + 0.5 * (nearest[4] + nearest[7]),
-        a.y + 0.5 * (nearest[5] + nearest[8]),
-        a.z + 0.5 * (nearest[6] + nearest[9]),
-        nearest[3],
-        NEAREST_FEATURE,
+def nearest_contact(a, found, manifold):
+    """Two boxes that are far apart have one point, between the witness points that GJK found."""
+    put_manifold_normal(manifold, normal_of(found))
+    middle = Vec3(
+        a.x + 0.5 * (found.ax + found.bx),
+        a.y + 0.5 * (found.ay + found.by),
+        a.z + 0.5 * (found.az + found.bz),
     )
+    place(manifold.points[0], middle, found.distance, NEAREST_FEATURE)
     return 1
 
 
+@inner
+def smallest_half_edge(box):
+    """Return the smallest half edge of a box [m]."""
+    return min(box.half[0], min(box.half[1], box.half[2]))
+
+
+@inner
+def clip_faces(b_is_better, axis_a, axis_b, margin, scratch):
+    """Write the manifold of the two boxes face to face; returns the count (at most 8).
+
+    A's face is the reference, or B's where that is clearly the better one.
+    """
+    box_a, box_b, manifold = scratch.box_a, scratch.box_b, scratch.manifold
+    if b_is_better:
+        # B is the reference: its outward normal points back to A.
+        face = ReferenceFace(axis_b, 1.0 if box_b.offset[axis_b] < 0.0 else -1.0, BOX_NAMES)
+        count = clip_incident_face(box_b, box_a, face, margin, manifold)
+        normal = manifold.normal
+        normal[0], normal[1], normal[2] = -normal[0], -normal[1], -normal[2]
+        return count
+    face = ReferenceFace(axis_a, 1.0 if box_a.offset[axis_a] >= 0.0 else -1.0, 0)
+    return clip_incident_face(box_a, box_b, face, margin, manifold)
+
+
 def make(spec):
-    """Return `kernel(a, b, points, normal, scratch, margin) -> count`."""
-    # Contacts ahead of touching: an axis that separates most bounds the distance from below only.
+    """Return `kernel(a, b, margin, scratch) -> count`, which writes `scratch.manifold`."""
+    # Speculative contacts: an axis that separates most bounds the distance from below only.
     ahead = spec.has("speculative")
     gjk: Any = make_gjk(spec) if ahead else None
 
-    def box_box(a, b, points, normal, scratch, margin):
-        fa, fb, C = scratch.frame_a, scratch.frame_b, scratch.cosines
-        ha, hb, t, t_b = scratch.half_a, scratch.half_b, scratch.offset_a, scratch.offset_b
-        dx, dy, dz = b.x - a.x, b.y - a.y, b.z - a.z
+    def box_box(a, b, margin, scratch):
+        box_a, box_b, C = scratch.box_a, scratch.box_b, scratch.cosines
+        found, manifold = scratch.separation[0], scratch.manifold
+        d = minus(b, a)
         reach = a.bound + b.bound + margin
-        if dx * dx + dy * dy + dz * dz > reach * reach:
+        if dot(d, d) > reach * reach:
             return 0
-        half_edges(a, ha)
-        half_edges(b, hb)
-        frame_of(a, fa)
-        frame_of(b, fb)
-        for i in range(3):
-            t[i] = dx * fa[i, 0] + dy * fa[i, 1] + dz * fa[i, 2]
-            t_b[i] = dx * fb[i, 0] + dy * fb[i, 1] + dz * fb[i, 2]
-            for j in range(3):
-                C[i, j] = fa[i, 0] * fb[j, 0] + fa[i, 1] * fb[j, 1] + fa[i, 2] * fb[j, 2]
-        s_a, axis_a = deepest_face(t, ha, hb, C, False)
+        load_box(a, d, box_a)
+        load_box(b, d, box_b)
+        load_cosines(box_a, box_b, C)
+        s_a, axis_a = deepest_face(box_a, box_b.half, C, False)
         if s_a > margin:
             return 0
-        s_b, axis_b = deepest_face(t_b, hb, ha, C, True)
+        s_b, axis_b = deepest_face(box_b, box_a.half, C, True)
         if s_b > margin:
             return 0
-        s_e, edges = deepest_edges(t, ha, hb, C)
+        s_e, edges = deepest_edges(box_a, box_b.half, C)
         if s_e > margin:
             return 0
-        size = min(min(ha[0], min(ha[1], ha[2])), min(hb[0], min(hb[1], hb[2])))
+        size = min(smallest_half_edge(box_a), smallest_half_edge(box_b))
         s_face = max(s_a, s_b)
         if ahead:
             if s_face > FAR * size or s_e > max(TOUCHING, s_face / EDGE_SHARE + EDGE_SIZE * size):
-                status, _ = gjk(a, b, dx, dy, dz, margin, scratch)
+                status, _ = gjk(a, b, d, margin, scratch)
                 if status != APART:
                     return 0
-                if s_face < scratch.result[3] - FACE_SHARE * (a.bound + b.bound):
-                    return nearest_contact(a, scratch.result, points, normal)
+                if s_face < found.distance - FACE_SHARE * (a.bound + b.bound):
+                    return nearest_contact(a, found, manifold)
         touching_edges = edges >= 0 and s_e <= TOUCHING
         if touching_edges and s_e > EDGE_SHARE * s_face + EDGE_SIZE * size:
-            return edge_contact(a, b, fa, fb, ha, hb, edges, s_e, points, normal)
-        if s_b > s_a + FACE_SIZE * size:
-            # B is the reference: its outward normal points back to A.
-            side = 1.0 if t_b[axis_b] < 0.0 else -1.0
-            count = clip_incident_face(
-                b, a, fb, fa, hb, ha, axis_b, side, 18 * 64, points, normal, margin
-            )
-            normal[0], normal[1], normal[2] = -normal[0], -normal[1], -normal[2]
-        else:
-            side = 1.0 if t[axis_a] >= 0.0 else -1.0
-            count = clip_incident_face(
-                a, b, fa, fb, ha, hb, axis_a, side, 0, points, normal, margin
-            )
+            return edge_contact(box_a, box_b, edges, s_e, manifold)
+        count = clip_faces(s_b > s_a + FACE_SIZE * size, axis_a, axis_b, margin, scratch)
         if ahead:
             if count == 0 and s_face > 0.0:
                 # The face that separates most looks past the other box.
-                status, _ = gjk(a, b, dx, dy, dz, margin, scratch)
+                status, _ = gjk(a, b, d, margin, scratch)
                 if status != APART:
                     return 0
-                return nearest_contact(a, scratch.result, points, normal)
-        return keep_four(points, count, normal[0], normal[1], normal[2])
+                return nearest_contact(a, found, manifold)
+        normal = manifold.normal
+        return keep_four(manifold.points, count, Vec3(normal[0], normal[1], normal[2]))
 
     return kernel(box_box, spec)
 

@@ -1,4 +1,4 @@
-"""A plane A and a box B enter; up to four corners below the plane leave. n is the plane's normal.
+"""Manifold of a plane A and a box B: up to four corners below the plane. n is the plane's normal.
 
 The feature of a point is its corner, bit 0, 1, 2 set where the corner lies at +x, +y, +z.
 
@@ -11,25 +11,25 @@ step. The four that span most area would be others: an upper corner lies further
 from __future__ import annotations
 
 from ...compile import inner, kernel
-from ...rotation import to_body, to_world
-from ..manifold.point import copy_point, place
+from ...vectors import Vec3, dot, from_body, into_body
+from ..manifold.point import copy_point, place, put_manifold_normal
 from ..shape_pair import ShapePair
 
 
 @inner
-def lower_side(bx, by, bz):
-    """Return the face that looks against (bx, by, bz): the bit of its axis, its corners' value."""
-    if abs(bz) >= abs(bx) and abs(bz) >= abs(by):
-        return 4, 0 if bz > 0.0 else 4
-    if abs(by) >= abs(bx):
-        return 2, 0 if by > 0.0 else 2
-    return 1, 0 if bx > 0.0 else 1
+def lower_side(n):
+    """Return the face that looks against n, in the box's frame: the bit of its axis, its value."""
+    if abs(n.z) >= abs(n.x) and abs(n.z) >= abs(n.y):
+        return 4, 0 if n.z > 0.0 else 4
+    if abs(n.y) >= abs(n.x):
+        return 2, 0 if n.y > 0.0 else 2
+    return 1, 0 if n.x > 0.0 else 1
 
 
 @inner
-def keep_lower(points, count, bx, by, bz):
-    """Keep the corners of the lower face, in their order; returns the new count."""
-    bit, value = lower_side(bx, by, bz)
+def keep_lower(points, count, n):
+    """Keep the corners of the lower face, in their order; n: in the box's frame; the new count."""
+    bit, value = lower_side(n)
     kept = 0
     for k in range(count):
         if points[k].feature & bit == value:
@@ -39,34 +39,35 @@ def keep_lower(points, count, bx, by, bz):
 
 
 def make(spec):
-    """Return `kernel(plane, box, points, normal, scratch, margin) -> count`."""
+    """Return `kernel(plane, box, margin, scratch) -> count`, which writes `scratch.manifold`."""
 
-    def box_plane(plane, box, points, normal, scratch, margin):
-        nx, ny, nz = plane.hx, plane.hy, plane.hz
-        height = nx * box.x + ny * box.y + nz * box.z - plane.offset
-        bx, by, bz = to_body(box, nx, ny, nz)
-        if height > abs(bx) * box.hx + abs(by) * box.hy + abs(bz) * box.hz + margin:
+    def box_plane(plane, box, margin, scratch):
+        n, points = Vec3(plane.hx, plane.hy, plane.hz), scratch.manifold.points
+        height = dot(n, box) - plane.offset
+        local = into_body(box, n)
+        reach = abs(local.x) * box.hx + abs(local.y) * box.hy + abs(local.z) * box.hz
+        if height > reach + margin:
             return 0
-        normal[0], normal[1], normal[2] = nx, ny, nz
+        put_manifold_normal(scratch.manifold, n)
         count = 0
         for corner in range(8):
-            cx = box.hx if corner & 1 else -box.hx
-            cy = box.hy if corner & 2 else -box.hy
-            cz = box.hz if corner & 4 else -box.hz
-            phi = height + bx * cx + by * cy + bz * cz
+            c = Vec3(
+                box.hx if corner & 1 else -box.hx,
+                box.hy if corner & 2 else -box.hy,
+                box.hz if corner & 4 else -box.hz,
+            )
+            phi = height + local.x * c.x + local.y * c.y + local.z * c.z
             if phi <= margin:
-                wx, wy, wz = to_world(box, cx, cy, cz)
-                place(
-                    points[count],
-                    box.x + wx - 0.5 * phi * nx,
-                    box.y + wy - 0.5 * phi * ny,
-                    box.z + wz - 0.5 * phi * nz,
-                    phi,
-                    corner,
+                p, half = from_body(box, c), 0.5 * phi
+                middle = Vec3(
+                    box.x + p.x - half * n.x,
+                    box.y + p.y - half * n.y,
+                    box.z + p.z - half * n.z,
                 )
+                place(points[count], middle, phi, corner)
                 count += 1
         if count > 4:
-            count = keep_lower(points, count, bx, by, bz)
+            count = keep_lower(points, count, local)
         return count
 
     return kernel(box_plane, spec)

@@ -1,4 +1,4 @@
-"""Two capsules enter; one point leaves, or the two ends of the overlap of parallel ones.
+"""Manifold of two capsules: one point, or the two ends of the overlap of parallel ones.
 
         A  (=====s======)            p + s u and q + r w are the nearest points of the axes;
               |      |               side by side the axes are as near all along their overlap
@@ -14,7 +14,8 @@ from __future__ import annotations
 from math import sqrt
 
 from ...compile import inner, kernel
-from ..manifold.point import place
+from ...vectors import Vec3, cross, divided, dot, length, minus
+from ..manifold.point import place, put_manifold_normal
 from ..shape_pair import ShapePair
 
 # Axes whose directions differ by less than this [rad] touch in two points. The ends of an overlap
@@ -25,93 +26,109 @@ MEETING = 1e-14
 
 
 @inner
-def nearest_on_axes(dx, dy, dz, ux, uy, uz, wx, wy, wz, ha, hb):
-    """Nearest points of two segments: (s, r), from their centres along the units u and w [m].
-
-    d: from the centre of the first to that of the second; ha, hb: half lengths.
-    """
-    cosine = ux * wx + uy * wy + uz * wz
-    du = dx * ux + dy * uy + dz * uz
-    dw = dx * wx + dy * wy + dz * wz
-    cx, cy, cz = uy * wz - uz * wy, uz * wx - ux * wz, ux * wy - uy * wx
-    squared = cx * cx + cy * cy + cz * cz  # sine squared, exact where the axes are nearly parallel
-    s = 0.0
-    if squared > 1e-30:
-        s = min(max((du - cosine * dw) / squared, -ha), ha)
-    # Nearest on B to A's point, then on A to that: exact once either of the two is clamped.
-    r = min(max(cosine * s - dw, -hb), hb)
-    s = min(max(du + cosine * r, -ha), ha)
-    return s, min(max(cosine * s - dw, -hb), hb)
+def axis_of(capsule):
+    """Return the unit vector along the capsule."""
+    return Vec3(capsule.r02, capsule.r12, capsule.r22)
 
 
 @inner
-def direction(dx, dy, dz, a, b):
+def nearest_on_axes(d, u, w, half_a, half_b):
+    """Nearest points of two segments: (s, r), from their centres along the units u and w [m].
+
+    d: from the centre of the first to that of the second; half_a, half_b: half lengths.
+    """
+    cosine, du, dw = dot(u, w), dot(d, u), dot(d, w)
+    c = cross(u, w)
+    squared = dot(c, c)  # sine squared, exact where the axes are nearly parallel
+    s = 0.0
+    if squared > 1e-30:
+        s = min(max((du - cosine * dw) / squared, -half_a), half_a)
+    # Nearest on B to A's point, then on A to that: exact once either of the two is clamped.
+    r = min(max(cosine * s - dw, -half_b), half_b)
+    s = min(max(du + cosine * r, -half_a), half_a)
+    return s, min(max(cosine * s - dw, -half_b), half_b)
+
+
+@inner
+def between(d, r, w, s, u):
+    """Return d + r w - s u, from A's point to B's."""
+    return Vec3(
+        d.x + r * w.x - s * u.x,
+        d.y + r * w.y - s * u.y,
+        d.z + r * w.z - s * u.z,
+    )
+
+
+@inner
+def direction(d, a, b):
     """Unit vector along d; across both axes where d is round-off."""
-    length = sqrt(dx * dx + dy * dy + dz * dz)
-    if length > MEETING * (a.bound + b.bound):
-        return dx / length, dy / length, dz / length
-    cx = a.r12 * b.r22 - a.r22 * b.r12
-    cy = a.r22 * b.r02 - a.r02 * b.r22
-    cz = a.r02 * b.r12 - a.r12 * b.r02
-    sine = sqrt(cx * cx + cy * cy + cz * cz)
+    distance = length(d)
+    if distance > MEETING * (a.bound + b.bound):
+        return divided(d, distance)
+    c = cross(axis_of(a), axis_of(b))
+    sine = length(c)
     if sine > PARALLEL:
         # Away from A's centre where the offset says which way that is.
-        s = 1.0 if (b.x - a.x) * cx + (b.y - a.y) * cy + (b.z - a.z) * cz >= 0.0 else -1.0
-        return s * cx / sine, s * cy / sine, s * cz / sine
-    return a.r00, a.r10, a.r20
+        s = 1.0 if dot(minus(b, a), c) >= 0.0 else -1.0
+        return Vec3(s * c.x / sine, s * c.y / sine, s * c.z / sine)
+    return Vec3(a.r00, a.r10, a.r20)
+
+
+@inner
+def put_overlap(a, b, n, margin, points):
+    """Write the ends of the overlap of parallel capsules; returns how many."""
+    d, u, w = minus(b, a), axis_of(a), axis_of(b)
+    cosine = dot(u, w)
+    # The overlap, along A's axis; without one the nearest points are two ends.
+    centre, half = dot(d, u), b.hz * abs(cosine)
+    low, high = max(centre - half, -a.hz), min(centre + half, a.hz)
+    count = 0
+    if high > low:
+        for end in range(2):
+            s = high if end else low
+            r = min(max(((s - centre) * cosine), -b.hz), b.hz)
+            e = between(d, r, w, s, u)
+            gap = dot(e, n) - a.hx - b.hx
+            if gap <= margin:
+                # Half way between the surfaces, and between the axes seen along n.
+                k = 0.5 * (a.hx - b.hx)
+                p = Vec3(
+                    a.x + s * u.x + 0.5 * e.x + k * n.x,
+                    a.y + s * u.y + 0.5 * e.y + k * n.y,
+                    a.z + s * u.z + 0.5 * e.z + k * n.z,
+                )
+                place(points[count], p, gap, 1 + end)
+                count += 1
+    return count
 
 
 def make(spec):
-    """Return `kernel(a, b, points, normal, scratch, margin) -> count`."""
+    """Return `kernel(a, b, margin, scratch) -> count`, which writes `scratch.manifold`."""
 
-    def capsule_capsule(a, b, points, normal, scratch, margin):
-        dx, dy, dz = b.x - a.x, b.y - a.y, b.z - a.z
-        ux, uy, uz, wx, wy, wz = a.r02, a.r12, a.r22, b.r02, b.r12, b.r22
-        s, r = nearest_on_axes(dx, dy, dz, ux, uy, uz, wx, wy, wz, a.hz, b.hz)
-        ex, ey, ez = dx + r * wx - s * ux, dy + r * wy - s * uy, dz + r * wz - s * uz
-        squared = ex * ex + ey * ey + ez * ez
+    def capsule_capsule(a, b, margin, scratch):
+        points = scratch.manifold.points
+        d, u, w = minus(b, a), axis_of(a), axis_of(b)
+        s, r = nearest_on_axes(d, u, w, a.hz, b.hz)
+        e = between(d, r, w, s, u)
+        squared = dot(e, e)
         reach = a.hx + b.hx + margin
         if squared > reach * reach:
             return 0
-        nx, ny, nz = direction(ex, ey, ez, a, b)
-        normal[0], normal[1], normal[2] = nx, ny, nz
+        n = direction(e, a, b)
+        put_manifold_normal(scratch.manifold, n)
         phi = sqrt(squared) - a.hx - b.hx
-        cx, cy, cz = uy * wz - uz * wy, uz * wx - ux * wz, ux * wy - uy * wx
-        cosine = ux * wx + uy * wy + uz * wz
-        count = 0
-        if cx * cx + cy * cy + cz * cz <= PARALLEL * PARALLEL:
-            # The overlap, along A's axis; without one the nearest points are two ends.
-            centre, half = dx * ux + dy * uy + dz * uz, b.hz * abs(cosine)
-            low, high = max(centre - half, -a.hz), min(centre + half, a.hz)
-            if high > low:
-                for end in range(2):
-                    s = high if end else low
-                    r = min(max(((s - centre) * cosine), -b.hz), b.hz)
-                    ex, ey, ez = dx + r * wx - s * ux, dy + r * wy - s * uy, dz + r * wz - s * uz
-                    gap = ex * nx + ey * ny + ez * nz - a.hx - b.hx
-                    if gap <= margin:
-                        # Half way between the surfaces, and between the axes seen along n.
-                        k = 0.5 * (a.hx - b.hx)
-                        place(
-                            points[count],
-                            a.x + s * ux + 0.5 * ex + k * nx,
-                            a.y + s * uy + 0.5 * ey + k * ny,
-                            a.z + s * uz + 0.5 * ez + k * nz,
-                            gap,
-                            1 + end,
-                        )
-                        count += 1
-                if count > 0:
-                    return count
+        c = cross(u, w)
+        if dot(c, c) <= PARALLEL * PARALLEL:
+            count = put_overlap(a, b, n, margin, points)
+            if count > 0:
+                return count
         middle = a.hx + 0.5 * phi
-        place(
-            points[0],
-            a.x + s * ux + nx * middle,
-            a.y + s * uy + ny * middle,
-            a.z + s * uz + nz * middle,
-            phi,
-            0,
+        p = Vec3(
+            a.x + s * u.x + n.x * middle,
+            a.y + s * u.y + n.y * middle,
+            a.z + s * u.z + n.z * middle,
         )
+        place(points[0], p, phi, 0)
         return 1
 
     return kernel(capsule_capsule, spec)

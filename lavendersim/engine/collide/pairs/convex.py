@@ -1,95 +1,92 @@
-"""Any two convex bodies but a plane enter; up to four points leave. For pairs without closed forms.
+"""Manifold of any two convex bodies but planes: for the pairs that have no closed form.
 
-The separation and its normal come from `separation.py`, bettered between lines by `lines.py`. The
-features that look along the normal, laid over each other, give the points of faces, caps and lines
-that rest on one another; where they do not meet, or hold no point as near as the nearest, the
-nearest points themselves are added.
+The separation and its normal come from GJK and EPA (`convex.separation`), bettered between lines by
+`manifold.line_normal`. The features that look along the normal, laid over each other, give the
+points of faces, caps and lines that rest on one another (`manifold.patch`); where they do not meet,
+or hold no point as near as the nearest, the witness points themselves are added.
 """
 
 from __future__ import annotations
 
-from ...compile import kernel, once
+from ...compile import inner, kernel, once
 from ...records import TOUCHING
+from ...vectors import Vec3, dot, minus, negative, position
 from ..convex.separation import make_separate
-from ..convex.support import make_radius, shapes_in
-from ..manifold.features import LINE, make_feature
-from ..manifold.lines import make_line_normal
-from ..manifold.overlay import across, overlay
-from ..manifold.point import copy_point, keep_four, place
+from ..manifold.line_normal import make_line_normal
+from ..manifold.patch import contact_patch, frame_along
+from ..manifold.point import place, write_manifold
+from ..records import LINE, normal_of
 from ..shape_pair import ShapePair
+from ..shapes import has_curved, make_feature, make_radius
 
-# The name of the nearest points: apart from all names of `overlay`.
+# The name of the witness points: apart from all names of `contact_patch`.
 NEAREST = 1 << 60
+
+
+@inner
+def put_patch(a, frame, start, total, margin, rows):
+    """Put a patch's corners within the margin into the world; returns (count, least separation)."""
+    t1, t2, n = frame.t1, frame.t2, frame.n
+    count, least = 0, 1e300
+    for k in range(start, start + total):
+        row = rows[k]
+        if row.phi <= margin:
+            least = min(least, row.phi)
+            u, v, w = row.x, row.y, row.z
+            p = Vec3(
+                a.x + u * t1.x + v * t2.x + w * n.x,
+                a.y + u * t1.y + v * t2.y + w * n.y,
+                a.z + u * t1.z + v * t2.z + w * n.z,
+            )
+            place(rows[count], p, row.phi, row.feature)
+            count += 1
+    return count, least
+
+
+@inner
+def between_witnesses(a, found, radius_a, radius_b):
+    """Return the point half way between the surfaces where two bodies are nearest."""
+    return Vec3(
+        a.x + 0.5 * (found.ax + radius_a * found.nx + found.bx - radius_b * found.nx),
+        a.y + 0.5 * (found.ay + radius_a * found.ny + found.by - radius_b * found.ny),
+        a.z + 0.5 * (found.az + radius_a * found.nz + found.bz - radius_b * found.nz),
+    )
 
 
 @once
 def make(spec):
-    """Return `kernel(a, b, points, normal, scratch, margin) -> count`."""
+    """Return `kernel(a, b, margin, scratch) -> count`, which writes `scratch.manifold`."""
     separate, feature, radius = make_separate(spec), make_feature(spec), make_radius(spec)
-    line_normal, cylinders = make_line_normal(spec), "cylinder" in shapes_in(spec)
+    line_normal, curved = make_line_normal(spec), has_curved(spec)
 
-    def convex(a, b, points, normal, scratch, margin):
-        ox, oy, oz = b.x - a.x, b.y - a.y, b.z - a.z
+    def convex(a, b, margin, scratch):
+        offset = minus(position(b), position(a))
         reach = a.bound + b.bound + margin
-        if ox * ox + oy * oy + oz * oz > reach * reach:
+        if dot(offset, offset) > reach * reach:
             return 0
         radius_a, radius_b = radius(a), radius(b)
-        if not separate(a, b, ox, oy, oz, margin + radius_a + radius_b, scratch):
+        if not separate(a, b, offset, margin + radius_a + radius_b, scratch):
             return 0
-        result, frame, hulls = scratch.result, scratch.frame, scratch.hulls
-        loop_a, plane_a = scratch.loop_a, scratch.plane_a
-        loop_b, plane_b = scratch.loop_b, scratch.plane_b
-        nx, ny, nz = result[0], result[1], result[2]
-        kind_a, count_a, name_a = feature(a, 0.0, 0.0, 0.0, nx, ny, nz, hulls, loop_a, plane_a)
-        kind_b, count_b, name_b = feature(b, ox, oy, oz, -nx, -ny, -nz, hulls, loop_b, plane_b)
-        if cylinders:
-            if kind_a == LINE and kind_b == LINE:
-                line_normal(a, b, ox, oy, oz, scratch)
-                nx, ny, nz = result[0], result[1], result[2]
-                kind_a, count_a, name_a = feature(
-                    a, 0.0, 0.0, 0.0, nx, ny, nz, hulls, loop_a, plane_a
-                )
-                kind_b, count_b, name_b = feature(
-                    b, ox, oy, oz, -nx, -ny, -nz, hulls, loop_b, plane_b
-                )
-        phi = result[3] - radius_a - radius_b
+        found, hulls, origin = scratch.separation[0], scratch.hulls, Vec3(0.0, 0.0, 0.0)
+        n = normal_of(found)
+        of_a = feature(a, origin, n, hulls, scratch.outline_a)
+        of_b = feature(b, offset, negative(n), hulls, scratch.outline_b)
+        if curved:
+            if of_a.kind == LINE and of_b.kind == LINE:
+                line_normal(a, b, offset, scratch)
+                n = normal_of(found)
+                of_a = feature(a, origin, n, hulls, scratch.outline_a)
+                of_b = feature(b, offset, negative(n), hulls, scratch.outline_b)
+        phi = found.distance - radius_a - radius_b
         if phi > margin:
             return 0
-        normal[0], normal[1], normal[2] = nx, ny, nz
-        frame[0], frame[1], frame[2], frame[3], frame[4], frame[5] = across(nx, ny, nz)
-        frame[6], frame[7], frame[8] = nx, ny, nz
-        start, total = overlay(
-            kind_a, count_a, name_a, kind_b, count_b, name_b, radius_a, radius_b, frame, scratch
-        )
-        rows = scratch.polygon
-        count, least = 0, 1e300
-        for k in range(start, start + total):
-            if rows[k].phi <= margin:
-                least = min(least, rows[k].phi)
-                u, v, w = rows[k].x, rows[k].y, rows[k].z
-                place(
-                    rows[count],
-                    a.x + u * frame[0] + v * frame[3] + w * nx,
-                    a.y + u * frame[1] + v * frame[4] + w * ny,
-                    a.z + u * frame[2] + v * frame[5] + w * nz,
-                    rows[k].phi,
-                    rows[k].feature,
-                )
-                count += 1
+        frame, rows = frame_along(n), scratch.polygon
+        start, total = contact_patch(of_a, of_b, radius_a, radius_b, frame, scratch)
+        count, least = put_patch(a, frame, start, total, margin, rows)
         if least > phi + TOUCHING:
-            place(
-                rows[count],
-                a.x + 0.5 * (result[4] + radius_a * nx + result[7] - radius_b * nx),
-                a.y + 0.5 * (result[5] + radius_a * ny + result[8] - radius_b * ny),
-                a.z + 0.5 * (result[6] + radius_a * nz + result[9] - radius_b * nz),
-                phi,
-                NEAREST,
-            )
+            place(rows[count], between_witnesses(a, found, radius_a, radius_b), phi, NEAREST)
             count += 1
-        count = keep_four(rows, count, nx, ny, nz)
-        for k in range(count):
-            copy_point(rows[k], points[k])
-        return count
+        return write_manifold(scratch.manifold, rows, count, n)
 
     return kernel(convex, spec)
 

@@ -1,8 +1,8 @@
-"""A plane A and a cylinder B enter; up to four points of its rims leave. n is the plane's normal.
+"""Manifold of a plane A and a cylinder B: up to four points of its rims. n is the plane's normal.
 
-Standing, the lower cap touches by an octagon fixed to the cylinder (features.py), one corner of it
-moved to the rim's lowest point when it tilts; lying, each rim touches by its lowest point. The
-features: 0..7 corners of the octagon, 8 and 9 the lowest points of the rims at -z and +z.
+Standing, the lower cap touches by an octagon fixed to the cylinder (shapes/cylinder.py), one corner
+of it moved to the rim's lowest point when it tilts; lying, each rim touches by its lowest point.
+The features: 0..7 corners of the octagon, 8 and 9 the lowest points of the rims at -z and +z.
 """
 
 from __future__ import annotations
@@ -10,56 +10,49 @@ from __future__ import annotations
 from math import sqrt
 
 from ...compile import kernel
-from ...rotation import to_body
-from ..manifold.features import FACE_COSINE, put_cap
-from ..manifold.point import keep_four, place
+from ...vectors import Vec3, dot, from_body, into_body, negative, position
+from ..manifold.features import FACE_COSINE
+from ..manifold.point import place, write_manifold
+from ..records import put_position
 from ..scratch import CAP_CORNERS
 from ..shape_pair import ShapePair
+from ..shapes.cylinder import put_cap
 
 
 def make(spec):
-    """Return `kernel(plane, cylinder, points, normal, scratch, margin) -> count`."""
+    """Return `kernel(plane, cylinder, margin, scratch) -> count`; it writes `scratch.manifold`."""
 
-    def cylinder_plane(plane, cylinder, points, normal, scratch, margin):
-        nx, ny, nz = plane.hx, plane.hy, plane.hz
-        height = nx * cylinder.x + ny * cylinder.y + nz * cylinder.z - plane.offset
-        lx, ly, lz = to_body(cylinder, -nx, -ny, -nz)
-        across = sqrt(lx * lx + ly * ly)
-        if height - cylinder.hx * across - cylinder.hz * abs(lz) > margin:
+    def cylinder_plane(plane, cylinder, margin, scratch):
+        n, origin = Vec3(plane.hx, plane.hy, plane.hz), Vec3(0.0, 0.0, 0.0)
+        height = dot(n, cylinder) - plane.offset
+        down = into_body(cylinder, negative(n))
+        across = sqrt(down.x * down.x + down.y * down.y)
+        if height - cylinder.hx * across - cylinder.hz * abs(down.z) > margin:
             return 0
-        normal[0], normal[1], normal[2] = nx, ny, nz
-        corners = scratch.loop_b
-        total, first = CAP_CORNERS, 0
-        if abs(lz) >= FACE_COSINE:
-            put_cap(cylinder, 0.0, 0.0, 0.0, lx, ly, lz, corners, scratch.plane_b)
+        outline, total, first = scratch.outline_b, CAP_CORNERS, 0
+        if abs(down.z) >= FACE_COSINE:
+            put_cap(cylinder, origin, down, outline)
         else:
             total, first = 2, CAP_CORNERS
             share = cylinder.hx / across
             for end in range(2):
                 z = cylinder.hz if end else -cylinder.hz
-                x, y = share * lx, share * ly
-                corners[end, 0] = cylinder.r00 * x + cylinder.r01 * y + cylinder.r02 * z
-                corners[end, 1] = cylinder.r10 * x + cylinder.r11 * y + cylinder.r12 * z
-                corners[end, 2] = cylinder.r20 * x + cylinder.r21 * y + cylinder.r22 * z
-        count = 0
-        rows = scratch.polygon
+                lowest = from_body(cylinder, Vec3(share * down.x, share * down.y, z))
+                put_position(outline.corners[end], lowest)
+        count, rows = 0, scratch.polygon
         for k in range(total):
-            x, y, z = corners[k, 0], corners[k, 1], corners[k, 2]
-            phi = height + nx * x + ny * y + nz * z
+            p = position(outline.corners[k])
+            phi = height + n.x * p.x + n.y * p.y + n.z * p.z
             if phi <= margin:
-                place(
-                    rows[count],
-                    cylinder.x + x - 0.5 * phi * nx,
-                    cylinder.y + y - 0.5 * phi * ny,
-                    cylinder.z + z - 0.5 * phi * nz,
-                    phi,
-                    first + k,
+                half = 0.5 * phi
+                middle = Vec3(
+                    cylinder.x + p.x - half * n.x,
+                    cylinder.y + p.y - half * n.y,
+                    cylinder.z + p.z - half * n.z,
                 )
+                place(rows[count], middle, phi, first + k)
                 count += 1
-        count = keep_four(rows, count, nx, ny, nz)
-        for k in range(count):
-            place(points[k], rows[k].x, rows[k].y, rows[k].z, rows[k].phi, rows[k].feature)
-        return count
+        return write_manifold(scratch.manifold, rows, count, n)
 
     return kernel(cylinder_plane, spec)
 

@@ -1,4 +1,4 @@
-"""A box A and a sphere B enter; at most one point leaves. n points from the box to the sphere.
+"""Manifold of a box A and a sphere B: at most one point, in closed form. n points from A to B.
 
 Outside, the nearest point of the box is its centre's coordinates clamped to the box. With the
 centre inside, the nearest face pushes it out.
@@ -8,47 +8,53 @@ from __future__ import annotations
 
 from math import sqrt
 
-from ...compile import kernel
-from ...rotation import to_body, to_world
-from ..manifold.point import place
+from ...compile import inner, kernel
+from ...vectors import Vec3, divided, dot, from_body, into_body, minus, plus, plus_scaled
+from ..manifold.point import place, put_manifold_normal
 from ..shape_pair import ShapePair
 from .sphere_sphere import NO_DIRECTION
 
 
-def make(spec):
-    """Return `kernel(box, sphere, points, normal, scratch, margin) -> count`."""
+@inner
+def nearest_face(box, c, p):
+    """Leave the box from a centre c inside: (point of the nearest face, outward normal, depth).
 
-    def sphere_box(box, sphere, points, normal, scratch, margin):
-        cx, cy, cz = to_body(box, sphere.x - box.x, sphere.y - box.y, sphere.z - box.z)
-        px = min(max(cx, -box.hx), box.hx)
-        py = min(max(cy, -box.hy), box.hy)
-        pz = min(max(cz, -box.hz), box.hz)
-        dx, dy, dz = cx - px, cy - py, cz - pz
-        squared = dx * dx + dy * dy + dz * dz
-        r = sphere.hx
+    p: c clamped to the box.
+    """
+    gap_x, gap_y, gap_z = box.hx - abs(c.x), box.hy - abs(c.y), box.hz - abs(c.z)
+    if gap_x <= gap_y and gap_x <= gap_z:
+        m = 1.0 if c.x >= 0.0 else -1.0
+        return Vec3(m * box.hx, p.y, p.z), Vec3(m, 0.0, 0.0), gap_x
+    if gap_y <= gap_z:
+        m = 1.0 if c.y >= 0.0 else -1.0
+        return Vec3(p.x, m * box.hy, p.z), Vec3(0.0, m, 0.0), gap_y
+    m = 1.0 if c.z >= 0.0 else -1.0
+    return Vec3(p.x, p.y, m * box.hz), Vec3(0.0, 0.0, m), gap_z
+
+
+def make(spec):
+    """Return `kernel(box, sphere, margin, scratch) -> count`, which writes `scratch.manifold`."""
+
+    def sphere_box(box, sphere, margin, scratch):
+        c = into_body(box, minus(sphere, box))
+        p = Vec3(
+            min(max(c.x, -box.hx), box.hx),
+            min(max(c.y, -box.hy), box.hy),
+            min(max(c.z, -box.hz), box.hz),
+        )
+        d = minus(c, p)
+        squared, r = dot(d, d), sphere.hx
         if squared > (r + margin) * (r + margin):
             return 0
         distance = sqrt(squared)
         if distance > NO_DIRECTION:
-            mx, my, mz = dx / distance, dy / distance, dz / distance
-            phi = distance - r
+            m, phi = divided(d, distance), distance - r
         else:
-            gap_x, gap_y, gap_z = box.hx - abs(cx), box.hy - abs(cy), box.hz - abs(cz)
-            mx, my, mz = 0.0, 0.0, 0.0
-            if gap_x <= gap_y and gap_x <= gap_z:
-                mx = 1.0 if cx >= 0.0 else -1.0
-                px, phi = mx * box.hx, -gap_x - r
-            elif gap_y <= gap_z:
-                my = 1.0 if cy >= 0.0 else -1.0
-                py, phi = my * box.hy, -gap_y - r
-            else:
-                mz = 1.0 if cz >= 0.0 else -1.0
-                pz, phi = mz * box.hz, -gap_z - r
-        half = 0.5 * phi
-        wx, wy, wz = to_world(box, px + mx * half, py + my * half, pz + mz * half)
-        nx, ny, nz = to_world(box, mx, my, mz)
-        normal[0], normal[1], normal[2] = nx, ny, nz
-        place(points[0], box.x + wx, box.y + wy, box.z + wz, phi, 0)
+            p, m, depth = nearest_face(box, c, p)
+            phi = -depth - r
+        put_manifold_normal(scratch.manifold, from_body(box, m))
+        middle = from_body(box, plus_scaled(p, 0.5 * phi, m))
+        place(scratch.manifold.points[0], plus(box, middle), phi, 0)
         return 1
 
     return kernel(sphere_box, spec)

@@ -1,4 +1,4 @@
-"""A cylinder A and a sphere B enter; at most one point leaves. n points from the cylinder to B.
+"""Manifold of a cylinder A and a sphere B: at most one point, in closed form. n is from A to B.
 
 In the cylinder's frame a centre outside is nearest to its coordinates clamped to the axis and the
 rim; a centre inside leaves through the nearer of side and cap.
@@ -9,25 +9,24 @@ from __future__ import annotations
 from math import sqrt
 
 from ...compile import kernel
-from ...rotation import to_body, to_world
-from ..manifold.point import place
+from ...vectors import Vec3, from_body, into_body, minus
+from ..manifold.point import place, put_manifold_normal
 from ..shape_pair import ShapePair
 from .sphere_sphere import NO_DIRECTION
 
 
 def make(spec):
-    """Return `kernel(cylinder, sphere, points, normal, scratch, margin) -> count`."""
+    """Return `kernel(cylinder, sphere, margin, scratch) -> count`; it writes `scratch.manifold`."""
 
-    def sphere_cylinder(cylinder, sphere, points, normal, scratch, margin):
-        dx, dy, dz = sphere.x - cylinder.x, sphere.y - cylinder.y, sphere.z - cylinder.z
-        cx, cy, cz = to_body(cylinder, dx, dy, dz)
-        across = sqrt(cx * cx + cy * cy)
+    def sphere_cylinder(cylinder, sphere, margin, scratch):
+        c = into_body(cylinder, minus(sphere, cylinder))
+        across = sqrt(c.x * c.x + c.y * c.y)
         # On the axis every way out through the side is as long: x is taken.
         ux, uy = 1.0, 0.0
         if across > NO_DIRECTION:
-            ux, uy = cx / across, cy / across
-        up = 1.0 if cz >= 0.0 else -1.0
-        over_side, over_cap = across - cylinder.hx, abs(cz) - cylinder.hz
+            ux, uy = c.x / across, c.y / across
+        up = 1.0 if c.z >= 0.0 else -1.0
+        over_side, over_cap = across - cylinder.hx, abs(c.z) - cylinder.hz
         if over_side <= 0.0 and over_cap <= 0.0:
             if over_side >= over_cap:
                 distance, side, rise = over_side, 1.0, 0.0
@@ -40,11 +39,12 @@ def make(spec):
         phi = distance - sphere.hx
         if phi > margin:
             return 0
-        nx, ny, nz = to_world(cylinder, side * ux, side * uy, rise)
-        normal[0], normal[1], normal[2] = nx, ny, nz
+        n = from_body(cylinder, Vec3(side * ux, side * uy, rise))
+        put_manifold_normal(scratch.manifold, n)
         # From B's centre to its surface, and on by half the separation.
         back = sphere.hx + 0.5 * phi
-        place(points[0], sphere.x - back * nx, sphere.y - back * ny, sphere.z - back * nz, phi, 0)
+        p = Vec3(sphere.x - back * n.x, sphere.y - back * n.y, sphere.z - back * n.z)
+        place(scratch.manifold.points[0], p, phi, 0)
         return 1
 
     return kernel(sphere_cylinder, spec)

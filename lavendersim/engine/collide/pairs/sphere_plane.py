@@ -1,4 +1,4 @@
-"""A plane A and a sphere B enter; at most one point leaves. n is the plane's normal.
+"""Manifold of a plane A and a sphere B: at most one point, in closed form. n is the plane's normal.
 
 phi = n . x_b - offset - r
 """
@@ -6,29 +6,23 @@ phi = n . x_b - offset - r
 from __future__ import annotations
 
 from ...compile import kernel
-from ..manifold.point import place
+from ...vectors import Vec3, dot
+from ..manifold.point import place, put_manifold_normal
 from ..shape_pair import ShapePair
 
 
 def make(spec):
-    """Return `kernel(plane, sphere, points, normal, scratch, margin) -> count`."""
+    """Return `kernel(plane, sphere, margin, scratch) -> count`, which writes `scratch.manifold`."""
 
-    def sphere_plane(plane, sphere, points, normal, scratch, margin):
-        nx, ny, nz = plane.hx, plane.hy, plane.hz
-        r = sphere.hx
-        phi = nx * sphere.x + ny * sphere.y + nz * sphere.z - plane.offset - r
+    def sphere_plane(plane, sphere, margin, scratch):
+        n, r = Vec3(plane.hx, plane.hy, plane.hz), sphere.hx
+        phi = dot(n, sphere) - plane.offset - r
         if phi > margin:
             return 0
-        normal[0], normal[1], normal[2] = nx, ny, nz
+        put_manifold_normal(scratch.manifold, n)
         reach = r + 0.5 * phi
-        place(
-            points[0],
-            sphere.x - nx * reach,
-            sphere.y - ny * reach,
-            sphere.z - nz * reach,
-            phi,
-            0,
-        )
+        p = Vec3(sphere.x - n.x * reach, sphere.y - n.y * reach, sphere.z - n.z * reach)
+        place(scratch.manifold.points[0], p, phi, 0)
         return 1
 
     return kernel(sphere_plane, spec)

@@ -1,4 +1,4 @@
-"""Two spheres enter; at most one point leaves. n points from the centre of A to that of B.
+"""Manifold of two spheres: at most one point, in closed form. n points from A's centre to B's.
 
     phi = |x_b - x_a| - r_a - r_b
 
@@ -10,7 +10,8 @@ from __future__ import annotations
 from math import sqrt
 
 from ...compile import kernel
-from ..manifold.point import place
+from ...vectors import Vec3, divided, dot, minus, plus_scaled
+from ..manifold.point import place, put_manifold_normal
 from ..shape_pair import ShapePair
 
 # Centres closer than this count as coincident: their squared distance has lost its digits [m].
@@ -18,22 +19,21 @@ NO_DIRECTION = 1e-150
 
 
 def make(spec):
-    """Return `kernel(a, b, points, normal, scratch, margin) -> count`."""
+    """Return `kernel(a, b, margin, scratch) -> count`, which writes `scratch.manifold`."""
 
-    def sphere_sphere(a, b, points, normal, scratch, margin):
-        dx, dy, dz = b.x - a.x, b.y - a.y, b.z - a.z
+    def sphere_sphere(a, b, margin, scratch):
+        d = minus(b, a)
         reach = a.hx + b.hx + margin
-        squared = dx * dx + dy * dy + dz * dz
+        squared = dot(d, d)
         if squared > reach * reach:
             return 0
         distance = sqrt(squared)
-        nx, ny, nz = 0.0, 0.0, 1.0
+        n = Vec3(0.0, 0.0, 1.0)
         if distance > NO_DIRECTION:
-            nx, ny, nz = dx / distance, dy / distance, dz / distance
+            n = divided(d, distance)
         phi = distance - a.hx - b.hx
-        normal[0], normal[1], normal[2] = nx, ny, nz
-        middle = a.hx + 0.5 * phi
-        place(points[0], a.x + nx * middle, a.y + ny * middle, a.z + nz * middle, phi, 0)
+        put_manifold_normal(scratch.manifold, n)
+        place(scratch.manifold.points[0], plus_scaled(a, a.hx + 0.5 * phi, n), phi, 0)
         return 1
 
     return kernel(sphere_sphere, spec)
