@@ -20,8 +20,8 @@ from lavendersim.engine.spec import Spec
 from lavendersim.errors import ConfigError
 from lavendersim.experiment import Experiment
 from lavendersim.experiment.cell import Cell
+from lavendersim.geometry.bodies import is_movable
 from lavendersim.quantities.found import nearest, quoted
-from lavendersim.scene.colliders import is_movable
 
 from .compile_times import compile_times
 from .environment import processor

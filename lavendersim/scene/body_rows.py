@@ -30,9 +30,11 @@ from lavendersim.engine.effects import EFFECTS
 from lavendersim.engine.record_layout import allocate_bodies
 from lavendersim.engine.records import BOX, CAPSULE, COMPOUND, CYLINDER, HULL, PLANE, SPHERE
 from lavendersim.engine.spec import Spec
+from lavendersim.geometry.bodies import is_movable
 from lavendersim.geometry.rotations import quaternion_product, rotation_matrix
+from lavendersim.geometry.shapes import bounding_radius
 
-from .colliders import Collider, bounding_radius, is_movable
+from .colliders import Collider
 
 SHAPES: Final = {
     "plane": PLANE,

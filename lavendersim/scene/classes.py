@@ -12,8 +12,9 @@ from typing import NamedTuple
 from lavendersim.cell import Surface
 from lavendersim.cell.mixing import mixed
 from lavendersim.engine.collide import SHAPE_PAIRS
+from lavendersim.geometry.bodies import is_movable
 
-from .colliders import Collider, is_movable
+from .colliders import Collider
 
 _PAIR_BY_SHAPES = {pair.shapes: name for name, pair in SHAPE_PAIRS.items()}
 

@@ -7,20 +7,13 @@ compound's own row moves and has no surface; its parts have surfaces and do not 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import hypot, inf
 from typing import NamedTuple
 
 from lavendersim.cell import (
-    Box,
-    Capsule,
     CellBody,
     CellCompound,
-    CellHull,
     CellPart,
     CellShape,
-    Cylinder,
-    Plane,
-    Sphere,
 )
 
 
@@ -49,27 +42,3 @@ def colliders(bodies: Sequence[CellBody]) -> list[Collider]:
 def parts_of(shape: CellShape) -> tuple[CellPart, ...]:
     """Return the parts of a compound; none of any other shape."""
     return shape.parts if isinstance(shape, CellCompound) else ()
-
-
-def is_movable(body: CellBody) -> bool:
-    """Whether contacts and forces move a body."""
-    return not (isinstance(body.shape, Plane) or body.fixed)
-
-
-def bounding_radius(shape: CellShape) -> float:
-    """Return the radius of the sphere about the centre that holds the shape [m]; planes: inf."""
-    match shape:
-        case Plane():
-            return inf
-        case Sphere():
-            return shape.radius
-        case Box():
-            return 0.5 * hypot(*shape.size)
-        case Capsule():
-            return 0.5 * shape.length + shape.radius
-        case Cylinder():
-            return hypot(0.5 * shape.length, shape.radius)
-        case CellHull():
-            return max(hypot(*point) for point in shape.points)
-        case CellCompound():
-            return max(hypot(*part.position) + bounding_radius(part.shape) for part in shape.parts)

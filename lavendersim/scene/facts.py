@@ -7,9 +7,11 @@ from math import hypot
 
 from lavendersim.cell import CellConfig, CellEvent, CellShape
 from lavendersim.engine.effects import EFFECTS, BodyFacts, Facts, PairFacts
+from lavendersim.geometry.bodies import is_movable
+from lavendersim.geometry.shapes import bounding_radius
 
 from .classes import class_pairs
-from .colliders import bounding_radius, colliders, is_movable, parts_of
+from .colliders import colliders, parts_of
 
 
 def changes_of_bodies(config: CellConfig) -> list[CellEvent]:

@@ -30,7 +30,7 @@ ROOMS = {
     "simulator": {"errors", "quantities", "cell", "experiment", "scene", "engine"},
     "runner": {
         *("errors", "clock", "quantities", "cell", "experiment", "scene", "engine", "problems"),
-        *("trace", "measures"),
+        *("trace", "measures", "geometry"),
     },
     "pytest_plugin": {"errors", "experiment", "trace", "measures", "runner"},
     "cli": {

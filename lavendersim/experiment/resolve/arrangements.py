@@ -14,7 +14,7 @@ import random
 
 from lavendersim.cell.shapes import CellCompound, CellSimple
 from lavendersim.experiment.models.arrangements import Grid, Pyramid, Tower
-from lavendersim.experiment.resolve.placement import reach
+from lavendersim.geometry.support import reach
 from lavendersim.quantities.quantity import Quaternion, Vector3
 
 

@@ -1,4 +1,4 @@
-"""A release in; the position it means out. Also how far shapes reach from their centre.
+"""The position of a body that is released above a plane.
 
 The gap between the body's surface and the plane n.x = offset, measured along n, is
 
@@ -15,9 +15,9 @@ import math
 from fractions import Fraction
 
 from lavendersim.cell.body import Release
-from lavendersim.cell.shapes import Box, Capsule, CellCompound, CellHull, CellSimple, Plane, Sphere
+from lavendersim.cell.shapes import CellCompound, CellSimple, Plane
 from lavendersim.experiment.text.node import Path
-from lavendersim.geometry.quaternions import axes, product, to_body, to_world
+from lavendersim.geometry.support import reach
 from lavendersim.geometry.vectors import dot, unit
 from lavendersim.quantities.quantity import Quaternion, Vector3
 
@@ -32,32 +32,6 @@ class SceneError(ValueError):
     def below(self, *steps: str | int) -> SceneError:
         """Return the same with more steps before the path."""
         return SceneError((*steps, *self.path), str(self))
-
-
-def reach(shape: CellSimple | CellCompound, orientation: Quaternion, direction: Vector3) -> float:
-    """Return the distance [m] from the centre to the surface's furthest point along -direction."""
-    if isinstance(shape, Sphere):
-        return shape.radius
-    if isinstance(shape, Box):
-        return math.fsum(
-            0.5 * size * abs(dot(edge, direction))
-            for size, edge in zip(shape.size, axes(orientation), strict=True)
-        )
-    if isinstance(shape, CellHull):
-        inward = to_body(orientation, direction)
-        return -min(dot(point, inward) for point in shape.points)
-    if isinstance(shape, CellCompound):
-        return max(
-            reach(part.shape, product(orientation, part.orientation), direction)
-            - dot(to_world(orientation, part.position), direction)
-            for part in shape.parts
-        )
-    slope = min(1.0, abs(dot(axes(orientation)[2], direction)))
-    end = 0.5 * shape.length * slope
-    if isinstance(shape, Capsule):
-        return shape.radius + end
-    # (1 - s)(1 + s) keeps the digits that 1 - s^2 loses where the cylinder nearly stands.
-    return shape.radius * math.sqrt((1.0 - slope) * (1.0 + slope)) + end
 
 
 def released_position(

@@ -9,8 +9,9 @@ import pytest
 
 from lavendersim.cell.body import Release
 from lavendersim.cell.shapes import Box, Plane, Sphere
-from lavendersim.experiment.resolve.placement import SceneError, reach, released_position
+from lavendersim.experiment.resolve.placement import SceneError, released_position
 from lavendersim.geometry.quaternions import from_axis_angle
+from lavendersim.geometry.support import reach
 from lavendersim.geometry.vectors import unit
 
 DOWN = (0.0, 0.0, -9.81)

@@ -12,9 +12,10 @@ from lavendersim.cell import CellBody, CellPart, Sphere
 from lavendersim.engine.records import CAPSULE, COMPOUND, CYLINDER, HULL, SPHERE
 from lavendersim.engine.spec import Spec
 from lavendersim.geometry.rotations import quaternion_product, rotation_matrix
+from lavendersim.geometry.shapes import bounding_radius
 from lavendersim.scene.body_rows import part_pose
 from lavendersim.scene.build import Scene, build
-from lavendersim.scene.colliders import bounding_radius, parts_of
+from lavendersim.scene.colliders import parts_of
 
 TETRA = {"kind": "hull", "points": [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]}
 EFFECTS = ("compound", "drag", "kinematic", "rotation", "surface_velocity")
