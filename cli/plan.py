@@ -1,4 +1,4 @@
-"""`lavender plan`: a config in; which effects its scene calls for, why, and what they bring out."""
+"""`lavender plan`: a config in; which effects its scene requires, why, and what they bring out."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
     from rich.table import Table
 
-    from lavendersim.scene.explanation import Explanation, Part
+    from lavendersim.scene.explanation import Explanation, ExplanationItem
 
 UNWRAPPED = 100_000  # columns: where nobody looks, no line is broken
 STYLES = {"on": "green", "off": "dim", "forced on": "bold yellow", "forced off": "bold yellow"}
@@ -30,9 +30,9 @@ def plan(
     config: Annotated[Path, typer.Argument(help="Config file.")],
     as_json: Annotated[bool, typer.Option("--json", help="Print the plan as JSON.")] = False,
 ) -> None:
-    """Show which effects a scene calls for, why, and what each brings: arrays, log, kernels.
+    """Show which effects a scene requires, why, and what each brings: arrays, log, kernels.
 
-    For a sweep the plan is the union over its cells, and says which cells call for what. Cells that
+    For a sweep the plan is the union over its cells, and says which cells require what. Cells that
     differ in a choice between laws, such as the solver, share no union: one plan each.
     """
     from lavendersim.runner import load_all
@@ -63,7 +63,7 @@ def write(explained: Explanation, title: str, width: int | None = None) -> None:
         console.print(_table(explained.effects, "effect"))
         console.print(_table([one for one in explained.shape_pairs if one.on], "shape pair"))
         if others := [one.name for one in explained.shape_pairs if not one.on]:
-            console.print(_pairs([("not called for", ", ".join(others))], dim=True))
+            console.print(_pairs([("not required", ", ".join(others))], dim=True))
         console.print()
         console.print(_table([explained.solver], "solver"))
         console.print("kernels without any effect", style="bold")
@@ -81,7 +81,7 @@ def write(explained: Explanation, title: str, width: int | None = None) -> None:
         typer.echo(line.rstrip())
 
 
-def _table(parts: list[Part], heading: str) -> Table:
+def _table(parts: list[ExplanationItem], heading: str) -> Table:
     """Return a row per part: its name, whether it is in, why and what it brings."""
     from rich.table import Table
     from rich.text import Text
@@ -101,11 +101,11 @@ def _table(parts: list[Part], heading: str) -> Table:
     return table
 
 
-def _why(part: Part) -> RenderableType:
+def _why(part: ExplanationItem) -> RenderableType:
     from rich.console import Group
     from rich.text import Text
 
-    said = Text(f"{part.reason}; {part.callers}" if part.callers else part.reason)
+    said = Text(f"{part.reason}; {part.requirement}" if part.requirement else part.reason)
     if not part.on:
         said.stylize("" if part.forced else "dim")
         return said

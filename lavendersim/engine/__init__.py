@@ -1,1 +1,1 @@
-"""Arrays in, arrays out: the kernels of contact dynamics, composed from what a scene calls for."""
+"""Arrays in, arrays out: the kernels of contact dynamics, composed from what a scene requires."""

@@ -64,7 +64,7 @@ def block_of(rows: Rows, clock: Clock) -> Block:
 
 
 def metadata_of(plan: Plan, seeds: str) -> dict[str, dict[str, str]]:
-    """Return what the log says about the engine that made it, and where it was overridden."""
+    """Return the log's metadata about the engine that made it, and where it was overridden."""
     forced: dict[str, dict[str, str]] = {"forced": {**plan.forced}} if plan.forced else {}
     errors = {
         effect.name: f"a deliberate error: {effect.study_only}"
@@ -81,10 +81,10 @@ def metadata_of(plan: Plan, seeds: str) -> dict[str, dict[str, str]]:
             "seed": seeds,
         },
         "plan": {
-            name: f"{'on' if decision.on else 'off'}: {plan.said(name)}"
+            name: f"{'on' if decision.on else 'off'}: {plan.described(name)}"
             for name, decision in plan.decisions.items()
         },
-        "shape pairs": {name: f"on: {plan.said(name)}" for name in plan.spec.shape_pairs},
+        "shape pairs": {name: f"on: {plan.described(name)}" for name in plan.spec.shape_pairs},
         **forced,
         **study,
     }

@@ -167,7 +167,7 @@ def _table(
     window: tuple[int, int, int],
 ) -> dict[str, Any]:
     bodies = sum(is_movable(body) for body in cell.config.scene.bodies.values())
-    # Contacts of the scene's own motion: of an engine whose effects the scene calls for, or idle.
+    # Contacts of the scene's own motion: of an engine whose effects the scene requires, or idle.
     own = next(
         (
             timed[spec].contacts

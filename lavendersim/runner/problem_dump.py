@@ -82,6 +82,6 @@ def _untellable(experiment: Experiment) -> Iterator[str]:
     for cell in experiment.cells():
         plan = plan_of_cell(cell)
         for name in _OF_NO_FILE:
-            if plan.callers[name]:
+            if plan.required_by[name]:
                 what, why = name.replace("_", " "), plan.decisions[name].reason
                 yield f"problems: FCLIB files have no {what}, expected none; found {why}"

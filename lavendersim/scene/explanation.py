@@ -19,22 +19,22 @@ from lavendersim.engine.step import kernels_of
 from .laws import needs
 from .plan import CHOICES, Plan
 
-_GLUE = "compile"  # links between the kernels of one stage, which have nothing to say
+_GLUE = "compile"  # links between the kernels of one stage, of no interest here
 
 Fields = dict[str, list[str]]  # record -> names of its columns
 Kernels = dict[str, list[str]]  # module of the engine -> names
 
 
-class Part(NamedTuple):
+class ExplanationItem(NamedTuple):
     """One effect, shape pair or solver: is it in, why, and what it brings."""
 
     name: str
     on: bool
     reason: str
     reasons: dict[str, list[int]]  # every reason, and the cells it holds in
-    forced: str | None  # `forced on` or `forced off`, against what the scene calls for
-    called_for_by: list[int]  # cells, by their place in the sweep
-    callers: str  # in words, where some cells call for it and others do not
+    forced: str | None  # `forced on` or `forced off`, against what the scene requires
+    required_by: list[int]  # cells, by their place in the sweep
+    requirement: str  # in words, where some cells require it and others do not
     needs: list[str]  # effects without which it cannot be
     chosen_by: str | None  # key of the numerics, or of the study
     fields: Fields  # of records that it brings, and of log rows
@@ -45,18 +45,18 @@ class Part(NamedTuple):
 class Explanation(NamedTuple):
     """A plan with its reasons."""
 
-    title: str  # what tells it from the other plans of the same sweep, and how many cells it has
+    title: str  # how it differs from the other plans of the same sweep, and how many cells it has
     digest: str  # of the spec
     spec: dict[str, Any]
     choices: dict[str, Any]  # what the cells that share it agree in
     cells: list[dict[str, Any]]  # that share it: `index` and `label`
-    effects: list[Part]  # in the engine's order
-    shape_pairs: list[Part]
-    solver: Part
+    effects: list[ExplanationItem]  # in the engine's order
+    shape_pairs: list[ExplanationItem]
+    solver: ExplanationItem
     always: Kernels  # that an engine has without any effect, and none of the above brings
     shared: Kernels  # that several of the above bring together
 
-    def parts(self) -> list[Part]:
+    def parts(self) -> list[ExplanationItem]:
         """Return everything that is in or out."""
         return [*self.effects, *self.shape_pairs, self.solver]
 
@@ -70,7 +70,7 @@ class Explanation(NamedTuple):
 
 
 def explain(plan: Plan, others: Iterable[Plan] = ()) -> Explanation:
-    """Explain a plan; `others` are those of the same sweep, from which it is to be told."""
+    """Explain a plan; its title distinguishes it from `others`, those of the same sweep."""
     spec, choices = plan.spec, dict(zip(CHOICES, plan.choices, strict=True))
     composed = composed_kernels(spec)
     effects = [_effect(plan, effect) for effect in EFFECTS]
@@ -100,7 +100,7 @@ def explain_all(plans: Iterable[Plan]) -> list[Explanation]:
     return [explain(plan, plans) for plan in plans]
 
 
-def _effect(plan: Plan, effect: Effect) -> Part:
+def _effect(plan: Plan, effect: Effect) -> ExplanationItem:
     part = _decided(plan, effect.name)
     # Some columns depend on what else is there; that is known where the effect is on.
     fields = effect.columns_by_record(plan.spec if part.on else None)
@@ -113,17 +113,17 @@ def _effect(plan: Plan, effect: Effect) -> Part:
     )
 
 
-def _decided(plan: Plan, name: str) -> Part:
-    """Return what a plan says of an effect or shape pair, before what that brings."""
+def _decided(plan: Plan, name: str) -> ExplanationItem:
+    """Return the decision on an effect or shape pair, before what that brings."""
     decision, reasons = plan.decided(name), plan.reasons_of(name)
-    return Part(
+    return ExplanationItem(
         name=name,
         on=decision.on,
         reason=decision.reason,
         reasons={why: [cell.number for cell in cells] for why, cells in reasons.items()},
         forced=plan.forced.get(name),
-        called_for_by=[cell.number for cell in plan.callers[name]],
-        callers=plan.called_for_by(name),
+        required_by=[cell.number for cell in plan.required_by[name]],
+        requirement=plan.requirement(name),
         needs=[],
         chosen_by=None,
         fields={},
@@ -142,15 +142,15 @@ def _brought(spec: Spec, effect: Effect) -> Kernels:
     lean = spec.without(*dependents)
     gone = _without(composed_kernels(lean), composed_kernels(lean.without(effect.name)))
     gone = {module: names for module, names in gone.items() if not _of_an_effect(module)}
-    stated = composed_kernels(spec).get(own)
-    return ({own: stated} if stated else {}) | gone
+    kept = composed_kernels(spec).get(own)
+    return ({own: kept} if kept else {}) | gone
 
 
 def _of_an_effect(module: str) -> bool:
     return module.startswith("effects.")
 
 
-def _shape_pair(plan: Plan, name: str) -> Part:
+def _shape_pair(plan: Plan, name: str) -> ExplanationItem:
     part = _decided(plan, name)
     if part.on:
         others = tuple(pair for pair in plan.spec.shape_pairs if pair != name)
@@ -161,19 +161,19 @@ def _shape_pair(plan: Plan, name: str) -> Part:
     return part
 
 
-def _solver(plan: Plan, composed: Kernels) -> Part:
+def _solver(plan: Plan, composed: Kernels) -> ExplanationItem:
     spec = plan.spec
     kept = _names(SOLVERS[spec.solver].contact_fields)
     fields = {"contact": kept} if kept else {}
     stops = "stops at a tolerance" if spec.tolerance else "takes all its sweeps"
-    return Part(
+    return ExplanationItem(
         name=spec.solver,
         on=True,
         reason=f"numerics.solver is {spec.solver}; it {stops}",
         reasons={},
         forced=None,
-        called_for_by=[cell.number for cell in plan.cells],
-        callers="",
+        required_by=[cell.number for cell in plan.cells],
+        requirement="",
         needs=[],
         chosen_by="solver",
         fields=fields,

@@ -1,8 +1,8 @@
 """The effects that a config switches by hand, against what its scene requires.
 
-    on    an effect that is not called for is compiled in, with the coefficients that the scene
+    on    an effect that is not required is compiled in, with the coefficients that the scene
           states, and so is whatever it needs
-    off   where the scene does not call for it: nothing changes, the file asserts the pruning;
+    off   where the scene does not require it: nothing changes, the file asserts the pruning;
           where it does: refused, unless the file says `force: true`
 An effect that a key of the numerics chooses, or of `study`, is another law, no idle effect: only
 that key switches it.
@@ -49,7 +49,7 @@ class Overridden(NamedTuple):
 
     effects: dict[str, Decision]
     shape_pairs: dict[str, Decision]
-    forced: dict[str, Forced]  # what the scene does not call for, or does and does not get
+    forced: dict[str, Forced]  # what the scene does not require, or does and does not get
 
 
 def override(
@@ -94,7 +94,7 @@ def _switch(made: Overridden, name: str, switch: str, facts: Facts, section: Cel
         return f"{chooser} it; write {_choosing(name, facts, on=False)} instead"
     if not section.force:
         return (
-            f"the scene calls for it: {reason}; add `force: true` beside it to leave it out "
+            f"the scene requires it: {reason}; add `force: true` beside it to leave it out "
             "all the same"
         )
     decisions[name] = Decision(False, f"forced off, though: {reason}")
@@ -116,11 +116,11 @@ def _force_on(
             chosen = _choosing(need, facts, on=True)
             how = f"; write {chosen} to choose it" if chosen else ""
             return f"{which} is another law, no idle effect{how}"
-    decisions[name] = Decision(True, f"forced on; not called for: {decisions[name].reason}")
+    decisions[name] = Decision(True, f"forced on; not required: {decisions[name].reason}")
     made.forced[name] = "forced on"
     for need in needs(name):
         if not made.effects[need].on and switches.get(need) is None:
-            why = f"forced on, needed by {name}; not called for: {made.effects[need].reason}"
+            why = f"forced on, needed by {name}; not required: {made.effects[need].reason}"
             made.effects[need] = Decision(True, why)
             made.forced[need] = "forced on"
     return ""

@@ -45,8 +45,8 @@ class CellName(NamedTuple):
     label: str = ""
 
     @property
-    def said(self) -> str:
-        """What a sentence calls it."""
+    def text(self) -> str:
+        """Its name in a sentence."""
         return self.label or str(self.number)
 
 
@@ -63,7 +63,7 @@ class Plan(NamedTuple):
     shape_pairs: dict[str, Decision]  # of every pair of shapes
     forced: dict[str, Forced]  # what was switched against the scene
     cells: tuple[CellName, ...]  # that this is the plan of
-    callers: dict[str, tuple[CellName, ...]]  # of an effect or pair: the cells that call for it
+    required_by: dict[str, tuple[CellName, ...]]  # of an effect or pair: the cells that require it
     reasons: dict[str, Reasons]  # of a union: see `reasons_of`
 
     def decided(self, name: str) -> Decision:
@@ -74,20 +74,20 @@ class Plan(NamedTuple):
         """Return every reason for the decision on an effect or pair, and the cells it holds in."""
         return self.reasons.get(name) or {self.decided(name).reason: self.cells}
 
-    def said(self, name: str) -> str:
+    def described(self, name: str) -> str:
         """Return the reason in one line, with the cells that it holds for."""
-        callers = self.called_for_by(name)
-        return f"{self.decided(name).reason}; {callers}" if callers else self.decided(name).reason
+        reason, requirement = self.decided(name).reason, self.requirement(name)
+        return f"{reason}; {requirement}" if requirement else reason
 
-    def called_for_by(self, name: str) -> str:
-        """Say which cells call for an effect or pair, where it is some of them and not all."""
-        callers = self.callers.get(name, ())
-        if not 0 < len(callers) < len(self.cells):
+    def requirement(self, name: str) -> str:
+        """Return which cells require an effect or pair, where it is some of them and not all."""
+        requiring = self.required_by.get(name, ())
+        if not 0 < len(requiring) < len(self.cells):
             return ""
-        labels = [caller.said for caller in callers]
+        labels = [cell.text for cell in requiring]
         if len(labels) > MOST_LABELS:
             labels = [*labels[: MOST_LABELS - 1], f"{len(labels) - MOST_LABELS + 1} more"]
-        return f"called for by {len(callers)} of {len(self.cells)} cells: {'; '.join(labels)}"
+        return f"required by {len(requiring)} of {len(self.cells)} cells: {'; '.join(labels)}"
 
 
 def plan_of(config: CellConfig, record: bool = True, cell: CellName = ALONE) -> Plan:
@@ -132,7 +132,7 @@ def plan_of_cell(cell: Cell, record: bool = True) -> Plan:
 
 
 def union(plans: Iterable[Plan]) -> Plan:
-    """Return the plan for every cell of a sweep: an effect is on where any cell wants it."""
+    """Return the plan for every cell of a sweep: an effect is on where any cell requires it."""
     plans = list(plans)
     first = plans[0]
     for name, *values in zip(CHOICES, *(plan.choices for plan in plans), strict=True):
@@ -140,8 +140,8 @@ def union(plans: Iterable[Plan]) -> Plan:
             raise UsageError(f"the cells of one sweep share their {name}")
     if len(plans) == 1:
         return first
-    reasons = {name: _reasons(plans, name) for name in first.callers}
-    joined = {name: _joined(plans, name, reasons[name]) for name in first.callers}
+    reasons = {name: _reasons(plans, name) for name in first.required_by}
+    joined = {name: _joined(plans, name, reasons[name]) for name in first.required_by}
     effects = {name: joined[name] for name in first.decisions}
     shape_pairs = {name: joined[name] for name in first.shape_pairs}
     spec = first.spec._replace(
@@ -150,30 +150,31 @@ def union(plans: Iterable[Plan]) -> Plan:
         tolerance=any(plan.spec.tolerance for plan in plans),
         over_relaxation=any(plan.spec.over_relaxation for plan in plans),
     )
-    callers = {
-        name: tuple(cell for plan in plans for cell in plan.callers[name]) for name in first.callers
+    required_by = {
+        name: tuple(cell for plan in plans for cell in plan.required_by[name])
+        for name in first.required_by
     }
     forced = {name: how for plan in plans for name, how in plan.forced.items()}
     for name, how in list(forced.items()):
-        if how == "forced on" and callers[name]:
-            del forced[name]  # on without being forced, for the cells that call for it
+        if how == "forced on" and required_by[name]:
+            del forced[name]  # on without being forced, for the cells that require it
     cells = tuple(cell for plan in plans for cell in plan.cells)
-    return Plan(spec, effects, first.choices, shape_pairs, forced, cells, callers, reasons)
+    return Plan(spec, effects, first.choices, shape_pairs, forced, cells, required_by, reasons)
 
 
 def _joined(plans: list[Plan], name: str, reasons: Reasons) -> Decision:
-    """Return the decision of a union, whose reason says of which cell it is where they differ."""
+    """Return the decision of a union, whose reason names its cell where they differ."""
     on = any(plan.decided(name).on for plan in plans)
     first, cells = next(iter(reasons.items()))
     if len(reasons) == 1:
         return Decision(on, first)
     more = "1 other reason" if len(reasons) == 2 else f"{len(reasons) - 1} other reasons"
-    return Decision(on, f"{first} (cell {cells[0].said}; {more} in other cells)")
+    return Decision(on, f"{first} (cell {cells[0].text}; {more} in other cells)")
 
 
 def _reasons(plans: list[Plan], name: str) -> Reasons:
-    """Return why an effect is on, where it is in any cell, else why off: rather called for than
-    forced on, rather forced off than not called for.
+    """Return why an effect is on, where it is in any cell, else why off: rather required than
+    forced on, rather forced off than not required.
     """
     on = any(plan.decided(name).on for plan in plans)
     agreeing = [plan for plan in plans if plan.decided(name).on == on]

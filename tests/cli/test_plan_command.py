@@ -57,7 +57,7 @@ def test_switches_that_cannot_be_exit_2_and_leave_nothing(
     done = lavender(name, drop, *options, where=tmp_path)
     assert (done.returncode, done.stdout) == (2, "")
     first, second = done.stderr.splitlines()
-    assert first.startswith(f"{drop}:{line}:11: effects.restitution: the scene calls for it: ")
+    assert first.startswith(f"{drop}:{line}:11: effects.restitution: the scene requires it: ")
     assert second == (
         f'{drop}:{line}:29: effects.drga: no effect or shape pair is called "drga"; '
         'did you mean "drag"?'
@@ -80,8 +80,8 @@ def test_json_has_all_that_the_table_has(drop: Path, tmp_path: Path) -> None:
     plan = json.loads(lavender("plan", drop, "--json", where=tmp_path).stdout)
     assert list(plan["effects"]) == [effect.name for effect in EFFECTS]
     assert list(plan["shape_pairs"]) == list(SHAPE_PAIRS)
-    assert plan["effects"]["restitution"]["called_for_by"] == [1, 2]
-    assert plan["effects"]["restitution"]["callers"] == "called for by 2 of 3 cells: e=0.5; e=0.8"
+    assert plan["effects"]["restitution"]["required_by"] == [1, 2]
+    assert plan["effects"]["restitution"]["requirement"] == "required by 2 of 3 cells: e=0.5; e=0.8"
     assert plan["effects"]["friction"]["forced"] == "forced on"
     assert plan["effects"]["friction"]["fields"]["pair"] == ["friction"]
     assert plan["effects"]["friction"]["kernels"]["effects.friction"]
@@ -92,7 +92,7 @@ def test_json_has_all_that_the_table_has(drop: Path, tmp_path: Path) -> None:
     assert plan["digest"] in table
     for part in (*plan["effects"].values(), plan["solver"]):
         assert part["reason"] in table
-        assert part["callers"] in table
+        assert part["requirement"] in table
 
 
 def test_show_tells_the_plan_of_the_log(drop: Path, tmp_path: Path) -> None:
@@ -104,10 +104,10 @@ def test_show_tells_the_plan_of_the_log(drop: Path, tmp_path: Path) -> None:
     lines = shown[shown.index("\nplan\n") + 1 : shown.index("\ncells ")].splitlines()
     assert lines[1] == "  overridden by hand: drag forced on"
     assert any(
-        re.match(r"  drag +on   forced on; not called for: no body has drag$", x) for x in lines
+        re.match(r"  drag +on   forced on; not required: no body has drag$", x) for x in lines
     )
     assert any(re.match(r"  sphere_plane +on   floor and ball$", line) for line in lines)
-    assert any(line.endswith("called for by 2 of 3 cells: e=0.5; e=0.8") for line in lines)
+    assert any(line.endswith("required by 2 of 3 cells: e=0.5; e=0.8") for line in lines)
     off = [line for line in lines if line.startswith("  off: ")]
     assert len(off) == 1
     assert {"friction", "rotation"} <= set(off[0].removeprefix("  off: ").split(", "))

@@ -1,4 +1,4 @@
-"""A scene and effects that it does not call for enter; runs without and with them leave.
+"""A scene and effects that it does not require enter; runs without and with them leave.
 
 An effect is idle where it is compiled in though the plan has it off: its coefficients are zero, or
 what it looks for never occurs. A run must equal the one without it under ==, which takes -0.0 for
@@ -46,7 +46,7 @@ def closed(*names: str) -> set[str]:
 
 
 def may_idle(cell: dict[str, Any], name: str, record: bool = True) -> bool:
-    """Whether a scene does not call for an effect, and its numerics choose no other law for it."""
+    """Whether a scene does not require an effect, and its numerics choose no other law for it."""
     plan = planned(cell, record)
     return not plan.decisions[name].on and all(
         plan.spec.has(other) or _is_let_in(cell, other) for other in closed(name)

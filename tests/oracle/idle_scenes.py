@@ -162,7 +162,7 @@ SCENES: dict[str, Callable[[], dict[str, Any]]] = {
     "others, default": lambda: cell(others(), preset="default"),
 }
 
-# For each effect scenes that do not call for it, with what it would act on if it did.
+# For each effect scenes that do not require it, with what it would act on if it did.
 CASES: dict[str, tuple[str, ...]] = {
     "compound": ("rough balls",),
     "broad_phase": ("balls",),

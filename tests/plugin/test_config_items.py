@@ -62,7 +62,7 @@ def test_an_effect_that_cannot_be_off_is_a_collection_error_with_its_place(
     result = run(pytester)
     result.assert_outcomes(errors=1)
     line = len(DROP.splitlines()) + 1
-    result.stdout.fnmatch_lines([f"*drop.yaml:{line}:11: effects.gravity: the scene calls for it*"])
+    result.stdout.fnmatch_lines([f"*drop.yaml:{line}:11: effects.gravity: the scene requires it*"])
     result.stdout.no_fnmatch_line("*Traceback*")
 
 

@@ -80,7 +80,7 @@ def finds(
 ) -> tuple[int, list[Find]]:
     """Run so many configs on the engine of one plan; returns their number, and what broke.
 
-    A plan's configs share an engine: one that calls for another is a find, too. keep: the beginning
+    A plan's configs share an engine: one that requires another is a find, too. keep: the beginning
     of the names of finds, and of the file for the config that runs.
     """
     compiled(plan)

@@ -80,7 +80,7 @@ def run(config: CellConfig, spec: Spec, steps: int) -> Ended:
 def broken(tree: dict[str, Any], shared: Spec | None = None) -> list[str]:
     """Return every law that a config breaks, by name and number; none where all is well.
 
-    shared: the engine it must call for.
+    shared: the engine it must require.
     """
     pool = ThreadPoolExecutor(1)
     try:
@@ -96,7 +96,7 @@ def broken(tree: dict[str, Any], shared: Spec | None = None) -> list[str]:
 def _broken(tree: dict[str, Any], shared: Spec | None) -> list[str]:
     experiment, spec = loaded(tree)
     if shared is not None and spec != shared:
-        return ["plan: it calls for another engine than its plan's"]
+        return ["plan: it requires another engine than its plan's"]
     cell = experiment.cells()[0]
     config, steps = cell.config, cell.config.steps
     one, other = run(config, spec, steps), run(config, spec, steps)

@@ -33,7 +33,7 @@ CHOSEN = {  # effects that are there by the numerics alone
     "midpoint": ("integrator", "midpoint"),
     "speculative": ("speculative", True),
 }
-# Effects that a drawn plan may leave out: of each it is known what calls for it.
+# Effects that a drawn plan may leave out: of each it is known what requires it.
 SPARED = (
     *("broad_phase", "compliance", "compound", "drag", "external_force", "friction", "gravity"),
     *("kinematic", "problem_log", "projection", "residual_log", "restitution", "rolling_friction"),
@@ -118,7 +118,7 @@ class _Pen:
         self.draw, self.plan = draw, plan
 
     def has(self, effect: str) -> bool:
-        """Whether the plan has an effect, and this time it is called for."""
+        """Whether the plan has an effect, and this time it is required."""
         return effect in self.plan.effects and bool(self.draw(st.booleans()))
 
     def power(self, low: float, high: float) -> float:

@@ -1,6 +1,6 @@
-"""What a scene does not call for changes no bit: engines without it and with it idle are equal.
+"""What a scene does not require changes no bit: engines without it and with it idle are equal.
 
-Every effect and every shape pair is compiled into engines of scenes that do not call for it, and
+Every effect and every shape pair is compiled into engines of scenes that do not require it, and
 poses, velocities, contacts, impulses, residuals, energies and hashes are compared under ==. All are
 equal: no effect needs a tolerance. What decides is that a coefficient of zero adds a zero, scales
 by one or takes the same branch, and that smooth contacts keep rows of their own beside rough ones.
@@ -63,7 +63,7 @@ def with_effect(name: str, scene: str) -> Engines:
 
 
 def with_all_effects(scene: str) -> Engines:
-    """Return the engines without and with everything that the scene does not call for."""
+    """Return the engines without and with everything that the scene does not require."""
     cell = SCENES[scene]()
     lean = planned(cell).spec
     return cell, lean, lean.including(*(name for name in MODULES if may_idle(cell, name)))

@@ -1,4 +1,4 @@
-"""Random scenes and random subsets of the effects that they do not call for: no bit changes.
+"""Random scenes and random subsets of the effects that they do not require: no bit changes.
 
 A kind of scene holds what decides its plan (shapes, numerics, which coefficients are zero) and
 draws the rest: how many bodies, sizes, masses, places, motions, surfaces. Its scenes therefore

@@ -1,6 +1,6 @@
 """What is switched by hand is part of what a cell is: of its digest, its log and its engine.
 
-And a union says which of its cells call for what.
+And a union says which of its cells require what.
 """
 
 from __future__ import annotations
@@ -45,26 +45,26 @@ def test_switches_change_the_digest_of_the_same_scene() -> None:
 def test_a_union_says_which_cells_call_for_what() -> None:
     (plan,) = plans(BY_E)
     assert plan.spec.has("restitution")
-    assert [cell.number for cell in plan.callers["restitution"]] == [1, 2]
-    assert plan.called_for_by("restitution") == "called for by 2 of 3 cells: e=0.5; e=0.8"
-    assert plan.called_for_by("gravity") == ""  # all of them do
-    assert plan.called_for_by("friction") == ""  # none does
+    assert [cell.number for cell in plan.required_by["restitution"]] == [1, 2]
+    assert plan.requirement("restitution") == "required by 2 of 3 cells: e=0.5; e=0.8"
+    assert plan.requirement("gravity") == ""  # all of them do
+    assert plan.requirement("friction") == ""  # none does
     (said,) = explain_all([plan])
     by_name = {part.name: part for part in said.effects}
-    assert by_name["restitution"].called_for_by == [1, 2]
+    assert by_name["restitution"].required_by == [1, 2]
     assert list(by_name["restitution"].reasons.values()) == [[1], [2]]
-    assert by_name["gravity"].called_for_by == [0, 1, 2]
-    assert by_name["friction"].called_for_by == []
+    assert by_name["gravity"].required_by == [0, 1, 2]
+    assert by_name["friction"].required_by == []
     logged = metadata_of(plan, "none")["plan"]["restitution"]
     assert logged.startswith("on: floor and ball: coefficient 0.5")
-    assert logged.endswith("called for by 2 of 3 cells: e=0.5; e=0.8")
+    assert logged.endswith("required by 2 of 3 cells: e=0.5; e=0.8")
 
 
 def test_of_many_cells_a_sentence_names_a_few() -> None:
     values = [0, *(round(0.1 + k / 100, 2) for k in range(20))]
     (plan,) = plans(DROPS.replace("[0.2, 0.5, 0.8]", str(values)))
-    assert plan.called_for_by("restitution") == (
-        "called for by 20 of 21 cells: e=0.1; e=0.11; e=0.12; 17 more"
+    assert plan.requirement("restitution") == (
+        "required by 20 of 21 cells: e=0.1; e=0.11; e=0.12; 17 more"
     )
 
 
@@ -72,7 +72,7 @@ def test_cells_that_are_switched_differently_share_no_engine() -> None:
     on, off = plans(BY_SWITCH + "effects: {force: true}\n")
     assert (on.spec.has("restitution"), off.spec.has("restitution")) == (True, False)
     assert off.forced == {"restitution": "forced off"}
-    assert on.forced == {}  # the scene calls for it
+    assert on.forced == {}  # the scene requires it
     assert [one.title for one in explain_all([on, off])] == [
         "effects: restitution: on (3 cells)",
         "effects: restitution: off (3 cells)",
@@ -143,7 +143,7 @@ def test_logs_say_what_was_forced(tmp_path: Path) -> None:
     assert "forced" not in derived.trace().metadata
     assert forced.trace().metadata["forced"] == {"restitution": "forced on"}
     assert forced.trace().metadata["plan"]["restitution"] == (
-        "on: forced on; not called for: "
+        "on: forced on; not required: "
         + derived.trace().metadata["plan"]["restitution"].removeprefix("off: ")
     )
     assert forced.trace().metadata["shape pairs"] == {"sphere_plane": "on: floor and ball"}

@@ -48,7 +48,7 @@ class PairFacts(NamedTuple):
 
 
 class Facts(NamedTuple):
-    """A scene and its numerics, reduced to what decides which effects are called for."""
+    """A scene and its numerics, reduced to what decides which effects are required."""
 
     bodies: tuple[BodyFacts, ...]
     pairs: tuple[PairFacts, ...]

@@ -1,6 +1,6 @@
 """Smooth contact: pairs without friction keep rows of a normal alone, beside blocks that rub.
 
-Each contact is what its pair of surfaces calls for. Where both kinds occur, `rough` tells them
+Each contact is what its pair of surfaces requires. Where both kinds occur, `rough` tells them
 apart; a smooth one then costs, and gives, what it would in a scene without friction, to the bit.
 """
 

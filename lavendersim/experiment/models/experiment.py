@@ -57,7 +57,7 @@ class Effects(ConfigModel):
     __pydantic_extra__: dict[str, Switch] = Field(init=False)
 
     force: bool = Field(
-        default=False, description="leave out what is off even where the scene calls for it"
+        default=False, description="leave out what is off even where the scene requires it"
     )
 
     @property

@@ -109,7 +109,7 @@ class LavenderHandle:
 
 
 def _columns(records: np.ndarray, names: tuple[str, ...]) -> np.ndarray:
-    """Return fields as columns; a field that the scene does not call for is 0."""
+    """Return fields as columns; a field that the scene does not require is 0."""
     held = records.dtype.names or ()
     zero = np.zeros(len(records))
     return np.column_stack([records[name] if name in held else zero for name in names])

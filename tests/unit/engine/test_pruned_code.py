@@ -1,7 +1,7 @@
-"""Machine code of what a scene does not call for is gone: no kernel, no byte, no column of it.
+"""Machine code of what a scene does not require is gone: no kernel, no byte, no column of it.
 
 Read are the symbols and the size of the object code that runs (`machine_code`), for each effect in
-an engine of a scene that does not call for it and in the same engine with the effect compiled in.
+an engine of a scene that does not require it and in the same engine with the effect compiled in.
 What is gone from the one is found in the other, so that looking in the wrong place would be seen.
 The engines are those of `test_idle_effects`; who runs both compiles them once.
 """
@@ -38,7 +38,7 @@ RECORDS = ("body", "velocity", "pair", "contact", "cache", "contact_row", "step_
 
 
 def engines(name: str) -> tuple[dict[str, Any], Spec, Spec]:
-    """Return a scene that does not call for an effect, and the engine without and with it."""
+    """Return a scene that does not require an effect, and the engine without and with it."""
     cell = SCENES[TOUCHING.get(name, CASES[name][0])]()
     lean = planned(cell, record=name not in UNLOGGED).spec
     return cell, lean, lean.including(*closed(name), *CALLED_BY.get(name, ()))

@@ -1,4 +1,4 @@
-"""Effects switched by hand: what is idle comes in with what it needs, what is called for stays."""
+"""Effects switched by hand: what is idle comes in with what it needs, what is required stays."""
 
 from __future__ import annotations
 
@@ -83,10 +83,10 @@ def test_whatever_is_no_law_can_be_switched_on(name: str) -> None:
 def test_what_is_forced_on_says_what_the_scene_says() -> None:
     derived, forced = planned(config()), planned(config("friction: on"))
     assert forced.decisions["friction"].reason == (
-        f"forced on; not called for: {derived.decisions['friction'].reason}"
+        f"forced on; not required: {derived.decisions['friction'].reason}"
     )
     assert forced.decisions["rotation"].reason == (
-        f"forced on, needed by friction; not called for: {derived.decisions['rotation'].reason}"
+        f"forced on, needed by friction; not required: {derived.decisions['rotation'].reason}"
     )
     assert forced.forced == dict.fromkeys(("friction", "contact_torque", "rotation"), "forced on")
 
@@ -107,7 +107,7 @@ def test_off_for_what_is_called_for_is_refused_with_the_reason() -> None:
     text = config("drag: off, restitution: off")
     reason = planned(config()).decisions["restitution"].reason
     assert refused(text) == [
-        f"{where(text, 'restitution')}: effects.restitution: the scene calls for it: {reason}; "
+        f"{where(text, 'restitution')}: effects.restitution: the scene requires it: {reason}; "
         "add `force: true` beside it to leave it out all the same"
     ]
 
@@ -119,7 +119,7 @@ def test_force_leaves_out_what_is_called_for() -> None:
         f"forced off, though: {derived.decisions['restitution'].reason}"
     )
     assert forced.forced == {"restitution": "forced off"}
-    assert forced.callers == derived.callers  # the scene calls for it as before
+    assert forced.required_by == derived.required_by  # the scene requires it as before
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""A log has the topics that its plan calls for and no others, and says why one is not there."""
+"""A log has the topics that its plan requires and no others, and says why one is not there."""
 
 from __future__ import annotations
 
