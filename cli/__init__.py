@@ -1,1 +1,1 @@
-"""The command line: arguments enter, text leaves. Parsing and printing only; one file per verb."""
+"""The command line `lavender`: one file per verb, for parsing and printing only."""

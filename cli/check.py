@@ -1,4 +1,4 @@
-"""`lavender check`: configs in, one line per judged expectation and cell out, or a matrix."""
+"""`lavender check`: runs configs and prints a verdict per expectation and cell, or a matrix."""
 
 from __future__ import annotations
 
@@ -36,8 +36,8 @@ def check(
     """Run experiments and print every verdict, cell by cell. Exits 1 when one fails.
 
     With --solver: a matrix of verdicts, case by solver. Exits 1 when a solver
-    fails a case in more than what the case says of itself; a known failure is
-    no pass, but no news either.
+    fails a case in more than what the case declares; a known failure is
+    no pass, but no error either.
     """
     from lavendersim.figures import check_page_path, write_report
     from lavendersim.runner import load_all, run
@@ -45,7 +45,7 @@ def check(
     if solver:
         from lavendersim.runner.solver_matrix import chosen
 
-        chosen(solver)  # a wrong name is told before any file is read
+        chosen(solver)  # a wrong name is refused before any file is read
     experiments = load_all(configs, reduced=not full)
     if report is not None:
         check_page_path(report)  # not after an hour of runs

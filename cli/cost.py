@@ -1,4 +1,4 @@
-"""`lavender cost`: configs in; what accuracy costs in each, as figure, table and sentences, out."""
+"""`lavender cost`: measures error and time over settings; prints a table and draws the figure."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from lavender_cli import printing
 from lavender_cli.run import Configs, Jobs, Runs
 
 HEADER = ("setting", "error", "worst at", "order", "residual m/s", "per simulated s", "quartiles")
-MARKS = {"stated": "stated", "chapter": "the chapter's", "grid": ""}
+MARKS = {"specified": "specified", "chapter": "the chapter's", "grid": ""}
 
 
 def cost(
@@ -34,14 +34,14 @@ def cost(
 ) -> None:
     """Measure what accuracy costs: error and time over timestep, solver, sweeps and warm start.
 
-    Exits 1 when a target that was asked for is not reached.
+    Exits 1 when a target that was given is not reached.
     """
     from lavendersim.errors import UsageError
     from lavendersim.runner import load_all
     from lavendersim.runner.cost import check_cost, take_cost
     from lavendersim.runner.cost_targets import percentage
 
-    asked = [percentage(target) for target in targets or ()]
+    sought = [percentage(target) for target in targets or ()]
     # In a folder those with a section `cost` are meant; a file that is named must have one.
     experiments = [one for one in load_all(configs) if one.cost is not None or one.path in configs]
     if not experiments:
@@ -51,7 +51,7 @@ def cost(
     tables = []
     for experiment in experiments:
         with printing.reporting(experiment.name) as progress:
-            costed = take_cost(experiment, runs, jobs, progress, asked, repeats)
+            costed = take_cost(experiment, runs, jobs, progress, sought, repeats)
         run = costed.finished.run
         figures = []
         if plot:
@@ -61,25 +61,25 @@ def cost(
         tables.append({**costed.table, "run": run.path, "figures": figures})
         if as_json:
             continue
-        # With targets asked for, stdout is what is to be pasted, and nothing else.
-        print_table(costed.table, aside=bool(asked))
+        # With targets given, stdout is what is to be pasted, and nothing else.
+        print_table(costed.table, aside=bool(sought))
         for figure in figures:
-            typer.echo(f"  figure {figure}", err=bool(asked))
-        typer.echo(f"  run    {run.path}", err=bool(asked))
-        if asked:
-            _print_fragments(costed.table, several=len(experiments) * len(asked) > 1)
+            typer.echo(f"  figure {figure}", err=bool(sought))
+        typer.echo(f"  run    {run.path}", err=bool(sought))
+        if sought:
+            _print_fragments(costed.table, several=len(experiments) * len(sought) > 1)
     if as_json:
         printing.as_json(tables)
-    if asked and not all(answer["reached"] for table in tables for answer in table["targets"]):
+    if sought and not all(target["reached"] for table in tables for target in table["targets"]):
         raise typer.Exit(1)
 
 
 def _print_fragments(table: dict[str, Any], several: bool) -> None:
-    for answer in table["targets"]:
-        if answer["reached"]:
+    for target in table["targets"]:
+        if target["reached"]:
             if several:
-                typer.echo(f"# {table['experiment']}: {answer['sentence']}")
-            typer.echo(answer["fragment"], nl=False)
+                typer.echo(f"# {table['experiment']}: {target['sentence']}")
+            typer.echo(target["fragment"], nl=False)
 
 
 def print_table(table: dict[str, Any], aside: bool = False) -> None:
@@ -94,7 +94,7 @@ def lines_of(table: dict[str, Any]) -> list[str]:
 
     rows = table["rows"]
     cells = [HEADER, *(_cells(row) for row in rows)]
-    # a column that says nothing is left out
+    # an empty column is left out
     shown = [column for column in range(len(HEADER)) if any(row[column] for row in cells[1:])]
     widths = {column: max(len(row[column]) for row in cells) for column in shown}
     lines = [
@@ -118,7 +118,7 @@ def lines_of(table: dict[str, Any]) -> list[str]:
     lines.append(
         f"  compile time, once and in no cost: {compiled[0]:.1f} to {compiled[-1]:.1f} s an engine"
     )
-    return lines + [f"{answer['sentence']}" for answer in table["targets"]]
+    return lines + [f"{target['sentence']}" for target in table["targets"]]
 
 
 def _truth(table: dict[str, Any]) -> str:

@@ -1,4 +1,4 @@
-"""`lavender doctor`: nothing in; versions, machine and kernel cache out."""
+"""`lavender doctor`: prints versions, machine and kernel cache, and empties the cache."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ def doctor(
         bool, typer.Option("--clean-stale", help="Delete those of other versions only.")
     ] = False,
 ) -> None:
-    """Show the machine, the versions and the kernel cache; clean it where asked."""
+    """Show the machine, the versions and the kernel cache; clean it with an option."""
     from lavendersim.runner.environment import delete_kernels, kernel_limit, kernels, machine
 
     for name, value in machine().items():

@@ -1,4 +1,4 @@
-"""`lavender ls`: a folder of runs in, one line per run out."""
+"""`lavender ls`: lists the runs of a folder, a line each."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`lavender plan`: a config in; which effects its scene requires, why, and what they bring out."""
+"""`lavender plan`: prints which effects a scene requires, why, and what each brings."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from lavendersim.scene.explanation import Explanation, ExplanationItem
 
-UNWRAPPED = 100_000  # columns: where nobody looks, no line is broken
+UNWRAPPED = 100_000  # columns: in a pipe no line is broken
 STYLES = {"on": "green", "off": "dim", "forced on": "bold yellow", "forced off": "bold yellow"}
 ROWS = {
     "step_row": "/step",
@@ -32,8 +32,8 @@ def plan(
 ) -> None:
     """Show which effects a scene requires, why, and what each brings: arrays, log, kernels.
 
-    For a sweep the plan is the union over its cells, and says which cells require what. Cells that
-    differ in a choice between laws, such as the solver, share no union: one plan each.
+    For a sweep the plan is the union over its cells, and names the cells that require each. Cells
+    that differ in a choice between laws, such as the solver, share no union: one plan each.
     """
     from lavendersim.runner import load_all
     from lavendersim.runner.plans import distinct, shared_plans
@@ -58,8 +58,7 @@ def write(explained: Explanation, title: str, width: int | None = None) -> None:
     with console.capture() as captured:
         console.print(title, style="bold")
         if (mistake := explained.choices["mistake"]) in explained.spec["effects"]:
-            said = f"study-only: {mistake}, a known mistake, is made on purpose"
-            console.print(said, style="bold yellow")
+            console.print(f"study-only: {mistake}, a deliberate error", style="bold yellow")
         console.print(_table(explained.effects, "effect"))
         console.print(_table([one for one in explained.shape_pairs if one.on], "shape pair"))
         if others := [one.name for one in explained.shape_pairs if not one.on]:
@@ -105,10 +104,10 @@ def _why(part: ExplanationItem) -> RenderableType:
     from rich.console import Group
     from rich.text import Text
 
-    said = Text(f"{part.reason}; {part.requirement}" if part.requirement else part.reason)
+    reason = Text(f"{part.reason}; {part.requirement}" if part.requirement else part.reason)
     if not part.on:
-        said.stylize("" if part.forced else "dim")
-        return said
+        reason.stylize("" if part.forced else "dim")
+        return reason
     arrays = {record: names for record, names in part.fields.items() if record not in ROWS}
     rows = {ROWS[record]: names for record, names in part.fields.items() if record in ROWS}
     channels = [channel for channel in part.channels if channel not in rows]
@@ -121,7 +120,7 @@ def _why(part: ExplanationItem) -> RenderableType:
         ("log", "; ".join(logged)),
         ("kernels", "; ".join(f"{module}: {n}" for module, n in _modules(part.kernels).items())),
     ]
-    return Group(said, _pairs([(name, text) for name, text in details if text], dim=True))
+    return Group(reason, _pairs([(name, text) for name, text in details if text], dim=True))
 
 
 def _modules(kernels: dict[str, list[str]]) -> dict[str, str]:

@@ -1,4 +1,4 @@
-"""`lavender plot`: a run in, its figures out, from its logs alone."""
+"""`lavender plot`: draws the figures of runs from their logs alone."""
 
 from __future__ import annotations
 

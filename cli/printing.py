@@ -1,4 +1,4 @@
-"""Runs and verdicts enter, lines for people or JSON for scripts leave. Results go to stdout."""
+"""Text that several verbs print: verdicts, costs, warnings, JSON and progress."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def _expected(group: list[Any]) -> str:
 
 
 def mark(passed: bool) -> str:
-    """Return a coloured word; typer drops the colour where it is not wanted."""
+    """Return a coloured word; typer drops the colour where NO_COLOR or a pipe requires it."""
     if passed:
         return typer.style("pass", fg=typer.colors.GREEN)
     return typer.style("FAIL", fg=typer.colors.RED, bold=True)
@@ -83,12 +83,12 @@ def print_costs(finished: Any) -> None:
 
 
 def warn_of_mistakes(experiment: Any) -> None:
-    """Say on stderr which known mistakes an experiment makes on purpose, and in how many cells."""
+    """Print to stderr which deliberate errors an experiment makes, and in how many cells."""
     for mistake, cells in experiment.mistakes.items():
         total = len(experiment.cells())
         where = "" if total == 1 else f" in {len(cells)} of {total} cells"
-        said = f"study-only: {mistake}, a known mistake, is made on purpose{where}"
-        typer.echo(f"{experiment.name}: {typer.style(said, fg=typer.colors.YELLOW)}", err=True)
+        warning = f"study-only: {mistake}, a deliberate error{where}"
+        typer.echo(f"{experiment.name}: {typer.style(warning, fg=typer.colors.YELLOW)}", err=True)
 
 
 def warn_of_not_converged(finished: Any) -> None:

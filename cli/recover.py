@@ -1,4 +1,4 @@
-"""`lavender recover`: a log that was cut off in, a whole one with what could be read out."""
+"""`lavender recover`: salvages a log that was cut off into one that can be read."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`lavender replay`: a run and a cell in; rerun's viewer, an .rrd file or a picture of it out."""
+"""`lavender replay`: shows a cell in rerun's viewer, or writes a recording or a picture."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def replay(
     ] = None,
 ) -> None:
     """Replay a run in rerun: bodies, contact forces and their plots over simulated time."""
-    from lavendersim import replay as room
+    from lavendersim import replay as viewer
     from lavendersim.errors import UsageError
     from lavendersim.runner import open_run
 
@@ -59,11 +59,11 @@ def replay(
     trace = chosen.trace()
     title = " ".join(filter(None, [opened.path.name, chosen.label]))
     if save_to is not None:
-        room.save(trace, save_to, title)
+        viewer.save(trace, save_to, title)
         typer.echo(save_to)
     if screenshot_to is not None:
-        for complaint in room.screenshot(trace, screenshot_to, title, at):
+        for complaint in viewer.screenshot(trace, screenshot_to, title, at):
             typer.echo(f"rerun's viewer: {complaint}", err=True)
         typer.echo(screenshot_to)
     if save_to is None and screenshot_to is None:
-        room.open_viewer(trace, title, at)
+        viewer.open_viewer(trace, title, at)

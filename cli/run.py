@@ -1,4 +1,4 @@
-"""`lavender run`: configs in; logs, results and, where asked, figures out."""
+"""`lavender run`: runs configs into logs and results, prints a summary and draws the figures."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`lavender schema`: nothing in, the JSON Schema of config files out."""
+"""`lavender schema`: prints the JSON Schema of config files."""
 
 from __future__ import annotations
 

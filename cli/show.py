@@ -1,4 +1,4 @@
-"""`lavender show`: a run in; its question, plan, cells, measures and verdicts out."""
+"""`lavender show`: prints the question, plan, cells, measures and verdicts of a run."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def show(
     runs: Runs = Path("runs"),
     as_json: Annotated[bool, typer.Option("--json", help="Print the results as JSON.")] = False,
 ) -> None:
-    """Show what a run asked, which effects it simulated, what it measured and how it was judged."""
+    """Show a run: its question, the effects it simulated, what it measured and its verdicts."""
     from lavendersim.runner import open_run
 
     opened = open_run(run, runs)
@@ -40,7 +40,7 @@ def show(
         if text:
             typer.echo(f"{name}  {text}")
     if experiment.solver is not None:
-        typer.echo(f"solver  {experiment.solver}, instead of what the config says")
+        typer.echo(f"solver  {experiment.solver}, instead of the config's")
     for cells, metadata in plans_of(opened.cells):
         print_plan(cells, metadata, len(opened.cells))
     steps = sum(row["steps"] for row in results["cells"])
@@ -63,13 +63,13 @@ def show(
 
 
 def plans_of(cells: Sequence[RunCell]) -> list[tuple[list[RunCell], Metadata]]:
-    """Return what the logs say of each different plan, with the cells that were run by it."""
+    """Return each different plan that the logs describe, with the cells that were run by it."""
     plans: dict[str, tuple[list[RunCell], Metadata]] = {}
     for cell in cells:
         metadata = cell.trace().metadata
         cell.release()
-        said = {name: metadata.get(name, {}) for name in SECTIONS}
-        plans.setdefault(repr(said), ([], said))[0].append(cell)
+        plan = {name: metadata.get(name, {}) for name in SECTIONS}
+        plans.setdefault(repr(plan), ([], plan))[0].append(cell)
     return list(plans.values())
 
 
@@ -81,8 +81,8 @@ def print_plan(cells: list[RunCell], metadata: Metadata, count: int) -> None:
     if forced:
         changes = "; ".join(f"{name} {how}" for name, how in forced.items())
         typer.echo(typer.style(f"  overridden by hand: {changes}", fg=typer.colors.YELLOW))
-    for mistake, said in metadata["study-only"].items():
-        typer.echo(typer.style(f"  study-only: {mistake}, {said}", fg=typer.colors.YELLOW))
+    for mistake, text in metadata["study-only"].items():
+        typer.echo(typer.style(f"  study-only: {mistake}, {text}", fg=typer.colors.YELLOW))
     parts = {**metadata["plan"], **metadata["shape pairs"]}
     width = max(map(len, parts), default=0)
     off = []
@@ -103,5 +103,5 @@ def accuracy(row: dict[str, Any]) -> str:
     worst = f"residual <= {printing.digits(float(row['worst_residual']))} m/s"
     if not row["not_converged_steps"]:
         return worst
-    asked = f"tolerance {printing.digits(row['tolerance'])} m/s"
-    return f"{worst} ({row['not_converged_steps']} of {row['steps']} steps above the {asked})"
+    tolerance = f"tolerance {printing.digits(row['tolerance'])} m/s"
+    return f"{worst} ({row['not_converged_steps']} of {row['steps']} steps above the {tolerance})"

@@ -1,4 +1,4 @@
-"""`lavender solve`: files of contact problems in; a table per problem and, where asked, figures."""
+"""`lavender solve`: solves contact problems of files; prints a table per problem, draws figures."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def solve(
     reference: Annotated[
         bool,
         typer.Option(
-            "--reference", help="Find what is true by two methods; tell errors of velocities."
+            "--reference", help="Find a reference solution by two methods; report velocity errors."
         ),
     ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print the results as JSON.")] = False,
@@ -64,7 +64,7 @@ def solve(
         comparisons.append(comparison)
         if not as_json:
             _print(comparison, tolerance)
-        _tell_of_compilation(comparison)
+        _report_compilation(comparison)
     figures = []
     if plot is not None:
         from lavendersim.figures import draw_comparisons
@@ -102,8 +102,8 @@ def _chosen(names: list[str]) -> list[str]:
     return list(chosen)
 
 
-def _tell_of_compilation(comparison: Any) -> None:
-    """Say on stderr which first calls took far longer than the others."""
+def _report_compilation(comparison: Any) -> None:
+    """Print to stderr which first calls took far longer than the others."""
     for attempt in comparison.attempts:
         if attempt.first_call > attempt.timing.median + COMPILING:
             first = f"first call {_time(attempt.first_call)}, compilation included"

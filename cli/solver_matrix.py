@@ -1,4 +1,4 @@
-"""`lavender check --solver`: cases and solvers in; a matrix of verdicts out, and what failed."""
+"""`lavender check --solver`: prints the matrix of verdicts, case by solver, and what failed."""
 
 from __future__ import annotations
 
@@ -130,7 +130,7 @@ def print_matrix(
         if left_out:
             console.print("\nnot in the matrix", style="bold")
             for why in dict.fromkeys(left_out.values()):
-                names = [name for name, said in left_out.items() if said == why]
+                names = [name for name, reason in left_out.items() if reason == why]
                 console.print(f"{why}: {', '.join(names)}")
         if reduced := [case.name for case in cases if case.reduced]:
             console.print(f"\nreduced, --full runs all of them: {', '.join(reduced)}")

@@ -1,4 +1,4 @@
-"""Finished runs in; figures as PNG and SVG, or a page of them, out. Only here is matplotlib."""
+"""Figures of runs as PNG and SVG, and HTML reports. matplotlib and Jinja are imported only here."""
 
 from __future__ import annotations
 

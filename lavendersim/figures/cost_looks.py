@@ -1,4 +1,4 @@
-"""Timed settings in; what colours, markers and lines stand for, the curves, and the legend out."""
+"""Colours, markers, lines, curves and legend of the settings on a work-precision page."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ SOLVER_LOOKS: Final = {
 }
 MARKERS: Final = ("o", "s", "^", "D", "v", "P", "X", "*")  # of timesteps, the coarsest first
 RINGS: Final = {
-    "stated": {"marker": "o", "markersize": 14, "markeredgewidth": 1.6},
+    "specified": {"marker": "o", "markersize": 14, "markeredgewidth": 1.6},
     "chapter": {"marker": "s", "markersize": 14, "markeredgewidth": 1.6},
 }
 
@@ -102,7 +102,7 @@ def handles_of(table: dict[str, Any], looks: Looks) -> list[Line2D]:
     if not all(row["warm_start"] for row in rows):
         handles.append(dot("o", "cold start", markerfacecolor="white"))
     rings = {row["role"]: row for row in rows if row["role"] in RINGS}
-    names = {"stated": "what the config states", "chapter": "the chapter's setting"}
+    names = {"specified": "what the config specifies", "chapter": "the chapter's setting"}
     hollow = {"markerfacecolor": "none", "markeredgewidth": 1.6, "markersize": 11}
     handles += [dot(str(RINGS[role]["marker"]), names[role], **hollow) for role in rings]
     if any(row["failed"] for row in rows):

@@ -1,4 +1,4 @@
-"""A closed form and the cells of a series in; the smooth line of the ideal out.
+"""The line of an ideal: a closed form evaluated at and between the cells of a series.
 
 Between two swept values the formula is evaluated with the swept number put into the config of the
 left cell. Where that does not reproduce the right cell's own value (the number moves other things

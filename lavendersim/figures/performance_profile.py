@@ -24,7 +24,7 @@ from lavendersim.figures.solver_marks import marks, page_of_solvers, span
 WIDTH, HEIGHT = 8.6, 4.0  # [inch]
 LEAST_RANGE: Final = 10.0  # tau shown at least
 WIDEST: Final = 3.0  # [point] by which the first line is wider than the last
-ROOM: Final = 1.5  # tau shown beyond the largest ratio
+BEYOND: Final = 1.5  # tau shown beyond the largest ratio
 CAPTION: Final = (
     "Share of {problems} that a solver brings to a scaled residual of {tolerance:g} within tau "
     "times the time of the fastest solver on the same problem. Left: how often it is the fastest; "
@@ -62,7 +62,7 @@ def compose(ratios: dict[str, list[float]], caption: str) -> Figure:
     axes = figure.subplots()
     describe(axes, "", "tau: time over that of the fastest [-]", "problems solved [%]", "log")
     finite = [ratio for each in ratios.values() for ratio in each if np.isfinite(ratio)]
-    end = max([LEAST_RANGE, *(ROOM * ratio for ratio in finite)])
+    end = max([LEAST_RANGE, *(BEYOND * ratio for ratio in finite)])
     for order, solver in enumerate(solvers):
         taus, shares = profile(ratios[solver], end)
         # Curves that lie on each other stay visible: earlier ones are wider and beneath.

@@ -1,6 +1,6 @@
 """Registration of panels: the model of a kind's config, and the function that draws it.
 
-class Histogram(Panel):              # what a config may say
+class Histogram(Panel):              # its part of the config
     kind: Literal["histogram"]
     ...
 

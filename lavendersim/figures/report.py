@@ -76,7 +76,7 @@ def _cells(result: Any, folder: Path) -> list[dict[str, Any]]:
 
 
 def _declared(experiment: Any) -> list[str]:
-    """Return the checks that the config says will fail: known failures and negative controls."""
+    """Return the checks that the config declares to fail: known failures and negative controls."""
     return list(dict.fromkeys(control.fails for control in experiment.controls))
 
 

@@ -95,7 +95,7 @@ def compose(
 
 
 def names(comparisons: Sequence[Any]) -> list[str]:
-    """Return the solvers in the order they were asked for."""
+    """Return the solvers in the order they were given in."""
     return list(dict.fromkeys(one.solver for each in comparisons for one in each.attempts))
 
 

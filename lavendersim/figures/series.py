@@ -1,4 +1,4 @@
-"""The cells of a panel in; its series, their labels and their mean, lowest and highest out."""
+"""The series of a panel: cells that are drawn alike, their mean and their range."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The log of a cell in; a small side view of where its bodies began and ended out, as a PNG.
+"""The thumbnail of a cell: a small side view of where its bodies began and ended, as a PNG.
 
 Outlines are the convex hulls of projected corners, so no renderer is needed. Up is against gravity;
 sideways is the level direction in which the bodies spread most; what is farther is drawn first.
@@ -20,7 +20,7 @@ from lavendersim.measures.changes import removals
 
 WIDTH, HEIGHT, DPI = 1.6, 1.1, 100  # inch, inch, dots per inch: 160 x 110 dots
 MARGIN = 0.08  # of the picture, on every side
-ROUND: Final = 20  # corners of a circle: at this size none can be told
+ROUND: Final = 20  # corners of a circle: at this size none can be seen
 BEFORE, FIXED = "#e8e8e8", "#bbbbbb"  # where bodies began; what never moves
 NOTHING: Final = np.array([[-1.0, 0.0], [1.0, 1.0]])  # a picture without bodies
 MOST_BODIES = 3000  # of a larger scene the first ones; more are less than a dot each

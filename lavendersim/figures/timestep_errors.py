@@ -45,8 +45,8 @@ def best_solved(rows: Sequence[dict[str, Any]]) -> list[list[dict[str, Any]]]:
     curves: dict[tuple[str, str], dict[str, dict[str, Any]]] = {}
     for row in rows:
         curve = curves.setdefault((row["preset"], row["solver"]), {})
-        held = curve.get(row["timestep"])
-        if held is None or _solved(row) > _solved(held):
+        best = curve.get(row["timestep"])
+        if best is None or _solved(row) > _solved(best):
             curve[row["timestep"]] = row
     return [
         sorted(curve.values(), key=lambda row: Fraction(row["timestep"]))

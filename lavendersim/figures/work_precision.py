@@ -33,10 +33,10 @@ CAPTION: Final = (
     "Error of {measure}{truth}, against the processor's time for a simulated second of physics: "
     "left is cheap, down is accurate. Medians of {repeats} interleaved repeats; the bars, most of "
     "them shorter than a marker is wide, hold the median in 19 of 20 cases. Crossed: the setting "
-    "failed (it diverged, was not solved as asked, or broke a claim of the experiment). Thin lines "
-    "join settings that differ in one knob; the dark line is the front: no setting is cheaper and "
-    "as good. Errors below 1e-15 are round-off and drawn there. Neither compilation nor logging "
-    "is in any time. {processor}, clock {clock}. {answers}"
+    "failed (it diverged, did not converge to its tolerance, or broke a claim of the experiment). "
+    "Thin lines join settings that differ in one knob; the dark line is the front: no setting is "
+    "cheaper and as good. Errors below 1e-15 are round-off and drawn there. Neither compilation "
+    "nor logging is in any time. {processor}, clock {clock}. {targets}"
 )
 
 Row = dict[str, Any]
@@ -71,18 +71,20 @@ def compose(table: dict[str, Any]) -> Figure:
 
 def _caption(table: dict[str, Any]) -> str:
     truth = table["truth"]
-    held = ""
+    reference = ""
     if truth is not None:
-        held = f", against the same run at a timestep of {truth['timestep']} s"
+        reference = f", against the same run at a timestep of {truth['timestep']} s"
     if table["axes"]:
-        held += f" (the worst of {table['cells_per_setting']} cells of {', '.join(table['axes'])})"
+        reference += (
+            f" (the worst of {table['cells_per_setting']} cells of {', '.join(table['axes'])})"
+        )
     return CAPTION.format(
         measure=table["error"]["measure"],
-        truth=held,
+        truth=reference,
         repeats=table["repeats"],
         processor=table["machine"]["processor"],
         clock=table["clock"],
-        answers=". ".join(answer["sentence"] for answer in table["targets"]).replace(" us ", " µs ")
+        targets=". ".join(target["sentence"] for target in table["targets"]).replace(" us ", " µs ")
         + ".",
     )
 
@@ -106,12 +108,12 @@ def draw_settings(axes: Any, table: dict[str, Any], looks: Looks) -> None:
     for row in timed:
         _draw_setting(axes, row, size, looks)
     _draw_front(axes, timed, size)
-    for answer in table["targets"]:
-        axes.axhline(answer["target"], color=GREY, linewidth=1.1, linestyle=(0, (5, 3)), zorder=1)
+    for target in table["targets"]:
+        axes.axhline(target["target"], color=GREY, linewidth=1.1, linestyle=(0, (5, 3)), zorder=1)
         axes.text(
             1.01,
-            answer["target"],
-            f"{100.0 * answer['target']:.3g} %",
+            target["target"],
+            f"{100.0 * target['target']:.3g} %",
             transform=axes.get_yaxis_transform(),
             ha="left",
             va="center",

@@ -139,6 +139,8 @@ def _rename(row: dict[str, Any]) -> None:
     for former, name in FORMER_NAMES.items():
         if former in row:
             row[name] = row.pop(former)
+    if row.get("role") == "stated":
+        row["role"] = "specified"
 
 
 def is_run_directory(path: Path) -> bool:

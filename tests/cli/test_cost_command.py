@@ -35,7 +35,7 @@ def test_a_grid_gives_a_table_a_figure_and_a_sentence_a_target(
     lines = done.stdout.splitlines()
     assert "medians of 7 interleaved repeats" in lines[0]
     rows = [line for line in lines if "projected_gauss_seidel" in line and "240 Hz" in line]
-    assert any("stated" in line and "22 sweeps" in line for line in rows)
+    assert any("specified" in line and "22 sweeps" in line for line in rows)
     assert any("4 sweeps" in line for line in rows)
     assert any(line.startswith("1 % costs") or "reaches 1 %" in line for line in lines)
     assert any(line.startswith("0.1 % costs") or "reaches 0.1 %" in line for line in lines)

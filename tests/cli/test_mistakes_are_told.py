@@ -1,4 +1,4 @@
-"""A mistake that is made on purpose is told wherever a run is looked at, and nowhere else."""
+"""A deliberate error is reported wherever a run is shown, and nowhere else."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ numerics: chapter
 duration: 0.05
 """
 MISTAKEN = DROP + "sweep: {m: {path: study.mistake, values: [none, capture_in_sweeps]}}\n"
-SAID = "study-only: capture_in_sweeps, a known mistake"
+SAID = "study-only: capture_in_sweeps, a deliberate error"
 
 
 @pytest.fixture(scope="module")
@@ -34,7 +34,7 @@ def mistaken(tmp_path_factory: pytest.TempPathFactory) -> Path:
     done = lavender("run", "drop.yaml", "--json", where=folder)
     assert done.returncode == 0
     json.loads(done.stdout)  # what is told to people stays out of it
-    assert f"drop: {SAID}, is made on purpose in 1 of 2 cells\n" in done.stderr
+    assert f"drop: {SAID} in 1 of 2 cells\n" in done.stderr
     return folder
 
 

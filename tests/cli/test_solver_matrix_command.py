@@ -85,7 +85,7 @@ def test_every_run_says_its_solver_and_can_be_shown(
     run = json.loads(done.stdout)["entries"][0]["run"]
     shown = lavender("show", run, where=folder)
     assert shown.returncode == 0, shown.stderr
-    assert f"solver  {SOLVERS[0]}, instead of what the config says" in shown.stdout
+    assert f"solver  {SOLVERS[0]}, instead of the config's" in shown.stdout
     as_data = json.loads(lavender("show", run, "--json", where=folder).stdout)
     assert as_data["solver"] == SOLVERS[0]
 

@@ -66,9 +66,9 @@ def rows_of(costed: Costed) -> dict[tuple[str, str], dict[str, Any]]:
 def test_the_grid_is_the_product_of_its_lists_with_what_the_config_states_first() -> None:
     experiment = load_experiment_text(GRID, "ball.yaml")
     settings = settings_of(experiment)
-    assert settings[0].role == "stated"
+    assert settings[0].role == "specified"
     assert settings[0].timestep == Fraction(1, 240)
-    assert [one.role for one in settings].count("stated") == 1
+    assert [one.role for one in settings].count("specified") == 1
     assert settings[-1].role == "chapter"  # the config's slop is another
     grid = [one for one in settings if one.role == "grid"]
     assert len(set(grid)) == len(grid)

@@ -168,7 +168,7 @@ def test_several_cells_of_a_setting_cost_their_mean(monkeypatch: pytest.MonkeyPa
 def test_the_caption_says_machine_clock_repeats_and_spread() -> None:
     spread = {"median": 2e6, "low": 1.9e6, "high": 2.2e6}
     row = {
-        **{"role": "stated", "preset": "default", "solver": "adaptive", "sweeps": 50},
+        **{"role": "specified", "preset": "default", "solver": "adaptive", "sweeps": 50},
         **{"timestep": str(Fraction(1, 240)), "tolerance": 1e-9, "warm_start": True},
         **{"ns_per_second": spread, "error": 1e-3, "failed": "", "front": True},
     }

@@ -38,13 +38,13 @@ TRUTH_SWEEPS: Final = 10_000
 # What the experiment that sweeps the grid does without: they speak of the own sweep, not of it.
 _LEFT_OUT: Final = ("expect", "figure", "overhead", "cost")
 
-Role = Literal["grid", "stated", "chapter", "truth"]
+Role = Literal["grid", "specified", "chapter", "truth"]
 
 
 class Setting(NamedTuple):
     """One point of the grid."""
 
-    role: Role  # of the grid; what the config states; the chapter's; what the others are held to
+    role: Role  # of the grid; what the config specifies; the chapter's; what the others are held to
     preset: str  # of what it leaves alone
     timestep: Fraction  # [s]
     solver: str
@@ -60,7 +60,9 @@ class Setting(NamedTuple):
     @property
     def curve(self) -> tuple[Any, ...]:
         """What settings share that differ in their timestep alone."""
-        own = self.role == "chapter"  # whatever else the config states, it has the preset's numbers
+        own = (
+            self.role == "chapter"
+        )  # whatever else the config specifies, it has the preset's numbers
         return (own, self.preset, self.solver, self.sweeps, self.tolerance, self.warm_start)
 
     @property
@@ -72,18 +74,18 @@ class Setting(NamedTuple):
 
 
 def settings_of(experiment: Experiment) -> list[Setting]:
-    """Return the settings: what the config states, the grid, the chapter's, the truth's if any."""
+    """Return the settings: the config's own, the grid, the chapter's, the truth's if any."""
     spec = experiment.cost
     assert spec is not None
-    preset, others = _stated(experiment)
+    preset, others = _specified(experiment)
     numerics = experiment.cells()[0].config.numerics
-    stated = Setting("stated", preset, **{name: getattr(numerics, name) for name in KNOBS})
+    specified = Setting("specified", preset, **{name: getattr(numerics, name) for name in KNOBS})
     values = PRESETS[CHAPTER]
     chapter = Setting("chapter", CHAPTER, **{name: getattr(values, name) for name in KNOBS})
-    alone = {stated[1:]} | ({chapter[1:]} if not others else set())
-    grid = [each for each in dict.fromkeys(_grid(spec, stated)) if each[1:] not in alone]
-    settings = [stated, *grid]
-    if others or stated[1:] != chapter[1:]:
+    alone = {specified[1:]} | ({chapter[1:]} if not others else set())
+    grid = [each for each in dict.fromkeys(_grid(spec, specified)) if each[1:] not in alone]
+    settings = [specified, *grid]
+    if others or specified[1:] != chapter[1:]:
         settings.append(chapter)
     if spec.error.truth == "finest":
         finest = min(spec.timesteps) / FINER
@@ -92,10 +94,10 @@ def settings_of(experiment: Experiment) -> list[Setting]:
     return settings
 
 
-def _grid(spec: CostSpec, stated: Setting) -> Iterator[Setting]:
-    presets = spec.presets or (stated.preset,)
+def _grid(spec: CostSpec, specified: Setting) -> Iterator[Setting]:
+    presets = spec.presets or (specified.preset,)
     solvers = get_args(Solver) if spec.solvers == "all" else spec.solvers
-    most = DEFAULT.sweeps if stated.tolerance is None else stated.sweeps
+    most = DEFAULT.sweeps if specified.tolerance is None else specified.sweeps
     outer = product(presets, solvers, spec.warm_start, spec.timesteps)
     for preset, solver, warm, timestep in outer:
         if solver in BY_TOLERANCE:
@@ -106,7 +108,7 @@ def _grid(spec: CostSpec, stated: Setting) -> Iterator[Setting]:
                 yield Setting("grid", preset, timestep, solver, sweeps, None, warm)
 
 
-def _stated(experiment: Experiment) -> tuple[str, dict[str, Any]]:
+def _specified(experiment: Experiment) -> tuple[str, dict[str, Any]]:
     """Return the preset that a config names, and what else its numerics state, beside the knobs."""
     root, _ = parse(experiment.text.encode(), experiment.name)
     assert root is not None
@@ -144,7 +146,7 @@ def fragment_of(experiment: Experiment, setting: Setting) -> str:
         return f"numerics: {CHAPTER}\n"
     defaults = dict(PRESETS[setting.preset])
     chosen: dict[str, Any] = {} if setting.preset == "default" else {"preset": setting.preset}
-    chosen |= _stated(experiment)[1]
+    chosen |= _specified(experiment)[1]
     chosen |= {key: value for key, value in setting.knobs.items() if value != defaults[key]}
     whole = list(chosen) in ([], ["preset"])
     return yaml_of({"numerics": setting.preset if whole else chosen}, flow=True)
