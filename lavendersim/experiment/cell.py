@@ -86,17 +86,12 @@ class Cell:
         return Defect(self._name, mark.line, mark.column, message)
 
     @cached_property
-    def resolved(self) -> dict[str, Any]:
-        """The config as plain JSON-able data; ratios as `1/480`."""
-        return self.config.as_dict()
-
-    @cached_property
     def digest(self) -> str:
         """sha256 (hex) of the resolved config; equal for equal simulations.
 
         Keys are not sorted: the order of bodies decides the order of contacts in the solver.
         """
         canonical = json.dumps(
-            self.resolved, separators=(",", ":"), ensure_ascii=False, allow_nan=False
+            self.config.as_dict(), separators=(",", ":"), ensure_ascii=False, allow_nan=False
         )
         return hashlib.sha256(canonical.encode()).hexdigest()

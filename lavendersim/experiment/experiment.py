@@ -120,7 +120,7 @@ def resolved_yaml(cell: Cell) -> str:
     # libyaml's writer takes a tenth of the time, where PyYAML was built with it.
     dumper = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
     text: str = yaml.dump(
-        cell.resolved,
+        cell.config.as_dict(),
         Dumper=dumper,
         sort_keys=False,
         allow_unicode=True,

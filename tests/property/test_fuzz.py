@@ -32,7 +32,7 @@ def compiled() -> None:
     engines = []
     for plan in ENGINES.values():
         experiment, spec = loaded(first_config(plan))
-        engines.append((experiment.cells()[0].resolved, spec))
+        engines.append((experiment.cells()[0].config.as_dict(), spec))
     compile_together(engines)
 
 

@@ -36,7 +36,7 @@ def test_switches_change_the_digest_of_the_same_scene() -> None:
     cells = [load_experiment_text(ALONE + more, "t.yaml").cells()[0] for more in sections]
     assert len({cell.digest for cell in cells}) == 3
     for cell in cells:
-        assert cell.resolved["scene"] == cells[0].resolved["scene"]
+        assert cell.config.as_dict()["scene"] == cells[0].config.as_dict()["scene"]
     again = load_experiment_text(ALONE + "effects: {drag: off, friction: on}\n", "t.yaml")
     swapped = load_experiment_text(ALONE + "effects: {friction: on, drag: off}\n", "t.yaml")
     assert again.cells()[0].digest == swapped.cells()[0].digest

@@ -20,7 +20,7 @@ def load(arrangement: str, more: str = "") -> Experiment:
 
 
 def bodies(arrangement: str) -> dict[str, dict]:
-    found = load(arrangement).cells()[0].resolved["scene"]["bodies"]
+    found = load(arrangement).cells()[0].config.as_dict()["scene"]["bodies"]
     assert next(iter(found)) == "floor"
     return {name: body for name, body in found.items() if name != "floor"}
 
@@ -107,9 +107,9 @@ def test_sweep_reaches_into_an_arrangement() -> None:
         "  mu: {path: scene.arrangements.pile.body.surface.friction, values: [0.25, 0.5]}\n"
     )
     cells = load(f"{{kind: tower, count: 1, body: {BRICK}}}", sweep).cells()
-    counts = [len(cell.resolved["scene"]["bodies"]) - 1 for cell in cells]
+    counts = [len(cell.config.as_dict()["scene"]["bodies"]) - 1 for cell in cells]
     assert counts == [2, 2, 5, 5]
-    last = cells[3].resolved["scene"]["bodies"]["pile_5"]
+    last = cells[3].config.as_dict()["scene"]["bodies"]["pile_5"]
     assert last["surface"]["friction"] == 0.5
 
 
@@ -123,5 +123,5 @@ def test_other_sections_name_the_bodies_of_an_arrangement() -> None:
 def test_ten_thousand_bodies_are_resolved_in_seconds() -> None:
     grid = "{kind: grid, counts: [100, 100, 1], spacing: [1, 1, 1], body: %s}" % BRICK  # noqa: UP031
     cell = load(grid).cells()[0]
-    assert len(cell.resolved["scene"]["bodies"]) == 10_001
+    assert len(cell.config.as_dict()["scene"]["bodies"]) == 10_001
     assert len(cell.digest) == 64

@@ -26,13 +26,13 @@ def test_nothing_stated_switches_nothing() -> None:
     experiment = load_experiment_text(SCENE, "t.yaml")
     assert not experiment.switches_effects
     (cell,) = experiment.cells()
-    assert cell.resolved["effects"] == {"force": False, "switches": {}}
+    assert cell.config.as_dict()["effects"] == {"force": False, "switches": {}}
 
 
 def test_on_and_off_are_texts_in_whatever_order() -> None:
     (cell,) = cells("effects: {friction: on, force: true, drag: off}\n")
     stated = {"force": True, "switches": {"drag": "off", "friction": "on"}}
-    assert cell.resolved["effects"] == stated
+    assert cell.config.as_dict()["effects"] == stated
     # Also for readers of YAML 1.1, which take a plain `on` for true.
     assert yaml.safe_load(resolved_yaml(cell))["effects"] == stated
 
@@ -42,8 +42,8 @@ def test_a_sweep_reaches_every_name_written_or_not(written: str) -> None:
     experiment = load_experiment_text(SCENE + SWEPT + written, "t.yaml")
     assert experiment.switches_effects
     on, off = experiment.cells()
-    assert on.resolved["effects"]["switches"]["friction"] == "on"
-    assert off.resolved["effects"]["switches"]["friction"] == "off"
+    assert on.config.as_dict()["effects"]["switches"]["friction"] == "on"
+    assert off.config.as_dict()["effects"]["switches"]["friction"] == "off"
     assert [cell.label for cell in (on, off)] == ["f=on", "f=off"]
     assert on.digest != off.digest
 

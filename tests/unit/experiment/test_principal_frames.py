@@ -38,7 +38,7 @@ Q = unit((0.9, 0.1, -0.3, 0.2))
 
 def thing(shape: str, start: str = "position: [1, 2, 3]") -> dict:
     experiment = load_experiment_text(SCENE.format(shape=shape, start=start), "thing.yaml")
-    return experiment.cells()[0].resolved["scene"]["bodies"]["thing"]
+    return experiment.cells()[0].config.as_dict()["scene"]["bodies"]["thing"]
 
 
 def matrix(q) -> np.ndarray:

@@ -18,7 +18,9 @@ def test_a_slow_experiment_has_both_its_lengths() -> None:
 
 def test_only_the_length_differs() -> None:
     full, short = (load_experiment_text(SLOW, "slow.yaml", reduced) for reduced in (False, True))
-    assert {**short.cells()[0].resolved, "duration": 0.5} == full.cells()[0].resolved
+    assert {**short.cells()[0].config.as_dict(), "duration": 0.5} == full.cells()[
+        0
+    ].config.as_dict()
 
 
 def test_other_experiments_have_one_length() -> None:

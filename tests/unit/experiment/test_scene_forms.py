@@ -24,7 +24,7 @@ duration: 2.0
 
 def resolved(scene: str = "gravity: 9.81", body: str = "", rest: str = "") -> dict:
     text = TEXT.format(scene=scene, body=body, rest=rest)
-    return load_experiment_text(text, "forms.yaml").cells()[0].resolved
+    return load_experiment_text(text, "forms.yaml").cells()[0].config.as_dict()
 
 
 def gravity(stated: str) -> list[float]:
@@ -106,6 +106,6 @@ def test_sweep_tilts_gravity_that_is_not_written() -> None:
     rest = "sweep:\n  slope: {path: scene.gravity.slope, values: [0, 1]}\n"
     text = TEXT.format(scene="forces: []", body="", rest=rest)
     cells = load_experiment_text(text, "forms.yaml").cells()
-    assert cells[0].resolved["scene"]["gravity"] == [0.0, 0.0, -9.81]
-    x, _, z = cells[1].resolved["scene"]["gravity"]
+    assert cells[0].config.as_dict()["scene"]["gravity"] == [0.0, 0.0, -9.81]
+    x, _, z = cells[1].config.as_dict()["scene"]["gravity"]
     assert x == pytest.approx(-z, rel=1e-15)

@@ -36,11 +36,11 @@ def swept(path: str, values: str) -> str:
 )
 def test_only_the_solver_is_another(numerics: str) -> None:
     text = SCENE + numerics
-    own = load_experiment_text(text, "case.yaml").cells()[0].resolved
+    own = load_experiment_text(text, "case.yaml").cells()[0].config.as_dict()
     (cell,) = load_experiment_text(text, "case.yaml", solver="jacobi").cells()
     assert own["numerics"]["solver"] != "jacobi"
     own["numerics"]["solver"] = "jacobi"
-    assert cell.resolved == own
+    assert cell.config.as_dict() == own
 
 
 def test_every_cell_of_a_sweep_has_it() -> None:
