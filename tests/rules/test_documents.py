@@ -10,6 +10,7 @@ from typing import Any
 
 import pytest
 from sources import ROOT
+from tables import PAGES, made
 from typer.main import get_group as click_group
 
 from lavender_cli.main import app
@@ -64,3 +65,9 @@ def test_links_of_pages_outside_of_the_site_lead_somewhere(page: Path) -> None:
             heads = re.findall(r"^#+ (.+)$", file.read_text(), re.MULTILINE)
             slugs = [re.sub(r"[^\w -]", "", head.lower()).replace(" ", "-") for head in heads]
             assert anchor in slugs, f"{target}#{anchor}"
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_tables_of_the_documents_are_those_of_the_code(name: str) -> None:
+    """They are written anew by `python tests/rules/tables.py`."""
+    assert (DOCUMENTS / name).read_text() == made(name)
