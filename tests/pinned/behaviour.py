@@ -5,9 +5,9 @@
     python -m tests.pinned.behaviour --compare before.json configs/chapter   # only a part
 
 A change of words that is meant goes through `renames.json`: a list of [pattern, replacement] pairs
-of regular expressions, applied to the texts of both sides before they are compared; its last entry leaves out
-the keys that effects have brought since. Hashes and
-verdicts are compared as they stand. Slow configs are run at their reduced length, overheads are not
+of regular expressions, applied to the texts of both sides before they are compared; its last entry
+leaves out the keys that effects have brought since. Hashes and verdicts are compared as they stand.
+Slow configs are run at their reduced length, overheads are not
 taken. Hashes are those of one machine and one set of library versions, so the file that is written
 belongs beside neither the sources nor another machine's.
 """
