@@ -1,6 +1,6 @@
 """The one style sheet of all figures: fonts, sizes, colours and markers.
 
-Colours are Okabe and Ito's, told apart by colour-blind readers; every series has a marker of its
+Colours are Okabe and Ito's, distinguished by colour-blind readers; every series has a marker of its
 own as well, so grey prints read too. Sizes are chosen for a figure shown at half its size.
 """
 

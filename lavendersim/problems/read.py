@@ -51,7 +51,7 @@ def read_all(paths: Iterable[Path]) -> list[tuple[str, ContactProblem]]:
 
 
 def read_problem(file: Path) -> ContactProblem:
-    """Read a problem in Siconos' or FCLIB's format, told apart by the first bytes of the file.
+    """Read a problem in Siconos' or FCLIB's format, distinguished by the first bytes of the file.
 
     Raises ProblemError, one sentence, where the file is neither or is damaged.
     """

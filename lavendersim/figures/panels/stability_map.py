@@ -23,7 +23,7 @@ from lavendersim.measures.interfaces import Cell
 from lavendersim.measures.values import Values
 from lavendersim.quantities.scalars import written
 
-COLOURS: Final = "cividis"  # told apart by colour-blind readers and in grey
+COLOURS: Final = "cividis"  # distinguished by colour-blind readers and in grey
 HALF_DARK: Final = 0.5  # luminance below which letters are white [-]
 
 
