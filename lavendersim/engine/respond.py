@@ -59,8 +59,7 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
             strike(contacts, count, motion, params)
         if loaded:
             for c in range(count):
-                contact = contacts[c]
-                preload(contact, velocities[contact.a], velocities[contact.b])
+                preload(contacts[c], velocities, motion)
         if keeps_free:
             keep_free(velocities, workspace.free_velocities)
         if warms:

@@ -8,12 +8,19 @@ from __future__ import annotations
 
 import numpy as np
 
+from lavendersim.cell import Surface
 from lavendersim.engine.effects import EFFECTS
 from lavendersim.measures.interfaces import Floats, Rows, Trace
 
 PULLS = [effect.balance.pull for effect in EFFECTS if effect.balance.pull]
 STORED = [effect.balance.stored for effect in EFFECTS if effect.balance.stored]
 OUTER = [effect.balance.outer for effect in EFFECTS if effect.balance.outer]
+VARYING = [e.balance.varies_friction for e in EFFECTS if e.balance.varies_friction]
+
+
+def varies_friction(surface: Surface) -> bool:
+    """Whether the coefficient between two surfaces, mixed, changes with their motion."""
+    return any(getattr(surface, key) > 0.0 for key in VARYING)
 
 
 def _present(rows: Rows, names: list[str]) -> list[str]:
@@ -39,8 +46,11 @@ def net_impulse_n(contacts: Rows) -> Floats:
 
 
 def given_by_pull(contacts: Rows) -> Floats:
-    """Return the energy that contacts gain by drawing their bodies together [J] (n,)."""
-    gained: Floats = -pull(contacts) * contacts["normal_velocity"]
+    """Return the most that contacts gain by drawing their bodies together [J] (n,).
+
+    Bodies that part lose to the pull, at a rate between those of the step's two ends: no gain.
+    """
+    gained: Floats = np.maximum(-pull(contacts) * contacts["normal_velocity"], 0.0)
     return gained
 
 

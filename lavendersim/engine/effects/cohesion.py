@@ -34,7 +34,7 @@ def make_capture(spec: Spec) -> Kernel:
     """Return `kernel(contact, pair, params)`: the impulse of this step, 0 where it is open."""
 
     def capture_cohesion(contact, pair, params):
-        contact.adhesion = 0.0
+        contact.adhesion, contact.loaded = 0.0, 0
         if contact.phi <= max(params.slop, TOUCHING):
             contact.adhesion = pair.cohesion * params.dt
 
@@ -42,14 +42,31 @@ def make_capture(spec: Spec) -> Kernel:
 
 
 def make_preload(spec: Spec) -> Kernel:
-    """Return `kernel(contact, va, vb)`: draw the two bodies together."""
+    """Return `kernel(contact, velocities, motion)`: draw the two bodies together.
+
+    In a step in which nothing presses, they fly, and the pull is a force like any other (`dv`).
+    """
     from ..contact import make_apply_impulse
+    from ..integrate import keeps_motion
 
-    apply_impulse = make_apply_impulse(spec)
+    apply_impulse, keeps = make_apply_impulse(spec), keeps_motion(spec)
+    forced = spec.has("impact_time") or spec.has("midpoint")
 
-    def draw_together(contact, va, vb):
-        if contact.adhesion > 0.0:
-            apply_impulse(contact, va, vb, -contact.adhesion)
+    def draw_together(contact, velocities, motion):
+        p = contact.adhesion
+        if p > 0.0:
+            contact.loaded = 1
+            apply_impulse(contact, velocities[contact.a], velocities[contact.b], -p)
+            if keeps:
+                a, b = motion[contact.a], motion[contact.b]
+                a.dvx += p * contact.inv_m_a * contact.nx
+                a.dvy += p * contact.inv_m_a * contact.ny
+                a.dvz += p * contact.inv_m_a * contact.nz
+                b.dvx -= p * contact.inv_m_b * contact.nx
+                b.dvy -= p * contact.inv_m_b * contact.ny
+                b.dvz -= p * contact.inv_m_b * contact.nz
+            if forced:
+                contact.dv_n -= p * contact.k_n
 
     return kernel(draw_together, spec)
 
@@ -78,7 +95,7 @@ EFFECT = Effect(
     ),
     fields=Fields(
         pair=[("cohesion", "f8")],  # F [N]
-        contact=[("adhesion", "f8")],  # F dt where it is closed [N s]
+        contact=[("adhesion", "f8"), ("loaded", "i8")],  # F dt where it is closed [N s]
     ),
     contact_columns=(
         Column(

@@ -28,8 +28,10 @@ def make(spec: Spec, loggers):
     from ..compile import chain
     from ..residual import make_row_residual
     from ..violations import make_forget, make_watch_coulomb, make_watch_signorini
+    from . import effects_of
 
     ahead = spec.has("speculative")
+    loads = any(effect.hooks.preload for effect in effects_of(spec))
     rubs, moving_surface = spec.has("friction"), spec.has("surface_velocity")
     row_residual, forget = make_row_residual(spec), make_forget(spec)
     watch_signorini, watch_coulomb = make_watch_signorini(spec), make_watch_coulomb(spec)
@@ -48,7 +50,10 @@ def make(spec: Spec, loggers):
             residual, v_n = row_residual(contact, va, vb)
             if ahead:
                 # Rows made ahead that neither touch nor push are the solver's, not the scene's.
-                if contact.phi > TOUCHING and contact.lambda_n == 0.0:
+                acts = contact.lambda_n != 0.0
+                if loads:
+                    acts = acts or contact.loaded == 1
+                if contact.phi > TOUCHING and not acts:
                     watch_signorini(counters, -1, contact, v_n)
                     continue
             watch_signorini(counters, written, contact, v_n)

@@ -73,7 +73,7 @@ class Hooks:
     link_row: Maker | None = None  # (row, links, bodies): fills the columns of a step
     prepare: Maker | None = None  # (contact, va, vb, pair, params), when it has frame and levers
     capture: Maker | None = None  # (contact, pair, params), once per contact and step
-    preload: Maker | None = None  # (contact, va, vb): impulses beside those of the solve, before it
+    preload: Maker | None = None  # (contact, velocities, motion): before the solve; 1 in `loaded`
     contact_row: Maker | None = None  # (out, contact, va, vb): fills the columns of a contact
     step_row: Maker | None = None  # (row, bodies, counters): fills the columns of a step
 
@@ -113,6 +113,7 @@ class Balance:
 
     pull: str = ""  # of a contact: impulse that draws its bodies together along n [N s]
     stored: str = ""  # of a step: energy that it stores [J]
+    varies_friction: str = ""  # surface key: where above 0, the logged coefficient is the one
     outer: tuple[str, ...] = ()  # of a step: impulse on movable bodies from others, x y z [N s]
 
 

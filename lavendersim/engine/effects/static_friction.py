@@ -16,7 +16,7 @@ from lavendersim.quantities.quantity import Quantity
 
 from ..spec import Spec
 from .decision import Decision, Facts, PairFacts, by_pair
-from .effect import Effect, Fields, Hooks, Kernel, kernel
+from .effect import Balance, Effect, Fields, Hooks, Kernel, kernel
 from .keys import COEFFICIENT, SurfaceKey, geometric_mean, larger
 
 
@@ -104,5 +104,6 @@ EFFECT = Effect(
         velocity=[(f"start_{k}{axis}", "f8") for k in "vw" for axis in "xyz"],  # [m/s], [rad/s]
         pair=[("static_friction", "f8"), ("stribeck_velocity", "f8")],  # [-], [m/s]
     ),
+    balance=Balance(varies_friction="static_friction"),
     hooks=Hooks(start_step=make_start_step, prepare=make_prepare),
 )

@@ -20,6 +20,7 @@ import numpy as np
 from lavendersim.cell import Surface
 from lavendersim.cell.mixing import mixed
 from lavendersim.geometry.bodies import inverse_mass
+from lavendersim.measures import shares
 from lavendersim.measures.interfaces import Floats, Rows, Trace
 from lavendersim.measures.registration import measure
 from lavendersim.measures.specs.optimality import Optimality
@@ -64,7 +65,10 @@ def _summed(contacts: Rows, of_bodies: list[float]) -> Floats:
 
 
 def friction_of(contacts: Rows, surfaces: list[Surface]) -> Floats:
-    """Return mu of each contact by the config; surfaces: of the bodies by their rows."""
+    """Return mu of each contact by the config, where it changes with the motion by the log.
+
+    surfaces: of the bodies by their rows.
+    """
     different = list(dict.fromkeys(surfaces))
     number = {surface: row for row, surface in enumerate(different)}
     rows = np.array([number[surface] for surface in surfaces])
@@ -74,9 +78,10 @@ def friction_of(contacts: Rows, surfaces: list[Surface]) -> Floats:
     present[pair] = True
     for one in np.flatnonzero(present):
         a, b = divmod(int(one), len(different))
-        table[one] = mixed(different[a], different[b]).friction
+        between = mixed(different[a], different[b])
+        table[one] = np.nan if shares.varies_friction(between) else between.friction
     mu: Floats = table[pair]
-    return mu
+    return np.where(np.isnan(mu), contacts["friction"], mu) if np.isnan(mu).any() else mu
 
 
 def _friction(trace: Trace, contacts: Rows, scale: Floats, mu: Floats) -> tuple[Floats, Floats]:

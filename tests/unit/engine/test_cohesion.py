@@ -54,6 +54,17 @@ def test_an_open_contact_pulls_no_more() -> None:
     np.testing.assert_allclose(speeds, expected, rtol=1e-14)
 
 
+def test_what_the_force_does_not_carry_falls_by_the_mean_of_its_velocities() -> None:
+    """As free fall under the midpoint rule: x_k = a (k dt)^2 / 2 while the contact is closed."""
+    a = 1e-4 * G
+    bench = hanging(MASS * (G - a), integrator="midpoint", speculative=True, slop=0.001)
+    for k in range(1, 121):
+        bench.run(1)
+        fallen = 1.0 - RADIUS - bench.engine.bodies["z"][1]
+        # Of 0.9 m, rounded in each step.
+        assert fallen == pytest.approx(0.5 * a * (k * DT) ** 2, abs=k * 2.3e-16)
+
+
 @pytest.mark.parametrize("share", [0.5, 0.999, 1.001, 3.0])
 def test_two_balls_part_with_what_the_force_leaves(share: float) -> None:
     """They move apart at a multiple of what the force takes from them in a step."""
