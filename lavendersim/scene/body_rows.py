@@ -6,7 +6,7 @@ Columns that effects bring are filled where they are present.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import Any, Final
+from typing import Any
 
 import numpy as np
 
@@ -26,25 +26,15 @@ from lavendersim.engine.collide.convex.hull_geometry import (
     Polyhedron,
     hull_geometry,
 )
+from lavendersim.engine.collide.shapes import SHAPES
 from lavendersim.engine.effects import EFFECTS
 from lavendersim.engine.record_layout import allocate_bodies
-from lavendersim.engine.records import BOX, CAPSULE, COMPOUND, CYLINDER, HULL, PLANE, SPHERE
 from lavendersim.engine.spec import Spec
 from lavendersim.geometry.bodies import is_movable
 from lavendersim.geometry.rotations import quaternion_product, rotation_matrix
 from lavendersim.geometry.shapes import bounding_radius
 
 from .colliders import Collider
-
-SHAPES: Final = {
-    "plane": PLANE,
-    "sphere": SPHERE,
-    "box": BOX,
-    "capsule": CAPSULE,
-    "cylinder": CYLINDER,
-    "hull": HULL,
-    "compound": COMPOUND,
-}
 
 
 def pose_of(body: CellBody) -> np.ndarray:
@@ -109,7 +99,7 @@ def _fill(record: np.void, names: Iterable[str], values: Iterable[Any]) -> None:
 
 
 def _fill_shape(record: np.void, shape: CellShape) -> None:
-    record["shape"] = SHAPES[shape.kind]
+    record["shape"] = SHAPES[shape.kind].kind
     record["bound"] = bounding_radius(shape)
     match shape:
         case Plane():

@@ -23,8 +23,8 @@ def test_the_box_around_a_body_is_its_least(shape):
             half[1] = 0.0
         world.put(0, shape, half, (0.0, 0.0, 0.0), convex.random_rotation(rng))
         world.listed()
-        region = world.work.regions[0]  # at rest and without gravity it is not grown
-        found = np.array([region[name] for name in ("ex", "ey", "ez")]) - TOUCHING
+        fat = world.work.fat_bounds[0]  # at rest and without gravity it is not grown
+        found = np.array([fat[name] for name in ("ex", "ey", "ez")]) - TOUCHING
         np.testing.assert_allclose(found, half_extents(world.bodies[0]), rtol=0.0, atol=1e-5)
 
 

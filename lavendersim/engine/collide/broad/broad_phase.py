@@ -1,11 +1,11 @@
-"""Bodies enter, the pairs of them that may come near leave; made anew only when they must be.
+"""Broad phase: the pairs of bodies that may touch, by a tree of bounds, listed anew when needed.
 
-    place regions   where each body may be in the next steps            `regions`
-    sort, build     a tree over the regions                             `tree`
-    walk            pairs of regions that meet; planes against all
+    place bounds    where each body may be in the next steps            `fat_bounds`
+    sort, build     a bounding volume hierarchy over them               `tree`
+    walk            pairs of bounds that overlap; planes against all
     write           rows of the pair table, ascending in their key      `pair_rows`
 
-The rows serve as long as every body stays in its region.
+The list is valid as long as every body stays in its fat bounds.
 """
 
 from __future__ import annotations
@@ -17,8 +17,8 @@ import numpy as np
 from ...compile import kernel
 from ...records import COMPOUND, I8, PAIR, PLANE, Field, dtype
 from ...spec import Spec
+from .fat_bounds import FAT_BOUNDS, make_is_valid, make_place_bounds
 from .pair_rows import make_put_pair, make_write_rows
-from .regions import REGION, make_holds, make_place_regions
 from .tree import (
     BOUNDS,
     DIGITS,
@@ -28,7 +28,7 @@ from .tree import (
     build_nodes,
     cell,
     hilbert,
-    meet,
+    may_pair,
     next_group,
     node_count,
     overlap,
@@ -37,18 +37,25 @@ from .tree import (
 )
 
 STATE: list[Field] = [
-    ("listed", I8),  # 1 once the pairs are those of the regions
+    ("listed", I8),  # 1 while the pairs are those of the fat bounds
     ("count", I8),  # pairs of the list
-    ("needed", I8),  # rows it asked for when it was made, more than there were if it failed
+    ("needed", I8),  # rows required when it was made, more than there were if it failed
     ("rebuilds", I8),
 ]
+
+
+class PairColumns(NamedTuple):
+    """Bodies of pairs in columns; first < second."""
+
+    first: np.ndarray  # (P,)
+    second: np.ndarray  # (P,)
 
 
 class BroadPhaseWork(NamedTuple):
     """What is kept between steps, and buffers. N bodies, P rows of pairs."""
 
     state: np.ndarray  # (1,) STATE
-    regions: np.ndarray  # (N,) REGION
+    fat_bounds: np.ndarray  # (N,) FAT_BOUNDS
     leaves: np.ndarray  # (N,) LEAF, sorted
     nodes: np.ndarray  # BOUNDS of the levels above
     starts: np.ndarray  # (LEVELS,)
@@ -57,10 +64,8 @@ class BroadPhaseWork(NamedTuple):
     other_codes: np.ndarray
     other_order: np.ndarray
     counts: np.ndarray  # digits of the sort, or bodies
-    first: np.ndarray  # (P,) bodies of the pairs found, before they are in order
-    second: np.ndarray
-    other_first: np.ndarray
-    other_second: np.ndarray
+    found: PairColumns  # the pairs, before and after each sort
+    sorted: PairColumns
 
 
 def allocate_broad_phase(body_count: int, pair_capacity: int) -> BroadPhaseWork:
@@ -69,21 +74,22 @@ def allocate_broad_phase(body_count: int, pair_capacity: int) -> BroadPhaseWork:
     def numbers(count: int) -> np.ndarray:
         return np.zeros(count, np.int64)
 
+    def columns() -> PairColumns:
+        return PairColumns(first=numbers(pair_capacity), second=numbers(pair_capacity))
+
     return BroadPhaseWork(
-        np.zeros(1, dtype(STATE)),
-        np.zeros(body_count, dtype(REGION)),
-        np.zeros(body_count, dtype(LEAF)),
-        np.zeros(node_count(body_count), dtype(BOUNDS)),
-        numbers(LEVELS),
-        numbers(body_count),
-        numbers(body_count),
-        numbers(body_count),
-        numbers(body_count),
-        numbers(max(DIGITS, body_count) + 1),
-        numbers(pair_capacity),
-        numbers(pair_capacity),
-        numbers(pair_capacity),
-        numbers(pair_capacity),
+        state=np.zeros(1, dtype(STATE)),
+        fat_bounds=np.zeros(body_count, dtype(FAT_BOUNDS)),
+        leaves=np.zeros(body_count, dtype(LEAF)),
+        nodes=np.zeros(node_count(body_count), dtype(BOUNDS)),
+        starts=numbers(LEVELS),
+        codes=numbers(body_count),
+        order=numbers(body_count),
+        other_codes=numbers(body_count),
+        other_order=numbers(body_count),
+        counts=numbers(max(DIGITS, body_count) + 1),
+        found=columns(),
+        sorted=columns(),
     )
 
 
@@ -99,18 +105,18 @@ def template_dtype(surface: list[Field]) -> np.dtype:
 
 
 def make_sort_leaves(spec: Spec):
-    """Return `kernel(bodies, work) -> leaves`: bodies with a region, sorted for the tree."""
+    """Return `kernel(bodies, work) -> leaves`: bodies with bounds, sorted for the tree."""
     compound, sleeps = spec.has("compound"), spec.has("sleeping")
 
     def sort_leaves(bodies, work):
-        regions, codes, order, leaves = work.regions, work.codes, work.order, work.leaves
+        fat_bounds, codes, order, leaves = work.fat_bounds, work.codes, work.order, work.leaves
         low_x, low_y, low_z = np.inf, np.inf, np.inf
         high_x, high_y, high_z = -np.inf, -np.inf, -np.inf
         largest, count = 0.0, 0
         for i in range(bodies.shape[0]):
             if bodies[i].shape == PLANE or bodies[i].shape == COMPOUND:
                 continue
-            r = regions[i]
+            r = fat_bounds[i]
             low_x, low_y, low_z = min(low_x, r.x), min(low_y, r.y), min(low_z, r.z)
             high_x, high_y, high_z = max(high_x, r.x), max(high_y, r.y), max(high_z, r.z)
             largest = max(largest, max(r.ex, max(r.ey, r.ez)))
@@ -119,7 +125,7 @@ def make_sort_leaves(spec: Spec):
         # One scale for all axes: cells are cubes, or a flat scene would be cut into pillars.
         side = 1.0 / max(high_x - low_x, max(high_y - low_y, high_z - low_z))
         for k in range(count):
-            r = regions[order[k]]
+            r = fat_bounds[order[k]]
             place = hilbert(
                 cell((r.x - low_x) * side),
                 cell((r.y - low_y) * side),
@@ -130,7 +136,7 @@ def make_sort_leaves(spec: Spec):
         sort_by_code(codes, order, work.other_codes, work.other_order, work.counts, count)
         for k in range(count):
             i = order[k]
-            body, r, leaf = bodies[i], regions[i], leaves[k]
+            body, r, leaf = bodies[i], fat_bounds[i], leaves[k]
             leaf.low_x, leaf.low_y, leaf.low_z = r.x - r.ex, r.y - r.ey, r.z - r.ez
             leaf.high_x, leaf.high_y, leaf.high_z = r.x + r.ex, r.y + r.ey, r.z + r.ez
             leaf.x, leaf.y, leaf.z = r.x, r.y, r.z
@@ -154,9 +160,9 @@ def make(spec: Spec, surface: list[Field] | tuple[Field, ...] = ()):
     of `bodies` need `material`; with the effect `compound`, parts need `owner`, the row of their
     body, and every other row has its own there. Pairs that nothing can push get no row.
     """
-    holds, place_regions, sort_leaves = (
-        make_holds(spec),
-        make_place_regions(spec),
+    is_valid, place_bounds, sort_leaves = (
+        make_is_valid(spec),
+        make_place_bounds(spec),
         make_sort_leaves(spec),
     )
     put_pair = make_put_pair(spec)
@@ -174,7 +180,7 @@ def make(spec: Spec, surface: list[Field] | tuple[Field, ...] = ()):
                 for i in range(4 * g, min(4 * g + 4, count)):
                     if overlap(leaves[i], nodes[other]):
                         for j in range(max(4 * other, i + 1), end):
-                            if meet(leaves[i], leaves[j]):
+                            if may_pair(leaves[i], leaves[j]):
                                 a, b = leaves[i].body, leaves[j].body
                                 found = put_pair(bodies, templates, a, b, work, found)
                 other = next_group(nodes, starts, groups, nodes[g], other + 1)
@@ -185,7 +191,7 @@ def make(spec: Spec, surface: list[Field] | tuple[Field, ...] = ()):
             for k in range(count):
                 leaf = leaves[k]
                 height = nx * leaf.x + ny * leaf.y + nz * leaf.z - bodies[i].offset
-                r = work.regions[leaf.body]
+                r = work.fat_bounds[leaf.body]
                 depth = min(leaf.radius, abs(nx) * r.ex + abs(ny) * r.ey + abs(nz) * r.ez)
                 if height <= depth and leaf.still == 0:
                     found = put_pair(bodies, templates, i, leaf.body, work, found)
@@ -196,13 +202,13 @@ def make(spec: Spec, surface: list[Field] | tuple[Field, ...] = ()):
     def broad_phase(bodies, velocities, pairs, templates, params, work):
         state = work.state[0]
         if state.listed == 1:
-            if holds(bodies, velocities, params, work.regions):
+            if is_valid(bodies, velocities, params, work.fat_bounds):
                 return state.count
         state.listed = 0
-        place_regions(bodies, velocities, params, work.regions)
+        place_bounds(bodies, velocities, params, work.fat_bounds)
         found = find_pairs(bodies, templates, work)
         state.needed = found
-        if found > min(pairs.shape[0], work.first.shape[0]):
+        if found > min(pairs.shape[0], work.found.first.shape[0]):
             return -1
         write_rows(bodies, templates, work, found, pairs)
         state.listed, state.count = 1, found

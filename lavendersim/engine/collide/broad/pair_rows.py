@@ -1,4 +1,4 @@
-"""Pairs of body rows enter in any order, rows of the pair table leave, ascending in their key.
+"""Rows of the pair table, ascending in their key: two stable counting sorts of the pairs found.
 
 key = i N + j,   i < j rows of the two bodies, N rows in all
 """
@@ -40,8 +40,9 @@ def make_put_pair(spec: Spec):
         first, second = min(i, j), max(i, j)
         if templates[bodies[first].material, bodies[second].material].kind < 0:
             return found
-        if found < work.first.shape[0]:
-            work.first[found], work.second[found] = first, second
+        pairs = work.found
+        if found < pairs.first.shape[0]:
+            pairs.first[found], pairs.second[found] = first, second
         return found + 1
 
     return kernel(put_pair, spec)
@@ -54,7 +55,7 @@ def make_write_rows(spec: Spec, surface: Sequence[str]):
     """
     copy_surface = make_copy_fields(spec, surface)
 
-    def sort(by, first, second, to_first, to_second, counts, bodies_count, found):
+    def sort(by, pairs, target, counts, bodies_count, found):
         # Stable, by a column of bodies.
         for k in range(bodies_count + 1):
             counts[k] = 0
@@ -65,20 +66,16 @@ def make_write_rows(spec: Spec, surface: Sequence[str]):
         for p in range(found):
             place = counts[by[p]]
             counts[by[p]] = place + 1
-            to_first[place], to_second[place] = first[p], second[p]
+            target.first[place], target.second[place] = pairs.first[p], pairs.second[p]
 
     sort = kernel(sort, spec)
 
     def write_rows(bodies, templates, work, found, pairs):
-        bodies_count = bodies.shape[0]
-        first, second = work.first, work.second
-        other_first, other_second = work.other_first, work.other_second
-        sort(second, first, second, other_first, other_second, work.counts, bodies_count, found)
-        sort(
-            other_first, other_first, other_second, first, second, work.counts, bodies_count, found
-        )
+        bodies_count, by_second, in_order = bodies.shape[0], work.sorted, work.found
+        sort(work.found.second, work.found, by_second, work.counts, bodies_count, found)
+        sort(by_second.first, by_second, in_order, work.counts, bodies_count, found)
         for p in range(found):
-            i, j = first[p], second[p]
+            i, j = in_order.first[p], in_order.second[p]
             template, row = templates[bodies[i].material, bodies[j].material], pairs[p]
             row.kind, row.key = template.kind, i * bodies_count + j
             if template.swap == 1:

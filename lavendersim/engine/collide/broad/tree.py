@@ -1,4 +1,4 @@
-"""Boxes enter, a tree over them leaves, and the pairs of boxes that overlap.
+"""A bounding volume hierarchy of boxes, sorted along a Hilbert curve, and the pairs that overlap.
 
 The tree is implicit, four to a node. Leaves are sorted by (class of size, place on the Hilbert
 curve); node n of level l holds the leaves n 4^l ... (n + 1) 4^l - 1, so building it is a sort and
@@ -184,8 +184,8 @@ def overlap(a, b):
 
 
 @inner
-def meet(a, b):
-    """Whether two leaves may pair: boxes and spheres meet, something may push one of them."""
+def may_pair(a, b):
+    """Whether two leaves may pair: boxes and spheres overlap, something may push one of them."""
     dx, dy, dz = a.x - b.x, a.y - b.y, a.z - b.z
     near = a.radius + b.radius
     if dx * dx + dy * dy + dz * dz <= near * near:

@@ -1,4 +1,4 @@
-"""Convex polyhedra as vertex lists and face loops enter; flat tables that kernels can read leave.
+"""Tables of convex polyhedra that kernels can read: vertices, faces, their loops and edges.
 
     hull h           vertices[vertex_start[h] : vertex_start[h + 1]]
                      faces    face_start[h] .. face_start[h + 1] - 1
