@@ -1,4 +1,4 @@
-"""The tree of one cell in; its validated, resolved config out, or the defects at their places."""
+"""One cell of the sweep: its tree is read as the models and resolved, or refused at its places."""
 
 from __future__ import annotations
 

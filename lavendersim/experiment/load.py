@@ -1,4 +1,4 @@
-"""A config file in; an Experiment out, or a ConfigError with every defect of the file.
+"""Loading a config file: an Experiment, or a ConfigError with every defect of the file.
 
 The outline: text -> tree -> axes -> every cell's tree -> models and checks. Checks work on trees,
 so that a defect in one section hides none in another.

@@ -24,6 +24,7 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 from lavendersim.cell.numerics import Numerics
+from lavendersim.engine.effects import SCENE_KEYS
 from lavendersim.experiment.checks.annotations import (
     alternatives,
     annotation_of,
@@ -35,6 +36,8 @@ from lavendersim.experiment.models.experiment import ExperimentConfig
 from lavendersim.experiment.resolve.presets import PRESETS
 from lavendersim.quantities.scalars import written
 
+# Keys that effects declare; what stands below them is told in the table of the key.
+_OF_EFFECTS = frozenset(key.name for key in SCENE_KEYS)
 _TABLE = re.compile(r"(<!-- (keys|kinds|presets): ([\w ]+) -->\n).*?(<!-- end -->)", re.DOTALL)
 
 
@@ -78,6 +81,10 @@ def keys_table(*models: type[BaseModel]) -> Iterator[list[str]]:
     for model in models:
         for key, info in fields(model).items():
             yield [f"`{key}`", _default(info), _meaning(info)]
+            if key in _OF_EFFECTS:
+                for inner in models_below(annotation_of(info)):
+                    for name, one in fields(inner).items():
+                        yield [f"`{key}[].{name}`", _default(one), _meaning(one)]
 
 
 def kinds_table(*models: type[BaseModel]) -> Iterator[list[str]]:

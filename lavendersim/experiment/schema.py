@@ -1,4 +1,4 @@
-"""The models of a config in; the JSON Schema (draft 7) that editors complete and check with out.
+"""The JSON Schema (draft 7) of a config file, with which editors complete and check.
 
 pydantic writes draft 2020-12; what differs is rewritten here. The schema knows types, bounds and
 names of keys. What lies between values (a mass or a density, names that must exist) is checked by

@@ -1,4 +1,4 @@
-"""A value from a config in; the few words that name it in a message out, and the nearest name."""
+"""A value of a config in the words of a message; the nearest name to a misspelt one."""
 
 from __future__ import annotations
 

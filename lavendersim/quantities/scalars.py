@@ -1,4 +1,4 @@
-"""Text of one YAML scalar in; null, bool, int, float, ratio or text out (YAML 1.2 core schema).
+"""Values of plain YAML scalars (1.2 core schema): null, bool, int, float, ratio or text.
 
 Three things differ from PyYAML's own (YAML 1.1) reading: `1e-3` is a number, `012` is twelve, and
 `yes`, `on`, `12:30` are text. One thing is ours: `1/480` is a number that keeps its exact ratio.

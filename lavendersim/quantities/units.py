@@ -1,4 +1,4 @@
-"""A text where a number was expected in; the hint that says what to write instead out.
+"""The hint for a text where a number was expected: what to write instead, in SI.
 
 lavender reads SI numbers only. A text such as `5 ms` is refused, never converted: the hint gives
 the number to write, so that the file itself says what was meant.

@@ -1,4 +1,4 @@
-"""pydantic's errors and the tree of nodes in; sentences at the places of the file out.
+"""From pydantic's errors to sentences at the places of the file.
 
 Every sentence says what was found, what is expected, and the nearest valid name. An unknown key is
 reported at the key, a bad value at the value, a missing key at the mapping that lacks it.

@@ -1,4 +1,4 @@
-"""The `cost` section of a config in; a validated CostSpec out: a grid of settings, and their truth.
+"""The section `cost`: a grid of settings, an error, and the truth it is taken from.
 
 The grid is timestep x solver x (sweeps or tolerance) x warm start. Its error is one measure of the
 experiment, held against what is true.

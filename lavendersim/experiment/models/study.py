@@ -1,4 +1,4 @@
-"""The `study` section of a config in; which known mistake is made on purpose out.
+"""The section `study`: a deliberate error, for teaching and for negative controls.
 
     study: {mistake: capture_in_sweeps}
 

@@ -1,4 +1,4 @@
-"""An arrangement and the shape that stands in it in; the centres of its bodies out.
+"""Where the bodies of an arrangement stand: tower, pyramid, grid.
 
     tower     z_k = base + down + k (down + up + gap)
     pyramid   row r of n - r bodies:  x = base + (i - (n - r - 1)/2)(width + gap),

@@ -1,4 +1,4 @@
-"""A validated config of one cell in; the same with every default filled in out."""
+"""Resolving a cell: every default filled in, the bodies in their principal frames."""
 
 from __future__ import annotations
 

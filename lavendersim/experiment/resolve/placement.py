@@ -1,4 +1,4 @@
-"""The position of a body that is released above a plane.
+"""Where a release above a plane puts a body; how far shapes reach from their centre.
 
 The gap between the body's surface and the plane n.x = offset, measured along n, is
 

@@ -1,4 +1,4 @@
-"""A scene as written in; its bodies in their principal frames, gravity and forces out."""
+"""Resolving a scene: bodies in their principal frames, gravity as a vector, forces in time."""
 
 from __future__ import annotations
 

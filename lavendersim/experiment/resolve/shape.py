@@ -1,4 +1,4 @@
-"""A shape as written in; the same in its principal frame, its volume and its inertia out."""
+"""Resolving a shape: its principal frame, volume and moments of inertia (homogeneous solids)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The `sweep` of a config in; its axes, and the coordinates and tree of every cell out.
+"""The axes of the `sweep` section: coordinates and tree of every cell.
 
 A cell is the tree as written with the swept values' own nodes grafted in, so that whatever is wrong
 with a cell is reported at the value that makes it wrong.

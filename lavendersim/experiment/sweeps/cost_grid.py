@@ -1,4 +1,4 @@
-"""An experiment with a `cost` section in; its settings, and one experiment that sweeps them, out.
+"""The grid of settings of a `cost` section, as one experiment that sweeps them.
 
 A setting is a preset and five of the numerics: timestep, solver, sweeps, tolerance, warm start. It
 becomes a product of the sweep, with the experiment's own axes inside it:

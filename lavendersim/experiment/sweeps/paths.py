@@ -1,4 +1,4 @@
-"""The dotted path of a sweep in; the steps to the value in the tree out, or why there is none."""
+"""The dotted path of an axis, followed through models and tree to the value that it varies."""
 
 from __future__ import annotations
 

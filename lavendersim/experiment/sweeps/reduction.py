@@ -1,4 +1,4 @@
-"""The tree of a slow experiment in; the same with its reduced length, and what is wrong there, out.
+"""The reduced length of a slow experiment, which is run where time is short.
 
 slow: true
 reduced: {duration: 5.0}

@@ -1,4 +1,4 @@
-"""The tree of a config and a solver in; the tree with that solver out, and which cases that suits.
+"""Another solver for every cell of a config, and which configs that suits.
 
 A case of the default numerics asks what a solver makes of a scene. One that states numerics of its
 own is about these, and one that must fail is about what makes it fail: another solver would ask

@@ -1,4 +1,4 @@
-"""The bytes of a config file in; a tree of nodes and the defects of its form out.
+"""From the bytes of a file to a tree of nodes, and the defects of its form.
 
 The tree is composed here from PyYAML's event stream: its own composers recurse (the C one crashes
 on 100,000 nested brackets), resolve YAML 1.1 scalars, and let a key stand twice. There are no

@@ -1,4 +1,4 @@
-"""What checks find in; the defects of one file out, each place told once, in the file's order."""
+"""The defects of one file, each place reported once, in the order of the file."""
 
 from __future__ import annotations
 

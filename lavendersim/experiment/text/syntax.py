@@ -1,4 +1,4 @@
-"""PyYAML's complaint about a text in; our sentences with their places out.
+"""What a syntax error of PyYAML means, and where: our sentences for its complaints.
 
 libyaml and PyYAML word the same problem differently and point at where they noticed it, which is
 often a line below the mistake: sentences and places are chosen here by the kind of problem.
