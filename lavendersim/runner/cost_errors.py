@@ -12,7 +12,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -26,6 +26,9 @@ from lavendersim.measures.specs.base import ClosedForm
 from .cell import CellOutcome
 from .cost_targets import ROUND_OFF
 from .run_directory import RunCell
+
+if TYPE_CHECKING:
+    from .experiment_run import Finished
 
 NAN = float("nan")
 CONES = {
@@ -57,7 +60,9 @@ class SettingError(NamedTuple):
     failed: str  # why the setting is no answer; "" where it is one
 
 
-def runs_of(settings: Sequence[Setting], finished: Any, measured: Any) -> list[SettingRun]:
+def runs_of(
+    settings: Sequence[Setting], finished: Finished, measured: Sequence[Mapping[str, Any]]
+) -> list[SettingRun]:
     """Return the cells of every setting: they follow each other in the sweep."""
     cells = finished.run.cells
     each = len(cells) // len(settings)

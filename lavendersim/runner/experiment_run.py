@@ -11,11 +11,12 @@ import os
 from collections.abc import Callable
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from lavendersim.cell.record import NONE
 from lavendersim.errors import ConfigError, Defect, UsageError
 from lavendersim.experiment import Experiment, load_experiment, resolved_yaml
+from lavendersim.experiment.cell import Cell
 from lavendersim.measures import Values, Verdict, judge, meant_to_end_early
 
 from .environment import environment
@@ -35,12 +36,17 @@ from .run_directory import (
 )
 from .seeds import Seeds
 
+if TYPE_CHECKING:
+    from lavendersim.scene.plan import Plan
+
+    from .cell import CellJob, CellOutcome
+
 
 class Finished(NamedTuple):
     """A run that came to its end: where it is, how its cells ended, what was judged."""
 
     run: Run
-    outcomes: list[Any]  # CellOutcome, in the order of the cells
+    outcomes: list[CellOutcome]  # in the order of the cells
     verdicts: list[Verdict]
     raw: list[Verdict]  # on every claim, as if nothing were named by a negative control
 
@@ -70,7 +76,7 @@ class Finished(NamedTuple):
 class Progress(NamedTuple):
     """What a caller may want to show while a sweep runs; every hook may be left as it is."""
 
-    compiling: Callable[[Any], None] = lambda plan: None
+    compiling: Callable[[Plan], None] = lambda plan: None
     cell_done: Callable[[int, int], None] = lambda done, total: None
     timing: Callable[[str, int, int], None] = lambda what, done, total: None
 
@@ -152,7 +158,7 @@ def make_directory(experiment: Experiment, root: Path) -> Path:
     raise UsageError(f"{root}: a thousand runs started within one second")
 
 
-def _file_of(cell: Any, source: str) -> str:
+def _file_of(cell: Cell, source: str) -> str:
     return hashlib.sha256(f"{cell.digest} {source}".encode()).hexdigest()[:16] + ".mcap"
 
 
@@ -208,7 +214,7 @@ def run(
     ]
     # Cells of several products may be the same simulation: it has one log and is run once.
     different = list({job.path: job for job in pending}.values())
-    ended: dict[Path, Any] = {}
+    ended: dict[Path, CellOutcome] = {}
     # The index stands from the start, so that an interrupted run can be listed and replayed.
     _write_index(directory, experiment, pending, ended)
     try:
@@ -238,7 +244,7 @@ def run(
 
 
 def _write_index(
-    directory: Path, experiment: Experiment, jobs: list[Any], ended: dict[Path, Any]
+    directory: Path, experiment: Experiment, jobs: list[CellJob], ended: dict[Path, CellOutcome]
 ) -> None:
     """Write which cell is in which file and how it ended; `pending` for those that did not."""
     rows = [

@@ -14,11 +14,15 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Any, Final, Literal, NamedTuple
+from typing import TYPE_CHECKING, Final, Literal, NamedTuple
 
+from lavendersim.measures import Verdict
 from lavendersim.measures.always import PREFIX
 from lavendersim.measures.controls import of_completion
 from lavendersim.measures.specs.always import BEYOND_BOUNDS
+
+if TYPE_CHECKING:
+    from .experiment_run import Finished
 
 PASSES: Final = "passes"
 KNOWN: Final = "known failure"
@@ -50,7 +54,7 @@ class Entry(NamedTuple):
         return self.verdict in FINE
 
 
-def entry_of(case: str, solver: str, finished: Any) -> Entry:
+def entry_of(case: str, solver: str, finished: Finished) -> Entry:
     """Return the entry of a `Finished` run."""
     failed = [verdict for verdict in finished.raw if not verdict.passed]
     declared = _declared(finished)
@@ -88,7 +92,7 @@ def passed(entries: Iterable[Entry], solver: str) -> int:
     return sum(one.solver == solver and one.verdict == PASSES for one in entries)
 
 
-def _declared(finished: Any) -> set[str]:
+def _declared(finished: Finished) -> set[str]:
     """Return the nodes of the claims that the case says will fail."""
     controls = finished.run.experiment.controls
     named = {text for one in controls for text in (one.fails, f"{PREFIX}{one.fails}")}
@@ -99,11 +103,11 @@ def _declared(finished: Any) -> set[str]:
     return {verdict.node for verdict in taken if whole or verdict.name in named}
 
 
-def _line(verdict: Any) -> str:
+def _line(verdict: Verdict) -> str:
     return f"{verdict.node}: {verdict.measured:.3g}, expected {verdict.expected}"
 
 
-def _cost(finished: Any) -> float:
+def _cost(finished: Finished) -> float:
     """Return the physics of all cells over the time they simulated [s/s]."""
     # cells that are the same simulation share one outcome
     spent = {

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import math
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from lavendersim.errors import LavenderError
 from lavendersim.experiment import Experiment
@@ -13,6 +13,9 @@ from lavendersim.measures import Values, applies, outcomes_of
 
 from .accuracy import PARTS, Accuracy
 from .run_directory import RESULTS, TABLE, Run
+
+if TYPE_CHECKING:
+    from .experiment_run import Finished
 
 # Columns of both tables, beside the measures: what a cell cost, and how well it was solved.
 COSTS = ("physics_us_per_step", "logging_us_per_step", "compile_s")
@@ -61,7 +64,7 @@ def _finite(value: Any) -> Any:
 
 
 def write_results(
-    finished: Any, measured: list[dict[str, Any]], overheads: dict[str, Any] | None = None
+    finished: Finished, measured: list[dict[str, Any]], overheads: dict[str, Any] | None = None
 ) -> None:
     """Write the tables of a finished run; numbers keep all their digits."""
     run = finished.run
@@ -110,7 +113,7 @@ def _violations(accuracy: Accuracy) -> dict[str, Any]:
     return {name: found[name] for name in VIOLATIONS}
 
 
-def compile_seconds(finished: Any) -> float:
+def compile_seconds(finished: Finished) -> float:
     """Return what composing, compiling and loading kernels took in all [s]."""
     # Cells that are the same simulation share one outcome.
     once = {
@@ -121,7 +124,7 @@ def compile_seconds(finished: Any) -> float:
     return total
 
 
-def convergence_notices(finished: Any) -> list[str]:
+def convergence_notices(finished: Finished) -> list[str]:
     """Return a sentence for every cell with steps that did not converge to its tolerance."""
     notices = []
     for cell, outcome in zip(finished.run.cells, finished.outcomes, strict=True):
