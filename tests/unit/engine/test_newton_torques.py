@@ -1,7 +1,7 @@
 """Newton's method finds torques with impulses, and leaves them within what the impulses allow.
 
 A twisted tower under a heavy cube, on contacts that resist every turning, asked for a sharp end:
-the last of sixteen sweeps is followed by Newton's method, and no sweep mends what it leaves. And
+the last of sixteen sweeps is followed by Newton's method, and no sweep fixes what it leaves. And
 balls on each other, which only torques keep up.
 """
 
