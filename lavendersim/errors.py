@@ -1,4 +1,4 @@
-"""Errors that a user can cause: one base class, and its kinds, each of which knows its exit code."""
+"""Errors that a user can cause: one base class, and its kinds; each knows its exit code."""
 
 from __future__ import annotations
 
