@@ -91,7 +91,7 @@ class Experiment:
 
     @property
     def mistakes(self) -> dict[str, list[Cell]]:
-        """Each mistake that is made on purpose, and the cells that make it."""
+        """Each deliberate error, and the cells that make it."""
         found: dict[str, list[Cell]] = {}
         for cell in self._cells if self._may_be_wrong else ():
             if cell.config.study.mistake != NO_MISTAKE:

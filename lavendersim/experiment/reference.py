@@ -36,7 +36,7 @@ from lavendersim.experiment.models.experiment import ExperimentConfig
 from lavendersim.experiment.resolve.presets import PRESETS
 from lavendersim.quantities.scalars import written
 
-# Keys that effects declare; what stands below them is told in the table of the key.
+# Keys that effects declare; their own keys follow in the same table.
 _OF_EFFECTS = frozenset(key.name for key in SCENE_KEYS)
 _TABLE = re.compile(r"(<!-- (keys|kinds|presets): ([\w ]+) -->\n).*?(<!-- end -->)", re.DOTALL)
 

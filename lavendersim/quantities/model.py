@@ -13,7 +13,7 @@ class ConfigModel(BaseModel):
 
     Sequences arrive as tuples, mappings as dicts, ratios as `scalars.Ratio` (a float). A file is
     validated with a context (`experiment.checks.reading`) that knows where each mapping stands; it
-    is told which model reads it, and applies the model's rules there.
+    learns which model reads it, and applies the model's rules there.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True)

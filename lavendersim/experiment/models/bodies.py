@@ -93,7 +93,7 @@ class _Matter(ConfigModel):
             fixed, kinematic = at.node.is_true("fixed"), at.node.is_true("kinematic")
             if fixed and kinematic:
                 later = max(at.key("fixed"), at.key("kinematic"))
-                at.refuse(later, f"{at} states both fixed and kinematic; keep one")
+                at.refuse(later, f"{at} specifies both fixed and kinematic; keep one")
             elif fixed or kinematic:
                 _immovable_rules(at, "fixed" if fixed else "kinematic")
             else:
@@ -174,7 +174,7 @@ def _plane_rules(at: Place) -> None:
 def _exactly_one(at: Place, keys: tuple[str, str], meaning: str) -> None:
     first, second = at.written(keys[0]), at.written(keys[1])
     if first and second:
-        at.refuse(max(first, second), f"{at} states both {keys[0]} and {keys[1]}; keep one")
+        at.refuse(max(first, second), f"{at} specifies both {keys[0]} and {keys[1]}; keep one")
     elif not first and not second:
         unknown = [key for key in at.node.entries if key not in Body.model_fields]
         if at.node.torn or any(near(key, Body.model_fields) in keys for key in unknown):

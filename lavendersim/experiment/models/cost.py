@@ -1,7 +1,7 @@
 """The section `cost`: a grid of settings, an error, and the truth it is taken from.
 
 The grid is timestep x solver x (sweeps or tolerance) x warm start. Its error is one measure of the
-experiment, held against what is true.
+experiment, compared with what is true.
 """
 
 from __future__ import annotations

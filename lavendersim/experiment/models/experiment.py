@@ -62,7 +62,7 @@ class Effects(ConfigModel):
 
     @property
     def switches(self) -> dict[str, Switch]:
-        """What is stated of each name."""
+        """What is specified of each name."""
         return self.__pydantic_extra__
 
 
@@ -104,7 +104,7 @@ class CellSource(ConfigModel):
         default=Effects(), description="effects forced in or kept out, against the plan; for study"
     )
     study: Study = Field(
-        default=Study(), description="a known mistake, made on purpose; every run with one says so"
+        default=Study(), description="a deliberate error; every run with one says so"
     )
 
     @classmethod

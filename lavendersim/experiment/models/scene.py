@@ -53,7 +53,7 @@ class TiltedGravity(ConfigModel):
         """An angle is written once."""
         tilt, slope = at.written("tilt_degrees"), at.written("slope")
         if tilt and slope:
-            at.refuse(max(tilt, slope), "gravity states both tilt_degrees and slope; keep one")
+            at.refuse(max(tilt, slope), "gravity specifies both tilt_degrees and slope; keep one")
 
 
 def _gravity_form(value: Any) -> str:

@@ -27,7 +27,7 @@ _PLACES: Final = {
 
 
 class Study(ConfigModel):
-    """What is done wrong on purpose; for teaching and for negative controls alone."""
+    """A deliberate error; for teaching and for negative controls alone."""
 
     mistake: Mistake = Field(
         default=NO_MISTAKE,

@@ -44,7 +44,7 @@ Role = Literal["grid", "specified", "chapter", "truth"]
 class Setting(NamedTuple):
     """One point of the grid."""
 
-    role: Role  # of the grid; what the config specifies; the chapter's; what the others are held to
+    role: Role  # of the grid; the config's own; the chapter's; what others are compared with
     preset: str  # of what it leaves alone
     timestep: Fraction  # [s]
     solver: str

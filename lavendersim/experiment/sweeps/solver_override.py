@@ -1,6 +1,6 @@
 """Another solver for every cell of a config, and which configs that suits.
 
-A case of the default numerics asks what a solver makes of a scene. One that states numerics of its
+A case of the default numerics asks what a solver makes of a scene. One with numerics of its
 own is about these, and one that must fail is about what makes it fail: another solver would ask
 something else there, so neither is put to several.
 """
@@ -21,12 +21,12 @@ OF_THE_SCENE: Final = frozenset({"preset", "timestep"})
 
 def with_solver(root: Node, solver: str) -> Node:
     """Return the tree with this solver in its numerics; everything else as it stands."""
-    stated = root.get("numerics")
-    mark = stated.mark if stated is not None else root.mark
-    if stated is not None and stated.text is not None:
-        opened = Node({"preset": stated}, mark, {"preset": mark})
+    numerics = root.get("numerics")
+    mark = numerics.mark if numerics is not None else root.mark
+    if numerics is not None and numerics.text is not None:
+        opened = Node({"preset": numerics}, mark, {"preset": mark})
         root = graft(root, ("numerics",), opened)
-    elif stated is not None and not isinstance(stated.content, dict):
+    elif numerics is not None and not isinstance(numerics.content, dict):
         return root  # refused by the model, at its place
     return graft(root, ("numerics", "solver"), Node(solver, mark))
 

@@ -20,26 +20,26 @@ class Report:
     def __init__(self, name: str, defects: Iterable[Defect] = ()) -> None:
         self.name = name
         self._defects = list(dict.fromkeys(defects))
-        self._told = {(defect.line, defect.column) for defect in self._defects}
+        self._reported = {(defect.line, defect.column) for defect in self._defects}
         self._round: dict[tuple[Mark, str], None] = {}
-        self._sound = True  # nothing found in this round, new or told before
+        self._sound = True  # nothing found in this round, new or reported before
 
     def add(self, mark: Mark, message: str) -> None:
         """Note a defect of the current round."""
         self._sound = False
-        if mark not in self._told:
+        if mark not in self._reported:
             self._round[mark, message] = None
 
     def doubt(self) -> None:
-        """Note that something is wrong that was told already, perhaps at another place."""
+        """Note that something is wrong that was reported already, perhaps at another place."""
         self._sound = False
 
     def close_round(self) -> bool:
-        """End the round; tells whether nothing was found in it, be it new or told before."""
+        """End the round; tells whether nothing was found in it, be it new or reported before."""
         self._defects += [
             Defect(self.name, mark.line, mark.column, said) for mark, said in self._round
         ]
-        self._told |= {mark for mark, _ in self._round}
+        self._reported |= {mark for mark, _ in self._round}
         self._round.clear()
         sound, self._sound = self._sound, True
         return sound
