@@ -14,6 +14,7 @@ from tables import PAGES, made
 from typer.main import get_group as click_group
 
 from lavender_cli.main import app
+from lavendersim.engine.solvers import SOLVER_NAMES
 
 DOCUMENTS = ROOT / "docs"
 # A fenced block: its language, its content. Python without a `text` block behind it prints nothing
@@ -71,3 +72,9 @@ def test_links_of_pages_outside_of_the_site_lead_somewhere(page: Path) -> None:
 def test_tables_of_the_documents_are_those_of_the_code(name: str) -> None:
     """They are written anew by `python tests/rules/tables.py`."""
     assert (DOCUMENTS / name).read_text() == made(name)
+
+
+@pytest.mark.parametrize("page", ["theory.md", "solvers.md"])
+def test_every_solver_is_written_down(page: str) -> None:
+    text = (DOCUMENTS / page).read_text()
+    assert [name for name in SOLVER_NAMES if f"`{name}`" not in text] == []
