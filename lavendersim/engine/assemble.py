@@ -1,5 +1,4 @@
-"""Contacts of one step and the velocities before their impulses enter; their `ContactProblem`
-leaves, and with it the impulses that the step's last solve left.
+"""The contact problem of a step, assembled from its contacts and the velocities before impulses.
 
 Of contact c with bodies A and B, in its frame (n, t1, t2) of unit vectors f_i,
     u_i = f_i . (v_B - v_A) + (r_B x f_i) . omega_B - (r_A x f_i) . omega_A
@@ -8,8 +7,8 @@ Of contact c with bodies A and B, in its frame (n, t1, t2) of unit vectors f_i,
 Contacts made ahead of touching are rows like the others: the solver sees them so. Surfaces that
 move by themselves add their velocity to `free`.
 
-A smooth contact has no tangential impulse. Where nothing rubs, an engine knows no lever and no
-inertia for its tangents: these rows then are those of bodies that do not turn. With mu = 0 no
+A frictionless contact has no tangential impulse. Without any friction an engine knows no lever and
+no inertia for its tangents: these rows then are those of bodies that do not turn. With mu = 0 no
 impulse and no normal velocity depends on them.
 """
 
@@ -24,7 +23,7 @@ from .spec import Spec
 
 
 class StepProblem(NamedTuple):
-    """A step's problem and its engine's answer."""
+    """A step's problem and its engine's solution."""
 
     problem: ContactProblem
     impulses: np.ndarray  # (n, 3) [N s] of the step's last solve, on B along n, t1, t2
@@ -45,20 +44,20 @@ def step_problem(spec: Spec, contacts: np.ndarray, velocities: np.ndarray) -> St
     frames = _frames(spec, contacts)
     sides = [_side(spec, contacts, velocities, frames, body) for body in "ab"]
     begin, row, blocks = _delassus(sides, frames)
-    rough = _rough(spec, contacts)
+    frictional = _frictional(spec, contacts)
     free = np.zeros((len(contacts), 3))
     for side in sides:
         linear, angular = _velocity_of(velocities, side.body)
         along = np.einsum("cik,ck->ci", frames, linear)
         free += side.sign * (along + np.einsum("cik,ck->ci", side.levers, angular))
     if spec.has("surface_velocity"):
-        free[:, 1:] += rough[:, None] * _columns(contacts, "surface_1", "surface_2")
+        free[:, 1:] += frictional[:, None] * _columns(contacts, "surface_1", "surface_2")
     problem = ContactProblem(
         begin,
         row,
         blocks,
         free,
-        rough * contacts["mu"] if spec.has("friction") else np.zeros(len(contacts)),
+        frictional * contacts["mu"] if spec.has("friction") else np.zeros(len(contacts)),
         contacts["gamma"].copy() if spec.has("compliance") else np.zeros(len(contacts)),
         contacts["target"].copy(),
     )
@@ -73,13 +72,13 @@ def _vectors(rows: np.ndarray, name: str) -> np.ndarray:
     return _columns(rows, *(f"{name}{axis}" for axis in "xyz"))
 
 
-def _rough(spec: Spec, contacts: np.ndarray) -> np.ndarray:
+def _frictional(spec: Spec, contacts: np.ndarray) -> np.ndarray:
     """Return 1.0 for contacts with friction, 0.0 for the others."""
     if not spec.has("friction"):
         return np.zeros(len(contacts))
     if not spec.has("smooth_contact"):
         return np.ones(len(contacts))
-    return contacts["rough"].astype(np.float64)
+    return contacts["frictional"].astype(np.float64)
 
 
 def _frames(spec: Spec, contacts: np.ndarray) -> np.ndarray:
@@ -105,9 +104,9 @@ def _side(
         levers = np.cross(_vectors(contacts, f"r{name}")[:, None, :], frames)
         turns = np.einsum("ckl,cil->cik", _inverse_inertia(velocities[body]), levers)
     if spec.has("contact_torque") and (not spec.has("friction") or spec.has("smooth_contact")):
-        smooth = _rough(spec, contacts) == 0.0
-        levers[smooth, 0] = _vectors(contacts, f"lever_{name}")[smooth]
-        turns[smooth, 0] = _vectors(contacts, f"turn_{name}")[smooth]
+        frictionless = _frictional(spec, contacts) == 0.0
+        levers[frictionless, 0] = _vectors(contacts, f"lever_{name}")[frictionless]
+        turns[frictionless, 0] = _vectors(contacts, f"turn_{name}")[frictionless]
     return _Side(body, 1.0 if name == "b" else -1.0, contacts[f"inv_m_{name}"], levers, turns)
 
 

@@ -91,7 +91,7 @@ def make_relative_velocity(spec: Spec):
 def make_slip_velocity(spec: Spec):
     """Return `kernel(contact, va, vb) -> (v_n, v_1, v_2)`, along its axes [m/s].
 
-    Of what rubs: with the velocities that surfaces have in their bodies.
+    With the velocities that surfaces have in their bodies.
     """
     if not spec.has("friction"):
         return None

@@ -1,4 +1,4 @@
-"""Python functions enter, numba kernels leave. The one place that knows how numba compiles.
+"""Numba kernels from Python functions: the one place that knows how numba compiles.
 
 Kernels are closures over the flags of a `Spec`. Numba removes the branches that a flag makes dead
 before it types them, so a pruned kernel is as small as one that never had the effect.
@@ -6,7 +6,7 @@ before it types them, so a pruned kernel is as small as one that never had the e
 Hazard: numba's symbol names carry counters of the process, of functions and of record types, and
 objects cached by different processes can collide (numba issue 10486): the first one loaded is used
 for both. Each kernel's qualified name therefore carries the digest of the spec it was made for, and
-the parts of a kernel are no symbols of its object at all (`Whole`).
+the parts of a kernel are no symbols of its object at all (`KernelObject`).
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ OPTIONS: dict[str, Any] = known(
 )
 
 
-class Part(JITCodeLibrary):
+class LinkedKernel(JITCodeLibrary):
     """Code of a kernel that other kernels call: linked into each of them, and optimised there.
 
     Numba would optimise and assemble every kernel by itself as well, with all that it calls. None
@@ -73,7 +73,7 @@ class Part(JITCodeLibrary):
         self._finalized = True
 
 
-class Whole(JITCodeLibrary):
+class KernelObject(JITCodeLibrary):
     """Code of a kernel that Python calls, with all its parts."""
 
     def _optimize_final_module(self) -> None:
@@ -84,20 +84,20 @@ class Whole(JITCodeLibrary):
         super()._optimize_final_module()
 
 
-class PartCompiler(Compiler):
+class LinkedCompiler(Compiler):
     """Numba's pipeline for a kernel that only kernels call."""
 
     def __init__(self, typingctx, targetctx, library, args, return_type, flags, locals):
         flags.no_compile = flags.no_cpython_wrapper = True
-        part = Part(targetctx.codegen(), "part")
+        part = LinkedKernel(targetctx.codegen(), "part")
         super().__init__(typingctx, targetctx, part, args, return_type, flags, locals)
 
 
-class WholeCompiler(Compiler):
+class ObjectCompiler(Compiler):
     """Numba's pipeline for a kernel that Python calls; its code can be kept on disk."""
 
     def __init__(self, typingctx, targetctx, library, args, return_type, flags, locals):
-        whole = Whole(targetctx.codegen(), "whole")
+        whole = KernelObject(targetctx.codegen(), "whole")
         whole.enable_object_caching()
         super().__init__(typingctx, targetctx, whole, args, return_type, flags, locals)
 
@@ -127,7 +127,7 @@ class Kernel(CPUDispatcher):
             args = tuple(normalize_signature(sig)[0])
             if not self.called_by_kernel and args in self.overloads and not self.has_door(args):
                 del self.overloads[args]
-            pipeline = PartCompiler if self.called_by_kernel else WholeCompiler
+            pipeline = LinkedCompiler if self.called_by_kernel else ObjectCompiler
             self._compiler.pipeline_class = pipeline
             return super().compile(sig)
 
@@ -144,7 +144,7 @@ class Kernel(CPUDispatcher):
     def has_door(self, args: tuple[Any, ...]) -> bool:
         """Whether Python can call the code compiled for these types."""
         result: Any = self.overloads[args]
-        return not isinstance(result.library, Part)
+        return not isinstance(result.library, LinkedKernel)
 
 
 def compiler_is_off() -> bool:

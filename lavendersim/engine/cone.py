@@ -1,4 +1,4 @@
-"""A vector enters, the nearest one in Coulomb's cone, or in a section across it, leaves.
+"""Projections onto Coulomb's cone, and onto a section across it.
 
 K = {|r_t| <= mu r_n}       its dual K* = {|u_t| mu <= u_n}       (n, t1, t2), Euclidean norm
 """

@@ -1,4 +1,4 @@
-"""A manifold point enters, a solver row leaves: frame, effective mass, and what is captured once.
+"""The solver row of a contact point: frame, effective mass, and what is captured once.
 
     k_n = 1/m_A + 1/m_B + n . [(I_A^-1 (r_A x n)) x r_A + (I_B^-1 (r_B x n)) x r_B]
         = 1/m_A + 1/m_B + (r_A x n) . I_A^-1 (r_A x n) + (r_B x n) . I_B^-1 (r_B x n)
@@ -14,7 +14,7 @@ from typing import Any
 from .block import make_apply_vector, make_complete_block, make_relative_velocity
 from .compile import chain, inner, kernel
 from .effects import made_by
-from .effects.smooth_contact import by_roughness, has_smooth
+from .effects.smooth_contact import by_friction, has_frictionless
 from .records import SPHERE
 from .rotation import inverse_inertia_times
 from .spec import Spec
@@ -49,10 +49,10 @@ def add_levers(contact, body_a, body_b, bx, by, bz):
 
 def make_normal_velocity(spec: Spec):
     """Return `kernel(contact, va, vb) -> v_n`, the velocity of B relative to A along n [m/s]."""
-    return by_roughness(spec, make_smooth_velocity, _make_rough_velocity)
+    return by_friction(spec, make_frictionless_velocity, _make_frictional_velocity)
 
 
-def _make_rough_velocity(spec: Spec):
+def _make_frictional_velocity(spec: Spec):
     relative_velocity = make_relative_velocity(spec)
 
     def block_normal_velocity(contact, va, vb):
@@ -62,7 +62,7 @@ def _make_rough_velocity(spec: Spec):
     return kernel(block_normal_velocity, spec)
 
 
-def make_smooth_velocity(spec: Spec):
+def make_frictionless_velocity(spec: Spec):
     """Return `kernel(contact, va, vb) -> v_n` of a row without friction [m/s]."""
     torque = spec.has("contact_torque")
 
@@ -88,10 +88,10 @@ def make_smooth_velocity(spec: Spec):
 
 def make_apply_impulse(spec: Spec):
     """Return `kernel(contact, va, vb, impulse)`: + on B, - on A, along n [N s]."""
-    return by_roughness(spec, make_smooth_impulse, _make_rough_impulse)
+    return by_friction(spec, make_frictionless_impulse, _make_frictional_impulse)
 
 
-def _make_rough_impulse(spec: Spec):
+def _make_frictional_impulse(spec: Spec):
     apply_vector = make_apply_vector(spec)
 
     def apply_block_impulse(contact, va, vb, impulse):
@@ -102,7 +102,7 @@ def _make_rough_impulse(spec: Spec):
     return kernel(apply_block_impulse, spec)
 
 
-def make_smooth_impulse(spec: Spec):
+def make_frictionless_impulse(spec: Spec):
     """Return `kernel(contact, va, vb, impulse)` of a row without friction."""
     torque = spec.has("contact_torque")
 
@@ -130,11 +130,11 @@ def make_apply_block(spec: Spec):
 
     Without friction there is only n.
     """
-    return by_roughness(spec, _make_apply_normal, make_apply_all)
+    return by_friction(spec, _make_apply_normal, make_apply_all)
 
 
 def _make_apply_normal(spec: Spec):
-    apply_impulse = make_smooth_impulse(spec)
+    apply_impulse = make_frictionless_impulse(spec)
 
     def apply_normal(contact, va, vb, n, one, two):
         apply_impulse(contact, va, vb, n)
@@ -143,7 +143,7 @@ def _make_apply_normal(spec: Spec):
 
 
 def make_apply_all(spec: Spec):
-    """Return `kernel(contact, va, vb, n, one, two)` of a contact that rubs."""
+    """Return `kernel(contact, va, vb, n, one, two)` of a frictional contact."""
     apply_vector = make_apply_vector(spec)
 
     def apply_block(contact, va, vb, n, one, two):
@@ -196,7 +196,7 @@ def make_append_contact(spec: Spec, capture):
 
     `capture` is the chain of effects that add to the row's target and compliance.
     """
-    friction, smooth = spec.has("friction"), has_smooth(spec)
+    friction, frictionless = spec.has("friction"), has_frictionless(spec)
     compliant = spec.has("compliance")
     at_surface = spec.has("impact_time")
     forced = spec.has("impact_time") or spec.has("midpoint")
@@ -205,7 +205,7 @@ def make_append_contact(spec: Spec, capture):
     spins = resists_turning(spec)
     complete_spin: Any = make_complete_spin(spec) if spins else None
     turns_hard: Any = make_turns_hard(spec) if spins else None
-    complete_row: Any = make_complete_row(spec) if smooth else None
+    complete_row: Any = make_complete_row(spec) if frictionless else None
     preparing = made_by(spec, "prepare")
     prepares, prepare = bool(preparing), chain(preparing, spec)
 
@@ -214,17 +214,17 @@ def make_append_contact(spec: Spec, capture):
         va, vb = velocities[contact.a], velocities[contact.b]
         contact.inv_m_a, contact.inv_m_b = body_a.inv_m, body_b.inv_m
         k_n = 0.0
-        rough = False
+        frictional = False
         if friction:
             k_n = complete_block(contact, body_a, body_b, va, vb, pair)
-            rough = pair.friction > 0.0
+            frictional = pair.friction > 0.0
             if spins:
                 complete_spin(contact, va, vb, pair)
-                rough = rough or turns_hard(pair)
-            if smooth:
-                contact.rough = 1 if rough else 0
-        if smooth:
-            if not rough:
+                frictional = frictional or turns_hard(pair)
+            if frictionless:
+                contact.frictional = 1 if frictional else 0
+        if frictionless:
+            if not frictional:
                 k_n = complete_row(contact, body_a, body_b)
         contact.k_n = k_n
         if prepares:

@@ -15,8 +15,8 @@ import numpy as np
 
 from .block import make_slip_velocity
 from .compile import kernel
-from .contact import make_apply_all, make_apply_block, make_smooth_velocity
-from .effects.smooth_contact import by_roughness
+from .contact import make_apply_all, make_apply_block, make_frictionless_velocity
+from .effects.smooth_contact import by_friction
 from .records import F8, I8, Field
 from .spec import Spec
 
@@ -56,22 +56,22 @@ def make_contact_velocity(spec: Spec) -> Any:
     The contact's velocity with its target and what its surfaces bring, but without compliance.
     """
     if spec.operator == "matrix":
-        return make_rough_velocity(spec)
-    return by_roughness(spec, _make_smooth_contact_velocity, make_rough_velocity)
+        return make_frictional_velocity(spec)
+    return by_friction(spec, _make_frictionless_contact_velocity, make_frictional_velocity)
 
 
-def _make_smooth_contact_velocity(spec: Spec) -> Any:
-    normal_velocity = make_smooth_velocity(spec)
+def _make_frictionless_contact_velocity(spec: Spec) -> Any:
+    normal_velocity = make_frictionless_velocity(spec)
 
-    def smooth_contact_velocity(contact, velocities):
+    def frictionless_contact_velocity(contact, velocities):
         va, vb = velocities[contact.a], velocities[contact.b]
         return normal_velocity(contact, va, vb) + contact.target, 0.0, 0.0
 
-    return kernel(smooth_contact_velocity, spec)
+    return kernel(frictionless_contact_velocity, spec)
 
 
-def make_rough_velocity(spec: Spec) -> Any:
-    """Return the same kernel for contacts that rub."""
+def make_frictional_velocity(spec: Spec) -> Any:
+    """Return the same kernel for frictional contacts."""
     if spec.operator == "matrix":
 
         def matrix_velocity(contact, velocities):
@@ -95,8 +95,8 @@ def make_add_impulse(spec: Spec) -> Any:
     return _make_add(spec, make_apply_block)
 
 
-def make_add_rough(spec: Spec) -> Any:
-    """Return the same kernel for contacts that rub."""
+def make_add_frictional(spec: Spec) -> Any:
+    """Return the same kernel for frictional contacts."""
     return _make_add(spec, make_apply_all)
 
 

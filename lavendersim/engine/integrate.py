@@ -1,4 +1,4 @@
-"""Velocities before and after the solve enter, poses leave.
+"""Positions from velocities: semi-implicit Euler, the midpoint rule, and flight up to an impact.
 
 A body moves through a step in one of three ways:
     free      x += dt v_new, or dt (v_old + v_new)/2 with `midpoint`

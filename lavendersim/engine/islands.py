@@ -1,9 +1,9 @@
-"""Contacts enter, islands leave: which movable bodies are joined by contacts, however indirectly.
+"""Islands: movable bodies that contacts join, however indirectly, by union-find (Tarjan 1975).
 
-Union-find over the contacts between two movable bodies (Tarjan 1975): `parent` holds a forest, a
-root is its own parent. The lesser root always becomes the root of both, so that an island's label
-is its least body, whatever the order of the contacts; paths are halved on every walk, so that a
-walk costs next to nothing. Immovable bodies join nothing: two stacks on one floor are two islands.
+Over the contacts between two movable bodies; `parent` holds a forest, a root is its own parent. The
+lesser root always becomes the root of both, so that an island's label is its least body, whatever
+the order of the contacts; paths are halved on every walk, so that a walk costs next to nothing.
+Immovable bodies join nothing: two stacks on one floor are two islands.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""A composed kernel enters, the same kernel with its machine code kept on disk leaves.
+"""Machine code of kernels on disk, under a key of our own.
 
 Numba's own `cache=True` does not fit kernels made by factories: a closure over another kernel never
 hits, and edited callees in other files go stale (numba issue 9483). The key here is ours: every

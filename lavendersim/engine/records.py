@@ -49,15 +49,17 @@ BODY: Final[list[Field]] = [
     ("y", F8),
     ("z", F8),
     ("inv_m", F8),  # 1/mass [1/kg], 0 for fixed bodies
-    ("shape", I8),  # PLANE, SPHERE or BOX
-    ("hx", F8),  # sphere: radius; box: half edge lengths; plane: unit normal [-] [m]
+    ("shape", I8),  # its kind, see above
+    # Plane: unit normal [-]. Box: half edge lengths [m]. Sphere: radius in hx [m]. Capsule and
+    # cylinder: radius in hx, half length along the body's z in hz [m]. Hull and compound: unused.
+    ("hx", F8),
     ("hy", F8),
     ("hz", F8),
-    ("offset", F8),  # plane: n . x of its points [m]
+    ("offset", F8),  # plane: n . x of its points [m]; other shapes: unused
     ("bound", F8),  # radius of the bounding sphere about the centre of mass [m]; plane: unused
 ]
 
-# Orientation of boxes and of everything that turns.
+# Orientation, where some shape but planes and spheres occurs, or something turns.
 ORIENTED_BODY: Final[list[Field]] = [
     ("qw", F8),  # quaternion, body to world
     ("qx", F8),
@@ -66,7 +68,7 @@ ORIENTED_BODY: Final[list[Field]] = [
     *[(f"r{row}{column}", F8) for row in range(3) for column in range(3)],  # the same as a matrix
 ]
 
-HULL_BODY: Final[list[Field]] = [("hull", I8)]  # hull: row of the hull tables
+HULL_BODY: Final[list[Field]] = [("hull", I8)]  # hulls: row of the hull tables
 
 VELOCITY: Final[list[Field]] = [("vx", F8), ("vy", F8), ("vz", F8)]  # of the centre of mass [m/s]
 ANGULAR_VELOCITY: Final[list[Field]] = [("wx", F8), ("wy", F8), ("wz", F8)]  # [rad/s]

@@ -1,4 +1,4 @@
-"""Arrays of an engine between two steps enter; the same without one body leave.
+"""Taking a body out of an engine between two steps.
 
 What is removed stays where it is, as a body that is fixed and that nothing can touch: without mass
 it is in no sum and no force moves it, and no pair of its rows is left. It has no velocity.

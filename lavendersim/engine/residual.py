@@ -1,4 +1,4 @@
-"""Rows with impulses and velocities enter, the step's error leaves, in m/s.
+"""The residual of a step: the natural map of its contact laws, in m/s.
 
 Natural map of the complementarity 0 <= lambda_n, 0 <= w with w = v_n + target + gamma lambda_n:
     r = | min((k_n + gamma) lambda_n, w) |
@@ -18,8 +18,8 @@ from math import sqrt
 from .block import largest_response, make_slip_velocity
 from .compile import kernel
 from .cone import make_project_section, project_cone
-from .contact import make_smooth_velocity
-from .effects.smooth_contact import by_roughness
+from .contact import make_frictionless_velocity
+from .effects.smooth_contact import by_friction
 from .scaled_residual import make_scaled_residual
 from .spec import Spec
 from .spin_block import make_spin_residual, resists_turning
@@ -27,7 +27,7 @@ from .spin_block import make_spin_residual, resists_turning
 
 def make_row_residual(spec: Spec):
     """Return `kernel(contact, va, vb) -> (r, v_n)` [m/s]."""
-    return by_roughness(spec, _make_smooth_residual, _make_rough_residual)
+    return by_friction(spec, _make_frictionless_residual, _make_frictional_residual)
 
 
 def make_normal_residual(spec: Spec):
@@ -44,8 +44,8 @@ def make_normal_residual(spec: Spec):
     return kernel(normal_residual, spec)
 
 
-def _make_smooth_residual(spec: Spec):
-    normal_residual, normal_velocity = make_normal_residual(spec), make_smooth_velocity(spec)
+def _make_frictionless_residual(spec: Spec):
+    normal_residual, normal_velocity = make_normal_residual(spec), make_frictionless_velocity(spec)
 
     def row_residual(contact, va, vb):
         v_n = normal_velocity(contact, va, vb)
@@ -54,7 +54,7 @@ def _make_smooth_residual(spec: Spec):
     return kernel(row_residual, spec)
 
 
-def _make_rough_residual(spec: Spec):
+def _make_frictional_residual(spec: Spec):
     if spec.friction_cone == "convex":
         return _make_convex_residual(spec)
     project = make_project_section(spec)

@@ -1,4 +1,4 @@
-"""Names of effects, shape pairs and a solver enter; `Spec`, the structure of an engine, leaves.
+"""The structure of an engine: which effects, shape pairs and solver it is composed of.
 
 A `Spec` holds structure only. Coefficients (masses, gains, timesteps) stay run-time values, so a
 sweep over any of them uses one compiled engine.

@@ -1,4 +1,4 @@
-"""What resists relative turning at a contact: a contact and two velocities enter, torques act.
+"""Torsional and rolling friction of a contact as one block of angular impulses.
 
     omega = omega_B - omega_A                      relative angular velocity [rad/s]
     psi = n psi_n + t1 psi_1 + t2 psi_2            angular impulse on B; A gets -psi [N m s]

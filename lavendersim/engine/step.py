@@ -42,7 +42,7 @@ def make_advance(spec: Spec) -> Any:
     accelerate = chain(accelerations, spec)
     begin: Any = make_begin(spec, accelerate) if keeps else None
     undo: Any = make_undo(spec) if keeps else None
-    rubs, refresh = made_once(spec, "refresh_inertia")
+    carries_inertia, refresh_inertia = made_once(spec, "refresh_inertia")
     compound, place_parts = made_once(spec, "place_parts")
     broad, find_pairs = made_once(spec, "find_pairs")
     collide: Any = narrow_phase.make(spec) if touches else None
@@ -88,8 +88,8 @@ def make_advance(spec: Spec) -> Any:
                 if linked:
                     act_between(state.links, bodies, velocities, motion, params)
                     finish(bodies, velocities, motion, params)
-            if rubs:
-                refresh(bodies, velocities)
+            if carries_inertia:
+                refresh_inertia(bodies, velocities)
             if compound:
                 place_parts(bodies)
             listed = pairs.shape[0]

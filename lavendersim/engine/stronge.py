@@ -1,4 +1,4 @@
-"""One contact about to be struck enters, the speed at which Stronge's law lets it leave, leaves.
+"""Stronge's law of restitution: the separation speed of one impact, from the work of compression.
 
 The impulse grows from nothing, and with it the contact's velocity, friction being Coulomb's:
     du = K (dlambda_t, dlambda_n),   dlambda_t = -mu dlambda_n u_t / |u_t| while it slips,

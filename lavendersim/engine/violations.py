@@ -1,4 +1,4 @@
-"""Contacts with the impulses of a solve enter; by how much they break each part of the law leaves.
+"""By how much contacts violate each part of the law: Signorini, the cone, dissipation.
 
 Of one contact, with w_n = v_n + target + gamma lambda_n, w_t the slip of its surfaces and
 k_n + gamma the response of its row, the law of Signorini and Coulomb is broken by

@@ -155,7 +155,7 @@ def test_kernels_linked_into_their_callers_give_the_same_bits_as_numba_s_own(
     def refuse(*_: Any) -> None:
         raise AssertionError("a part was compiled")
 
-    monkeypatch.setattr(engine_compile.PartCompiler, "__init__", refuse)
+    monkeypatch.setattr(engine_compile.LinkedCompiler, "__init__", refuse)
     monkeypatch.setattr(engine_compile.Kernel, "get_call_template", CPUDispatcher.get_call_template)
     assert rows_of_a_drop(spec, cell.config, make_advance(spec)) == linked
     assert len(linked[0]) > 120 * 100

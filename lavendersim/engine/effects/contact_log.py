@@ -32,7 +32,7 @@ def make(spec: Spec, loggers):
 
     ahead = spec.has("speculative")
     loads = any(effect.hooks.preload for effect in effects_of(spec))
-    rubs, moving_surface = spec.has("friction"), spec.has("surface_velocity")
+    friction, moving_surface = spec.has("friction"), spec.has("surface_velocity")
     row_residual, forget = make_row_residual(spec), make_forget(spec)
     watch_signorini, watch_coulomb = make_watch_signorini(spec), make_watch_coulomb(spec)
     log_more = chain(loggers, spec)
@@ -74,7 +74,7 @@ def make(spec: Spec, loggers):
             out.target = contact.target
             out.residual = residual
             log_more(out, contact, va, vb)
-            if rubs:
+            if friction:
                 w_1, w_2 = out.slip_t1, out.slip_t2
                 if moving_surface:
                     w_1 += contact.surface_1

@@ -3,7 +3,7 @@
 from ..records import LEVER
 from .decision import Decision, Facts, named
 from .effect import Effect, Fields
-from .smooth_contact import has_smooth
+from .smooth_contact import has_frictionless
 
 
 def decide(facts: Facts) -> Decision:
@@ -27,7 +27,7 @@ def decide(facts: Facts) -> Decision:
 
 def contact_fields(spec):
     """Return the columns of a normal row; the blocks of friction have levers of their own."""
-    return LEVER if has_smooth(spec) else []
+    return LEVER if has_frictionless(spec) else []
 
 
 EFFECT = Effect(

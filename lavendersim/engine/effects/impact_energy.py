@@ -63,7 +63,7 @@ def make_settle(spec: Spec, solve: Any, classify: Any) -> Any:
 
     relative_velocity = make_relative_velocity(spec)
     leave = make_leave(spec)
-    some_smooth = spec.has("smooth_contact")
+    some_frictionless = spec.has("smooth_contact")
     records = spec.has("residual_log")
 
     def work_of(contacts, count, velocities, motion, params):
@@ -116,12 +116,12 @@ def make_settle(spec: Spec, solve: Any, classify: Any) -> Any:
     def settle(system, motion, workspace, params, counters, rows):
         contacts, count, velocities = system.contacts, system.count, system.velocities
         counters.stronge = 0
-        if some_smooth:
-            rubs = False
+        if some_frictionless:
+            frictional = False
             for c in range(count):
-                if contacts[c].rough == 1:
-                    rubs = True
-            if not rubs:
+                if contacts[c].frictional == 1:
+                    frictional = True
+            if not frictional:
                 return
         total, size = work_of(contacts, count, velocities, motion, params)
         if not total > ROUND_OFF * size:

@@ -1,4 +1,4 @@
-"""One contact's impulses enter, corrected ones leave: the update every relaxation solver repeats.
+"""The update of one contact that every relaxation solver repeats: projected, by blocks.
 
 Normal, compliant:
     lambda_n <- max(0, lambda_n - (v_n + b + b_rest + gamma lambda_n) / (k_n + gamma))
@@ -24,10 +24,10 @@ from __future__ import annotations
 from ..block import largest_response
 from ..compile import kernel
 from ..cone import project_cone, project_disc, project_square
-from ..contact import make_smooth_impulse, make_smooth_velocity
-from ..coupling import make_add_rough, make_rough_velocity
+from ..contact import make_frictionless_impulse, make_frictionless_velocity
+from ..coupling import make_add_frictional, make_frictional_velocity
 from ..effects import made_once
-from ..effects.smooth_contact import by_roughness
+from ..effects.smooth_contact import by_friction
 from ..spec import Spec
 from ..spin_block import make_solve_spin, resists_turning
 
@@ -37,17 +37,17 @@ def make_solve_contact_velocity(spec: Spec):
 
     change: the largest change of the contact's velocity that the update makes [m/s].
     """
-    make_rough = _make_convex if spec.friction_cone == "convex" else _make_block
+    make_frictional = _make_convex if spec.friction_cone == "convex" else _make_block
     if spec.operator == "matrix":
-        return make_rough(spec)
-    return by_roughness(spec, _make_normal, make_rough)
+        return make_frictional(spec)
+    return by_friction(spec, _make_normal, make_frictional)
 
 
 def _make_normal(spec: Spec):
     compliant, relaxed = spec.has("compliance"), spec.over_relaxation
     recaptures, capture_again = made_once(spec, "recapture")
-    normal_velocity = make_smooth_velocity(spec)
-    apply_impulse = make_smooth_impulse(spec)
+    normal_velocity = make_frictionless_velocity(spec)
+    apply_impulse = make_frictionless_impulse(spec)
 
     def solve_contact_velocity(contact, contacts, velocities, params):
         va, vb = velocities[contact.a], velocities[contact.b]
@@ -74,7 +74,7 @@ def _make_give(spec: Spec):
 
     Velocities follow, and so does what resists turning.
     """
-    add_impulse = make_add_rough(spec)
+    add_impulse = make_add_frictional(spec)
     spins, solve_spin = resists_turning(spec), make_solve_spin(spec)
 
     def give(contact, contacts, velocities, n, one, two):
@@ -100,7 +100,7 @@ def _make_block(spec: Spec):
     compliant, relaxed = spec.has("compliance"), spec.over_relaxation
     recaptures, capture_again = made_once(spec, "recapture")
     pyramid = spec.friction_cone == "pyramid"
-    contact_velocity, give = make_rough_velocity(spec), _make_give(spec)
+    contact_velocity, give = make_frictional_velocity(spec), _make_give(spec)
 
     def solve_contact_block(contact, contacts, velocities, params):
         w, w1, w2 = contact_velocity(contact, velocities)
@@ -134,7 +134,7 @@ def _make_block(spec: Spec):
 def _make_convex(spec: Spec):
     compliant, relaxed = spec.has("compliance"), spec.over_relaxation
     recaptures, capture_again = made_once(spec, "recapture")
-    contact_velocity, give = make_rough_velocity(spec), _make_give(spec)
+    contact_velocity, give = make_frictional_velocity(spec), _make_give(spec)
 
     def solve_contact_convex(contact, contacts, velocities, params):
         w, w1, w2 = contact_velocity(contact, velocities)

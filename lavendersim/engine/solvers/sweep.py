@@ -1,4 +1,4 @@
-"""What solvers by sweeps share: the sweep, a history of residuals, the account of a solve."""
+"""What solvers by sweeps share: the sweep, a history of residuals, the report of a solve."""
 
 from __future__ import annotations
 

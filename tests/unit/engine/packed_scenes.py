@@ -114,5 +114,5 @@ def natural_maps(contacts: np.ndarray, w: np.ndarray, impulses: np.ndarray) -> n
     limit = contacts["k_t"] * contacts["mu"] * n
     share = np.where(size > limit, limit / np.where(size > 0.0, size, 1.0), 1.0)
     across = np.linalg.norm(held - moved * share[:, None], axis=1)
-    across[contacts["rough"] == 0] = 0.0
+    across[contacts["frictional"] == 0] = 0.0
     return np.maximum(np.abs(normal), across)

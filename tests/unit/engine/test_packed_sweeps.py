@@ -69,8 +69,8 @@ def test_the_scenes_have_what_could_go_wrong() -> None:
     assert set(group[slides]) & set(group[sticks])
     assert len(set(group)) * WIDTH > len(contacts)  # some lanes are filled up
     assert (np.unique(group, return_counts=True)[1] == WIDTH).any()  # and some groups are full
-    assert {"rough", "gamma", "surface_1"} <= set(contacts.dtype.names)
-    assert 0 < np.count_nonzero(contacts["rough"] == 0) < len(contacts)
+    assert {"frictional", "gamma", "surface_1"} <= set(contacts.dtype.names)
+    assert 0 < np.count_nonzero(contacts["frictional"] == 0) < len(contacts)
     assert (contacts["gamma"] > 0.0).any()
     assert (contacts["surface_1"] != 0.0).any()
     assert (np.abs(found("mixed").contacts["lambda_n"]) > 0.0).any()  # a warm start

@@ -1,4 +1,4 @@
-"""A sparse symmetric matrix over bodies enters, its L D L^T and solutions leave.
+"""L D L^T of a sparse symmetric matrix over bodies, kept by envelope.
 
 Rows of six, one per body. The matrix is kept by envelope: of each row everything from its first
 entry to the diagonal, where fill stays. Bodies are numbered breadth first from an end of their
@@ -8,13 +8,16 @@ tower's are two bodies long, a pyramid's as long as its base.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 
 from ...compile import inner
+from ...records import F8, Field, dtype
 
 DOF = 6
+# Mass [kg] and world inertia [kg m^2] of a body.
+MASS: Final[list[Field]] = [(name, F8) for name in ("m", "xx", "xy", "xz", "yy", "yz", "zz")]
 
 
 class Envelope(NamedTuple):
@@ -31,7 +34,7 @@ class Envelope(NamedTuple):
     gradient: np.ndarray  # (6 bodies,) g(v), see `minimise`
     step: np.ndarray  # (6 bodies,) of the velocities, along which a length is searched for
     change: np.ndarray  # (6 bodies,) of the velocities in this round: v - v^k
-    mass: np.ndarray  # (bodies, 7) mass and world inertia xx xy xz yy yz zz, by position
+    mass: np.ndarray  # (bodies,) MASS, by position
     rows: np.ndarray  # (9, 6) rows n, t1, t2 of one contact: body A's, body B's, and scaled
 
 
@@ -50,7 +53,7 @@ def allocate_envelope(bodies: int, contacts: int, capacity: int) -> Envelope:
         np.zeros(rows),
         np.zeros(rows),
         np.zeros(rows),
-        np.zeros((bodies, 7)),
+        np.zeros(bodies, dtype(MASS)),
         np.zeros((9, DOF)),
     )
 

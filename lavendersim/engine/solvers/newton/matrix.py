@@ -1,4 +1,4 @@
-"""Contacts at their velocities enter, the matrix of Newton's method leaves: M + J^T E' J.
+"""The matrix of Newton's method, M + J^T E' J, assembled over the bodies.
 
 It lies in the envelope (`envelope`): block rows of bodies, each from its first neighbour on.
 """
@@ -34,16 +34,15 @@ def make_assemble(spec: Spec):
 
     add_block = kernel(add_block, spec)
 
-    def scale_rows(workspace, source, h_nn, h_n1, h_n2, h_11, h_12, h_22):
-        rows = workspace.rows
+    def scale_rows(rows, source, h):
         for j in range(DOF):
             n = rows[source, j]
-            rows[6, j] = h_nn * n
+            rows[6, j] = h.nn * n
             if friction:
                 one, two = rows[source + 1, j], rows[source + 2, j]
-                rows[6, j] += h_n1 * one + h_n2 * two
-                rows[7, j] = h_n1 * n + h_11 * one + h_12 * two
-                rows[8, j] = h_n2 * n + h_12 * one + h_22 * two
+                rows[6, j] += h.n1 * one + h.n2 * two
+                rows[7, j] = h.n1 * n + h.t11 * one + h.t12 * two
+                rows[8, j] = h.n2 * n + h.t12 * one + h.t22 * two
 
     scale_rows = kernel(scale_rows, spec)
 
@@ -54,31 +53,28 @@ def make_assemble(spec: Spec):
             values[k] = 0.0
         for p in range(size):
             offset = DOF * (p - workspace.first[p])
+            own = mass[p]
             for i in range(3):
-                values[start[DOF * p + i] + offset + i] = mass[p, 0]
-            values[start[DOF * p + 3] + offset + 3] = mass[p, 1]
+                values[start[DOF * p + i] + offset + i] = own.m
+            values[start[DOF * p + 3] + offset + 3] = own.xx
             base = start[DOF * p + 4] + offset
-            values[base + 3], values[base + 4] = mass[p, 2], mass[p, 4]
+            values[base + 3], values[base + 4] = own.xy, own.yy
             base = start[DOF * p + 5] + offset
-            values[base + 3], values[base + 4], values[base + 5] = (
-                mass[p, 3],
-                mass[p, 5],
-                mass[p, 6],
-            )
+            values[base + 3], values[base + 4], values[base + 5] = own.xz, own.yz, own.zz
         for c in range(count):
             contact = contacts[c]
-            h_nn, h_n1, h_n2, h_11, h_12, h_22 = stiffness(contact)
+            h = stiffness(contact)
             a = workspace.position[contact.a] if contact.inv_m_a > 0.0 else -1
             b = workspace.position[contact.b] if contact.inv_m_b > 0.0 else -1
-            if h_nn > 0.0:
+            if h.nn > 0.0:
                 fill_rows(contact, workspace.rows)
                 if a >= 0:
-                    scale_rows(workspace, 0, h_nn, h_n1, h_n2, h_11, h_12, h_22)
+                    scale_rows(workspace.rows, 0, h)
                     add_block(workspace, a, a, 0, 0)
                     if b > a:
                         add_block(workspace, b, a, 3, 0)
                 if b >= 0:
-                    scale_rows(workspace, 3, h_nn, h_n1, h_n2, h_11, h_12, h_22)
+                    scale_rows(workspace.rows, 3, h)
                     add_block(workspace, b, b, 3, 3)
                     if a > b:
                         add_block(workspace, a, b, 0, 3)

@@ -1,4 +1,4 @@
-"""One convex problem enters, its minimiser leaves: Newton steps with an exact search along each.
+"""Newton steps on the convex problem of a round, with an exact line search along each.
 
     g(v) = M (v - v^k) - J^T (lambda(v) - lambda^k)
 is the gradient of a convex function of the velocities, because every projected impulse lambda(v)
@@ -39,16 +39,15 @@ def make_assemble_mass(spec: Spec):
     turns = spec.has("rotation")
 
     def assemble_mass(bodies, size, workspace):
-        mass = workspace.mass
         for p in range(size):
-            body = bodies[workspace.visited[p]]
-            mass[p, 0] = 1.0 / body.inv_m
-            mass[p, 1], mass[p, 4], mass[p, 6] = 1.0, 1.0, 1.0
-            mass[p, 2], mass[p, 3], mass[p, 5] = 0.0, 0.0, 0.0
+            body, own = bodies[workspace.visited[p]], workspace.mass[p]
+            own.m = 1.0 / body.inv_m
+            own.xx, own.yy, own.zz = 1.0, 1.0, 1.0
+            own.xy, own.xz, own.yz = 0.0, 0.0, 0.0
             if turns:
-                mass[p, 1], mass[p, 2], mass[p, 3] = inertia_times(body, 1.0, 0.0, 0.0)
-                _, mass[p, 4], mass[p, 5] = inertia_times(body, 0.0, 1.0, 0.0)
-                _, _, mass[p, 6] = inertia_times(body, 0.0, 0.0, 1.0)
+                own.xx, own.xy, own.xz = inertia_times(body, 1.0, 0.0, 0.0)
+                _, own.yy, own.yz = inertia_times(body, 0.0, 1.0, 0.0)
+                _, _, own.zz = inertia_times(body, 0.0, 0.0, 1.0)
 
     return kernel(assemble_mass, spec)
 
@@ -67,18 +66,18 @@ def make_minimise(spec: Spec):
     gather_torque, directional_spin = make_gather_torque(spec), make_directional_spin(spec)
     torque_slope, advance_spin = make_torque_slope(spec), make_advance_spin(spec)
 
-    def multiply(size, workspace, x, p, i):
+    def multiply(workspace, x, p, i):
         # Row i of block p of M x.
-        mass = workspace.mass
+        own = workspace.mass[p]
         at = DOF * p
         if i < 3:
-            return mass[p, 0] * x[at + i]
+            return own.m * x[at + i]
         wx, wy, wz = x[at + 3], x[at + 4], x[at + 5]
         if i == 3:
-            return mass[p, 1] * wx + mass[p, 2] * wy + mass[p, 3] * wz
+            return own.xx * wx + own.xy * wy + own.xz * wz
         if i == 4:
-            return mass[p, 2] * wx + mass[p, 4] * wy + mass[p, 5] * wz
-        return mass[p, 3] * wx + mass[p, 5] * wy + mass[p, 6] * wz
+            return own.xy * wx + own.yy * wy + own.yz * wz
+        return own.xz * wx + own.yz * wy + own.zz * wz
 
     multiply = kernel(multiply, spec)
 
@@ -94,7 +93,7 @@ def make_minimise(spec: Spec):
         gradient, rows = workspace.gradient, workspace.rows
         for p in range(size):
             for i in range(DOF):
-                gradient[DOF * p + i] = multiply(size, workspace, workspace.change, p, i)
+                gradient[DOF * p + i] = multiply(workspace, workspace.change, p, i)
         for c in range(count):
             contact = contacts[c]
             n, one, two = projected_impulse(contact, 0.0)
@@ -163,8 +162,8 @@ def make_minimise(spec: Spec):
         for p in range(size):
             for i in range(DOF):
                 s = workspace.step[DOF * p + i]
-                constant += s * multiply(size, workspace, workspace.change, p, i)
-                linear += s * multiply(size, workspace, workspace.step, p, i)
+                constant += s * multiply(workspace, workspace.change, p, i)
+                linear += s * multiply(workspace, workspace.step, p, i)
         length, low, high = 1.0, 0.0, -1.0
         left = slope
         for _ in range(LENGTHS):

@@ -9,11 +9,12 @@ s = 1/(1 + E gamma) and e = E s along the normal, where compliance gamma is; 1 a
 from __future__ import annotations
 
 from math import sqrt
+from typing import NamedTuple
 
 from ...block import make_relative_velocity
 from ...compile import inner, kernel
-from ...contact import make_smooth_velocity
-from ...effects.smooth_contact import by_roughness
+from ...contact import make_frictionless_velocity
+from ...effects.smooth_contact import by_friction
 from ...spec import Spec
 from ...spin_block import resists_turning
 from .torques import make_start_torques
@@ -27,7 +28,7 @@ def make_start(spec: Spec):
     stalls: shifts go on by the secant of their last two.
     """
     compliant = spec.has("compliance")
-    start_velocity = by_roughness(spec, _make_start_normal, _make_start_block)
+    start_velocity = by_friction(spec, _make_start_normal, _make_start_block)
     spins, start_torques = resists_turning(spec), make_start_torques(spec)
 
     def start(contacts, count, velocities, softness, at_rest, stalls):
@@ -49,7 +50,7 @@ def make_start(spec: Spec):
 
 def _make_start_normal(spec: Spec):
     tangents = spec.has("friction")
-    normal_velocity = make_smooth_velocity(spec)
+    normal_velocity = make_frictionless_velocity(spec)
 
     def start_normal(contact, va, vb, softness, at_rest, stalls):
         contact.velocity_n = normal_velocity(contact, va, vb) + contact.target
@@ -110,7 +111,7 @@ def _make_start_block(spec: Spec):
 
 def make_projected_impulse(spec: Spec):
     """Return `kernel(contact, length) -> (lambda_n, lambda_1, lambda_2)` so far along the step."""
-    return by_roughness(spec, _make_frictionless_impulse, _make_frictional_impulse)
+    return by_friction(spec, _make_frictionless_impulse, _make_frictional_impulse)
 
 
 def _make_frictionless_impulse(spec: Spec):
@@ -142,15 +143,26 @@ def _make_frictional_impulse(spec: Spec):
     return kernel(projected_impulse, spec)
 
 
+class Stiffness(NamedTuple):
+    """E' = -d lambda / d w of a contact, in its frame; symmetric [kg]."""
+
+    nn: float
+    n1: float
+    n2: float
+    t11: float
+    t12: float
+    t22: float
+
+
 def make_stiffness(spec: Spec):
-    """Return `kernel(contact) -> (h_nn, h_n1, h_n2, h_11, h_12, h_22)`: -d lambda / d w."""
-    return by_roughness(spec, _make_frictionless_stiffness, _make_frictional_stiffness)
+    """Return `kernel(contact) -> Stiffness`."""
+    return by_friction(spec, _make_frictionless_stiffness, _make_frictional_stiffness)
 
 
 def _make_frictionless_stiffness(spec: Spec):
     def frictionless_stiffness(contact):
         n = contact.scale * contact.start_n - contact.stiff_n * contact.velocity_n
-        return (contact.stiff_n if n > 0.0 else 0.0), 0.0, 0.0, 0.0, 0.0, 0.0
+        return Stiffness((contact.stiff_n if n > 0.0 else 0.0), 0.0, 0.0, 0.0, 0.0, 0.0)
 
     return kernel(frictionless_stiffness, spec)
 
@@ -164,17 +176,17 @@ def _make_frictional_stiffness(spec: Spec):
         two = contact.start_2 - e_t * contact.velocity_2
         r = sqrt(one * one + two * two)
         if r <= mu * n:
-            return e_n, 0.0, 0.0, e_t, 0.0, e_t
+            return Stiffness(e_n, 0.0, 0.0, e_t, 0.0, e_t)
         weight = mu * e_n / e_t
         n = (n + weight * r) / (1.0 + weight * mu)
         if n <= 0.0:
-            return 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+            return Stiffness(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
         # Along the ray of the cone's surface, and around it.
         u, v = one / r, two / r
         ray = e_n / (1.0 + weight * mu)
         around = e_t * mu * n / r
         along = mu * mu * ray - around
-        return (
+        return Stiffness(
             ray,
             mu * ray * u,
             mu * ray * v,
@@ -188,7 +200,7 @@ def _make_frictional_stiffness(spec: Spec):
 
 def make_fill_rows(spec: Spec):
     """Return `kernel(contact, rows)`: rows 0..2 of A (n, t1, t2) and 3..5 of B, as J has them."""
-    return by_roughness(spec, _make_fill_normal, _make_fill_block)
+    return by_friction(spec, _make_fill_normal, _make_fill_block)
 
 
 def _make_fill_block(spec: Spec):

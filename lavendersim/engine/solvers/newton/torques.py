@@ -10,7 +10,7 @@ allows, and velocities follow: the residual judges impulses and torques that are
 from __future__ import annotations
 
 from math import sqrt
-from typing import Any
+from typing import Any, NamedTuple
 
 from ...compile import inner, kernel
 from ...effects import made_once
@@ -142,22 +142,33 @@ def make_advance_spin(spec: Spec) -> Any:
     return kernel(advance_spin, spec) if resists_turning(spec) else None
 
 
+class Symmetric(NamedTuple):
+    """A symmetric 3x3 matrix, world axes."""
+
+    xx: float
+    xy: float
+    xz: float
+    yy: float
+    yz: float
+    zz: float
+
+
 @inner
-def _add(workspace, p, q, scale, xx, xy, xz, yy, yz, zz):
+def _add(workspace, p, q, scale, t):
     # += scale T on the turning of block row p and block column q <= p; p = q: its lower half.
     values, start = workspace.values, workspace.start
     offset = DOF * (q - workspace.first[p]) + 3
     x, y, z = start[DOF * p + 3] + offset, start[DOF * p + 4] + offset, start[DOF * p + 5] + offset
-    values[x] += scale * xx
-    values[y] += scale * xy
-    values[y + 1] += scale * yy
-    values[z] += scale * xz
-    values[z + 1] += scale * yz
-    values[z + 2] += scale * zz
+    values[x] += scale * t.xx
+    values[y] += scale * t.xy
+    values[y + 1] += scale * t.yy
+    values[z] += scale * t.xz
+    values[z + 1] += scale * t.yz
+    values[z + 2] += scale * t.zz
     if p != q:
-        values[x + 1] += scale * xy
-        values[x + 2] += scale * xz
-        values[y + 2] += scale * yz
+        values[x + 1] += scale * t.xy
+        values[x + 2] += scale * t.xz
+        values[y + 2] += scale * t.yz
 
 
 def make_add_torque_block(spec: Spec) -> Any:
@@ -190,18 +201,20 @@ def make_add_torque_block(spec: Spec) -> Any:
             # T = h_nn n n^T + t1 (h_11 t1 + h_12 t2)^T + t2 (h_12 t1 + h_22 t2)^T
             px, py, pz = h_11 * ax + h_12 * bx, h_11 * ay + h_12 * by, h_11 * az + h_12 * bz
             qx, qy, qz = h_12 * ax + h_22 * bx, h_12 * ay + h_22 * by, h_12 * az + h_22 * bz
-            xx = h_nn * nx * nx + ax * px + bx * qx
-            xy = h_nn * nx * ny + ax * py + bx * qy
-            xz = h_nn * nx * nz + ax * pz + bx * qz
-            yy = h_nn * ny * ny + ay * py + by * qy
-            yz = h_nn * ny * nz + ay * pz + by * qz
-            zz = h_nn * nz * nz + az * pz + bz * qz
+            t = Symmetric(
+                h_nn * nx * nx + ax * px + bx * qx,
+                h_nn * nx * ny + ax * py + bx * qy,
+                h_nn * nx * nz + ax * pz + bx * qz,
+                h_nn * ny * ny + ay * py + by * qy,
+                h_nn * ny * nz + ay * pz + by * qz,
+                h_nn * nz * nz + az * pz + bz * qz,
+            )
             if a >= 0:
-                _add(workspace, a, a, 1.0, xx, xy, xz, yy, yz, zz)
+                _add(workspace, a, a, 1.0, t)
             if b >= 0:
-                _add(workspace, b, b, 1.0, xx, xy, xz, yy, yz, zz)
+                _add(workspace, b, b, 1.0, t)
             if a >= 0 and b >= 0:
-                _add(workspace, max(a, b), min(a, b), -1.0, xx, xy, xz, yy, yz, zz)
+                _add(workspace, max(a, b), min(a, b), -1.0, t)
 
     return kernel(add_torque_block, spec) if resists_turning(spec) else None
 

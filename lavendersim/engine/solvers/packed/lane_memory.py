@@ -1,4 +1,4 @@
-"""Flat arrays enter, numbers side by side leave, and back: how sweeps read and write.
+"""How sweeps read and write flat arrays: a number, a vector, or eight of them side by side.
 
 Places are taken as they are given, without bounds or negative ones. A body's state is a line of the
 processor's cache, a vector, 0, another vector, 0. Those of eight bodies are read line by line, and

@@ -15,11 +15,12 @@ filled up with contacts of all 0.
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 
 from ...compile import kernel
+from ...records import ANGULAR_VELOCITY, F8, VELOCITY, Field, dtype
 from ...spec import Spec
 from .lane_memory import STRIDE
 from .lanes import WIDTH
@@ -40,6 +41,10 @@ LINE = 8  # numbers of a line of the processor's cache
 ALONE = -(-FIELDS // LINE) * LINE
 GROUP = FIELDS * WIDTH
 
+# Velocity of a body when the solve begins [m/s], [rad/s], and the lower triangle of L.
+START: Final[list[Field]] = [*VELOCITY, *ANGULAR_VELOCITY]
+FACTOR: Final[list[Field]] = [(name, F8) for name in ("xx", "yx", "yy", "zx", "zy", "zz")]
+
 
 class Packed(NamedTuple):
     """Arrays of one solve."""
@@ -49,8 +54,8 @@ class Packed(NamedTuple):
     second: np.ndarray  # the same of body B
     slot: np.ndarray  # (contacts,) int64, place of the contact visited k-th; by eights: 8 g + lane
     state: np.ndarray  # ((bodies + 1) * STRIDE,) v - v_0, 0, y, 0; the last for what fills up
-    start: np.ndarray  # (bodies, 6) v_0, omega_0
-    factor: np.ndarray  # (bodies, 6) L by rows: xx, yx, yy, zx, zy, zz
+    start: np.ndarray  # (bodies,) START: v_0, omega_0
+    factor: np.ndarray  # (bodies,) FACTOR: L
     group_of: np.ndarray  # (bodies,) int64, last group with a contact of the body
 
 
@@ -63,8 +68,8 @@ def allocate_packed(bodies: int, contacts: int, eight: bool) -> Packed:
         np.zeros(slots, np.int64),
         np.zeros(contacts, np.int64),
         _lines((bodies + 1) * STRIDE),
-        np.zeros((bodies, 6)),
-        np.zeros((bodies, 6)),
+        np.zeros(bodies, dtype(START)),
+        np.zeros(bodies, dtype(FACTOR)),
         np.zeros(bodies, np.int64),
     )
 

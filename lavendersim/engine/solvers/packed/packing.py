@@ -1,4 +1,4 @@
-"""Contacts and bodies enter, packed rows leave (`layout`); and back, when sweeps are done."""
+"""Packing contacts and bodies for a solve (`layout`), and back when its sweeps are done."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 
 from ...block import make_slip_velocity
 from ...compile import inner, kernel
-from ...effects.smooth_contact import has_smooth
+from ...effects.smooth_contact import has_frictionless
 from ...spec import Spec
 from .lane_memory import STRIDE, put_one, take_one
 from .lanes import WIDTH
@@ -52,7 +52,8 @@ def _factorise(v, factor):
     inverse = 1.0 / yy if yy > 0.0 else 0.0
     zy = (v.jyz - zx * yx) * inverse
     zz = sqrt(max(v.jzz - zx * zx - zy * zy, 0.0))
-    factor[0], factor[1], factor[2], factor[3], factor[4], factor[5] = xx, yx, yy, zx, zy, zz
+    factor.xx, factor.yx, factor.yy = xx, yx, yy
+    factor.zx, factor.zy, factor.zz = zx, zy, zz
 
 
 def _make_put_geometry(spec: Spec, eight: bool) -> Any:
@@ -66,35 +67,35 @@ def _make_put_geometry(spec: Spec, eight: bool) -> Any:
 
     put_axis = kernel(put_axis, spec)
 
-    def put_turn(rows, at, factor, i, side, x, y, z):
-        # side L^T (x, y, z) of body i
+    def put_turn(rows, at, own, side, x, y, z):
+        # side L^T (x, y, z) of a body whose factor is `own`
         put_axis(
             rows,
             at,
-            side * (factor[i, 0] * x + factor[i, 1] * y + factor[i, 3] * z),
-            side * (factor[i, 2] * y + factor[i, 4] * z),
-            side * (factor[i, 5] * z),
+            side * (own.xx * x + own.yx * y + own.zx * z),
+            side * (own.yy * y + own.zy * z),
+            side * (own.zz * z),
         )
 
     put_turn = kernel(put_turn, spec)
 
-    def put_turns(rows, at, factor, i, side, contact, rx, ry, rz):
-        # side L^T (r x axis) of body i for n, t1, t2
+    def put_turns(rows, at, own, side, contact, rx, ry, rz):
+        # side L^T (r x axis) of that body for n, t1, t2
         x, y, z = contact.nx, contact.ny, contact.nz
-        put_turn(rows, at, factor, i, side, ry * z - rz * y, rz * x - rx * z, rx * y - ry * x)
+        put_turn(rows, at, own, side, ry * z - rz * y, rz * x - rx * z, rx * y - ry * x)
         x, y, z = contact.t1x, contact.t1y, contact.t1z
         at += AXIS * step
-        put_turn(rows, at, factor, i, side, ry * z - rz * y, rz * x - rx * z, rx * y - ry * x)
+        put_turn(rows, at, own, side, ry * z - rz * y, rz * x - rx * z, rx * y - ry * x)
         x, y, z = contact.t2x, contact.t2y, contact.t2z
         at += AXIS * step
-        put_turn(rows, at, factor, i, side, ry * z - rz * y, rz * x - rx * z, rx * y - ry * x)
+        put_turn(rows, at, own, side, ry * z - rz * y, rz * x - rx * z, rx * y - ry * x)
 
     return put_axis, put_turn, kernel(put_turns, spec)
 
 
 def _make_pack_contact(spec: Spec, eight: bool) -> Any:
     """Return `kernel(contact, velocities, rows, at, factor)`: every field of a contact."""
-    compliant, smooth = spec.has("compliance"), has_smooth(spec)
+    compliant, frictionless = spec.has("compliance"), has_frictionless(spec)
     slip_velocity = make_slip_velocity(spec)
     put_axis, put_turn, put_turns = _make_put_geometry(spec, eight)
     step = WIDTH if eight else 1
@@ -110,8 +111,8 @@ def _make_pack_contact(spec: Spec, eight: bool) -> Any:
         put_axis(rows, at + T1 * step, contact.t1x, contact.t1y, contact.t1z)
         put_axis(rows, at + T2 * step, contact.t2x, contact.t2y, contact.t2z)
         turn_a, turn_b = at + TURN_A * step, at + TURN_B * step
-        put_turns(rows, turn_a, factor, a, -1.0, contact, contact.rax, contact.ray, contact.raz)
-        put_turns(rows, turn_b, factor, b, 1.0, contact, contact.rbx, contact.rby, contact.rbz)
+        put_turns(rows, turn_a, factor[a], -1.0, contact, contact.rax, contact.ray, contact.raz)
+        put_turns(rows, turn_b, factor[b], 1.0, contact, contact.rbx, contact.rby, contact.rbz)
         put(rows, at, INV_M_A, contact.inv_m_a)
         put(rows, at, INV_M_B, contact.inv_m_b)
         v_n, w_1, w_2 = slip_velocity(contact, velocities[a], velocities[b])
@@ -133,16 +134,16 @@ def _make_pack_contact(spec: Spec, eight: bool) -> Any:
         put(rows, at, LAMBDA_N, contact.lambda_n)
         put(rows, at, LAMBDA_1, contact.lambda_1)
         put(rows, at, LAMBDA_2, contact.lambda_2)
-        if smooth:
-            if contact.rough == 0:
+        if frictionless:
+            if contact.frictional == 0:
                 # It has a normal alone, and levers that leave out round-off: no impulse across.
                 put(rows, at, I_11, 0.0)
                 put(rows, at, I_12, 0.0)
                 put(rows, at, I_22, 0.0)
                 x, y, z = contact.lever_ax, contact.lever_ay, contact.lever_az
-                put_turn(rows, turn_a, factor, a, -1.0, x, y, z)
+                put_turn(rows, turn_a, factor[a], -1.0, x, y, z)
                 x, y, z = contact.lever_bx, contact.lever_by, contact.lever_bz
-                put_turn(rows, turn_b, factor, b, 1.0, x, y, z)
+                put_turn(rows, turn_b, factor[b], 1.0, x, y, z)
 
     return kernel(pack_contact, spec)
 
@@ -152,13 +153,13 @@ def _make_pack_bodies(spec: Spec) -> Any:
 
     def pack_bodies(bodies, velocities, packed):
         for i in range(bodies.shape[0]):
-            v, start = velocities[i], packed.start
-            start[i, 0], start[i, 1], start[i, 2] = v.vx, v.vy, v.vz
-            start[i, 3], start[i, 4], start[i, 5] = v.wx, v.wy, v.wz
-            for k in range(6):
-                packed.factor[i, k] = 0.0
+            v, start, factor = velocities[i], packed.start[i], packed.factor[i]
+            start.vx, start.vy, start.vz = v.vx, v.vy, v.vz
+            start.wx, start.wy, start.wz = v.wx, v.wy, v.wz
+            factor.xx, factor.yx, factor.yy = 0.0, 0.0, 0.0
+            factor.zx, factor.zy, factor.zz = 0.0, 0.0, 0.0
             if bodies[i].inv_m > 0.0:
-                _factorise(v, packed.factor[i])
+                _factorise(v, factor)
             packed.group_of[i] = -1
             for k in range(STRIDE):
                 packed.state[i * STRIDE + k] = 0.0
@@ -228,15 +229,15 @@ def make_unpack(spec: Spec, eight: bool) -> Any:
             contact.lambda_2 = take_one(packed.rows, at + LAMBDA_2 * step)
         for i in range(bodies.shape[0]):
             if bodies[i].inv_m > 0.0:
-                v, at, start, factor = velocities[i], i * STRIDE, packed.start, packed.factor
-                v.vx = start[i, 0] + take_one(packed.state, at)
-                v.vy = start[i, 1] + take_one(packed.state, at + 1)
-                v.vz = start[i, 2] + take_one(packed.state, at + 2)
+                v, at, start, own = velocities[i], i * STRIDE, packed.start[i], packed.factor[i]
+                v.vx = start.vx + take_one(packed.state, at)
+                v.vy = start.vy + take_one(packed.state, at + 1)
+                v.vz = start.vz + take_one(packed.state, at + 2)
                 x = take_one(packed.state, at + 4)
                 y = take_one(packed.state, at + 5)
                 z = take_one(packed.state, at + 6)
-                v.wx = start[i, 3] + factor[i, 0] * x
-                v.wy = start[i, 4] + factor[i, 1] * x + factor[i, 2] * y
-                v.wz = start[i, 5] + factor[i, 3] * x + factor[i, 4] * y + factor[i, 5] * z
+                v.wx = start.wx + own.xx * x
+                v.wy = start.wy + own.yx * x + own.yy * y
+                v.wz = start.wz + own.zx * x + own.zy * y + own.zz * z
 
     return kernel(unpack, spec)

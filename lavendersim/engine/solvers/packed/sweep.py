@@ -1,4 +1,4 @@
-"""Packed contacts enter, impulses leave: the update of `row_update`, one at a time or eight.
+"""Gauss-Seidel sweeps over packed contacts: the update of `row_update`, one at a time or eight.
 
     w = J v + b + gamma lambda_n e_n        v_B - v_A in the contact's axes, and three turns of each
     lambda_n <- max(0, lambda_n - w_n / (k_n + gamma)),    w_t follows it
@@ -76,13 +76,13 @@ from .packing import make_pack, make_unpack
 
 def can_pack(spec: Spec) -> bool:
     """Whether contacts of this engine are blocks of a normal and a disc, and nothing else."""
-    rubs = spec.has("friction") and not resists_turning(spec)
+    frictional = spec.has("friction") and not resists_turning(spec)
     plain = not spec.over_relaxation and spec.order != "symmetric"
-    return rubs and plain and spec.friction_cone == "disc" and spec.operator == "bodies"
+    return frictional and plain and spec.friction_cone == "disc" and spec.operator == "bodies"
 
 
 def _make_visit(spec: Spec, eight: bool) -> Any:
-    """Return `kernel(rows, at, state, first, second, slot, most) -> most`.
+    """Return `kernel(packed, at, slot, most) -> most`.
 
     One projected update of the contact, or of the group, whose fields begin at `at`; most: the
     greatest change so far [m/s].
@@ -108,7 +108,9 @@ def _make_visit(spec: Spec, eight: bool) -> Any:
 
     axes = kernel(axes, spec)
 
-    def visit(rows, at, state, first, second, slot, most):
+    def visit(packed, at, slot, most):
+        rows, state = packed.rows, packed.state
+        first, second = packed.first, packed.second
         va, ya = take_state(state, first, slot)
         vb, yb = take_state(state, second, slot)
         n, t1, t2 = axes(rows, at, N)
@@ -165,15 +167,13 @@ def make_sweep_packed(spec: Spec, eight: bool) -> Any:
     def sweep_singly(packed, slots):
         most = 0.0
         for k in range(slots):
-            most = visit(packed.rows, k * ALONE, packed.state, packed.first, packed.second, k, most)
+            most = visit(packed, k * ALONE, k, most)
         return most
 
     def sweep_by_eight(packed, slots):
         most = zeros()
         for g in range(slots // WIDTH):
-            most = visit(
-                packed.rows, g * GROUP, packed.state, packed.first, packed.second, g * WIDTH, most
-            )
+            most = visit(packed, g * GROUP, g * WIDTH, most)
         greatest = lane(most, 0)
         for k in range(1, WIDTH):
             greatest = greater(lane(most, k), greatest)
