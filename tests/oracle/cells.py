@@ -7,22 +7,8 @@ from collections.abc import Mapping
 from typing import Any
 
 from lavendersim.cell import CellConfig
+from tests.made_cells import body_data, made_cell
 
-BODY: dict[str, Any] = {
-    "fixed": False,
-    "kinematic": False,
-    "mass": None,
-    "density": None,
-    "inertia": None,
-    "surface": {},
-    "surface_velocity": [0.0, 0.0, 0.0],
-    "position": [0.0, 0.0, 0.0],
-    "release": None,
-    "orientation": [1.0, 0.0, 0.0, 0.0],
-    "velocity": [0.0, 0.0, 0.0],
-    "angular_velocity": [0.0, 0.0, 0.0],
-    "drag": {},
-}
 EVENT: dict[str, Any] = {
     "scale_mass": None,
     "teleport": None,
@@ -30,29 +16,6 @@ EVENT: dict[str, Any] = {
     "angular_velocity": None,
     "contact_cache": "keep",
     "remove": False,
-}
-NUMERICS: dict[str, Any] = {
-    "timestep": "1/100",
-    "solver": "projected_gauss_seidel",
-    "sweeps": 22,
-    "over_relaxation": 1.0,
-    "order": "coloured",
-    "tolerance": None,
-    "warm_start": True,
-    "stabilisation_gain": 0.0,
-    "slop": 0.0,
-    "projection": 0.0,
-    "projection_sweeps": 22,
-    "restitution_threshold": 2.0,
-    "cache_distance": 0.02,
-    "cache_normal_cosine": 0.95,
-    "speculative": False,
-    "impacts": "captured",
-    "integrator": "semi_implicit_euler",
-    "friction_cone": "disc",
-    "sleeping": False,
-    "sleep_speed": 0.005,
-    "sleep_time": 0.5,
 }
 
 
@@ -70,8 +33,9 @@ def inertia(shape: Mapping[str, Any], mass: float) -> list[float]:
 
 def body(entry: Mapping[str, Any]) -> dict[str, Any]:
     """Return one body; a plane, and a body without a mass, is fixed."""
-    filled = BODY | {"fixed": "mass" not in entry} | dict(entry)
-    shape = filled["shape"] = dict(filled["shape"])
+    given = {"fixed": "mass" not in entry, "inertia": None, "mass": None} | dict(entry)
+    filled = body_data(**given)
+    shape = filled["shape"]
     if shape["kind"] in ("hull", "compound"):
         shape |= {"centre": [0.0, 0.0, 0.0], "axes": [1.0, 0.0, 0.0, 0.0]} | shape
     if shape["kind"] == "hull":
@@ -90,17 +54,8 @@ def cell(said: Mapping[str, Any]) -> CellConfig:
     scene = {"gravity": [0.0, 0.0, -9.81], "forces": []} | dict(said["scene"])
     scene["bodies"] = {name: body(entry) for name, entry in scene["bodies"].items()}
     scene["forces"] = [{"from": 0.0, "to": math.inf} | dict(force) for force in scene["forces"]]
-    return CellConfig.from_dict(
-        {
-            "scene": scene,
-            "events": [
-                event if "timestep" in event else EVENT | dict(event)
-                for event in said.get("events", ())
-            ],
-            "duration": 1.0,
-            "numerics": NUMERICS | dict(said.get("numerics", {})),
-            "record": {"residuals": "all", "problems": "none"},
-            "effects": {"force": False, "switches": {}},
-            "study": {"mistake": "none"},
-        }
-    )
+    events = [
+        event if "timestep" in event else EVENT | dict(event) for event in said.get("events", ())
+    ]
+    numerics = {"timestep": "1/100"} | dict(said.get("numerics", {}))
+    return made_cell(**scene, numerics=numerics, events=events)
