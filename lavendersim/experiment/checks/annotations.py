@@ -65,14 +65,15 @@ def model_for(annotation: Any, node: Node | None) -> Model | None:
     return models[0] if len(models) == 1 else None
 
 
-def _literals(annotation: Any) -> tuple[Any, ...]:
+def literals(annotation: Any) -> tuple[Any, ...]:
+    """Return the values of a Literal; nothing of any other type."""
     return get_args(annotation) if get_origin(annotation) is Literal else ()
 
 
 def kinds(model: Model) -> tuple[str, ...]:
     """Return the values of `kind` that choose this model."""
     info = model.model_fields.get("kind")
-    return _literals(info.annotation) if info is not None else ()
+    return literals(info.annotation) if info is not None else ()
 
 
 def below(annotation: Any, path: Path) -> Any:

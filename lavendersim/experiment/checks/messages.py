@@ -6,7 +6,6 @@ reported at the key, a bad value at the value, a missing key at the mapping that
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from typing import Any
 
@@ -22,6 +21,8 @@ from lavendersim.experiment.checks.annotations import (
     fields,
     is_model,
     kinds,
+    literals,
+    names_of,
 )
 from lavendersim.experiment.text.node import BROKEN, Broken, Mark, Node, Path, key_mark
 from lavendersim.experiment.text.place import missing_key, name_of, place_of
@@ -123,14 +124,24 @@ def _sentence(
         rule = 'use up to 64 letters, digits, "_" and "-", starting with a letter'
         return key_mark(parent, str(path[-1])), f"{quoted(path[-1])} cannot be a name; {rule}"
     if kind == "union_tag_not_found":
-        return node.mark, missing_key("kind", path, f"one of {', '.join(_kinds_at(models, path))}")
+        return node.mark, missing_key("kind", path, f"one of {', '.join(_forms(models, path)[1])}")
     if kind == "union_tag_invalid":
-        tag = node.get("kind") or node
+        tag, valid = node.get("kind") or node, _forms(models, path)[1]
         if tag.text is None:
-            return tag.mark, f"kind: expected one of {_tags(context)}, found {found(tag.data)}"
-        hint = nearest(tag.text, _tags(context).split(", "))
+            return tag.mark, f"kind: expected one of {', '.join(valid)}, found {found(tag.data)}"
+        hint = nearest(tag.text, valid)
         return tag.mark, f"unknown kind {quoted(tag.text)} in {place_of(path)}{hint}"
+    if kind == "literal_error":
+        return node.mark, f"{name}: {_choice(_forms(models, path)[0], value)}"
     return node.mark, _value_sentence(kind, context, value, name, node)
+
+
+def _choice(valid: list[str], value: Any) -> str:
+    close = near(value, valid) if isinstance(value, str) else None
+    hint = f'; did you mean "{close}"?' if close else ""
+    if isinstance(value, bool) and valid == _SWITCHED:
+        hint = f"; write {_SWITCHED[not value]}"
+    return f"expected {' or '.join(valid)}, found {found(value)}{hint}"
 
 
 def _value_sentence(kind: str, context: Mapping[str, Any], value: Any, name: str, at: Node) -> str:
@@ -138,13 +149,6 @@ def _value_sentence(kind: str, context: Mapping[str, Any], value: Any, name: str
         return f"{name}: {context['sentence']}"
     if kind == "form":
         return f"{name}: expected {context['expected']}, found {found(value)}"
-    if kind == "literal_error":
-        valid = re.findall(r"'([^']*)'", str(context["expected"]))
-        close = near(value, valid) if isinstance(value, str) else None
-        hint = f'; did you mean "{close}"?' if close else ""
-        if isinstance(value, bool) and valid == _SWITCHED:
-            hint = f"; write {_SWITCHED[not value]}"
-        return f"{name}: expected {' or '.join(valid)}, found {found(value)}{hint}"
     if kind in _TYPES:
         sentence = f"{name}: expected {_TYPES[kind]}, found {found(value)}"
         if kind == "string_type" and isinstance(value, int | float):
@@ -170,17 +174,15 @@ def _keys_at(models: Mapping[Path, Model], path: Path) -> dict[str, FieldInfo]:
     return fields(models[path]) if path in models else {}
 
 
-def _kinds_at(models: Mapping[Path, Model], path: Path) -> list[str]:
-    """Return the kinds that a mapping may have, from the field of the model that holds it."""
+def _forms(models: Mapping[Path, Model], path: Path) -> tuple[list[str], list[str]]:
+    """Return the texts that a value may be, and the kinds, from the model that it stands in."""
     holder = next(path[:k] for k in range(len(path) - 1, -1, -1) if path[:k] in models)
-    field, *rest = path[len(holder) :]
-    annotation = below(annotation_of(fields(models[holder])[str(field)]), tuple(rest))
-    forms = [member for member, _ in alternatives(annotation) if is_model(member)]
-    return [kind for form in forms for kind in kinds(form)]
-
-
-def _tags(context: Mapping[str, Any]) -> str:
-    return ", ".join(re.findall(r"'([^']*)'", str(context.get("expected_tags", ""))))
+    key, *rest = path[len(holder) :]
+    info = fields(models[holder]).get(str(key))
+    annotation = annotation_of(info) if info is not None else names_of(models[holder])
+    members = [member for member, _ in alternatives(below(annotation, tuple(rest)))]
+    texts = [text for member in members for text in literals(member)]
+    return texts, [kind for member in members if is_model(member) for kind in kinds(member)]
 
 
 def _items(count: int) -> str:
