@@ -18,7 +18,12 @@ from .effects.smooth_contact import by_friction, has_frictionless
 from .records import SPHERE
 from .rotation import inverse_inertia_times
 from .spec import Spec
-from .spin_block import make_apply_held, make_complete_spin, make_turns_hard, resists_turning
+from .spin_block import (
+    make_apply_start_torques,
+    make_complete_spin,
+    make_resists_turning,
+    resists_turning,
+)
 
 
 @inner
@@ -162,7 +167,7 @@ def make_apply_all(spec: Spec):
 def make_apply_start(spec: Spec):
     """Return `kernel(contact, va, vb)`: apply the impulses the contact starts the solve with."""
     friction, apply_block = spec.has("friction"), make_apply_block(spec)
-    spins, apply_held = resists_turning(spec), make_apply_held(spec)
+    spins, apply_start_torques = resists_turning(spec), make_apply_start_torques(spec)
 
     def apply_start(contact, va, vb):
         one, two = 0.0, 0.0
@@ -170,7 +175,7 @@ def make_apply_start(spec: Spec):
             one, two = contact.lambda_1, contact.lambda_2
         apply_block(contact, va, vb, contact.lambda_n, one, two)
         if spins:
-            apply_held(contact, va, vb)
+            apply_start_torques(contact, va, vb)
 
     return kernel(apply_start, spec)
 
@@ -204,7 +209,7 @@ def make_append_contact(spec: Spec, capture):
     complete_block: Any = make_complete_block(spec) if friction else None
     spins = resists_turning(spec)
     complete_spin: Any = make_complete_spin(spec) if spins else None
-    turns_hard: Any = make_turns_hard(spec) if spins else None
+    pair_resists_turning: Any = make_resists_turning(spec) if spins else None
     complete_row: Any = make_complete_row(spec) if frictionless else None
     preparing = made_by(spec, "prepare")
     prepares, prepare = bool(preparing), chain(preparing, spec)
@@ -220,7 +225,7 @@ def make_append_contact(spec: Spec, capture):
             frictional = pair.friction > 0.0
             if spins:
                 complete_spin(contact, va, vb, pair)
-                frictional = frictional or turns_hard(pair)
+                frictional = frictional or pair_resists_turning(pair)
             if frictionless:
                 contact.frictional = 1 if frictional else 0
         if frictionless:

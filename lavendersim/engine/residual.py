@@ -64,10 +64,10 @@ def _make_frictional_residual(spec: Spec):
 
     def block_residual(contact, va, vb):
         v_n, v_1, v_2 = slip_velocity(contact, va, vb)
-        held_1, held_2 = contact.k_t * contact.lambda_1, contact.k_t * contact.lambda_2
+        scaled_1, scaled_2 = contact.k_t * contact.lambda_1, contact.k_t * contact.lambda_2
         limit = contact.k_t * contact.mu * contact.lambda_n
-        new_1, new_2 = project(held_1 - v_1, held_2 - v_2, limit)
-        new_1, new_2 = new_1 - held_1, new_2 - held_2
+        new_1, new_2 = project(scaled_1 - v_1, scaled_2 - v_2, limit)
+        new_1, new_2 = new_1 - scaled_1, new_2 - scaled_2
         r_t = sqrt(new_1 * new_1 + new_2 * new_2)
         if spins:
             r_s = spin_residual(contact, va, vb)

@@ -3,7 +3,7 @@
     omega = omega_B - omega_A                      relative angular velocity [rad/s]
     psi = n psi_n + t1 psi_1 + t2 psi_2            angular impulse on B; A gets -psi [N m s]
     S = I_A^-1 + I_B^-1                            what psi does to omega [1/(kg m^2)]
-Torsional friction answers omega about n, rolling friction omega in the tangent plane; each is an
+Torsional friction opposes omega about n, rolling friction omega in the tangent plane; each is an
 effect of its own that brings its part of psi, and both live in the frame of friction's block.
 
 Residuals and changes are in m/s: a turning rate counts as the speed it gives a centre of mass that
@@ -35,11 +35,11 @@ def _spin_response(va, vb, x, y, z):
     return ax + bx, ay + by, az + bz
 
 
-def make_turns_hard(spec: Spec) -> Any:
+def make_resists_turning(spec: Spec) -> Any:
     """Return `kernel(pair) -> whether its contacts resist turning`."""
     torsional, rolling = spec.has("torsional_friction"), spec.has("rolling_friction")
 
-    def turns_hard(pair):
+    def pair_resists_turning(pair):
         resists = False
         if torsional:
             resists = pair.torsional_friction > 0.0
@@ -47,7 +47,7 @@ def make_turns_hard(spec: Spec) -> Any:
             resists = resists or pair.rolling_friction > 0.0
         return resists
 
-    return kernel(turns_hard, spec)
+    return kernel(pair_resists_turning, spec)
 
 
 def make_complete_spin(spec: Spec) -> Any:
@@ -97,14 +97,14 @@ def make_apply_spin(spec: Spec) -> Any:
     return kernel(apply_spin, spec)
 
 
-def make_apply_held(spec: Spec) -> Any:
+def make_apply_start_torques(spec: Spec) -> Any:
     """Return `kernel(contact, va, vb)`: apply the psi that the contact starts the solve with."""
     if not resists_turning(spec):
         return None
     torsional, rolling = spec.has("torsional_friction"), spec.has("rolling_friction")
     apply_spin = make_apply_spin(spec)
 
-    def apply_held(contact, va, vb):
+    def apply_start_torques(contact, va, vb):
         n, one, two = 0.0, 0.0, 0.0
         if torsional:
             n = contact.psi_n
@@ -112,7 +112,7 @@ def make_apply_held(spec: Spec) -> Any:
             one, two = contact.psi_1, contact.psi_2
         apply_spin(contact, va, vb, n, one, two)
 
-    return kernel(apply_held, spec)
+    return kernel(apply_start_torques, spec)
 
 
 def make_solve_spin(spec: Spec) -> Any:
