@@ -4,7 +4,7 @@ Of contact c with bodies A and B, in its frame (n, t1, t2) of unit vectors f_i,
     u_i = f_i . (v_B - v_A) + (r_B x f_i) . omega_B - (r_A x f_i) . omega_A
     W_cd[i, j] = sum over the movable bodies k that c and d share, with signs -1 on A and +1 on B,
         s_c s_d (f_ci . f_dj / m_k + (r_ck x f_ci) . I_k^-1 (r_dk x f_dj))
-Contacts made ahead of touching are rows like the others: the solver sees them so. Surfaces that
+Speculative contacts are rows like the others: the solver sees them so. Surfaces that
 move by themselves add their velocity to `free`.
 
 A frictionless contact has no tangential impulse. Without any friction an engine knows no lever and

@@ -2,7 +2,7 @@
 
     v = (v_B + omega_B x r_B) - (v_A + omega_A x r_A)        relative velocity, world axes
     p = n lambda_n + t1 lambda_1 + t2 lambda_2               impulse on B, world axes; A gets -p
-Levers end on each body's own surface, so that a contact made ahead of touching has the levers it
+Levers end on each body's own surface, so that a speculative contact has the levers it
 will have when the surfaces meet.
 """
 
@@ -142,7 +142,7 @@ def make_apply_vector(spec: Spec):
 def make_complete_block(spec: Spec):
     """Return `kernel(contact, body_a, body_b, va, vb, pair) -> k_n`: frame, levers and the 3x3."""
     moving_surface, surface_velocity = made_once(spec, "surface_velocity")
-    ahead = spec.has("fast_bodies")
+    swept = spec.has("fast_bodies")
 
     def complete_block(contact, body_a, body_b, va, vb, pair):
         half = 0.5 * contact.phi
@@ -153,10 +153,10 @@ def make_complete_block(spec: Spec):
         contact.rbx = contact.x + x - body_b.x
         contact.rby = contact.y + y - body_b.y
         contact.rbz = contact.z + z - body_b.z
-        if ahead:
-            contact.rbx -= contact.beside_x
-            contact.rby -= contact.beside_y
-            contact.rbz -= contact.beside_z
+        if swept:
+            contact.rbx -= contact.tangential_x
+            contact.rby -= contact.tangential_y
+            contact.rbz -= contact.tangential_z
         set_tangents(contact)
         contact.mu = pair.friction
         contact.lambda_1, contact.lambda_2 = 0.0, 0.0

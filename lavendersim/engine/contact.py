@@ -182,14 +182,18 @@ def make_apply_start(spec: Spec):
 
 def make_complete_row(spec: Spec):
     """Return `kernel(contact, body_a, body_b) -> k_n` of a row without friction: its levers."""
-    torque, ahead = spec.has("contact_torque"), spec.has("fast_bodies")
+    torque, swept = spec.has("contact_torque"), spec.has("fast_bodies")
 
     def complete_row(contact, body_a, body_b):
         k_n = body_a.inv_m + body_b.inv_m
         if torque:
             bx, by, bz = body_b.x, body_b.y, body_b.z
-            if ahead:
-                bx, by, bz = bx + contact.beside_x, by + contact.beside_y, bz + contact.beside_z
+            if swept:
+                bx, by, bz = (
+                    bx + contact.tangential_x,
+                    by + contact.tangential_y,
+                    bz + contact.tangential_z,
+                )
             k_n += add_levers(contact, body_a, body_b, bx, by, bz)
         return k_n
 

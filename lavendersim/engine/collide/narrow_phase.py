@@ -63,7 +63,7 @@ def make(spec: Spec):
     move make none; with `sleeping` there are such pairs.
     """
     manifold = make_manifold(spec, spec.shape_pairs)
-    ahead = spec.has("speculative")
+    speculative = spec.has("speculative")
     sweeps = spec.has("fast_bodies")
     is_fast: Any = make_is_fast(spec) if sweeps else None
     swept_manifold: Any = make_swept_manifold(spec, manifold) if sweeps else None
@@ -87,7 +87,7 @@ def make(spec: Spec):
                     continue
             fast, until_impact = False, 0.0
             d = Vec3(0.0, 0.0, 0.0)
-            if ahead:
+            if speculative:
                 ma, mb = motion[owner_i], motion[owner_j]
                 margin = TOUCHING + ma.reach + mb.reach
             if sweeps:
@@ -111,11 +111,11 @@ def make(spec: Spec):
                 contact.nx, contact.ny, contact.nz = normal[0], normal[1], normal[2]
                 contact.phi = point.phi
                 if sweeps:
-                    # Across n B's surface is met where B will be then.
+                    # Across n B's surface is touched where B will be at the impact.
                     along = d.x * normal[0] + d.y * normal[1] + d.z * normal[2]
-                    contact.beside_x = until_impact * (d.x - along * normal[0])
-                    contact.beside_y = until_impact * (d.y - along * normal[1])
-                    contact.beside_z = until_impact * (d.z - along * normal[2])
+                    contact.tangential_x = until_impact * (d.x - along * normal[0])
+                    contact.tangential_y = until_impact * (d.y - along * normal[1])
+                    contact.tangential_z = until_impact * (d.z - along * normal[2])
                 total += 1
         return total
 

@@ -2,7 +2,7 @@
 
 A shape is its core, grown by a radius: a sphere is a point, a capsule a segment, grown by theirs;
 boxes, cylinders and hulls are their own cores. A new convex shape is one file in `shapes` that
-declares a `Shape`, and its name in `shapes.SHAPES`; which it collides with is said in `pairs`.
+declares a `Shape`, and its name in `shapes.SHAPES`; which shapes it collides with: `pairs`.
 """
 
 from __future__ import annotations

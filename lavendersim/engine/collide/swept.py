@@ -50,8 +50,8 @@ APPROACHES, ACROSS = 30, 1e-3
 ALIGNED = 0.999
 
 
-class Meeting(NamedTuple):
-    """Where two bodies meet or are nearest."""
+class Impact(NamedTuple):
+    """Where two bodies touch first, or are nearest."""
 
     t: float  # share of the displacement, 0 ... 1
     gap: float  # there [m]; they touch when it is TOUCHING at most
@@ -113,20 +113,20 @@ def make_gap(spec: Spec, manifold):
     return kernel(general_gap, spec)
 
 
-def make_meeting(spec: Spec, manifold):
-    """Return `kernel(kind, a, b, d, scratch) -> Meeting`: move B along d to where it touches A.
+def make_find_impact(spec: Spec, manifold):
+    """Return `kernel(kind, a, b, d, scratch) -> Impact`: move B along d to where it touches A.
 
     Or to where it is nearest.
     """
     gap_at = make_gap(spec, manifold)
 
-    def meeting(kind, a, b, d, scratch):
+    def find_impact(kind, a, b, d, scratch):
         start = position(b)
         gap, n = gap_at(kind, a, b, scratch)
         closing = -dot(d, n)
         before, t = 0.0, 0.0
         for _ in range(ADVANCES):
-            # Asked so that numbers that are none end it.
+            # Written so that a NaN ends it.
             if not (gap > TOUCHING and closing > 0.0 and t < 1.0):
                 break
             before, t = t, min(t + (gap - 0.5 * TOUCHING) / closing, 1.0)
@@ -148,19 +148,19 @@ def make_meeting(spec: Spec, manifold):
                 put_position(b, plus_scaled(start, t, d))
                 gap, n = gap_at(kind, a, b, scratch)
                 closing = -dot(d, n)
-        return Meeting(t, gap, n)
+        return Impact(t, gap, n)
 
-    return kernel(meeting, spec)
+    return kernel(find_impact, spec)
 
 
 @inner
-def put_back_to_start(point, met, n, along):
-    """Make a point of the manifold where bodies meet one of the start of the step.
+def move_to_start(point, impact, n, along):
+    """Make a point of the manifold at the impact one of the start of the step.
 
     along: n . d, with n the normal of the manifold.
     """
-    phi = point.phi + max(-met.t * along, 0.0)
-    if met.gap > TOUCHING:  # what passes is not to be stopped, were the normal a little askew
+    phi = point.phi + max(-impact.t * along, 0.0)
+    if impact.gap > TOUCHING:  # what passes is not to be stopped, were the normal a little askew
         phi = max(phi, TOUCHING - along)
     place(point, plus_scaled(point, 0.5 * (phi - point.phi), n), phi, point.feature)
 
@@ -172,15 +172,15 @@ def make_swept_manifold(spec: Spec, manifold):
     A in the step [m]; t: the share of it up to the impact, 0 for bodies that touch already. margin:
     TOUCHING at least, see above. The rows of a and b are left as they were.
     """
-    meeting, gap_at = make_meeting(spec, manifold), make_gap(spec, manifold)
+    find_impact, gap_at = make_find_impact(spec, manifold), make_gap(spec, manifold)
 
     def swept_manifold(kind, a, b, d, margin, scratch):
         points, normal = scratch.manifold.points, scratch.manifold.normal
         start = position(b)
-        met = meeting(kind, a, b, d, scratch)
-        t, n = met.t, met.normal
+        impact = find_impact(kind, a, b, d, scratch)
+        t, n = impact.t, impact.normal
         count = 0
-        if met.gap <= margin:
+        if impact.gap <= margin:
             count = manifold(kind, a, b, margin, scratch)
             if t > 0.0 and dot(n, n) > 0.5:
                 cosine = n.x * normal[0] + n.y * normal[1] + n.z * normal[2]
@@ -196,7 +196,7 @@ def make_swept_manifold(spec: Spec, manifold):
         n = Vec3(normal[0], normal[1], normal[2])
         along = dot(d, n)
         for k in range(count):
-            put_back_to_start(points[k], met, n, along)
+            move_to_start(points[k], impact, n, along)
         return count, t
 
     return kernel(swept_manifold, spec)

@@ -30,7 +30,7 @@ def make(spec: Spec, loggers):
     from ..violations import make_forget, make_watch_coulomb, make_watch_signorini
     from . import effects_of
 
-    ahead = spec.has("speculative")
+    speculative = spec.has("speculative")
     loads = any(effect.hooks.preload for effect in effects_of(spec))
     friction, moving_surface = spec.has("friction"), spec.has("surface_velocity")
     row_residual, forget = make_row_residual(spec), make_forget(spec)
@@ -48,8 +48,8 @@ def make(spec: Spec, loggers):
             contact, out = contacts[c], contact_rows[counters.contact_rows + written]
             va, vb = velocities[contact.a], velocities[contact.b]
             residual, v_n = row_residual(contact, va, vb)
-            if ahead:
-                # Rows made ahead that neither touch nor push are the solver's, not the scene's.
+            if speculative:
+                # Speculative rows that neither touch nor push are the solver's, not the scene's.
                 acts = contact.lambda_n != 0.0
                 if loads:
                     acts = acts or contact.loaded == 1

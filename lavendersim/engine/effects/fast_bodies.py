@@ -124,9 +124,12 @@ EFFECT = Effect(
     needs=("speculative",),
     fields=Fields(
         contact=[
-            ("beside_x", "f8"),  # way of B relative to A across n until they meet [m]
-            ("beside_y", "f8"),
-            ("beside_z", "f8"),
+            (
+                "tangential_x",
+                "f8",
+            ),  # displacement of B from A across n until the impact [m]
+            ("tangential_y", "f8"),
+            ("tangential_z", "f8"),
         ],
     ),
 )

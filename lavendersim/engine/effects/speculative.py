@@ -1,4 +1,4 @@
-"""Speculative contacts: rows are made ahead of touching and ask that a gap does not close too far.
+"""Speculative contacts: rows made before bodies touch require that a gap does not close too far.
 
     v_n >= -(phi - slop)/dt   for phi > slop
 A body never falls into the floor before the floor answers, and a fast one does not pass through it:

@@ -4,7 +4,7 @@
 
 No point of a body goes farther than that in a step: its velocity after the step's forces differs by
 |g| dt, and as much again is left for what else changes it. What nothing can push has no share in g.
-The narrow phase must not look farther ahead than the sum of two reaches and TOUCHING.
+The narrow phase must not make speculative contacts beyond the sum of two reaches and TOUCHING.
 """
 
 from __future__ import annotations

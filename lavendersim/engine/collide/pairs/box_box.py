@@ -202,8 +202,8 @@ def clip_faces(b_is_better, axis_a, axis_b, margin, scratch):
 def make(spec):
     """Return `kernel(a, b, margin, scratch) -> count`, which writes `scratch.manifold`."""
     # Speculative contacts: an axis that separates most bounds the distance from below only.
-    ahead = spec.has("speculative")
-    gjk: Any = make_gjk(spec) if ahead else None
+    speculative = spec.has("speculative")
+    gjk: Any = make_gjk(spec) if speculative else None
 
     def box_box(a, b, margin, scratch):
         box_a, box_b, C = scratch.box_a, scratch.box_b, scratch.cosines
@@ -226,7 +226,7 @@ def make(spec):
             return 0
         size = min(smallest_half_edge(box_a), smallest_half_edge(box_b))
         s_face = max(s_a, s_b)
-        if ahead:
+        if speculative:
             if s_face > FAR * size or s_e > max(TOUCHING, s_face / EDGE_SHARE + EDGE_SIZE * size):
                 status, _ = gjk(a, b, d, margin, scratch)
                 if status != APART:
@@ -237,7 +237,7 @@ def make(spec):
         if touching_edges and s_e > EDGE_SHARE * s_face + EDGE_SIZE * size:
             return edge_contact(box_a, box_b, edges, s_e, manifold)
         count = clip_faces(s_b > s_a + FACE_SIZE * size, axis_a, axis_b, margin, scratch)
-        if ahead:
+        if speculative:
             if count == 0 and s_face > 0.0:
                 # The face that separates most looks past the other box.
                 status, _ = gjk(a, b, d, margin, scratch)
