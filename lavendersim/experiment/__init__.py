@@ -1,4 +1,4 @@
-"""A config file in; one frozen, validated Experiment with its cells out. Knows YAML, not numba."""
+"""Reading configs: one frozen, validated Experiment a file, with its cells. No numba here."""
 
 from lavendersim.cell.config import CellConfig
 from lavendersim.experiment.cell import Cell
