@@ -106,6 +106,97 @@ EFFECT = Effect(
     hooks=Hooks(accelerate=make),
 )
 '''
+# An effect of another kind: a key of the config, a term of contacts, a column of the log.
+CUSHION = '''\
+"""Cushion: air between two surfaces that pushes them apart with a force F [N] while they touch."""
+
+from .decision import Decision
+from .effect import Column, Effect, Fields, Hooks, kernel
+from .keys import FORCE, SurfaceKey, in_series
+
+
+def decide(facts):
+    for pair in facts.pairs:
+        if pair.surface.cushion > 0.0:
+            return Decision(True, f"{pair.a} and {pair.b}: a cushion of {pair.surface.cushion:g} N")
+    return Decision(False, "no surface has a cushion")
+
+
+def make_capture(spec):
+    def keep_cushion(contact, pair, params):
+        contact.loaded, contact.cushion = 1, pair.cushion * params.dt
+
+    return kernel(keep_cushion, spec)
+
+
+def make_preload(spec):
+    from ..contact import make_apply_impulse
+
+    apply_impulse = make_apply_impulse(spec)
+
+    def push_apart(contact, velocities, motion):
+        apply_impulse(contact, velocities[contact.a], velocities[contact.b], contact.cushion)
+
+    return kernel(push_apart, spec)
+
+
+def make_contact_row(spec):
+    def log_cushion(out, contact, va, vb):
+        out.cushion_impulse = contact.cushion
+
+    return kernel(log_cushion, spec)
+
+
+EFFECT = Effect(
+    name="cushion",
+    decide=decide,
+    per="contact",
+    surface_keys=(
+        SurfaceKey(
+            name="cushion", type=FORCE, default=0.0, doc="[N] what air carries", mix=in_series
+        ),
+    ),
+    fields=Fields(
+        pair=[("cushion", "f8")],  # F [N]
+        contact=[("cushion", "f8"), ("loaded", "i8")],  # F dt [N s]
+    ),
+    contact_columns=(Column("cushion_impulse", "f8", "of the air on B along the normal", "N s"),),
+    hooks=Hooks(capture=make_capture, preload=make_preload, contact_row=make_contact_row),
+)
+'''
+REST = """\
+question: What does the floor carry?
+expected: The weight less what the cushion carries.
+scene:
+  bodies:
+    floor: {shape: {kind: plane}}
+    ball:
+      shape: {kind: sphere, radius: 0.1}
+      mass: 1.0
+      surface: {cushion: 4.0}
+      position: [0, 0, 0.1]
+numerics: {timestep: 1/240}
+duration: 0.1
+measure:
+  fall: {kind: drift, after: 0.0}
+expect:
+  - {name: it stays where it is, measure: fall, at_most: 1e-9}
+"""
+# Prints the columns of the contacts of a log, and what they mean.
+READ = """
+import json, sys
+from pathlib import Path
+from mcap.reader import make_reader
+from lavendersim.trace import open_trace
+
+(path,) = Path(sys.argv[1]).glob("*-*/cells/*.mcap")  # not `latest`
+contact = open_trace(path).contact
+with path.open("rb") as stream:
+    channels = make_reader(stream).get_summary().channels.values()
+(meanings,) = [channel.metadata for channel in channels if channel.topic == "/contacts"]
+print(json.dumps({"pressing": contact["impulse_n"].tolist(), "meaning": meanings["cushion_impulse"],
+                  "cushion": contact["cushion_impulse"].tolist()}))
+"""
 # Prints the plan's word on the wind, and the ball's velocity along x after each of 30 steps.
 BLOW = """
 import json, sys
@@ -165,16 +256,17 @@ class Copy:
         self.config = folder / "drop.yaml"
         self.config.write_text(DROP)
 
-    def add_wind(self, listed: bool) -> None:
-        (self.folder / "lavendersim/engine/effects/wind.py").write_text(WIND)
+    def add(self, name: str, text: str, listed: bool = True) -> None:
+        """Add the file of an effect and, where it is to be listed, its line."""
+        (self.folder / f"lavendersim/engine/effects/{name}.py").write_text(text)
         if listed:
             path = self.folder / LIST
             text = path.read_text()
             line = '    "warm_start",\n'
             assert text.count(line) == 1
-            path.write_text(text.replace(line, f'{line}    "wind",\n'))
+            path.write_text(text.replace(line, f'{line}    "{name}",\n'))
 
-    def python(self, *arguments: Any) -> str:
+    def python(self, *arguments: Any, code: int = 0) -> str:
         """Return what a Python process prints; -P: this copy, not the working directory's."""
         done = subprocess.run(
             [sys.executable, "-P", *map(str, arguments)],
@@ -184,28 +276,32 @@ class Copy:
             timeout=300,
             check=False,
         )
-        assert done.returncode == 0, done.stderr
-        return done.stdout
+        assert done.returncode == code, done.stderr
+        return done.stdout + done.stderr if code else done.stdout
 
     def blow(self) -> dict[str, Any]:
         found: dict[str, Any] = json.loads(self.python("-c", BLOW, self.config).splitlines()[-1])
         assert found["package"].startswith(str(self.folder))
         return found
 
-    def plan(self) -> str:
+    def lavender(self, *arguments: Any, code: int = 0) -> str:
+        """Return what a command prints, with its complaints where it is to fail."""
         command = "import sys; from lavender_cli.main import main; sys.argv[0] = 'lavender'; main()"
-        return self.python("-c", command, "plan", self.config)
+        return self.python("-c", command, *arguments, code=code)
+
+    def plan(self) -> str:
+        return self.lavender("plan", self.config)
 
 
 def test_an_effect_is_added_by_a_file_and_a_line(tmp_path: Path) -> None:
     copy = Copy(tmp_path)
     calm = copy.blow()
-    copy.add_wind(listed=False)
+    copy.add("wind", WIND, listed=False)
     unlisted = copy.blow()
     assert unlisted == calm  # a file that nothing lists
     assert calm["decision"] is None
     assert set(calm["speeds"]) == {0.0}
-    copy.add_wind(listed=True)
+    copy.add("wind", WIND)
     windy = copy.blow()
     assert windy["decision"][0] is True
     assert "wind" in windy["columns"]
@@ -215,3 +311,30 @@ def test_an_effect_is_added_by_a_file_and_a_line(tmp_path: Path) -> None:
     # 30 steps rounds a handful of times, 2^-53 each, of numbers below 0.2.
     expected = [3.0 * (1.0 - (1.0 - 0.4 / 240.0) ** k) for k in range(1, 31)]
     assert windy["speeds"] == pytest.approx(expected, rel=0.0, abs=30 * 4 * 2.0**-53)
+
+
+def test_an_effect_with_a_key_a_contact_term_and_a_column_is_a_file_and_a_line(
+    tmp_path: Path,
+) -> None:
+    """The config accepts its key, the plan gives its reason, and a run logs its column."""
+    copy = Copy(tmp_path)
+    copy.config.write_text(REST)
+    refused = copy.lavender("plan", copy.config, code=2)
+    assert "drop.yaml:9:17: " in refused
+    assert "cushion" in refused
+    copy.add("cushion", CUSHION)
+    (line,) = [line for line in copy.plan().splitlines() if line.startswith("cushion ")]
+    assert line.split(maxsplit=2) == ["cushion", "on", "floor and ball: a cushion of 4 N"]
+    copy.config.write_text(REST.replace("4.0}", "-4.0}"))
+    refused = copy.lavender("plan", copy.config, code=2)
+    assert "drop.yaml:9:26: " in refused
+    assert "expected a number of 0 or more [N], found -4.0" in refused
+    copy.config.write_text(REST)
+    copy.lavender("run", copy.config, "--runs", tmp_path / "runs")
+    log = json.loads(copy.python("-c", READ, tmp_path / "runs").splitlines()[-1])
+    assert log["meaning"] == "of the air on B along the normal [N s]"
+    steps = len(log["cushion"])
+    assert steps == 24
+    assert log["cushion"] == [4.0 / 240.0] * steps
+    # m g dt less F dt, each of a few roundings.
+    assert log["pressing"] == pytest.approx([(9.81 - 4.0) / 240.0] * steps, rel=1e-13)
