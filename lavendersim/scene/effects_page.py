@@ -1,0 +1,68 @@
+"""The page on the effects, written from their declarations and the docstrings of their files.
+
+python -m lavendersim.scene.effects_page docs/effects.md
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from importlib import import_module
+from inspect import cleandoc
+from pathlib import Path
+
+from lavendersim.engine.effects import EFFECTS, Column, Effect
+
+INTRODUCTION = """\
+# Effects
+
+Every term of the physics and of the log is one file in `lavendersim/engine/effects`, and a line of
+the list there. A scene's plan has the effects that the scene requires (`lavender plan`); the others
+leave no code, no array and no column. This page is written from the declarations
+(`python -m lavendersim.scene.effects_page docs/effects.md`).
+"""
+
+
+def page() -> str:
+    """Return the page as Markdown."""
+    sections = [INTRODUCTION, *("\n".join(_section(effect)) + "\n" for effect in EFFECTS)]
+    return "\n".join(sections)
+
+
+def _section(effect: Effect) -> Iterator[str]:
+    module = import_module(f"lavendersim.engine.effects.{effect.name}")
+    first, _, rest = cleandoc(module.__doc__ or "").partition("\n")
+    yield f"## {effect.name}\n"
+    yield f"{first}\n"
+    if rest.strip():
+        yield f"```text\n{rest.strip()}\n```\n"
+    if effect.needs:
+        yield f"Needs {', '.join(f'`{name}`' for name in effect.needs)}.\n"
+    if effect.chosen_by:
+        yield f"Chosen by `{effect.chosen_by.section}.{effect.chosen_by.key}`.\n"
+    keys = [("surface", key) for key in effect.surface_keys]
+    keys += [("scene", key) for key in effect.scene_keys]
+    if keys:
+        yield "| key | default | meaning |"
+        yield "|---|---|---|"
+        for section, key in keys:
+            default = "none" if key.default == () else f"{key.default:g}"
+            yield f"| `{section}.{key.name}` | {default} | {key.doc} |"
+        yield ""
+    columns = [("/contacts", effect.contact_columns), ("/step", effect.step_columns)]
+    columns.append(("/residuals", effect.residual_columns))
+    if any(group for _, group in columns):
+        yield "| column | of | meaning |"
+        yield "|---|---|---|"
+        for topic, group in columns:
+            yield from (_column(topic, column) for column in group)
+        yield ""
+
+
+def _column(topic: str, column: Column) -> str:
+    meaning = column.text.replace("|", "\\|")
+    return f"| `{column.name}` | `{topic}` | {meaning} |"
+
+
+if __name__ == "__main__":
+    Path(sys.argv[1]).write_text(page(), encoding="utf-8")
