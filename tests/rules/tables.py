@@ -97,7 +97,12 @@ def effects() -> str:
     section = {name: place for place, names in SECTIONS.items() for name in names}
     rows = [
         [
-            *(f"`{effect.name}`", described(effect), effect.per, ", ".join(effect.needs)),
+            *(
+                f"[`{effect.name}`](effects.md#{effect.name})",
+                described(effect),
+                effect.per,
+                ", ".join(effect.needs),
+            ),
             f"[theory](theory.md#{section[effect.name]})" if effect.name in section else "",
         ]
         for effect in EFFECTS
