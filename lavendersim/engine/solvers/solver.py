@@ -17,7 +17,7 @@ class ContactSystem(NamedTuple):
 
     contacts: np.ndarray  # records; of them `count` are in use
     order: np.ndarray  # in which sweeps visit them
-    count: int
+    count: int  # type: ignore[assignment]  # a tuple counts, too; nobody asks this one to
     bodies: np.ndarray
     velocities: Any  # of the bodies; of the operator `matrix` its `coupling.Coupling`
 
