@@ -76,7 +76,7 @@ def _frictional(spec: Spec, contacts: np.ndarray) -> np.ndarray:
     """Return 1.0 for contacts with friction, 0.0 for the others."""
     if not spec.has("friction"):
         return np.zeros(len(contacts))
-    if not spec.has("smooth_contact"):
+    if not spec.has("frictionless_contact"):
         return np.ones(len(contacts))
     return contacts["frictional"].astype(np.float64)
 
@@ -103,7 +103,9 @@ def _side(
     if spec.has("friction"):
         levers = np.cross(_vectors(contacts, f"r{name}")[:, None, :], frames)
         turns = np.einsum("ckl,cil->cik", _inverse_inertia(velocities[body]), levers)
-    if spec.has("contact_torque") and (not spec.has("friction") or spec.has("smooth_contact")):
+    if spec.has("contact_torque") and (
+        not spec.has("friction") or spec.has("frictionless_contact")
+    ):
         frictionless = _frictional(spec, contacts) == 0.0
         levers[frictionless, 0] = _vectors(contacts, f"lever_{name}")[frictionless]
         turns[frictionless, 0] = _vectors(contacts, f"turn_{name}")[frictionless]

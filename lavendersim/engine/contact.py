@@ -14,7 +14,7 @@ from typing import Any
 from .block import make_apply_vector, make_complete_block, make_relative_velocity
 from .compile import chain, inner, kernel
 from .effects import made_by
-from .effects.smooth_contact import by_friction, has_frictionless
+from .effects.frictionless_contact import by_friction, has_frictionless
 from .records import SPHERE
 from .rotation import inverse_inertia_times
 from .spec import Spec

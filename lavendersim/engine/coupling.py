@@ -16,7 +16,7 @@ import numpy as np
 from .block import make_slip_velocity
 from .compile import kernel
 from .contact import make_apply_all, make_apply_block, make_frictionless_velocity
-from .effects.smooth_contact import by_friction
+from .effects.frictionless_contact import by_friction
 from .records import F8, I8, Field
 from .spec import Spec
 

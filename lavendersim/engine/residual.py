@@ -19,7 +19,7 @@ from .block import largest_response, make_slip_velocity
 from .compile import kernel
 from .cone import make_project_section, project_cone
 from .contact import make_frictionless_velocity
-from .effects.smooth_contact import by_friction
+from .effects.frictionless_contact import by_friction
 from .scaled_residual import make_scaled_residual
 from .spec import Spec
 from .spin_block import make_spin_residual, resists_turning

@@ -173,7 +173,7 @@ CASES: dict[str, tuple[str, ...]] = {
     "gyroscopic": ("rough balls", "flying brick"),  # round bodies; one that is not, nor turns
     "kinematic": ("balls",),
     "contact_torque": ("spinning balls",),
-    "smooth_contact": ("rough balls",),
+    "frictionless_contact": ("rough balls",),
     "friction": ("balls", "boxes"),
     "torsional_friction": ("rough balls",),
     "rolling_friction": ("rough balls",),

@@ -36,7 +36,7 @@ ZOO = Spec(
         "projection",
         "restitution",
         "rotation",
-        "smooth_contact",
+        "frictionless_contact",
         "speculative",
         "step_log",
         "warm_start",

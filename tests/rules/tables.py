@@ -23,7 +23,7 @@ SECTIONS = {
     "accelerate": ("gravity", "external_force", "drag", "spring", "kinematic"),
     "collide": ("compound", "broad_phase", "speculative", "fast_bodies"),
     "rows": (
-        *("contact_torque", "friction", "frictionless_contact", "smooth_contact"),
+        *("contact_torque", "friction", "frictionless_contact"),
         *("stabilisation", "compliance", "restitution", "surface_velocity", "capture_in_sweeps"),
         *("cohesion", "static_friction"),
     ),

@@ -23,7 +23,7 @@ NAMES: Final = (
     "gyroscopic",
     "kinematic",
     "contact_torque",
-    "smooth_contact",
+    "frictionless_contact",
     "friction",
     "torsional_friction",
     "rolling_friction",

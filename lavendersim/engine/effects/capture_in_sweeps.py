@@ -1,4 +1,4 @@
-"""Capture in the sweeps: a known mistake, kept for teaching and for negative controls.
+"""Capture in the sweeps: a deliberate error, kept for teaching and for negative controls.
 
 Restitution asks v_n >= -e v_n_pre, v_n_pre the velocity before the solve. Here every visit of the
 loop asks it of the velocity that it finds,

@@ -3,7 +3,7 @@
 from ..records import LEVER
 from .decision import Decision, Facts, named
 from .effect import Effect, Fields
-from .smooth_contact import has_frictionless
+from .frictionless_contact import has_frictionless
 
 
 def decide(facts: Facts) -> Decision:

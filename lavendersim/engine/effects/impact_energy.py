@@ -21,7 +21,7 @@ HALVINGS = 60
 
 
 def decide(facts: Facts) -> Decision:
-    """On where impacts at the surface may bounce and rub."""
+    """On where impacts at the surface may bounce with friction."""
     if facts.impacts != "at_surface":
         return Decision(False, f"impacts are {facts.impacts}")
     if not any(pair.surface.restitution > 0.0 for pair in facts.pairs):
@@ -33,7 +33,7 @@ def decide(facts: Facts) -> Decision:
                 f"{pair.a} and {pair.b}: friction could make Newton's law of restitution give "
                 "energy; Stronge's takes its place where it does",
             )
-    return Decision(False, "nothing rubs: Newton's law of restitution gives no energy")
+    return Decision(False, "nothing has friction: Newton's law of restitution gives no energy")
 
 
 def make_note(spec: Spec) -> Any:
@@ -63,7 +63,7 @@ def make_settle(spec: Spec, solve: Any, classify: Any) -> Any:
 
     relative_velocity = make_relative_velocity(spec)
     leave = make_leave(spec)
-    some_frictionless = spec.has("smooth_contact")
+    some_frictionless = spec.has("frictionless_contact")
     records = spec.has("residual_log")
 
     def work_of(contacts, count, velocities, motion, params):

@@ -56,8 +56,8 @@ def decide(facts: Facts) -> Decision:
     shapes = {body.name: body.shape for body in facts.bodies}
     (pair, *others) = facts.pairs
     alone = facts.pair_count == 1 and not others
-    rubs = pair.surface.friction > 0.0 or pair.resists_turning
-    if alone and not rubs and {shapes[pair.a], shapes[pair.b]} <= ONE_POINT:
+    frictional = pair.surface.friction > 0.0 or pair.resists_turning
+    if alone and not frictional and {shapes[pair.a], shapes[pair.b]} <= ONE_POINT:
         return Decision(False, f"{pair.a} and {pair.b} touch in one point, without friction")
     return Decision(True, "contacts that share a body may trade impulses for many sweeps")
 

@@ -10,12 +10,12 @@ Kind = tuple[str, bool, str]
 
 def decide(facts: Facts) -> Decision:
     """On when a body spins at the start, is twisted, or can be turned by its contacts."""
-    rubbing = _touched(facts, [pair for pair in facts.pairs if pair.surface.friction > 0.0])
+    frictional = _touched(facts, [pair for pair in facts.pairs if pair.surface.friction > 0.0])
     resisting = _touched(facts, [pair for pair in facts.pairs if pair.resists_turning])
     turned: dict[str, list[str]] = {}
     for body in facts.bodies:
         if body.movable or body.kinematic:
-            why = _turned_by(body, bool(facts.pairs), rubbing, resisting)
+            why = _turned_by(body, bool(facts.pairs), frictional, resisting)
             turned.setdefault(why, []).append(body.name)
     still = turned.pop("", [])
     said = [f"{named(names)}: {why}" for why, names in turned.items()]
@@ -26,7 +26,7 @@ def decide(facts: Facts) -> Decision:
     return Decision(bool(turned), "; ".join(said) or "nothing moves")
 
 
-def _turned_by(body: BodyFacts, touches: bool, rubbing: set[Kind], resisting: set[Kind]) -> str:
+def _turned_by(body: BodyFacts, touches: bool, frictional: set[Kind], resisting: set[Kind]) -> str:
     """Return what turns a body, or nothing."""
     if body.spins:
         return "initial angular velocity" if body.movable else "kinematic and turning"
@@ -38,7 +38,7 @@ def _turned_by(body: BodyFacts, touches: bool, rubbing: set[Kind], resisting: se
         return "a force off its centre exerts a torque"
     if touches and body.shape != "sphere":
         return "a contact off the centre of mass exerts a torque"
-    if _kind(body) in rubbing:
+    if _kind(body) in frictional:
         return "friction exerts a torque"
     return "its contacts resist turning" if _kind(body) in resisting else ""
 

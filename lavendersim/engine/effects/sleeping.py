@@ -1,7 +1,7 @@
 """Sleeping: islands of bodies that have come to rest are left out until something disturbs them.
 
 A body is at rest in a step that it ends no faster than `sleep_speed`, by the speed of its points
-    pace = |v| + |omega| R,     R radius about the centre of mass that holds the body.
+    point_speed = |v| + |omega| R,     R radius about the centre of mass that holds the body.
 An island (`islands`) falls asleep as a whole, when each of its bodies has been at rest for
 `sleep_time`, no force from the config acts on it and no kinematic body that moves touches it.
 Asleep, a body is as a fixed one: its inverse mass is kept aside and reads 0, so that nothing
@@ -41,22 +41,22 @@ def make_still(spec: Spec) -> Any:
     def still(body):
         if kinematic:
             if body.kinematic == 1:
-                return body.pace == 0.0
+                return body.point_speed == 0.0
         return body.inv_m == 0.0
 
     return kernel(still, spec)
 
 
 def make_set_pace(spec: Spec) -> Any:
-    """Return `kernel(bodies, velocities)`: `pace` of every body, before forces act."""
+    """Return `kernel(bodies, velocities)`: `point_speed` of every body, before forces act."""
     turns = spec.has("rotation")
 
     def set_pace(bodies, velocities):
         for i in range(bodies.shape[0]):
             body, v = bodies[i], velocities[i]
-            body.pace = sqrt(v.vx * v.vx + v.vy * v.vy + v.vz * v.vz)
+            body.point_speed = sqrt(v.vx * v.vx + v.vy * v.vy + v.vz * v.vz)
             if turns:
-                body.pace += body.bound * sqrt(v.wx * v.wx + v.wy * v.wy + v.wz * v.wz)
+                body.point_speed += body.bound * sqrt(v.wx * v.wx + v.wy * v.wy + v.wz * v.wz)
 
     return kernel(set_pace, spec)
 
@@ -120,8 +120,8 @@ def make_wake(spec: Spec) -> Any:
     def disturbs(other, params):
         if kinematic:
             if other.kinematic == 1:
-                return other.pace > 0.0
-        return other.asleep == 0 and other.pace > params.sleep_speed
+                return other.point_speed > 0.0
+        return other.asleep == 0 and other.point_speed > params.sleep_speed
 
     disturbs = kernel(disturbs, spec)
 
@@ -130,7 +130,7 @@ def make_wake(spec: Spec) -> Any:
         for i in range(bodies.shape[0]):
             if bodies[i].asleep == 1:
                 # An event may have given it a velocity.
-                if bodies[i].pace > 0.0 or is_pushed(bodies[i]):
+                if bodies[i].point_speed > 0.0 or is_pushed(bodies[i]):
                     wake_island(bodies, bodies[i].island)
                     woken = True
         for c in range(count):
@@ -150,8 +150,9 @@ def make_wake(spec: Spec) -> Any:
 def make_doze(spec: Spec) -> Any:
     """Return `kernel(state, count, island, params)`; state: see `memory`.
 
-    At the end of a step: who has been at rest for how long, and which islands fall asleep. `pace`
-    is that of the step's begin: what counts is a step behind. island: (bodies,) int64, overwritten.
+    At the end of a step: who has been at rest for how long, and which islands fall asleep.
+    `point_speed` is that of the step's begin: what counts is a step behind. island: (bodies,)
+    int64, overwritten.
     """
     from ..islands import make_label_islands
 
@@ -189,7 +190,7 @@ def make_doze(spec: Spec) -> Any:
             body = bodies[i]
             if body.inv_m > 0.0:
                 # In this order a NaN is no rest.
-                if body.pace <= params.sleep_speed and not is_pushed(body):
+                if body.point_speed <= params.sleep_speed and not is_pushed(body):
                     body.rest += params.dt
                 else:
                     body.rest = 0.0
@@ -197,9 +198,9 @@ def make_doze(spec: Spec) -> Any:
         if kinematic:
             for c in range(count):
                 a, b = bodies[contacts[c].a], bodies[contacts[c].b]
-                if a.kinematic == 1 and a.pace > 0.0:
+                if a.kinematic == 1 and a.point_speed > 0.0:
                     b.rest = 0.0
-                if b.kinematic == 1 and b.pace > 0.0:
+                if b.kinematic == 1 and b.point_speed > 0.0:
                     a.rest = 0.0
         if not restful:
             return
@@ -245,7 +246,10 @@ EFFECT = Effect(
         body=[
             ("asleep", "i8"),  # 1: at rest, left out
             ("island", "i8"),  # asleep: the number its island has in common
-            ("pace", "f8"),  # speed of its fastest point, at most, when the step begins [m/s]
+            (
+                "point_speed",
+                "f8",
+            ),  # speed of its fastest point, at most, when the step begins [m/s]
             ("rest", "f8"),  # how long it has been at rest [s]
             ("own_inv_m", "f8"),  # asleep: what it weighs once awake
             ("own_inv_ix", "f8"),

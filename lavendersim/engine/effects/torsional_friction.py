@@ -1,6 +1,6 @@
 """Torsional friction: |psi_n| <= c lambda_n about the contact normal, opposing relative spin.
 
-A disc of contact of radius R that rubs with mu under even pressure has c = 2/3 mu R; the contact
+A disc of contact of radius R with friction mu under even pressure has c = 2/3 mu R; the contact
 itself stays a point. Stick where it can, otherwise the limit against the spin:
     psi_n <- clamp(psi_n - omega_n / k, +-c lambda_n),   k = n . (I_A^-1 + I_B^-1) n
 psi_n: angular impulse on B [N m s]; a pair's c [m] is the larger of its surfaces'. The limit needs

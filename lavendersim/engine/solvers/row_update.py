@@ -27,7 +27,7 @@ from ..cone import project_cone, project_disc, project_square
 from ..contact import make_frictionless_impulse, make_frictionless_velocity
 from ..coupling import make_add_frictional, make_frictional_velocity
 from ..effects import made_once
-from ..effects.smooth_contact import by_friction
+from ..effects.frictionless_contact import by_friction
 from ..spec import Spec
 from ..spin_block import make_solve_spin, resists_turning
 

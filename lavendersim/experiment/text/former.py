@@ -14,6 +14,7 @@ from lavendersim.experiment.text.node import Mark, Node, Path, graft, key_mark
 
 KEYS: Final[dict[Path, str]] = {
     ("price",): "overhead",
+    ("effects", "smooth_contact"): "frictionless_contact",
     ("cost", "unsolved"): "not_converged",
 }
 KINDS: Final = {"unsolved_steps": "not_converged_steps"}  # of measures

@@ -26,9 +26,9 @@ NO_KERNEL = {
     "residual_log",
 }
 # Whose code is more or less by what the compiler inlines: a body that is called from one place is
-# copied there, the same body beside another one (`smooth_contact`) is called. A condition more
+# copied there, the same body beside another (`frictionless_contact`) is called. A condition more
 # (`kinematic`) is some 50 bytes, which the layout of a loop may outweigh.
-AS_THE_COMPILER_LIKES = {"smooth_contact", "kinematic"}
+AS_THE_COMPILER_LIKES = {"frictionless_contact", "kinematic"}
 # Without a pair that may touch there is nothing to compile. Code may be looked at where the effect
 # would be another law.
 TOUCHING = {"impact_time": "balls", "speculative": "balls"}

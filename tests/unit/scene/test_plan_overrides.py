@@ -135,8 +135,8 @@ def test_off_is_refused_while_something_needs_it(switches: str, mu: float) -> No
 
 def test_what_needs_it_can_be_switched_off_as_well() -> None:
     text = config("rotation: off, contact_torque: off, friction: off, force: true", mu=0.5)
-    # What is smooth stays a matter of the coefficients, see `smooth_contact`.
-    assert planned(text).spec == planned(config()).spec.without("smooth_contact")
+    # What is smooth stays a matter of the coefficients, see `frictionless_contact`.
+    assert planned(text).spec == planned(config()).spec.without("frictionless_contact")
 
 
 @pytest.mark.parametrize("name", CHOSEN)

@@ -14,7 +14,7 @@ from typing import NamedTuple
 from ...block import make_relative_velocity
 from ...compile import inner, kernel
 from ...contact import make_frictionless_velocity
-from ...effects.smooth_contact import by_friction
+from ...effects.frictionless_contact import by_friction
 from ...spec import Spec
 from ...spin_block import resists_turning
 from .torques import make_start_torques

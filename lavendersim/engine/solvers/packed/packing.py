@@ -7,7 +7,7 @@ from typing import Any
 
 from ...block import make_slip_velocity
 from ...compile import inner, kernel
-from ...effects.smooth_contact import has_frictionless
+from ...effects.frictionless_contact import has_frictionless
 from ...spec import Spec
 from .lane_memory import STRIDE, put_one, take_one
 from .lanes import WIDTH

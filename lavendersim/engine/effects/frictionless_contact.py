@@ -1,4 +1,4 @@
-"""Smooth contact: pairs without friction keep rows of a normal alone, beside blocks that rub.
+"""Frictionless contact: pairs without friction have rows of a normal alone, beside frictional ones.
 
 Each contact is what its pair of surfaces requires. Where both kinds occur, `frictional` tells them
 apart; a smooth one then costs, and gives, what it would in a scene without friction, to the bit.
@@ -22,7 +22,9 @@ def decide(facts: Facts) -> Decision:
     frictionless = [f"{pair.a} and {pair.b}" for pair in facts.pairs if is_frictionless(pair)]
     if frictionless:
         return Decision(True, f"{named(frictionless)}: coefficient 0")
-    return Decision(False, "every pair that may touch rubs" if facts.pairs else "nothing can touch")
+    return Decision(
+        False, "every pair that may touch has friction" if facts.pairs else "nothing can touch"
+    )
 
 
 def contact_fields(spec: Spec) -> list[Field]:
@@ -32,7 +34,7 @@ def contact_fields(spec: Spec) -> list[Field]:
 
 def has_frictionless(spec: Spec) -> bool:
     """Whether an engine has contacts of a normal alone."""
-    return spec.has("smooth_contact") or not spec.has("friction")
+    return spec.has("frictionless_contact") or not spec.has("friction")
 
 
 def by_friction(spec: Spec, make_frictionless: Any, make_frictional: Any) -> Any:
@@ -43,7 +45,7 @@ def by_friction(spec: Spec, make_frictionless: Any, make_frictional: Any) -> Any
     if not spec.has("friction"):
         return make_frictionless(spec)
     frictional = make_frictional(spec)
-    if not spec.has("smooth_contact"):
+    if not spec.has("frictionless_contact"):
         return frictional
     frictionless = make_frictionless(spec)
 
@@ -58,7 +60,7 @@ def by_friction(spec: Spec, make_frictionless: Any, make_frictional: Any) -> Any
 
 
 EFFECT = Effect(
-    name="smooth_contact",
+    name="frictionless_contact",
     decide=decide,
     per="contact",
     fields=Fields(
