@@ -12,6 +12,7 @@ from inspect import cleandoc
 from pathlib import Path
 
 from lavendersim.engine.effects import EFFECTS, Column, Effect
+from lavendersim.engine.effects.keys import SceneKey, SurfaceKey
 
 INTRODUCTION = """\
 # Effects
@@ -40,8 +41,10 @@ def _section(effect: Effect) -> Iterator[str]:
         yield f"Needs {', '.join(f'`{name}`' for name in effect.needs)}.\n"
     if effect.chosen_by:
         yield f"Chosen by `{effect.chosen_by.section}.{effect.chosen_by.key}`.\n"
-    keys = [("surface", key) for key in effect.surface_keys]
-    keys += [("scene", key) for key in effect.scene_keys]
+    keys: list[tuple[str, SurfaceKey | SceneKey]] = [
+        *(("surface", key) for key in effect.surface_keys),
+        *(("scene", key) for key in effect.scene_keys),
+    ]
     if keys:
         yield "| key | default | meaning |"
         yield "|---|---|---|"

@@ -9,7 +9,7 @@ import pytest
 from lavendersim.experiment import load_experiment, load_experiment_text
 from lavendersim.experiment.sweeps.solver_override import about_something_else
 
-CANON = Path(__file__).parents[3] / "configs" / "hard"
+CANON = Path(__file__).parents[4] / "configs" / "hard"
 SCENE = """\
 scene:
   bodies:
