@@ -1,4 +1,4 @@
-"""Numbers of bodies enter, a table and a file of samples leave: what finding near pairs costs.
+"""What finding near pairs costs, by number of bodies: a table and a file of all samples.
 
     python -m tests.benchmarks.broad_phase [--counts 100 1000 10000] [--repeats 9] [--output F.json]
 

@@ -1,4 +1,4 @@
-"""Solvers enter; what a contact costs each of them in a sweep leaves, on real contacts.
+"""What a contact costs each solver in a sweep, on real contacts.
 
     python -m tests.benchmarks.contact_sweep [--repeats 15] [--check] [--json] [--output FILE.json]
         [--plot DIR]

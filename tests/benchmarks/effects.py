@@ -1,4 +1,4 @@
-"""Repeats enter; what pruning saves, and what the full engine and a hand-written one cost, leave.
+"""What pruning of effects saves, and what the full engine and a hand-written one cost.
 
     python -m tests.benchmarks.effects [--repeats 15] [--output FILE.json] [--check]
 

@@ -1,4 +1,4 @@
-"""Repeats enter, a table and a JSON file with every sample leave: what a step costs.
+"""What a step of the engine costs: a table and a JSON file with every sample.
 
     python -m tests.benchmarks.engine [--repeats 9] [--output FILE.json] [--check]
 

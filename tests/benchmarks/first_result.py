@@ -1,4 +1,4 @@
-"""Configs enter, a table and a JSON file with every sample leave: how long until the first step.
+"""How long a run takes until its first step: a table and a JSON file with every sample.
 
     python -m tests.benchmarks.first_result [CONFIG...] [--repeats 3] [--output FILE.json] [--check]
 

@@ -1,4 +1,4 @@
-"""A ball's position and velocity enter; where they are some steps later leaves. Written by hand.
+"""A ball that falls on a floor, in one function written by hand.
 
 What the engine's single-sphere drop is measured against: the same discrete mechanics (gravity,
 plane contact, captured restitution, bias, 22 sweeps of one row, projection) in one function, with

@@ -1,4 +1,4 @@
-"""The engine's arrays enter; balls over planes are some steps further. Written by hand.
+"""Balls that fall on planes, in one function written by hand, on the engine's arrays.
 
 What the pruned engine is measured against: a person's kernel for just this scene, on the arrays
 that the engine has (bodies fixed and movable, pairs, contacts, parameters, counters), with the same

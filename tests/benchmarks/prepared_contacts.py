@@ -1,4 +1,4 @@
-"""An engine enters; the contacts of one of its steps leave, as a solver finds them, and solvers.
+"""The contacts of one step of an engine, as a solver finds them, and solvers that run on them.
 
 The step is made with no sweep allowed: what it leaves in contacts and velocities is what a solver
 starts from, impulses of the step before included. Every solver then gets copies of these same

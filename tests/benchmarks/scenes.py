@@ -1,4 +1,4 @@
-"""The scenes that are timed leave, as texts of configs, and engines at their initial state."""
+"""The scenes that are timed: texts of configs, and engines at their initial state."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A small contact problem enters, its solution leaves, by trying every set of pushing rows.
+"""Solutions of small contact problems by enumeration of all sets of pushing rows.
 
     w = W lambda + q,    0 <= lambda,  0 <= w,  lambda . w = 0
 

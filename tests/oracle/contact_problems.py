@@ -1,4 +1,4 @@
-"""A seed enters, a hard contact problem leaves: boxes in stacks, heaps and between walls.
+"""Hard contact problems from a seed: boxes in stacks, heaps and between walls.
 
 W = J M^-1 J^T and q = J v from bodies drawn at random, so that some solution exists: v = 0 is a
 motion that every contact allows. What makes them hard is in their names: contacts that say the same

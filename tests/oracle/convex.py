@@ -1,4 +1,4 @@
-"""Two shapes enter, their signed separation leaves: slow, in numpy, and written differently.
+"""Signed separation of two convex shapes: slow, in numpy, by other methods than the engine's.
 
 A box here is a set of eight corners. For two convex polytopes the signed separation is the largest,
 over unit directions n, of `min_B n . x - max_A n . x`; when they overlap it is reached at a face

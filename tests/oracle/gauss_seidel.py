@@ -1,4 +1,4 @@
-"""A contact problem enters, impulses leave: projected Gauss-Seidel, slow, plain, full matrices.
+"""Projected Gauss-Seidel on the full matrix of a contact problem: slow and plain.
 
     r_n <- max(0, r_n - u_n / W_nn),   r_t <- the nearest point of the disc of radius mu r_n to
                                               r_t - u_t / c,  c the largest response along a tangent

@@ -1,4 +1,4 @@
-"""A scene and effects that it does not require enter; runs without and with them leave.
+"""Runs with and without effects that their scene does not require, compared number by number.
 
 An effect is idle where it is compiled in though the plan has it off: its coefficients are zero, or
 what it looks for never occurs. A run must equal the one without it under ==, which takes -0.0 for

@@ -1,4 +1,4 @@
-"""Scenes in a few words enter, engines at their initial state leave; shared by the engine's tests.
+"""Scenes in a few words and engines at their initial state, shared by the engine's tests.
 
 Every engine of a test session is built from a few specs, because each spec costs a compilation.
 """

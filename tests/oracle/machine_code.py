@@ -1,4 +1,4 @@
-"""A compiled engine enters; which kernels went into its machine code, and its size, leave.
+"""What is in the machine code of a compiled engine: which kernels, and its size.
 
 Numba leaves one symbol (`NumbaEnv`) in the object code for every function that was linked into it,
 whether or not the function was inlined: what has none was never compiled. The object code is what

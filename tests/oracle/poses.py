@@ -1,4 +1,4 @@
-"""Many poses of two shapes enter, their manifolds leave, by one numba loop per shape pair."""
+"""Manifolds at many poses of two shapes, by one numba loop per shape pair."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""An engine's state before a step and the rows it logs enter; the contact problem leaves, in numpy.
+"""The contact problem of a step in numpy, from the state before it and the rows that it logs.
 
 Only the geometry of a logged row is taken (bodies, point, normal, separation); masses, inertias,
 Jacobians, free velocities and targets are worked out again from the config.

@@ -1,4 +1,4 @@
-"""A pair of shapes enters, random poses of it and their manifolds leave.
+"""Random poses of pairs of shapes, and their manifolds.
 
 One kernel serves all pairs. It is composed of every pair with contacts ahead of touching, as a
 scene with all shapes would have it; it is kept on disk like the engine's own.

@@ -1,4 +1,4 @@
-"""A body record enters; what its solid is leaves: support, surface and a shape of the library coal.
+"""The solid of a body record: its support, its surface, and a shape of the library coal for it.
 
 Written with matrices and closed forms in numpy, apart from the engine's kernels. For any unit n
 

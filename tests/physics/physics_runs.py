@@ -1,4 +1,4 @@
-"""The text of a config enters; the recorded rows of each of its cells leave, without a file."""
+"""Runs of configs without files, for the tests of physics: the recorded rows of each cell."""
 
 from __future__ import annotations
 

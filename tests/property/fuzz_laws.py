@@ -1,4 +1,4 @@
-"""A config enters; it runs twice, and every law that its log breaks leaves, as a sentence each.
+"""The laws that the log of any run must keep; a sentence for each that a config's two runs break.
 
 Nothing is asked of accuracy here: a few sweeps at a thirtieth of a second solve little. What is
 asked holds for any sweep of any solver: contacts push, friction stays within its cone, the log is

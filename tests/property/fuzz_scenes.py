@@ -1,4 +1,4 @@
-"""A plan enters; random configs that it can run leave, as the trees of their YAML files.
+"""Random configs that a given plan can run, as the trees of their YAML files.
 
 Sizes are drawn over four decades, masses over six, and a body stands somewhere within reach of one
 before it, down to the same place: most overlap, many deeply. Nothing here is meant to be sensible;

@@ -1,4 +1,4 @@
-"""lavender's own files enter; their imports leave, each with the room it stands in."""
+"""lavender's own files and their imports, each with the package that it stands in."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Names of engines and scenes enter; a table, Markdown and JSON with every sample leave.
+"""Engines beside each other on the same scenes: a table, Markdown and JSON with every sample.
 
     pip install -e ".[peers]"
     python -m tests.benchmarks.peers [--engines lavender mujoco bullet-rigid ...]

@@ -1,4 +1,4 @@
-"""A scene enters an adapter; a handle that steps and tells its poses leaves: the one interface.
+"""The one interface to all engines: an adapter builds a scene into a handle that steps it.
 
 Each `*_peer.py` has `VARIANTS` (name of an engine with one set of solver settings: what that set
 is, in words), `version()` and `build(scene, variant) -> Handle`. Importing the module imports the

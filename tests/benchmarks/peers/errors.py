@@ -1,4 +1,4 @@
-"""What an engine showed of a scene enters, its errors leave, each by a formula on poses.
+"""Errors of an engine's motion in a scene, each by a formula on poses.
 
 Positions and orientations decide; velocities are used where the law is about them (impacts, free
 rotation). No contact, force or depth that an engine reports is used.

@@ -1,4 +1,4 @@
-"""Poses enter, how deep bodies lie in each other leaves. No engine is asked.
+"""How deep bodies overlap, from their poses alone. No engine is asked.
 
 Boxes by separating axes: the depth is the least overlap of the two shadows over the fifteen
 directions (three faces each, nine products of edges). Spheres in closed form, corners for planes.

@@ -1,4 +1,4 @@
-"""Moments of inertia, spin at the start and times enter; Euler's exact angular velocity leaves.
+"""Euler's exact angular velocity of a free body, from its moments and spin, by Jacobi's functions.
 
     I1 w1' = (I2 - I3) w2 w3   and cyclic, I1 < I2 < I3
 

@@ -1,4 +1,4 @@
-"""Engines and studies enter; errors, every timed sample and their medians leave.
+"""Errors and timings of engines on studies: every timed sample and the medians.
 
 One process. First every engine shows every study once, for its errors, untimed. Then come the
 repeats: study by study all engines in turn, the order of the engines rotated by one each repeat,

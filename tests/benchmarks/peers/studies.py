@@ -1,4 +1,4 @@
-"""Scenes enter; studies leave: runs that belong together, what is timed, how they are judged."""
+"""Studies of peers: runs that belong together, what is timed, how they are judged."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Measurements enter; a table as text or Markdown leaves, error beside time."""
+"""Measurements of peers as a table, text or Markdown, error beside time."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Random bodies in motion enter the broad phase; what it must find comes from every pair in numpy.
+"""Random bodies in motion for the broad phase; what it must find, by trying every pair in numpy.
 
 A pair must be listed when both its bounding spheres and its boxes, each grown by what the body can
 reach in a step, meet. Boxes are taken around corners and rims that are computed one by one.

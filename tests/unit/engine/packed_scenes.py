@@ -1,4 +1,4 @@
-"""Scenes enter; the contacts of one of their steps leave, for solvers that pack them.
+"""Scenes whose contacts of one step are prepared for solvers that pack them.
 
 One engine of many effects makes the contacts of all of them, and its compilation serves them all.
 """

@@ -1,4 +1,4 @@
-"""A shape pair's name enters, random poses of it leave: records, signed separations, surfaces.
+"""Random poses of a shape pair: body records, signed separations, distances from the surfaces.
 
 Lengths lie between e^-2 and 1 m, the origin within a few metres: one round-off is some 1e-15 m.
 """

@@ -1,4 +1,4 @@
-"""Two bodies and the way of each through a step enter; what the swept manifold says leaves."""
+"""Swept manifolds of two bodies, each with its displacement over a step."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A made-up run enters no engine: blocks of random but fixed numbers for the tests of the log."""
+"""A made-up run for the tests of the log: blocks of random but fixed numbers, without an engine."""
 
 from __future__ import annotations
 
