@@ -2,8 +2,8 @@
 
 A body moves through a step in one of three ways:
     free      x += dt v_new, or dt (v_old + v_new)/2 with `midpoint`
-    held      x += dt v_new: a lasting contact pushes it, and v_new is what respects the contact
-    struck    on its old velocity until tau, on its new one from there (`impact_time`)
+    carried   x += dt v_new: a lasting contact pushes it, and v_new is what respects the contact
+    impact    on its old velocity until tau, on its new one from there (`impact_time`)
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from .records import NOT_FINITE, TURNS_TOO_FAST
 from .rotation import inertia_times, turn
 from .spec import Spec
 
-# MOTION.held: a contact carries the body from its impact on, or through the whole step.
+# MOTION.carried: a contact carries the body from its impact on, or through the whole step.
 AFTERWARDS = 1
 ALWAYS = 2
 
@@ -86,25 +86,26 @@ def make_undo(spec: Spec) -> Any:
 
 
 def make_classify(spec: Spec) -> Any:
-    """Return `kernel(contacts, count, motion, params)`: who is free, held or struck."""
+    """Return `kernel(contacts, count, motion, params)`: free, carried or in an impact."""
     at_surface = spec.has("impact_time")
 
     def classify(contacts, count, motion, params):
         for i in range(motion.shape[0]):
-            motion[i].held, motion[i].tau = 0, params.dt
+            motion[i].carried, motion[i].tau = 0, params.dt
         for c in range(count):
             contact = contacts[c]
             if contact.lambda_n > 0.0:
                 a, b = motion[contact.a], motion[contact.b]
-                struck = False
+                is_impact = False
                 if at_surface:
-                    struck = contact.struck == 1
-                if struck:
+                    is_impact = contact.is_impact == 1
+                if is_impact:
                     a.tau, b.tau = min(a.tau, contact.tau), min(b.tau, contact.tau)
-                    if contact.up == 0.0:  # plastic: what meets stays together
-                        a.held, b.held = max(a.held, AFTERWARDS), max(b.held, AFTERWARDS)
+                    if contact.separation_speed == 0.0:  # plastic: what meets stays together
+                        a.carried = max(a.carried, AFTERWARDS)
+                        b.carried = max(b.carried, AFTERWARDS)
                 else:
-                    a.held, b.held = ALWAYS, ALWAYS
+                    a.carried, b.carried = ALWAYS, ALWAYS
 
     return kernel(classify, spec)
 
@@ -116,7 +117,7 @@ def make_turn(spec: Spec) -> Any:
 
 
 def make_displace(spec: Spec) -> Any:
-    """Return `kernel(body, v, m, dt) -> solved`: the body's way through the step."""
+    """Return `kernel(body, v, m, dt) -> solved`: the body's displacement in the step."""
     turns = spec.has("rotation")
     midpoint = spec.has("midpoint")
     at_surface = spec.has("impact_time")
@@ -130,9 +131,9 @@ def make_displace(spec: Spec) -> Any:
                 rest = dt - m.tau
                 # Forces act in flight only: up to the impact, and after it.
                 share = 0.0
-                if m.held == 0:
+                if m.carried == 0:
                     share = 0.5 * (m.tau * m.tau - rest * rest) / dt
-                elif m.held == AFTERWARDS:
+                elif m.carried == AFTERWARDS:
                     share = 0.5 * m.tau * m.tau / dt
                 body.x += m.vx * m.tau + v.vx * rest + share * m.dvx
                 body.y += m.vy * m.tau + v.vy * rest + share * m.dvy
@@ -155,7 +156,7 @@ def make_displace(spec: Spec) -> Any:
                 return True
         x, y, z = v.vx * dt, v.vy * dt, v.vz * dt
         if midpoint:
-            if m.held == 0:
+            if m.carried == 0:
                 half = 0.5 * dt
                 x, y, z = x - half * m.dvx, y - half * m.dvy, z - half * m.dvz
         body.x += x

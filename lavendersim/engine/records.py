@@ -38,7 +38,7 @@ ROWS_FULL: Final = 1  # trace columns are full: hand them on and call again
 CONTACTS_FULL: Final = 2  # contact rows are full: enlarge them and call again; the state is intact
 PAIRS_FULL: Final = 4  # rows of pairs are full: likewise
 WOKEN: Final = 5  # bodies woke up, the step begins again with them: call again
-DIVERGED: Final = 3  # the run cannot go on; `counters.body` and `.cause` say for whom and why
+DIVERGED: Final = 3  # the run cannot go on; `counters.body` and `.cause` name the body and why
 
 # Why a run diverged.
 NOT_FINITE: Final = 0  # the body's state is no longer finite
@@ -89,7 +89,7 @@ MOTION: Final[list[Field]] = [
     ("dvy", F8),
     ("dvz", F8),
     ("tau", F8),  # time of its first impact, from the start of the step; dt without one [s]
-    ("held", I8),  # 0: free; else AFTERWARDS or ALWAYS, see `integrate`
+    ("carried", I8),  # by a contact. 0: free; else AFTERWARDS or ALWAYS, see `integrate`
     ("reach", F8),  # farthest a point of it moves in the step [m]
 ]
 

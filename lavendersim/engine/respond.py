@@ -31,7 +31,7 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
     shuffles = spec.order == "random"
     shuffle: Any = ordering.make_shuffle(spec) if shuffles else None
     solve = SOLVERS[spec.solver].make(spec)
-    strikes, strike = made_once(spec, "predict_impacts")
+    predicts, predict_impacts = made_once(spec, "predict_impacts")
     warms, match_contacts = made_once(spec, "match")
     _, store_contacts = made_once(spec, "store")
     apply_start: Any = make_apply_start(spec) if warms else None
@@ -55,8 +55,8 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
             for c in range(count):
                 contact = contacts[c]
                 note(contact, velocities[contact.a], velocities[contact.b])
-        if strikes:
-            strike(contacts, count, motion, params)
+        if predicts:
+            predict_impacts(contacts, count, motion, params)
         if loaded:
             for c in range(count):
                 preload(contacts[c], velocities, motion)

@@ -45,19 +45,19 @@ def make_direction(spec: Spec):
 
 
 def make_leave(spec: Spec):
-    """Return `kernel(contact, u_1, u_2) -> u_n` [m/s]: the speed at which the surfaces part.
+    """Return `kernel(contact, u_1, u_2) -> u_n` [m/s]: the separation speed.
 
-    u_1, u_2: tangential velocity when they meet; contact.hit: their approach. 0.0 where restitution
-    has not ended after MOST_PARTS.
+    u_1, u_2: tangential velocity when they meet; contact.approach_speed: how fast they do. 0.0
+    where restitution has not ended after MOST_PARTS.
     """
     direction = make_direction(spec)
 
     def leave(contact, u_1, u_2):
         det = contact.i_11 * contact.i_22 - contact.i_12 * contact.i_12
         k_11, k_12, k_22 = contact.i_22 / det, -contact.i_12 / det, contact.i_11 / det
-        u_n = -contact.hit
-        part = contact.hit / (contact.k_n * PARTS)
-        still = STILL * contact.hit
+        u_n = -contact.approach_speed
+        part = contact.approach_speed / (contact.k_n * PARTS)
+        still = STILL * contact.approach_speed
         work, back = 0.0, 0.0
         compressing = True
         for _ in range(MOST_PARTS):

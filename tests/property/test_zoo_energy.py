@@ -48,15 +48,15 @@ def projected(world: Bench, spins: np.ndarray, gravity: float) -> float:
 def carried(world: Bench, before: np.ndarray, gravity: float) -> float:
     """Return what weight can give bodies that contacts carry [J]; before: their velocities.
 
-    A carried body moves with the velocity that ends the step, a struck one with those before and
-    after the impact: weight works on another way than that of a fall between them, by up to
+    A carried body moves with the velocity that ends the step, one in an impact with those before
+    and after the impact: weight works on another way than that of a fall between them, by up to
     m g (|change of v| dt + g dt^2/2).
     """
     dt = float(world.engine.parameters["dt"][0])
     given_up = 0.0
     bodies, ways = world.engine.bodies, world.engine.state.motion
     for body, way, old, new in zip(bodies, ways, before, world.velocity, strict=True):
-        if body["inv_m"] > 0.0 and way["held"] > 0:
+        if body["inv_m"] > 0.0 and way["carried"] > 0:
             changed = 0.0 if way["tau"] < dt else abs(float(new[2] - old[2]))
             given_up += gravity * dt * (changed + 0.5 * gravity * dt) / body["inv_m"]
     return float(given_up)
@@ -76,7 +76,7 @@ def check(bodies: dict[str, Any], gravity: Any, **numerics: Any) -> None:
         allowed += projected(world, world.spin, -gravity[2])
         allowed += carried(world, before, -gravity[2])
         # Sums of some ten terms, an implicit turn solved to round-off, and impacts whose gain is
-        # round-off to 1e-13 of the works of their impulses; the jump of a struck body's spin is the
+        # round-off to 1e-13 of the works of their impulses; the jump of such a body's spin is the
         # root of a quadratic whose terms may be a hundred times what it gains.
         allowed += 1e-11 * float(rows.step["kinetic_energy"].max() + abs(found).max())
         assert found[-1] - last <= allowed

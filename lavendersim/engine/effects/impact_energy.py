@@ -54,7 +54,7 @@ def make_settle(spec: Spec, solve: Any, classify: Any) -> Any:
     """Return the kernel that `settle`s impacts; `kernel(system, motion, workspace, params,
     counters, residual_rows)`: the arguments of a solver, and `motion`.
 
-    classify: the kernel of `integrate` that says which bodies are struck, and when.
+    classify: the kernel of `integrate` that says which bodies meet in an impact, and when.
 
     Called after `solve`; sets counters.stronge to 1 where it took Stronge's law.
     """
@@ -98,8 +98,8 @@ def make_settle(spec: Spec, solve: Any, classify: Any) -> Any:
     def aim(contacts, count, share):
         for c in range(count):
             contact = contacts[c]
-            if contact.struck == 1:
-                contact.target = -(share * contact.up + contact.after)
+            if contact.is_impact == 1:
+                contact.target = -(share * contact.separation_speed + contact.after)
 
     aim = kernel(aim, spec)
 
@@ -129,9 +129,10 @@ def make_settle(spec: Spec, solve: Any, classify: Any) -> Any:
         gives = False
         for c in range(count):
             contact = contacts[c]
-            if contact.struck == 1 and contact.up > 0.0:
+            if contact.is_impact == 1 and contact.separation_speed > 0.0:
                 gives = True
-                contact.up = min(contact.up, leave(contact, contact.pre_1, contact.pre_2))
+                slower = leave(contact, contact.pre_1, contact.pre_2)
+                contact.separation_speed = min(contact.separation_speed, slower)
         if not gives:
             return
         counters.stronge = 1

@@ -1,12 +1,12 @@
 """Impact time: an impact happens at the surface, at the time within the step when it is reached.
 
 With the gap phi, its rate v and its free acceleration a at the start of the step, the surfaces meet
-after tau with speed |v_hit|,
-    phi + v tau + a tau^2/2 = 0,   v_hit = -sqrt(v^2 - 2 a phi),
-leave with -e v_hit, and end the step with v_n = -e v_hit + a (dt - tau): this is what the row asks
-for. The bodies move on their old velocity until tau and on the new one from there; their other
-contacts ask that the gap left at tau does not close in the rest of the step. A flight so short that
-it would end within the step is no flight: the contact is then a plastic one.
+after tau with speed |v_meet|,
+    phi + v tau + a tau^2/2 = 0,   v_meet = -sqrt(v^2 - 2 a phi),
+leave with -e v_meet, and end the step with v_n = -e v_meet + a (dt - tau): this is what the row
+requires. The bodies move on their old velocity until tau and on the new one from there; their
+other contacts require that the gap left at tau does not close in the rest of the step. A flight so
+short that it would end within the step is no flight: the contact is then a plastic one.
 """
 
 from math import sqrt
@@ -15,7 +15,7 @@ from ..records import TOUCHING
 from .decision import Decision, Facts
 from .effect import Choice, Effect, Fields, Hooks, kernel
 
-# Slower than so many times what forces change in a step, surfaces come to rest, they do not hit.
+# Slower than so many times what forces change in a step, surfaces come to rest, without an impact.
 SLOWEST = 4.0
 
 
@@ -33,39 +33,41 @@ def make_foresee(spec):
 
     def foresee(contact, params):
         dt = params.dt
-        contact.tau, contact.struck = dt, 0
+        contact.tau, contact.is_impact = dt, 0
         v, a = contact.v_n_pre - contact.dv_n, contact.dv_n / dt
         # Surfaces that touch or overlap meet at once.
         gap = contact.phi if contact.phi > TOUCHING else 0.0
         squared = v * v - 2.0 * a * gap
         if squared <= 0.0 or (v >= 0.0 and (a >= 0.0 or gap == 0.0)):
             return
-        hit = sqrt(squared)
+        approach_speed = sqrt(squared)
         # The smaller root, in the form that does not cancel.
-        tau = 2.0 * gap / (hit - v) if gap > 0.0 else 0.0
+        tau = 2.0 * gap / (approach_speed - v) if gap > 0.0 else 0.0
         rest = dt - tau
         if rest <= 0.0:
             return
-        up = contact.e * hit
+        separation_speed = contact.e * approach_speed
         # A flight that outlasts the step, or a plastic impact worth the name.
-        if 2.0 * up > -a * rest or hit > SLOWEST * abs(contact.dv_n):
-            contact.tau, contact.hit, contact.up = tau, hit, up
-            contact.after = a * rest if 2.0 * up > -a * rest else 0.0
+        flies_on = 2.0 * separation_speed > -a * rest
+        if flies_on or approach_speed > SLOWEST * abs(contact.dv_n):
+            contact.tau, contact.approach_speed = tau, approach_speed
+            contact.separation_speed = separation_speed
+            contact.after = a * rest if flies_on else 0.0
             if contact.after == 0.0 and a != 0.0:
-                contact.up = 0.0
+                contact.separation_speed = 0.0
 
     return kernel(foresee, spec)
 
 
-def make_strike(spec):
+def make_predict_impacts(spec):
     """Return `kernel(contacts, count, motion, params)`: targets of impacts and of what is near.
 
     Of a body's contacts the first to meet is the impact, with those that meet at the same place
-    within the slop; later ones are seen from that time on.
+    within the slop; later ones are treated from that time on.
     """
     foresee = make_foresee(spec)
 
-    def strike(contacts, count, motion, params):
+    def predict_impacts(contacts, count, motion, params):
         dt = params.dt
         for i in range(motion.shape[0]):
             motion[i].tau = dt
@@ -89,12 +91,12 @@ def make_strike(spec):
             v, a = contact.v_n_pre - contact.dv_n, contact.dv_n / dt
             gap = contact.phi + first * (v + 0.5 * a * first)
             if contact.tau < dt and gap <= params.slop:
-                contact.struck = 1
-                contact.target = -(contact.up + contact.after)
+                contact.is_impact = 1
+                contact.target = -(contact.separation_speed + contact.after)
             elif gap > params.slop:
                 contact.target = (gap - params.slop) / (dt - first)
 
-    return kernel(strike, spec)
+    return kernel(predict_impacts, spec)
 
 
 EFFECT = Effect(
@@ -107,11 +109,11 @@ EFFECT = Effect(
             ("dv_n", "f8"),  # change of v_n by forces in this step [m/s]
             ("e", "f8"),  # coefficient of restitution of the pair [-]
             ("tau", "f8"),  # when the surfaces meet, from the start of the step; dt: not in it [s]
-            ("hit", "f8"),  # speed at which they meet [m/s]
-            ("up", "f8"),  # speed at which they leave, by Newton's law [m/s]
+            ("approach_speed", "f8"),  # speed at which they meet [m/s]
+            ("separation_speed", "f8"),  # speed at which they leave, by Newton's law [m/s]
             ("after", "f8"),  # what forces add to v_n from then to the end of the step [m/s]
-            ("struck", "i8"),  # 1 where the impact sets the row's target
+            ("is_impact", "i8"),  # 1 where the impact sets the row's target
         ],
     ),
-    hooks=Hooks(predict_impacts=make_strike),
+    hooks=Hooks(predict_impacts=make_predict_impacts),
 )

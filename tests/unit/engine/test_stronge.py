@@ -16,7 +16,7 @@ import pytest
 from lavendersim.engine.spec import Spec
 from lavendersim.engine.stronge import make_leave
 
-FIELDS = ("k_n", "k_n1", "k_n2", "i_11", "i_12", "i_22", "mu", "hit", "e")
+FIELDS = ("k_n", "k_n1", "k_n2", "i_11", "i_12", "i_22", "mu", "approach_speed", "e")
 SPEC = Spec(("friction", "restitution"), ("sphere_plane",), "adaptive", tolerance=True)
 LEAVE = make_leave(SPEC)
 
