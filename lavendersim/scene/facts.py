@@ -43,7 +43,7 @@ def _body_facts(config: CellConfig) -> Iterator[BodyFacts]:
             speed=max(hypot(*speed) for speed in speeds),
             size=bounding_radius(body.shape),
             least_size=_least_size(body.shape),
-            stated=body,
+            config=body,
             force=name in pushed,
             torque=name in twisted,
             pulled=name in pulled,

@@ -1,4 +1,4 @@
-"""What an effect may know of a scene, and its answer."""
+"""What an effect may know of a scene, and what it decides."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ class BodyFacts(NamedTuple):
     movable: bool
     spins: bool  # it has an initial angular velocity
     round: bool  # all principal inertias equal
-    kinematic: bool = False  # moves as told, whatever touches it
-    speed: float = 0.0  # largest stated [m/s]
+    kinematic: bool = False  # keeps its velocity, whatever touches it
+    speed: float = 0.0  # largest specified [m/s]
     size: float = 0.0  # radius of the sphere about its centre that holds it [m], planes: inf
     least_size: float = 0.0  # of the smallest of its parts, where it has some; planes: inf
     pulled: bool = False  # an effect with keys of its own in the scene pulls it
     twisted: bool = False  # and turns it
-    stated: Any = None  # the body as the config of the cell has it
+    config: Any = None  # the body as the config of the cell has it
     force: bool = False  # a force acts on it at some time
     torque: bool = False
     parts: int = 0  # of a compound
@@ -60,7 +60,7 @@ class Facts(NamedTuple):
     speculative: bool = False
     impacts: str = "captured"
     scene: Any = None  # of the config, for effects with keys of their own in it
-    mistake: str = "none"  # made on purpose, for study
+    mistake: str = "none"  # a deliberate error, for study
     integrator: str = "semi_implicit_euler"
     friction_cone: str = "disc"
     solver: str = "adaptive"
@@ -92,9 +92,9 @@ def by_pair(pairs: Sequence[PairFacts], say: Callable[[PairFacts], str]) -> str:
 
     say: nothing for a pair of which there is nothing to say; such pairs come last.
     """
-    said = [(f"{pair.a} and {pair.b}", say(pair)) for pair in pairs]
-    telling = [f"{names}: {what}" for names, what in said if what]
-    silent = [f"{names}: none" for names, what in said if not what]
+    texts = [(f"{pair.a} and {pair.b}", say(pair)) for pair in pairs]
+    telling = [f"{names}: {what}" for names, what in texts if what]
+    silent = [f"{names}: none" for names, what in texts if not what]
     if len(telling) > MOST_PAIRS:
         telling[MOST_PAIRS - 1 :] = [f"{len(telling) - MOST_PAIRS + 1} more pairs"]
     if len(silent) > 1:

@@ -24,7 +24,7 @@ def decide(facts: Facts) -> Decision:
     dragged = [
         body.name
         for body in facts.bodies
-        if body.movable and any(body_values(body.stated).values())
+        if body.movable and any(body_values(body.config).values())
     ]
     if dragged:
         return Decision(True, f"{named(dragged)}: drag")

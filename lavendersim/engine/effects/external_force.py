@@ -13,7 +13,7 @@ def decide(facts: Facts) -> Decision:
     pushed = [body.name for body in facts.bodies if body.movable and (body.force or body.torque)]
     if pushed:
         return Decision(True, f"{named(pushed)}: a force or torque from the config")
-    return Decision(False, "no force or torque is stated")
+    return Decision(False, "no force or torque is specified")
 
 
 def make(spec):

@@ -36,18 +36,18 @@ def decide(facts: Facts) -> Decision:
     source = _source_of_energy(facts)
     if source:
         return Decision(True, f"{source}: no bound on how fast {between[0].a} may become")
-    way = facts.timestep * SAFETY * _closing_speed(facts)
+    farthest = facts.timestep * SAFETY * _closing_speed(facts)
     smallest = min(body.least_size for body in facts.bodies)
     allowed = FAST * smallest
-    if way > allowed:
+    if farthest > allowed:
         return Decision(
             True,
-            f"the energy there is could move bodies {way:.2g} m in a step, {allowed:.2g} m is"
+            f"the energy there is could move bodies {farthest:.2g} m in a step, {allowed:.2g} m is"
             " far for the smallest",
         )
     return Decision(
         False,
-        f"the energy there is moves no body {way:.2g} m in a step, {allowed:.2g} m would be"
+        f"the energy there is moves no body {farthest:.2g} m in a step, {allowed:.2g} m would be"
         " far for the smallest",
     )
 
@@ -61,7 +61,7 @@ def _source_of_energy(facts: Facts) -> str:
             return f"a force between bodies acts on {body.name}"
         if body.kinematic and (body.spins or body.speed > 0.0):
             return f"{body.name} moves as its velocity says"
-        if body.stated is not None and any(body.stated.surface_velocity):
+        if body.config is not None and any(body.config.surface_velocity):
             return f"the surface of {body.name} moves"
     if facts.events:
         return "events change bodies"
@@ -78,7 +78,7 @@ def _source_of_energy(facts: Facts) -> str:
 def _closing_speed(facts: Facts) -> float:
     """Return the greatest speed relative to each other that two bodies may reach [m/s]."""
     movable = [body for body in facts.bodies if body.movable]
-    masses = [body.stated.mass for body in movable]
+    masses = [body.config.mass for body in movable]
     g = hypot(*facts.gravity)
     energy = sum(_kinetic_energy(body) for body in movable)
     falling = sqrt(2.0 * energy) + g * facts.duration * sqrt(sum(masses))
@@ -88,7 +88,7 @@ def _closing_speed(facts: Facts) -> float:
         fx, fy, fz = facts.gravity
         fall = 0.0
         for body, mass in zip(movable, masses, strict=True):
-            x, y, z = body.stated.position
+            x, y, z = body.config.position
             height = -(fx * x + fy * y + fz * z) / g - floor
             fall += mass * g * max(height + body.size, 0.0)
         bound = min(bound, energy + fall)
@@ -103,7 +103,7 @@ def _floor(facts: Facts, g: float) -> float:
     heights = [-inf]
     for body in facts.bodies:
         if body.shape == "plane":
-            shape = body.stated.shape
+            shape = body.config.shape
             upward = -sum(n * f for n, f in zip(shape.normal, facts.gravity, strict=True)) / g
             if upward >= 1.0 - LEVEL:
                 heights.append(shape.offset)
@@ -111,9 +111,9 @@ def _floor(facts: Facts, g: float) -> float:
 
 
 def _kinetic_energy(body: BodyFacts) -> float:
-    """Return the largest kinetic energy that is stated for a body [J]."""
-    mass, spin = float(body.stated.mass), hypot(*body.stated.angular_velocity)
-    inertia = float(max(body.stated.inertia))
+    """Return the largest kinetic energy that the config gives a body [J]."""
+    mass, spin = float(body.config.mass), hypot(*body.config.angular_velocity)
+    inertia = float(max(body.config.inertia))
     return 0.5 * mass * body.speed**2 + 0.5 * inertia * spin**2
 
 

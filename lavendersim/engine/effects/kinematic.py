@@ -10,15 +10,15 @@ from .effect import Effect, Fields
 
 
 def body_values(body: Any) -> dict[str, bool]:
-    """Return the value of the body fields that a config states for a body."""
+    """Return the value of the body fields that a config gives a body."""
     return {"kinematic": body.kinematic}
 
 
 def decide(facts: Facts) -> Decision:
     """On when a body is kinematic."""
-    told = [body.name for body in facts.bodies if body.kinematic]
-    if told:
-        return Decision(True, f"{named(told)}: moves as its velocity says")
+    kinematic = [body.name for body in facts.bodies if body.kinematic]
+    if kinematic:
+        return Decision(True, f"{named(kinematic)}: moves as its velocity says")
     return Decision(False, "no body is kinematic")
 
 

@@ -61,8 +61,8 @@ def make(spec):
             for c in range(count):
                 contact = contacts[order[c]]
                 ua, ub = pseudo[contact.a], pseudo[contact.b]
-                lack = contact.correction - normal_velocity(contact, ua, ub)
-                push = max(contact.push + lack * contact.inv_k_n, 0.0)
+                missing = contact.correction - normal_velocity(contact, ua, ub)
+                push = max(contact.push + missing * contact.inv_k_n, 0.0)
                 change = push - contact.push
                 contact.push = push
                 apply_impulse(contact, ua, ub, change)

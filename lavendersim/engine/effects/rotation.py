@@ -18,12 +18,12 @@ def decide(facts: Facts) -> Decision:
             why = _turned_by(body, bool(facts.pairs), frictional, resisting)
             turned.setdefault(why, []).append(body.name)
     still = turned.pop("", [])
-    said = [f"{named(names)}: {why}" for why, names in turned.items()]
+    reasons = [f"{named(names)}: {why}" for why, names in turned.items()]
     if still:
         them = "it" if len(still) == 1 else "them"
         why = f"no contact of {them} can exert a torque" if facts.pairs else "nothing can touch"
-        said.append(f"{named(still)} cannot turn: {why}")
-    return Decision(bool(turned), "; ".join(said) or "nothing moves")
+        reasons.append(f"{named(still)} cannot turn: {why}")
+    return Decision(bool(turned), "; ".join(reasons) or "nothing moves")
 
 
 def _turned_by(body: BodyFacts, touches: bool, frictional: set[Kind], resisting: set[Kind]) -> str:
@@ -44,7 +44,7 @@ def _turned_by(body: BodyFacts, touches: bool, frictional: set[Kind], resisting:
 
 
 def _kind(body: BodyFacts) -> Kind:
-    return body.shape, body.movable, repr(body.name if body.stated is None else body.stated.surface)
+    return body.shape, body.movable, repr(body.name if body.config is None else body.config.surface)
 
 
 def _touched(facts: Facts, pairs: list[PairFacts]) -> set[Kind]:

@@ -47,18 +47,18 @@ def make_still(spec: Spec) -> Any:
     return kernel(still, spec)
 
 
-def make_set_pace(spec: Spec) -> Any:
+def make_measure_speeds(spec: Spec) -> Any:
     """Return `kernel(bodies, velocities)`: `point_speed` of every body, before forces act."""
     turns = spec.has("rotation")
 
-    def set_pace(bodies, velocities):
+    def measure_speeds(bodies, velocities):
         for i in range(bodies.shape[0]):
             body, v = bodies[i], velocities[i]
             body.point_speed = sqrt(v.vx * v.vx + v.vy * v.vy + v.vz * v.vz)
             if turns:
                 body.point_speed += body.bound * sqrt(v.wx * v.wx + v.wy * v.wy + v.wz * v.wz)
 
-    return kernel(set_pace, spec)
+    return kernel(measure_speeds, spec)
 
 
 def make_is_pushed(spec: Spec) -> Any:
@@ -147,7 +147,7 @@ def make_wake(spec: Spec) -> Any:
     return kernel(wake, spec)
 
 
-def make_doze(spec: Spec) -> Any:
+def make_update_sleeping(spec: Spec) -> Any:
     """Return `kernel(state, count, island, params)`; state: see `memory`.
 
     At the end of a step: who has been at rest for how long, and which islands fall asleep.
@@ -161,7 +161,7 @@ def make_doze(spec: Spec) -> Any:
     kinematic = spec.has("kinematic")
     label_islands, is_pushed = make_label_islands(spec), make_is_pushed(spec)
 
-    def lie_down(body, v, label):
+    def put_to_sleep(body, v, label):
         body.asleep, body.island = 1, label
         body.own_inv_m, body.inv_m = body.inv_m, 0.0
         v.vx, v.vy, v.vz = 0.0, 0.0, 0.0
@@ -171,7 +171,7 @@ def make_doze(spec: Spec) -> Any:
             body.inv_ix, body.inv_iy, body.inv_iz = 0.0, 0.0, 0.0
             v.wx, v.wy, v.wz = 0.0, 0.0, 0.0
 
-    lie_down = kernel(lie_down, spec)
+    put_to_sleep = kernel(put_to_sleep, spec)
 
     def join(bodies, one, other):
         # Islands that lean on each other wake together.
@@ -182,7 +182,7 @@ def make_doze(spec: Spec) -> Any:
 
     join = kernel(join, spec)
 
-    def doze(state, count, island, params):
+    def update_sleeping(state, count, island, params):
         bodies, velocities, motion = state.bodies, state.velocities, state.motion
         contacts = state.contacts
         restful = False
@@ -213,7 +213,7 @@ def make_doze(spec: Spec) -> Any:
         slept = False
         for i in range(bodies.shape[0]):
             if island[i] >= 0 and bodies[island[i]].rest >= params.sleep_time:
-                lie_down(bodies[i], velocities[i], island[i])
+                put_to_sleep(bodies[i], velocities[i], island[i])
                 slept = True
                 if keeps:
                     motion[i].dvx, motion[i].dvy, motion[i].dvz = 0.0, 0.0, 0.0
@@ -223,7 +223,7 @@ def make_doze(spec: Spec) -> Any:
                 if a.asleep == 1 and b.asleep == 1 and a.island != b.island:
                     join(bodies, a.island, b.island)
 
-    return kernel(doze, spec)
+    return kernel(update_sleeping, spec)
 
 
 def make_step_row(spec: Spec) -> Any:
@@ -259,10 +259,10 @@ EFFECT = Effect(
     ),
     step_columns=(Column("awake", "i8", "number of movable bodies that do not sleep", number=20),),
     hooks=Hooks(
-        measure_speeds=make_set_pace,
+        measure_speeds=make_measure_speeds,
         is_still=make_still,
         wake=make_wake,
-        update_sleeping=make_doze,
+        update_sleeping=make_update_sleeping,
         step_row=make_step_row,
     ),
 )

@@ -18,7 +18,7 @@ def body_values(body: Any) -> dict[str, float]:
 
 def decide(facts: Facts) -> Decision:
     """On when a surface moves and some contact has friction."""
-    moving = [body.name for body in facts.bodies if any(body.stated.surface_velocity)]
+    moving = [body.name for body in facts.bodies if any(body.config.surface_velocity)]
     if not moving:
         return Decision(False, "no surface moves in its body")
     if any(pair.surface.friction > 0.0 for pair in facts.pairs):
