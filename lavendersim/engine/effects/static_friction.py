@@ -3,9 +3,9 @@
     mu(v) = mu_k + (mu_s - mu_k) / (1 + (v / v_s)^2)
 v is the slip speed at which the step begins, before forces act; mu_k the pair's `friction`, mu_s
 its `static_friction`, v_s its `stribeck_velocity`, at which half of the difference is left. The
-falling coefficient is Stribeck's, the algebraic form that of Hess and Soom (1990): no
-exponential, whose last bit differs between machines. Each step solves Coulomb's law with the
-coefficient that its beginning gives (lagged), so no solver knows of it.
+falling coefficient is Stribeck's, the algebraic form that of Hess and Soom (1990; cited as
+background, not opened): no exponential, whose last bit differs between machines. Each step solves
+Coulomb's law with the coefficient that its beginning gives (lagged), so no solver knows of it.
 
 A pair's static coefficient is the geometric mean of its surfaces', as the kinetic one is.
 """
