@@ -36,7 +36,7 @@ UNDOCUMENTED = ("_nrt",)
 
 
 def known(options: dict[str, Any], target_options: Any = CPUTargetOptions) -> dict[str, Any]:
-    """Return `options` without the undocumented ones that numba's `target_options` lack."""
+    """Return `options` without the undocumented ones that numba's `target_options` do not have."""
     return {
         name: value
         for name, value in options.items()
@@ -148,7 +148,7 @@ class Kernel(CPUDispatcher):
 
 
 def compiler_is_off() -> bool:
-    """Whether numba was told to leave functions as they are; its own do not work together then."""
+    """Whether numba was set to leave functions as they are; its own do not work together then."""
     return bool(numba.config.DISABLE_JIT)  # type: ignore[attr-defined]
 
 

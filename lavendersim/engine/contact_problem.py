@@ -1,4 +1,4 @@
-"""The contact problem of a step, stated by its Delassus matrix, and a solver's solution of it.
+"""The contact problem of a step, given by its Delassus matrix, and a solver's solution of it.
 
     u = W r + free + target e_n,   w = u + gamma r_n e_n          per contact, frame (n, t1, t2)
     0 <= r_n  complementary to  w_n >= 0

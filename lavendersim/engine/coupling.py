@@ -20,7 +20,7 @@ from .effects.frictionless_contact import by_friction
 from .records import F8, I8, Field
 from .spec import Spec
 
-# A contact of a problem stated by its matrix; the names that bodies' contacts have too mean the
+# A contact of a problem given by its matrix; the names that bodies' contacts have too mean the
 # same. w includes free velocity and target.
 MATRIX_CONTACT: list[Field] = [
     *[(name, F8) for name in ("lambda_n", "lambda_1", "lambda_2")],  # [N s]

@@ -1,4 +1,4 @@
-"""The engine of one scene: its memory, its compiled step, and what callers may do between steps.
+"""The engine of one scene: its memory, its compiled step, and what may be done between steps.
 
     engine = Engine(spec, bodies, velocities, pairs, parameters, poses)
     status = engine.advance(steps)

@@ -76,7 +76,7 @@ def build() -> str:
         platform.machine(),
         cpu_target.target_context.codegen().magic_tuple(),
         [getattr(numba.config, name, None) for name in SETTINGS],
-        # Whatever else numba is told: a needless compilation is cheaper than a wrong kernel.
+        # Whatever else numba is set to: a needless compilation is cheaper than a wrong kernel.
         sorted(item for item in os.environ.items() if item[0].startswith("NUMBA_")),
     )
     return hashlib.sha256(repr(parts).encode()).hexdigest()[:8]
@@ -99,13 +99,13 @@ def directory() -> tuple[Path, str]:
     asked = os.environ.get(DIRECTORY_VARIABLE)
     usual = Path(os.environ.get("XDG_CACHE_HOME") or "~/.cache").expanduser() / "lavender"
     fallback = Path(tempfile.gettempdir()) / f"lavender-{os.getuid() if os.name == 'posix' else ''}"
-    wanted = Path(asked) if asked else usual
-    refusal = f"{wanted} cannot be written by this user alone"
-    for path in [wanted] if asked else [wanted, fallback]:
+    chosen = Path(asked) if asked else usual
+    refusal = f"{chosen} cannot be written by this user alone"
+    for path in [chosen] if asked else [chosen, fallback]:
         with contextlib.suppress(OSError):
             path.mkdir(parents=True, exist_ok=True, mode=0o700)
             if _is_private(path) and os.access(path, os.W_OK):
-                return path, "" if path == wanted else f"{refusal}: kernels are kept in {path}"
+                return path, "" if path == chosen else f"{refusal}: kernels are kept in {path}"
     return Path(), f"{refusal}: kernels are compiled anew in every process"
 
 

@@ -1,4 +1,4 @@
-"""A contact problem stated by its Delassus matrix, as the records that a solver works on."""
+"""A contact problem given by its Delassus matrix, as the records that a solver works on."""
 
 from __future__ import annotations
 

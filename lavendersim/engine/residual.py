@@ -106,7 +106,7 @@ def _make_convex_residual(spec: Spec):
 def make_residual(spec: Spec):
     """Return `kernel(contacts, count, velocities) -> (largest residual [m/s], its contact)`.
 
-    Of a problem stated by its matrix: the residual without units (`scaled_residual`).
+    Of a problem given by its matrix: the residual without units (`scaled_residual`).
     """
     if spec.operator == "matrix":
         return make_scaled_residual(spec)

@@ -1,4 +1,4 @@
-"""The error of a problem stated by its matrix, without units.
+"""The error of a problem given by its matrix, without units.
 
     | c r - P_K(c r - uh) | / |q|,   uh = w + mu |w_t| e_n,   c = tr W / 3n
 over all rows; P_K projects onto Coulomb's cone. Zero exactly at a solution (De Saxce's form of the

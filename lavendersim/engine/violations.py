@@ -7,7 +7,7 @@ k_n + gamma the response of its row, the law of Signorini and Coulomb is broken 
     dissipation    | lambda_t . w_t + mu lambda_n |w_t| |                                 [J]
 The last is what friction fails to take of the most that its disc allows: 0 where the contact sticks
 or slides against its motion. All three are 0 exactly where the law holds. They are of this law
-whichever one the engine was told to solve (`friction_cone`), so they tell the error of the model
+whichever one the engine solves (`friction_cone`), so they give the error of the model
 beside the solver's; `residual` is the solver's alone. Torques have no part here.
 """
 

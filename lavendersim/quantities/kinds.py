@@ -1,4 +1,4 @@
-"""Models told apart by their `kind`: those in the files of a package, and those of plug-ins.
+"""Models distinguished by their `kind`: those in the files of a package, and those of plug-ins.
 
 A plug-in is a module of another distribution, named by an entry point of a group.
 """

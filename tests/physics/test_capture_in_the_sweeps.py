@@ -1,4 +1,4 @@
-"""A known mistake, made on purpose: restitution captured in the sweeps loses its bounce.
+"""A deliberate error: restitution captured in the sweeps loses its bounce.
 
 The first sweep reverses the velocity; the second finds nothing that approaches, asks for v_n >= 0
 alone and takes the bounce back, so that every e rebounds alike. `test_captured_restitution` holds

@@ -19,7 +19,7 @@ def decide(facts: Facts) -> Decision:
     if facts.mistake != "capture_in_sweeps":
         return Decision(False, "restitution is captured once, before the solve")
     if any(pair.surface.restitution > 0.0 for pair in facts.pairs):
-        return Decision(True, f"study-only, a known mistake: {STUDY_ONLY}")
+        return Decision(True, f"study-only, a deliberate error: {STUDY_ONLY}")
     return Decision(False, "asked for, but every pair that may touch has restitution 0")
 
 

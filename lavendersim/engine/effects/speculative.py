@@ -1,7 +1,7 @@
 """Speculative contacts: rows made before bodies touch require that a gap does not close too far.
 
     v_n >= -(phi - slop)/dt   for phi > slop
-A body never falls into the floor before the floor answers, and a fast one does not pass through it:
+A body never falls into the floor before the floor reacts, and a fast one does not pass through it:
 how far ahead a pair looks follows from the speeds of its bodies (`collide.narrow_phase`). Surfaces
 within the slop of each other rest where they are: closing gaps of round-off size would keep every
 stack moving.

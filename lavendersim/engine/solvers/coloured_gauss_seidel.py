@@ -4,7 +4,7 @@ The order of sweeps colours the contacts (`ordering`): most of any eight that fo
 share no movable body, and visiting them at once is visiting them in turn. So it gives the bits of
 `block_gauss_seidel`, its scalar loop, and what that says of other engines holds here. Where a run
 of the order is shorter, lanes are left idle: contacts that all share one movable body are visited
-one by one, at the price of eight.
+one by one, at the cost of eight.
 """
 
 from __future__ import annotations

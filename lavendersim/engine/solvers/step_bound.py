@@ -3,7 +3,7 @@
 W = sum over bodies of J_b M_b^-1 J_b^T. A body's term, with blocks X_i X_j^T, is at most the
 diagonal of n_b |X_i|^2, n_b the number of its contacts (Cauchy and Schwarz); so W is at most
     diag(n_i |W_ii|),   n_i the larger number of contacts of the contact's two bodies,
-as if each body were split among its contacts. Of a problem stated by its matrix, rows of blocks are
+as if each body were split among its contacts. Of a problem given by its matrix, rows of blocks are
 summed up instead (`matrix_problem`).
 """
 

@@ -39,7 +39,7 @@ def about_something_else(experiment: Experiment) -> str:
     if any(not control.known_failure for control in experiment.controls):
         return "must fail (a negative control)"
     if experiment.mistakes:
-        return f"makes a mistake on purpose ({', '.join(experiment.mistakes)})"
+        return f"makes a deliberate error ({', '.join(experiment.mistakes)})"
     if not experiment.expectations and experiment.always is None:
         return "judges nothing"
     sweep = experiment.config.sweep

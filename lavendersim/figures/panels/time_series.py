@@ -80,7 +80,7 @@ def quantity_of(panel: TimeSeries, trace: Trace) -> Floats:
         return mechanical_energy(trace)
     if panel.column in ("residual", "signorini", "cone", "dissipation"):
         if panel.column not in (trace.step.dtype.names or ()):
-            return np.full(len(trace.step), np.nan)  # nothing could touch, or rub
+            return np.full(len(trace.step), np.nan)  # nothing could touch, or no friction
         return np.asarray(trace.step[panel.column], dtype=np.float64)
     if panel.column == "clearance":
         assert panel.body is not None

@@ -3,7 +3,7 @@
     s(n) = min over B of n . x - max over A of n . x,      separation = max over unit n of s(n)
 
 is the distance when they are apart (GJK) and minus the depth when they overlap (EPA). Where a core
-is round, EPA's answer is improved by `ascend`; last, the normal of a face that separates no less is
+is round, EPA's result is improved by `ascend`; last, the normal of a face that separates no less is
 taken instead of the one found, so that resting faces have their exact normal.
 
 `scratch.separation` holds the result. Its witness points lie on the cores; a capsule's or sphere's

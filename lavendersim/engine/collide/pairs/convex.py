@@ -1,7 +1,7 @@
 """Manifold of any two convex bodies but planes: for the pairs that have no closed form.
 
 The separation and its normal come from GJK and EPA (`convex.separation`), bettered between lines by
-`manifold.line_normal`. The features that look along the normal, laid over each other, give the
+`manifold.line_normal`. The features that face along the normal, laid over each other, give the
 points of faces, caps and lines that rest on one another (`manifold.patch`); where they do not meet,
 or hold no point as near as the nearest, the witness points themselves are added.
 """

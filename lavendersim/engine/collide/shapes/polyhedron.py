@@ -34,7 +34,7 @@ def facet_along(body, row, n, hulls):
     best, chosen = -2.0, starts[row]
     for f in range(starts[row], starts[row + 1]):
         cosine = local.x * normals[f, 0] + local.y * normals[f, 1] + local.z * normals[f, 2]
-        # The margin keeps the choice when two faces look along n equally.
+        # The margin keeps the choice when two faces are along n equally.
         if cosine > best + 1e-9:
             best, chosen = cosine, f
     normal = Vec3(normals[chosen, 0], normals[chosen, 1], normals[chosen, 2])

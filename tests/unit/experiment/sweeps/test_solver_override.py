@@ -81,7 +81,7 @@ def test_a_case_of_the_default_numerics_is_put_to_every_solver(sections: str) ->
         (CLAIM + swept("numerics.sweeps", "[1, 2]"), "varies numerics.sweeps"),
         (
             CLAIM + "numerics: chapter\nstudy: {mistake: capture_in_sweeps}\n",
-            "makes a mistake on purpose (capture_in_sweeps)",
+            "makes a deliberate error (capture_in_sweeps)",
         ),
         (
             "always: {}\nexpect: [{name: a gain wins energy, fails: energy}]\n",
