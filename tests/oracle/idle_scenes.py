@@ -83,14 +83,14 @@ def boxes(size: Any = BRICK, **surface: float) -> dict[str, Any]:
 
 
 def mixed(**surface: float) -> dict[str, Any]:
-    """Balls and a box that slide on a rough floor; one ball is smooth."""
+    """Balls and a box that slide on a frictional floor; one ball is frictionless."""
     bodies = {**balls(**surface), "brick": boxes(**surface)["thrown"]}
     bodies["high"]["surface"] = dict.fromkeys(bodies["high"]["surface"], 0.0)
     return bodies
 
 
 def spinning() -> dict[str, Any]:
-    """Smooth balls that spin: their contacts exert no torque."""
+    """Frictionless balls that spin: their contacts exert no torque."""
     bodies = balls()
     for k, name in enumerate(("low", "high", "runner", "heavy")):
         bodies[name]["angular_velocity"] = [1.0 + k, -2.0, 3.0 * k]
@@ -110,7 +110,7 @@ def flying() -> dict[str, Any]:
 
 
 def single() -> dict[str, Any]:
-    """A smooth ball on a floor: one point."""
+    """A frictionless ball on a floor: one point."""
     return {"floor": plane(), "ball": sphere(0.1, (0.0, 0.0, 0.12), restitution=0.3)}
 
 
@@ -123,8 +123,8 @@ def others(**surface: float) -> dict[str, Any]:
     )
     bodies = {"floor": plane(**surface)}
     for k, (shape, x) in enumerate(zip(shapes, (-0.5, 0.0, 0.5), strict=True)):
-        stated = {"orientation": TILTED, "velocity": (-3.0 * x, 0.0, -1.0), **surface}
-        bodies[shape["kind"]] = body(shape, (x, 0.05 * k, 0.35), **stated)
+        properties = {"orientation": TILTED, "velocity": (-3.0 * x, 0.0, -1.0), **surface}
+        bodies[shape["kind"]] = body(shape, (x, 0.05 * k, 0.35), **properties)
     return bodies
 
 
@@ -134,18 +134,18 @@ SCENES: dict[str, Callable[[], dict[str, Any]]] = {
     "plastic balls, mistaken": lambda: mistaken(cell(balls())),
     "cold balls": lambda: cell(balls(), warm_start=False),
     "spinning balls": lambda: cell(spinning()),
-    "rough balls": lambda: cell(balls(friction=0.4)),
+    "frictional balls": lambda: cell(balls(friction=0.4)),
     "drifting balls": lambda: cell(drifting(), NOWHERE, integrator="midpoint"),
     "conjugate balls": lambda: cell(balls(friction=0.4), **CONJUGATE),
     "adaptive balls": lambda: cell(
         balls(friction=0.4), solver="adaptive", sweeps=50, tolerance=1e-9
     ),
     "slow balls": lambda: cell(slow(), speculative=True),
-    "slow smooth impacts": lambda: cell(slow(restitution=0.7), impacts="at_surface"),
-    "slow rough impacts": lambda: cell(slow(friction=0.4), impacts="at_surface"),
+    "slow frictionless impacts": lambda: cell(slow(restitution=0.7), impacts="at_surface"),
+    "slow frictional impacts": lambda: cell(slow(friction=0.4), impacts="at_surface"),
     "boxes": lambda: cell(boxes()),
-    "rough boxes": lambda: cell(boxes(friction=0.4)),
-    "rough cubes": lambda: cell(boxes(CUBE, friction=0.4)),
+    "frictional boxes": lambda: cell(boxes(friction=0.4)),
+    "frictional cubes": lambda: cell(boxes(CUBE, friction=0.4)),
     "mixed": lambda: cell(mixed(friction=0.4)),
     "others": lambda: cell(others(friction=0.3)),
     "flying brick": lambda: cell(flying(), preset="default"),
@@ -164,36 +164,36 @@ SCENES: dict[str, Callable[[], dict[str, Any]]] = {
 
 # For each effect scenes that do not require it, with what it would act on if it did.
 CASES: dict[str, tuple[str, ...]] = {
-    "compound": ("rough balls",),
+    "compound": ("frictional balls",),
     "broad_phase": ("balls",),
     "gravity": ("drifting balls",),
-    "external_force": ("rough balls",),
-    "drag": ("rough balls",),
+    "external_force": ("frictional balls",),
+    "drag": ("frictional balls",),
     "rotation": ("balls",),
-    "gyroscopic": ("rough balls", "flying brick"),  # round bodies; one that is not, nor turns
+    "gyroscopic": ("frictional balls", "flying brick"),  # round bodies; one that is not, nor turns
     "kinematic": ("balls",),
     "contact_torque": ("spinning balls",),
-    "frictionless_contact": ("rough balls",),
+    "frictionless_contact": ("frictional balls",),
     "friction": ("balls", "boxes"),
-    "torsional_friction": ("rough balls",),
-    "rolling_friction": ("rough balls",),
-    "surface_velocity": ("rough balls",),
-    "spring": ("rough balls",),
-    "static_friction": ("rough balls",),
-    "cohesion": ("rough balls", "balls"),
+    "torsional_friction": ("frictional balls",),
+    "rolling_friction": ("frictional balls",),
+    "surface_velocity": ("frictional balls",),
+    "spring": ("frictional balls",),
+    "static_friction": ("frictional balls",),
+    "cohesion": ("frictional balls", "balls"),
     "midpoint": ("drifting balls",),
     "impact_time": ("flying brick",),
     "speculative": ("flying brick",),
     "fast_bodies": ("slow balls",),
     "restitution": ("plastic balls",),
     "capture_in_sweeps": ("plastic balls, mistaken",),
-    "impact_energy": ("slow smooth impacts", "slow rough impacts"),
+    "impact_energy": ("slow frictionless impacts", "slow frictional impacts"),
     "stabilisation": ("balls",),
     "compliance": ("balls", "conjugate balls"),
     "warm_start": ("cold balls",),
     "newton": ("single ball",),
     "projection": ("balls",),
-    "sleeping": ("rough balls",),
+    "sleeping": ("frictional balls",),
     "step_log": ("balls",),
     "pose_log": ("balls",),
     "contact_log": ("balls",),

@@ -35,7 +35,7 @@ def dropped(mistake: str, friction: float = 0.0, sweeps: int = 22) -> list[Cours
     return run_config(DROPS.format(mistake=mistake, friction=friction, sweeps=sweeps))
 
 
-@pytest.fixture(scope="module", params=[0.0, 0.5], ids=["smooth", "rough"])
+@pytest.fixture(scope="module", params=[0.0, 0.5], ids=["frictionless", "frictional"])
 def mistaken(request: pytest.FixtureRequest) -> list[Course]:
     return dropped("capture_in_sweeps", friction=request.param)
 

@@ -12,10 +12,10 @@ from physics_runs import GRAVITY, Course, run_config
 BLOCK = "{kind: box, size: [0.2, 0.2, 0.2]}"
 SCENE = f"""\
 scene:
-  surfaces: {{rough: {{friction: 0.5}}}}
+  surfaces: {{rubber: {{friction: 0.5}}}}
   bodies:
-    belt: {{shape: {{kind: plane}}, surface: rough, surface_velocity: [0.6, 0, 0]}}
-    block: {{shape: {BLOCK}, mass: 1, surface: rough, position: [0, 0, 0.1]}}
+    belt: {{shape: {{kind: plane}}, surface: rubber, surface_velocity: [0.6, 0, 0]}}
+    block: {{shape: {BLOCK}, mass: 1, surface: rubber, position: [0, 0, 0.1]}}
     dumbbell:
       shape:
         kind: compound
@@ -23,15 +23,15 @@ scene:
           - {{shape: {BLOCK}, position: [0, -0.3, 0]}}
           - {{shape: {BLOCK}, position: [0, 0.3, 0]}}
       mass: 3
-      surface: rough
+      surface: rubber
       position: [0, 2, 0.1]
     lift:
       shape: {{kind: box, size: [0.4, 0.4, 0.2]}}
       kinematic: true
-      surface: rough
+      surface: rubber
       position: [0, 5, 1]
       velocity: [0, 0, 0.25]
-    rider: {{shape: {BLOCK}, mass: 1, surface: rough, position: [0, 5, 1.2]}}
+    rider: {{shape: {BLOCK}, mass: 1, surface: rubber, position: [0, 5, 1.2]}}
     kite: {{shape: {BLOCK}, mass: 1, position: [0, -5, 3], drag: {{linear: 2}}}}
   forces:
     - {{body: kite, force: [1, 0, {GRAVITY}]}}
@@ -85,5 +85,5 @@ def test_kite_tends_to_the_speed_that_its_drag_carries(course: Course) -> None:
     ends = 0.5 * (1.0 - (1.0 + 2.0 * DT) ** -np.arange(241.0))
     expected = 0.5 * (ends[1:] + ends[:-1])
     np.testing.assert_allclose(velocity(course, "kite")[:, 0], expected, atol=1e-12)
-    # the weight is carried to the rounding of the decimal it is stated with
+    # the weight is carried to the rounding of the decimal it is written with
     np.testing.assert_allclose(course.height("kite"), 3.0, atol=1e-12)

@@ -3,9 +3,9 @@
 Every effect and every shape pair is compiled into engines of scenes that do not require it, and
 poses, velocities, contacts, impulses, residuals, energies and hashes are compared under ==. All are
 equal: no effect needs a tolerance. What decides is that a coefficient of zero adds a zero, scales
-by one or takes the same branch, and that smooth contacts keep rows of their own beside rough ones.
+by one or takes the same branch, and that frictionless contacts keep rows of their own.
 
-One difference is told: with `residual_log` a solver makes the sweeps that would change nothing as
+One difference is known: with `residual_log` a solver makes the sweeps that would change nothing as
 well, so that `sweeps` counts more where a tolerance, or an exact solution, ends solves early.
 
 `LAVENDER_TEST_EVERYTHING=1` takes each effect alone, and all at once, through every scene (hours).
@@ -31,7 +31,7 @@ NOTHING_TOUCHES = {"flying brick"}
 MORE_SWEEPS = {"residual_log": ("sweeps",)}
 EVERYTHING = bool(os.environ.get("LAVENDER_TEST_EVERYTHING"))
 # Everything at once: no effect is idle for the sake of another one that is absent.
-TOGETHER = list(SCENES) if EVERYTHING else ["rough balls", "flying brick"]
+TOGETHER = list(SCENES) if EVERYTHING else ["frictional balls", "flying brick"]
 # Shape pairs that do not occur in a scene.
 BALLS_ALONE = ("sphere_plane", "sphere_sphere")
 FOREIGN = {
@@ -88,7 +88,7 @@ def compiled(request: pytest.FixtureRequest) -> None:
     compile_together((cell, spec) for cell, *specs in chosen for spec in specs)
 
 
-def test_every_effect_has_a_scene_that_does_not_call_for_it() -> None:
+def test_every_effect_has_a_scene_that_does_not_require_it() -> None:
     assert sorted(CASES) == sorted(effect.name for effect in EFFECTS)
     assert all(CASES.values())
 

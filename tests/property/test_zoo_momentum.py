@@ -1,4 +1,4 @@
-"""What an isolated world of any shapes keeps, rough, bouncing, soft and at the default numerics.
+"""What an isolated world of any shapes keeps: frictional, bouncing, soft, at default numerics.
 
 Every impulse acts on two bodies with opposite signs: momentum is kept to round-off. Its moment is
 kept where both act on one line at one instant. `impact_time` lets bodies fly on to the instant tau

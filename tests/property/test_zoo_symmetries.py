@@ -1,6 +1,6 @@
 """Whoever looks, turned, moving, or with another list of bodies, sees the same motion.
 
-Worlds of all shapes, rough and bouncing, at the default numerics but solved to 1e-13 m/s: what is
+Worlds of all shapes, frictional and bouncing, default numerics but solved to 1e-13 m/s: what is
 left between two runs is round-off, which impacts amplify. Ten steps have some three impacts one
 after the other; each turns an error of position into one of velocity by at most the relative speed
 over the curvature (15 m/s over 0.1 m) and hands it on times the ratio of masses (100), and levers
@@ -82,7 +82,7 @@ def test_a_moving_observer_sees_two_bodies_meet_alike(kinds, most, known, data):
 
 @pytest.mark.xfail(strict=True, reason="rows ahead reach as far as bodies moved before the solve")
 def test_a_moving_observer_sees_a_row_of_three_balls_meet_alike():
-    """The second is pushed into the third, of which nothing told while both were at rest."""
+    """The second is pushed into the third, which nothing showed while both were at rest."""
 
     def speeds(observer):
         bodies = {}

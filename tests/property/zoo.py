@@ -1,4 +1,4 @@
-"""Random small worlds of every shape, rough and bouncing, run at the default numerics.
+"""Random small worlds of every shape, frictional and bouncing, run at the default numerics.
 
 One compiled engine serves them all: shapes, masses, surfaces and motions are values.
 """
@@ -50,8 +50,8 @@ GRAVITY = (0.0, 0.0, -9.81)  # [m/s^2]
 NOWHERE = (0.0, 0.0, 0.0)
 DT = 1.0 / 240.0  # [s]
 
-# Derandomised: the same worlds on every machine and day. Worlds that break a law are told as drawn:
-# to shrink one takes minutes.
+# Derandomised: the same worlds on every machine and day. Worlds that break a law are reported as
+# drawn: to shrink one takes minutes.
 SOME = settings(
     max_examples=30,
     deadline=None,

@@ -71,11 +71,11 @@ def test_without_a_bound_nothing_stops(tmp_path: Path) -> None:
 # is at work, and 1,200 steps are several blocks of rows.
 BUSY = """\
 scene:
-  surfaces: {rough: {friction: 0.3, restitution: 0.5}}
+  surfaces: {rubber: {friction: 0.3, restitution: 0.5}}
   bodies:
-    floor: {shape: {kind: plane}, surface: rough}
+    floor: {shape: {kind: plane}, surface: rubber}
     ball:
-      {shape: {kind: sphere, radius: 0.1}, mass: 1.0, surface: rough, position: [0, 0, 0.5]}
+      {shape: {kind: sphere, radius: 0.1}, mass: 1.0, surface: rubber, position: [0, 0, 0.5]}
   forces: [{body: ball, from: 0.3, to: 4.0, force: [0.4, 1, 1], torque: [0.1, 0, 0.2]}]
 events:
   - {at: 0.4, body: ball, teleport: [0.5, 0, 0.7]}

@@ -21,15 +21,15 @@ from lavendersim.scene.plan import plan_of
 # enough to keep symbols of their own, takes over.
 HEAVY = """\
 scene:
-  surfaces: {{rough: {{friction: 0.5, {resistance}: 0.001}}}}
+  surfaces: {{rubber: {{friction: 0.5, {resistance}: 0.001}}}}
   bodies:
-    floor: {{shape: {{kind: plane}}, surface: rough}}
-    low: {{shape: {{kind: sphere, radius: 0.1}}, mass: 1.0, surface: rough, position: [0, 0, 0.1]}}
-    mid: {{shape: {{kind: sphere, radius: 0.1}}, mass: 1.0, surface: rough, position: [0, 0, 0.3]}}
+    floor: {{shape: {{kind: plane}}, surface: rubber}}
+    low: {{shape: {{kind: sphere, radius: 0.1}}, mass: 1.0, surface: rubber, position: [0, 0, 0.1]}}
+    mid: {{shape: {{kind: sphere, radius: 0.1}}, mass: 1.0, surface: rubber, position: [0, 0, 0.3]}}
     top:
       shape: {{kind: sphere, radius: 0.1}}
       mass: 1000.0
-      surface: rough
+      surface: rubber
       position: [0, 0, 0.5]
       angular_velocity: [0, 0.1, 5]
 duration: 0.2

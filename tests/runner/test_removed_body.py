@@ -25,12 +25,12 @@ from lavendersim.trace import Trace, open_trace
 G = 9.81
 SCENE = """
 scene:
-  surfaces: {rough: {friction: 0.5}}
+  surfaces: {rubber: {friction: 0.5}}
   bodies:
-    floor: {shape: {kind: plane, offset: -3}, surface: rough}
-    low: {shape: {kind: sphere, radius: 0.1}, mass: 1, surface: rough, position: [0, 0, -2.9]}
-    guest: {shape: {kind: sphere, radius: 0.1}, mass: 7, surface: rough, position: [5, 0, -2]}
-    high: {shape: {kind: sphere, radius: 0.1}, mass: 2, surface: rough, position: [0, 0, -2.7]}
+    floor: {shape: {kind: plane, offset: -3}, surface: rubber}
+    low: {shape: {kind: sphere, radius: 0.1}, mass: 1, surface: rubber, position: [0, 0, -2.9]}
+    guest: {shape: {kind: sphere, radius: 0.1}, mass: 7, surface: rubber, position: [5, 0, -2]}
+    high: {shape: {kind: sphere, radius: 0.1}, mass: 2, surface: rubber, position: [0, 0, -2.7]}
 events:
   - {at: 0, body: guest, remove: true}
   - {at: 0.6, body: floor, remove: true}
@@ -56,11 +56,11 @@ def finished(tmp_path_factory: pytest.TempPathFactory) -> Finished:
     return lavendersim.run(config, root=folder)
 
 
-def trace(finished: Finished, pairs: str, **stated: Any) -> Trace:
+def trace(finished: Finished, pairs: str, **coordinates: Any) -> Trace:
     (cell,) = (
         one
         for one in finished.run.cells
-        if {"pairs": pairs, **stated}.items() <= one.coordinates.items()
+        if {"pairs": pairs, **coordinates}.items() <= one.coordinates.items()
     )
     return open_trace(cell.path)
 

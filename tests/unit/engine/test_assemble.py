@@ -30,13 +30,13 @@ def soft_conveyor() -> dict[str, Any]:
 
 
 def mixed_balls() -> dict[str, Any]:
-    """Rough balls and a smooth one; contacts are made ahead of touching."""
+    """Frictional balls and a frictionless one, with speculative contacts."""
     bodies = balls(friction=0.4)
     bodies["high"]["surface"] = dict.fromkeys(bodies["high"]["surface"], 0.0)
     return cell(bodies, speculative=True, sweeps=200, tolerance=1e-9)
 
 
-def smooth_box() -> dict[str, Any]:
+def frictionless_box() -> dict[str, Any]:
     """A ball rests off centre on a box, which it tilts."""
     top = sphere(0.1, (0.05, 0.02, 0.3), mass=3.0)
     return cell({"floor": plane(), "box": box((0.3, 0.3, 0.2), (0.0, 0.0, 0.1)), "ball": top})
@@ -50,8 +50,8 @@ def asking(made: dict[str, Any]) -> dict[str, Any]:
 # At so many steps both have contacts that stick, slide and land.
 SCENES = {
     "a soft conveyor": (lambda: asking(soft_conveyor()), EVERYTHING),
-    "smooth and rough balls, some not yet there": (lambda: asking(mixed_balls()), None),
-    "a smooth box": (lambda: asking(smooth_box()), None),
+    "frictionless and frictional balls, some not yet there": (lambda: asking(mixed_balls()), None),
+    "a frictionless box": (lambda: asking(frictionless_box()), None),
 }
 
 
@@ -136,10 +136,10 @@ def solved(request: pytest.FixtureRequest) -> Solved:
 
 
 def test_columns_are_what_unit_impulses_do(solved: Solved) -> None:
-    """A smooth contact is asked of its normal alone."""
+    """A frictionless contact is asked of its normal alone."""
     w, frames = solved.dense(), solved.frames()
-    rubs = solved.problem.mu > 0.0
-    directions = [(c, j) for c in range(len(rubs)) for j in range(3 if rubs[c] else 1)]
+    frictional = solved.problem.mu > 0.0
+    directions = [(c, j) for c in range(len(frictional)) for j in range(3 if frictional[c] else 1)]
     rows = [3 * c + j for c, j in directions]
     assert len(directions) > 4
     for c, j in directions:
@@ -151,14 +151,14 @@ def test_the_step_ends_with_the_velocities_of_its_impulses(solved: Solved) -> No
     u, logged = solved.after()[solved.shown], solved.rows.contact
     assert len(logged) > 2
     np.testing.assert_allclose(u[:, 0], logged["normal_velocity"], atol=ROUND_OFF)
-    rubs = solved.problem.mu[solved.shown] > 0.0
-    if not rubs.any():
+    frictional = solved.problem.mu[solved.shown] > 0.0
+    if not frictional.any():
         return
     slip = np.stack([logged["slip_t1"], logged["slip_t2"]], axis=-1)
     if solved.spec.has("surface_velocity"):
         contacts = solved.contacts[solved.shown]
         slip += np.stack([contacts["surface_1"], contacts["surface_2"]], axis=-1)
-    np.testing.assert_allclose(u[rubs, 1:], slip[rubs], atol=ROUND_OFF)
+    np.testing.assert_allclose(u[frictional, 1:], slip[frictional], atol=ROUND_OFF)
 
 
 def natural_map(problem: ContactProblem, impulses: np.ndarray, u: np.ndarray, w: np.ndarray):
@@ -180,8 +180,8 @@ def natural_map(problem: ContactProblem, impulses: np.ndarray, u: np.ndarray, w:
 
 def test_the_engines_impulses_miss_the_laws_by_the_residual_it_states(solved: Solved) -> None:
     missed = natural_map(solved.problem, solved.impulses, solved.after(), solved.dense())
-    stated = solved.rows.step["residual"][-1]
-    assert missed.max() == pytest.approx(stated, abs=10 * ROUND_OFF)
+    reported = solved.rows.step["residual"][-1]
+    assert missed.max() == pytest.approx(reported, abs=10 * ROUND_OFF)
 
 
 def test_a_step_without_contacts_has_no_problem() -> None:

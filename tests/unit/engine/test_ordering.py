@@ -100,7 +100,7 @@ def test_a_problem_by_itself_is_solved_in_fewer_sweeps() -> None:
 
 def test_a_factor_of_one_gives_the_bits_of_none() -> None:
     """As in a sweep of configs over the factor, whose cells share an engine."""
-    cell = SCENES["rough balls"]()
+    cell = SCENES["frictional balls"]()
     spec = planned(cell).spec
     assert not spec.over_relaxation
     one = Bench(cell, spec).run(144)

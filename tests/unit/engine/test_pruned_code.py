@@ -91,7 +91,7 @@ def test_absent_effects_leave_no_kernel_of_theirs_at_all() -> None:
     assert drop.size / everything.size < len(drop.kernels) / len(everything.kernels)
 
 
-@pytest.mark.parametrize("scene", ["balls", "rough balls", "boxes"])
+@pytest.mark.parametrize("scene", ["balls", "frictional balls", "boxes"])
 def test_the_kernels_that_a_plan_lists_are_those_that_are_compiled(scene: str) -> None:
     cell = SCENES[scene]()
     spec = planned(cell).spec

@@ -1,9 +1,9 @@
-"""Rough scenes come out equal to the last bit: again, in other processes, from a compiled kernel
-or a kept one, with one worker or two. The logs' bytes and the state's hash at every step are
+"""Frictional scenes come out equal to the last bit: again, in other processes, from a compiled
+kernel or a kept one, with one worker or two. The logs' bytes and the state's hash at every step are
 compared between the runs of this session; no number is stored.
 
 Three processes: one that finds no kernel and runs everything twice, one that finds the kernels, and
-one with two workers. That an edited engine finds none of them is told in `test_kernel_cache`.
+one with two workers. That an edited engine finds none of them is held by `test_kernel_cache`.
 """
 
 from __future__ import annotations
@@ -23,13 +23,13 @@ TUMBLE = """\
 question: Does a tumbling box come out the same again?
 expected: To the last bit.
 scene:
-  surfaces: {rough: {friction: 0.4, restitution: 0.3}}
+  surfaces: {rubber: {friction: 0.4, restitution: 0.3}}
   bodies:
-    floor: {shape: {kind: plane}, surface: rough}
+    floor: {shape: {kind: plane}, surface: rubber}
     box:
       shape: {kind: box, size: [0.3, 0.2, 0.1]}
       mass: 1.0
-      surface: rough
+      surface: rubber
       position: [0, 0, 0.3]
       velocity: [1, 0.5, -1]
       angular_velocity: [3, 5, 1]
@@ -47,9 +47,9 @@ PILE = """\
 question: Does a pile come out the same again?
 expected: To the last bit.
 scene:
-  surfaces: {rough: {friction: 0.5, restitution: 0.2}}
+  surfaces: {rubber: {friction: 0.5, restitution: 0.2}}
   bodies:
-    floor: {shape: {kind: plane}, surface: rough}
+    floor: {shape: {kind: plane}, surface: rubber}
   arrangements:
     ball:
       kind: grid
@@ -58,11 +58,11 @@ scene:
       origin: [0, 0, 0.1]
       jitter: 0.01
       seed: 1
-      body: {shape: {kind: sphere, radius: 0.05}, mass: 1.0, surface: rough}
+      body: {shape: {kind: sphere, radius: 0.05}, mass: 1.0, surface: rubber}
 numerics: chapter
 duration: 0.5
 sweep:
-  e: {path: scene.surfaces.rough.restitution, values: [0.2, 0.4, 0.6]}
+  e: {path: scene.surfaces.rubber.restitution, values: [0.2, 0.4, 0.6]}
 measure:
   gain: {kind: energy_gain}
 expect:
