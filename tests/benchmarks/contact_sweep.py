@@ -56,7 +56,7 @@ class Timed(NamedTuple):
         self.sweep.append((with_sweeps - without) / (made * self.solve.count))
         self.once.append(without / self.solve.count)
 
-    def told(self, bar: float | None) -> dict[str, Any]:
+    def as_data(self, bar: float | None) -> dict[str, Any]:
         """Return medians and all samples as plain data."""
         return {
             "scene": self.scene,
@@ -108,8 +108,8 @@ def measure(
         "sweeps": sweeps,
         "clock": clock()[0],
         "environment": environment(),
-        "cases": [timed.told(BARS.get(timed.solve.name)) for timed in (*pyramids[base], *piles)],
-        "growth": [timed.told(None) for rows in growth for timed in pyramids[rows]],
+        "cases": [timed.as_data(BARS.get(timed.solve.name)) for timed in (*pyramids[base], *piles)],
+        "growth": [timed.as_data(None) for rows in growth for timed in pyramids[rows]],
     }
 
 

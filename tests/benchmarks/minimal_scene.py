@@ -80,8 +80,8 @@ def minimal_scene(bodies, velocities, pairs, contacts, parameters, counter, step
                 for c in range(count):
                     contact = contacts[c]
                     body = bodies[contact.b]
-                    lack = contact.correction - contact.push * contact.k_n
-                    new = max(contact.push + lack / contact.k_n, 0.0)
+                    missing = contact.correction - contact.push * contact.k_n
+                    new = max(contact.push + missing / contact.k_n, 0.0)
                     change = (new - contact.push) * contact.k_n
                     contact.push = new
                     body.x += contact.nx * change

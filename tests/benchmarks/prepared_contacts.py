@@ -74,8 +74,8 @@ def prepare(text: str, step: int) -> Prepared:
 
 def _scene_of(name: str) -> str:
     """Return scene, numerics and duration of a config of the repository."""
-    stated = (SCENES / f"{name}.yaml").read_text()
-    return stated[stated.index("scene:") : stated.index("measure:")]
+    text = (SCENES / f"{name}.yaml").read_text()
+    return text[text.index("scene:") : text.index("measure:")]
 
 
 def pyramid(base: int) -> str:

@@ -30,8 +30,8 @@ def test_the_benchmark_of_sweeps_writes_samples_of_every_solver_and_scene(tmp_pa
     # three boxes on the floor and three on two each, four corners a pair
     assert rows["pyramid of 6", "block_gauss_seidel"]["contacts"] == 4 * (3 + 6)
     assert [row["solver"] for row in found["growth"]] == list(SOLVERS)
-    for told in ("3 sweeps", "PhysX 8-11", found["environment"]["processor"]):
-        assert told in done.stdout
+    for text in ("3 sweeps", "PhysX 8-11", found["environment"]["processor"]):
+        assert text in done.stdout
 
 
 def test_every_bar_is_of_a_solver_and_every_solver_is_timed() -> None:

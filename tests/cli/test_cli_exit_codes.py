@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from command_line import lavender
 
-# Rests on another ball on the floor: one sweep cannot carry both, so its steps stay unsolved.
+# Rests on another ball on the floor: one sweep cannot carry both, so its steps do not converge.
 ON_THE_BALL = """
     low: {shape: {kind: sphere, radius: 0.1}, mass: 1.0, position: [5, 0, 0.1]}
     high: {shape: {kind: sphere, radius: 0.1}, mass: 1.0, position: [5, 0, 0.3]}"""

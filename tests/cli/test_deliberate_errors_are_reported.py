@@ -33,7 +33,7 @@ def mistaken(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (folder / "drop.yaml").write_text(MISTAKEN)
     done = lavender("run", "drop.yaml", "--json", where=folder)
     assert done.returncode == 0
-    json.loads(done.stdout)  # what is told to people stays out of it
+    json.loads(done.stdout)  # what is written for people stays out of it
     assert f"drop: {SAID} in 1 of 2 cells\n" in done.stderr
     return folder
 

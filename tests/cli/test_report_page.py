@@ -98,7 +98,7 @@ def test_a_page_of_another_name_is_refused(report: Path) -> None:
         ("pages.html", "a folder has this name"),
     ],
 )
-def test_a_page_that_cannot_be_is_told_before_anything_runs(
+def test_a_page_that_cannot_be_is_reported_before_anything_runs(
     report: Path, page: str, why: str
 ) -> None:
     where = report.parents[1]

@@ -38,7 +38,7 @@ def strict(text: str):
     return json.loads(text, parse_constant=refuse)
 
 
-def test_a_solved_problem_is_told_in_a_table(where: Path) -> None:
+def test_a_solved_problem_is_reported_in_a_table(where: Path) -> None:
     done = lavender("solve", "slides.dat", where=where)
     assert done.returncode == 0, done.stderr
     title, header, row = done.stdout.splitlines()
@@ -56,22 +56,22 @@ def test_a_folder_stands_for_its_files_and_figures_are_drawn(where: Path) -> Non
         where=where,
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
-    told = strict(done.stdout)
-    assert [one["name"] for one in told["problems"]] == ["coupled.dat", "slides.dat"]
-    for one in told["problems"]:
+    report = strict(done.stdout)
+    assert [one["name"] for one in report["problems"]] == ["coupled.dat", "slides.dat"]
+    for one in report["problems"]:
         assert one["solved"]
         assert [each["solver"] for each in one["attempts"]] == ["auto", "projected_gauss_seidel"]
         for each in one["attempts"]:
-            assert each["residual"]["scaled"] <= told["tolerance"]
+            assert each["residual"]["scaled"] <= report["tolerance"]
             assert each["timing"]["median"] > 0.0
             assert each["points"][0]["budget"] == 1
-    names = [Path(figure).name for figure in told["figures"]]
+    names = [Path(figure).name for figure in report["figures"]]
     stems = ("residual_against_time", "performance_profile")
     assert names == [f"{stem}.{suffix}" for stem in stems for suffix in ("png", "svg")]
-    assert all((where / figure).stat().st_size > 5000 for figure in told["figures"])
+    assert all((where / figure).stat().st_size > 5000 for figure in report["figures"])
 
 
-def test_an_unsolved_problem_exits_1_and_says_what_is_missed(where: Path) -> None:
+def test_a_problem_that_is_not_solved_exits_1_and_says_what_is_missed(where: Path) -> None:
     done = lavender(
         "solve", "coupled.dat", "slides.dat", "--sweeps", 1, "-s", "projected_gauss_seidel",
         where=where,
@@ -84,7 +84,7 @@ def test_an_unsolved_problem_exits_1_and_says_what_is_missed(where: Path) -> Non
     assert " solved " in slides
 
 
-def test_files_of_one_name_are_told_apart(where: Path) -> None:
+def test_files_of_one_name_are_distinguished(where: Path) -> None:
     (where / "other").mkdir()
     (where / "other" / "slides.dat").write_text(SLIDES)
     done = lavender("solve", "slides.dat", "other", "-s", "projected_gauss_seidel", where=where)
@@ -104,7 +104,7 @@ def test_every_problem_of_others_is_solved_unasked_how(tmp_path: Path) -> None:
         assert attempt["residual"]["scaled"] <= 1e-8
 
 
-def test_every_bad_file_is_told_before_anything_is_solved(where: Path) -> None:
+def test_every_bad_file_is_reported_before_anything_is_solved(where: Path) -> None:
     (where / "short.dat").write_text(SLIDES[:-5])
     (where / "plane.dat").write_text("2 1 0 2 2 2 2 1 0 0 1 1 1 0.5")
     done = lavender("solve", "slides.dat", "short.dat", "plane.dat", where=where)

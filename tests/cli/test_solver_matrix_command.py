@@ -71,7 +71,7 @@ def test_known_failures_are_no_passes_and_end_well(
     assert table["solvers"] == dict.fromkeys(SOLVERS, 1)
 
 
-def test_the_progress_of_every_entry_is_told(done: subprocess.CompletedProcess[str]) -> None:
+def test_the_progress_of_every_entry_is_reported(done: subprocess.CompletedProcess[str]) -> None:
     lines = [line for line in done.stderr.splitlines() if " of 4  " in line]
     assert [line.split()[0] for line in lines] == ["1", "2", "3", "4"]
 
@@ -142,8 +142,8 @@ def test_what_is_not_declared_exits_1_and_stands_below_the_table(
     assert "ball/rest pass" in lines
     assert f"{tmp_path.name}/sunk FAIL" in lines
     assert "passed 1 of 2" in lines
-    (told,) = [line for line in lines if "FAIL stays: " in line]
-    assert told.endswith("expected at most 1e-06")
+    (line,) = [line for line in lines if "FAIL stays: " in line]
+    assert line.endswith("expected at most 1e-06")
 
 
 @pytest.mark.parametrize(
@@ -156,7 +156,7 @@ def test_what_is_not_declared_exits_1_and_stands_below_the_table(
         ),
     ],
 )
-def test_what_cannot_be_asked_is_told_in_a_sentence(
+def test_what_cannot_be_asked_is_refused_in_a_sentence(
     folder: Path, arguments: list[str], said: str
 ) -> None:
     done = lavender("check", *arguments, where=folder)

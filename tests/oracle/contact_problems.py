@@ -46,7 +46,7 @@ def frame(normal: np.ndarray) -> np.ndarray:
     return np.stack([n, t, np.cross(n, t)])
 
 
-def stated(boxes, touches, velocity: np.ndarray, mu) -> ContactProblem:
+def problem_of_boxes(boxes, touches, velocity: np.ndarray, mu) -> ContactProblem:
     """Return the problem of boxes that move by `velocity` (bodies, 6) if nothing pushes."""
     rows, inverse = np.zeros((3 * len(touches), 6 * len(boxes))), np.zeros((6 * len(boxes), 1))
     for k, box in enumerate(boxes):
@@ -77,7 +77,7 @@ def stack(seed: int, floors: int, ratio: float = 1.0, mu: float = 0.5, push: flo
             touches.append(Touch(k - 1, k, point, np.array([0.0, 0.0, 1.0])))
     velocity = push * rng.normal(size=(floors, 6)) * [1.0, 1.0, 0.0, 0.3, 0.3, 0.3]
     velocity[:, 2] = -0.0981
-    return stated(boxes, touches, velocity, mu)
+    return problem_of_boxes(boxes, touches, velocity, mu)
 
 
 def heap(
@@ -109,7 +109,7 @@ def heap(
             touches.append(Touch(below, above, point, normal))
     velocity = push * rng.normal(size=(bodies, 6)) * [1.0, 1.0, 1.0, 0.5, 0.5, 0.5]
     velocity[:, 2] -= 1.0
-    return stated(boxes, touches, velocity, rng.uniform(0.0, mu, len(touches)))
+    return problem_of_boxes(boxes, touches, velocity, rng.uniform(0.0, mu, len(touches)))
 
 
 def wedge(seed: int, bodies: int, mu: float):
@@ -126,7 +126,7 @@ def wedge(seed: int, bodies: int, mu: float):
     velocity[:, 2] -= 1.0
     velocity[0, 0] += 3.0
     velocity[-1, 0] -= 3.0
-    return stated(boxes, touches, velocity, mu)
+    return problem_of_boxes(boxes, touches, velocity, mu)
 
 
 def skewed(problem: ContactProblem, seed: int, by: float = 1e-3) -> ContactProblem:
@@ -183,7 +183,7 @@ HARD: dict[str, Callable[[], ContactProblem]] = {
     "a sliding tower": lambda: stack(2, 8, mu=0.3, push=3.0),
     "a heap": lambda: heap(0, 20, mu=0.5),
     "a heap of one to ten thousand": lambda: heap(1, 20, ratio=1e4),
-    "a rough heap": lambda: heap(0, 20, mu=2.0),
+    "a frictional heap": lambda: heap(0, 20, mu=2.0),
     "a heap without friction": lambda: heap(0, 20, ratio=100.0, mu=0.0),
     "everything slides": lambda: heap(0, 20, mu=0.4, push=20.0),
     "six corners for each pair": lambda: heap(0, 10, corners=6),

@@ -37,8 +37,8 @@ def solve_by_gauss_seidel(problem, sweeps: int) -> np.ndarray:
                 r[n] = max(0.0, r[n] - (matrix[n] @ r + q[n]) / stiffness)
             along = np.linalg.eigvalsh((matrix[t, t] + matrix[t, t].T) / 2.0)[-1]
             if along > 0.0:
-                wanted = r[t] - (matrix[t] @ r + q[t]) / along
-                length = np.hypot(*wanted)
+                sticking = r[t] - (matrix[t] @ r + q[t]) / along
+                length = np.hypot(*sticking)
                 limit = mu * r[n]
-                r[t] = wanted if length <= limit else wanted * (limit / length)
+                r[t] = sticking if length <= limit else sticking * (limit / length)
     return r.reshape(-1, 3)

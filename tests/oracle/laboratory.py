@@ -59,12 +59,12 @@ NUMERICS: dict[str, Any] = {
 SOLID: TypeAdapter[Any] = TypeAdapter(Annotated[Solid, Field(discriminator="kind")])
 
 
-def body(shape: dict[str, Any], position=(0.0, 0.0, 0.0), **stated: Any) -> dict[str, Any]:
-    """Return one resolved body; mass 1 kg unless stated. Hulls and compounds: as written."""
-    surface = {key.name: stated.pop(key.name, key.default) for key in SURFACE_KEYS}
-    kinematic = stated.pop("kinematic", False)
-    fixed = stated.pop("fixed", kinematic or shape["kind"] == "plane")
-    mass = None if fixed else stated.pop("mass", 1.0)
+def body(shape: dict[str, Any], position=(0.0, 0.0, 0.0), **properties: Any) -> dict[str, Any]:
+    """Return one resolved body; mass 1 kg unless given. Hulls and compounds: as written."""
+    surface = {key.name: properties.pop(key.name, key.default) for key in SURFACE_KEYS}
+    kinematic = properties.pop("kinematic", False)
+    fixed = properties.pop("fixed", kinematic or shape["kind"] == "plane")
+    mass = None if fixed else properties.pop("mass", 1.0)
     inertia = None
     if shape["kind"] != "plane":
         solid = resolve_shape(SOLID.validate_json(json.dumps(shape), strict=False))
@@ -76,31 +76,31 @@ def body(shape: dict[str, Any], position=(0.0, 0.0, 0.0), **stated: Any) -> dict
         "kinematic": kinematic,
         "mass": mass,
         "density": None,
-        "inertia": stated.pop("inertia", inertia),
+        "inertia": properties.pop("inertia", inertia),
         "surface": surface,
-        "surface_velocity": list(stated.pop("surface_velocity", (0.0, 0.0, 0.0))),
-        "drag": {"linear": 0.0, "quadratic": 0.0, "angular": 0.0, **stated.pop("drag", {})},
+        "surface_velocity": list(properties.pop("surface_velocity", (0.0, 0.0, 0.0))),
+        "drag": {"linear": 0.0, "quadratic": 0.0, "angular": 0.0, **properties.pop("drag", {})},
         "position": list(position),
         "release": None,
-        "orientation": list(stated.pop("orientation", (1.0, 0.0, 0.0, 0.0))),
-        "velocity": list(stated.pop("velocity", (0.0, 0.0, 0.0))),
-        "angular_velocity": list(stated.pop("angular_velocity", (0.0, 0.0, 0.0))),
+        "orientation": list(properties.pop("orientation", (1.0, 0.0, 0.0, 0.0))),
+        "velocity": list(properties.pop("velocity", (0.0, 0.0, 0.0))),
+        "angular_velocity": list(properties.pop("angular_velocity", (0.0, 0.0, 0.0))),
     }
 
 
-def sphere(radius: float, position, **stated: Any) -> dict[str, Any]:
+def sphere(radius: float, position, **properties: Any) -> dict[str, Any]:
     """Return a sphere."""
-    return body({"kind": "sphere", "radius": radius}, position, **stated)
+    return body({"kind": "sphere", "radius": radius}, position, **properties)
 
 
-def box(size, position, **stated: Any) -> dict[str, Any]:
+def box(size, position, **properties: Any) -> dict[str, Any]:
     """Return a box of full edge lengths `size`."""
-    return body({"kind": "box", "size": list(size)}, position, **stated)
+    return body({"kind": "box", "size": list(size)}, position, **properties)
 
 
-def plane(normal=(0.0, 0.0, 1.0), offset: float = 0.0, **stated: Any) -> dict[str, Any]:
+def plane(normal=(0.0, 0.0, 1.0), offset: float = 0.0, **properties: Any) -> dict[str, Any]:
     """Return a half space."""
-    return body({"kind": "plane", "normal": list(normal), "offset": offset}, **stated)
+    return body({"kind": "plane", "normal": list(normal), "offset": offset}, **properties)
 
 
 def resolved(bodies: dict[str, Any], gravity=(0.0, 0.0, 0.0), **numerics: Any) -> dict[str, Any]:

@@ -141,19 +141,19 @@ def random_hulls(rng: np.random.Generator, count: int = 8) -> list:
     return hulls
 
 
-def put(row: np.void, kind: str, half, centre=(0.0, 0.0, 0.0), matrix=None, **stated) -> None:
+def put(row: np.void, kind: str, half, centre=(0.0, 0.0, 0.0), matrix=None, **properties) -> None:
     """Fill one body record; a capsule and a cylinder take (radius, -, half length)."""
     row["shape"] = solids.KINDS.index(kind)
     row["hx"], row["hy"], row["hz"] = half
-    row["offset"] = stated.get("offset", 0.0)
-    row["hull"] = stated.get("hull", 0)
+    row["offset"] = properties.get("offset", 0.0)
+    row["hull"] = properties.get("hull", 0)
     row["x"], row["y"], row["z"] = centre
     turned = np.eye(3) if matrix is None else matrix
     for i in range(3):
         for j in range(3):
             row[f"r{i}{j}"] = turned[i, j]
     if kind == "hull":
-        row["bound"] = np.linalg.norm(stated["corners"], axis=1).max()
+        row["bound"] = np.linalg.norm(properties["corners"], axis=1).max()
     else:
         row["bound"] = {
             "plane": 0.0,

@@ -39,6 +39,6 @@ def test_bouncing_on_the_resting_approach_makes_the_force_cycle() -> None:
     force = lively.contact["force_n"]
     assert force[::2] == pytest.approx(2 * WEIGHT, rel=1e-9)
     assert force[1::2] == pytest.approx(0, abs=1e-9 * WEIGHT)
-    # It does creep out, at the price of a force that never settles.
+    # It does creep out, but with a force that never settles.
     risen = lively.height("ball")[-1] - lively.height("ball")[0]
     assert risen == pytest.approx(GRAVITY * lively.dt**2 * 24, rel=1e-6)

@@ -64,10 +64,10 @@ def test_the_blow_reaches_the_last_ball_undiminished(course: Course) -> None:
     last = max(line, key=lambda i: course.pose[0, i, 0])
     assert len(line) == 6
     x = course.pose[:, last, 0]
-    struck = int(LAST / DT)
+    impact = int(LAST / DT)
     # Impacts are solved to the default tolerance of 1e-8 m/s, six of them.
-    np.testing.assert_allclose(np.diff(x)[struck + 2 :] / DT, 4.0, atol=1e-6)
-    np.testing.assert_allclose(x[: struck - 1], 2.5, atol=1e-9)
+    np.testing.assert_allclose(np.diff(x)[impact + 2 :] / DT, 4.0, atol=1e-6)
+    np.testing.assert_allclose(x[: impact - 1], 2.5, atol=1e-9)
     others = [i for i in order if i not in line]
     asleep = int(0.6 / DT)
     held = course.pose[asleep:, others]

@@ -44,7 +44,7 @@ def drawn(strategy: Any, count: int, take: Callable[[Any], None], seed: int | st
         max_examples=count,
         deadline=None,
         database=None,
-        phases=[Phase.generate],  # what breaks is told as drawn: to shrink it is to run hundreds
+        phases=[Phase.generate],  # reported as drawn: to shrink is to run hundreds
         suppress_health_check=list(HealthCheck),
     )
     @given(strategy)
@@ -126,11 +126,11 @@ def fuzz(name: str, plan: Drawn, count: int, seed: int, keep: Path) -> int:
     print(f"{name} ({laws}; {len(plan.effects)} effects; {'/'.join(plan.shapes)})", flush=True)
     runs, bad = 0, 0
     for chunk, first in enumerate(range(0, count, CHUNK)):
-        begin, wanted = time.perf_counter(), min(CHUNK, count - first)
+        begin, due = time.perf_counter(), min(CHUNK, count - first)
         done, broke = finished(keep).get((name, seed, chunk), (0, 0))
-        if done < wanted:
+        if done < due:
             key = f"{name}_{seed}_{chunk}"
-            done, found = finds(plan, wanted, keep / key, key)
+            done, found = finds(plan, due, keep / key, key)
             broke = len(found)
             with (keep / "finished.csv").open("a") as file:
                 seconds = time.perf_counter() - begin

@@ -136,7 +136,7 @@ def _ending(run: Ended, steps: int) -> list[str]:
     last = run.steps if run.said else run.steps + 1  # the step that diverged may be no number
     for name in ("step", "contact", "residual"):
         table = getattr(rows, name)
-        # What grows beyond all numbers does so in its square first, and is told a step later.
+        # What grows beyond all numbers does so in its square first, and is reported a step later.
         columns = _odd(table[table["step"] < last], SQUARES if run.said else ())
         if columns:
             found.append(f"finite: {', '.join(columns)} of {name}")
@@ -182,7 +182,7 @@ def _counts(run: Ended, config: CellConfig) -> list[str]:
 
 
 def _contacts(run: Ended, cone: str) -> list[str]:
-    """Contacts push, along a unit normal, and what rubs and turns stays within its cone."""
+    """Contacts push along a unit normal; what resists sliding and turning stays in its cone."""
     rows = run.rows.contact
     rows = rows[rows["step"] < run.steps] if run.said else rows
     found = []
@@ -196,8 +196,8 @@ def _contacts(run: Ended, cone: str) -> list[str]:
     limited: list[tuple[str, np.ndarray, np.ndarray]] = []
     if "impulse_t1" in names:
         one, two = rows["impulse_t1"], rows["impulse_t2"]
-        rub = np.hypot(one, two) if cone != "pyramid" else np.maximum(np.abs(one), np.abs(two))
-        limited.append(("friction", rub, rows["friction"]))
+        slide = np.hypot(one, two) if cone != "pyramid" else np.maximum(np.abs(one), np.abs(two))
+        limited.append(("friction", slide, rows["friction"]))
     if "angular_impulse_n" in names:
         spin = np.abs(rows["angular_impulse_n"])
         limited.append(("torsional friction", spin, rows["torsional_friction"]))

@@ -95,7 +95,7 @@ def test_each_law_bites(law: str, monkeypatch: pytest.MonkeyPatch) -> None:
     assert law in {said.split(":")[0] for said in broken(_fall())}
 
 
-def test_a_state_that_is_no_number_is_told_as_a_divergence() -> None:
+def test_a_state_that_is_no_number_is_reported_as_a_divergence() -> None:
     tree = _fall()
     tree["scene"]["bodies"]["ball"]["velocity"] = [1e200, 0.0, 0.0]
     assert broken(tree) == []

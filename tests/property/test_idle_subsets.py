@@ -46,22 +46,24 @@ vector = st.tuples(unit, unit, unit)
 CORNERS = 0.5 * np.array([(0, 0, 0.5), (1, 0, 1), (0, 1, 1), (-1, 0, 1), (0, -1, 1)], float)
 
 
-def _round(draw: Any, place: Any, **stated: Any) -> dict[str, Any]:
-    return sphere(0.12 + 0.04 * draw(unit), place, **stated)
+def _round(draw: Any, place: Any, **properties: Any) -> dict[str, Any]:
+    return sphere(0.12 + 0.04 * draw(unit), place, **properties)
 
 
-def _tumbling(draw: Any, place: Any, size: Any, **stated: Any) -> dict[str, Any]:
+def _tumbling(draw: Any, place: Any, size: Any, **properties: Any) -> dict[str, Any]:
     turn, spin = np.array([1.0, *draw(vector)]), 3.0 * np.array(draw(vector))
-    return box(size, place, orientation=turn, angular_velocity=spin, **stated)
+    return box(size, place, orientation=turn, angular_velocity=spin, **properties)
 
 
-def _cube(draw: Any, place: Any, **stated: Any) -> dict[str, Any]:
-    return _tumbling(draw, place, np.array(CUBE) * (1.0 + 0.3 * draw(unit)), **stated)
+def _cube(draw: Any, place: Any, **properties: Any) -> dict[str, Any]:
+    return _tumbling(draw, place, np.array(CUBE) * (1.0 + 0.3 * draw(unit)), **properties)
 
 
-def _brick(draw: Any, place: Any, **stated: Any) -> dict[str, Any]:
+def _brick(draw: Any, place: Any, **properties: Any) -> dict[str, Any]:
     # No two edges become equal: its inertia has no two equal moments.
-    return _tumbling(draw, place, np.array(BRICK) * (1.0 + 0.1 * np.array(draw(vector))), **stated)
+    return _tumbling(
+        draw, place, np.array(BRICK) * (1.0 + 0.1 * np.array(draw(vector))), **properties
+    )
 
 
 @st.composite
@@ -76,7 +78,7 @@ def bodies(draw: Any, shapes: Any, fewest: int, **surface: Any) -> dict[str, Any
             CORNERS[i] + 0.04 * np.array(draw(vector)),
             velocity=(-4.0, -4.0, -2.0) * CORNERS[i] + np.array(draw(vector)),
             mass=10.0 ** draw(unit),
-            # The first rubs and bounces if any does: the plan is the kind's.
+            # The first has friction and bounces if any does: the plan is the kind's.
             **{name: draw(values if i else some) if values is not nothing else 0.0
                for name, values in surface.items()},
         )  # fmt: skip
@@ -89,7 +91,7 @@ def smooth(draw: Any) -> dict[str, Any]:
 
 
 def rough(draw: Any) -> dict[str, Any]:
-    """Balls of which some are smooth and some do not bounce, by lavender's own numerics."""
+    """Balls of which some are frictionless and some do not bounce, by lavender's own numerics."""
     surface = {"friction": st.one_of(nothing, share), "restitution": st.one_of(nothing, share)}
     scene = draw(bodies((_round,), 3, **surface))
     scene["body_1"]["surface"]["friction"] = 0.0
@@ -98,7 +100,7 @@ def rough(draw: Any) -> dict[str, Any]:
 
 
 def conjugate(draw: Any) -> dict[str, Any]:
-    """Balls and cubes that all rub and none bounces, by conjugate gradients."""
+    """Balls and cubes of which all have friction and none bounces, by conjugate gradients."""
     return cell(draw(bodies((_cube, _round), 3, friction=some)), **CONJUGATE)
 
 
@@ -133,12 +135,12 @@ KINDS = [Kind(draw) for draw in (smooth, rough, conjugate)]
 @pytest.fixture(scope="module", autouse=True)
 def compiled() -> None:
     """Compile the engines of all kinds on both cores."""
-    wanted = []
+    engines = []
     for kind in KINDS:
         cell = first(kind)
         lean, fuller = kind.engines(cell)
-        wanted += [(cell, spec) for spec in (lean, *fuller)]
-    compile_together(wanted)
+        engines += [(cell, spec) for spec in (lean, *fuller)]
+    compile_together(engines)
 
 
 def first(kind: Kind) -> dict[str, Any]:

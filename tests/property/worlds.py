@@ -26,14 +26,14 @@ def clusters(
         corner = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)][i], float)
         place = 0.62 * corner + 0.05 * np.array(draw(vector))
         velocity = -corner + 0.5 * np.array(draw(vector))
-        stated = {
+        properties = {
             "mass": 10.0 ** draw(unit),
             "velocity": velocity,
             "restitution": draw(st.floats(0.0, 1.0, width=32)) if restitution else 0.0,
             "friction": draw(st.floats(0.0, 1.0, width=32)) if friction else 0.0,
         }
         if not boxes or draw(st.booleans()):
-            bodies[f"body_{i}"] = sphere(0.2 + 0.05 * draw(unit), place, **stated)
+            bodies[f"body_{i}"] = sphere(0.2 + 0.05 * draw(unit), place, **properties)
         else:
             quaternion = np.array([1.0, *(0.5 * np.array(draw(vector)))])
             size = 0.4 + 0.1 * np.array(draw(vector))
@@ -42,7 +42,7 @@ def clusters(
                 place,
                 orientation=quaternion / np.linalg.norm(quaternion),
                 angular_velocity=draw(vector),
-                **stated,
+                **properties,
             )
     return bodies
 

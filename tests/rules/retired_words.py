@@ -57,18 +57,14 @@ RETIRED = {
 }
 
 # Lines with the word that are not renamed yet, or mean something else, by place. Only ever fewer.
+# In tests: former spellings that are still read, and names that seed derandomised draws
+# (hypothesis hashes a test's source, `test_idle_subsets` a kind's name): others draw other scenes.
 LEFT: dict[str, dict[str, int]] = {
-    "rub": {"tests": 13},
-    "smooth contact": {"tests": 2},
-    "rough": {"tests": 69},
-    "call for": {"tests": 9},
-    "wanted": {"tests": 19},
-    "told": {"tests": 72},
-    "stated": {"tests": 117},
-    "unsolved": {"tests": 19},
-    "price": {"tests": 10},
-    "lack": {"tests": 2},
-    "struck": {"tests": 8},
-    "lie down": {"tests": 1},
+    "rub": {"tests": 3},
+    "rough": {"tests": 8},
+    "call for": {"tests": 1},
+    "wanted": {"tests": 2},
+    "unsolved": {"tests": 12},
+    "price": {"tests": 8},
     "space": {"engine": 1},  # the title of a paper
 }

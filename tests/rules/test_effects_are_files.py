@@ -1,7 +1,7 @@
 """An effect that accelerates bodies or captures contacts is its file and its name in one list.
 
-Nothing else in the engine or the scene names it, but for what is told here with its reason. To show
-that this is enough, a wind is added to a copy of lavender: one file, one line.
+Nothing else in the engine or the scene names it, but for what is listed here with its reason. To
+show that this is enough, a wind is added to a copy of lavender: one file, one line.
 """
 
 from __future__ import annotations

@@ -104,7 +104,7 @@ def outcome(steps: int, not_converged: int) -> CellOutcome:
 @pytest.mark.parametrize(
     ("not_converged", "said"), [(0, ""), (2, ""), (3, "3 of 200 steps above 0.001 m/s")]
 )
-def test_a_setting_that_leaves_more_than_its_share_unsolved_has_failed(
+def test_a_setting_that_leaves_more_than_its_share_not_converged_has_failed(
     not_converged: int, said: str
 ) -> None:
     experiment = load_experiment_text(BALL, "ball.yaml")

@@ -66,7 +66,7 @@ def test_the_log_opens_and_ends_at_the_step_that_diverged(finished: Finished) ->
     assert trace.pose[-1, trace.bodies.index("runaway"), 2] > 1e150
 
 
-def test_a_spin_that_cannot_be_solved_is_told_from_one_that_overflows(
+def test_a_spin_that_cannot_be_solved_is_distinguished_from_one_that_overflows(
     tmp_path_factory: pytest.TempPathFactory,
 ) -> None:
     folder = tmp_path_factory.mktemp("spin")

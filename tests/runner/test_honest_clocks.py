@@ -25,7 +25,7 @@ COMPILING = 10**12  # [ns] what the double's first call takes, a thousand second
 
 
 class SlowEngine:
-    """Stands for an engine whose kernel takes what it is told to."""
+    """Stands for an engine whose kernel takes as long as a test sets."""
 
     def __init__(self, world: World) -> None:
         self.world, self.compiled = world, False

@@ -66,7 +66,7 @@ def test_everything_stays_while_it_fits(store: Path, monkeypatch: pytest.MonkeyP
     assert len(names_in(store)) == 1
 
 
-def test_kernels_of_other_builds_are_told_apart(
+def test_kernels_of_other_builds_are_distinguished(
     store: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     keep("ours")

@@ -176,7 +176,7 @@ def test_solvers_are_named_once_each_and_all_begins_with_the_default() -> None:
         ("", 'no solver is called ""; valid here: adaptive,'),
     ],
 )
-def test_an_unknown_solver_is_told_with_the_nearest(name: str, said: str) -> None:
+def test_an_unknown_solver_is_reported_with_the_nearest(name: str, said: str) -> None:
     with pytest.raises(UsageError) as error:
         chosen([name])
     assert str(error.value).startswith(said)

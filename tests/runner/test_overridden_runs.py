@@ -24,7 +24,6 @@ BY_E = DROPS.replace("[0.2, 0.5, 0.8]", "[0, 0.5, 0.8]")
 BY_SWITCH = DROPS.replace(
     "sweep:\n", "sweep:\n  f: {path: effects.restitution, values: [on, off]}\n"
 )
-CALLS_FOR_IT = "restitution: off"  # of a ball with e > 0
 
 
 def plans(text: str) -> list[Plan]:
@@ -42,7 +41,7 @@ def test_switches_change_the_digest_of_the_same_scene() -> None:
     assert again.cells()[0].digest == swapped.cells()[0].digest
 
 
-def test_a_union_says_which_cells_call_for_what() -> None:
+def test_a_union_says_which_cells_require_what() -> None:
     (plan,) = plans(BY_E)
     assert plan.spec.has("restitution")
     assert [cell.number for cell in plan.required_by["restitution"]] == [1, 2]
@@ -79,7 +78,7 @@ def test_cells_that_are_switched_differently_share_no_engine() -> None:
     ]
 
 
-def test_in_a_union_what_some_cell_calls_for_is_not_forced_on() -> None:
+def test_in_a_union_what_some_cell_requires_is_not_forced_on() -> None:
     (plan,) = plans(BY_E + "effects: {restitution: on}\n")
     assert plan.forced == {}
     assert plan.decisions["restitution"].reason.startswith("floor and ball: coefficient 0.5")
@@ -97,7 +96,7 @@ def test_a_swept_switch_is_refused_at_its_value() -> None:
     assert (defect.line, defect.column) == (line + 1, text.index("off") + 1)
 
 
-def test_all_files_of_a_command_are_told_before_anything_runs(tmp_path: Path) -> None:
+def test_all_files_of_a_command_are_reported_before_anything_runs(tmp_path: Path) -> None:
     write(tmp_path, ALONE + "effects: {restitution: off}\n", "a.yaml")
     write(tmp_path, ALONE + "effects: {drga: on}\n", "b.yaml")
     write(tmp_path, ALONE + "duratoin: 1\n", "c.yaml")

@@ -70,20 +70,20 @@ def test_a_file_read_back_is_the_problem_of_its_step(dumped: Finished) -> None:
         engine.take_rows()
         found = engine.problem()
         assert found is not None
-        stated, read = found.problem, read_fclib(file)
-        most = max(most, stated.contacts)
-        np.testing.assert_array_equal(read.begin, stated.begin)
-        np.testing.assert_array_equal(read.row, stated.row)
-        np.testing.assert_array_equal(read.mu, stated.mu)
+        problem, read = found.problem, read_fclib(file)
+        most = max(most, problem.contacts)
+        np.testing.assert_array_equal(read.begin, problem.begin)
+        np.testing.assert_array_equal(read.row, problem.row)
+        np.testing.assert_array_equal(read.mu, problem.mu)
         # softness and target are part of W and of the free velocity there
-        softened, free = stated.blocks.copy(), stated.free.copy()
-        for c in range(stated.contacts):
-            column = np.arange(stated.begin[c], stated.begin[c + 1])
-            softened[column[stated.row[column] == c], 0, 0] += stated.gamma[c]
-        free[:, 0] += stated.target
+        softened, free = problem.blocks.copy(), problem.free.copy()
+        for c in range(problem.contacts):
+            column = np.arange(problem.begin[c], problem.begin[c + 1])
+            softened[column[problem.row[column] == c], 0, 0] += problem.gamma[c]
+        free[:, 0] += problem.target
         np.testing.assert_array_equal(read.blocks, softened)
         np.testing.assert_array_equal(read.free, free)
-        assert (stated.gamma > 0.0).any()
+        assert (problem.gamma > 0.0).any()
     assert most >= 2
 
 
@@ -108,13 +108,13 @@ def test_asking_changes_nothing_else_in_the_log(dumped: Finished, tmp_path: Path
 
 def refused(folder: Path, text: str) -> str:
     config = write(folder, text, "refused.yaml")
-    with pytest.raises(ConfigError) as told:
+    with pytest.raises(ConfigError) as caught:
         experiment_run.load_all([config])
     with pytest.raises(ConfigError):
         lavendersim.run(config, root=folder / "runs")
     assert not (folder / "runs").exists()
-    assert told.value.exit_code == 2
-    return str(told.value).removeprefix(f"{config}:")
+    assert caught.value.exit_code == 2
+    return str(caught.value).removeprefix(f"{config}:")
 
 
 def test_without_h5py_nothing_is_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -127,6 +127,6 @@ def test_torques_of_contacts_are_refused_at_the_key(tmp_path: Path) -> None:
     line = PUSH.count("\n") + 1
     for name in ("torsional", "rolling"):
         text = PUSH.replace("{friction: 0.3}", f"{{friction: 0.3, {name}_friction: 0.01}}")
-        told = refused(tmp_path, text + ASKED)
-        assert told.startswith(f"{line}:10: problems: FCLIB files have no {name} friction")
-        assert "floor and ball" in told
+        message = refused(tmp_path, text + ASKED)
+        assert message.startswith(f"{line}:10: problems: FCLIB files have no {name} friction")
+        assert "floor and ball" in message

@@ -38,7 +38,7 @@ def test_without_jitter_nothing_is_drawn() -> None:
     assert seeds(CLOUD.replace("jitter: 0.1, ", "jitter: 0, ")) == [NONE]
 
 
-def test_a_seed_that_is_not_stated_is_the_default() -> None:
+def test_a_seed_that_is_not_specified_is_the_default() -> None:
     assert seeds(CLOUD.replace("seed: 7, ", "")) == ["dust: 0"]
 
 

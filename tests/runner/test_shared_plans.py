@@ -90,8 +90,8 @@ def swept(tmp_path_factory: pytest.TempPathFactory) -> Swept:
 
 def test_each_cell_runs_with_its_own_solver(swept: Swept) -> None:
     logged = [cell.trace().metadata["engine"]["solver"] for cell in swept.finished.run.cells]
-    stated = [cell.trace().config.numerics.solver for cell in swept.finished.run.cells]
-    assert logged == stated
+    configured = [cell.trace().config.numerics.solver for cell in swept.finished.run.cells]
+    assert logged == configured
     assert len(set(logged)) == 2
     assert all(outcome.status == "complete" for outcome in swept.finished.outcomes)
 

@@ -130,5 +130,5 @@ def test_one_step_after_the_other_gives_the_same_times(
     exact = np.array([float(times[step] - times[0]) for step in steps])
     assert np.abs(clock.elapsed(0, steps) - exact).max() <= 12 * 2.0**-53 * exact[-1]
     assert clock.elapsed(steps[:-1], steps[1:]).tolist() == clock.lengths(steps[1:]).tolist()
-    told = Clock.counted(clock.timestep, clock.changes)
-    assert told.stretches == clock.stretches
+    rebuilt = Clock.counted(clock.timestep, clock.changes)
+    assert rebuilt.stretches == clock.stretches

@@ -81,10 +81,10 @@ def variants_of(asked: list[str]) -> tuple[list[Engine], dict[str, str]]:
                 raise CannotRun(f"no adapter; there are {', '.join(ADAPTERS)}")
             module = import_module(f"{__package__}.{ADAPTERS[engine]}")
             if not variant:
-                wanted = list(module.VARIANTS)
+                names = list(module.VARIANTS)
             else:
-                wanted = [engine if variant == "default" else name]
-            found += [Engine(each) for each in wanted]
+                names = [engine if variant == "default" else name]
+            found += [Engine(each) for each in names]
         except (ImportError, OSError, CannotRun) as error:
             missing[name] = str(error).splitlines()[0]
     return found, missing

@@ -102,10 +102,10 @@ def show(engine: Engine, scene: Scene, every_step: bool, allowance: Allowance) -
 
 
 def _watch(handle: Handle, scene: Scene, every_step: bool, allowance: Allowance) -> Track:
-    wanted = read_steps(scene, every_step)
+    read = read_steps(scene, every_step)
     poses, velocities = [], []
     done = 0
-    for step in wanted:
+    for step in read:
         while done < step:
             # Single steps: an engine that takes seconds for one must not outrun its allowance.
             handle.step(1)
@@ -115,7 +115,7 @@ def _watch(handle: Handle, scene: Scene, every_step: bool, allowance: Allowance)
         velocities.append(handle.velocities())
         if not np.isfinite(poses[-1]).all():
             raise CannotRun(f"diverged before step {done}")
-    return Track(scene, np.array(wanted), np.array(poses), np.array(velocities))
+    return Track(scene, np.array(read), np.array(poses), np.array(velocities))
 
 
 def time_once(engine: Engine, scene: Scene, allowance: Allowance) -> Timing:

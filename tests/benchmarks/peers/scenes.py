@@ -135,7 +135,7 @@ INERTIA: Final[Vector] = (0.01, 0.02, 0.03)  # [kg m^2]
 def free_rotation(seconds: float = 60.0) -> Scene:
     """A body with moments 1:2:3 turns about its middle axis, without gravity or contacts, 60 Hz.
 
-    No solid box has these moments; the shape touches nothing and only the stated inertia counts.
+    No solid box has these moments; the shape touches nothing and only the given inertia counts.
     """
     dt = Fraction(1, 60)
     body = Body(CUBE, 1.0, angular_velocity=SPIN, principal=INERTIA)

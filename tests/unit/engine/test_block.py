@@ -35,8 +35,8 @@ def whole() -> Rows:
 
 
 def assert_same(rows: Rows, expected: Rows) -> None:
-    for found, wanted in zip(rows, expected, strict=True):
-        assert found.tobytes() == wanted.tobytes()
+    for found, correct in zip(rows, expected, strict=True):
+        assert found.tobytes() == correct.tobytes()
 
 
 @pytest.mark.parametrize("block_steps", [1, 2, 7, 61, 512])

@@ -50,7 +50,7 @@ def test_every_composed_kernel_is_compiled_and_no_other(
 
 
 def test_asking_twice_gives_the_same_answer() -> None:
-    """Kernels that are made once a spec are told each time."""
+    """Kernels that are made once a spec are listed each time."""
     spec = Spec(shape_pairs=("box_box", "hull_hull"), effects=("gravity", "nothing at all"))
     first = kernels_of(spec)
     assert "collide.convex.gjk" in first

@@ -38,7 +38,7 @@ def test_inverse_effective_mass_is_the_diagonal_of_the_delassus_operator(name):
     np.testing.assert_allclose(rows["inverse_effective_mass"], expected, rtol=1e-13)
 
 
-def test_a_box_struck_at_its_rim_follows_the_closed_form():
+def test_a_box_touched_at_its_rim_follows_the_closed_form():
     """Beside the centre by s: k = 1/m + s^2/I, I = m (a^2 + c^2)/12 about the axis across."""
     for s in (0.0, 0.1, 0.2, 0.3):
         bodies = {

@@ -63,7 +63,7 @@ def test_every_key_and_kind_is_named(model: type[BaseModel]) -> None:
 
 @pytest.mark.parametrize(("column", "preset"), list(enumerate(PRESETS)))
 def test_table_of_numerics_has_the_presets_numbers(column: int, preset: str) -> None:
-    stated = {key: row[column] for key, row in ROWS.items()}
-    assert set(stated) == set(Numerics.model_fields)
+    documented = {key: row[column] for key, row in ROWS.items()}
+    assert set(documented) == set(Numerics.model_fields)
     for key, value in PRESETS[preset]:
-        assert written(resolve(stated[key])) == written(value), key
+        assert written(resolve(documented[key])) == written(value), key

@@ -22,7 +22,7 @@ def cells(more: str = "") -> tuple:  # type: ignore[type-arg]
     return load_experiment_text(SCENE + more, "t.yaml").cells()
 
 
-def test_nothing_stated_switches_nothing() -> None:
+def test_nothing_specified_switches_nothing() -> None:
     experiment = load_experiment_text(SCENE, "t.yaml")
     assert not experiment.switches_effects
     (cell,) = experiment.cells()
@@ -31,10 +31,10 @@ def test_nothing_stated_switches_nothing() -> None:
 
 def test_on_and_off_are_texts_in_whatever_order() -> None:
     (cell,) = cells("effects: {friction: on, force: true, drag: off}\n")
-    stated = {"force": True, "switches": {"drag": "off", "friction": "on"}}
-    assert cell.config.as_dict()["effects"] == stated
+    expected = {"force": True, "switches": {"drag": "off", "friction": "on"}}
+    assert cell.config.as_dict()["effects"] == expected
     # Also for readers of YAML 1.1, which take a plain `on` for true.
-    assert yaml.safe_load(resolved_yaml(cell))["effects"] == stated
+    assert yaml.safe_load(resolved_yaml(cell))["effects"] == expected
 
 
 @pytest.mark.parametrize("written", ["", "effects: {drag: off}\n", "effects: {friction: off}\n"])
@@ -69,6 +69,6 @@ def test_a_defect_of_a_swept_switch_stands_at_its_value() -> None:
 
 
 @pytest.mark.parametrize(("value", "instead"), [("true", "on"), ("false", "off")])
-def test_true_and_false_are_told_what_to_write(value: str, instead: str) -> None:
+def test_true_and_false_are_refused_with_what_to_write(value: str, instead: str) -> None:
     with pytest.raises(ConfigError, match=f"expected on or off, found {value}; write {instead}$"):
         cells(f"effects: {{friction: {value}}}\n")

@@ -1,4 +1,4 @@
-"""A good config with tokens lost, doubled or replaced is an Experiment or told what is wrong.
+"""A good config with tokens lost, doubled or replaced is an Experiment or refused with reasons.
 
 Whatever a text is, the loader neither crashes nor points outside of it.
 """

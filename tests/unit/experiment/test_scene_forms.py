@@ -27,8 +27,8 @@ def resolved(scene: str = "gravity: 9.81", body: str = "", rest: str = "") -> di
     return load_experiment_text(text, "forms.yaml").cells()[0].config.as_dict()
 
 
-def gravity(stated: str) -> list[float]:
-    return resolved(f"gravity: {stated}")["scene"]["gravity"]
+def gravity(specified: str) -> list[float]:
+    return resolved(f"gravity: {specified}")["scene"]["gravity"]
 
 
 def test_tilt_of_zero_is_plain_gravity() -> None:
@@ -62,7 +62,7 @@ def test_kinematic_body_has_no_mass_and_is_moved_by_nothing() -> None:
     assert belt["surface_velocity"] == [0.0, 1.0, 0.0]
 
 
-def test_stated_inertia_replaces_that_of_the_shape() -> None:
+def test_specified_inertia_replaces_that_of_the_shape() -> None:
     ball = resolved(body=", inertia: [1, 2, 3]")["scene"]["bodies"]["ball"]
     assert ball["inertia"] == [1.0, 2.0, 3.0]
     # 2/5 m r^2
@@ -70,14 +70,14 @@ def test_stated_inertia_replaces_that_of_the_shape() -> None:
     assert plain["inertia"] == pytest.approx([0.008] * 3, rel=1e-15)
 
 
-def test_drag_that_is_not_stated_is_zero() -> None:
+def test_drag_that_is_not_specified_is_zero() -> None:
     zero = {"linear": 0.0, "quadratic": 0.0, "angular": 0.0}
     assert resolved()["scene"]["bodies"]["ball"]["drag"] == zero
-    stated = resolved(body=", drag: {quadratic: 0.1}")["scene"]["bodies"]["ball"]["drag"]
-    assert stated == {**zero, "quadratic": 0.1}
+    specified = resolved(body=", drag: {quadratic: 0.1}")["scene"]["bodies"]["ball"]["drag"]
+    assert specified == {**zero, "quadratic": 0.1}
 
 
-def test_force_lasts_for_the_run_where_no_time_is_stated() -> None:
+def test_force_lasts_for_the_run_where_no_time_is_specified() -> None:
     pushed = "{body: ball, force: [1, 0, 0]}"
     scene = f"forces: [{pushed}, {{body: ball, from: 1, to: 3/2, torque: [0, 0, 2]}}]"
     first, second = resolved(scene)["scene"]["forces"]

@@ -118,7 +118,7 @@ def test_equal_numbers_draw_equal_files(tmp_path: Path) -> None:
 
 
 def test_the_profile_counts_problems_within_each_ratio() -> None:
-    """Dolan and More's rho: 4 problems, one unsolved, two as fast as the best."""
+    """Dolan and More's rho: 4 problems, one of them not solved, two as fast as the best."""
     taus, shares = profile([1.0, 3.0, np.inf, 1.0], 30.0)
     assert list(taus) == [1.0, 3.0, 30.0]
     assert list(shares) == [50.0, 75.0, 75.0]

@@ -99,7 +99,7 @@ def bouncing(apex: int) -> Any:
 
 
 @pytest.mark.parametrize("apex", [FIRST - 4, FIRST + 5])
-def test_an_apex_is_told_by_samples_of_one_distance_wherever_the_change_is(apex: int) -> None:
+def test_an_apex_is_found_by_samples_of_one_distance_wherever_the_change_is(apex: int) -> None:
     height = spec("first_apex", body="ball", above="floor")
     assert evaluate(height, bouncing(apex)) == pytest.approx(1.0, rel=1e-14)
 
@@ -118,7 +118,7 @@ def test_what_needs_equal_distances_says_so(kind: str, values: Any, log: Any) ->
         evaluate(spec(kind, **values), log)
 
 
-def test_friction_is_told_by_a_window_of_one_timestep() -> None:
+def test_friction_is_found_by_a_window_of_one_timestep() -> None:
     """A cube that slides down 45 degrees without friction."""
     pull = GRAVITY * 0.5**0.5
     scene = scene_of({"floor": FLOOR, "cube": CUBE}, gravity=[pull, 0.0, -pull])

@@ -9,7 +9,7 @@ loads front corners more and back corners less while all of them go on pushing.
 from __future__ import annotations
 
 import numpy as np
-from contact_problems import WORLD, Box, Touch, stated
+from contact_problems import WORLD, Box, Touch, problem_of_boxes
 from gauss_seidel import dense
 
 MU = 0.4
@@ -31,7 +31,7 @@ def cube(velocity, mu: float = MU):
     """Return the problem of a cube on four corners that would move by `velocity` (3,)."""
     box = Box(1.0, np.full(3, 0.5), 0.5 * UP)
     touches = [Touch(WORLD, 0, np.array([x, y, 0.0]), UP) for x, y in CORNERS]
-    return stated([box], touches, np.array([[*velocity, 0.0, 0.0, 0.0]]), mu)
+    return problem_of_boxes([box], touches, np.array([[*velocity, 0.0, 0.0, 0.0]]), mu)
 
 
 def laws_broken(problem, impulses: np.ndarray) -> float:

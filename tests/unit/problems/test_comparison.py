@@ -54,7 +54,7 @@ class World:
         return found
 
 
-def test_compilation_is_told_apart_from_every_reported_time() -> None:
+def test_compilation_is_kept_apart_from_every_reported_time() -> None:
     world = World(lambda _, __, earlier: 0.02 if earlier else 70.0)
     for attempt in world.compare("fast", "slow", curves=True).attempts:
         assert attempt.first_call == pytest.approx(70.0)

@@ -78,6 +78,6 @@ def test_the_number_of_columns_at_a_time_does_not_matter(monkeypatch: pytest.Mon
         ({"directions": np.ones((20, 15))}, "H with 24 rows as M and 15 columns"),
     ],
 )
-def test_what_cannot_be_reduced_is_told(changes: dict, sentence: str) -> None:
+def test_what_cannot_be_reduced_is_refused(changes: dict, sentence: str) -> None:
     with pytest.raises(ProblemError, match=sentence):
         reduce(random_bodies(15), **changes)

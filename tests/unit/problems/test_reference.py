@@ -49,7 +49,7 @@ def painleve():
     return problem_of(sparse.csc_matrix(matrix), np.array([0.5, 4.0, 0.0]), np.ones(1))
 
 
-def test_two_solutions_are_told_apart() -> None:
+def test_two_solutions_are_distinguished() -> None:
     problem = painleve()
     for by_hand in ([0.0, 0.0, 0.0], [1.0, -1.0, 0.0]):
         assert residual(problem, np.array([by_hand])).scaled < 1e-15

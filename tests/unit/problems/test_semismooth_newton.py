@@ -73,7 +73,7 @@ def test_columns_of_the_root_are_orthogonal_and_no_longer_than_one() -> None:
 
 
 @pytest.mark.parametrize("units", [(1.0, 1.0), (1e4, 1e-3), (1e-6, 1e5)])
-def test_the_scaled_problem_is_the_stated_one_without_units(units: tuple[float, float]) -> None:
+def test_the_scaled_problem_is_the_given_one_without_units(units: tuple[float, float]) -> None:
     problem = in_units(random_problem(4, 9), *units)
     p = scale(problem)
     matrix, q = dense(problem)
@@ -81,9 +81,9 @@ def test_the_scaled_problem_is_the_stated_one_without_units(units: tuple[float, 
     x = from_impulses(p, impulses)
     np.testing.assert_allclose(to_impulses(p, x), impulses, rtol=1e-14)
     v = velocities(p, x)
-    stated = (matrix @ impulses.ravel() + q).reshape(-1, 3)
+    expected = (matrix @ impulses.ravel() + q).reshape(-1, 3)
     np.testing.assert_allclose(
-        v * p.length / p.s[:, None], stated, atol=1e-13 * np.abs(stated).max()
+        v * p.length / p.s[:, None], expected, atol=1e-13 * np.abs(expected).max()
     )
     assert scaled_residual(p, x, v) == pytest.approx(residual(problem, impulses).scaled, rel=1e-12)
 
@@ -110,9 +110,9 @@ def test_steps_converge_faster_than_any_ratio() -> None:
     budget = Budget(1e-13, 100)
     x, reached = newton_steps(p, from_impulses(p, near), budget)
     assert reached <= 1e-13
-    told = np.array(budget.history)
-    assert len(told) <= 8
-    assert told[-1] < 1e-2 * told[-2] < 1e-3 * told[-3]
+    history = np.array(budget.history)
+    assert len(history) <= 8
+    assert history[-1] < 1e-2 * history[-2] < 1e-3 * history[-3]
     assert np.linalg.norm(look(p, x).F) < 1e-12
 
 

@@ -137,7 +137,7 @@ WRONG = {
 
 
 @pytest.mark.parametrize(("text", "sentence", "line"), [(t, *w) for t, w in WRONG.items()])
-def test_what_is_wrong_is_told_in_one_sentence(
+def test_what_is_wrong_is_reported_in_one_sentence(
     text: str, sentence: str, line: int, tmp_path: Path
 ) -> None:
     with pytest.raises(ProblemError) as error:

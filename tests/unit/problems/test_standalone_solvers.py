@@ -109,7 +109,7 @@ def test_too_few_sweeps_are_not_a_solution(solver: str) -> None:
 
 
 @pytest.mark.parametrize("solver", ALL)
-def test_a_contact_between_fixed_bodies_is_told(solver: str) -> None:
+def test_a_contact_between_fixed_bodies_is_refused(solver: str) -> None:
     """Its row of W is empty; one that opens is no hindrance, one that closes has no solution."""
     free = cube(BY_HAND["slides"][0])
     matrix, q = dense(free)
@@ -127,7 +127,7 @@ def test_a_contact_between_fixed_bodies_is_told(solver: str) -> None:
 
 
 @pytest.mark.parametrize("solver", ALL)
-def test_numbers_that_are_none_are_told(solver: str) -> None:
+def test_numbers_that_are_none_are_refused(solver: str) -> None:
     problem = cube((0.0, 0.0, -1.0))
     found = solve(problem._replace(free=np.full((4, 3), np.nan)), solver)
     assert found.status == NOT_FINITE
@@ -144,7 +144,7 @@ def test_a_solver_that_lies_is_not_believed(monkeypatch: pytest.MonkeyPatch) -> 
     assert found.scaled > 1e-8
 
 
-def test_an_unknown_solver_is_told_with_the_nearest() -> None:
+def test_an_unknown_solver_is_reported_with_the_nearest() -> None:
     with pytest.raises(UsageError, match="did you mean 'semismooth_newton'"):
         solve(cube((0.0, 0.0, -1.0)), "semismoth_newton")
 

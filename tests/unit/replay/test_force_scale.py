@@ -36,11 +36,11 @@ def test_heaviest_resting_contact_is_not_cut():
 
 
 def test_single_blow_does_not_shrink_the_resting_forces():
-    struck = contacts([*range(1, 101), 50], [9.81] * 100 + [1e5])
-    struck["body_b"][-1] = 7
-    struck.sort(order="step")
+    blow = contacts([*range(1, 101), 50], [9.81] * 100 + [1e5])
+    blow["body_b"][-1] = 7
+    blow.sort(order="step")
     resting = contacts(range(1, 101), [9.81] * 100)
-    assert force_scale(struck, 1.0).newtons_per_metre == force_scale(resting, 1.0).newtons_per_metre
+    assert force_scale(blow, 1.0).newtons_per_metre == force_scale(resting, 1.0).newtons_per_metre
 
 
 def test_where_bodies_only_bounce_the_impacts_set_the_scale():

@@ -72,7 +72,7 @@ def test_missing_driver_is_one_sentence_that_names_the_package(two_bodies, tmp_p
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="only Linux finds drivers by manifests")
-def test_driver_that_does_not_load_is_told_from_the_viewers_own_failure(
+def test_driver_that_does_not_load_is_distinguished_from_the_viewers_own_failure(
     two_bodies, tmp_path, monkeypatch, others
 ):
     """A manifest may be there and its library not: then only the viewer finds out."""

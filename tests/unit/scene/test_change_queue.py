@@ -19,18 +19,18 @@ SPEC = Spec(effects=("external_force", "kinematic", "rotation"), shape_pairs=("s
 BALL = {"kind": "sphere", "radius": 0.1}
 
 
-def force(begin: float, end: float, **stated: list[float]) -> dict:
+def force(begin: float, end: float, **loads: list[float]) -> dict:
     return {
         "body": "ball", "from": begin, "to": end,
-        "force": stated.get("force", [0.0] * 3), "torque": stated.get("torque", [0.0] * 3),
+        "force": loads.get("force", [0.0] * 3), "torque": loads.get("torque", [0.0] * 3),
     }  # fmt: skip
 
 
-def event(at: float, name: str = "ball", **stated) -> dict:
+def event(at: float, name: str = "ball", **values) -> dict:
     changes = ("scale_mass", "teleport", "velocity", "angular_velocity")
     return {
         "at": at, "body": name, "contact_cache": "keep", "remove": False,
-        **{key: stated.get(key) for key in changes},
+        **{key: values.get(key) for key in changes},
     }  # fmt: skip
 
 

@@ -53,11 +53,11 @@ def test_what_is_on_is_the_spec(explained: tuple[Plan, Explanation]) -> None:
 def test_fields_and_channels_are_those_of_the_modules(explained: tuple[Plan, Explanation]) -> None:
     _, said = explained
     for effect, part in zip(EFFECTS, said.effects, strict=True):
-        stated = effect.columns_by_record()
+        declared = effect.columns_by_record()
         for record in RECORDS:
-            assert part.fields.get(record, []) == stated.get(record, []), (part.name, record)
-        assert set(stated.get("contact", [])) <= set(part.fields.get("contact", []))
-        assert set(stated.get("step_row", [])) <= set(part.fields.get("step_row", []))
+            assert part.fields.get(record, []) == declared.get(record, []), (part.name, record)
+        assert set(declared.get("contact", [])) <= set(part.fields.get("contact", []))
+        assert set(declared.get("step_row", [])) <= set(part.fields.get("step_row", []))
         assert part.channels == list(effect.channels or ())
         assert part.needs == list(effect.needs)
 
@@ -77,12 +77,14 @@ def test_arrays_have_the_columns_that_are_said(
     assert columns == base | brought
 
 
-def test_every_composed_kernel_is_told(explained: tuple[Plan, Explanation]) -> None:
+def test_every_composed_kernel_is_listed(explained: tuple[Plan, Explanation]) -> None:
     one, said = explained
     groups = [said.always, said.shared, *(part.kernels for part in said.parts())]
-    told = {(module, name) for group in groups for module, names in group.items() for name in names}
+    listed = {
+        (module, name) for group in groups for module, names in group.items() for name in names
+    }
     composed = composed_kernels(one.spec)
-    assert told == {(module, name) for module, names in composed.items() for name in names}
+    assert listed == {(module, name) for module, names in composed.items() for name in names}
     assert {"step", "contact", "solvers.sweep"} <= set(composed)
 
 

@@ -44,9 +44,9 @@ def crowd(seed: int, count: int, compounds: bool = False) -> list[dict]:
         shapes.append({"kind": "compound", "parts": parts})
     found = [plane(friction=0.3), plane((0, 1, 0))]
     for _ in range(count):
-        stated = {"friction": float(rng.choice([0.0, 0.5])), "fixed": bool(rng.random() < 0.3)}
-        stated["restitution"] = float(rng.choice([0.0, 0.8]))
-        found.append(body(shapes[rng.integers(len(shapes))], **stated))
+        properties = {"friction": float(rng.choice([0.0, 0.5])), "fixed": bool(rng.random() < 0.3)}
+        properties["restitution"] = float(rng.choice([0.0, 0.8]))
+        found.append(body(shapes[rng.integers(len(shapes))], **properties))
     return found
 
 

@@ -91,19 +91,20 @@ def test_what_is_forced_on_says_what_the_scene_says() -> None:
     assert forced.forced == dict.fromkeys(("friction", "contact_torque", "rotation"), "forced on")
 
 
-def test_on_for_what_is_called_for_changes_nothing() -> None:
-    derived, stated = planned(config(mu=0.5)), planned(config("friction: on", mu=0.5))
-    assert (stated.spec, stated.decisions) == (derived.spec, derived.decisions)
-    assert stated.forced == {}
+def test_on_for_what_is_required_changes_nothing() -> None:
+    derived, specified = planned(config(mu=0.5)), planned(config("friction: on", mu=0.5))
+    assert (specified.spec, specified.decisions) == (derived.spec, derived.decisions)
+    assert specified.forced == {}
 
 
 @pytest.mark.parametrize("force", ["", ", force: true"])
-def test_off_for_what_is_not_called_for_changes_nothing(force: str) -> None:
-    derived, stated = planned(config()), planned(config(f"friction: off, box_box: off{force}"))
-    assert (stated.spec, stated.decisions, stated.forced) == (derived.spec, derived.decisions, {})
+def test_off_for_what_is_not_required_changes_nothing(force: str) -> None:
+    derived, specified = planned(config()), planned(config(f"friction: off, box_box: off{force}"))
+    assert (specified.spec, specified.decisions) == (derived.spec, derived.decisions)
+    assert specified.forced == {}
 
 
-def test_off_for_what_is_called_for_is_refused_with_the_reason() -> None:
+def test_off_for_what_is_required_is_refused_with_the_reason() -> None:
     text = config("drag: off, restitution: off")
     reason = planned(config()).decisions["restitution"].reason
     assert refused(text) == [
@@ -112,7 +113,7 @@ def test_off_for_what_is_called_for_is_refused_with_the_reason() -> None:
     ]
 
 
-def test_force_leaves_out_what_is_called_for() -> None:
+def test_force_leaves_out_what_is_required() -> None:
     derived, forced = planned(config()), planned(config("restitution: off, force: true"))
     assert forced.spec == derived.spec.without("restitution")
     assert forced.decisions["restitution"].reason == (
@@ -135,7 +136,7 @@ def test_off_is_refused_while_something_needs_it(switches: str, mu: float) -> No
 
 def test_what_needs_it_can_be_switched_off_as_well() -> None:
     text = config("rotation: off, contact_torque: off, friction: off, force: true", mu=0.5)
-    # What is smooth stays a matter of the coefficients, see `frictionless_contact`.
+    # What is frictionless stays a matter of the coefficients, see `frictionless_contact`.
     assert planned(text).spec == planned(config()).spec.without("frictionless_contact")
 
 
@@ -224,7 +225,7 @@ def test_bodies_that_may_touch_do_not_pass_through_each_other() -> None:
     ]
 
 
-def test_unknown_names_are_told_with_the_nearest() -> None:
+def test_unknown_names_are_reported_with_the_nearest() -> None:
     text = config("frction: on, box_bix: on, gravity: on")
     said = "no effect or shape pair is called"
     assert refused(text) == [
@@ -233,7 +234,7 @@ def test_unknown_names_are_told_with_the_nearest() -> None:
     ]
 
 
-def test_every_refusal_of_a_file_is_told_at_once() -> None:
+def test_every_refusal_of_a_file_is_reported_at_once() -> None:
     assert len(refused(config("gravity: off, restitution: off, drga: on, midpoint: on"))) == 4
 
 

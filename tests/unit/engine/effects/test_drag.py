@@ -14,8 +14,8 @@ STEPS = 200
 BRICK = {"kind": "box", "size": [0.2, 0.3, 0.5]}
 
 
-def bench(gravity=(0.0, 0.0, 0.0), **stated) -> Bench:
-    return Bench(resolved({"brick": body(BRICK, **stated)}, gravity), spec=SPEC)
+def bench(gravity=(0.0, 0.0, 0.0), **properties) -> Bench:
+    return Bench(resolved({"brick": body(BRICK, **properties)}, gravity), spec=SPEC)
 
 
 def test_constant_force_gives_its_impulse() -> None:
@@ -79,8 +79,8 @@ def test_angular_drag_acts_axis_by_axis() -> None:
 
 
 def test_no_drag_changes_no_bit() -> None:
-    stated = {"velocity": (1.1, 2.3, -0.7), "angular_velocity": (0.3, 0.2, 0.9)}
-    with_effect = bench((0.0, 0.0, -G), **stated)
+    motion = {"velocity": (1.1, 2.3, -0.7), "angular_velocity": (0.3, 0.2, 0.9)}
+    with_effect = bench((0.0, 0.0, -G), **motion)
     cell = with_effect.cell
     without = Bench(cell, spec=SPEC._replace(effects=("gravity", "rotation")))
     one, other = with_effect.run(STEPS), without.run(STEPS)

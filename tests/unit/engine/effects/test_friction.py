@@ -1,6 +1,6 @@
 """What the laws that are there for study do to what slides and what sticks, by closed forms.
 
-Convex relaxation: friction is had at the price of lifting, w_n = mu |w_t|. A block that slides with
+Convex relaxation: friction comes with lifting, w_n = mu |w_t|. A block that slides with
 v and touches with its whole face does not turn: all its corners have one velocity, and
     m (v_x - v) = -mu P,    m (v_z + g dt) = P,    v_z = mu v_x
     v_x = (v - mu g dt) / (1 + mu^2)

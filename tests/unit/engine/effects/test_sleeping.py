@@ -55,9 +55,9 @@ def state(bench: Bench, rows: list[int]) -> bytes:
     return bench.engine.bodies[rows][names].tobytes() + bench.engine.velocities[rows].tobytes()
 
 
-def slept(**stated) -> Bench:
+def slept(**options) -> Bench:
     """Return a bench whose four boxes have just fallen asleep."""
-    bench = stack(**stated)
+    bench = stack(**options)
     bench.run(40)
     assert asleep(bench) == [LOW, MIDDLE, HIGH, LONE]
     return bench
@@ -186,7 +186,7 @@ def test_a_kinematic_body_that_moves_wakes_whom_it_touches() -> None:
     assert bench.engine.bodies["x"][LONE] > 3.0 + 0.03
 
 
-def test_a_body_that_lies_down_on_sleepers_wakes_with_them() -> None:
+def test_a_body_that_falls_asleep_on_sleepers_wakes_with_them() -> None:
     """A ball set down gently: nothing wakes, it falls asleep too, and it is their island's."""
     bench = slept(ball=(50.0, 0.0, 50.0))
     bodies, velocities = bench.engine.bodies, bench.engine.velocities

@@ -25,18 +25,18 @@ def joined(bodies: dict[str, Any], gravity=(0.0, 0.0, 0.0), integrator="midpoint
     """A spring between the two bodies of a scene."""
     cell = resolved(bodies, gravity, integrator=integrator)
     a, b = bodies
-    stated = {"a": a, "b": b, "stiffness": K, "rest_length": REST, **spring}
-    cell["scene"]["springs"] = [stated]
+    specified = {"a": a, "b": b, "stiffness": K, "rest_length": REST, **spring}
+    cell["scene"]["springs"] = [specified]
     return cell
 
 
-def on_a_hook(**stated) -> Bench:
+def on_a_hook(**spring) -> Bench:
     """A mass on a spring whose other end stays, stretched along x."""
     bodies = {
         "hook": sphere(0.01, (0.0, 0.0, 0.0), fixed=True),
         "mass": sphere(0.05, (REST + STRETCH, 0.0, 0.0), mass=M),
     }
-    return Bench(joined(bodies, **stated), None)
+    return Bench(joined(bodies, **spring), None)
 
 
 def stretches(bench: Bench, steps: int) -> np.ndarray:
@@ -90,12 +90,12 @@ def test_a_spring_of_any_stiffness_is_stable(integrator: str) -> None:
     assert np.abs(found).max() <= STRETCH * (1.0 + 1e-9)
 
 
-def two(**stated) -> Bench:
+def two(**spring) -> Bench:
     bodies = {
         "light": sphere(0.05, (0.0, 0.0, 0.0), mass=1.0),
         "heavy": sphere(0.05, (REST + STRETCH, 0.0, 0.0), mass=3.0),
     }
-    return Bench(joined(bodies, **stated), None)
+    return Bench(joined(bodies, **spring), None)
 
 
 def test_two_masses_swing_as_their_reduced_mass_and_keep_their_momentum() -> None:

@@ -23,14 +23,14 @@ def mu(v: float) -> float:
     return KINETIC + (STATIC - KINETIC) / (1.0 + (v / STRIBECK) ** 2)
 
 
-def block(tangent: float, speed: float = 0.0, **stated) -> Bench:
+def block(tangent: float, speed: float = 0.0, **properties) -> Bench:
     """A flat block of 1 kg on a floor under gravity that leans by a tangent."""
     surface = {
         "friction": KINETIC,
         "static_friction": STATIC,
         "stribeck_velocity": STRIBECK,
     }
-    belt = stated.pop("belt", 0.0)
+    belt = properties.pop("belt", 0.0)
     bodies = {
         "floor": plane(surface_velocity=(belt, 0.0, 0.0), **surface),
         "block": box(
@@ -38,7 +38,7 @@ def block(tangent: float, speed: float = 0.0, **stated) -> Bench:
             (0.0, 0.0, 0.025),
             velocity=(speed, 0.0, 0.0),
             **surface,
-            **stated,
+            **properties,
         ),
     }
     lean = atan(tangent)

@@ -16,9 +16,9 @@ INERTIA = 0.4 * MASS * RADIUS**2
 STOP = SPIN * INERTIA / (C * MASS * G)  # 0.306 s
 
 
-def spinning(floor_c: float, ball_c: float, **stated) -> Bench:
+def spinning(floor_c: float, ball_c: float, **numerics) -> Bench:
     bodies = {
-        "floor": plane(torsional_friction=floor_c, friction=stated.pop("mu", 0.0)),
+        "floor": plane(torsional_friction=floor_c, friction=numerics.pop("mu", 0.0)),
         "ball": sphere(
             RADIUS,
             (0.0, 0.0, RADIUS),
@@ -28,7 +28,7 @@ def spinning(floor_c: float, ball_c: float, **stated) -> Bench:
             friction=0.5,
         ),
     }
-    return Bench(resolved(bodies, (0.0, 0.0, -G), **stated))
+    return Bench(resolved(bodies, (0.0, 0.0, -G), **numerics))
 
 
 @pytest.mark.parametrize("mu", [0.0, 0.5])

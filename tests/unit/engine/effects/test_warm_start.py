@@ -22,8 +22,8 @@ def settled(bodies, **numerics):
     return bench, impulses
 
 
-def ball(**stated):
-    return {"floor": plane(), "ball": sphere(0.1, (0.0, 0.0, 0.1), **stated)}
+def ball(**properties):
+    return {"floor": plane(), "ball": sphere(0.1, (0.0, 0.0, 0.1), **properties)}
 
 
 def block():

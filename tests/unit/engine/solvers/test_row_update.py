@@ -1,6 +1,6 @@
 """One row, one step, by hand: lambda = -(v_n + b + b_rest) / (k_n + gamma) with each term in turn.
 
-A 1 kg sphere (k = 1/kg) over the floor, warm start off, dt = 1/240 s, no gravity unless stated.
+A 1 kg sphere (k = 1/kg) over the floor, warm start off, dt = 1/240 s, no gravity unless given.
 """
 
 from __future__ import annotations

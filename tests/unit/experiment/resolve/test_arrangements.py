@@ -1,4 +1,4 @@
-"""Arrangements: where their bodies stand, what they are called, and that they are told apart."""
+"""Arrangements: where their bodies stand, what they are called, and that they are distinct."""
 
 from __future__ import annotations
 

@@ -65,7 +65,7 @@ def test_the_first_step_carries_the_whole_weight(count, heavy):
     assert np.abs(found.velocity).max() <= count * TOLERANCE
 
 
-def test_a_cold_step_that_would_end_unsolved_has_a_last_call():
+def test_a_cold_step_that_would_not_converge_has_a_last_call():
     """Fifty flat bricks, four redundant contacts on each: the allowance that the sweeps' promise
     gives Newton's method ends before its rounds do. The last call comes two sweeps before the end,
     and nothing is left to the steps that follow; what a brick may still move at is as above.

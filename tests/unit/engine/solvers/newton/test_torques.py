@@ -108,7 +108,7 @@ def test_velocities_are_those_that_impulses_and_torques_give(ended) -> None:
 
 @pytest.mark.parametrize("history", ["none", "all"])
 def test_a_step_tells_the_residual_that_its_contacts_end_with(history: str) -> None:
-    """Whether or not the residual was told before Newton's method, after the last sweep."""
+    """Whether or not the residual was reported before Newton's method, after the last sweep."""
     rows = ended_by_newton(history).rows
     assert rows.step["residual"][-1] == rows.contact["residual"].max()
 
