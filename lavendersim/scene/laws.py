@@ -13,7 +13,7 @@ BUSY: Final[dict[str, Any]] = {
         BodyFacts(name, "box", movable=True, spins=True, round=False, size=1.0, least_size=1.0)
         for name in ("a", "b")
     ),
-    "pairs": (PairFacts("a", "b", Surface(restitution=1.0, compliance=0.0, friction=1.0)),) * 2,
+    "pairs": (PairFacts("a", "b", Surface(restitution=1.0, friction=1.0)),) * 2,
     "pair_count": 2,
     "gravity": (0.0, 0.0, -1.0),
 }

@@ -66,8 +66,9 @@ def cut_out(folder: Path, effect: str) -> int:
     (folder / f"effects/{effect}.py").unlink()
     listed = folder / "effects/__init__.py"
     text = listed.read_text()
-    assert text.count(f"    {effect},\n") == 2  # imported, and listed
-    listed.write_text(text.replace(f"    {effect},\n", ""))
+    line = f'    "{effect}",\n'
+    assert text.count(line) == 1
+    listed.write_text(text.replace(line, ""))
     branches = 0
     for path in folder.rglob("*.py"):
         if f'spec.has("{effect}")' in path.read_text():
