@@ -1,6 +1,6 @@
 """The resolved cell: one frozen, typed config of what is simulated, hashed and logged."""
 
-from lavendersim.cell.body import CellBody, Drag, Release
+from lavendersim.cell.body import CellBody, Release
 from lavendersim.cell.choices import (
     CAPTURE_IN_SWEEPS,
     NO_MISTAKE,
@@ -52,7 +52,6 @@ __all__ = [
     "CellStudy",
     "CellTimestep",
     "Cylinder",
-    "Drag",
     "FrictionCone",
     "Impacts",
     "Integrator",

@@ -9,7 +9,8 @@ from pydantic import Field
 
 from lavendersim.cell.shapes import CellShape
 from lavendersim.cell.surface import Surface
-from lavendersim.quantities.model import ConfigModel, ResolvedModel
+from lavendersim.engine.effects import BODY_KEYS
+from lavendersim.quantities.model import ConfigModel, ResolvedModel, declared
 from lavendersim.quantities.names import PlaneName
 from lavendersim.quantities.quantity import Quantity, Quaternion, Vector, Vector3
 
@@ -32,22 +33,8 @@ class Release(ConfigModel):
     )
 
 
-class Drag(ConfigModel):
-    """What the medium does: force -(linear + quadratic |v|) v, torque -angular omega."""
-
-    linear: Annotated[float, Quantity("N s/m", minimum=0)] = Field(
-        default=0.0, description="[N s/m] force per speed"
-    )
-    quadratic: Annotated[float, Quantity("N s^2/m^2", minimum=0)] = Field(
-        default=0.0, description="[N s^2/m^2] force per speed squared"
-    )
-    angular: Annotated[float, Quantity("N m s", minimum=0)] = Field(
-        default=0.0, description="[N m s] torque per angular velocity"
-    )
-
-
-class CellBody(ResolvedModel):
-    """One rigid body; its frame has the centre of mass as origin and the principal axes."""
+class BodyOwn(ResolvedModel):
+    """What a body has whatever effects there are."""
 
     shape: CellShape
     fixed: bool  # neither contacts nor forces move it
@@ -56,10 +43,15 @@ class CellBody(ResolvedModel):
     density: float | None  # [kg/m^3] as written
     inertia: Vector3 | None  # [kg m^2] about the axes of its frame; None for a fixed body
     surface: Surface
-    surface_velocity: Vector3  # [m/s] in its frame
     position: Vector3  # [m] centre of mass; of a plane: its point nearest to the origin
     release: Release | None  # as written; `position` follows from it
     orientation: Quaternion  # unit quaternion w x y z, its frame to world
     velocity: Vector3  # [m/s]
     angular_velocity: Vector3  # [rad/s]
-    drag: Drag
+
+
+class CellBody(declared("CellBody", BodyOwn, BODY_KEYS), BodyOwn):  # type: ignore[misc]
+    """One rigid body; its frame has the centre of mass as origin and the principal axes.
+
+    Behind what every body has stand the keys that effects declare.
+    """

@@ -12,7 +12,7 @@ from inspect import cleandoc
 from pathlib import Path
 
 from lavendersim.engine.effects import EFFECTS, Column, Effect
-from lavendersim.engine.effects.keys import SceneKey, SurfaceKey
+from lavendersim.engine.effects.keys import Key
 
 INTRODUCTION = """\
 # Effects
@@ -41,16 +41,17 @@ def _section(effect: Effect) -> Iterator[str]:
         yield f"Needs {', '.join(f'`{name}`' for name in effect.needs)}.\n"
     if effect.chosen_by:
         yield f"Chosen by `{effect.chosen_by.section}.{effect.chosen_by.key}`.\n"
-    keys: list[tuple[str, SurfaceKey | SceneKey]] = [
+    keys: list[tuple[str, Key]] = [
         *(("surface", key) for key in effect.surface_keys),
+        *(("body", key) for key in effect.body_keys),
         *(("scene", key) for key in effect.scene_keys),
     ]
     if keys:
         yield "| key | default | meaning |"
         yield "|---|---|---|"
         for section, key in keys:
-            default = "none" if key.default == () else f"{key.default:g}"
-            yield f"| `{section}.{key.name}` | {default} | {key.doc} |"
+            default = f"{key.default:g}" if isinstance(key.default, float) else "none"
+            yield f"| `{section}.{key.name}` | {default} | {_cell(key.doc)} |"
         yield ""
     columns = [("/contacts", effect.contact_columns), ("/step", effect.step_columns)]
     columns.append(("/residuals", effect.residual_columns))
@@ -63,8 +64,11 @@ def _section(effect: Effect) -> Iterator[str]:
 
 
 def _column(topic: str, column: Column) -> str:
-    meaning = column.text.replace("|", "\\|")
-    return f"| `{column.name}` | `{topic}` | {meaning} |"
+    return f"| `{column.name}` | `{topic}` | {_cell(column.text)} |"
+
+
+def _cell(text: str) -> str:
+    return text.replace("|", "\\|")
 
 
 if __name__ == "__main__":

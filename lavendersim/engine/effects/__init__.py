@@ -59,6 +59,7 @@ BY_NAME: Final = {effect.name: effect for effect in EFFECTS}
 
 SURFACE_KEYS: Final = tuple(key for effect in EFFECTS for key in effect.surface_keys)
 SCENE_KEYS: Final = tuple(key for effect in EFFECTS for key in effect.scene_keys)
+BODY_KEYS: Final = tuple(key for effect in EFFECTS for key in effect.body_keys)
 
 
 def effects_of(spec: Spec) -> list[Effect]:
@@ -103,6 +104,7 @@ def row_fields(spec: Spec, row: Literal["contact", "step", "residual"]) -> list[
 
 
 __all__ = [
+    "BODY_KEYS",
     "BY_NAME",
     "CHAINED",
     "EFFECTS",

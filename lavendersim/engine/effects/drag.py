@@ -8,10 +8,30 @@ Forces act before, so that a fall ends at the very speed at which drag carries t
 """
 
 from math import sqrt
-from typing import Any
+from typing import Annotated, Any
+
+from pydantic import Field as ModelField
+
+from lavendersim.quantities.model import ConfigModel
+from lavendersim.quantities.quantity import Quantity
 
 from .decision import Decision, Facts, named
-from .effect import Effect, Fields, Hooks, kernel
+from .effect import Balance, Effect, Fields, Hooks, Unlogged, kernel
+from .keys import BodyKey
+
+
+class Drag(ConfigModel):
+    """What the medium does: force -(linear + quadratic |v|) v, torque -angular omega."""
+
+    linear: Annotated[float, Quantity("N s/m", minimum=0)] = ModelField(
+        default=0.0, description="[N s/m] force per speed"
+    )
+    quadratic: Annotated[float, Quantity("N s^2/m^2", minimum=0)] = ModelField(
+        default=0.0, description="[N s^2/m^2] force per speed squared"
+    )
+    angular: Annotated[float, Quantity("N m s", minimum=0)] = ModelField(
+        default=0.0, description="[N m s] torque per angular velocity"
+    )
 
 
 def body_values(body: Any) -> dict[str, float]:
@@ -64,6 +84,16 @@ EFFECT = Effect(
     name="drag",
     decide=decide,
     per="body",
+    body_keys=(
+        BodyKey(
+            name="drag",
+            type=Drag,
+            default=Drag(),
+            doc="force -(linear + quadratic |v|) v and torque -angular omega of the medium",
+            of_movable=True,
+        ),
+    ),
+    balance=Balance(unlogged=Unlogged("momentum", "what the drag of {body} takes")),
     fields=Fields(
         body=[
             ("drag_linear", "f8"),  # c1 [N s/m]

@@ -17,7 +17,7 @@ from typing import Any, Final, Literal, NamedTuple
 from ..records import Field
 from ..spec import Spec
 from .decision import Decision, Facts
-from .keys import SceneKey, SurfaceKey
+from .keys import BodyKey, SceneKey, SurfaceKey
 
 Kernel = Any  # a compiled function
 Maker = Callable[..., Kernel]  # (spec, ...) -> kernel; what it is given beside the spec: see Hooks
@@ -107,6 +107,13 @@ class Hooks:
     log_step: Maker | None = None  # made with (spec, log_pose, kernels of step_row)
 
 
+class Unlogged(NamedTuple):
+    """A part of a balance that is in no log: the balance cannot be judged where it is."""
+
+    check: Literal["energy", "momentum"]
+    what: str  # what is not in the log; {body} stands for the name
+
+
 @dataclass(frozen=True, kw_only=True)
 class Balance:
     """Its share in the balances of energy and momentum (`measures.balance`), by log columns."""
@@ -115,6 +122,7 @@ class Balance:
     stored: str = ""  # of a step: energy that it stores [J]
     varies_friction: str = ""  # surface key: where above 0, the logged coefficient is the one
     outer: tuple[str, ...] = ()  # of a step: impulse on movable bodies from others, x y z [N s]
+    unlogged: Unlogged | None = None  # where a body has a key of the effect
 
 
 class Choice(NamedTuple):
@@ -135,6 +143,7 @@ class Effect:
     chosen_by: Choice | None = None
     surface_keys: tuple[SurfaceKey, ...] = ()  # of a config: properties of surfaces
     scene_keys: tuple[SceneKey, ...] = ()
+    body_keys: tuple[BodyKey, ...] = ()
     acts_on: Callable[[Any], Iterable[tuple[str, bool]]] | None = None  # bodies, whether it turns
     links: Callable[[Any, dict[str, int]], list[dict[str, Any]]] | None = None  # of a scene
     balance: Balance = Balance()

@@ -13,7 +13,9 @@ from typing import Annotated, Any, Final
 
 from lavendersim.quantities.quantity import Quantity, Vector3
 
-Turn = Callable[[str, Vector3], Vector3]  # of a body: a vector of its frame as written, resolved
+# A vector of a body's frame as written, in the frame of its principal axes.
+Turn = Callable[[Vector3], Vector3]
+TurnOf = Callable[[str, Vector3], Vector3]  # the same, by the name of the body
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -37,7 +39,20 @@ class SurfaceKey(Key):
 class SceneKey(Key):
     """A key of the scene; its value is the same as written and resolved, but for frames."""
 
-    resolve: Callable[[Any, Turn], Any]
+    resolve: Callable[[Any, TurnOf], Any]
+
+
+def as_written(value: Any, turn: Turn) -> Any:
+    """Return what has no direction."""
+    return value
+
+
+@dataclass(frozen=True, kw_only=True)
+class BodyKey(Key):
+    """A key of bodies; its value is the same as written and resolved, but for the frame."""
+
+    resolve: Callable[[Any, Turn], Any] = as_written
+    of_movable: bool = False  # a body that does not move has none
 
 
 def larger(one: float, other: float) -> float:

@@ -28,7 +28,7 @@ from ..records import ORIENTED_BODY
 from ..spec import Spec
 from .decision import Decision, Facts, named
 from .effect import Balance, Column, Effect, Fields, Hooks, Kernel, kernel
-from .keys import SceneKey, Turn
+from .keys import SceneKey, TurnOf
 
 _CENTRE: Vector3 = (0.0, 0.0, 0.0)
 Point = Annotated[Vector3, Vector(3, Quantity("m"))]
@@ -52,7 +52,7 @@ class Spring(ConfigModel):
     )
 
 
-def resolve(springs: tuple[Spring, ...], turn: Turn) -> tuple[Spring, ...]:
+def resolve(springs: tuple[Spring, ...], turn: TurnOf) -> tuple[Spring, ...]:
     """Return springs with their points in the frames of principal axes."""
     return tuple(
         one.model_copy(

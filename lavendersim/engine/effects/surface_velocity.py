@@ -6,9 +6,17 @@ s_A, s_B in the bodies' frames [m/s]. Its part along the normal says nothing and
 
 from typing import Any
 
+from lavendersim.quantities.quantity import Vector3, Velocity
+
 from ..records import ORIENTED_BODY
 from .decision import Decision, Facts, named
-from .effect import Effect, Fields, Hooks, kernel
+from .effect import Balance, Effect, Fields, Hooks, Unlogged, kernel
+from .keys import BodyKey, Turn
+
+
+def resolve(value: Vector3, turn: Turn) -> Vector3:
+    """Return the velocity in the frame of the principal axes."""
+    return turn(value)
 
 
 def body_values(body: Any) -> dict[str, float]:
@@ -45,13 +53,23 @@ EFFECT = Effect(
     decide=decide,
     per="contact",
     needs=("friction",),
+    body_keys=(
+        BodyKey(
+            name="surface_velocity",
+            type=Velocity,
+            default=(0.0, 0.0, 0.0),
+            doc="[m/s] of the surface in the body's frame, as of a conveyor's belt; what of it "
+            "lies along a contact's normal says nothing",
+            resolve=resolve,
+        ),
+    ),
+    balance=Balance(
+        unlogged=Unlogged("energy", "the surface of {body} moves by itself, and its work")
+    ),
     fields=Fields(
         body=[*ORIENTED_BODY, ("sx", "f8"), ("sy", "f8"), ("sz", "f8")],  # body's frame [m/s]
         contact=[
-            (
-                "surface_1",
-                "f8",
-            ),  # velocity of B's surface in B relative to A's in A, along t1 [m/s]
+            ("surface_1", "f8"),  # of B's surface in B relative to A's in A, along t1 [m/s]
             ("surface_2", "f8"),
         ],
     ),

@@ -7,8 +7,9 @@ are in no log.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 
+from lavendersim.engine.effects import EFFECTS
 from lavendersim.experiment.models.tree import described
 from lavendersim.experiment.text.node import Node, key_mark
 from lavendersim.experiment.text.place import Place
@@ -37,18 +38,25 @@ def _unknown_work(root: Node) -> Iterator[str]:
     for name, body in described(root):
         if body.is_true("kinematic"):
             yield f"{quoted(name)} moves by itself, and its work is not in the log"
-        if _any(body.items_at("surface_velocity")):
-            yield f"the surface of {quoted(name)} moves by itself, and its work is not in the log"
+        yield from _unlogged(name, body, "energy")
 
 
 def _unknown_impulse(root: Node) -> Iterator[str]:
     for name, body in described(root):
-        if _any(body.entries_at("drag").values()):
-            yield f"what the drag of {quoted(name)} takes is not in the log"
+        yield from _unlogged(name, body, "momentum")
     if root.is_true("numerics", "sleeping"):
         yield "what falling asleep takes is not in the log"
 
 
-def _any(nodes: Iterable[Node]) -> bool:
-    """Tell whether one of the numbers is not zero."""
-    return any(bool(node.number) for node in nodes)
+def _unlogged(name: str, body: Node, check: str) -> Iterator[str]:
+    """Yield what effects that the body has a key of leave out of the log."""
+    for effect in EFFECTS:
+        unlogged = effect.balance.unlogged
+        given = any(_any_at(body, key.name) for key in effect.body_keys)
+        if given and unlogged is not None and unlogged.check == check:
+            yield f"{unlogged.what.format(body=quoted(name))} is not in the log"
+
+
+def _any_at(body: Node, key: str) -> bool:
+    """Tell whether one of the numbers of a key is not zero."""
+    return any(bool(node.number) for node in (*body.items_at(key), *body.entries_at(key).values()))

@@ -6,13 +6,14 @@ from typing import Annotated, Any
 
 from pydantic import Field, Tag
 
-from lavendersim.cell.body import Drag, Release
+from lavendersim.cell.body import Release
 from lavendersim.cell.surface import Surface
+from lavendersim.engine.effects import BODY_KEYS
 from lavendersim.experiment.models.shapes import Orientation, Shape, Solid
 from lavendersim.experiment.models.tree import SOLIDS
 from lavendersim.experiment.text.place import Place
 from lavendersim.quantities.found import near
-from lavendersim.quantities.model import ConfigModel
+from lavendersim.quantities.model import ConfigModel, declared
 from lavendersim.quantities.names import SurfaceName
 from lavendersim.quantities.quantity import (
     AngularVelocity,
@@ -25,7 +26,7 @@ from lavendersim.quantities.quantity import (
 )
 
 _OF_MOVING = ("velocity", "angular_velocity")
-_OF_MOVABLE = ("mass", "density", "inertia", "drag")
+_OF_MOVABLE = ("mass", "density", "inertia", *(key.name for key in BODY_KEYS if key.of_movable))
 _OF_PLACES = ("position", "release", "orientation")
 STATIC_HINT = "a body that never moves has fixed: true"
 
@@ -41,8 +42,8 @@ SurfaceOf = Annotated[
 ]
 
 
-class _Matter(ConfigModel):
-    """What bodies have in common, whether they stand alone or are arranged."""
+class _MatterOwn(ConfigModel):
+    """What bodies have in common whatever effects there are."""
 
     mass: Annotated[float, Quantity("kg", above=0, hint=STATIC_HINT)] | None = Field(
         default=None, description="[kg] of a movable body, which has this or a density"
@@ -64,11 +65,6 @@ class _Matter(ConfigModel):
         default=Surface(),
         description="name of one of `scene.surfaces`, or its properties in place; all 0",
     )
-    surface_velocity: Velocity = Field(
-        default=(0.0, 0.0, 0.0),
-        description="[m/s] of the surface in the body's frame, as of a conveyor's belt; what of it "
-        "lies along a contact's normal says nothing",
-    )
     orientation: Orientation = Field(
         default=(1.0, 0.0, 0.0, 0.0),
         description="quaternion w x y z, or `{axis: [x, y, z], degrees: 30}`; both are normalised",
@@ -77,10 +73,10 @@ class _Matter(ConfigModel):
     angular_velocity: AngularVelocity = Field(
         default=(0.0, 0.0, 0.0), description="[rad/s] world frame, right-handed"
     )
-    drag: Drag = Field(
-        default=Drag(),
-        description="force -(linear + quadratic |v|) v and torque -angular omega of the medium",
-    )
+
+
+class _Matter(declared("Matter", _MatterOwn, BODY_KEYS), _MatterOwn):  # type: ignore[misc]
+    """What bodies have in common, whether they stand alone or are arranged."""
 
     @classmethod
     def rules(cls, at: Place) -> None:

@@ -8,7 +8,7 @@ from fractions import Fraction
 from lavendersim.cell.body import CellBody
 from lavendersim.cell.scene import CellForce, CellScene
 from lavendersim.cell.shapes import CellShape, Plane
-from lavendersim.engine.effects import SCENE_KEYS
+from lavendersim.engine.effects import BODY_KEYS, SCENE_KEYS
 from lavendersim.experiment.models.bodies import ArrangedBody, Body
 from lavendersim.experiment.models.scene import Force, Scene, TiltedGravity
 from lavendersim.experiment.models.tree import ARRANGEMENTS, BODIES, member_name
@@ -97,7 +97,7 @@ def _matter(body: Body | ArrangedBody, scene: Scene) -> CellBody:
     """Return a body that stands at the origin; its velocities are as written."""
     surface = scene.surfaces[body.surface] if isinstance(body.surface, str) else body.surface
     fixed = body.fixed or body.kinematic or isinstance(body.shape, Plane)
-    orientation, surface_velocity = quaternion_of(body.orientation), body.surface_velocity
+    orientation, axes = quaternion_of(body.orientation), IDENTITY
     mass: float | None = None
     inertia: Vector3 | None = None
     shape: CellShape
@@ -110,11 +110,16 @@ def _matter(body: Body | ArrangedBody, scene: Scene) -> CellBody:
             raise error.below("shape") from None
         if axes != IDENTITY:
             orientation = product(orientation, axes)
-            surface_velocity = to_body(axes, surface_velocity)
         if not fixed:
             mass = body.mass if body.mass is not None else (body.density or 0.0) * volume
             inertia = body.inertia or (mass * x, mass * y, mass * z)
-    return CellBody.model_construct(
+
+    def turned(vector: Vector3) -> Vector3:
+        """Return a vector of the frame as written in the frame of the principal axes."""
+        return vector if axes == IDENTITY else to_body(axes, vector)
+
+    by_effect = {key.name: key.resolve(getattr(body, key.name), turned) for key in BODY_KEYS}
+    resolved: CellBody = CellBody.model_construct(
         shape=shape,
         fixed=fixed,
         kinematic=body.kinematic,
@@ -122,14 +127,14 @@ def _matter(body: Body | ArrangedBody, scene: Scene) -> CellBody:
         density=body.density,
         inertia=inertia,
         surface=surface,
-        surface_velocity=surface_velocity,
         position=_ORIGIN,
         release=None,
         orientation=orientation,
         velocity=body.velocity,
         angular_velocity=body.angular_velocity,
-        drag=body.drag,
+        **by_effect,
     )
+    return resolved
 
 
 def _force(force: Force, duration: float) -> CellForce:
