@@ -54,6 +54,44 @@ def test_an_open_contact_pulls_no_more() -> None:
     np.testing.assert_allclose(speeds, expected, rtol=1e-14)
 
 
+SLOP = 0.001
+
+
+def let_go(gap: float) -> Bench:
+    """A ball under a ceiling at a gap [m]; half its weight draws it, it moves along the ceiling."""
+    force = 0.5 * MASS * G
+    bodies = {
+        "ceiling": plane((0.0, 0.0, -1.0), 0.0, cohesion=force),
+        "ball": sphere(
+            RADIUS, (0.0, 0.0, -RADIUS - gap), mass=MASS, cohesion=force, velocity=(2.0, 0.0, 0.0)
+        ),
+    }
+    numerics = {"integrator": "midpoint", "speculative": True, "slop": SLOP, "projection": 0.5}
+    return Bench(resolved(bodies, (0.0, 0.0, -G), **numerics), None)
+
+
+def test_a_contact_is_closed_up_to_the_slop() -> None:
+    """The ball moves 8 mm along the ceiling in a step, so that the contact is there at any rate."""
+    for share, acceleration, drawn in ((0.99, 0.5 * G, [0.5 * MASS * G * DT]), (1.01, G, [])):
+        bench = let_go(share * SLOP)
+        # In the log is what draws, though nothing touches or presses.
+        np.testing.assert_array_equal(bench.run(1).contact["adhesive_impulse"], drawn)
+        # One subtraction of two velocities below g dt = 0.04 m/s.
+        assert bench.velocity[1, 2] == pytest.approx(-acceleration * DT, abs=2e-17)
+
+
+def test_the_projection_knows_how_far_a_drawn_body_falls() -> None:
+    """It falls s = (g - F/m) dt^2 / 2; half of what stays deeper than the slop is lifted."""
+    depth = 0.003
+    bench = let_go(-depth)
+    bench.run(1)
+    fallen = 0.5 * (0.5 * G) * DT**2
+    expected = fallen + 0.5 * (depth - fallen - SLOP)
+    # Places of 0.1 m are rounded a few times.
+    found = -RADIUS + depth - bench.engine.bodies["z"][1]
+    assert found == pytest.approx(expected, abs=5 * 1.4e-17)
+
+
 def test_what_the_force_does_not_carry_falls_by_the_mean_of_its_velocities() -> None:
     """As free fall under the midpoint rule: x_k = a (k dt)^2 / 2 while the contact is closed."""
     a = 1e-4 * G
@@ -87,6 +125,68 @@ def test_two_balls_part_with_what_the_force_leaves(share: float) -> None:
     assert apart == pytest.approx(max(share - 1.0, 0.0) * taken, abs=1e-16)
     momentum = light * bench.velocity[0] + heavy * bench.velocity[1]
     np.testing.assert_allclose(momentum, [heavy * share * taken, 0.0, 0.0], atol=1e-16)
+
+
+def test_two_balls_in_flight_part_under_the_pull_of_each_on_the_other() -> None:
+    """x_A = F n t^2 / 2 m_A, x_B = v n t - F n t^2 / 2 m_B, both beside their fall, g t^2 / 2."""
+    force, light, heavy, speed, steps = 0.03, 0.5, 2.0, 0.02, 48
+    n = np.array([1.0, 2.0, 2.0]) / 3.0
+    bodies = {
+        "light": sphere(RADIUS, (0.0, 0.0, 0.0), mass=light, cohesion=force),
+        "heavy": sphere(
+            RADIUS,
+            tuple((2.0 * RADIUS * n).tolist()),
+            mass=heavy,
+            cohesion=force,
+            velocity=tuple((speed * n).tolist()),
+        ),
+    }
+    numerics = {"integrator": "midpoint", "speculative": True, "slop": 0.005}
+    bench = Bench(resolved(bodies, (0.0, 0.0, -G), **numerics), None)
+    bench.run(steps)
+    t = steps * DT
+    # They still part at 5 mm/s, 2.5 mm from each other: closed within the slop, pressed by nothing.
+    fall = np.array([0.0, 0.0, -0.5 * G * t**2])
+    drawn = [n * force * t**2 / (2.0 * light), n * (speed * t - force * t**2 / (2.0 * heavy))]
+    expected = [drawn[0] + fall, 2.0 * RADIUS * n + drawn[1] + fall]
+    found = np.array([[bench.engine.bodies[axis][i] for axis in "xyz"] for i in (0, 1)])
+    # Each step rounds places of 0.3 m, and velocities of 2 m/s whose errors all later steps keep.
+    np.testing.assert_allclose(found, expected, rtol=0.0, atol=steps * 2.3e-16)
+
+
+def test_the_force_of_two_surfaces_is_their_geometric_mean() -> None:
+    """1 N and 4 N draw with 2 N."""
+    bodies = {
+        "weak": sphere(RADIUS, (0.0, 0.0, 0.0), cohesion=1.0),
+        "strong": sphere(RADIUS, (2.0 * RADIUS, 0.0, 0.0), cohesion=4.0, velocity=(1.0, 0.0, 0.0)),
+    }
+    bench = Bench(resolved(bodies), None)
+    bench.run(1)
+    # One rounding near 1 m/s.
+    np.testing.assert_allclose(bench.velocity[:, 0], [2.0 * DT, 1.0 - 2.0 * DT], atol=1.2e-16)
+
+
+def test_the_pull_acts_at_the_contact_and_turns_what_it_pulls_off_centre() -> None:
+    """A ball leaves a free box at r from its centre: I w = r x F dt z, m v = F dt z."""
+    force, mass, wide, high = 3.0, 1.5, 0.4, 0.1
+    x, y = 0.1, 0.2
+    bodies = {
+        "box": box((wide, wide, high), (0.0, 0.0, 0.0), mass=mass, cohesion=force),
+        "ball": sphere(
+            RADIUS, (x, y, 0.5 * high + RADIUS), cohesion=force, velocity=(0.0, 0.0, 1.0)
+        ),
+    }
+    bench = Bench(resolved(bodies), None)
+    bench.run(1)
+    # The same about x and y, so that the turn of this step leaves the spin alone.
+    inertia = mass * (wide**2 + high**2) / 12.0
+    impulse = force * DT
+    # One rounding of the box's 0.01 m/s, one of the ball's 1 m/s.
+    np.testing.assert_allclose(bench.velocity[0], [0.0, 0.0, impulse / mass], atol=1e-17)
+    np.testing.assert_allclose(bench.velocity[1], [0.0, 0.0, 1.0 - impulse], atol=1.2e-16)
+    spin = [y * impulse / inertia, -x * impulse / inertia, 0.0]
+    # 0.1 rad/s; ten roundings of the levers, the impulse and the turn.
+    np.testing.assert_allclose(bench.spin[0], spin, atol=10 * 1.4e-17)
 
 
 def on_a_slope(tangent: float, force: float, mu: float) -> Bench:

@@ -123,6 +123,67 @@ def test_the_impulse_from_a_hook_is_what_the_mass_gains() -> None:
     np.testing.assert_allclose(rows["spring_force"][1:] * -DT, gained, atol=1e-15)
 
 
+@pytest.mark.parametrize("names", [("hook", "mass"), ("mass", "hook")])
+def test_the_impulse_from_a_hook_is_logged_along_each_axis(names: tuple[str, str]) -> None:
+    """Of whichever of the two bodies the spring names first, it is the mass that gains it."""
+    bodies = {
+        "hook": sphere(0.01, (0.0, 0.0, 0.0), fixed=True),
+        "mass": sphere(0.05, (0.3, -0.5, 0.4), mass=M, velocity=(0.2, 0.1, -0.3)),
+    }
+    rows = Bench(joined({name: bodies[name] for name in names}), None).run(STEPS).step
+    for axis in "xyz":
+        gained = np.diff(rows[f"momentum_{axis}"])
+        assert np.abs(gained).max() > 0.01
+        # The momentum is below 2 kg m/s, and its velocity is rounded once a step.
+        np.testing.assert_allclose(rows[f"spring_impulse_{axis}"][1:], gained, atol=1e-15)
+
+
+@pytest.mark.parametrize(("integrator", "w"), [("midpoint", 0.5), ("semi_implicit_euler", 1.0)])
+def test_off_centre_the_force_is_that_of_the_velocities_it_leads_to(
+    integrator: str, w: float
+) -> None:
+    """F = k (l - l_0) + (w k dt + c) u, u the rate at the points with w v' + (1 - w) v.
+
+    The law that the formula of the impulse solves, spins and levers included.
+    """
+    damping, masses, radii = 0.3, (1.0, 3.0), (0.2, 0.3)
+    places = np.array([[0.0, 0.0, 0.0], [1.0, 0.3, 0.2]])
+    before = np.array([[0.1, -0.2, 0.3], [0.0, 0.4, -0.1]])
+    spins = np.array([[1.0, -2.0, 0.5], [-0.7, 0.4, 1.5]])
+    points = np.array([[0.1, 0.15, 0.0], [0.0, -0.2, 0.1]])
+    bodies = {
+        name: sphere(
+            radii[i],
+            tuple(places[i].tolist()),
+            mass=masses[i],
+            velocity=tuple(before[i].tolist()),
+            angular_velocity=tuple(spins[i].tolist()),
+        )
+        for i, name in enumerate(("one", "other"))
+    }
+    ends = {"point_a": tuple(points[0].tolist()), "point_b": tuple(points[1].tolist())}
+    bench = Bench(joined(bodies, integrator=integrator, damping=damping, **ends), None)
+    force = float(bench.run(1).step["spring_force"][-1])
+    between = places[1] + points[1] - places[0] - points[0]
+    length = float(np.sqrt(between @ between))
+    d = between / length
+
+    def rate(v: np.ndarray, spin: np.ndarray) -> float:
+        at = v + np.cross(spin, points)
+        return float(d @ (at[1] - at[0]))
+
+    u = w * rate(bench.velocity, bench.spin) + (1.0 - w) * rate(before, spins)
+    # 40 N in some thirty roundings; so are the changes of velocity, 0.2 m/s, and of spin.
+    law = K * (length - REST) + (w * K * DT + damping) * u
+    assert force == pytest.approx(law, rel=30 * 1.1e-16)
+    for i, sign in enumerate((1.0, -1.0)):
+        impulse = sign * DT * force * d
+        inertia = 0.4 * masses[i] * radii[i] ** 2
+        np.testing.assert_allclose(bench.velocity[i], before[i] + impulse / masses[i], atol=1e-15)
+        turned = spins[i] + np.cross(points[i], impulse) / inertia
+        np.testing.assert_allclose(bench.spin[i], turned, atol=30 * 2.3e-16)
+
+
 def test_a_hanging_mass_comes_to_rest_where_the_spring_carries_it() -> None:
     bodies = {
         "hook": sphere(0.01, (0.0, 0.0, 0.0), fixed=True),

@@ -10,7 +10,7 @@ from math import atan, cos, sin
 
 import numpy as np
 import pytest
-from laboratory import Bench, box, plane, resolved
+from laboratory import Bench, box, plane, resolved, sphere
 
 G, DT = 9.81, 1.0 / 240.0
 KINETIC, STATIC, STRIBECK = 0.3, 0.6, 0.05
@@ -88,6 +88,50 @@ def test_one_slope_holds_what_rests_and_speeds_up_what_slides() -> None:
 def test_the_coefficient_of_the_slip_is_logged() -> None:
     rows = block(0.45, 1.0).run(2).contact
     np.testing.assert_allclose(rows["friction"][rows["step"] == 1], mu(1.0), rtol=1e-14)
+
+
+def test_two_surfaces_mix_as_kinetic_friction_does_and_take_the_larger_speed() -> None:
+    """sqrt(0.2 * 0.45) = 0.3, sqrt(0.4 * 0.9) = 0.6, and 0.05 m/s is above 0.02 m/s."""
+    one = {"friction": 0.2, "static_friction": 0.4, "stribeck_velocity": 0.02}
+    other = {"friction": 0.45, "static_friction": 0.9, "stribeck_velocity": STRIBECK}
+    speed = 2.0 * STRIBECK
+    bodies = {
+        "floor": plane(**one),
+        "block": box((0.4, 0.4, 0.05), (0.0, 0.0, 0.025), velocity=(speed, 0.0, 0.0), **other),
+    }
+    rows = Bench(resolved(bodies, (0.0, 0.0, -G), **SHARP), None).run(1).contact
+    # A dozen roundings of products and roots.
+    np.testing.assert_allclose(rows["friction"], mu(speed), rtol=12 * 1.1e-16)
+
+
+def test_the_slip_is_that_of_the_two_surfaces_where_they_touch() -> None:
+    """|t (v_B + w_B x r_B + s_B - v_A - w_A x r_A - s_A)|, of bodies that move and turn."""
+    radius, high = 0.1, 0.1
+    surface = {"friction": KINETIC, "static_friction": STATIC, "stribeck_velocity": 1.0}
+    place = np.array([0.12, -0.07, 0.5 * high + radius])
+    moves = {
+        "box": ((0.4, -0.3, 0.0), (0.5, -0.8, 2.0), (0.3, -0.2, 0.0)),
+        "ball": ((-0.2, 0.6, 0.0), (3.0, 4.0, -5.0), (0.0, 0.0, 0.0)),
+    }
+    stated = {
+        name: {"velocity": v, "angular_velocity": w, "surface_velocity": s, **surface}
+        for name, (v, w, s) in moves.items()
+    }
+    bodies = {
+        "box": box((0.4, 0.4, high), (0.0, 0.0, 0.0), **stated["box"]),
+        "ball": sphere(radius, tuple(place.tolist()), **stated["ball"]),
+    }
+    rows = Bench(resolved(bodies)).run(1).contact
+    levers = {"box": place - [0.0, 0.0, radius], "ball": np.array([0.0, 0.0, -radius])}
+    at = {
+        name: np.array(v) + np.cross(w, levers[name]) + np.array(s)
+        for name, (v, w, s) in moves.items()
+    }
+    slip = (at["ball"] - at["box"])[:2]
+    expected = KINETIC + (STATIC - KINETIC) / (1.0 + float(slip @ slip))
+    assert 0.5 < float(slip @ slip) < 5.0
+    # Thirty roundings of terms of the slip's size.
+    np.testing.assert_allclose(rows["friction"], expected, rtol=30 * 1.1e-16)
 
 
 def test_a_belt_carries_a_block_to_where_drag_balances_the_friction_of_its_slip() -> None:

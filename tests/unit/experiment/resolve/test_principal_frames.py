@@ -156,3 +156,33 @@ def test_rotations_undo_each_other() -> None:
     vector = (0.3, -2.0, 0.7)
     assert to_body(Q, to_world(Q, vector)) == pytest.approx(vector, abs=1e-15)
     assert product(Q, inverse(Q)) == pytest.approx((1.0, 0.0, 0.0, 0.0), abs=1e-15)
+
+
+def test_ends_of_springs_stand_where_the_file_puts_them() -> None:
+    points = {"thing": (0.3, -0.2, 0.5), "ball": (0.0, 0.1, 0.2)}
+    text = f"""\
+scene:
+  bodies:
+    thing:
+      shape: {WEDGE}
+      mass: 2.0
+      position: [0, 0, 0]
+      orientation: [0.9, 0.1, -0.3, 0.2]
+    ball: {{shape: {{kind: sphere, radius: 0.1}}, mass: 1.0, position: [3, 0, 0]}}
+  springs:
+    - {{a: thing, b: ball, stiffness: 1.0, point_a: {list(points["thing"])},
+        point_b: {list(points["ball"])}}}
+    - {{a: ball, b: thing, stiffness: 1.0, point_a: {list(points["ball"])},
+        point_b: {list(points["thing"])}}}
+duration: 1.0
+"""
+    cells = load_experiment_text(text, "springs.yaml").cells()
+    scene = cells[0].config.as_dict()["scene"]
+    turn = tuple(scene["bodies"]["thing"]["orientation"])
+    written = to_world(Q, points["thing"])
+    first, second = scene["springs"]
+    # two turns, a dozen roundings each of numbers below 1
+    for point in (first["point_a"], second["point_b"]):
+        np.testing.assert_allclose(to_world(turn, tuple(point)), written, atol=24 * 1.1e-16)
+    for point in (first["point_b"], second["point_a"]):
+        assert tuple(point) == points["ball"]
