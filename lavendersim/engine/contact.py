@@ -216,7 +216,8 @@ def make_append_contact(spec: Spec, capture):
     pair_resists_turning: Any = make_resists_turning(spec) if spins else None
     complete_row: Any = make_complete_row(spec) if frictionless else None
     preparing = made_by(spec, "prepare")
-    prepares, prepare = bool(preparing), chain(preparing, spec)
+    prepares = bool(preparing)
+    prepare: Any = chain(preparing, spec) if prepares else None
 
     def append_contact(contact, bodies, velocities, motion, pair, params):
         body_a, body_b = bodies[contact.a], bodies[contact.b]

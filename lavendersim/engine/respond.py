@@ -42,7 +42,8 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
     logs = spec.has("contact_log")
     keeps_free, keep_free = made_once(spec, "keep_free")
     loads = made_by(spec, "preload")
-    loaded, preload = bool(loads), chain(loads, spec)
+    loaded = bool(loads)
+    preload: Any = chain(loads, spec) if loaded else None
 
     def respond(state, count, workspace, params, counters, log):
         bodies, velocities, motion = state.bodies, state.velocities, state.motion

@@ -57,7 +57,8 @@ def make_advance(spec: Spec) -> Any:
     _, log_links = made_once(spec, "link_row")
     finish: Any = make_finish(spec) if linked and keeps else None
     starting = made_by(spec, "start_step")
-    starts, start_step = bool(starting), chain(starting, spec)
+    starts = bool(starting)
+    start_step: Any = chain(starting, spec) if starts else None
     sleeps, measure_speeds = made_once(spec, "measure_speeds")
     _, wake = made_once(spec, "wake")
     _, update_sleeping = made_once(spec, "update_sleeping")
