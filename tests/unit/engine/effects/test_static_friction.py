@@ -113,13 +113,13 @@ def test_the_slip_is_that_of_the_two_surfaces_where_they_touch() -> None:
         "box": ((0.4, -0.3, 0.0), (0.5, -0.8, 2.0), (0.3, -0.2, 0.0)),
         "ball": ((-0.2, 0.6, 0.0), (3.0, 4.0, -5.0), (0.0, 0.0, 0.0)),
     }
-    stated = {
+    given = {
         name: {"velocity": v, "angular_velocity": w, "surface_velocity": s, **surface}
         for name, (v, w, s) in moves.items()
     }
     bodies = {
-        "box": box((0.4, 0.4, high), (0.0, 0.0, 0.0), **stated["box"]),
-        "ball": sphere(radius, tuple(place.tolist()), **stated["ball"]),
+        "box": box((0.4, 0.4, high), (0.0, 0.0, 0.0), **given["box"]),
+        "ball": sphere(radius, tuple(place.tolist()), **given["ball"]),
     }
     rows = Bench(resolved(bodies)).run(1).contact
     levers = {"box": place - [0.0, 0.0, radius], "ball": np.array([0.0, 0.0, -radius])}
