@@ -14,7 +14,7 @@ from typing import Any
 
 from .collide import narrow_phase
 from .compile import chain, composing, kernel
-from .effects import made_by, made_once
+from .effects import BY_NAME, made_by, made_once
 from .integrate import (
     keeps_motion,
     make_begin,
@@ -35,7 +35,9 @@ def make_advance(spec: Spec) -> Any:
     parameters, counters: records of shape (1,); the latter say how many steps are done.
     """
     touches, record_residuals = bool(spec.shape_pairs), spec.has("residual_log")
-    _, log_pose = made_once(spec, "log_pose")
+    # The row of a step hashes the poses, whether or not they are logged.
+    make_log_pose: Any = BY_NAME["pose_log"].hooks.log_pose
+    log_pose = make_log_pose(spec) if spec.has("step_log") else None
     records, log_step = made_once(spec, "log_step", log_pose, made_by(spec, "step_row"))
     accelerations = made_by(spec, "accelerate")
     accelerates, keeps = bool(accelerations), keeps_motion(spec)

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 import re
 from fractions import Fraction
+from functools import lru_cache
 
 # Longer numbers carry no more float64 digits, and Python's int() is quadratic in their length.
 LONGEST_NUMBER = 64
@@ -72,6 +73,7 @@ def written(value: object) -> str:
     return str(value)
 
 
+@lru_cache(maxsize=4096)  # of long lists of numbers, many are alike
 def resolve(text: str) -> Value:
     """Return the value of a plain (unquoted) scalar; raises ScalarError for numbers of no use."""
     if text in ("", "~", "null", "Null", "NULL"):

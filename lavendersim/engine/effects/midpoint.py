@@ -15,7 +15,9 @@ def decide(facts: Facts) -> Decision:
     from . import EFFECTS  # by the time it is asked, all are there
 
     for effect in EFFECTS:
-        if (effect.hooks.accelerate or effect.hooks.act_between) and effect.decide(facts).on:
+        hooks = effect.hooks
+        accelerates = hooks.accelerate or hooks.act_between or hooks.preload
+        if accelerates and effect.decide(facts).on:
             name = effect.name.replace("_", " ")
             return Decision(True, f"integrator is midpoint and {name} accelerates bodies")
     return Decision(False, "free bodies keep their velocity, any integrator moves them alike")

@@ -49,7 +49,10 @@ SCENES = {
 
 
 def one_step(name, sweeps, tolerance=None):
-    bench = Bench(resolved(SCENES[name], GRAVITY, sweeps=sweeps, tolerance=tolerance, **NUMERICS))
+    # A config has a sweep at least; an engine takes none, too.
+    numerics = {**NUMERICS, "sweeps": max(sweeps, 1), "tolerance": tolerance}
+    bench = Bench(resolved(SCENES[name], GRAVITY, **numerics))
+    bench.engine.parameters["sweeps"] = sweeps
     oracle = RowOracle(bench)
     return oracle, bench.run(1)
 
