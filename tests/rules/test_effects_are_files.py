@@ -40,7 +40,6 @@ ELSEWHERE = {
         "scene/events.py": "forces begin and end during the run",
     },
     "compliance": {
-        "scene/laws.py": FACT,
         "engine/effects/fast_bodies.py": "springs give energy back",
         "engine/contact.py": ROW,
         "engine/assemble.py": ROW,
