@@ -20,6 +20,7 @@ from lavendersim.experiment.models.shapes import Solid
 from lavendersim.experiment.resolve.shape import resolve_shape
 from lavendersim.scene.build import Scene, build
 from lavendersim.scene.plan import Plan, plan_of
+from tests.made_cells import NUMERICS
 
 # Effects that put another law in a law's place: no coefficient of theirs takes them away.
 OTHER_LAWS = {
@@ -33,29 +34,6 @@ EVERYTHING = Spec(
     tolerance=True,
 )
 
-NUMERICS: dict[str, Any] = {
-    "timestep": "1/240",
-    "solver": "projected_gauss_seidel",
-    "sweeps": 22,
-    "over_relaxation": 1.0,
-    "order": "coloured",
-    "tolerance": None,
-    "warm_start": True,
-    "stabilisation_gain": 0.0,
-    "slop": 0.0,
-    "projection": 0.0,
-    "projection_sweeps": 22,
-    "restitution_threshold": 2.0,
-    "cache_distance": 0.02,
-    "cache_normal_cosine": 0.95,
-    "speculative": False,
-    "impacts": "captured",
-    "integrator": "semi_implicit_euler",
-    "friction_cone": "disc",
-    "sleeping": False,
-    "sleep_speed": 0.005,
-    "sleep_time": 0.5,
-}
 SOLID: TypeAdapter[Any] = TypeAdapter(Annotated[Solid, Field(discriminator="kind")])
 
 
