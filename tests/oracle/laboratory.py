@@ -12,7 +12,7 @@ import numpy as np
 from pydantic import Field, TypeAdapter
 
 from lavendersim.cell import CellConfig
-from lavendersim.engine.effects import EFFECTS, SURFACE_KEYS
+from lavendersim.engine.effects import BODY_KEYS, EFFECTS, SURFACE_KEYS
 from lavendersim.engine.engine import Engine, Rows
 from lavendersim.engine.records import ROWS_FULL
 from lavendersim.engine.spec import Spec
@@ -40,6 +40,7 @@ SOLID: TypeAdapter[Any] = TypeAdapter(Annotated[Solid, Field(discriminator="kind
 def body(shape: dict[str, Any], position=(0.0, 0.0, 0.0), **properties: Any) -> dict[str, Any]:
     """Return one resolved body; mass 1 kg unless given. Hulls and compounds: as written."""
     surface = {key.name: properties.pop(key.name, key.default) for key in SURFACE_KEYS}
+    by_effect = {key.name: properties.pop(key.name) for key in BODY_KEYS if key.name in properties}
     kinematic = properties.pop("kinematic", False)
     fixed = properties.pop("fixed", kinematic or shape["kind"] == "plane")
     mass = None if fixed else properties.pop("mass", 1.0)
@@ -56,8 +57,7 @@ def body(shape: dict[str, Any], position=(0.0, 0.0, 0.0), **properties: Any) -> 
         "density": None,
         "inertia": properties.pop("inertia", inertia),
         "surface": surface,
-        "surface_velocity": list(properties.pop("surface_velocity", (0.0, 0.0, 0.0))),
-        "drag": {"linear": 0.0, "quadratic": 0.0, "angular": 0.0, **properties.pop("drag", {})},
+        **by_effect,
         "position": list(position),
         "release": None,
         "orientation": list(properties.pop("orientation", (1.0, 0.0, 0.0, 0.0))),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import types
+from functools import cache
 from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
 
 from pydantic import BaseModel
@@ -18,6 +19,7 @@ def field_name(model: Model, name: str) -> str:
     return model.model_fields[name].alias or name
 
 
+@cache
 def fields(model: Model) -> dict[str, FieldInfo]:
     """Return the fields of a model by the keys under which they stand in a file."""
     return {field_name(model, name): info for name, info in model.model_fields.items()}

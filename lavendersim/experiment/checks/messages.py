@@ -91,11 +91,13 @@ def _replaced_keys(
     errors: list[ErrorDetails], root: Node, models: Mapping[Path, Model]
 ) -> set[tuple[Path, str | int]]:
     """Return the missing keys that are there, but misspelt: the unknown key says it all."""
+    missing = {locate(root, item["loc"])[0] for item in errors if item["type"] == "missing"}
     replaced: set[tuple[Path, str | int]] = set()
     for item in errors:
         if item["type"] == "extra_forbidden":
             path = locate(root, item["loc"])[0][:-1]
-            replaced.add((path, near(item["loc"][-1], _keys_at(models, path)) or ""))
+            if path in missing:
+                replaced.add((path, near(item["loc"][-1], _keys_at(models, path)) or ""))
     return replaced
 
 

@@ -83,7 +83,7 @@ def instructions(package: Path) -> list[str]:
     """Return the instructions of a frictionless scene's engine, compiled from a package."""
     done = subprocess.run(
         [sys.executable, "-P", "-c", COMPILE, str(ROOT / "tests/oracle")],
-        env=os.environ | {"PYTHONPATH": str(package)},
+        env=os.environ | {"PYTHONPATH": os.pathsep.join([str(package), str(ROOT)])},
         capture_output=True,
         text=True,
         timeout=300,

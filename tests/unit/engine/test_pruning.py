@@ -32,7 +32,7 @@ def boxes():
 def test_frictionless_spheres_have_no_rotation_at_all():
     bench = Bench(spheres(), spec=None)
     assert bench.spec.effects == (
-        *("contact_log", "gravity", "pose_log", "residual_log", "frictionless_contact", "step_log"),
+        *("contact_log", "frictionless_contact", "gravity", "pose_log", "residual_log", "step_log"),
         "warm_start",
     )
     assert bench.engine.velocities.dtype.names == ("vx", "vy", "vz")
