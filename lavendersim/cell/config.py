@@ -52,6 +52,15 @@ class CellConfig(ResolvedModel):
         """Return plain JSON-able data: ratios as `1/480`, vectors as lists."""
         return self.model_dump(mode="json", by_alias=True)
 
+    def as_json(self) -> str:
+        """Return the text of `as_dict`, in one line."""
+        return self.model_dump_json(by_alias=True)
+
+    @classmethod
+    def from_json(cls, text: str | bytes) -> CellConfig:
+        """Return the config that `as_json` gave this text."""
+        return cls.model_validate_json(text)
+
     @property
     def clock(self) -> Clock:
         """The times of its steps."""

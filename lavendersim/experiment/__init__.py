@@ -2,7 +2,7 @@
 
 from lavendersim.cell.config import CellConfig
 from lavendersim.experiment.cell import Cell
-from lavendersim.experiment.experiment import Experiment, resolved_yaml
+from lavendersim.experiment.experiment import Experiment
 from lavendersim.experiment.load import load_experiment, load_experiment_text
 
 __all__ = [
@@ -11,5 +11,4 @@ __all__ = [
     "Experiment",
     "load_experiment",
     "load_experiment_text",
-    "resolved_yaml",
 ]

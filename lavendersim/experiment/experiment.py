@@ -6,8 +6,6 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-import yaml
-
 from lavendersim.cell.choices import NO_MISTAKE
 from lavendersim.experiment.cell import Cell
 from lavendersim.experiment.models.cost import CostSpec
@@ -113,17 +111,3 @@ class Experiment:
     def cells(self) -> tuple[Cell, ...]:
         """All cells of the sweep, the first axis slowest; one cell without a sweep."""
         return self._cells
-
-
-def resolved_yaml(cell: Cell) -> str:
-    """Return a cell's resolved config as YAML text, in the order of the file format."""
-    # libyaml's writer takes a tenth of the time, where PyYAML was built with it.
-    dumper = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
-    text: str = yaml.dump(
-        cell.config.as_dict(),
-        Dumper=dumper,
-        sort_keys=False,
-        allow_unicode=True,
-        default_flow_style=None,
-    )
-    return text

@@ -12,17 +12,17 @@ from typing import Final
 import numpy as np
 
 from lavendersim.measures.closed_forms import evaluate_form
-from lavendersim.measures.interfaces import Floats, Trace, Value
+from lavendersim.measures.interfaces import Cell, Floats, Value
 from lavendersim.measures.specs.expectation import Equals, ExpectSpec
 from lavendersim.measures.verdict import Outcome
 
 NO_TOLERANCE = "none"
 
 
-def judge_cell(expectation: ExpectSpec, value: Value, trace: Trace) -> Outcome:
+def judge_cell(expectation: ExpectSpec, value: Value, cell: Cell) -> Outcome:
     """Return the outcome of a per-cell expectation on the measure's value."""
     numbers = np.atleast_1d(np.asarray(value, dtype=float))
-    return JUDGES[expectation.judgement](expectation, numbers, trace)
+    return JUDGES[expectation.judgement](expectation, numbers, cell)
 
 
 def _worst(
@@ -40,7 +40,7 @@ def _worst(
     return Outcome(passed, float(numbers[index]), expected, tolerance, where, margin=margin)
 
 
-def _between(expectation: ExpectSpec, numbers: Floats, trace: Trace) -> Outcome:
+def _between(expectation: ExpectSpec, numbers: Floats, cell: Cell) -> Outcome:
     assert expectation.between is not None
     low, high = expectation.between
     excess = np.maximum(low - numbers, numbers - high)
@@ -48,7 +48,7 @@ def _between(expectation: ExpectSpec, numbers: Floats, trace: Trace) -> Outcome:
     return _worst(numbers, excess, expected, NO_TOLERANCE, 0.5 * (high - low))
 
 
-def _at_most(expectation: ExpectSpec, numbers: Floats, trace: Trace) -> Outcome:
+def _at_most(expectation: ExpectSpec, numbers: Floats, cell: Cell) -> Outcome:
     assert expectation.at_most is not None
     return _worst(
         numbers,
@@ -59,7 +59,7 @@ def _at_most(expectation: ExpectSpec, numbers: Floats, trace: Trace) -> Outcome:
     )
 
 
-def _at_least(expectation: ExpectSpec, numbers: Floats, trace: Trace) -> Outcome:
+def _at_least(expectation: ExpectSpec, numbers: Floats, cell: Cell) -> Outcome:
     assert expectation.at_least is not None
     return _worst(
         numbers,
@@ -70,7 +70,7 @@ def _at_least(expectation: ExpectSpec, numbers: Floats, trace: Trace) -> Outcome
     )
 
 
-def _exactly(expectation: ExpectSpec, numbers: Floats, trace: Trace) -> Outcome:
+def _exactly(expectation: ExpectSpec, numbers: Floats, cell: Cell) -> Outcome:
     assert expectation.exactly is not None
     return _worst(
         numbers,
@@ -80,11 +80,11 @@ def _exactly(expectation: ExpectSpec, numbers: Floats, trace: Trace) -> Outcome:
     )
 
 
-def _equals(expectation: ExpectSpec, numbers: Floats, trace: Trace) -> Outcome:
+def _equals(expectation: ExpectSpec, numbers: Floats, cell: Cell) -> Outcome:
     assert expectation.equals is not None
     spec = expectation.equals
     if spec.closed_form is not None:
-        target = evaluate_form(spec.closed_form, trace.config)
+        target = evaluate_form(spec.closed_form, cell.config)
         expected = f"{target!r} ({spec.closed_form.form})"
     else:
         assert spec.value is not None
@@ -104,7 +104,7 @@ def _tolerance_text(spec: Equals) -> str:
     return " or ".join(parts)
 
 
-def _row(expectation: ExpectSpec, numbers: Floats, trace: Trace) -> Outcome:
+def _row(expectation: ExpectSpec, numbers: Floats, cell: Cell) -> Outcome:
     direction = expectation.row
     assert direction is not None
     expected = f"a strictly {direction} row"
@@ -120,7 +120,7 @@ def _row(expectation: ExpectSpec, numbers: Floats, trace: Trace) -> Outcome:
     return Outcome(False, float(numbers[index]), expected, NO_TOLERANCE, reason)
 
 
-JUDGES: Final[dict[str, Callable[[ExpectSpec, Floats, Trace], Outcome]]] = {
+JUDGES: Final[dict[str, Callable[[ExpectSpec, Floats, Cell], Outcome]]] = {
     "between": _between,
     "at_most": _at_most,
     "at_least": _at_least,

@@ -90,7 +90,7 @@ def verdict_of(trial: Trial, claims: Sequence[Any], raw: Mapping[str, Verdict]) 
     mine = [claim for claim in claims if claim.cells and _indices(claim.cells) <= here]
     named = [raw[claim.node] for claim in mine if claim.name == failed]
     others = [raw[claim.node] for claim in mine if claim.name != failed]
-    ended = [cell.trace().status for cell in trial.cells]
+    ended = [cell.status for cell in trial.cells]
     # a cell that a bound stopped is judged as far as it went
     early = [
         status for status in ended if status != COMPLETE and not status.startswith(BEYOND_BOUNDS)

@@ -83,5 +83,13 @@ class Cell(Protocol):
     def path(self) -> Path:
         """The file of its log."""
 
+    @property
+    def status(self) -> str:
+        """`complete`, or why it stopped."""
+
+    @property
+    def config(self) -> CellConfig:
+        """Its config with every default filled in."""
+
     def trace(self) -> Trace:
         """Open its log."""

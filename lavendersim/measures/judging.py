@@ -140,12 +140,12 @@ def _outcome(expectation: ExpectSpec, cells: Sequence[Cell], values: Values) -> 
         return failure(expectation.judgement, "the expectation selects no cell of the sweep")
     try:
         for cell in cells:
-            if (status := cell.trace().status) != COMPLETE:
-                ended = f"{cell.label or 'the cell'}: {status}"
+            if cell.status != COMPLETE:
+                ended = f"{cell.label or 'the cell'}: {cell.status}"
                 return failure("a complete run", ended, follows=True)
         if expectation.per_cell:
             row = values.row(expectation.measure, cells[0])
-            return judge_cell(expectation, row, cells[0].trace())
+            return judge_cell(expectation, row, cells[0])
         return judge_sweep(expectation, cells, values.of(expectation.measure))
     except LavenderError as error:  # a log that is damaged, or has no such topic, fails alone
         return failure("a log that can answer", str(error))

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from typing import Any
 
 import numpy as np
 
+from lavendersim.errors import LavenderError
 from lavendersim.measures.interfaces import Cell, Floats
 from lavendersim.measures.registry import evaluate
 from lavendersim.measures.specs.catalogue import MeasureSpec
@@ -14,12 +16,23 @@ from lavendersim.measures.specs.catalogue import MeasureSpec
 class Values:
     """Rows of numbers by measure and cell, however many expectations and panels need them."""
 
-    def __init__(self, measures: Mapping[str, MeasureSpec]) -> None:
+    def __init__(
+        self,
+        measures: Mapping[str, MeasureSpec],
+        taken: Mapping[int, Mapping[str, Any]] | None = None,
+    ) -> None:
+        """taken: by the index of a cell its measures so far; a text says why there is no number."""
         self.measures = measures
+        self._taken = taken or {}
         self._rows: dict[tuple[str, int], tuple[Cell, Floats]] = {}
 
     def row(self, measure: str, cell: Cell) -> Floats:
         """Return the measure of one cell; a single number is a row of one."""
+        known = self._taken[cell.index].get(measure) if self._taken else None
+        if isinstance(known, str):
+            raise LavenderError(known)
+        if known is not None:
+            return np.atleast_1d(np.asarray(known, dtype=np.float64))
         key = (measure, id(cell))
         if key not in self._rows:
             value = evaluate(self.measures[measure], cell.trace())

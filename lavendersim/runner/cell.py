@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from functools import cache
 from pathlib import Path
 from time import perf_counter_ns
-from typing import Final, NamedTuple
+from types import MappingProxyType
+from typing import Any, Final, NamedTuple
 
-import numpy.lib.recfunctions as recfunctions
+import numpy as np
 
 from lavendersim.cell import CellConfig
 from lavendersim.clock import Clock
@@ -15,21 +18,32 @@ from lavendersim.engine.engine import Engine, Rows
 from lavendersim.engine.kernel_cache import source_hash
 from lavendersim.engine.records import DIVERGED, NOT_FINITE, RUNNING, TURNS_TOO_FAST
 from lavendersim.measures.specs.always import Always
+from lavendersim.measures.specs.catalogue import MeasureSpec
 from lavendersim.scene.build import Scene, build
 from lavendersim.scene.events import EventQueue
 from lavendersim.scene.plan import Plan
-from lavendersim.trace import Block, TraceWriter
+from lavendersim.trace import Block, TraceWriter, Written, trace_of
 
 from .accuracy import Accuracy
 from .bounds import Bounds
 from .environment import versions
+from .measured import Measured, measure_cell
 from .problem_dump import ProblemDump
+from .run_directory import RunCell
 
 STOPPED: Final = -1  # beside the engine's own outcomes: a bound ended the cell
 CAUSES = {
     NOT_FINITE: "is no longer finite",
     TURNS_TOO_FAST: "turns too far in one timestep for its rotation to be solved",
 }
+
+
+class CellOfLog(NamedTuple):
+    """A cell that a log is of; cells of several products may be the same simulation."""
+
+    number: int  # in the sweep
+    label: str
+    coordinates: Mapping[str, Any]
 
 
 class CellJob(NamedTuple):
@@ -41,7 +55,9 @@ class CellJob(NamedTuple):
     path: Path
     plan: Plan
     seeds: str  # of what was drawn at random, in words
-    always: Always | None = None  # the bounds that end the cell
+    always: Always | None = None  # what every step must keep; its bounds end the cell
+    measures: Mapping[str, MeasureSpec] = MappingProxyType({})
+    cells: tuple[CellOfLog, ...] = ()  # that the log is measured for
 
 
 class CellOutcome(NamedTuple):
@@ -56,10 +72,16 @@ class CellOutcome(NamedTuple):
     accuracy: Accuracy
 
 
+@cache
+def _with_time(row: np.dtype[Any]) -> np.dtype[Any]:
+    return np.dtype([*row.descr, ("time_ns", "i8")])
+
+
 def block_of(rows: Rows, clock: Clock) -> Block:
     """Return the rows of some steps as the log takes them, with their time."""
-    times = clock.nanoseconds(rows.step["step"])
-    step = recfunctions.append_fields(rows.step, "time_ns", times, usemask=False)
+    step = np.empty(len(rows.step), _with_time(rows.step.dtype))
+    step[list(rows.step.dtype.names or ())] = rows.step
+    step["time_ns"] = clock.nanoseconds(rows.step["step"])
     return Block(step=step, contact=rows.contact, pose=rows.pose, residual=rows.residual)
 
 
@@ -123,8 +145,24 @@ def compile_kernel(job: CellJob) -> int:
     return started(build(job.config, job.plan.spec), job.plan)[1]
 
 
+def run_and_measure(job: CellJob) -> tuple[CellOutcome, dict[int, Measured]]:
+    """Simulate one cell, write its log, and measure it for each cell of the sweep that it is of."""
+    outcome, written = simulate(job)
+    trace = trace_of(written)
+    measured = {}
+    for index, label, coordinates in job.cells:
+        cell = RunCell(index, label, coordinates, job.path, outcome.status, job.config, [trace])
+        measured[index] = measure_cell(cell, job.measures, job.always)
+    return outcome, measured
+
+
 def run_cell(job: CellJob) -> CellOutcome:
     """Simulate one cell and write its log."""
+    return simulate(job)[0]
+
+
+def simulate(job: CellJob) -> tuple[CellOutcome, Written]:
+    """Simulate one cell and write its log; returns it, too, as this process may read it."""
     physics_ns = logging_ns = 0
     scene = build(job.config, job.plan.spec)
     engine, compile_ns = started(scene, job.plan)
@@ -145,13 +183,13 @@ def run_cell(job: CellJob) -> CellOutcome:
     while True:
         events.apply_due(done)
         start = perf_counter_ns()
-        outcome = RUNNING
+        result = RUNNING
         if done < steps:
             stop = dump.next_stop(done, events.next_stop(steps))
-            outcome = engine.advance(stop - done)
+            result = engine.advance(stop - done)
         spent = perf_counter_ns() - start
         done = int(engine.counters["step"][0])
-        if outcome == DIVERGED:
+        if result == DIVERGED:
             status = divergence(scene, engine)
         start = perf_counter_ns()
         rows = engine.take_rows()
@@ -160,16 +198,17 @@ def run_cell(job: CellJob) -> CellOutcome:
             if broken:
                 spent = spent * len(block.step) // len(rows.step)
                 last = int(block.step["step"][-1])
-                if last < done or outcome != DIVERGED:
-                    outcome, status, done = STOPPED, broken, last
+                if last < done or result != DIVERGED:
+                    result, status, done = STOPPED, broken, last
             writer.append(block)
             accuracy = accuracy.after(block.step, block.contact, scene.names)
         dump.take(engine, done, stop)
         physics_ns += spent
         logging_ns += perf_counter_ns() - start
-        if outcome in (DIVERGED, STOPPED) or (outcome == RUNNING and done >= steps):
+        if result in (DIVERGED, STOPPED) or (result == RUNNING and done >= steps):
             break
     start = perf_counter_ns()
-    writer.close(status)
+    written = writer.close(status)
     logging_ns += perf_counter_ns() - start
-    return CellOutcome(job.cell, status, done, compile_ns, physics_ns, logging_ns, accuracy)
+    outcome = CellOutcome(job.cell, status, done, compile_ns, physics_ns, logging_ns, accuracy)
+    return outcome, written

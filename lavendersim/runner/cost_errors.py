@@ -154,11 +154,11 @@ class _Taken(Values):
 
     def __init__(self, experiment: Experiment, measured: Sequence[Mapping[str, Any]]) -> None:
         super().__init__(experiment.measures)
-        self._taken = measured
+        self._found = measured
 
     def row(self, measure: str, cell: Any) -> np.ndarray:
         """Return the numbers of one cell; NaN where the log had no answer."""
-        value = self._taken[cell.index].get(measure, NAN)
+        value = self._found[cell.index].get(measure, NAN)
         return np.atleast_1d(NAN if isinstance(value, str) else value).astype(np.float64)
 
 

@@ -14,15 +14,17 @@ from lavendersim.engine.step import is_compiled
 from lavendersim.errors import UsageError
 from lavendersim.scene.plan import Plan
 
-from .cell import CellJob, CellOutcome, compile_kernel, run_cell
+from .cell import CellJob, CellOutcome, compile_kernel, run_and_measure
+from .measured import Measured
 
 
 def outcomes_of(
     jobs: Sequence[CellJob], workers: int, compiling: Callable[[Plan], None]
-) -> Iterator[tuple[CellJob, CellOutcome]]:
-    """Run every job; with several workers they do not come in the order of `jobs`.
+) -> Iterator[tuple[CellJob, CellOutcome, dict[int, Measured]]]:
+    """Run and measure every job; with several workers they do not come in the order of `jobs`.
 
-    compiling: called before a kernel is compiled, once for each plan that has none yet.
+    compiling: called before a kernel is compiled, once for each plan that has none yet. Yielded
+    are the job, how it ended, and what was measured, by the cells of the sweep.
     """
     if compiler_is_off():
         raise UsageError("NUMBA_DISABLE_JIT is set: lavender runs compiled kernels only, unset it")
@@ -35,14 +37,17 @@ def outcomes_of(
     for job in here:
         if first[job.plan.choices] is job and not is_compiled(job.plan.spec):
             compiling(job.plan)
-        outcome = run_cell(job)
-        yield job, outcome._replace(compile_ns=outcome.compile_ns + apart.pop(job.path, 0))
+        outcome, measured = run_and_measure(job)
+        spent = outcome.compile_ns + apart.pop(job.path, 0)
+        yield job, outcome._replace(compile_ns=spent), measured
     rest = [] if workers <= 1 else [job for job in jobs if first[job.plan.choices] is not job]
     if not rest:
         return
     with _pool(workers, len(rest)) as pool:
         chunk = max(1, len(rest) // (4 * workers))
-        yield from zip(rest, pool.map(run_cell, rest, chunksize=chunk), strict=True)
+        found = pool.map(run_and_measure, rest, chunksize=chunk)
+        for job, (outcome, measured) in zip(rest, found, strict=True):
+            yield job, outcome, measured
 
 
 def _pool(workers: int, tasks: int) -> ProcessPoolExecutor:

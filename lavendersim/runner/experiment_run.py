@@ -8,19 +8,19 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from lavendersim.cell.record import NONE
 from lavendersim.errors import ConfigError, Defect, UsageError
-from lavendersim.experiment import Experiment, load_experiment, resolved_yaml
+from lavendersim.experiment import Experiment, load_experiment
 from lavendersim.experiment.cell import Cell
 from lavendersim.measures import Values, Verdict, judge, meant_to_end_early
 
 from .environment import environment
-from .results import compile_seconds, convergence_notices, measure_cells, write_results
+from .results import compile_seconds, convergence_notices, write_results
 from .run_directory import (
     CELLS,
     CONFIG,
@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     from lavendersim.scene.plan import Plan
 
     from .cell import CellJob, CellOutcome
+    from .measured import Measured
 
 
 class Finished(NamedTuple):
@@ -179,7 +180,7 @@ def run(
     """
     from lavendersim.engine.kernel_cache import source_hash
 
-    from .cell import CellJob
+    from .cell import CellJob, CellOfLog
     from .executor import outcomes_of
     from .overheads import check_overheads, take_overheads, write_overheads
     from .plans import distinct, shared_plans
@@ -196,10 +197,7 @@ def run(
     directory = make_directory(experiment, root)
     (directory / "cells").mkdir()
     (directory / CONFIG).write_bytes(experiment.text.encode())
-    (directory / RESOLVED).write_text(
-        "---\n".join(f"# {cell.label}\n{resolved_yaml(cell)}" for cell in cells),
-        encoding="utf-8",
-    )
+    _write_resolved(directory / RESOLVED, cells)
     pending = [
         CellJob(
             cell.index,
@@ -209,24 +207,31 @@ def run(
             plan,
             seeds.of(cell.coordinates),
             experiment.always,
+            experiment.measures,
+            (CellOfLog(cell.index, cell.label, cell.coordinates),),
         )
         for cell, plan in zip(cells, plans, strict=True)
     ]
     # Cells of several products may be the same simulation: it has one log and is run once.
-    different = list({job.path: job for job in pending}.values())
+    different: dict[Path, CellJob] = {}
+    for job in pending:
+        same = different.get(job.path)
+        different[job.path] = same._replace(cells=same.cells + job.cells) if same else job
     ended: dict[Path, CellOutcome] = {}
+    taken: dict[int, Measured] = {}
     # The index stands from the start, so that an interrupted run can be listed and replayed.
     _write_index(directory, experiment, pending, ended)
     try:
-        for job, outcome in outcomes_of(different, jobs, progress.compiling):
+        for job, outcome, found in outcomes_of([*different.values()], jobs, progress.compiling):
             ended[job.path] = outcome
+            taken |= found
             progress.cell_done(len(ended), len(different))
     finally:
         _write_index(directory, experiment, pending, ended)
     outcomes = [ended[job.path]._replace(cell=job.cell) for job in pending]
-    finished = Run(directory, {cell.index: cell.config for cell in cells})
-    values = Values(experiment.measures)
-    measured, always = measure_cells(finished, experiment, values)
+    finished = Run(directory, {cell.index: cell.config for cell in cells}, experiment)
+    values = Values(experiment.measures, {index: one.values for index, one in taken.items()})
+    always = {index: one.always for index, one in taken.items()}
     claims = (experiment.measures, experiment.expectations, finished.cells, values)
     verdicts = judge(*claims, experiment.always, always, experiment.controls)
     raw = judge(*claims, experiment.always, always) if experiment.controls else verdicts
@@ -235,6 +240,7 @@ def run(
     if overheads and experiment.overhead is not None:
         table = take_overheads(experiment, jobs, progress.timing)
         write_overheads(directory / OVERHEADS, table)
+    measured = [taken[cell.index].values for cell in finished.cells]
     write_results(result, measured, table)
     _write_json(directory / ENVIRONMENT, environment(*(plan.spec for plan in distinct(plans))))
     closing(result, measured)
@@ -264,6 +270,17 @@ def _write_index(
         "cells": rows,
     }
     _write_json(directory / CELLS, table)
+
+
+def _write_resolved(path: Path, cells: Sequence[Cell]) -> None:
+    """Write the configs of all cells with every default filled in, one a line."""
+    with path.open("w", encoding="utf-8") as file:
+        for number, cell in enumerate(cells):
+            label = json.dumps(cell.label, ensure_ascii=False)
+            file.write(",\n" if number else "[\n")
+            file.write(f' {{"index": {cell.index}, "label": {label}, "config": ')
+            file.write(f"{cell.config.as_json()}}}")
+        file.write("\n]\n")
 
 
 def _write_json(path: Path, table: dict[str, Any]) -> None:

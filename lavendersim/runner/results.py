@@ -7,10 +7,6 @@ import json
 import math
 from typing import TYPE_CHECKING, Any
 
-from lavendersim.errors import LavenderError
-from lavendersim.experiment import Experiment
-from lavendersim.measures import Values, applies, outcomes_of
-
 from .accuracy import PARTS, Accuracy
 from .run_directory import RESULTS, TABLE, Run
 
@@ -23,33 +19,6 @@ ACCURACY = ("tolerance", "worst_residual", "not_converged_steps")  # m/s, m/s, n
 # The largest of each in any step, and the bodies of the contact that has it.
 _WORST = [name for part in PARTS for name in (f"worst_{part}", f"worst_{part}_contact")]
 VIOLATIONS = tuple(name for name in _WORST if name not in ACCURACY)
-
-
-def measure_cells(
-    run: Run, experiment: Experiment, values: Values
-) -> tuple[list[dict[str, Any]], dict[int, Any]]:
-    """Take every measure of every cell, once; its log is let go before the next is opened.
-
-    Returns per cell: measure -> number, list, or a text saying why there is none; and by its index
-    the outcome of every check of `always`.
-    """
-    table, always = [], {}
-    for cell in run.cells:
-        measured: dict[str, Any] = {}
-        for name, spec in experiment.measures.items():
-            if not applies(spec, cell.coordinates):
-                continue
-            try:
-                row = values.row(name, cell).tolist()
-            except LavenderError as error:
-                measured[name] = str(error)
-                continue
-            measured[name] = row[0] if len(row) == 1 else row
-        if experiment.always is not None:
-            always[cell.index] = outcomes_of(experiment.always, cell)
-        cell.release()
-        table.append(measured)
-    return table, always
 
 
 def _finite(value: Any) -> Any:

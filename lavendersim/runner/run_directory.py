@@ -16,7 +16,7 @@ from lavendersim.errors import TraceError, UsageError
 from lavendersim.experiment import Experiment, load_experiment_text
 from lavendersim.trace import Trace, open_trace
 
-CONFIG, RESOLVED = "config.yaml", "resolved.yaml"
+CONFIG, RESOLVED = "config.yaml", "resolved.json"
 CELLS, RESULTS, TABLE = "cells.json", "results.json", "results.csv"
 OVERHEADS = "overheads.csv"
 COST, COST_TABLE = "cost.json", "cost.csv"
@@ -40,14 +40,19 @@ class RunCell:
     coordinates: Mapping[str, Any]
     path: Path
     status: str
-    config: CellConfig | None = field(default=None, repr=False, compare=False)  # of its own process
+    _config: CellConfig | None = field(default=None, repr=False, compare=False)  # where it was run
     _open: list[Trace] = field(default_factory=list, repr=False, compare=False)
 
     def trace(self) -> Trace:
         """Open the cell's log; its columns are read when they are first asked for."""
         if not self._open:
-            self._open.append(open_trace(self.path, allow_incomplete=True, config=self.config))
+            self._open.append(open_trace(self.path, allow_incomplete=True, config=self._config))
         return self._open[0]
+
+    @property
+    def config(self) -> CellConfig:
+        """Its config with every default filled in; in another process that of its log."""
+        return self.trace().config if self._config is None else self._config
 
     def release(self) -> None:
         """Forget the columns read so far (a large sweep does not fit into memory at once)."""
@@ -59,14 +64,18 @@ class Run:
     """A run on disk.
 
     configs: of its cells by their index, in the process that ran them; others read them from logs.
+    ran: the experiment, likewise.
     """
 
     path: Path
     configs: Mapping[int, CellConfig] = field(default_factory=dict, repr=False, compare=False)
+    ran: Experiment | None = field(default=None, repr=False, compare=False)
 
     @cached_property
     def experiment(self) -> Experiment:
         """The experiment as it was run."""
+        if self.ran is not None:
+            return self.ran
         text = (self.path / CONFIG).read_bytes()
         reduced = bool(self._index.get("reduced", False))
         solver = self._index.get("solver")

@@ -5,8 +5,17 @@ makes a readable file of what a killed run left.
 """
 
 from lavendersim.trace.encode import Block
-from lavendersim.trace.reader import Trace, open_trace
+from lavendersim.trace.reader import Trace, open_trace, trace_of
 from lavendersim.trace.recover import RecoveryReport, recover
-from lavendersim.trace.writer import TraceWriter
+from lavendersim.trace.writer import TraceWriter, Written
 
-__all__ = ["Block", "RecoveryReport", "Trace", "TraceWriter", "open_trace", "recover"]
+__all__ = [
+    "Block",
+    "RecoveryReport",
+    "Trace",
+    "TraceWriter",
+    "Written",
+    "open_trace",
+    "recover",
+    "trace_of",
+]

@@ -13,6 +13,7 @@ import struct
 import zlib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from functools import lru_cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -95,6 +96,55 @@ def metadata_crc(name: str, values: Mapping[str, str]) -> str:
     return f"{zlib.crc32(to_bytes(Metadata(name, entries))):08x}"
 
 
+@lru_cache(maxsize=256)  # the cells of a sweep say the same about their engine
+def _metadata_record(name: str, values: tuple[tuple[str, str], ...]) -> bytes:
+    entries = dict(values)
+    return to_bytes(Metadata(name, {**entries, CRC_KEY: metadata_crc(name, entries)}))
+
+
+class Registered(NamedTuple):
+    """Schemas, and the channels that need them, as records."""
+
+    schemas: tuple[Schema, ...]
+    channels: tuple[Channel, ...]
+    schema_data: bytes
+    channel_data: bytes
+
+    @classmethod
+    def of(cls, schemas: Iterable[Schema], channels: Iterable[Channel]) -> Registered:
+        """Encode the records."""
+        schemas, channels = tuple(schemas), tuple(channels)
+        return cls(schemas, channels, to_bytes(*schemas), to_bytes(*channels))
+
+    @property
+    def data(self) -> bytes:
+        """All records: what opens the chunk that needs them."""
+        return self.schema_data + self.channel_data
+
+
+class Closed(NamedTuple):
+    """A chunk that takes no more messages, ready to be written."""
+
+    chunk: Chunk
+    payload: bytes
+    messages: list[Messages]
+
+
+def closed(payload: bytes, messages: Iterable[Messages]) -> Closed:
+    """Return the compressed chunk of some messages; may be called from any thread."""
+    messages = [group for group in messages if len(group.entries)]
+    times = np.concatenate([group.entries["time"] for group in messages])
+    chunk = Chunk(
+        compression="zstd",
+        data=zstandard.ZstdCompressor(level=COMPRESSION_LEVEL).compress(payload),
+        message_start_time=int(times.min()),
+        message_end_time=int(times.max()),
+        uncompressed_crc=zlib.crc32(payload),
+        uncompressed_size=len(payload),
+    )
+    return Closed(chunk, payload, messages)
+
+
 def message_index(messages: Messages) -> bytes:
     """Return a MessageIndex record; mcap's own writes entry by entry."""
     entries = messages.entries.astype(INDEX_ENTRY).tobytes()
@@ -108,9 +158,9 @@ class Container:
     def __init__(self, path: Path) -> None:
         self.index = FileIndex()
         self._stream = path.open("wb")
+        self._registered: list[Registered] = []
         self._crc = 0
         self._offset = 0
-        self._compressor = zstandard.ZstdCompressor(level=COMPRESSION_LEVEL)
         self._write(MAGIC + to_bytes(Header(profile="", library=LIBRARY)))
 
     @classmethod
@@ -122,6 +172,7 @@ class Container:
         container._crc = container._offset = 0
         container._write(data)
         container.index = index
+        container._registered = [Registered.of(index.schemas.values(), index.channels.values())]
         return container
 
     def attach(self, name: str, media_type: str, data: bytes) -> None:
@@ -135,29 +186,19 @@ class Container:
         """Write a metadata record with its checksum. ValueError when `values` has that key."""
         if CRC_KEY in values:
             raise ValueError(f"metadata {name!r} may not use the key {CRC_KEY!r}")
-        record = to_bytes(Metadata(name, {**values, CRC_KEY: metadata_crc(name, values)}))
+        record = _metadata_record(name, tuple(values.items()))
         self.index.metadata.append(MetadataIndex(self._offset, len(record), name))
         self._write(record)
 
-    def register(self, schemas: Iterable[Schema], channels: Iterable[Channel]) -> bytes:
-        """Note schemas and channels; return their records, to open the chunk that needs them."""
-        schemas, channels = list(schemas), list(channels)
-        self.index.schemas.update({schema.id: schema for schema in schemas})
-        self.index.channels.update({channel.id: channel for channel in channels})
-        return to_bytes(*schemas, *channels)
+    def register(self, records: Registered) -> None:
+        """Note schemas and channels for the summary; their records open a chunk."""
+        self.index.schemas.update({schema.id: schema for schema in records.schemas})
+        self.index.channels.update({channel.id: channel for channel in records.channels})
+        self._registered.append(records)
 
-    def write_chunk(self, payload: bytes, messages: Iterable[Messages]) -> None:
-        """Compress and write a chunk with its message indexes, and flush."""
-        messages = [group for group in messages if len(group.entries)]
-        times = np.concatenate([group.entries["time"] for group in messages])
-        chunk = Chunk(
-            compression="zstd",
-            data=self._compressor.compress(payload),
-            message_start_time=int(times.min()),
-            message_end_time=int(times.max()),
-            uncompressed_crc=zlib.crc32(payload),
-            uncompressed_size=len(payload),
-        )
+    def write_chunk(self, one: Closed) -> None:
+        """Write a chunk with its message indexes, and flush."""
+        chunk, messages = one.chunk, one.messages
         record = to_bytes(chunk)
         indexes = [message_index(group) for group in messages]
         position = self._offset + len(record)
@@ -178,18 +219,17 @@ class Container:
         self._write(to_bytes(DataEnd(self._crc)))
         start = self._offset
         index = self.index
-        groups: list[tuple[Opcode, Iterable[McapRecord]]] = [
-            (Opcode.SCHEMA, index.schemas.values()),
-            (Opcode.CHANNEL, index.channels.values()),
-            (Opcode.STATISTICS, [index.statistics()]),
-            (Opcode.CHUNK_INDEX, index.chunks),
-            (Opcode.ATTACHMENT_INDEX, index.attachments),
-            (Opcode.METADATA_INDEX, index.metadata),
+        groups = [
+            (Opcode.SCHEMA, b"".join(one.schema_data for one in self._registered)),
+            (Opcode.CHANNEL, b"".join(one.channel_data for one in self._registered)),
+            (Opcode.STATISTICS, to_bytes(index.statistics())),
+            (Opcode.CHUNK_INDEX, to_bytes(*index.chunks)),
+            (Opcode.ATTACHMENT_INDEX, to_bytes(*index.attachments)),
+            (Opcode.METADATA_INDEX, to_bytes(*index.metadata)),
         ]
         summary = b""
         offsets = []
-        for opcode, records in groups:
-            data = to_bytes(*records)
+        for opcode, data in groups:
             offsets.append(SummaryOffset(opcode, start + len(summary), len(data)))
             summary += data
         offset_start = start + len(summary)

@@ -8,6 +8,7 @@ in another layout than lavender writes is refused, not misread.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -116,12 +117,17 @@ def decode_poses(
     return _sequence(template, rows), words[:, :, [0, 1, 2, 6, 3, 4, 5]].astype(np.float64)
 
 
+@lru_cache(maxsize=8)
+def _message_class(name: str, descriptors: bytes) -> Any:
+    pool = descriptor_pool.DescriptorPool()
+    for file in descriptor_pb2.FileDescriptorSet.FromString(descriptors).file:
+        pool.Add(file)
+    return message_factory.GetMessageClass(pool.FindMessageTypeByName(name))
+
+
 def packed_fields(schema: Schema, chunk: ChunkContent) -> tuple[tuple[PackedField, ...], int]:
     """Return the fields and the stride [B] that the first PointCloud of a chunk states."""
-    pool = descriptor_pool.DescriptorPool()
-    for file in descriptor_pb2.FileDescriptorSet.FromString(schema.data).file:
-        pool.Add(file)
-    cloud: Any = message_factory.GetMessageClass(pool.FindMessageTypeByName(schema.name))()
+    cloud = _message_class(schema.name, schema.data)()
     offset = int(chunk.messages[layout.CHANNELS["/contacts"]]["offset"][0])
     length = int(gather(chunk.data, np.array([offset + 1]), 8).view("<u8")[0, 0])
     begin = offset + layout.RECORD_HEADER + layout.MESSAGE_HEADER
@@ -147,7 +153,7 @@ def decode_contacts(
 ) -> Table:
     """Return the contact table of a bulk chunk."""
     entries = chunk.messages[layout.CHANNELS["/contacts"]]
-    head = layout.contact_layout(fields, stride, frame)
+    head = layout.contact_layout(tuple(fields), stride, frame)
     offsets = entries["offset"].astype(np.int64)
     rows = _matching(head, chunk.data, offsets)
     counts = _counts(head, rows, stride)

@@ -55,24 +55,28 @@ class Encoded(NamedTuple):
 
 
 class Encoder:
-    """The layouts of one run, fixed by its topics and by the columns of its first block."""
+    """The layouts of a run, fixed by its bodies, topics and columns; it holds nothing of a run."""
 
-    def __init__(self, bodies: Sequence[str], block: Block, topics: Collection[str]) -> None:
+    def __init__(
+        self, bodies: Sequence[str], columns: tuple[np.dtype[Any], ...], topics: Collection[str]
+    ) -> None:
+        """columns: of the tables step, contact and residual of every block."""
+        step, contact, sweep = columns
         self._topics = topics
-        self.step_columns = columns_of(block.step.dtype, STEP_COLUMNS)
-        residual = [name for name in block.residual.dtype.names or () if name != "step"]
-        self.residual_columns = columns_of(block.residual.dtype[residual], RESIDUAL_COLUMNS)
-        names = block.step.dtype.names or ()
+        self.step_columns = columns_of(step, STEP_COLUMNS)
+        residual = [name for name in sweep.names or () if name != "step"]
+        self.residual_columns = columns_of(sweep[residual], RESIDUAL_COLUMNS)
+        names = step.names or ()
         self.plots = [t for t, name in PLOTS.items() if t in topics and name in names]
-        self._dtypes = (block.step.dtype, block.contact.dtype, block.residual.dtype)
+        self._dtypes = columns
         self._bodies = len(bodies)
         self._tf = layout.transforms_layout(bodies)
         if "/contacts" in topics:
-            self.fields = layout.contact_fields(block.contact.dtype)
+            self.fields = layout.contact_fields(contact)
             self._point = layout.packed_dtype(self.fields, layout.point_stride(self.fields))
             frame = layout.root_frame(bodies)
             self._cloud = layout.contact_layout(self.fields, self._point.itemsize, frame)
-        self._light = layout.step_layout(self.step_columns)
+        self._light = Template().embed(layout.step_layout(self.step_columns))
         self._starts = {layout.CHANNELS["/step"]: 0}
         for topic in self.plots:
             self._starts[layout.CHANNELS[topic]] = len(self._light)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Sequence
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -65,6 +66,11 @@ def record(topic: str, body: Template, open_ended: bool = False) -> Template:
 
 def step_layout(columns: Sequence[Column]) -> Template:
     """Return the layout of /step; slot `step` holds the columns in their order."""
+    return _step_layout(tuple(columns))
+
+
+@lru_cache(maxsize=64)
+def _step_layout(columns: tuple[Column, ...]) -> Template:
     body = Template()
     for column in columns:
         body.word(column.number, "step")
@@ -89,6 +95,11 @@ def _doubles(names: int, slot: str) -> Template:
 
 def transforms_layout(bodies: Sequence[str]) -> Template:
     """Return the layout of /tf; slot `pose` holds x y z qx qy qz qw of each body in turn."""
+    return _transforms_layout(tuple(bodies))
+
+
+@lru_cache(maxsize=64)
+def _transforms_layout(bodies: tuple[str, ...]) -> Template:
     body, frame = Template(), root_frame(bodies)
     for name in bodies:
         one = Template().timestamp(1).string(2, frame).string(3, name)
@@ -152,7 +163,8 @@ def point_stride(fields: Sequence[PackedField]) -> int:
     return max(field.offset + codes[field.type] for field in fields)
 
 
-def contact_layout(fields: Sequence[PackedField], stride: int, frame: str) -> Template:
+@lru_cache(maxsize=64)
+def contact_layout(fields: tuple[PackedField, ...], stride: int, frame: str) -> Template:
     """Return the layout of /contacts before its points; slots `length`, `data_length`."""
     identity = Template().message(1, _zeros(3))
     one = _zeros(3).constant(tag(4, FIXED64) + struct.pack("<d", 1.0))

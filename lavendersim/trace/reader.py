@@ -13,8 +13,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import yaml
-from mcap.records import Attachment, Schema
 from numpy.typing import NDArray
 
 from lavendersim.cell import CellConfig
@@ -22,26 +20,11 @@ from lavendersim.clock import Clock
 from lavendersim.errors import TraceError, UsageError
 from lavendersim.trace import decode, layout
 from lavendersim.trace.absent import absent_table
-from lavendersim.trace.container import CRC_KEY, FileIndex
-from lavendersim.trace.index import (
-    ChunkContent,
-    damage,
-    parse,
-    parse_metadata,
-    read_at,
-    read_chunk,
-    read_summary,
-)
+from lavendersim.trace.index import ChunkContent, damage, read_summary
 from lavendersim.trace.scan import scan
 from lavendersim.trace.schema import FORMAT, RESIDUAL_COLUMNS, STEP_COLUMNS, Column
-from lavendersim.trace.writer import (
-    ABSENT,
-    AS_WRITTEN,
-    DESCRIPTION,
-    ENDING,
-    RESOLVED,
-    TIMESTEP_CHANGES,
-)
+from lavendersim.trace.source import JustWritten, LogFile, Source
+from lavendersim.trace.writer import ABSENT, DESCRIPTION, ENDING, TIMESTEP_CHANGES, Written
 
 COMPLETE = "complete"
 INCOMPLETE = "incomplete"
@@ -51,14 +34,14 @@ class Trace:
     """One run's log. The columns and their units stand in `schema`."""
 
     def __init__(
-        self, path: Path, index: FileIndex, finished: bool, config: CellConfig | None = None
+        self, path: Path, source: Source, finished: bool, config: CellConfig | None = None
     ) -> None:
         self.path = path
         if config is not None:
             self.config = config
-        self._index = index
+        self._source = source
         with damage(path, "the metadata"):
-            self.metadata = self._read_metadata()
+            self.metadata = source.metadata()
             description = self.metadata[DESCRIPTION]
             if description["format"] != FORMAT:
                 raise TraceError(
@@ -140,11 +123,12 @@ class Trace:
             return
         with damage(self.path, "/contacts"):
             frame = layout.root_frame(self.bodies)
-            fields: tuple[layout.PackedField, ...] | None = None
+            fields: tuple[layout.PackedField, ...] = ()
             stride = 0
             for chunk in self._chunks("/contacts"):
-                if fields is None:
-                    fields, stride = decode.packed_fields(self._schema("/contacts"), chunk)
+                schema = self._source.schema(layout.CHANNELS["/contacts"])
+                if not fields and schema is not None:
+                    fields, stride = decode.packed_fields(schema, chunk)
                 yield decode.decode_contacts(chunk, fields, stride, frame)
 
     def why_not(self, topic: str) -> str:
@@ -154,7 +138,7 @@ class Trace:
     @cached_property
     def as_written(self) -> str:
         """The config file as its author wrote it."""
-        return self._attachment(AS_WRITTEN).decode()
+        return self._source.as_written()
 
     @cached_property
     def config(self) -> CellConfig:
@@ -162,55 +146,15 @@ class Trace:
 
         TraceError where another version wrote it so that this one cannot read it.
         """
-        data = self.config_data()
-        try:
-            return CellConfig.from_dict(data)
-        except ValueError as error:  # pydantic's: a count, then a key and what is wrong with it
-            why = ": ".join(line.strip() for line in str(error).splitlines()[1:3])
-            raise TraceError(
-                f"{self.path}: its config was written by another version: {why}"
-            ) from None
-
-    def config_data(self) -> dict[str, Any]:
-        """Return the config of this cell as the plain data that the log holds."""
-        with damage(self.path, RESOLVED):
-            loaded: dict[str, Any] = yaml.load(
-                self._attachment(RESOLVED), getattr(yaml, "CSafeLoader", yaml.SafeLoader)
-            )
-            return loaded
-
-    def _read_metadata(self) -> dict[str, dict[str, str]]:
-        found = {}
-        with self.path.open("rb") as stream:
-            for entry in self._index.metadata:
-                record = parse_metadata(read_at(stream, entry.offset, entry.length))
-                found[record.name] = {k: v for k, v in record.metadata.items() if k != CRC_KEY}
-        return found
-
-    def _attachment(self, name: str) -> bytes:
-        with damage(self.path, f"attachment {name}"), self.path.open("rb") as stream:
-            (entry,) = (entry for entry in self._index.attachments if entry.name == name)
-            record: Attachment = parse(read_at(stream, entry.offset, entry.length), Attachment)
-            if record.name != name:
-                raise ValueError("another one stands in its place")
-            return record.data
-
-    def _schema(self, topic: str) -> Schema:
-        return self._index.schemas[self._index.channels[layout.CHANNELS[topic]].schema_id]
+        return self._source.config()
 
     def _columns(self, topic: str, message: str, default: tuple[Column, ...]) -> tuple[Column, ...]:
         """Return the columns of a topic; a run that ended before its first step has `default`."""
-        if layout.CHANNELS[topic] not in self._index.channels:
-            return default
-        return decode.columns_in(self._schema(topic), message)
+        schema = self._source.schema(layout.CHANNELS[topic])
+        return default if schema is None else decode.columns_in(schema, message)
 
     def _chunks(self, topic: str) -> Iterator[ChunkContent]:
-        """Yield the chunks that hold messages of a topic."""
-        channel = layout.CHANNELS[topic]
-        with self.path.open("rb") as stream:
-            for entry in self._index.chunks:
-                if channel in entry.message_index_offsets:
-                    yield read_chunk(stream, entry)
+        return self._source.chunks(layout.CHANNELS[topic])
 
 
 def _clock(description: dict[str, str]) -> Clock:
@@ -234,9 +178,14 @@ def open_trace(
     if not path.is_file():
         raise TraceError(f"{path}: no such log")
     try:
-        return Trace(path, read_summary(path), finished=True, config=config)
+        return Trace(path, LogFile(path, read_summary(path)), finished=True, config=config)
     except TraceError:
         if not allow_incomplete:
             raise
     with damage(path, "the log"):
-        return Trace(path, scan(path).entries, finished=False, config=config)
+        return Trace(path, LogFile(path, scan(path).entries), finished=False, config=config)
+
+
+def trace_of(written: Written) -> Trace:
+    """Return a log that this process has just written, its columns not yet decoded."""
+    return Trace(written.path, JustWritten(written), finished=True, config=written.config)

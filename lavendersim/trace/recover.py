@@ -8,10 +8,11 @@ from typing import NamedTuple
 
 from lavendersim.errors import TraceError, UsageError
 from lavendersim.trace.container import Container
-from lavendersim.trace.index import damage
+from lavendersim.trace.index import damage, read_summary
 from lavendersim.trace.layout import CHANNELS
 from lavendersim.trace.reader import open_trace
 from lavendersim.trace.scan import Prefix, scan
+from lavendersim.trace.source import LogFile
 from lavendersim.trace.writer import ENDING
 
 
@@ -50,7 +51,7 @@ def _is_whole(path: Path) -> bool:
     """Whether every column of a log can be read."""
     try:
         trace = open_trace(path)
-        trace.config_data()
+        LogFile(path, read_summary(path)).config_data()
         for name in ("step", "contact", "pose", "residual", "as_written"):
             if name != "pose" or "/tf" not in trace.absent:
                 getattr(trace, name)

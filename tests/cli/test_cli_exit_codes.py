@@ -23,7 +23,7 @@ def test_a_good_run_exits_0_and_leaves_a_finished_run(drop: Path, tmp_path: Path
     assert "pass  rebound" in done.stdout
     latest = tmp_path / "runs" / "latest"
     names = {path.name for path in latest.iterdir()}
-    assert {"config.yaml", "resolved.yaml", "cells", "results.json", "env.json", "DONE"} <= names
+    assert {"config.yaml", "resolved.json", "cells", "results.json", "env.json", "DONE"} <= names
     assert len(list((latest / "cells").glob("*.mcap"))) == 1
 
 

@@ -60,7 +60,7 @@ def finished(tmp_path_factory: pytest.TempPathFactory) -> Finished:
 class Falsified:
     """A log whose columns may be written to, and the cell it belongs to."""
 
-    index, label = 3, "e=0.5"
+    index, label, coordinates = 3, "e=0.5", {"e": 0.5}
     path = Path("runs/some-run/cells/some-cell.mcap")
 
     def __init__(self, trace: Any) -> None:

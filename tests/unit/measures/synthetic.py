@@ -108,6 +108,15 @@ class SyntheticCell:
     def label(self) -> str:
         return ", ".join(f"{axis}={value}" for axis, value in self.coordinates.items())
 
+    @property
+    def status(self) -> str:
+        return str(self.trace().status)
+
+    @property
+    def config(self) -> CellConfig:
+        config: CellConfig = self.trace().config
+        return config
+
     def trace(self) -> Any:
         if isinstance(self.log, Exception):
             raise self.log

@@ -103,12 +103,12 @@ def test_a_run_that_never_began_is_an_empty_log(tmp_path: Path) -> None:
 def test_reading_steps_leaves_the_bulk_alone(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from lavendersim.trace import reader
+    from lavendersim.trace import source
 
     touched: list[set[int]] = []
-    real = reader.read_chunk
+    real = source.read_chunk
     monkeypatch.setattr(
-        reader, "read_chunk", lambda s, e: touched.append({*e.message_index_offsets}) or real(s, e)
+        source, "read_chunk", lambda s, e: touched.append({*e.message_index_offsets}) or real(s, e)
     )
     trace = open_trace(write(tmp_path / "run.mcap", [run(MANY)]))
     assert len(trace.step) == MANY

@@ -8,11 +8,10 @@ import pickle
 from fractions import Fraction
 
 import pytest
-import yaml
 
 from lavendersim.engine.effects import SURFACE_KEYS
 from lavendersim.errors import ConfigError
-from lavendersim.experiment import Experiment, load_experiment_text, resolved_yaml
+from lavendersim.experiment import Experiment, load_experiment_text
 from lavendersim.experiment import load as loading
 
 DROP = """\
@@ -112,7 +111,7 @@ def test_resolved_leaves_nothing_open() -> None:
     assert resolved["numerics"]["timestep"] == "1/240"
     assert resolved["numerics"]["tolerance"] is None
     assert json.loads(json.dumps(resolved)) == resolved
-    assert yaml.safe_load(resolved_yaml(load(DROP).cells()[0])) == resolved
+    assert json.loads(load(DROP).cells()[0].config.as_json()) == resolved
 
 
 def test_equal_simulations_have_equal_digests_however_they_are_written() -> None:

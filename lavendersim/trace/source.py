@@ -1,0 +1,143 @@
+"""Where the chunks, metadata and attachments of a log come from: its file, or who just wrote it."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, Protocol
+
+import numpy as np
+import yaml
+from mcap.records import Attachment, Schema
+
+from lavendersim.cell import CellConfig
+from lavendersim.errors import TraceError
+from lavendersim.trace.container import CRC_KEY, FileIndex
+from lavendersim.trace.index import (
+    ChunkContent,
+    damage,
+    parse,
+    parse_metadata,
+    read_at,
+    read_chunk,
+)
+from lavendersim.trace.writer import AS_WRITTEN, RESOLVED, Written
+
+FORMER_RESOLVED = "resolved.yaml"  # of logs before the config was JSON
+
+
+class Source(Protocol):
+    """What a trace reads of its log."""
+
+    def metadata(self) -> dict[str, dict[str, str]]:
+        """Return the metadata records by their names."""
+
+    def as_written(self) -> str:
+        """Return the config file as its author wrote it."""
+
+    def config(self) -> CellConfig:
+        """Return the config of the cell; TraceError where this version cannot read it."""
+
+    def schema(self, channel: int) -> Schema | None:
+        """Return the schema of a channel; None where the log has no such channel."""
+
+    def chunks(self, channel: int) -> Iterator[ChunkContent]:
+        """Yield the chunks that hold messages of a channel."""
+
+
+class LogFile:
+    """A log on disk; every record is checked."""
+
+    def __init__(self, path: Path, index: FileIndex) -> None:
+        self._path, self._index = path, index
+
+    def metadata(self) -> dict[str, dict[str, str]]:
+        """Return the metadata records by their names."""
+        found = {}
+        with self._path.open("rb") as stream:
+            for entry in self._index.metadata:
+                record = parse_metadata(read_at(stream, entry.offset, entry.length))
+                found[record.name] = {k: v for k, v in record.metadata.items() if k != CRC_KEY}
+        return found
+
+    def as_written(self) -> str:
+        """Return the config file as its author wrote it."""
+        return self._attachment(AS_WRITTEN).decode()
+
+    def config(self) -> CellConfig:
+        """Return the config of the cell; TraceError where this version cannot read it."""
+        data = self.config_data()
+        try:
+            return CellConfig.from_dict(data)
+        except ValueError as error:  # pydantic's: a count, then a key and what is wrong with it
+            why = ": ".join(line.strip() for line in str(error).splitlines()[1:3])
+            raise TraceError(
+                f"{self._path}: its config was written by another version: {why}"
+            ) from None
+
+    def config_data(self) -> dict[str, Any]:
+        """Return the config of the cell as the plain data that the log holds."""
+        names = [entry.name for entry in self._index.attachments]
+        name = FORMER_RESOLVED if FORMER_RESOLVED in names else RESOLVED
+        with damage(self._path, name):
+            text = self._attachment(name)
+            loaded: dict[str, Any]
+            if name == RESOLVED:
+                loaded = json.loads(text)
+            else:
+                loaded = yaml.load(text, getattr(yaml, "CSafeLoader", yaml.SafeLoader))
+            return loaded
+
+    def schema(self, channel: int) -> Schema | None:
+        """Return the schema of a channel; None where the log has no such channel."""
+        found = self._index.channels.get(channel)
+        return None if found is None else self._index.schemas[found.schema_id]
+
+    def chunks(self, channel: int) -> Iterator[ChunkContent]:
+        """Yield the chunks that hold messages of a channel."""
+        with self._path.open("rb") as stream:
+            for entry in self._index.chunks:
+                if channel in entry.message_index_offsets:
+                    yield read_chunk(stream, entry)
+
+    def _attachment(self, name: str) -> bytes:
+        with damage(self._path, f"attachment {name}"), self._path.open("rb") as stream:
+            (entry,) = (entry for entry in self._index.attachments if entry.name == name)
+            record: Attachment = parse(read_at(stream, entry.offset, entry.length), Attachment)
+            if record.name != name:
+                raise ValueError("another one stands in its place")
+            return record.data
+
+
+class JustWritten:
+    """A log that this process wrote: the same bytes, before they were compressed."""
+
+    def __init__(self, written: Written) -> None:
+        self._written = written
+
+    def metadata(self) -> dict[str, dict[str, str]]:
+        """Return the metadata records by their names."""
+        return self._written.metadata
+
+    def as_written(self) -> str:
+        """Return the config file as its author wrote it."""
+        return self._written.as_written
+
+    def config(self) -> CellConfig:
+        """Return the config of the cell."""
+        return self._written.config
+
+    def schema(self, channel: int) -> Schema | None:
+        """Return the schema of a channel; None where the log has no such channel."""
+        return LogFile(self._written.path, self._written.entries).schema(channel)
+
+    def chunks(self, channel: int) -> Iterator[ChunkContent]:
+        """Yield the chunks that hold messages of a channel."""
+        if self._written.chunks is None:
+            yield from LogFile(self._written.path, self._written.entries).chunks(channel)
+            return
+        for one in self._written.chunks:
+            messages = {group.channel: group.entries for group in one.messages}
+            if channel in messages:
+                yield ChunkContent(np.frombuffer(one.payload, np.uint8), b"", messages)
