@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from lavendersim.errors import LavenderError
-from lavendersim.measures.interfaces import Cell, Trace
+from lavendersim.measures.interfaces import Cell, Rows, Trace
 from lavendersim.measures.sections import sections_of
 from lavendersim.measures.specs.always import BEYOND_BOUNDS, Always
 from lavendersim.measures.step_checks import CheckedSteps, StepChecks, checks_of
@@ -31,52 +31,75 @@ def outcomes_of(always: Always, cell: Cell) -> dict[str, Outcome]:
     try:
         trace: Trace = cell.trace()
         ended = trace.status
-        whole = ended == COMPLETE or ended.startswith(BEYOND_BOUNDS)
-        states = len(trace.step) - (0 if whole else 1)
-        if states <= 0:
-            return dict.fromkeys(checks_of(always), failure("a complete run", ended, not whole))
-        found = _worst(always, trace, states)
+        worst = WorstStates(always)
+        states = len(trace.step) - (0 if is_whole(ended) else 1)
+        checks = StepChecks(always)
+        for before, section in sections_of(trace, max(states, 0)):
+            for one in checks.over(section):
+                worst.take(one, section, 1 if before else 0, len(section.step))
     except LavenderError as error:  # a log that is damaged
         return {check: failure("a log that can answer", str(error)) for check in checks_of(always)}
-    return {name: _outcome(one, "" if whole else ended, cell) for name, one in found.items()}
+    return worst.outcomes(ended, cell)
+
+
+def is_whole(status: str) -> bool:
+    """Whether the last state of a log counts, by how its cell ended."""
+    return status == COMPLETE or status.startswith(BEYOND_BOUNDS)
 
 
 class _Worst(NamedTuple):
-    """What became of one check over a log."""
+    """What became of one check so far."""
 
-    check: CheckedSteps
-    number: float  # the largest; NaN where one is none
+    bound: float
+    unit: str
+    number: float = 0.0  # the largest; NaN where one is none
     first: str = ""  # where and how the first state is that breaks it; nothing where none does
     time: float = 0.0  # [s] of that state
 
 
-def _worst(always: Always, trace: Trace, states: int) -> dict[str, _Worst]:
-    found: dict[str, _Worst] = {}
-    checks = StepChecks(always)
-    for before, section in sections_of(trace, states):
-        for one in checks.over(section):
-            numbers = one.numbers[1 if before else 0 :]
-            known = found.get(one.check, _Worst(one, 0.0))
-            known = known._replace(number=float(np.max(numbers, initial=known.number)))
-            broken = np.flatnonzero(~(numbers <= one.bound))
-            if len(broken) and not known.first:
-                row = int(broken[0]) + (1 if before else 0)
-                known = known._replace(
-                    first=_place(one, section, row), time=float(section.step["time"][row])
-                )
-            found[one.check] = known
-    return found
+class WorstStates:
+    """The worst state by each check, as sections of a log come in."""
+
+    def __init__(self, always: Always) -> None:
+        self._always = always
+        self._found: dict[str, _Worst] = {}
+
+    def take(self, one: CheckedSteps, section: Trace, first: int, end: int) -> None:
+        """Count the states first..end-1 of a section in."""
+        if first >= end:
+            return
+        numbers = one.numbers[first:end]
+        known = self._found.get(one.check, _Worst(one.bound, one.unit))
+        known = known._replace(number=float(np.max(numbers, initial=known.number)))
+        if not known.first and not known.number <= one.bound:
+            row = int(np.flatnonzero(~(numbers <= one.bound))[0]) + first
+            time = time_of(section.step, row)
+            known = known._replace(first=_place(one, section, row, time), time=time)
+        self._found[one.check] = known
+
+    def outcomes(self, ended: str, cell: Cell) -> dict[str, Outcome]:
+        """Return the outcome of every check; ended: status of the cell."""
+        if not self._found:
+            missing = failure("a complete run", ended, not is_whole(ended))
+            return dict.fromkeys(checks_of(self._always), missing)
+        early = "" if is_whole(ended) else ended
+        return {name: _outcome(one, early, cell) for name, one in self._found.items()}
 
 
-def _place(one: CheckedSteps, section: Trace, row: int) -> str:
+def time_of(step: Rows, row: int) -> float:
+    """Return the time [s] of a state as its log has it, in whole nanoseconds."""
+    return float(step["time_ns"][row]) / 1e9
+
+
+def _place(one: CheckedSteps, section: Trace, row: int, time: float) -> str:
     bodies = one.bodies(row)
-    step, time = int(section.step["step"][row]), float(section.step["time"][row])
     number = f"{float(one.numbers[row]):.6g}{one.unit}"
+    step = int(section.step["step"][row])
     return f"first in step {step}, t = {time:.9g} s: {number}{f', {bodies}' if bodies else ''}"
 
 
 def _outcome(one: _Worst, ended: str, cell: Cell) -> Outcome:
-    bound, unit = one.check.bound, one.check.unit
+    bound, unit = one.bound, one.unit
     expected = f"at most {bound:g}{unit} in every step"
     margin = 1.0 - one.number / bound if bound > 0.0 else float("nan")
     if not one.first:

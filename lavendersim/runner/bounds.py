@@ -1,8 +1,9 @@
-"""The bounds of an `always` section, held against the blocks of a cell while it runs.
+"""The checks of an `always` section, made of the blocks of a cell while it runs.
 
 A cell stops with the first step that breaks a bound. What the engine did beyond is dropped, so the
 log ends with that step, whatever the size of a block. A state that is no number breaks no bound
-here: the engine itself ends the run there.
+here: the engine itself ends the run there. The worst states are those that the log gives, bit for
+bit (`measures.always.outcomes_of`), so that a run is not read again to be judged.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ import numpy as np
 
 from lavendersim.cell import CellConfig
 from lavendersim.clock import Clock
+from lavendersim.measures.always import WorstStates
 from lavendersim.measures.interfaces import Floats, Rows
 from lavendersim.measures.sections import Section
 from lavendersim.measures.specs.always import BEYOND_BOUNDS, STOPPING, Always
@@ -21,7 +23,7 @@ from lavendersim.trace import Block
 
 
 class Bounds:
-    """Holds every step of one cell to the bounds of its config."""
+    """Holds every step of one cell to what its config requires of every step."""
 
     def __init__(
         self,
@@ -31,13 +33,18 @@ class Bounds:
         clock: Clock,
         absent: Mapping[str, str],
     ) -> None:
-        self._watch = StepChecks(always, STOPPING) if always is not None and always.stop else None
+        self._checks = None if always is None else StepChecks(always)
+        self._stops = always is not None and always.stop
+        self.worst = None if always is None else WorstStates(always)
         self._cell = (bodies, config, clock, absent)
         self._last: tuple[Rows, Floats] | None = None  # the state before the block's
 
-    def within(self, block: Block) -> tuple[Block, str]:
-        """Return the block up to the first step beyond a bound, and a sentence if there is one."""
-        if self._watch is None or len(block.step) == 0:
+    def within(self, block: Block, diverged: bool = False) -> tuple[Block, str]:
+        """Return the block up to the first step beyond a bound, and a sentence if there is one.
+
+        diverged: the engine ended with the last state of the block, which then counts for nothing.
+        """
+        if self._checks is None or self.worst is None or len(block.step) == 0:
             return block, ""
         step, pose = block.step, block.pose
         again = 0
@@ -47,11 +54,18 @@ class Bounds:
             pose = np.concatenate([self._last[1], pose])
         part = Section(step, block.contact, pose, *self._cell)
         self._last = step[-1:].copy(), pose[-1:].copy()
+        checked = list(self._checks.over(part))
         first: tuple[int, CheckedSteps] | None = None
-        for check in self._watch.over(part):
+        for check in checked if self._stops else ():
             beyond = np.flatnonzero(check.numbers[again:] > check.bound)
-            if len(beyond) and (first is None or beyond[0] + again < first[0]):
-                first = int(beyond[0]) + again, check
+            if check.check in STOPPING and len(beyond):
+                row = int(beyond[0]) + again
+                first = (row, check) if first is None or row < first[0] else first
+        end = len(step) - diverged
+        if first is not None:
+            end = min(end, first[0] + 1)
+        for check in checked:
+            self.worst.take(check, part, again, end)
         if first is None:
             return block, ""
         row, check = first

@@ -17,6 +17,7 @@ from lavendersim.engine.effects import EFFECTS
 from lavendersim.engine.engine import Engine, Rows
 from lavendersim.engine.kernel_cache import source_hash
 from lavendersim.engine.records import DIVERGED, NOT_FINITE, RUNNING, TURNS_TOO_FAST
+from lavendersim.measures.always import WorstStates
 from lavendersim.measures.specs.always import Always
 from lavendersim.measures.specs.catalogue import MeasureSpec
 from lavendersim.scene.build import Scene, build
@@ -147,12 +148,12 @@ def compile_kernel(job: CellJob) -> int:
 
 def run_and_measure(job: CellJob) -> tuple[CellOutcome, dict[int, Measured]]:
     """Simulate one cell, write its log, and measure it for each cell of the sweep that it is of."""
-    outcome, written = simulate(job)
+    outcome, written, worst = simulate(job)
     trace = trace_of(written)
     measured = {}
     for index, label, coordinates in job.cells:
         cell = RunCell(index, label, coordinates, job.path, outcome.status, job.config, [trace])
-        measured[index] = measure_cell(cell, job.measures, job.always)
+        measured[index] = measure_cell(cell, job.measures, worst)
     return outcome, measured
 
 
@@ -161,8 +162,11 @@ def run_cell(job: CellJob) -> CellOutcome:
     return simulate(job)[0]
 
 
-def simulate(job: CellJob) -> tuple[CellOutcome, Written]:
-    """Simulate one cell and write its log; returns it, too, as this process may read it."""
+def simulate(job: CellJob) -> tuple[CellOutcome, Written, WorstStates | None]:
+    """Simulate one cell and write its log.
+
+    Returns beside the outcome the log as this process may read it, and its states by `always`.
+    """
     physics_ns = logging_ns = 0
     scene = build(job.config, job.plan.spec)
     engine, compile_ns = started(scene, job.plan)
@@ -194,7 +198,7 @@ def simulate(job: CellJob) -> tuple[CellOutcome, Written]:
         start = perf_counter_ns()
         rows = engine.take_rows()
         if len(rows.step):
-            block, broken = bounds.within(block_of(rows, scene.clock))
+            block, broken = bounds.within(block_of(rows, scene.clock), result == DIVERGED)
             if broken:
                 spent = spent * len(block.step) // len(rows.step)
                 last = int(block.step["step"][-1])
@@ -211,4 +215,4 @@ def simulate(job: CellJob) -> tuple[CellOutcome, Written]:
     written = writer.close(status)
     logging_ns += perf_counter_ns() - start
     outcome = CellOutcome(job.cell, status, done, compile_ns, physics_ns, logging_ns, accuracy)
-    return outcome, written
+    return outcome, written, bounds.worst

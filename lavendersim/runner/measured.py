@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from lavendersim.errors import LavenderError
-from lavendersim.measures import Values, applies, outcomes_of
-from lavendersim.measures.specs.always import Always
+from lavendersim.measures import Values, applies
+from lavendersim.measures.always import WorstStates
 from lavendersim.measures.specs.catalogue import MeasureSpec
 from lavendersim.measures.verdict import Outcome
 
@@ -22,9 +22,9 @@ class Measured(NamedTuple):
 
 
 def measure_cell(
-    cell: RunCell, measures: Mapping[str, MeasureSpec], always: Always | None
+    cell: RunCell, measures: Mapping[str, MeasureSpec], worst: WorstStates | None
 ) -> Measured:
-    """Take every measure of a cell, once."""
+    """Take every measure of a cell, once; worst: its states by the checks of `always`."""
     values = Values(measures)
     measured: dict[str, Any] = {}
     for name, spec in measures.items():
@@ -36,4 +36,4 @@ def measure_cell(
             measured[name] = str(error)
             continue
         measured[name] = row[0] if len(row) == 1 else row
-    return Measured(measured, {} if always is None else outcomes_of(always, cell))
+    return Measured(measured, {} if worst is None else worst.outcomes(cell.status, cell))

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 import lavendersim
-from lavendersim.measures import outcomes_of
-from lavendersim.measures.specs.always import STOPPING
+from lavendersim.measures import judge, outcomes_of
+from lavendersim.measures.always import PREFIX
 from lavendersim.measures.step_checks import StepChecks
-from lavendersim.runner import Finished, bounds
+from lavendersim.runner import Finished, Run, bounds
 
 # A ball in free flight: after k steps of 1/240 s it is g k / 240 fast, and in step k its centre
 # goes g (k - 1/2) / 240 per second: it is faster than 1 m/s first in step 25 of g = 10 m/s^2
@@ -103,11 +103,47 @@ def test_blocks_are_judged_as_the_log_is(tmp_path: Path, monkeypatch: pytest.Mon
     assert finished.good
     (cell,) = finished.run.cells
     always = finished.run.experiment.always
-    whole = {one.check: one.numbers for one in StepChecks(always, STOPPING).over(cell.trace())}
+    whole = {one.check: one.numbers for one in StepChecks(always).over(cell.trace())}
     assert len(parts["energy"]) >= 3
     for check, numbers in whole.items():
         assert np.array_equal(np.concatenate(parts[check]), numbers, equal_nan=True), check
     assert all(outcome.passed for outcome in outcomes_of(always, cell).values())
+
+
+# Free fall that overflows: after k steps of 0.1 s it is 0.1 k 1e308 m/s fast.
+DIVERGING = """\
+scene:
+  gravity: [0, 0, -1.0e+308]
+  bodies:
+    ball: {shape: {kind: sphere, radius: 0.1}, mass: 1.0, position: [0, 0, 0.5]}
+numerics: {timestep: 1/10}
+duration: 5.0
+always: {stop: false}
+"""
+
+
+@pytest.mark.parametrize(
+    ("text", "ends"),
+    [
+        (BUSY, "complete"),
+        (DIVERGING, "diverged"),
+        (FALLING + "always: {speed: 1}\n", "beyond bounds"),
+        (FALLING + "always: {speed: 1, stop: false}\n", "complete"),
+    ],
+    ids=["busy", "diverging", "stopped", "not stopped"],
+)
+def test_a_run_is_judged_as_its_log_is(tmp_path: Path, text: str, ends: str) -> None:
+    """Verdicts taken while a cell ran, and those that its log gives when it is opened again."""
+    finished = run(tmp_path, text)
+    assert finished.outcomes[0].status.startswith(ends)
+    experiment = finished.run.experiment
+    cells = Run(finished.run.path).cells  # as another process finds them
+    assert experiment.always is not None
+    logs = {cell.index: outcomes_of(experiment.always, cell) for cell in cells}
+    again = judge({}, [], cells, None, experiment.always, logs)
+    taken = [verdict for verdict in finished.raw if verdict.name.startswith(PREFIX)]
+    assert len(taken) == len(again) > 0
+    assert [repr(verdict) for verdict in again] == [repr(verdict) for verdict in taken]
 
 
 def test_a_cell_may_go_on_beyond_a_bound(tmp_path: Path) -> None:
