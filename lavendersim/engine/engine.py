@@ -38,6 +38,20 @@ class Rows(NamedTuple):
     residual: np.ndarray
 
 
+# Machine code of kernels by spec and types of the arrays, where it is known.
+_entries: dict[Any, Any] = {}
+
+
+def _types_of(memory: Any) -> Any:
+    """Return what numba tells arrays apart by, in the shape of the memory."""
+    if isinstance(memory, np.ndarray):
+        flags = memory.flags
+        return memory.dtype, memory.ndim, flags.c_contiguous, flags.writeable, flags.aligned
+    if isinstance(memory, tuple):
+        return type(memory), tuple(_types_of(part) for part in memory)
+    return type(memory)
+
+
 class Engine:
     """One scene in motion. Not thread-safe; kernels release the interpreter lock."""
 
@@ -68,11 +82,14 @@ class Engine:
         self._done = self.counters["step"]
         self._initial_pose = poses
         self._kernel = advance_for(spec)
-        self._entry: Any = None  # its machine code for the types of these arrays, once known
         capacity = max(4, min(4 * len(pairs), 1024))
         self.state = memory.allocate_state(spec, bodies, velocities, pairs, links, capacity)
         self.workspace = memory.allocate_workspace(spec, self.state, hulls, templates)
         self.log = self._allocate_log()
+        # Looking up the types of forty arrays costs 6 us a call, and 1 ms for the first of an
+        # engine; they stay what they are, and are the same in another engine of the scene's plan.
+        self._types = (spec, _types_of((self.state, self.workspace, self.log)))
+        self._entry = _entries.get(self._types)
 
     @property
     def bodies(self) -> np.ndarray:
@@ -138,10 +155,9 @@ class Engine:
             return int(self._entry(*arguments))
         with compiling():
             status = int(self._kernel(*arguments))
-        # Looking up the types of forty arrays costs 6 us a call; they stay what they are.
         compiled = list(self._kernel.overloads.values())
         if len(compiled) == 1:
-            self._entry = compiled[0].entry_point
+            self._entry = _entries[self._types] = compiled[0].entry_point
         return status
 
     def take_rows(self) -> Rows:

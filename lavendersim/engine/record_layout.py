@@ -7,6 +7,7 @@ Rows of the log are the columns that effects declare, those of the log itself fi
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Literal
 
 import numpy as np
@@ -30,6 +31,7 @@ from .spec import Spec
 Record = Literal["body", "velocity", "pair", "contact", "link", "cache"]
 
 
+@cache
 def body_dtype(spec: Spec) -> np.dtype:
     """Return the record of a body; orientation and hulls only where some shape has them."""
     shapes = shapes_in(spec)
@@ -38,16 +40,19 @@ def body_dtype(spec: Spec) -> np.dtype:
     return dtype(BODY, oriented, of_shapes, _of_effects(spec, "body"))
 
 
+@cache
 def velocity_dtype(spec: Spec) -> np.dtype:
     """Return the record of a body's velocity."""
     return dtype(VELOCITY, _of_effects(spec, "velocity"))
 
 
+@cache
 def pair_dtype(spec: Spec) -> np.dtype:
     """Return the record of a pair of bodies that may touch, with its mixed surface."""
     return dtype(PAIR, _of_effects(spec, "pair"))
 
 
+@cache
 def contact_dtype(spec: Spec) -> np.dtype:
     """Return the record of a contact: geometry, what effects add, what the solver keeps of it."""
     dependent = [
@@ -60,24 +65,40 @@ def contact_dtype(spec: Spec) -> np.dtype:
     return dtype(CONTACT, _of_effects(spec, "contact"), dependent, solver)
 
 
+@cache
 def cache_dtype(spec: Spec) -> np.dtype:
     """Return the record of a contact's impulse that the next step may start from."""
     return dtype([("key", "i8")], _of_effects(spec, "cache"))
 
 
+@cache
 def step_row_dtype(spec: Spec) -> np.dtype:
     """Return the row that the log has of a step."""
     return dtype(row_fields(spec, "step"))
 
 
+@cache
 def contact_row_dtype(spec: Spec) -> np.dtype:
     """Return the row that the log has of a contact."""
     return dtype(row_fields(spec, "contact"))
 
 
+@cache
 def residual_row_dtype() -> np.dtype:
     """Return the row that the log has of a sweep."""
     return dtype(row_fields(Spec(), "residual"))
+
+
+@cache
+def link_dtype(spec: Spec) -> np.dtype:
+    """Return the record of what joins two bodies."""
+    return dtype(LINK, _of_effects(spec, "link"))
+
+
+@cache
+def parameters_dtype() -> np.dtype:
+    """Return the record of the parameters: the same in every engine."""
+    return dtype(PARAMETERS, [field for effect in EFFECTS for field in effect.fields.parameters])
 
 
 def _of_effects(spec: Spec, record: Record) -> list[Field]:
@@ -102,10 +123,9 @@ def allocate_pairs(spec: Spec, count: int) -> np.ndarray:
 
 def allocate_links(spec: Spec, count: int) -> np.ndarray:
     """Return zeroed records of what joins two bodies."""
-    return np.zeros(count, dtype(LINK, _of_effects(spec, "link")))
+    return np.zeros(count, link_dtype(spec))
 
 
 def allocate_parameters() -> np.ndarray:
     """Return one zeroed parameter record, shape (1,): the same in every engine."""
-    brought = [field for effect in EFFECTS for field in effect.fields.parameters]
-    return np.zeros(1, dtype(PARAMETERS, brought))
+    return np.zeros(1, parameters_dtype())

@@ -8,6 +8,7 @@ World frame, SI units, unless a comment says otherwise.
 from __future__ import annotations
 
 from collections.abc import Iterable
+from functools import cache
 from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
@@ -188,10 +189,15 @@ COUNTERS: Final[list[Field]] = [
 
 def dtype(*groups: Iterable[Field]) -> np.dtype:
     """Join field groups into one aligned record type; a field named twice is taken once."""
-    import numpy as np  # declarations of effects load without it
-
     fields: dict[str, str] = {}
     for group in groups:
         for name, kind in group:
             fields.setdefault(name, kind)
-    return np.dtype(list(fields.items()), align=True)
+    return _dtype(tuple(fields.items()))
+
+
+@cache
+def _dtype(fields: tuple[Field, ...]) -> np.dtype:
+    import numpy as np  # declarations of effects load without it
+
+    return np.dtype(list(fields), align=True)

@@ -213,6 +213,7 @@ class Container:
         entry.message_index_length = position - self._offset - len(record)
         self.index.chunks.append(entry)
         self._write(b"".join([record, *indexes]))
+        self._stream.flush()
 
     def finish(self) -> None:
         """Write DataEnd, the summary and the footer, and close the file."""
@@ -247,7 +248,6 @@ class Container:
         self._crc = zlib.crc32(data, self._crc)
         self._offset += len(data)
         self._stream.write(data)
-        self._stream.flush()
 
 
 def index_of(chunk: Chunk, offset: int, length: int) -> ChunkIndex:

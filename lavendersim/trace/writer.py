@@ -221,14 +221,8 @@ class TraceWriter:
 
     def _describe_geometry(self, poses: NDArray[np.float64]) -> None:
         """Write the chunk of /robot_description; poses: of the initial state (bodies, 7)."""
-        text = robot_description(self._bodies, poses).encode() + b"\0"
-        records = _description_records()
-        self._container.register(records)
-        head = bytes([0, 1, 0, 0]) + len(text).to_bytes(4, "little")  # CDR, little endian
-        record = layout.record("/robot_description", Template().constant(head + text))
-        payload = records.data + record.rows(1).tobytes()  # its slots stay 0: step 0, time 0
-        entries = np.array([(0, len(records.data))], INDEX_ENTRY)
-        self._write(closed(payload, [Messages(1, entries)]))
+        self._container.register(_description_records())
+        self._write(_description(robot_description(self._bodies, poses)))
 
     def _close_group(self) -> None:
         """Hand the open chunks to the compressing threads, and write those that are done."""
@@ -279,6 +273,16 @@ def _form(
         schemas.append(Schema(6, form, "ros2msg", "std_msgs/msg/Float64MultiArray"))
         channels += [_channel(topic, 6, "cdr") for topic in encoder.plots]
     return _Form(encoder, Registered.of(schemas, channels), bulk)
+
+
+@lru_cache(maxsize=8)  # the cells of a sweep look alike
+def _description(urdf: str) -> Closed:
+    text, records = urdf.encode() + b"\0", _description_records()
+    head = bytes([0, 1, 0, 0]) + len(text).to_bytes(4, "little")  # CDR, little endian
+    record = layout.record("/robot_description", Template().constant(head + text))
+    payload = records.data + record.rows(1).tobytes()  # its slots stay 0: step 0, time 0
+    entries = np.array([(0, len(records.data))], INDEX_ENTRY)
+    return closed(payload, [Messages(1, entries)])
 
 
 @lru_cache(maxsize=1)

@@ -14,6 +14,7 @@ box is that row stretched by its half edges.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -69,6 +70,15 @@ def hull_geometry(hulls: Sequence[Polyhedron] = ()) -> HullGeometry:
     Vertices are relative to the centre of mass, in the body's frame [m]; loops turn left seen from
     outside. The offset of a face is that of its outermost corner, so no corner lies beyond it.
     """
+    return _tables(hulls) if hulls else _box_alone()
+
+
+@cache
+def _box_alone() -> HullGeometry:
+    return _tables(())
+
+
+def _tables(hulls: Sequence[Polyhedron]) -> HullGeometry:
     vertices: list[np.ndarray] = []
     normals: list[np.ndarray] = []
     offsets: list[float] = []
