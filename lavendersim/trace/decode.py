@@ -7,6 +7,7 @@ in another layout than lavender writes is refused, not misread.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterable, Sequence
 from functools import lru_cache
 from typing import Any
@@ -136,16 +137,34 @@ def packed_fields(schema: Schema, chunk: ChunkContent) -> tuple[tuple[PackedFiel
     return fields, cloud.point_stride
 
 
-def contact_columns(fields: Sequence[PackedField]) -> list[tuple[str, str]]:
-    """Return the names and kinds of the contact table; bytes are colours, for viewers only."""
-    names = {field.name for field in fields}
-    columns = [("step", "i8")]
+@lru_cache(maxsize=64)
+def contact_row(fields: tuple[PackedField, ...], stride: int) -> np.dtype[Any]:
+    """Return the row of the contact table: a point as it stands.
+
+    `step` and `time` stand where a point has no column; its bytes are colours, for viewers only.
+    ValueError when a field does not fit.
+    """
+    sizes = {number: int(code[1]) for code, number in NUMERIC_TYPES.items()}
+    if any(field.offset + sizes[field.type] > stride for field in fields):
+        raise ValueError("a field of a point cloud stands outside its points")
+    places = {field.name: field.offset for field in fields}
+    columns: dict[str, tuple[str, int]] = {}
     for field in fields:
         if field.type == NUMERIC_TYPES["f8"]:
-            columns.append((field.name, "f8"))
-        elif field.type == NUMERIC_TYPES["u4"] and field.name + HIGH_WORD in names:
-            columns.append((field.name, "i8"))
-    return [*columns, ("time", "f8")]
+            columns[field.name] = "<f8", field.offset
+        elif places.get(field.name + HIGH_WORD) == field.offset + 4:
+            columns[field.name] = "<i8", field.offset
+    taken = {offset for _, offset in columns.values()}
+    free = (offset for offset in itertools.count(0, 8) if offset not in taken)
+    row = {"step": ("=i8", next(free)), **columns, "time": ("=f8", next(free))}
+    return np.dtype(
+        {
+            "names": list(row),
+            "formats": [kind for kind, _ in row.values()],
+            "offsets": [offset for _, offset in row.values()],
+            "itemsize": max(stride, *(offset + 8 for _, offset in row.values())),
+        }
+    )
 
 
 def decode_contacts(
@@ -160,16 +179,10 @@ def decode_contacts(
     written = np.ascontiguousarray(head.take(rows, "data_length")[:, 0]).view(np.uint8)
     if not np.array_equal(written.reshape(len(rows), -1), padded_varints(counts * stride)):
         raise ValueError("a point cloud contradicts its length")
-    points = gather(chunk.data, _tails(offsets + len(head), counts, stride), stride)
-    packed = points.view(layout.packed_dtype(fields, stride))[:, 0]
-    columns = contact_columns(fields)
-    table = _table(columns, len(packed))
-    for name, kind in columns[1:-1]:
-        if kind == "i8":
-            high = packed[name + HIGH_WORD].astype(np.int64)
-            table[name] = high << 32 | packed[name].astype(np.int64)
-        else:
-            table[name] = packed[name]
+    row = contact_row(tuple(fields), stride)
+    data = np.empty((counts.sum(), row.itemsize), np.uint8)
+    data[:, :stride] = gather(chunk.data, _tails(offsets + len(head), counts, stride), stride)
+    table: Table = data.view(row)[:, 0]
     table["step"] = np.repeat(_sequence(head, rows), counts)
     table["time"] = np.repeat(seconds(entries["time"]), counts)
     return table

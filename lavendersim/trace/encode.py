@@ -19,7 +19,6 @@ from numpy.typing import NDArray
 
 from lavendersim.trace import layout
 from lavendersim.trace.schema import (
-    HIGH_WORD,
     LOG10_RESIDUAL_FLOOR,
     PLOTS,
     RESIDUAL_COLUMNS,
@@ -73,9 +72,9 @@ class Encoder:
         self._tf = layout.transforms_layout(bodies)
         if "/contacts" in topics:
             self.fields = layout.contact_fields(contact)
-            self._point = layout.packed_dtype(self.fields, layout.point_stride(self.fields))
+            self._point = contact.itemsize + layout.COLOUR_WORD  # [B]
             frame = layout.root_frame(bodies)
-            self._cloud = layout.contact_layout(self.fields, self._point.itemsize, frame)
+            self._cloud = layout.contact_layout(self.fields, self._point, frame)
         self._light = Template().embed(layout.step_layout(self.step_columns))
         self._starts = {layout.CHANNELS["/step"]: 0}
         for topic in self.plots:
@@ -134,7 +133,7 @@ class Encoder:
         sizes = np.full(len(step), len(self._tf) if posed else 0, np.int64)
         counts = _counts(step["step"], block.contact["step"], "contacts")
         if touching:
-            sizes += len(self._cloud) + counts * self._point.itemsize
+            sizes += len(self._cloud) + counts * self._point
         start = _cumulative(sizes)
         data = np.empty(start[-1], np.uint8)
         every = np.arange(len(step))
@@ -159,30 +158,17 @@ class Encoder:
         scatter(data, heads, rows)
 
     def _put_contacts(self, data: Bytes, heads: Rows, counts: Rows, block: Block) -> None:
-        step, point = block.step, self._point.itemsize
+        step, point = block.step, self._point
         rows = self._clocked(self._cloud, step)
         self._cloud.put(rows, "timestamp", timestamps(step["time_ns"]))
         self._cloud.put(rows, "data_length", padded_varints(counts * point))
         self._put_length(self._cloud, rows, counts * point)
         scatter(data, heads, rows)
-        points = self._points(block.contact).view(np.uint8).reshape(-1, point)
-        scatter(data, _ranks(heads + len(self._cloud), counts, point), points)
-
-    def _points(self, contact: NDArray[Any]) -> NDArray[Any]:
-        """Return the contacts as packed points."""
-        points = np.empty(len(contact), self._point)
-        packed = {field.name for field in self.fields}
-        for name in contact.dtype.names or ():
-            if name + HIGH_WORD in packed:
-                points[name] = contact[name] & 0xFFFFFFFF
-                points[name + HIGH_WORD] = contact[name] >> 32
-            elif name != "step":
-                points[name] = contact[name]
-        names = contact.dtype.names or ()
-        loaded = contact["impulse_n"] > 0 if "impulse_n" in names else np.ones(len(contact), bool)
-        for name, on, off in zip(("red", "green", "blue", "alpha"), LOADED, UNLOADED, strict=True):
-            points[name] = np.where(loaded, on, off)
-        return points
+        if len(block.contact):
+            points = _ranks(heads + len(self._cloud), counts, point)
+            rows = np.ascontiguousarray(block.contact).view(np.uint8)
+            scatter(data, points, rows.reshape(len(block.contact), -1))
+            scatter(data, points + block.contact.itemsize, _colours(block.contact))
 
     @staticmethod
     def _clocked(template: Template, step: NDArray[Any]) -> Bytes:
@@ -197,6 +183,15 @@ class Encoder:
         """Fill the record length: what follows the nine bytes of its header."""
         length = len(template) - layout.RECORD_HEADER + tail
         template.put(rows, "length", length.astype("<u8"))
+
+
+def _colours(contact: NDArray[Any]) -> Bytes:
+    """Return the colour words of contacts, (n, 8)."""
+    words = np.zeros((2, layout.COLOUR_WORD), np.uint8)
+    words[0, :4], words[1, :4] = UNLOADED, LOADED
+    names = contact.dtype.names or ()
+    loaded = contact["impulse_n"] > 0 if "impulse_n" in names else np.ones(len(contact), bool)
+    return words[loaded.astype(np.intp)]
 
 
 def _words(column: NDArray[Any]) -> Rows:

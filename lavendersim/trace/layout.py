@@ -121,46 +121,33 @@ def residual_layout() -> Template:
     return record("/residuals", Template().word(1, "step"), open_ended=True)
 
 
-def contact_fields(dtype: np.dtype[Any]) -> tuple[PackedField, ...]:
-    """Return the packed fields for the contact columns of a block: x y z first, colours last."""
-    names = [name for name in dtype.names or () if name != "step"]
-    missing = [axis for axis in "xyz" if axis not in names]
+COLOUR_WORD = 8  # red green blue alpha, and four bytes that say nothing
+
+
+def contact_fields(row: np.dtype[Any]) -> tuple[PackedField, ...]:
+    """Return the packed fields of points that are contact rows as they stand, a colour behind each.
+
+    x y z come first in the list; the bytes of `step` are in no field, the message has it.
+    """
+    fields: list[PackedField] = []
+    places = dict(row.fields or {})
+    missing = [axis for axis in "xyz" if axis not in places]
     if missing:
         raise TypeError(f"contacts lack the columns {missing}")
-    fields: list[PackedField] = []
-    offset = 0
-    for name in ["x", "y", "z", *(name for name in names if name not in "xyz")]:
-        kind = dtype[name].str[1:]
+    for name in sorted(places, key=lambda name: (name not in "xyz", places[name][1])):
+        kind, offset = row[name].str[1:], places[name][1]
+        if name == "step":
+            continue
         if kind == "f8":
-            parts = [(name, "f8")]
+            fields.append(PackedField(name, offset, NUMERIC_TYPES["f8"]))
         elif kind == "i8":
-            parts = [(name, "u4"), (name + HIGH_WORD, "i4")]
+            fields.append(PackedField(name, offset, NUMERIC_TYPES["u4"]))
+            fields.append(PackedField(name + HIGH_WORD, offset + 4, NUMERIC_TYPES["i4"]))
         else:
-            raise TypeError(f"contact column {name!r} is {dtype[name]}; float64 or int64 needed")
-        for part, code in parts:
-            fields.append(PackedField(part, offset, NUMERIC_TYPES[code]))
-            offset += int(code[1])
-    fields += [PackedField(c, offset + i, NUMERIC_TYPES["u1"]) for i, c in enumerate(COLOURS)]
+            raise TypeError(f"contact column {name!r} is {row[name]}; float64 or int64 needed")
+    end = row.itemsize
+    fields += [PackedField(c, end + i, NUMERIC_TYPES["u1"]) for i, c in enumerate(COLOURS)]
     return tuple(fields)
-
-
-def packed_dtype(fields: Sequence[PackedField], stride: int) -> np.dtype[Any]:
-    """Return the numpy dtype of one packed point. ValueError when the fields do not fit."""
-    codes = {number: code for code, number in NUMERIC_TYPES.items()}
-    return np.dtype(
-        {
-            "names": [field.name for field in fields],
-            "formats": ["<" + codes[field.type] for field in fields],
-            "offsets": [field.offset for field in fields],
-            "itemsize": stride,
-        }
-    )
-
-
-def point_stride(fields: Sequence[PackedField]) -> int:
-    """Return the bytes of one packed point [B]."""
-    codes = {number: int(code[1]) for code, number in NUMERIC_TYPES.items()}
-    return max(field.offset + codes[field.type] for field in fields)
 
 
 @lru_cache(maxsize=64)

@@ -111,7 +111,11 @@ class Trace:
         if "/contacts" in self.absent:
             return absent_table(self.why_not("/contacts"))
         parts = list(self.contacts_in_parts())
-        return np.concatenate(parts) if parts else decode.join((), [("step", "i8"), ("time", "f8")])
+        if not parts:
+            return decode.join((), [("step", "i8"), ("time", "f8")])
+        # As bytes: of records numpy would join column by column.
+        row = parts[0].dtype
+        return np.concatenate([part.view(f"V{row.itemsize}") for part in parts]).view(row)
 
     def contacts_in_parts(self) -> Iterator[NDArray[Any]]:
         """Yield the rows of `contact` in parts of whole steps, read as they are asked for.
