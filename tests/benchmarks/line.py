@@ -18,6 +18,7 @@ import argparse
 import json
 import sys
 import tempfile
+from collections.abc import Iterator
 from pathlib import Path
 from statistics import median
 from typing import Any
@@ -67,8 +68,13 @@ def command_sample(command: str, listed: Path) -> Cost:
         return cost(command, Path(folder), listed)
 
 
-def measure(timed: list[LineCase], commands: tuple[str, ...], repeats: int) -> dict[str, Any]:
-    """Take every case and every command `repeats` times, interleaved."""
+def measure(
+    timed: list[LineCase], commands: tuple[str, ...], repeats: int
+) -> Iterator[dict[str, Any]]:
+    """Take every case and every command `repeats` times, interleaved; yields after each round.
+
+    A round takes minutes: what is found so far is kept if the next one is interrupted.
+    """
     compiling = {case.name: case_sample(case, warm=True).seconds["kernels"] for case in timed}
     taken: dict[str, list[Sample]] = {case.name: [] for case in timed}
     started: dict[str, list[Cost]] = {command: [] for command in commands}
@@ -78,18 +84,18 @@ def measure(timed: list[LineCase], commands: tuple[str, ...], repeats: int) -> d
             cost(RUN, listed, listed)  # runs to be listed
             for command in commands:
                 command_sample(command, listed)  # the first warms what the system reads
-        for _ in range(repeats):
+        for done in range(1, repeats + 1):
             for case in timed:
                 taken[case.name].append(case_sample(case))
             for command in commands:
                 started[command].append(command_sample(command, listed))
-    return {
-        "unit": "s",
-        "repeats": repeats,
-        "environment": environment(),
-        "cases": {name: case_data(each, compiling[name]) for name, each in taken.items()},
-        "commands": {command: command_data(each) for command, each in started.items()},
-    }
+            yield {
+                "unit": "s",
+                "repeats": done,
+                "environment": environment(),
+                "cases": {name: case_data(each, compiling[name]) for name, each in taken.items()},
+                "commands": {name: command_data(each) for name, each in started.items()},
+            }
 
 
 def stage_lines(name: str, case: dict[str, Any]) -> list[str]:
@@ -131,13 +137,13 @@ def table(found: dict[str, Any]) -> str:
 def parsed() -> argparse.Namespace:
     """Read the command line."""
     parser = argparse.ArgumentParser(description="What the line around the physics costs.")
-    parser.add_argument("--repeats", type=int, default=3, help="interleaved rounds")
+    parser.add_argument("--repeats", type=int, default=3, help="interleaved rounds, at least 1")
     parser.add_argument("--cells", type=int, default=1000, help="of the sweep of drops")
     parser.add_argument("--steps", type=int, default=STEPS, help="of the long ball")
     parser.add_argument("--pile-duration", type=float, default=PILE_DURATION, help="[s]")
     parser.add_argument("--cases", nargs="*", help="only those whose names begin so")
     parser.add_argument("--no-commands", action="store_true", help="start no processes")
-    parser.add_argument("--json", type=Path, metavar="FILE", help="for medians and all samples")
+    parser.add_argument("--json", type=Path, metavar="FILE", help="for all samples, round by round")
     parser.add_argument("--check", action="store_true", help="exit 1 above a bar")
     return parser.parse_args()
 
@@ -148,10 +154,11 @@ def main() -> int:
     chosen = cases(arguments.cells, arguments.pile_duration, arguments.steps)
     if arguments.cases is not None:
         chosen = [case for case in chosen if case.name.startswith(tuple(arguments.cases))]
-    found = measure(chosen, () if arguments.no_commands else COMMANDS, arguments.repeats)
+    found: dict[str, Any] = {}
+    for found in measure(chosen, () if arguments.no_commands else COMMANDS, arguments.repeats):
+        if arguments.json:
+            arguments.json.write_text(json.dumps(found, indent=1) + "\n")
     print(table(found))
-    if arguments.json:
-        arguments.json.write_text(json.dumps(found, indent=1) + "\n")
     return 1 if arguments.check and any(bar.missed for bar in held(found)) else 0
 
 

@@ -126,7 +126,7 @@ def test_a_missed_bar_fails_the_check_and_nothing_else(
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    monkeypatch.setattr(line, "measure", lambda *what: whole(scale))
+    monkeypatch.setattr(line, "measure", lambda *what: [whole(scale)])
     monkeypatch.setattr("sys.argv", ["line", "--check"])
     assert line.main() == exit_code
     monkeypatch.setattr("sys.argv", ["line"])
