@@ -110,6 +110,8 @@ class Clock:
         """Return the length [s] of each of many steps, float64, like `length`."""
         import numpy as np
 
+        if len(self.stretches) == 1:
+            return np.full(np.shape(steps), float(self.timestep))
         dones = [one.done for one in self.stretches]
         places = np.maximum(np.searchsorted(dones, steps, side="left") - 1, 0)
         of_stretches = np.array([float(one.timestep) for one in self.stretches])

@@ -37,7 +37,7 @@ import numpy as np
 from lavendersim.geometry.bodies import is_movable, mass_of, vector
 from lavendersim.geometry.shapes import bounding_radius
 from lavendersim.measures import changes, shares
-from lavendersim.measures.columns import mechanical_energy
+from lavendersim.measures.columns import mechanical_energy, rows_of_steps
 from lavendersim.measures.interfaces import Floats, Rows, Trace
 from lavendersim.measures.kinds.laws import impulses
 
@@ -49,7 +49,7 @@ def contacts_of_log(trace: Trace) -> Rows | None:
 
 def by_step(trace: Trace, contacts: Rows, numbers: Floats) -> Floats:
     """Return the sum of a number of each contact in every logged step."""
-    positions = np.searchsorted(trace.step["step"], contacts["step"])
+    positions = rows_of_steps(trace.step, contacts)
     sums: Floats = np.bincount(positions, numbers, minlength=len(trace.step)).astype(np.float64)
     return sums
 

@@ -12,6 +12,17 @@ from lavendersim.measures import shares
 from lavendersim.measures.interfaces import Floats, Rows, Trace
 
 
+def rows_of_steps(step: Rows, contacts: Rows) -> np.ndarray:
+    """Return for each contact the row of its step; contacts are grouped by rising step.
+
+    Each step is looked for among the contacts, not each contact among the steps: of thousands of
+    contacts a step has hundreds.
+    """
+    ends = np.searchsorted(contacts["step"], step["step"], "right")
+    begins = np.concatenate(([0], ends[:-1]))
+    return np.repeat(np.arange(len(step)), ends - begins)
+
+
 def contacts_of(trace: Trace, body: str, other: str | None = None) -> Rows:
     """Return the contact rows of a body (with one other body, if named), in rising step."""
     index = list(trace.bodies).index(body)
@@ -29,7 +40,7 @@ def summed_by_step(trace: Trace, rows: Rows, field: str) -> Floats:
 
     Normal impulses and forces are net: less what draws the bodies together.
     """
-    positions = np.searchsorted(trace.step["step"], rows["step"])
+    positions = rows_of_steps(trace.step, rows)
     sums = np.zeros(len(trace.step))
     numbers = rows[field]
     if field in ("impulse_n", "force_n") and shares.pull(rows).any():
@@ -43,7 +54,7 @@ def summed_by_step(trace: Trace, rows: Rows, field: str) -> Floats:
 def deepest_by_step(trace: Trace, rows: Rows) -> Floats:
     """Return the deepest penetration [m] in every logged step; 0 where there is no contact."""
     deepest = np.zeros(len(trace.step))
-    np.maximum.at(deepest, np.searchsorted(trace.step["step"], rows["step"]), rows["penetration"])
+    np.maximum.at(deepest, rows_of_steps(trace.step, rows), rows["penetration"])
     return deepest
 
 

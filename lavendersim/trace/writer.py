@@ -55,7 +55,7 @@ COMPRESSORS: Final = min(4, os.cpu_count() or 1)
 MOST_WAITING: Final = 2 * COMPRESSORS
 _threads = ThreadPoolExecutor(COMPRESSORS, "trace")
 # Of a log up to this size [byte] the chunks are kept, so that who wrote it reads them from memory.
-KEPT_BYTES: Final = 64 * 1024 * 1024
+KEPT_BYTES: Final = 256 * 1024 * 1024
 
 AS_WRITTEN, RESOLVED = "config.yaml", "resolved.json"  # attachments
 DESCRIPTION, ENDING = "trace", "lavender"  # metadata written first and last

@@ -9,7 +9,12 @@ import numpy as np
 from lavendersim.geometry.bodies import is_movable, mass_of, vector
 from lavendersim.geometry.shapes import half_space
 from lavendersim.measures import changes, shares
-from lavendersim.measures.columns import clearance_by_step, last_window, mechanical_energy
+from lavendersim.measures.columns import (
+    clearance_by_step,
+    last_window,
+    mechanical_energy,
+    rows_of_steps,
+)
 from lavendersim.measures.interfaces import Floats, Rows, Trace
 from lavendersim.measures.registration import measure
 from lavendersim.measures.specs import laws as specs
@@ -42,7 +47,7 @@ def force_error(spec: specs.ForceError, trace: Trace) -> float:
     sign = np.where(carried[contacts["body_b"]], 1.0, -1.0)
     lift = sign * (impulses(contacts) @ (-gravity / pull)) / trace.clock.lengths(contacts["step"])
     forces = np.zeros(len(trace.step))
-    np.add.at(forces, np.searchsorted(trace.step["step"], contacts["step"]), lift)
+    np.add.at(forces, rows_of_steps(trace.step, contacts), lift)
     return float(np.max(np.abs(forces[rows] / weight - 1.0)))
 
 
