@@ -1,8 +1,9 @@
-"""The smallest experiment there is: a ball from 0.1 m at e = 0.5, ideal apex 0.025 m."""
+"""The smallest experiment there is: a ball from 0.1 m at e = 0.5, ideal apex 0.025 m.
 
-DROP = """\
-question: How high?
-expected: e^2 h.
+Its scene at the chapter's numerics, also from half the height, is what other configs begin with.
+"""
+
+SCENE = """\
 scene:
   bodies:
     floor: {shape: {kind: plane}}
@@ -12,9 +13,14 @@ scene:
       surface: {restitution: 0.5}
       release: {above: floor, clearance: 0.1}
 numerics: chapter
-duration: 0.5
+"""
+LOW = SCENE.replace("clearance: 0.1", "clearance: 0.05")
+DROP = f"""\
+question: How high?
+expected: e^2 h.
+{SCENE}duration: 0.5
 measure:
-  rebound: {kind: first_apex, body: ball, above: floor}
+  rebound: {{kind: first_apex, body: ball, above: floor}}
 expect:
-  - {name: rebound, measure: rebound, between: [0.02, 0.03]}
+  - {{name: rebound, measure: rebound, between: [0.02, 0.03]}}
 """

@@ -37,12 +37,10 @@ NUMERICS: dict[str, Any] = {
 
 def body_data(shape: Mapping[str, Any], **given: Any) -> dict[str, Any]:
     """Return one resolved body as data; 1 kg and unit moments of inertia unless given or fixed."""
-    kinematic = given.get("kinematic", False)
-    fixed = given.get("fixed", kinematic or shape["kind"] == "plane")
+    fixed = given.get("fixed", given.get("kinematic", False) or shape["kind"] == "plane")
     body = {
         "shape": dict(shape),
         "fixed": fixed,
-        "kinematic": kinematic,
         "mass": None if fixed else 1.0,
         "density": None,
         "inertia": None if fixed else [1.0, 1.0, 1.0],

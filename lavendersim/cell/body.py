@@ -9,7 +9,7 @@ from pydantic import Field
 
 from lavendersim.cell.shapes import CellShape
 from lavendersim.cell.surface import Surface
-from lavendersim.engine.effects import BODY_KEYS
+from lavendersim.engine.effects import BODY_KEYS, MOTION_KEYS
 from lavendersim.quantities.model import ConfigModel, ResolvedModel, declared
 from lavendersim.quantities.names import PlaneName
 from lavendersim.quantities.quantity import Quantity, Quaternion, Vector, Vector3
@@ -33,12 +33,16 @@ class Release(ConfigModel):
     )
 
 
-class BodyOwn(ResolvedModel):
-    """What a body has whatever effects there are."""
+class Constrained(ResolvedModel):
+    """What a body is, and whether contacts and forces move it."""
 
     shape: CellShape
-    fixed: bool  # neither contacts nor forces move it
-    kinematic: bool  # but it keeps its own velocity
+    fixed: bool  # they do not; it moves where a key of an effect prescribes its motion
+
+
+class BodyOwn(declared("BodyOwn", Constrained, MOTION_KEYS), Constrained):  # type: ignore[misc]
+    """What a body has whatever effects there are, behind the keys that prescribe its motion."""
+
     mass: float | None  # [kg]; None for a fixed body
     density: float | None  # [kg/m^3] as written
     inertia: Vector3 | None  # [kg m^2] about the axes of its frame; None for a fixed body

@@ -61,8 +61,13 @@ class DeclaredKey(Protocol):
 
 
 def declared(name: str, base: type[BaseModel], keys: Iterable[DeclaredKey]) -> Any:
-    """Return a model with the keys that effects declare; its fields are known when it is made."""
+    """Return a model with the keys that effects declare, behind those that its base has.
+
+    Its fields are known when it is made.
+    """
     fields: dict[str, Any] = {
-        key.name: (key.type, Field(default=key.default, description=key.doc)) for key in keys
+        key.name: (key.type, Field(default=key.default, description=key.doc))
+        for key in keys
+        if key.name not in base.model_fields
     }
     return create_model(name, __base__=base, **fields)

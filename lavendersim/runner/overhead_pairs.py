@@ -67,11 +67,8 @@ def _pair(effect: Effect, reason: str, plans: Plans) -> Pair:
     name = effect.name
     on = plans.logged.has(name)
     pair = Pair(name, on, reason, of_contacts(effect))
-    if name in ("step_log", "pose_log"):
-        if name == "pose_log":
-            return pair._replace(why_not="written with the rows of step_log: see there")
-        kept = plans.silent.including(name, "pose_log")
-        return pair._replace(off=plans.silent, on=kept)
+    if effect.overhead_with:
+        return pair._replace(why_not=f"timed with {effect.overhead_with}: see there")
     chosen = [each for each in (name, *needs(name)) if not has_law(each, plans.facts)]
     if on and is_law(name):
         section, key = choice(name)
@@ -81,15 +78,18 @@ def _pair(effect: Effect, reason: str, plans: Plans) -> Pair:
         through = "" if chosen[0] == name else f" through {chosen[0]}"
         return pair._replace(why_not=f"{section}.{key} chooses another law{through}")
     base = plans.logged if _is_log(effect) else plans.silent
+    together = (name, *(other.name for other in EFFECTS if other.overhead_with == name))
     if not on:
         off = base.including(*needs(name))
         added = tuple(each for each in needs(name) if not base.has(each))
-        return pair._replace(off=off, on=off.including(name), on_top_of=added)
+        return pair._replace(off=off, on=off.including(*together), on_top_of=added)
     needing = [other for other in base.effects if name in needs(other)]
+    if needing and _is_log(effect):  # other logs: of a plan without any it is the first
+        return pair._replace(off=plans.silent, on=plans.silent.including(*together))
     if needing:
         verb = "needs" if len(needing) == 1 else "need"
         return pair._replace(why_not=f"{', '.join(needing)} {verb} it")
-    return pair._replace(off=base.without(name), on=base)
+    return pair._replace(off=base.without(*together), on=base)
 
 
 def _everything(plans: Plans) -> list[Pair]:

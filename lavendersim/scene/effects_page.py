@@ -50,8 +50,7 @@ def _section(effect: Effect) -> Iterator[str]:
         yield "| key | default | meaning |"
         yield "|---|---|---|"
         for section, key in keys:
-            default = f"{key.default:g}" if isinstance(key.default, float) else "none"
-            yield f"| `{section}.{key.name}` | {default} | {_cell(key.doc)} |"
+            yield f"| `{section}.{key.name}` | {_default(key.default)} | {_cell(key.doc)} |"
         yield ""
     columns = [("/contacts", effect.contact_columns), ("/step", effect.step_columns)]
     columns.append(("/residuals", effect.residual_columns))
@@ -61,6 +60,12 @@ def _section(effect: Effect) -> Iterator[str]:
         for topic, group in columns:
             yield from (_column(topic, column) for column in group)
         yield ""
+
+
+def _default(value: object) -> str:
+    if isinstance(value, bool):
+        return str(value).lower()
+    return f"{value:g}" if isinstance(value, float) else "none"
 
 
 def _column(topic: str, column: Column) -> str:

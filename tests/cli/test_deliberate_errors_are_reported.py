@@ -9,19 +9,9 @@ import pytest
 from command_line import lavender
 
 from lavendersim.runner import open_run
+from tests.drop_config import LOW
 
-DROP = """\
-scene:
-  bodies:
-    floor: {shape: {kind: plane}}
-    ball:
-      shape: {kind: sphere, radius: 0.1}
-      mass: 1.0
-      surface: {restitution: 0.5}
-      release: {above: floor, clearance: 0.05}
-numerics: chapter
-duration: 0.05
-"""
+DROP = f"{LOW}duration: 0.05\n"
 MISTAKEN = DROP + "sweep: {m: {path: study.mistake, values: [none, capture_in_sweeps]}}\n"
 SAID = "study-only: capture_in_sweeps, a deliberate error"
 

@@ -12,7 +12,7 @@ import numpy as np
 from pydantic import Field, TypeAdapter
 
 from lavendersim.cell import CellConfig
-from lavendersim.engine.effects import BODY_KEYS, EFFECTS, SURFACE_KEYS
+from lavendersim.engine.effects import BODY_KEYS, EFFECTS, MOTION_KEYS, SURFACE_KEYS
 from lavendersim.engine.engine import Engine, Rows
 from lavendersim.engine.records import ROWS_FULL
 from lavendersim.engine.spec import Spec
@@ -41,8 +41,8 @@ def body(shape: dict[str, Any], position=(0.0, 0.0, 0.0), **properties: Any) -> 
     """Return one resolved body; mass 1 kg unless given. Hulls and compounds: as written."""
     surface = {key.name: properties.pop(key.name, key.default) for key in SURFACE_KEYS}
     by_effect = {key.name: properties.pop(key.name) for key in BODY_KEYS if key.name in properties}
-    kinematic = properties.pop("kinematic", False)
-    fixed = properties.pop("fixed", kinematic or shape["kind"] == "plane")
+    moves = any(by_effect.get(key.name) for key in MOTION_KEYS)
+    fixed = properties.pop("fixed", moves or shape["kind"] == "plane")
     mass = None if fixed else properties.pop("mass", 1.0)
     inertia = None
     if shape["kind"] != "plane":
@@ -52,7 +52,6 @@ def body(shape: dict[str, Any], position=(0.0, 0.0, 0.0), **properties: Any) -> 
     return {
         "shape": shape,
         "fixed": fixed,
-        "kinematic": kinematic,
         "mass": mass,
         "density": None,
         "inertia": properties.pop("inertia", inertia),

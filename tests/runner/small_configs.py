@@ -11,19 +11,15 @@ from pathlib import Path
 from typing import Any
 
 import lavendersim
+from tests.drop_config import LOW
 
-DROPS = """\
+DROPS = (
+    """\
 question: How high does a small ball rebound?
 expected: e^2 h
-scene:
-  bodies:
-    floor: {shape: {kind: plane}}
-    ball:
-      shape: {kind: sphere, radius: 0.1}
-      mass: 1.0
-      surface: {restitution: 0.5}
-      release: {above: floor, clearance: 0.05}
-numerics: chapter
+"""
+    + LOW
+    + """\
 duration: 0.5
 sweep:
   e: {path: scene.bodies.ball.surface.restitution, values: [0.2, 0.5, 0.8]}
@@ -41,6 +37,7 @@ figure:
       x_label: restitution e [-]
       y_label: rebound height [m]
 """
+)
 
 # Prints, as the last line, what a fresh process makes of a config: argv is config, root.
 RUN = """

@@ -18,20 +18,10 @@ from lavendersim.runner.overhead_pairs import ALL, names_of_effects, pairs_of
 from lavendersim.runner.timed_engine import Diverged, Timed
 from lavendersim.scene.laws import needs
 from lavendersim.scene.plan import plan_of
+from tests.drop_config import LOW
 
-BALL = """\
-scene:
-  bodies:
-    floor: {shape: {kind: plane}}
-    ball:
-      shape: {kind: sphere, radius: 0.1}
-      mass: 1.0
-      surface: {restitution: 0.5}
-      release: {above: floor, clearance: 0.05}
-numerics: chapter
-duration: 0.5
-overhead: {effects: [gravity, drag, contact_log], repeats: 6}
-"""
+OVERHEAD = "overhead: {effects: [gravity, drag, contact_log], repeats: 6}\n"
+BALL = f"{LOW}duration: 0.5\n{OVERHEAD}"
 EVERY = BALL.replace("[gravity, drag, contact_log]", "all")
 PLAIN = 100.0  # [ns/step] of the scene's own plan
 COST = {"gravity": 5.0, "drag": 3.0, "contact_log": 40.0}  # [ns/step]; what is not named: 1

@@ -60,6 +60,7 @@ BY_NAME: Final = {effect.name: effect for effect in EFFECTS}
 SURFACE_KEYS: Final = tuple(key for effect in EFFECTS for key in effect.surface_keys)
 SCENE_KEYS: Final = tuple(key for effect in EFFECTS for key in effect.scene_keys)
 BODY_KEYS: Final = tuple(key for effect in EFFECTS for key in effect.body_keys)
+MOTION_KEYS: Final = tuple(key for key in BODY_KEYS if key.prescribes_motion)
 
 
 def effects_of(spec: Spec) -> list[Effect]:
@@ -108,6 +109,7 @@ __all__ = [
     "BY_NAME",
     "CHAINED",
     "EFFECTS",
+    "MOTION_KEYS",
     "SCENE_KEYS",
     "SURFACE_KEYS",
     "BodyFacts",

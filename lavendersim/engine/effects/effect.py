@@ -141,6 +141,7 @@ class Effect:
     per: Literal["body", "contact"]  # what its cost grows with
     needs: tuple[str, ...] = ()  # effects without which it cannot be
     chosen_by: Choice | None = None
+    overhead_with: str = ""  # effect with which it is timed, where it comes and goes with that one
     surface_keys: tuple[SurfaceKey, ...] = ()  # of a config: properties of surfaces
     scene_keys: tuple[SceneKey, ...] = ()
     body_keys: tuple[BodyKey, ...] = ()

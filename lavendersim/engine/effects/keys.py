@@ -53,6 +53,7 @@ class BodyKey(Key):
 
     resolve: Callable[[Any, Turn], Any] = as_written
     of_movable: bool = False  # a body that does not move has none
+    prescribes_motion: bool = False  # a body where it is true moves whatever touches it, massless
 
 
 def larger(one: float, other: float) -> float:

@@ -6,7 +6,8 @@ Their inverse mass is 0, as that of fixed bodies; the step moves them all the sa
 from typing import Any
 
 from .decision import Decision, Facts, named
-from .effect import Effect, Fields
+from .effect import Balance, Effect, Fields, Unlogged
+from .keys import BodyKey
 
 
 def body_values(body: Any) -> dict[str, bool]:
@@ -26,6 +27,16 @@ EFFECT = Effect(
     name="kinematic",
     decide=decide,
     per="body",
+    body_keys=(
+        BodyKey(
+            name="kinematic",
+            type=bool,
+            default=False,
+            doc="true: keeps its velocity and angular velocity whatever touches it, no mass",
+            prescribes_motion=True,
+        ),
+    ),
+    balance=Balance(unlogged=Unlogged("energy", "{body} moves by itself, and its work")),
     fields=Fields(
         body=[("kinematic", "i8")],  # 1: keeps its velocity
     ),

@@ -27,6 +27,7 @@ EFFECT = Effect(
     name="pose_log",
     decide=decide,
     per="body",
+    overhead_with="step_log",
     channels=("/robot_description", "/tf"),
     hooks=Hooks(log_pose=make),
 )

@@ -36,8 +36,6 @@ class AlwaysSection(Always):
 
 def _unknown_work(root: Node) -> Iterator[str]:
     for name, body in described(root):
-        if body.is_true("kinematic"):
-            yield f"{quoted(name)} moves by itself, and its work is not in the log"
         yield from _unlogged(name, body, "energy")
 
 
@@ -52,11 +50,12 @@ def _unlogged(name: str, body: Node, check: str) -> Iterator[str]:
     """Yield what effects that the body has a key of leave out of the log."""
     for effect in EFFECTS:
         unlogged = effect.balance.unlogged
-        given = any(_any_at(body, key.name) for key in effect.body_keys)
+        given = any(_is_given(body, key.name) for key in effect.body_keys)
         if given and unlogged is not None and unlogged.check == check:
             yield f"{unlogged.what.format(body=quoted(name))} is not in the log"
 
 
-def _any_at(body: Node, key: str) -> bool:
-    """Tell whether one of the numbers of a key is not zero."""
-    return any(bool(node.number) for node in (*body.items_at(key), *body.entries_at(key).values()))
+def _is_given(body: Node, key: str) -> bool:
+    """Tell whether a key is true, or one of its numbers is not zero."""
+    numbers = (*body.items_at(key), *body.entries_at(key).values())
+    return body.is_true(key) or any(bool(node.number) for node in numbers)

@@ -8,9 +8,9 @@ from pydantic import Field, Tag
 
 from lavendersim.cell.body import Release
 from lavendersim.cell.surface import Surface
-from lavendersim.engine.effects import BODY_KEYS
+from lavendersim.engine.effects import BODY_KEYS, MOTION_KEYS
 from lavendersim.experiment.models.shapes import Orientation, Shape, Solid
-from lavendersim.experiment.models.tree import SOLIDS
+from lavendersim.experiment.models.tree import PRESCRIBE_MOTION, SOLIDS
 from lavendersim.experiment.text.place import Place
 from lavendersim.quantities.found import near
 from lavendersim.quantities.model import ConfigModel, declared
@@ -25,6 +25,7 @@ from lavendersim.quantities.quantity import (
     either,
 )
 
+_CONSTRAIN = ("fixed", *PRESCRIBE_MOTION)
 _OF_MOVING = ("velocity", "angular_velocity")
 _OF_MOVABLE = ("mass", "density", "inertia", *(key.name for key in BODY_KEYS if key.of_movable))
 _OF_PLACES = ("position", "release", "orientation")
@@ -42,8 +43,8 @@ SurfaceOf = Annotated[
 ]
 
 
-class _MatterOwn(ConfigModel):
-    """What bodies have in common whatever effects there are."""
+class _Mass(ConfigModel):
+    """What mass a body has, or that it has none."""
 
     mass: Annotated[float, Quantity("kg", above=0, hint=STATIC_HINT)] | None = Field(
         default=None, description="[kg] of a movable body, which has this or a density"
@@ -57,10 +58,11 @@ class _MatterOwn(ConfigModel):
         "hulls and compounds are",
     )
     fixed: bool = Field(default=False, description="true: never moves, has no mass")
-    kinematic: bool = Field(
-        default=False,
-        description="true: keeps its velocity and angular velocity whatever touches it, no mass",
-    )
+
+
+class _MatterOwn(declared("MatterOwn", _Mass, MOTION_KEYS), _Mass):  # type: ignore[misc]
+    """What bodies have in common whatever effects there are, with what prescribes a motion."""
+
     surface: SurfaceOf = Field(
         default=Surface(),
         description="name of one of `scene.surfaces`, or its properties in place; all 0",
@@ -86,12 +88,13 @@ class _Matter(declared("Matter", _MatterOwn, BODY_KEYS), _MatterOwn):  # type: i
             _plane_rules(at)
         elif kind in SOLIDS:
             cls.start_rules(at)
-            fixed, kinematic = at.node.is_true("fixed"), at.node.is_true("kinematic")
-            if fixed and kinematic:
-                later = max(at.key("fixed"), at.key("kinematic"))
-                at.refuse(later, f"{at} specifies both fixed and kinematic; keep one")
-            elif fixed or kinematic:
-                _immovable_rules(at, "fixed" if fixed else "kinematic")
+            constrained = [key for key in _CONSTRAIN if at.node.is_true(key)]
+            if len(constrained) > 1:
+                one, other = constrained[:2]
+                later = max(at.key(one), at.key(other))
+                at.refuse(later, f"{at} specifies both {one} and {other}; keep one")
+            elif constrained:
+                _immovable_rules(at, constrained[0])
             else:
                 meaning = "[kg], or a density [kg/m^3], or fixed: true"
                 _exactly_one(at, ("mass", "density"), meaning)
@@ -158,8 +161,9 @@ def _plane_rules(at: Place) -> None:
     fixed = at.get("fixed")
     if fixed is not None and fixed.content is False:
         at.refuse(fixed.mark, f"fixed: {always}")
-    if at.node.is_true("kinematic"):
-        at.refuse(at.key("kinematic"), f"kinematic: {always}")
+    for key in PRESCRIBE_MOTION:
+        if at.node.is_true(key):
+            at.refuse(at.key(key), f"{key}: {always}")
     for key in (*_OF_MOVABLE, *_OF_MOVING, *_OF_PLACES):
         if mark := at.written(key):
             instead = "; its normal and offset say where it is" if key in _OF_PLACES else ""

@@ -8,7 +8,12 @@ from typing import Annotated, Final, Literal
 from pydantic import Field
 
 from lavendersim.experiment.models.removals import Removal, removals
-from lavendersim.experiment.models.tree import body_node, duration_of, immovable
+from lavendersim.experiment.models.tree import (
+    body_node,
+    duration_of,
+    immovable,
+    prescribes_motion,
+)
 from lavendersim.experiment.text.node import Mark
 from lavendersim.experiment.text.place import Place
 from lavendersim.quantities.found import near
@@ -80,10 +85,10 @@ class Event(ConfigModel):
 
 def _change_rules(at: Place, mark: Mark, name: str | None) -> None:
     target = body_node(at.root, name)
-    if what := immovable(target, kinematic=False):
+    if what := immovable(target, prescribed=False):
         at.refuse(mark, f'body: "{name}" is {what}; expected a movable body')
-    elif target is not None and target.is_true("kinematic") and at.get("scale_mass"):
-        sentence = f'scale_mass: "{name}" is kinematic; a kinematic body has no mass'
+    elif target is not None and (key := prescribes_motion(target)) and at.get("scale_mass"):
+        sentence = f'scale_mass: "{name}" is {key}; a {key} body has no mass'
         at.refuse(at.key("scale_mass"), sentence)
     if not any(at.get(key) for key in _CHANGES):
         changes = f"{', '.join(_CHANGES)} or remove"

@@ -100,7 +100,7 @@ class Force(ConfigModel):
         """It acts on a body that can move, for a while of the run, before the body is removed."""
         body, begin, end = at.get("body"), at.get("from"), at.get("to")
         name, length = at.node.text_at("body"), duration_of(at.root)
-        if body is not None and (what := immovable(body_node(at.root, name), kinematic=True)):
+        if body is not None and (what := immovable(body_node(at.root, name), prescribed=True)):
             at.refuse(body.mark, f'body: "{name}" is {what}; expected a movable body')
         if not at.get("force") and not at.get("torque"):
             at.refuse(at.node.mark, f"{at} does nothing; expected force or torque")

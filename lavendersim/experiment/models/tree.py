@@ -9,12 +9,15 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Final
 
+from lavendersim.engine.effects import MOTION_KEYS
 from lavendersim.experiment.text.node import Node, Path
 
 MOST_BODIES = 100_000  # of a scene; their names alone are some megabytes
 BODIES: Path = ("scene", "bodies")
 ARRANGEMENTS: Path = ("scene", "arrangements")
 SOLIDS: Final = ("sphere", "box", "capsule", "cylinder", "hull", "compound")
+# Keys of effects: a body where one is true has no mass, as a fixed one, but it moves.
+PRESCRIBE_MOTION: Final = tuple(key.name for key in MOTION_KEYS)
 
 
 def members(arrangement: Node) -> int:
@@ -80,13 +83,19 @@ def is_static(body: Node) -> bool:
     return body.text_at("shape", "kind") == "plane" or body.is_true("fixed")
 
 
-def immovable(body: Node | None, *, kinematic: bool) -> str | None:
-    """Return in a word why nothing moves a body; kinematic ones count where it says so."""
-    if body is None or not (is_static(body) or (kinematic and body.is_true("kinematic"))):
+def prescribes_motion(body: Node) -> str | None:
+    """Return the key by which a body moves whatever touches it, None where there is none."""
+    return next((key for key in PRESCRIBE_MOTION if body.is_true(key)), None)
+
+
+def immovable(body: Node | None, *, prescribed: bool) -> str | None:
+    """Return in a word why nothing moves a body; a prescribed motion counts where it says so."""
+    if body is None:
         return None
     if body.text_at("shape", "kind") == "plane":
         return "a plane"
-    return "kinematic" if kinematic and body.is_true("kinematic") else "fixed"
+    own = prescribes_motion(body) if prescribed else None
+    return own or ("fixed" if is_static(body) else None)
 
 
 def duration_of(root: Node) -> float | None:

@@ -11,7 +11,12 @@ from lavendersim.cell.shapes import CellShape, Plane
 from lavendersim.engine.effects import BODY_KEYS, SCENE_KEYS
 from lavendersim.experiment.models.bodies import ArrangedBody, Body
 from lavendersim.experiment.models.scene import Force, Scene, TiltedGravity
-from lavendersim.experiment.models.tree import ARRANGEMENTS, BODIES, member_name
+from lavendersim.experiment.models.tree import (
+    ARRANGEMENTS,
+    BODIES,
+    PRESCRIBE_MOTION,
+    member_name,
+)
 from lavendersim.experiment.resolve.arrangements import centres
 from lavendersim.experiment.resolve.placement import SceneError, released_position
 from lavendersim.experiment.resolve.shape import quaternion_of, resolve_shape
@@ -96,7 +101,8 @@ def _body(body: Body, scene: Scene, gravity: Vector3, timestep: Fraction) -> Cel
 def _matter(body: Body | ArrangedBody, scene: Scene) -> CellBody:
     """Return a body that stands at the origin; its velocities are as written."""
     surface = scene.surfaces[body.surface] if isinstance(body.surface, str) else body.surface
-    fixed = body.fixed or body.kinematic or isinstance(body.shape, Plane)
+    prescribed = any(getattr(body, key) for key in PRESCRIBE_MOTION)
+    fixed = body.fixed or prescribed or isinstance(body.shape, Plane)
     orientation, axes = quaternion_of(body.orientation), IDENTITY
     mass: float | None = None
     inertia: Vector3 | None = None
@@ -122,7 +128,6 @@ def _matter(body: Body | ArrangedBody, scene: Scene) -> CellBody:
     resolved: CellBody = CellBody.model_construct(
         shape=shape,
         fixed=fixed,
-        kinematic=body.kinematic,
         mass=mass,
         density=body.density,
         inertia=inertia,
