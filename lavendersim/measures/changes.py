@@ -9,14 +9,14 @@ from __future__ import annotations
 import numpy as np
 
 from lavendersim.cell import CellEvent, CellForce
-from lavendersim.clock import written
 from lavendersim.geometry.bodies import is_movable, mass_of, principal_inertia, vector
 from lavendersim.measures.interfaces import Floats, Trace
+from lavendersim.quantities.scalars import exact
 
 
 def first_starting_at(trace: Trace, time: float) -> int:
     """Return the row of the first step that starts at a time [s] as written, or later."""
-    done = trace.clock.steps_until(written(time))
+    done = trace.clock.steps_until(exact(time))
     return int(np.searchsorted(trace.step["step"], done + 1))
 
 
