@@ -37,11 +37,11 @@ class BodyOwn(ResolvedModel):
     """What a body has whatever effects there are."""
 
     shape: CellShape
-    fixed: bool  # neither contacts nor forces move it
-    kinematic: bool  # but it keeps its own velocity
-    mass: float | None  # [kg]; None for a fixed body
+    fixed: bool  # contacts and forces do not move it: a plane, a fixed or a kinematic body
+    kinematic: bool  # fixed as well, but its own velocity moves it
+    mass: float | None  # [kg]; None where `fixed`
     density: float | None  # [kg/m^3] as written
-    inertia: Vector3 | None  # [kg m^2] about the axes of its frame; None for a fixed body
+    inertia: Vector3 | None  # [kg m^2] about the axes of its frame; None where `fixed`
     surface: Surface
     position: Vector3  # [m] centre of mass; of a plane: its point nearest to the origin
     release: Release | None  # as written; `position` follows from it
