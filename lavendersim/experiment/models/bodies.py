@@ -63,7 +63,7 @@ class _MatterOwn(ConfigModel):
     )
     surface: SurfaceOf = Field(
         default=Surface(),
-        description="name of one of `scene.surfaces`, or its properties in place; all 0",
+        description="name of one of `scene.surfaces`, or its properties in place",
     )
     orientation: Orientation = Field(
         default=(1.0, 0.0, 0.0, 0.0),
