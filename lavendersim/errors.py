@@ -45,7 +45,7 @@ class ConfigWarning(FutureWarning):
 
 
 class ProblemError(LavenderError):
-    """A file that states a contact problem is not what its format says, or cannot be read."""
+    """A file that has a contact problem is not what its format says, or cannot be read."""
 
     exit_code = 2
 

@@ -58,5 +58,5 @@ def released_position(
     x, y = release.at
     if abs(nz) < 1e-9:
         sentence = f"at: {release.above} stands upright, x and y do not say how high the body is"
-        raise SceneError(("release", "at"), f"{sentence}; state a position")
+        raise SceneError(("release", "at"), f"{sentence}; specify a position")
     return (x, y, (distance - nx * x - ny * y) / nz)

@@ -109,7 +109,7 @@ def _grid(spec: CostSpec, specified: Setting) -> Iterator[Setting]:
 
 
 def _specified(experiment: Experiment) -> tuple[str, dict[str, Any]]:
-    """Return the preset that a config names, and what else its numerics state, beside the knobs."""
+    """Return the preset of a config, and what else its numerics specify, beside the knobs."""
     root, _ = parse(experiment.text.encode(), experiment.name)
     assert root is not None
     preset, values = specified_numerics(root)
