@@ -57,6 +57,6 @@ class MissingDriverError(LavenderError):
 
 
 class TraceError(LavenderError):
-    """A log is damaged or unfinished; what could be read is said in the message."""
+    """A log or a table of a run is damaged, unfinished or of another version."""
 
     exit_code = 3
