@@ -13,8 +13,11 @@ def recover(
     out: Annotated[Path, typer.Argument(help="Where the salvaged log is written.")],
 ) -> None:
     """Save what a killed run left in its log. Exits 3: the log was salvaged, not complete."""
+    from lavendersim.errors import UsageError
     from lavendersim.trace import recover
 
+    if not log.is_file():  # not a log that is damaged
+        raise UsageError(f"{log}: no such log")
     report = recover(log, out)
     typer.echo(
         f"{report.out}: {report.steps} steps up to t = {report.last_time:g} s; "

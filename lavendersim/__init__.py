@@ -39,7 +39,7 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    """Import a public name from its room; numba and its like stay unloaded until needed."""
+    """Import a public name from its package; numba and its like stay unloaded until needed."""
     if name in _HOME:
         return getattr(import_module(_HOME[name]), name)
     raise AttributeError(f"module 'lavendersim' has no attribute {name!r}")

@@ -145,11 +145,6 @@ class Clock:
         return times
 
 
-def written(time: float) -> Fraction:
-    """Return a time [s] as it is written: the float 0.3 is 3/10."""
-    return Fraction(repr(float(time)))
-
-
 def _nanoseconds(stretch: Stretch, steps: np.ndarray) -> np.ndarray:
     import numpy as np
 

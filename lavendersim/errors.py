@@ -45,7 +45,7 @@ class ConfigWarning(FutureWarning):
 
 
 class ProblemError(LavenderError):
-    """A file that states a contact problem is not what its format says, or cannot be read."""
+    """A file that has a contact problem is not what its format says, or cannot be read."""
 
     exit_code = 2
 
@@ -57,6 +57,6 @@ class MissingDriverError(LavenderError):
 
 
 class TraceError(LavenderError):
-    """A log is damaged or unfinished; what could be read is said in the message."""
+    """A log or a table of a run is damaged, unfinished or of another version."""
 
     exit_code = 3

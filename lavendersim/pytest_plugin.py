@@ -72,13 +72,11 @@ class ExperimentFile(pytest.File):
         from lavendersim.errors import LavenderError
         from lavendersim.experiment import load_experiment
         from lavendersim.measures import judge_nodes
+        from lavendersim.runner.checks import check
 
         try:
             experiment = load_experiment(self.path, self._reduced)
-            if experiment.switches_effects:
-                from lavendersim.runner.plans import check_overrides
-
-                check_overrides(experiment)
+            check(experiment)
         except LavenderError as error:
             raise self.CollectError(str(error)) from None
         for number, node in enumerate([COMPLETES, *judge_nodes(experiment)]):

@@ -37,15 +37,15 @@ class Constrained(ResolvedModel):
     """What a body is, and whether contacts and forces move it."""
 
     shape: CellShape
-    fixed: bool  # they do not; it moves where a key of an effect prescribes its motion
+    fixed: bool  # they do not: a plane, a fixed body, one whose motion a key prescribes
 
 
 class BodyOwn(declared("BodyOwn", Constrained, MOTION_KEYS), Constrained):  # type: ignore[misc]
     """What a body has whatever effects there are, behind the keys that prescribe its motion."""
 
-    mass: float | None  # [kg]; None for a fixed body
+    mass: float | None  # [kg]; None where `fixed`
     density: float | None  # [kg/m^3] as written
-    inertia: Vector3 | None  # [kg m^2] about the axes of its frame; None for a fixed body
+    inertia: Vector3 | None  # [kg m^2] about the axes of its frame; None where `fixed`
     surface: Surface
     position: Vector3  # [m] centre of mass; of a plane: its point nearest to the origin
     release: Release | None  # as written; `position` follows from it

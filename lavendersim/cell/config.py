@@ -15,8 +15,9 @@ from lavendersim.cell.events import CellEvent, CellTimestep
 from lavendersim.cell.numerics import Numerics
 from lavendersim.cell.record import CellRecord
 from lavendersim.cell.scene import CellScene
-from lavendersim.clock import Clock, written
+from lavendersim.clock import Clock
 from lavendersim.quantities.model import ResolvedModel
+from lavendersim.quantities.scalars import exact
 
 
 class CellEffects(ResolvedModel):
@@ -65,9 +66,9 @@ class CellConfig(ResolvedModel):
     def clock(self) -> Clock:
         """The times of its steps."""
         changes = [one for one in self.events if isinstance(one, CellTimestep)]
-        return Clock(self.numerics.timestep, [(written(one.at), one.timestep) for one in changes])
+        return Clock(self.numerics.timestep, [(exact(one.at), one.timestep) for one in changes])
 
     @property
     def steps(self) -> int:
         """How many steps the duration has, see `Clock.steps_of`."""
-        return self.clock.steps_of(written(self.duration))
+        return self.clock.steps_of(exact(self.duration))

@@ -11,9 +11,9 @@ _KEYS = sorted(SURFACE_KEYS, key=lambda key: key.name not in _FIRST)
 
 
 class Surface(declared("Surface", ConfigModel, _KEYS)):  # type: ignore[misc]
-    """What a body's surface does in a contact; a property that is not specified is 0.
+    """What a body's surface does in a contact; a property that is not specified has its default.
 
-    In a contact of two surfaces friction is the geometric mean sqrt(mu_a mu_b), so that a
-    frictionless surface stays frictionless; compliances add (two springs in series); restitution,
-    torsional and rolling friction are the larger of the two.
+    Each effect declares its properties: default, unit, and how two surfaces mix (`SurfaceKey`). The
+    default of a coefficient is 0, without effect. A geometric mean leaves a frictionless surface
+    frictionless whatever it touches; compliances add as springs in series do.
     """

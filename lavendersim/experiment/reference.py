@@ -34,7 +34,7 @@ from lavendersim.experiment.checks.annotations import (
 )
 from lavendersim.experiment.models.experiment import ExperimentConfig
 from lavendersim.experiment.resolve.presets import PRESETS
-from lavendersim.quantities.scalars import written
+from lavendersim.quantities.scalars import label
 
 # Keys that effects declare; their own keys follow in the same table.
 _OF_EFFECTS = frozenset(key.name for key in SCENE_KEYS)
@@ -122,7 +122,7 @@ def _value(value: object) -> str:
     """Return a value as a config writes it, without a needless zero: 1e-6."""
     if isinstance(value, tuple) and all(isinstance(item, Fraction | int | float) for item in value):
         return f"[{', '.join(_value(item) for item in value)}]"
-    return re.sub(r"e([-+])0", r"e\1", written(value))
+    return re.sub(r"e([-+])0", r"e\1", label(value))
 
 
 def _meaning(info: FieldInfo) -> str:

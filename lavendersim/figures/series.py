@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from lavendersim.measures.interfaces import Cell, Floats
-from lavendersim.quantities.scalars import written
+from lavendersim.quantities.scalars import label
 
 
 class Series(NamedTuple):
@@ -52,7 +52,7 @@ def by_value(cells: Sequence[Cell], axis: str) -> dict[str, list[Cell]]:
     """Return cells by the written value of an axis that all of them have, in their order."""
     split: dict[str, list[Cell]] = {}
     for cell in cells:
-        split.setdefault(written(cell.coordinates[axis]), []).append(cell)
+        split.setdefault(label(cell.coordinates[axis]), []).append(cell)
     return split
 
 

@@ -1,4 +1,4 @@
-"""The support function of a shape in plain floats: how far it reaches from its centre of mass.
+"""The extent of a shape against a direction (its support function), in plain floats.
 
 Configs are resolved with it, so its digits are those of every machine; for logged poses
 `shapes.extent` takes matrices.
@@ -13,7 +13,9 @@ from lavendersim.geometry.quaternions import Quaternion, axes, product, to_body,
 from lavendersim.geometry.vectors import Vector3, dot
 
 
-def reach(shape: CellSimple | CellCompound, orientation: Quaternion, direction: Vector3) -> float:
+def extent_against(
+    shape: CellSimple | CellCompound, orientation: Quaternion, direction: Vector3
+) -> float:
     """Return the distance [m] from the centre to the surface's furthest point along -direction."""
     if isinstance(shape, Sphere):
         return shape.radius
@@ -27,7 +29,7 @@ def reach(shape: CellSimple | CellCompound, orientation: Quaternion, direction: 
         return -min(dot(point, inward) for point in shape.points)
     if isinstance(shape, CellCompound):
         return max(
-            reach(part.shape, product(orientation, part.orientation), direction)
+            extent_against(part.shape, product(orientation, part.orientation), direction)
             - dot(to_world(orientation, part.position), direction)
             for part in shape.parts
         )

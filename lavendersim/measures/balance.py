@@ -24,7 +24,7 @@ gives it back. All are counted.
 Momentum. p - p' = M g dt + sum F dt + J, J the impulses between movable and other bodies, friction
 included; impulses between movable bodies cancel. All of it is exact but for round-off: every
 impulse is added to two velocities in each sweep, so a thousand roundings of 1e-16 of what enters.
-It is counted relative to that: the impulses of all contacts, M |g| dt, |F| dt, and sqrt(2 M K),
+It is counted relative to that: the impulses of all contacts, M |g| dt, |F| dt, and sqrt(2 M E_k),
 which no sum m |v| exceeds (Cauchy and Schwarz), before and after the step.
 """
 

@@ -9,14 +9,14 @@ from __future__ import annotations
 import numpy as np
 
 from lavendersim.cell import CellEvent, CellForce
-from lavendersim.clock import written
 from lavendersim.geometry.bodies import is_movable, mass_of, principal_inertia, vector
 from lavendersim.measures.interfaces import Floats, Trace
+from lavendersim.quantities.scalars import exact
 
 
-def row_after(trace: Trace, time: float) -> int:
+def first_starting_at(trace: Trace, time: float) -> int:
     """Return the row of the first step that starts at a time [s] as written, or later."""
-    done = trace.clock.steps_until(written(time))
+    done = trace.clock.steps_until(exact(time))
     return int(np.searchsorted(trace.step["step"], done + 1))
 
 
@@ -28,7 +28,7 @@ def events_of_bodies(trace: Trace) -> list[CellEvent]:
 def removals(trace: Trace) -> dict[str, int]:
     """Return the row of the first step without it, for each body that is removed."""
     gone = [event for event in events_of_bodies(trace) if event.remove]
-    return {event.body: row_after(trace, event.at) for event in gone}
+    return {event.body: first_starting_at(trace, event.at) for event in gone}
 
 
 def masses(trace: Trace) -> Floats:
@@ -41,7 +41,7 @@ def masses(trace: Trace) -> Floats:
         if scale is not None and event.body in movable:
             before = movable[event.body]
             movable[event.body] = before * scale
-            total[row_after(trace, event.at) :] += movable[event.body] - before
+            total[first_starting_at(trace, event.at) :] += movable[event.body] - before
     return total
 
 
@@ -62,7 +62,7 @@ def work_of_forces(trace: Trace) -> Floats:
         acts[_acting(trace, force)] = True
         displacement = np.diff(trace.pose[:, body, :3], axis=0, prepend=trace.pose[:1, body, :3])
         for event in _in_order(trace):
-            row = row_after(trace, event.at)
+            row = first_starting_at(trace, event.at)
             if event.teleport is None or event.body != force.body:
                 continue
             if 0 < row < len(displacement):
@@ -88,7 +88,7 @@ def given_by_events(trace: Trace) -> Floats:
     scaled = dict.fromkeys(bodies, 1.0)
     moved: dict[tuple[str, int], Floats] = {}  # where an event of the same time put it
     for event in _in_order(trace):
-        name, row = event.body, row_after(trace, event.at)
+        name, row = event.body, first_starting_at(trace, event.at)
         body = bodies[name]
         scale = 0.0 if event.remove else event.scale_mass
         if row == 0 and scale is not None:  # in a part of the log before this one
@@ -118,7 +118,7 @@ def unknown_momentum(trace: Trace) -> np.ndarray:
     """Return in which steps an event changed a momentum that no log has."""
     unknown = np.zeros(len(trace.step), dtype=bool)
     for event in _in_order(trace):
-        row = row_after(trace, event.at)
+        row = first_starting_at(trace, event.at)
         changes = event.velocity is not None or event.scale_mass is not None
         if (changes or event.remove) and row < len(unknown):
             unknown[row] = True
@@ -131,7 +131,7 @@ def _in_order(trace: Trace) -> list[CellEvent]:
 
 
 def _acting(trace: Trace, force: CellForce) -> slice:
-    return slice(row_after(trace, force.begin), row_after(trace, force.end))
+    return slice(first_starting_at(trace, force.begin), first_starting_at(trace, force.end))
 
 
 def _turns(quaternions: Floats) -> Floats:

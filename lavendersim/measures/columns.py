@@ -103,7 +103,7 @@ def one_timestep(trace: Trace, first: int, last: int, measure: str) -> float:
     return float(lengths.pop())
 
 
-def row_after(trace: Trace, seconds: float) -> int | None:
+def first_ending_after(trace: Trace, seconds: float) -> int | None:
     """Return the first logged step that ends after a time, None when there is none."""
     later = np.flatnonzero(trace.step["time"] > seconds)
     return int(later[0]) if len(later) else None

@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 from lavendersim.measures.interfaces import Cell
 from lavendersim.measures.specs.selection import ANY
-from lavendersim.quantities.scalars import written
+from lavendersim.quantities.scalars import label
 
 SomeCell = TypeVar("SomeCell", bound=Cell)
 
@@ -56,13 +56,13 @@ def group_by(
 
 def coordinates_text(coordinates: Mapping[str, Any], axes: Iterable[str]) -> str:
     """Return `e=0.8, timestep=1/480` for the axes named."""
-    return ", ".join(f"{axis}={written(coordinates[axis])}" for axis in axes)
+    return ", ".join(f"{axis}={label(coordinates[axis])}" for axis in axes)
 
 
 def telling_axes(cells: Sequence[Cell], selection: Mapping[str, Any]) -> set[str]:
     """Return the axes that tell these cells apart, and those their selection names."""
     axes = {axis for cell in cells for axis in cell.coordinates}
     varied = {
-        axis for axis in axes if len({written(cell.coordinates.get(axis)) for cell in cells}) > 1
+        axis for axis in axes if len({label(cell.coordinates.get(axis)) for cell in cells}) > 1
     }
     return varied | (axes & set(selection))

@@ -1,4 +1,4 @@
-"""The solids of a scene at their logged poses: how far they reach, and which may overlap.
+"""The solids of a scene at their logged poses: their extents, and which may overlap.
 
 A body's size is three numbers: sphere (radius, 0, 0), box its half edges, capsule and cylinder
 (radius, 0, half length along the body's z).
@@ -76,8 +76,8 @@ def _size(shape: CellShape) -> tuple[float, ...]:
     return 0.0, 0.0, 0.0
 
 
-def reach(kind: np.ndarray, placed: Placed, direction: Floats) -> Floats:
-    """Return how far each solid reaches along a unit direction [m]; inf where that is unknown."""
+def extents(kind: np.ndarray, placed: Placed, direction: Floats) -> Floats:
+    """Return the extent of each solid along a unit direction [m]; inf where that is unknown."""
     along = np.einsum("nij,i->nj", placed.rotation, direction)  # in body axes
     radius, half = placed.size[:, 0], placed.size[:, 2]
     boxes = np.einsum("nj,nj->n", np.abs(along), placed.size)
@@ -93,7 +93,7 @@ def near_pairs(kind: np.ndarray, placed: Placed, movable: np.ndarray) -> tuple[A
     Sorted by their lower ends along the axis on which the scene is longest, a solid can meet only
     those whose lower end comes before its own upper end.
     """
-    half = np.stack([reach(kind, placed, axis) for axis in (X, Y, Z)], axis=1)
+    half = np.stack([extents(kind, placed, axis) for axis in (X, Y, Z)], axis=1)
     low, high = placed.position - half, placed.position + half
     axis = int(np.argmax(np.ptp(placed.position, axis=0)))
     order = np.argsort(low[:, axis], kind="stable")

@@ -23,7 +23,7 @@ import numpy as np
 from lavendersim.geometry.bodies import is_movable
 from lavendersim.geometry.shapes import thickness
 from lavendersim.measures.balance import EnergyBalance, contacts_of_log, momentum_imbalance
-from lavendersim.measures.changes import events_of_bodies, row_after
+from lavendersim.measures.changes import events_of_bodies, first_starting_at
 from lavendersim.measures.columns import rows_of_steps
 from lavendersim.measures.interfaces import Floats, Rows, Trace
 from lavendersim.measures.kinds.optimality import friction_of
@@ -167,7 +167,7 @@ def _speed(trace: Trace) -> Numbers:
 def _without_jumps(trace: Trace, name: str, speed: Floats) -> Floats:
     """Return speeds without those of steps in which the config moved the body."""
     for event in events_of_bodies(trace):
-        row = row_after(trace, event.at)
+        row = first_starting_at(trace, event.at)
         if event.body == name and event.teleport and 0 < row <= len(speed):
             speed[row - 1] = 0.0
     return speed

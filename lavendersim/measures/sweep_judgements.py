@@ -12,7 +12,7 @@ from lavendersim.measures.interfaces import Cell, Floats
 from lavendersim.measures.selection import group_by, select
 from lavendersim.measures.specs.expectation import Crosses, ExpectSpec, Order, Ratio
 from lavendersim.measures.verdict import Outcome, failure
-from lavendersim.quantities.scalars import written
+from lavendersim.quantities.scalars import label
 
 NO_TOLERANCE = "none"
 REDUCTIONS: Final[Mapping[str, Callable[..., Floats]]] = {
@@ -84,8 +84,8 @@ def _trend(expectation: ExpectSpec, cells: Sequence[Cell], row_of: RowOf) -> Out
             rise = float(np.min(sign * (high - low)))
             if not rise > 0.0 and not reason:
                 reason = (
-                    f"{_numbers(high)} at {axis}={written(after.coordinates[axis])} after "
-                    f"{_numbers(low)} at {axis}={written(before.coordinates[axis])}"
+                    f"{_numbers(high)} at {axis}={label(after.coordinates[axis])} after "
+                    f"{_numbers(low)} at {axis}={label(before.coordinates[axis])}"
                     + (f" ({group})" if group else "")
                 )
                 closest = rise

@@ -24,7 +24,7 @@ from lavendersim.quantities.quantity import (
     refusal,
     sentence_error,
 )
-from lavendersim.quantities.scalars import Ratio, exact, written
+from lavendersim.quantities.scalars import Ratio, exact, label
 
 __all__ = [
     "AngularVelocity",
@@ -48,10 +48,10 @@ __all__ = [
     "either",
     "exact",
     "found",
+    "label",
     "near",
     "nearest",
     "quoted",
     "refusal",
     "sentence_error",
-    "written",
 ]

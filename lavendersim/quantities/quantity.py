@@ -15,7 +15,7 @@ from pydantic import Discriminator, GetCoreSchemaHandler, GetJsonSchemaHandler, 
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from lavendersim.quantities.found import found
-from lavendersim.quantities.scalars import exact, written
+from lavendersim.quantities.scalars import exact, label
 from lavendersim.quantities.units import advice
 
 RATIO_PATTERN = r"^[-+]?[0-9]+/[0-9]+$"
@@ -99,7 +99,7 @@ class Quantity:
         self, source: Any, handler: GetCoreSchemaHandler
     ) -> CoreSchema:
         """Validate with `check`; write Fractions as `1/480`."""
-        writer = core_schema.plain_serializer_function_ser_schema(written, when_used="json")
+        writer = core_schema.plain_serializer_function_ser_schema(label, when_used="json")
         if not self.exact:
             return core_schema.no_info_plain_validator_function(self.check)
         return core_schema.with_info_plain_validator_function(

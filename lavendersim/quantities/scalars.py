@@ -56,7 +56,7 @@ def exact(number: float) -> Fraction:
     return Fraction(repr(number))
 
 
-def written(value: object) -> str:
+def label(value: object) -> str:
     """Return how a value reads in labels and messages: ratios as ratios, floats with %g."""
     if isinstance(value, Ratio | Fraction):
         return str(value) if isinstance(value, Fraction) else repr(value)
@@ -67,9 +67,9 @@ def written(value: object) -> str:
     if isinstance(value, float):
         return f"{value:g}"
     if isinstance(value, list | tuple):
-        return "[" + ", ".join(written(item) for item in value) + "]"
+        return "[" + ", ".join(label(item) for item in value) + "]"
     if isinstance(value, dict):
-        return "{" + ", ".join(f"{key}: {written(item)}" for key, item in value.items()) + "}"
+        return "{" + ", ".join(f"{key}: {label(item)}" for key, item in value.items()) + "}"
     return str(value)
 
 

@@ -70,8 +70,8 @@ def extent(trace: Trace, bodies: Iterable[Shape]) -> Extent:
         positions = trace.pose[:, row_of[shape.name], :3]
         positions = positions[np.isfinite(positions).all(axis=1)]
         if len(positions):
-            lows.append(positions.min(axis=0) - shape.reach)
-            highs.append(positions.max(axis=0) + shape.reach)
+            lows.append(positions.min(axis=0) - shape.bounding_radius)
+            highs.append(positions.max(axis=0) + shape.bounding_radius)
     if not lows:
         return Extent(np.full(3, -0.5), np.full(3, 0.5))
     return Extent(np.min(lows, axis=0), np.max(highs, axis=0))

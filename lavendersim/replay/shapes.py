@@ -26,7 +26,7 @@ class Shape(NamedTuple):
     pieces: tuple[Piece, ...]
     normal: Vector
     offset: float
-    reach: float  # [m] largest distance of the surface from the centre; 0 for a plane
+    bounding_radius: float  # [m] about the centre of mass; 0 for a plane
 
 
 def shapes(cell: CellConfig) -> list[Shape]:

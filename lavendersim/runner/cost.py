@@ -160,7 +160,10 @@ def _truth(settings: Sequence[Setting], errors: Sequence[SettingError]) -> dict[
 
 
 def _finite(value: Any) -> Any:
-    """Return `value` with null for what JSON has no number for."""
+    """Return `value` with null for what JSON has no number for.
+
+    Not a text, as `results.json` has for people: what reads `cost.json` calculates with it.
+    """
     if isinstance(value, float) and not math.isfinite(value):
         return None
     if isinstance(value, list):

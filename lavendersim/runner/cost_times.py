@@ -15,6 +15,7 @@ from typing import NamedTuple
 
 from lavendersim.engine.spec import Spec
 from lavendersim.experiment.cell import Cell
+from lavendersim.quantities.scalars import exact
 from lavendersim.scene.plan import plan_of_cell, union
 
 from .compile_times import compile_times
@@ -74,7 +75,7 @@ def _engines(each: Clocked, spec: Spec, begin: float) -> list[tuple[Timed, Fract
     engines = []
     for cell, steps in zip(each.cells, each.steps, strict=True):
         timestep = cell.config.numerics.timestep
-        first = ceil(Fraction(repr(begin)) / timestep)
+        first = ceil(exact(begin) / timestep)
         last = steps if steps >= cell.config.steps else steps - 1
         if last <= first:
             continue

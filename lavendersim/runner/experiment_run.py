@@ -13,12 +13,12 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from lavendersim.cell.record import NONE
 from lavendersim.errors import ConfigError, Defect, UsageError
 from lavendersim.experiment import Experiment, load_experiment
 from lavendersim.experiment.cell import Cell
 from lavendersim.measures import Values, Verdict, judge, meant_to_end_early
 
+from .checks import check
 from .environment import environment
 from .results import compile_seconds, convergence_notices, write_results
 from .run_directory import (
@@ -121,18 +121,7 @@ def load_all(paths: list[Path], reduced: bool = False) -> list[Experiment]:
     for path in find_configs(paths):
         try:
             experiment = load_experiment(path, reduced)
-            if experiment.overhead is not None:
-                from .overheads import check_overheads  # late: other configs load without numba
-
-                check_overheads(experiment)
-            if experiment.config.record.problems != NONE:
-                from .problem_dump import check_problems  # late: other configs load without numba
-
-                check_problems(experiment)
-            if experiment.switches_effects:
-                from .plans import check_overrides  # late: other configs load without numba
-
-                check_overrides(experiment)
+            check(experiment)
             experiments.append(experiment)
         except ConfigError as error:
             defects += error.defects
@@ -182,14 +171,12 @@ def run(
 
     from .cell import CellJob, CellOfLog
     from .executor import outcomes_of
-    from .overheads import check_overheads, take_overheads, write_overheads
+    from .overheads import take_overheads, write_overheads
     from .plans import distinct, shared_plans
-    from .problem_dump import check_problems
 
     if not isinstance(experiment, Experiment):
         experiment = load_experiment(experiment)
-    check_overheads(experiment)
-    check_problems(experiment)
+    check(experiment)
     cells = experiment.cells()
     plans = shared_plans(cells)
     seeds = Seeds(experiment)

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Callable, Sequence
-from fractions import Fraction
 from math import ceil, comb
 from pathlib import Path
 from typing import Any, Final, NamedTuple
@@ -22,6 +21,7 @@ from lavendersim.experiment import Experiment
 from lavendersim.experiment.cell import Cell
 from lavendersim.geometry.bodies import is_movable
 from lavendersim.quantities.found import nearest, quoted
+from lavendersim.quantities.scalars import exact
 
 from .compile_times import compile_times
 from .environment import processor
@@ -109,7 +109,7 @@ def take_overheads(
         workers,
         lambda done, total: report("compiling engines for overheads", done, total),
     )
-    first = ceil(Fraction(repr(spec.begin)) / cell.config.numerics.timestep)
+    first = ceil(exact(spec.begin) / cell.config.numerics.timestep)
     steps = cell.config.steps - first
     timed, diverged = _timed(cell, specs, first, steps)
     pairs = [_without_diverged(pair, diverged) for pair in pairs]

@@ -1,1 +1,1 @@
-"""What a config makes: mass properties, the engine's arrays, and the plan of its effects."""
+"""What a cell becomes: the plan of its effects, the engine's records, the queue of changes."""

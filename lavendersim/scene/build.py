@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from lavendersim.cell import CellConfig, CellForce, CellRecord, Numerics
-from lavendersim.clock import Clock, written
+from lavendersim.clock import Clock
 from lavendersim.engine.collide.convex.hull_geometry import HullGeometry
 from lavendersim.engine.effects import effects_of
 from lavendersim.engine.engine import Engine
@@ -19,6 +19,7 @@ from lavendersim.engine.record_layout import (
     allocate_velocities,
 )
 from lavendersim.engine.spec import Spec
+from lavendersim.quantities.scalars import exact
 
 from .body_rows import body_table, pose_of
 from .colliders import colliders
@@ -107,7 +108,7 @@ def residual_window(record: CellRecord, clock: Clock) -> tuple[int, int]:
     if window == "all":
         return 1, np.iinfo(np.int64).max
     # By the number as written: 0.1 s is a step of 1/10 s, its binary value lies beside it.
-    begin, end = written(window.begin), written(window.end)
+    begin, end = exact(window.begin), exact(window.end)
     return max(1, clock.steps_until(begin)), clock.steps_within(end)
 
 

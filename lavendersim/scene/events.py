@@ -12,8 +12,8 @@ from math import fsum
 from typing import NamedTuple
 
 from lavendersim.cell import CellEvent, CellForce, CellTimestep
-from lavendersim.clock import written
 from lavendersim.engine.engine import Engine
+from lavendersim.quantities.scalars import exact
 
 from .build import Scene, set_timestep
 
@@ -48,7 +48,7 @@ class EventQueue:
 
     def _after(self, time: float) -> int:
         """Return how many steps are done when a time [s], as written, is reached."""
-        return self._scene.clock.steps_until(written(time))
+        return self._scene.clock.steps_until(exact(time))
 
     def _event_changes(self, events: Sequence[CellEvent | CellTimestep]) -> Iterator[Change]:
         for done, timestep in self._scene.clock.changes:

@@ -1,7 +1,7 @@
 """The effects that a config switches by hand, against what its scene requires.
 
     on    an effect that is not required is compiled in, with the coefficients that the scene
-          states, and so is whatever it needs
+          specifies, and so is whatever it needs
     off   where the scene does not require it: nothing changes, the file asserts the pruning;
           where it does: refused, unless the file says `force: true`
 An effect that a key of the numerics chooses, or of `study`, is another law, no idle effect: only
@@ -141,7 +141,7 @@ def _unmet(made: Overridden, switches: Mapping[str, str]) -> Iterator[Refusal]:
 
 
 def _choosing(name: str, facts: Facts, on: bool) -> str:
-    """Return what a config must state for an effect to be on or off.
+    """Return what a config must specify for an effect to be on or off.
 
     Nothing where that key alone does not do it.
     """

@@ -1,4 +1,4 @@
-"""Exit codes and streams of the command line: 0 good, 1 a check failed, 2 usage or config."""
+"""Exit codes and streams of the command line: 0 good, 1 a check failed, 2 usage, 3 a log."""
 
 from __future__ import annotations
 
@@ -95,6 +95,16 @@ def test_a_cut_off_log_is_recovered_and_exits_3(drop: Path, tmp_path: Path) -> N
     from lavendersim.trace import open_trace
 
     assert open_trace(tmp_path / "whole.mcap").status.startswith("recovered")
+
+
+def test_a_log_that_is_not_there_is_a_usage_error_and_a_damaged_one_is_not(tmp_path: Path) -> None:
+    done = lavender("recover", "none.mcap", "whole.mcap", where=tmp_path)
+    assert (done.returncode, done.stderr) == (2, "none.mcap: no such log\n")
+    (tmp_path / "noise.mcap").write_bytes(bytes(100))
+    done = lavender("recover", "noise.mcap", "whole.mcap", where=tmp_path)
+    assert done.returncode == 3
+    assert done.stderr.startswith("noise.mcap: ")
+    assert len(done.stderr.splitlines()) == 1
 
 
 def test_a_folder_with_runs_in_it_is_run_and_collected_again(drop: Path, tmp_path: Path) -> None:

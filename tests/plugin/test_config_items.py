@@ -66,6 +66,29 @@ def test_an_effect_that_cannot_be_off_is_a_collection_error_with_its_place(
     result.stdout.no_fnmatch_line("*Traceback*")
 
 
+def test_problems_that_cannot_be_written_are_a_collection_error(
+    pytester: pytest.Pytester,
+) -> None:
+    pytester.makeconftest("import sys\nsys.modules['h5py'] = None  # as if not installed\n")
+    pytester.makefile(".yaml", drop=DROP + "record: {problems: every 10}\n")
+    result = run(pytester)
+    result.assert_outcomes(errors=1)
+    line = len(DROP.splitlines()) + 1
+    result.stdout.fnmatch_lines([f"*drop.yaml:{line}:*: record.problems needs h5py: *"])
+    result.stdout.no_fnmatch_line("*Traceback*")
+
+
+def test_an_overhead_of_no_effect_is_a_collection_error(pytester: pytest.Pytester) -> None:
+    pytester.makefile(".yaml", drop=DROP + "overhead: {effects: [drga]}\n")
+    result = run(pytester)
+    result.assert_outcomes(errors=1)
+    line = len(DROP.splitlines()) + 1
+    result.stdout.fnmatch_lines(
+        [f"*drop.yaml:{line}:*: overhead.effects: no effect is called *drga*"]
+    )
+    result.stdout.no_fnmatch_line("*Traceback*")
+
+
 def test_a_defective_config_is_a_collection_error_with_its_place(
     pytester: pytest.Pytester,
 ) -> None:

@@ -31,6 +31,10 @@ RETIRED = {
     "wanted": Retired(r"\bwanted\b", "required", ENGINE),
     "told": Retired(r"\btold\b", "reported, described; specified"),
     "stated": Retired(r"\bstated\b", "specified (in a config), given"),
+    "state (to)": Retired(
+        r"; states? \w|\b(config|scene|file|must|may) states?\b|\bstates both\b",
+        "specify (in a config), declare, give",
+    ),
     "mended": Retired(r"\bmend(s|ed|ing)?\b", "fixed"),
     "unsolved": Retired(r"\bunsolved\b", "not converged, did not converge"),
     "price": Retired(r"\bpric(e|es|ed|ing)\b", "overhead"),
@@ -64,6 +68,7 @@ LEFT: dict[str, dict[str, int]] = {
     "rough": {"tests": 8},
     "call for": {"tests": 1},
     "wanted": {"tests": 2},
+    "state (to)": {"engine": 2},
     "unsolved": {"tests": 12},
     "price": {"tests": 8},
     "space": {"engine": 1},  # the title of a paper

@@ -63,7 +63,7 @@ def rows_of(costed: Costed) -> dict[tuple[str, str], dict[str, Any]]:
     return {(row["role"], row["timestep"]): row for row in costed.table["rows"]}
 
 
-def test_the_grid_is_the_product_of_its_lists_with_what_the_config_states_first() -> None:
+def test_the_grid_is_the_product_of_its_lists_with_what_the_config_specifies_first() -> None:
     experiment = load_experiment_text(GRID, "ball.yaml")
     settings = settings_of(experiment)
     assert settings[0].role == "specified"

@@ -24,7 +24,7 @@ from lavendersim.measures.specs.selection import ANY
 from lavendersim.quantities.found import nearest, quoted
 from lavendersim.quantities.model import ConfigModel
 from lavendersim.quantities.names import NamedKind
-from lavendersim.quantities.scalars import exact, written
+from lavendersim.quantities.scalars import exact, label
 
 Read = TypeVar("Read", bound=ConfigModel)
 
@@ -125,9 +125,9 @@ class Reading:
         if not values or value.text == ANY or isinstance(value.content, tuple | dict):
             return
         if not any(same_value(value, other) for other in values):
-            unique = list(dict.fromkeys(written(other.data) for other in values))
+            unique = list(dict.fromkeys(label(other.data) for other in values))
             among = ", ".join(unique[:16]) + (", ..." if len(unique) > 16 else "")
-            shown = written(value.data)
+            shown = label(value.data)
             self._refuse(value.mark, f"{axis}: {shown} is not among the swept values {among}")
 
 

@@ -31,7 +31,7 @@ class AlwaysSection(Always):
             if bound is None or bound.text != NONE:
                 mark = bound.mark if bound is not None else key_mark(at.root, "always")
                 for reason in itertools.islice(reasons, 1):
-                    at.refuse(mark, f"{check}: {reason}; state {check}: none")
+                    at.refuse(mark, f"{check}: {reason}; specify {check}: none")
 
 
 def _unknown_work(root: Node) -> Iterator[str]:

@@ -65,7 +65,7 @@ class _MatterOwn(declared("MatterOwn", _Mass, MOTION_KEYS), _Mass):  # type: ign
 
     surface: SurfaceOf = Field(
         default=Surface(),
-        description="name of one of `scene.surfaces`, or its properties in place; all 0",
+        description="name of one of `scene.surfaces`, or its properties in place",
     )
     orientation: Orientation = Field(
         default=(1.0, 0.0, 0.0, 0.0),
@@ -137,7 +137,7 @@ def _immovable_rules(at: Place, word: str) -> None:
             at.refuse(mark, f"{key}: {at} is {word}; a {word} body has no {_words(key)}")
     if mark := at.written("release"):
         goes = "stays" if word == "fixed" else "goes its own way"
-        at.refuse(mark, f"release: {at} is {word} and {goes}; state its position")
+        at.refuse(mark, f"release: {at} is {word} and {goes}; specify its position")
 
 
 def _inertia_rules(at: Place, kind: str) -> None:

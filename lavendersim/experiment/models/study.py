@@ -17,7 +17,7 @@ from lavendersim.cell.choices import CAPTURE_IN_SWEEPS, NO_MISTAKE, Mistake
 from lavendersim.experiment.text.place import Place
 from lavendersim.quantities.model import ConfigModel
 
-# What the numerics must state for a mistake to be one: key, value, and why.
+# What the numerics must specify for a mistake to be one: key, value, and why.
 _PLACES: Final = {
     CAPTURE_IN_SWEEPS: (
         ("solver", "projected_gauss_seidel", "is a mistake in the loop of projected_gauss_seidel"),

@@ -14,7 +14,7 @@ import random
 
 from lavendersim.cell.shapes import CellCompound, CellSimple
 from lavendersim.experiment.models.arrangements import Grid, Pyramid, Tower
-from lavendersim.geometry.support import reach
+from lavendersim.geometry.support import extent_against
 from lavendersim.quantities.quantity import Quaternion, Vector3
 
 
@@ -26,15 +26,15 @@ def centres(
     """Return the centres of mass [m] in the order of the bodies' numbers."""
     if isinstance(arrangement, Grid):
         return _grid(arrangement)
-    down = reach(shape, orientation, (0.0, 0.0, 1.0))
-    height = down + reach(shape, orientation, (0.0, 0.0, -1.0))
+    down = extent_against(shape, orientation, (0.0, 0.0, 1.0))
+    height = down + extent_against(shape, orientation, (0.0, 0.0, -1.0))
     x, y, z = arrangement.base
     lowest = z + down
     if isinstance(arrangement, Tower):
         step = height + arrangement.gap
         return [(x, y, lowest + k * step) for k in range(arrangement.count)]
-    left = reach(shape, orientation, (1.0, 0.0, 0.0))
-    right = reach(shape, orientation, (-1.0, 0.0, 0.0))
+    left = extent_against(shape, orientation, (1.0, 0.0, 0.0))
+    right = extent_against(shape, orientation, (-1.0, 0.0, 0.0))
     step = left + right + arrangement.gap
     middle = x + 0.5 * (left - right)  # of a shape whose centre is not half way between its sides
     count = arrangement.base_count

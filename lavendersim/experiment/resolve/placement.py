@@ -1,10 +1,10 @@
-"""Where a release above a plane puts a body; how far shapes reach from their centre.
+"""Where a release above a plane puts a body; by the extent of its shape.
 
 The gap between the body's surface and the plane n.x = offset, measured along n, is
 
     clearance + phase * sqrt(2 g h) * dt,    h = clearance, g = -gravity.n
 
-so that the centre stands at  n.x = offset + reach + gap,  reach: how far the body's surface lies
+so that the centre stands at  n.x = offset + extent + gap,  extent: how far the body's surface lies
 below its centre along n (radius; for a box half the sum of |edge . n|). A step at impact falls
 sqrt(2 g h) dt, hence phases 0..15/16 sample where in a step the impact falls.
 """
@@ -17,7 +17,7 @@ from fractions import Fraction
 from lavendersim.cell.body import Release
 from lavendersim.cell.shapes import CellCompound, CellSimple, Plane
 from lavendersim.experiment.text.node import Path
-from lavendersim.geometry.support import reach
+from lavendersim.geometry.support import extent_against
 from lavendersim.geometry.vectors import dot, unit
 from lavendersim.quantities.quantity import Quaternion, Vector3
 
@@ -51,12 +51,12 @@ def released_position(
             sentence = f"gravity does not pull towards {release.above}, so that there is no impact"
             raise SceneError(("release", "phase"), f"phase: {sentence} to shift; leave it out")
         gap += float(release.phase * timestep) * math.sqrt(2.0 * pull * release.clearance)
-    distance = plane.offset + reach(shape, orientation, normal) + gap
+    distance = plane.offset + extent_against(shape, orientation, normal) + gap
     nx, ny, nz = normal
     if release.at is None:
         return (nx * distance, ny * distance, nz * distance)
     x, y = release.at
     if abs(nz) < 1e-9:
         sentence = f"at: {release.above} stands upright, x and y do not say how high the body is"
-        raise SceneError(("release", "at"), f"{sentence}; state a position")
+        raise SceneError(("release", "at"), f"{sentence}; specify a position")
     return (x, y, (distance - nx * x - ny * y) / nz)

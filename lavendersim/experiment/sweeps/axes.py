@@ -18,7 +18,7 @@ from lavendersim.experiment.sweeps.paths import find_path
 from lavendersim.experiment.text.node import Node, Path, graft, key_mark
 from lavendersim.experiment.text.report import Report
 from lavendersim.quantities.found import found, quoted
-from lavendersim.quantities.scalars import Ratio, exact, written
+from lavendersim.quantities.scalars import Ratio, exact, label
 
 MOST_CELLS = 100_000
 
@@ -57,7 +57,7 @@ class Point:
 
 def label_of(coordinates: Mapping[str, Any]) -> str:
     """Return coordinates as text: `e=0.8, timestep=1/480`."""
-    return ", ".join(f"{name}={written(value)}" for name, value in coordinates.items())
+    return ", ".join(f"{name}={label(value)}" for name, value in coordinates.items())
 
 
 def swept_value(value: Any) -> Any:
@@ -151,17 +151,17 @@ def _usable(name: str, values: Node, report: Report, nullable: bool) -> tuple[No
             sentence = f"{name}: expected a number, a text, true, false or a list"
             report.add(value.mark, f"{sentence}, found {found(value.data)}")
             continue
-        label = written(value.data)
+        shown = label(value.data)
         number = value.number
-        key = (type(value.content), label) if number is None else exact(number)
+        key = (type(value.content), shown) if number is None else exact(number)
         if key in usable:
-            report.add(value.mark, f"{name}: value {label} stands twice")
-        elif label in labels:
-            sentence = f"{name}: another value reads {label} too; labels show six digits"
+            report.add(value.mark, f"{name}: value {shown} stands twice")
+        elif shown in labels:
+            sentence = f"{name}: another value reads {shown} too; labels show six digits"
             report.add(value.mark, sentence)
         else:
             usable[key] = value
-            labels.add(label)
+            labels.add(shown)
     return tuple(usable.values())
 
 

@@ -26,7 +26,7 @@ from lavendersim.experiment.models.cost import CostSpec
 from lavendersim.experiment.resolve.presets import DEFAULT, PRESETS, specified_numerics
 from lavendersim.experiment.text.former import with_new_spellings
 from lavendersim.experiment.text.parse import parse
-from lavendersim.quantities.scalars import Ratio, written
+from lavendersim.quantities.scalars import Ratio, label
 
 KNOBS: Final = ("timestep", "solver", "sweeps", "tolerance", "warm_start")
 CHAPTER: Final = "chapter"  # name of a preset; its axis is `numerics`
@@ -109,7 +109,7 @@ def _grid(spec: CostSpec, specified: Setting) -> Iterator[Setting]:
 
 
 def _specified(experiment: Experiment) -> tuple[str, dict[str, Any]]:
-    """Return the preset that a config names, and what else its numerics state, beside the knobs."""
+    """Return the preset of a config, and what else its numerics specify, beside the knobs."""
     root, _ = parse(experiment.text.encode(), experiment.name)
     assert root is not None
     preset, values = specified_numerics(root)
@@ -182,7 +182,7 @@ class _Dumper(yaml.SafeDumper):
 
 
 def _ratio(dumper: _Dumper, value: Ratio | Fraction) -> yaml.ScalarNode:
-    return dumper.represent_scalar("tag:yaml.org,2002:str", written(value))
+    return dumper.represent_scalar("tag:yaml.org,2002:str", label(value))
 
 
 _Dumper.add_representer(Ratio, _ratio)

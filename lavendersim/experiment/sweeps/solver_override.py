@@ -14,7 +14,7 @@ from lavendersim.experiment.resolve.presets import specified_numerics
 from lavendersim.experiment.text.node import Node, graft
 from lavendersim.experiment.text.parse import parse
 
-# What a case may state of its numerics and still be one of the default's: the timestep belongs to
+# What a case may specify of its numerics and still be one of the default's: the timestep belongs to
 # the scene, as its size and its speeds do.
 OF_THE_SCENE: Final = frozenset({"preset", "timestep"})
 

@@ -112,7 +112,8 @@ class _Reading:
     def _read(self, events: Iterator[Any]) -> None:
         documents = 0
         for event in events:
-            mark = Mark(event.start_mark.line + 1, event.start_mark.column + 1)
+            start = event.start_mark
+            mark = Mark(start.line + 1, start.column + 1)
             if isinstance(event, yaml.DocumentStartEvent):
                 documents += 1
                 if documents > 1:
@@ -135,7 +136,9 @@ class _Reading:
             return
         refused = self._refuse_properties(event, mark)
         if isinstance(event, yaml.ScalarEvent):
-            if match := _UNPRINTABLE.search(event.value):  # written as an escape such as "\\x1b"
+            # as an escape such as "\\x1b"; most texts are plain, which is seen at once
+            plain = event.value.isascii() and event.value.isprintable()
+            if not plain and (match := _UNPRINTABLE.search(event.value)):
                 self.refuse(mark, f"control character U+{ord(match[0]):04X}; remove it")
             self._place(self._scalar(event, mark, refused), mark, event.value)
             return

@@ -21,7 +21,7 @@ from lavendersim.figures.specs.stability_map import StabilityMap
 from lavendersim.figures.style import DARK, GREY
 from lavendersim.measures.interfaces import Cell
 from lavendersim.measures.values import Values
-from lavendersim.quantities.scalars import written
+from lavendersim.quantities.scalars import label
 
 COLOURS: Final = "cividis"  # distinguished by colour-blind readers and in grey
 HALF_DARK: Final = 0.5  # luminance below which letters are white [-]
@@ -48,7 +48,7 @@ def draw_panel(
         luminance = float(np.dot(face[:3], (0.2126, 0.7152, 0.0722)))
         axes.add_patch(_tile(x, y, facecolor=face, edgecolor="white"))
         letters = "white" if luminance < HALF_DARK else DARK
-        axes.text(x, y, written(limit), ha="center", va="center", color=letters)
+        axes.text(x, y, label(limit), ha="center", va="center", color=letters)
     _mark(axes, panel, columns, rows)
     axes.grid(False)
     axes.set_xlim(-0.5, len(columns) - 0.5)
@@ -101,8 +101,8 @@ def _mark(axes: Any, panel: StabilityMap, columns: list[str], rows: list[str]) -
     if not panel.default:
         return
     column, row = (panel.default.get(axis) for axis in (panel.axis, panel.rows))
-    x = columns.index(written(column)) if column is not None else 0
-    y = rows.index(written(row)) if row is not None else 0
+    x = columns.index(label(column)) if column is not None else 0
+    y = rows.index(label(row)) if row is not None else 0
     width = 1 if column is not None else len(columns)
     height = 1 if row is not None else len(rows)
     axes.add_patch(

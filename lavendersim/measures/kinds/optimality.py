@@ -1,8 +1,8 @@
 """Violation of the laws of contact by logged contacts, beyond the residual of their step.
 
     pushing          lambda_n >= 0
-    complementarity  0 <= lambda_n, 0 <= w, lambda_n w = 0  with  w = v_n + target + gamma lambda_n,
-                     target = b + b_rest, what stabilisation and restitution asked of the row
+    complementarity  0 <= lambda_n, 0 <= w, lambda_n w = 0  with  w = v_n + b + gamma lambda_n,
+                     b the target, what stabilisation and restitution asked of the row
     cone             |lambda_t| <= mu lambda_n
     sliding          lambda_t = -mu lambda_n v_t/|v_t| where v_t is not 0
 The second and the fourth by their natural maps, |min((k_n + gamma) lambda_n, w)| and

@@ -11,7 +11,7 @@ from lavendersim.measures.columns import last_window
 from lavendersim.measures.interfaces import Floats, Trace
 from lavendersim.measures.penetration import depths
 from lavendersim.measures.registration import measure
-from lavendersim.measures.solids import Placed, near_pairs, reach, solids_of
+from lavendersim.measures.solids import Placed, extents, near_pairs, solids_of
 from lavendersim.measures.specs.overlap import Overlap
 
 NAN = float("nan")
@@ -50,7 +50,7 @@ def _with_planes(
 ) -> list[float]:
     found = [0.0]
     for normal, offset in grounds:
-        inside = offset - placed.position @ normal + reach(kind, placed, -normal)
+        inside = offset - placed.position @ normal + extents(kind, placed, -normal)
         inside = inside[movable]
         found += [float(np.max(np.where(np.isinf(inside), NAN, inside)))] if len(inside) else []
     return found

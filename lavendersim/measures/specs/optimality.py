@@ -10,7 +10,7 @@ from lavendersim.measures.specs.base import Measure
 class Optimality(Measure):
     """The largest violation [m/s] of each contact law in any logged contact (a row of numbers).
 
-    1 pushing, lambda_n >= 0; 2 complementarity of lambda_n and v_n + b + b_rest + gamma lambda_n;
+    1 pushing, lambda_n >= 0; 2 complementarity of lambda_n and v_n + b + gamma lambda_n;
     where there is friction also 3 the cone, |lambda_t| <= mu lambda_n; 4 sliding opposes motion.
     Numbers 2 and 4 are what exceeds the residual of their step. Impulses count in the velocity they
     give: times the inverse effective mass, or the sum of the inverse masses.

@@ -18,7 +18,7 @@ from lavendersim.experiment.resolve.presets import PRESETS
 from lavendersim.figures.specs.catalogue import FigureSpec
 from lavendersim.measures.specs.catalogue import MeasureSpec
 from lavendersim.measures.specs.expectation import ExpectSpec
-from lavendersim.quantities.scalars import resolve, written
+from lavendersim.quantities.scalars import label, resolve
 
 TEXT = (Path(__file__).parents[3] / "docs" / "config.md").read_text(encoding="utf-8")
 ROWS = {
@@ -66,4 +66,4 @@ def test_table_of_numerics_has_the_presets_numbers(column: int, preset: str) -> 
     documented = {key: row[column] for key, row in ROWS.items()}
     assert set(documented) == set(Numerics.model_fields)
     for key, value in PRESETS[preset]:
-        assert written(resolve(documented[key])) == written(value), key
+        assert label(resolve(documented[key])) == label(value), key

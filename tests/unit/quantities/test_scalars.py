@@ -8,7 +8,7 @@ from fractions import Fraction
 
 import pytest
 
-from lavendersim.quantities.scalars import Ratio, ScalarError, exact, resolve, written
+from lavendersim.quantities.scalars import Ratio, ScalarError, exact, label, resolve
 
 
 @pytest.mark.parametrize(
@@ -55,7 +55,7 @@ def test_ratio_is_a_float_that_keeps_its_exact_value() -> None:
     assert isinstance(ratio, Ratio)
     assert ratio == 1 / 480
     assert ratio.fraction == Fraction(1, 480)
-    assert written(ratio) == "1/480"
+    assert label(ratio) == "1/480"
 
 
 def test_ratio_survives_copies_and_processes() -> None:
@@ -82,4 +82,4 @@ def test_decimal_is_exact_as_written() -> None:
     ],
 )
 def test_label_text(value: object, text: str) -> None:
-    assert written(value) == text
+    assert label(value) == text

@@ -83,8 +83,8 @@ def test_faces_of_a_hull_are_the_triangles_of_its_mesh() -> None:
 
 def test_reach_holds_every_piece() -> None:
     rod = {"kind": "capsule", "radius": 0.1, "length": 0.6}
-    assert shape_of(rod).reach == pytest.approx(0.4)
-    assert placed(rod).reach == pytest.approx(1.4)
+    assert shape_of(rod).bounding_radius == pytest.approx(0.4)
+    assert placed(rod).bounding_radius == pytest.approx(1.4)
     can = shape_of({"kind": "cylinder", "radius": 0.3, "length": 0.8})
-    assert can.reach == pytest.approx(0.5)
-    assert shape_of(TETRA).reach == pytest.approx(np.linalg.norm([0.75, 0.25, 0.25]))
+    assert can.bounding_radius == pytest.approx(0.5)
+    assert shape_of(TETRA).bounding_radius == pytest.approx(np.linalg.norm([0.75, 0.25, 0.25]))

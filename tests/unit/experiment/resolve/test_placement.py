@@ -11,7 +11,7 @@ from lavendersim.cell.body import Release
 from lavendersim.cell.shapes import Box, Plane, Sphere
 from lavendersim.experiment.resolve.placement import SceneError, released_position
 from lavendersim.geometry.quaternions import from_axis_angle
-from lavendersim.geometry.support import reach
+from lavendersim.geometry.support import extent_against
 from lavendersim.geometry.vectors import unit
 
 DOWN = (0.0, 0.0, -9.81)
@@ -68,7 +68,7 @@ def test_reach_of_a_turned_box(
     axis: tuple[float, float, float], degrees: float, expected: float
 ) -> None:
     turned = from_axis_angle(axis, degrees)
-    assert reach(BOX, turned, (0.0, 0.0, 1.0)) == pytest.approx(expected, abs=4e-16)
+    assert extent_against(BOX, turned, (0.0, 0.0, 1.0)) == pytest.approx(expected, abs=4e-16)
 
 
 def test_unit_vector_is_kept_bit_for_bit() -> None:
