@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
 from pathlib import Path
+from time import perf_counter
 from typing import Any
 
 from lavendersim.engine.compile import compiler_is_off
@@ -16,6 +17,10 @@ from lavendersim.scene.plan import Plan
 
 from .cell import CellJob, CellOutcome, compile_kernel, run_and_measure
 from .measured import Measured
+
+# Cells that would take less [s] than this one after the other are run in this process: each other
+# process imports numba and loads kernels for 1 to 2 s of processor time before its first step.
+WORTH_PROCESSES = 4.0
 
 
 def outcomes_of(
@@ -33,14 +38,21 @@ def outcomes_of(
         first.setdefault(job.plan.choices, job)
     apart = _compile_together(list(first.values()), workers, compiling)
     # The first cell of each plan runs here: it leaves the kernel where other processes find it.
-    here = jobs if workers <= 1 else list(first.values())
-    for job in here:
-        if first[job.plan.choices] is job and not is_compiled(job.plan.spec):
+    ordered = sorted(jobs, key=lambda job: first[job.plan.choices] is not job)
+    done, taken = 0, 0.0  # and what they took [s]
+    while done < len(ordered):
+        rest = ordered[done:]
+        if workers > 1 and done >= len(first) and taken / done * len(rest) > WORTH_PROCESSES:
+            break
+        job = rest[0]
+        if done < len(first) and not is_compiled(job.plan.spec):
             compiling(job.plan)
+        begin = perf_counter()
         outcome, measured = run_and_measure(job)
+        done, taken = done + 1, taken + perf_counter() - begin - outcome.compile_ns / 1e9
         spent = outcome.compile_ns + apart.pop(job.path, 0)
         yield job, outcome._replace(compile_ns=spent), measured
-    rest = [] if workers <= 1 else [job for job in jobs if first[job.plan.choices] is not job]
+    rest = ordered[done:]
     if not rest:
         return
     with _pool(workers, len(rest)) as pool:
