@@ -8,7 +8,6 @@ sample, `cost.csv` a row a setting.
 from __future__ import annotations
 
 import csv
-import json
 import math
 from collections.abc import Sequence
 from pathlib import Path
@@ -24,6 +23,7 @@ from .cost_targets import answers, front_of
 from .cost_times import Clocked, Times, times_of
 from .environment import machine
 from .experiment_run import Finished, Progress, run
+from .json_table import text_of
 from .overheads import Spread
 from .run_directory import COST, COST_TABLE, RUNS
 from .timed_engine import clock
@@ -99,8 +99,7 @@ def take_cost(
             "targets": answers(rows, targets or spec.targets),
         }
         tables.append(_finite(table))
-        text = json.dumps(tables[0], indent=1, allow_nan=False) + "\n"
-        (finished.run.path / COST).write_text(text, encoding="utf-8")
+        (finished.run.path / COST).write_text(text_of(tables[0]), encoding="utf-8")
         _write_csv(finished.run.path / COST_TABLE, tables[0]["rows"])
 
     finished = run(grid, root, jobs, progress, overheads=False, closing=closing)

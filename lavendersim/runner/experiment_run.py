@@ -20,6 +20,7 @@ from lavendersim.measures import Values, Verdict, judge, meant_to_end_early
 
 from .checks import check
 from .environment import environment
+from .json_table import text_of
 from .results import compile_seconds, convergence_notices, write_results
 from .run_directory import (
     CELLS,
@@ -273,7 +274,7 @@ def _write_resolved(path: Path, cells: Sequence[Cell]) -> None:
 def _write_json(path: Path, table: dict[str, Any]) -> None:
     """Write a table in one move: a reader sees the old or the new one, never half."""
     unfinished = path.with_suffix(".unfinished")
-    unfinished.write_text(json.dumps(table, indent=1) + "\n", encoding="utf-8")
+    unfinished.write_text(text_of(table), encoding="utf-8")
     os.replace(unfinished, path)
 
 

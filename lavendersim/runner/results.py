@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import csv
-import json
 import math
 from typing import TYPE_CHECKING, Any
 
 from .accuracy import PARTS, Accuracy
+from .json_table import text_of
 from .run_directory import RESULTS, TABLE, Run
 
 if TYPE_CHECKING:
@@ -67,8 +67,7 @@ def write_results(
         "passed": finished.good,
         **({} if overheads is None else {"overheads": overheads}),
     }
-    text = json.dumps(_finite(table), indent=1, allow_nan=False) + "\n"
-    (run.path / RESULTS).write_text(text, encoding="utf-8")
+    (run.path / RESULTS).write_text(text_of(_finite(table)), encoding="utf-8")
     _write_csv(run, rows)
 
 

@@ -1,0 +1,34 @@
+"""Tables as JSON: the same data, a row a line."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from lavendersim.runner.json_table import text_of
+
+TABLE = {
+    "name": 'sweep "é"\n',
+    "empty": [],
+    "cells": [{"index": 0, "values": [1.5, None]}, {"index": 1, "values": [0.1, True]}],
+    "mixed": [1, {"a": 2}],
+    "nested": {"rows": [{"x": 1}]},
+}
+
+
+def test_a_table_is_read_back_as_it_was() -> None:
+    assert json.loads(text_of(TABLE)) == TABLE
+
+
+def test_each_row_stands_on_a_line_of_its_own() -> None:
+    lines = text_of(TABLE).splitlines()
+    assert [line for line in lines if '"index"' in line] == [
+        '  {"index": 0, "values": [1.5, null]},',
+        '  {"index": 1, "values": [0.1, true]}',
+    ]
+
+
+def test_what_json_has_no_number_for_is_refused() -> None:
+    with pytest.raises(ValueError, match="JSON"):
+        text_of({"worst": float("nan")})
