@@ -120,7 +120,9 @@ def _why(part: ExplanationItem) -> RenderableType:
         ("log", "; ".join(logged)),
         ("kernels", "; ".join(f"{module}: {n}" for module, n in _modules(part.kernels).items())),
     ]
-    return Group(reason, _pairs([(name, text) for name, text in details if text], dim=True))
+    brought = [(name, text) for name, text in details if text]
+    # An empty table is as wide as the console, and so would be every line of the one it is in.
+    return Group(reason, _pairs(brought, dim=True)) if brought else reason
 
 
 def _modules(kernels: dict[str, list[str]]) -> dict[str, str]:

@@ -1,7 +1,30 @@
-"""Runs experiments from config to verdict, and keeps runs on disk."""
+"""Runs experiments from config to verdict, and keeps runs on disk; names are imported when used.
 
-from .experiment_run import Finished, Progress, find_configs, load_all, run
-from .run_directory import RUNS, Run, RunCell, list_runs, open_run
+To list or open runs needs neither the models of a config nor numpy; to run needs the whole line.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from .configs import find_configs, load_all
+    from .experiment_run import Finished, Progress, run
+    from .run_directory import RUNS, Run, RunCell, list_runs, open_run
+
+_HOME = {
+    "RUNS": "run_directory",
+    "Finished": "experiment_run",
+    "Progress": "experiment_run",
+    "Run": "run_directory",
+    "RunCell": "run_directory",
+    "find_configs": "configs",
+    "list_runs": "run_directory",
+    "load_all": "configs",
+    "open_run": "run_directory",
+    "run": "experiment_run",
+}
 
 __all__ = [
     "RUNS",
@@ -15,3 +38,10 @@ __all__ = [
     "open_run",
     "run",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    """Import a public name from its module."""
+    if name in _HOME:
+        return getattr(import_module(f"lavendersim.runner.{_HOME[name]}"), name)
+    raise AttributeError(f"module 'lavendersim.runner' has no attribute {name!r}")

@@ -13,7 +13,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from lavendersim.errors import ConfigError, Defect, UsageError
+from lavendersim.errors import UsageError
 from lavendersim.experiment import Experiment, load_experiment
 from lavendersim.experiment.cell import Cell
 from lavendersim.measures import Values, Verdict, judge, meant_to_end_early
@@ -32,7 +32,6 @@ from .run_directory import (
     RUNS,
     Run,
     RunCell,
-    is_run_directory,
     point_latest,
 )
 from .seeds import Seeds
@@ -85,50 +84,6 @@ class Progress(NamedTuple):
 
 # What adds to a run's directory: it is given the run and the measures of its cells.
 Closing = Callable[[Finished, list[dict[str, Any]]], None]
-
-
-def find_configs(paths: list[Path]) -> list[Path]:
-    """Return the config files among `paths`; a folder stands for its *.yaml files, in order.
-
-    Raises UsageError when a path does not exist or a folder holds none.
-    """
-    found: list[Path] = []
-    for path in paths:
-        if path.is_dir():
-            inside = [
-                file
-                for file in sorted([*path.rglob("*.yaml"), *path.rglob("*.yml")])
-                if not is_run_directory(file.parent)
-            ]
-            if not inside:
-                raise UsageError(f"{path}: no *.yaml file in this folder")
-            found += inside
-        elif path.exists():
-            found.append(path)
-        else:
-            raise UsageError(f"{path}: no such file or folder")
-    return list(dict.fromkeys(found))
-
-
-def load_all(paths: list[Path], reduced: bool = False) -> list[Experiment]:
-    """Load every config among `paths`; raises ConfigError with the defects of all files.
-
-    reduced: slow experiments at their reduced length.
-
-    Among them are effects switched by hand that cannot be: the plan of the scene decides.
-    """
-    experiments: list[Experiment] = []
-    defects: list[Defect] = []
-    for path in find_configs(paths):
-        try:
-            experiment = load_experiment(path, reduced)
-            check(experiment)
-            experiments.append(experiment)
-        except ConfigError as error:
-            defects += error.defects
-    if defects:
-        raise ConfigError(defects)
-    return experiments
 
 
 def make_directory(experiment: Experiment, root: Path) -> Path:

@@ -9,12 +9,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from lavendersim.cell import CellConfig
 from lavendersim.errors import TraceError, UsageError
-from lavendersim.experiment import Experiment, load_experiment_text
-from lavendersim.trace import Trace, open_trace
+
+if TYPE_CHECKING:
+    from lavendersim.cell import CellConfig
+    from lavendersim.experiment import Experiment
+    from lavendersim.trace import Trace
 
 CONFIG, RESOLVED = "config.yaml", "resolved.json"
 CELLS, RESULTS, TABLE = "cells.json", "results.json", "results.csv"
@@ -45,6 +47,8 @@ class RunCell:
 
     def trace(self) -> Trace:
         """Open the cell's log; its columns are read when they are first asked for."""
+        from lavendersim.trace import open_trace  # late: runs are listed without numpy
+
         if not self._open:
             self._open.append(open_trace(self.path, allow_incomplete=True, config=self._config))
         return self._open[0]
@@ -76,6 +80,8 @@ class Run:
         """The experiment as it was run."""
         if self.ran is not None:
             return self.ran
+        from lavendersim.experiment import load_experiment_text  # late: see `RunCell.trace`
+
         text = (self.path / CONFIG).read_bytes()
         reduced = bool(self._index.get("reduced", False))
         solver = self._index.get("solver")

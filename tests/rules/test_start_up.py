@@ -78,3 +78,16 @@ def test_no_module_of_a_view_loads_the_engine(room: str) -> None:
     assert f"lavendersim.{room}" in loaded
     assert loaded & {"numba", "llvmlite", "lavendersim.scene"} == set()
     assert of_the_engine(loaded) <= DECLARATIONS
+
+
+def test_listing_runs_reads_no_config_and_no_log() -> None:
+    loaded = loaded_after(
+        "from lavender_cli.main import main\n"
+        "sys.argv = ['lavender', 'ls', '--json']\n"
+        "try:\n    main()\nexcept SystemExit as done:\n    assert not done.code, done.code"
+    )
+    assert "lavendersim.runner.run_directory" in loaded
+    assert loaded & (HEAVY | {"mcap", "rich"}) == set()
+    assert {name for name in loaded if name.startswith("lavendersim.")} == {
+        *("lavendersim.errors", "lavendersim.runner", "lavendersim.runner.run_directory"),
+    }

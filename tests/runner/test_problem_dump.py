@@ -11,7 +11,7 @@ from small_configs import write
 import lavendersim
 from lavendersim.errors import ConfigError
 from lavendersim.problems.fclib import read_fclib
-from lavendersim.runner import Finished, experiment_run, problem_dump
+from lavendersim.runner import Finished, load_all, problem_dump
 from lavendersim.scene.build import build
 from lavendersim.scene.plan import plan_of
 
@@ -109,7 +109,7 @@ def test_asking_changes_nothing_else_in_the_log(dumped: Finished, tmp_path: Path
 def refused(folder: Path, text: str) -> str:
     config = write(folder, text, "refused.yaml")
     with pytest.raises(ConfigError) as caught:
-        experiment_run.load_all([config])
+        load_all([config])
     with pytest.raises(ConfigError):
         lavendersim.run(config, root=folder / "runs")
     assert not (folder / "runs").exists()
