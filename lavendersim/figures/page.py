@@ -12,11 +12,14 @@ state and starts faster. Equal numbers give equal bytes: no date, fixed ids, a f
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import cache
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
+import numpy as np
 from matplotlib import style
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties
 from matplotlib.textpath import TextPath
@@ -60,8 +63,14 @@ def write(stem: Path, compose: Callable[..., Figure], *values: Any) -> list[Path
     paths = [stem.with_name(f"{stem.name}.{suffix}") for suffix in ("png", "svg")]
     with style.context(STYLE, after_reset=True):
         figure = compose(*values)
-        figure.savefig(paths[0], dpi=DPI, metadata={"Software": None})
-        figure.savefig(paths[1], metadata={"Date": None, "Creator": "lavender"})
+        # `savefig` would draw a page twice for each file: once for its layout alone.
+        usual = figure.dpi
+        figure.dpi = DPI
+        raster: Any = FigureCanvasAgg(figure)
+        raster.print_png(paths[0], metadata={"Software": None})
+        figure.dpi = usual
+        vector: Any = FigureCanvasSVG(figure)
+        vector.print_svg(paths[1], metadata={"Date": None, "Creator": "lavender"})
     return paths
 
 
@@ -143,5 +152,8 @@ def wrapped(text: str, width: float, weight: str = "normal") -> str:
     return "\n".join(" ".join(line) for line in lines)
 
 
+@cache
 def _text_width(text: str, font: FontProperties) -> float:
-    return float(TextPath((0, 0), text, prop=font).get_extents().width)
+    """Return the width of what is inked, which outlines of TrueType have points at the ends of."""
+    outlines = TextPath((0, 0), text, prop=font)
+    return float(np.ptp(outlines.vertices[outlines.codes != TextPath.CLOSEPOLY, 0]))

@@ -5,11 +5,15 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from matplotlib import style
 from matplotlib.figure import Figure
+from matplotlib.font_manager import FontProperties
 from matplotlib.lines import Line2D
+from matplotlib.textpath import TextPath
 
+from lavendersim.figures import page as composer
 from lavendersim.figures.page import MARGIN, Page, blank, legend_above, legend_below, wrapped, write
-from lavendersim.figures.style import LINE_HEIGHT
+from lavendersim.figures.style import DPI, LINE_HEIGHT, STYLE
 
 PLAIN = Page("What to see.", 8.0, 3.0)
 
@@ -76,3 +80,41 @@ def test_a_page_is_written_as_png_and_svg_of_equal_bytes(tmp_path: Path) -> None
     first, second = (write(tmp_path / folder / "page", compose, "one") for folder in "ab")
     assert [path.name for path in first] == ["page.png", "page.svg"]
     assert [path.read_bytes() for path in first] == [path.read_bytes() for path in second]
+
+
+def test_files_are_those_that_matplotlib_saves(tmp_path: Path) -> None:
+    """`savefig` draws a page once for its layout and once more: both ways find the same places."""
+
+    def compose(label: str) -> Figure:
+        figure = blank(PLAIN)
+        for axes in figure.subplots(1, 2):
+            axes.semilogy([1e-9, 1e-3, 1.0], label=label)
+            axes.set_title(label)
+            axes.legend(loc="best")
+        return figure
+
+    png, svg = write(tmp_path / "page", compose, "one")
+    with style.context(STYLE, after_reset=True):
+        figure = compose("one")
+        figure.savefig(tmp_path / "saved.png", dpi=DPI, metadata={"Software": None})
+        figure.savefig(tmp_path / "saved.svg", metadata={"Date": None, "Creator": "lavender"})
+    assert png.read_bytes() == (tmp_path / "saved.png").read_bytes()
+    assert svg.read_bytes() == (tmp_path / "saved.svg").read_bytes()
+
+
+def test_a_page_is_drawn_once_for_each_of_its_files(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    drawn = []
+    draw = Figure.draw
+    monkeypatch.setattr(Figure, "draw", lambda self, to: (drawn.append(self), draw(self, to))[1])
+    write(tmp_path / "page", blank, PLAIN)
+    assert len(drawn) == 2
+
+
+@pytest.mark.parametrize("weight", [400, 700], ids=["caption", "question"])
+def test_the_width_of_a_word_is_that_of_its_curves(weight: int) -> None:
+    font = FontProperties(weight=weight, size=STYLE["font.size"], family=STYLE["font.family"])
+    for word in ("Signorini", "(gjqy)", "8.5e-9", "\u0394t\u00b2", "W@&%S"):
+        width = TextPath((0, 0), word, prop=font).get_extents().width
+        assert composer._text_width(word, font) == pytest.approx(width, rel=1e-12)
