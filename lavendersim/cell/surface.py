@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from lavendersim.engine.effects import SURFACE_KEYS
 from lavendersim.quantities.model import ConfigModel, declared
 
@@ -17,3 +19,20 @@ class Surface(declared("Surface", ConfigModel, _KEYS)):  # type: ignore[misc]
     default of a coefficient is 0, without effect. A geometric mean leaves a frictionless surface
     frictionless whatever it touches; compliances add as springs in series do.
     """
+
+    @classmethod
+    def rules(cls, at: Any) -> None:
+        """A property that needs another one stands beside it."""
+        for key in SURFACE_KEYS:
+            if not key.needs:
+                continue
+            node, needed = at.get(key.name), at.get(key.needs)
+            if node is None or node.number is None or node.number <= 0.0:
+                continue
+            unknown = at.node.torn or at.node.entries.keys() - cls.model_fields.keys()
+            if needed is None and unknown:
+                at.doubt()  # a refused key may have been this one
+            elif needed is None or needed.number == 0.0:
+                found = "none" if needed is None else "0"
+                sentence = f"{key.name}: above 0 it needs {key.needs} above 0, found {found}"
+                at.refuse(node.mark, sentence)

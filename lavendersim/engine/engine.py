@@ -194,8 +194,7 @@ class Engine:
         self.wake(body)
         self.forget_contacts(body)
         rows = removal.rows_of(self.bodies, body)
-        links = self.state.links
-        links["active"][(links["a"] == body) | (links["b"] == body)] = 0
+        removal.cut_links(self.state.links, self.bodies, body)
         removal.hold_still(self.bodies, self.velocities, rows)
         if self.spec.has("broad_phase"):
             templates = removal.make_untouchable(self.bodies, self.workspace.templates, rows)

@@ -32,6 +32,16 @@ def hold_still(bodies: np.ndarray, velocities: np.ndarray, rows: np.ndarray) -> 
     velocities[rows] = np.zeros(1, velocities.dtype)
 
 
+def cut_links(links: np.ndarray, bodies: np.ndarray, body: int) -> None:
+    """Take out what joins a body to others; who is joined to nothing else is joined no more."""
+    links["active"][(links["a"] == body) | (links["b"] == body)] = 0
+    if "joined" in (bodies.dtype.names or ()):
+        left = links[links["active"] == 1]
+        bodies["joined"] = 0
+        bodies["joined"][left["a"]] = 1
+        bodies["joined"][left["b"]] = 1
+
+
 def pairs_without(pairs: np.ndarray, rows: np.ndarray) -> np.ndarray:
     """Return the table of pairs without those of some rows of the body table."""
     return np.ascontiguousarray(pairs[~(rows[pairs["a"]] | rows[pairs["b"]])])

@@ -1,9 +1,11 @@
-"""The step on one screen: velocities first, then poses, by semi-implicit Euler (`make_advance`).
+"""The step on one screen: forces and contacts change velocities, then poses move (`make_advance`).
 
-accelerate   v += dt * forces
+accelerate   v += dt * forces; before contacts are looked for where the rest of the step needs the
+             velocities before and after (`integrate.keeps_motion`), else once they are found
 collide      contacts at the pose the step begins with, and those the step may make
 respond      velocities that respect every contact (`respond`)
-integrate    x += dt v, and out of what still penetrates, without velocity
+integrate    poses by semi-implicit Euler, the midpoint rule, or flight up to an impact and on from
+             it (`integrate`); and out of what still penetrates, without velocity
 log          the trace row of the step
 """
 

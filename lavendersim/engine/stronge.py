@@ -47,7 +47,7 @@ def make_direction(spec: Spec):
 def make_leave(spec: Spec):
     """Return `kernel(contact, u_1, u_2) -> u_n` [m/s]: the separation speed.
 
-    u_1, u_2: tangential velocity when they meet; contact.approach_speed: how fast they do. 0.0
+    u_1, u_2: slip when they meet; contact.approach_speed: how fast they do. 0.0
     where restitution has not ended after MOST_PARTS.
     """
     direction = make_direction(spec)

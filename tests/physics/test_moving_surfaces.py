@@ -5,9 +5,16 @@ One scene, its bodies far apart, in the default numerics: one compilation serves
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from physics_runs import GRAVITY, Course, run_config
+
+import lavendersim
+from lavendersim.measures import evaluate
+from lavendersim.measures.specs.optimality import Optimality
+from lavendersim.trace import open_trace
 
 BLOCK = "{kind: box, size: [0.2, 0.2, 0.2]}"
 SCENE = f"""\
@@ -61,6 +68,29 @@ def test_belt_speeds_up_with_mu_g_to_its_own_speed_and_no_further(
     ramp = MU * GRAVITY * DT * (np.arange(slipping) + 1.0)
     np.testing.assert_allclose(v[:slipping], ramp, atol=slipping * 1e-7)
     np.testing.assert_allclose(v[slipping + 2 :], BELT, atol=1e-6)
+
+
+@pytest.mark.parametrize("body", ["block", "dumbbell"])
+def test_logged_slip_is_that_of_the_surfaces(course: Course, body: str) -> None:
+    """That of the belt counts: mu g t brings the slip to rest, and what goes with it has none."""
+    rows = course.contacts_of("belt", body)
+    n, one = (np.stack([rows[f"{name}{axis}"] for axis in "xyz"], axis=-1) for name in ("n", "t1"))
+    slip = rows["slip_t1"][:, None] * one + rows["slip_t2"][:, None] * np.cross(n, one)
+    # Velocities of the ends of steps; B is the body, and what little it turns is residual as well.
+    along = np.minimum(MU * GRAVITY * DT * rows["step"], BELT) - BELT
+    expected = np.stack([along, 0.0 * along, 0.0 * along], axis=-1)
+    # The impulses of the steps before it are solved to 1e-7 m/s each, as long as it slides.
+    np.testing.assert_allclose(slip, expected, atol=int(BELT / (MU * GRAVITY * DT)) * 1e-7)
+
+
+def test_contacts_with_a_belt_keep_the_laws_of_contact(tmp_path: Path) -> None:
+    """To the residuals of their steps; a slip that lacked the belt would be off by its speed."""
+    config = tmp_path / "belt.yaml"
+    config.write_text(SCENE)
+    (cell,) = lavendersim.run(config, root=tmp_path).run.cells
+    found = evaluate(Optimality(kind="optimality"), open_trace(cell.path))
+    # Products of numbers below 10 m/s and N s, rounded.
+    np.testing.assert_allclose(found, 0.0, atol=1e-14)
 
 
 def test_lift_keeps_its_velocity_and_carries_its_rider(course: Course) -> None:

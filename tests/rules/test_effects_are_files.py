@@ -55,7 +55,7 @@ ELSEWHERE = {
     "restitution": {
         "scene/laws.py": FACT,
         "engine/effects/capture_in_sweeps.py": "makes a mistake with it",
-        "engine/effects/fast_bodies.py": "more than 1 gives energy",
+        "engine/effects/fast_bodies.py": "captured, it gives energy",
         "engine/effects/impact_energy.py": "takes the place of its law",
     },
     "speculative": {

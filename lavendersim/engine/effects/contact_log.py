@@ -32,7 +32,7 @@ def make(spec: Spec, loggers):
 
     speculative = spec.has("speculative")
     loads = any(effect.hooks.preload for effect in effects_of(spec))
-    friction, moving_surface = spec.has("friction"), spec.has("surface_velocity")
+    friction = spec.has("friction")
     row_residual, forget = make_row_residual(spec), make_forget(spec)
     watch_signorini, watch_coulomb = make_watch_signorini(spec), make_watch_coulomb(spec)
     log_more = chain(loggers, spec)
@@ -75,11 +75,7 @@ def make(spec: Spec, loggers):
             out.residual = residual
             log_more(out, contact, va, vb)
             if friction:
-                w_1, w_2 = out.slip_t1, out.slip_t2
-                if moving_surface:
-                    w_1 += contact.surface_1
-                    w_2 += contact.surface_2
-                watch_coulomb(counters, written - 1, contact, w_1, w_2)
+                watch_coulomb(counters, written - 1, contact, out.slip_t1, out.slip_t2)
             force += out.force_n
             # A NaN is deeper than anything, or it would not be seen.
             if out.penetration > deepest or out.penetration != out.penetration:

@@ -90,7 +90,7 @@ class Hooks:
     solve_rolling: Maker | None = None  # (contact, w1, w2) -> changes of psi_1, psi_2
     torsion_residual: Maker | None = None  # (contact, spin) -> r [rad/s]
     rolling_residual: Maker | None = None  # (contact, w1, w2) -> r [rad/s]
-    note_slip: Maker | None = None  # (contact, va, vb): tangential velocity before the solve
+    note_slip: Maker | None = None  # (contact, va, vb): the slip before the solve
     predict_impacts: Maker | None = None  # (contacts, count, motion, params), before the solve
     keep_free: Maker | None = None  # (velocities, free), before any contact impulse acts
     match: Maker | None = None  # (contacts, count, bodies, cache, counters, params)

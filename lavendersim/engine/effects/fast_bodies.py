@@ -1,13 +1,16 @@
-"""Fast bodies: pairs whose way in a step is long for their size get the contacts of their meeting.
+"""Fast bodies: pairs that close in by much of their size in a step get contacts where they meet.
 
 `collide.swept` finds where two such bodies meet, or pass, within the step. Planes need none of it:
 their normal is the same from everywhere. A scene whose energy cannot make any two bodies that fast
-is spared the search, by bounds that hold whatever the contacts do, for no contact gives energy:
+is spared the search, by bounds that hold whatever the contacts do, where none gives energy:
 
     kinetic energy E <= E_0 + sum m |g| h        above a floor across gravity, h height over it
     sqrt(2 E) <= sqrt(2 E_0) + |g| T sqrt(sum m)    falling for all the time T: gravity's power is
                                                  at most |g| sum m |v| <= |g| sqrt(sum m) sqrt(2 E)
     |v_A - v_B| <= sqrt(2 E (1/m_A + 1/m_B))     with all of it in two bodies
+
+What may give energy besides gravity (`_source_of_energy`) leaves no bound. Restitution captured at
+the start of a step does: up to m |g| dt times the speed in every bounce (`measures.balance`).
 """
 
 from math import hypot, inf, sqrt
@@ -70,8 +73,8 @@ def _source_of_energy(facts: Facts) -> str:
     for pair in facts.pairs:
         if pair.surface.compliance > 0.0:
             return f"{pair.a} and {pair.b} are springs"
-        if pair.surface.restitution > 1.0:
-            return f"{pair.a} and {pair.b} leave faster than they meet"
+        if pair.surface.restitution > 0.0 and facts.impacts == "captured":
+            return f"{pair.a} and {pair.b} bounce from where a step begins, above the surface"
     return ""
 
 

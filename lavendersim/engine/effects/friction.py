@@ -54,15 +54,13 @@ def make_refresh(spec):
 
 def make_contact_row(spec):
     """Return `kernel(out, contact, va, vb)` that fills its columns of a contact."""
-    from ..block import make_relative_velocity
+    from ..block import make_slip_velocity
 
-    relative_velocity = make_relative_velocity(spec)
+    slip_velocity = make_slip_velocity(spec)
 
     def log_friction(out, contact, va, vb):
-        x, y, z = relative_velocity(contact, va, vb)
         out.impulse_t1, out.impulse_t2 = contact.lambda_1, contact.lambda_2
-        out.slip_t1 = contact.t1x * x + contact.t1y * y + contact.t1z * z
-        out.slip_t2 = contact.t2x * x + contact.t2y * y + contact.t2z * z
+        _, out.slip_t1, out.slip_t2 = slip_velocity(contact, va, vb)
         out.t1x, out.t1y, out.t1z = contact.t1x, contact.t1y, contact.t1z
         out.friction = contact.mu
 
@@ -116,13 +114,13 @@ EFFECT = Effect(
         Column(
             "slip_t1",
             "f8",
-            "tangential velocity of B relative to A after the solve, along t1",
+            "slip of B's surface on A's after the solve, moving surfaces included, along t1",
             "m/s",
         ),
         Column(
             "slip_t2",
             "f8",
-            "tangential velocity of B relative to A after the solve, along t2",
+            "slip of B's surface on A's after the solve, moving surfaces included, along t2",
             "m/s",
         ),
         Column("t1x", "f8", "first unit tangent, world x"),

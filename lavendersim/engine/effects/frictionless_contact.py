@@ -1,7 +1,8 @@
 """Frictionless contact: pairs without friction have rows of a normal alone, beside frictional ones.
 
 Each contact is what its pair of surfaces requires. Where both kinds occur, `frictional` tells them
-apart; a smooth one then costs, and gives, what it would in a scene without friction, to the bit.
+apart; a frictionless one then costs, and gives, what it would in a scene without friction, to the
+bit.
 """
 
 from typing import Any

@@ -5,6 +5,9 @@ Stronge's (`stronge`) is a ratio of the normal impulse's work in restitution and
 cannot. It lowers the speed at which the surfaces leave; the friction that goes with it is that of
 the row, by the slip that is left. Where several impacts meet in one step and still gain, all their
 speeds are lowered by one factor until nothing is gained.
+
+Work is counted by the slip of the surfaces, moving ones included: what a belt's drive puts into a
+body is no gain of the impact, and relative to the belt friction only takes.
 """
 
 from __future__ import annotations
@@ -37,15 +40,13 @@ def decide(facts: Facts) -> Decision:
 
 
 def make_note(spec: Spec) -> Any:
-    """Return `kernel(contact, va, vb)`: tangential velocities before the solve."""
-    from ..block import make_relative_velocity
+    """Return `kernel(contact, va, vb)`: the slip before the solve."""
+    from ..block import make_slip_velocity
 
-    relative_velocity = make_relative_velocity(spec)
+    slip_velocity = make_slip_velocity(spec)
 
     def note(contact, va, vb):
-        x, y, z = relative_velocity(contact, va, vb)
-        contact.pre_1 = contact.t1x * x + contact.t1y * y + contact.t1z * z
-        contact.pre_2 = contact.t2x * x + contact.t2y * y + contact.t2z * z
+        _, contact.pre_1, contact.pre_2 = slip_velocity(contact, va, vb)
 
     return kernel(note, spec)
 
@@ -58,10 +59,10 @@ def make_settle(spec: Spec, solve: Any, classify: Any) -> Any:
 
     Called after `solve`; sets counters.stronge to 1 where it took Stronge's law.
     """
-    from ..block import make_relative_velocity
+    from ..block import make_slip_velocity
     from ..stronge import make_leave
 
-    relative_velocity = make_relative_velocity(spec)
+    slip_velocity = make_slip_velocity(spec)
     leave = make_leave(spec)
     some_frictionless = spec.has("frictionless_contact")
     records = spec.has("residual_log")
@@ -74,10 +75,8 @@ def make_settle(spec: Spec, solve: Any, classify: Any) -> Any:
         for c in range(count):
             contact = contacts[c]
             if contact.lambda_n > 0.0:
-                x, y, z = relative_velocity(contact, velocities[contact.a], velocities[contact.b])
-                v = contact.nx * x + contact.ny * y + contact.nz * z
-                v_1 = contact.t1x * x + contact.t1y * y + contact.t1z * z
-                v_2 = contact.t2x * x + contact.t2y * y + contact.t2z * z
+                va, vb = velocities[contact.a], velocities[contact.b]
+                v, v_1, v_2 = slip_velocity(contact, va, vb)
                 ma, mb = motion[contact.a], motion[contact.b]
                 share_a, share_b = 1.0 - ma.tau / dt, 1.0 - mb.tau / dt
                 x = share_b * mb.dvx - share_a * ma.dvx
@@ -176,7 +175,7 @@ EFFECT = Effect(
     needs=("friction", "impact_time", "restitution"),
     fields=Fields(
         contact=[
-            ("pre_1", "f8"),  # tangential velocity before the solve [m/s]
+            ("pre_1", "f8"),  # slip before the solve [m/s]
             ("pre_2", "f8"),
         ],
     ),

@@ -33,6 +33,7 @@ class SurfaceKey(Key):
     """A property of surfaces; a contact has one value of it, mixed of those of its two surfaces."""
 
     mix: Callable[[float, float], float]
+    needs: str = ""  # another of the same surface, which is above 0 where this one is
 
 
 @dataclass(frozen=True, kw_only=True)

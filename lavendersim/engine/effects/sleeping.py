@@ -1,9 +1,10 @@
 """Sleeping: islands of bodies that have come to rest are left out until something disturbs them.
 
-A body is at rest in a step that it ends no faster than `sleep_speed`, by the speed of its points
+A body is at rest in a step that it begins no faster than `sleep_speed`, by the speed of its points
     point_speed = |v| + |omega| R,     R radius about the centre of mass that holds the body.
 An island (`islands`) falls asleep as a whole, when each of its bodies has been at rest for
-`sleep_time`, no force from the config acts on it and no kinematic body that moves touches it.
+`sleep_time`, no force from the config acts on it, no spring joins it to another body and no
+kinematic body that moves touches it.
 Asleep, a body is as a fixed one: its inverse mass is kept aside and reads 0, so that nothing
 accelerates, pushes or moves it. Contacts between bodies that cannot move are not made, solved or
 logged; the island begins cold when it wakes, as a whole: when a body faster than `sleep_speed` or a
@@ -62,7 +63,7 @@ def make_measure_speeds(spec: Spec) -> Any:
 
 
 def make_is_pushed(spec: Spec) -> Any:
-    """Return `kernel(body) -> whether a force or torque from the config acts on it now`."""
+    """Return `kernel(body) -> whether a force of the config acts on it, or a spring joins it`."""
     from . import effects_of
 
     force, joins = spec.has("external_force"), any(effect.links for effect in effects_of(spec))

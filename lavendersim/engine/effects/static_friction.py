@@ -7,7 +7,8 @@ falling coefficient is Stribeck's, the algebraic form that of Hess and Soom (199
 background, not opened): no exponential, whose last bit differs between machines. Each step solves
 Coulomb's law with the coefficient that its beginning gives (lagged), so no solver knows of it.
 
-A pair's static coefficient is the geometric mean of its surfaces', as the kinetic one is.
+A pair's static coefficient is the geometric mean of its surfaces', as the kinetic one is. Without
+kinetic friction a contact has no tangents to hold it by: a surface with the one alone is refused.
 """
 
 from typing import Annotated
@@ -89,8 +90,10 @@ EFFECT = Effect(
             name="static_friction",
             type=COEFFICIENT,
             default=0.0,
-            doc="coefficient at rest, where above `friction`; a pair takes the geometric mean",
+            doc="coefficient at rest, where above `friction`, which must then be above 0 as well; "
+            "a pair takes the geometric mean",
             mix=geometric_mean,
+            needs="friction",
         ),
         SurfaceKey(
             name="stribeck_velocity",

@@ -10,6 +10,9 @@ A solve that would end above its tolerance calls it once more, LAST sweeps befor
 the sweeps promise: what a step leaves of the error, a cold first one above all, later steps only
 spread. In a large heap that is not affordable, and the call takes no step.
 
+Without a tolerance nothing but a sweep that changes nothing ends a solve before its last sweep, and
+Newton's method is worth what it would be for a tolerance that is never reached.
+
 A solve that begins near its solution is over after a sweep and pays for nothing else.
 """
 
@@ -68,8 +71,10 @@ def make(spec: Spec):
             largest, worst = residual(contacts, count, velocities)
             record_residual(params, counters, residual_rows, 0, largest)
         sweeps, look, pause = 0, LOOK, LOOK
-        sharp = SHARPNESS * params.tolerance
-        aim = sharp if counters.sharpen == 1 else params.tolerance
+        # None is a number below 0, whose logarithm would be no number of sweeps.
+        tolerance = max(params.tolerance, 0.0)
+        sharp = SHARPNESS * tolerance
+        aim = sharp if counters.sharpen == 1 else tolerance
         counters.sharpen = 0
         measured, sticking_guess = False, True
         earlier = 0.0
@@ -96,13 +101,13 @@ def make(spec: Spec):
                     if not measured:
                         largest, worst = residual(contacts, count, velocities)
                         measured = True
-                    ends = not largest <= params.tolerance
+                    ends = not largest <= tolerance
                 if sweeps >= look or ends:
                     look = sweeps + pause
                     if earlier > 0.0 or ends:
                         # Sweeps still needed at the rate of the last LOOK of them.
                         needed = MOST_SWEEPS
-                        if greatest < earlier and not ends:
+                        if aim > 0.0 and greatest < earlier and not ends:
                             rate = log(greatest / earlier) / pause
                             needed = min(log(aim / greatest) / rate, MOST_SWEEPS)
                         if sweeps + needed > params.sweeps:
@@ -115,7 +120,7 @@ def make(spec: Spec):
                         measured = False
                         if steps > 0:
                             counters.sharpen = 1
-                            aim = params.tolerance
+                            aim = tolerance
                             # Where this was not the last call, sweeps must prepare the next one.
                             greatest, pause = 0.0, 4 * pause
                     earlier = greatest

@@ -32,8 +32,8 @@ NAN = float("nan")
 def optimality(spec: Optimality, trace: Trace) -> Floats:
     """Return the largest violations [m/s]: pushing, complementarity; with friction cone, sliding.
 
-    One NaN for a log without contacts or without what their rows asked for (`target`). Sliding is
-    NaN where a surface moves by itself. UsageError where the log has no /contacts at all.
+    One NaN for a log without contacts or without what their rows asked for (`target`). UsageError
+    where the log has no /contacts at all.
     """
     contacts = trace.contact
     steps = contacts["step"]
@@ -88,8 +88,6 @@ def _friction(trace: Trace, contacts: Rows, scale: Floats, mu: Floats) -> tuple[
     limit = scale * mu * np.maximum(contacts["impulse_n"], 0.0)
     scaled = scale[:, None] * np.column_stack([contacts["impulse_t1"], contacts["impulse_t2"]])
     slip = np.column_stack([contacts["slip_t1"], contacts["slip_t2"]])
-    if any(any(one.surface_velocity) for one in trace.config.scene.bodies.values()):
-        slip = slip * NAN
     trial = scaled - slip
     if trace.config.numerics.friction_cone == "pyramid":
         sizes = np.abs(scaled).max(axis=1)

@@ -51,3 +51,29 @@ def test_friction_tells_each_pair() -> None:
     assert decision("friction", two).reason == (
         "floor and ball: sliding 0.5; floor and slick: sliding 0.2; ball and slick: sliding 0.2"
     )
+
+
+BOUNCES = SCENE.replace("surface: {friction: 0.5}", "surface: {restitution: 0.5}") + (
+    "numerics: {timestep: 1/2000, impacts: at_surface}\n"
+)
+
+
+def test_bounces_at_the_surface_leave_a_bound_on_speeds() -> None:
+    found = decision("fast_bodies", BOUNCES)
+    assert not found.on
+    assert found.reason.startswith("the energy there is moves no body")
+
+
+def test_bounces_from_where_a_step_begins_leave_no_bound_on_speeds() -> None:
+    """A step that begins d above the floor gives m g d, at every bounce: `measures.balance`."""
+    found = decision("fast_bodies", BOUNCES.replace("at_surface", "captured"))
+    assert found == Decision(
+        True,
+        "floor and ball bounce from where a step begins, above the surface: no bound on how fast "
+        "ball may become",
+    )
+
+
+def test_captured_impacts_without_restitution_leave_a_bound_on_speeds() -> None:
+    text = BOUNCES.replace("at_surface", "captured").replace("restitution: 0.5", "restitution: 0")
+    assert not decision("fast_bodies", text).on

@@ -2,9 +2,11 @@
 
     reach = |v| dt + |omega| R dt + 2 |g| dt^2,   R radius about the centre of mass that holds it
 
-No point of a body goes farther than that in a step: its velocity after the step's forces differs by
-|g| dt, and as much again is left for what else changes it. What nothing can push has no share in g.
 The narrow phase must not make speculative contacts beyond the sum of two reaches and TOUCHING.
+Where it makes some, forces have acted on v and omega before pairs are looked for, and the first two
+terms are its own bound (`integrate.make_begin`); what gravity adds in two steps is a margin, which
+what nothing can push has not. Without speculative contacts only what touches when the step begins
+matters, and velocities may be those before forces.
 """
 
 from __future__ import annotations

@@ -221,3 +221,32 @@ def test_with_sleeping_off_nothing_changes() -> None:
     assert one.contact.tobytes() == other.contact.tobytes()
     assert "awake" in one.step.dtype.names
     assert "awake" not in other.step.dtype.names
+
+
+def tied() -> Bench:
+    """Two boxes on the floor, each tied to a hook by a slack spring, one of them to both hooks."""
+    size = (0.2, 0.2, 0.2)
+    bodies = {
+        "floor": plane(),
+        "left": sphere(0.01, (0.0, 0.0, 1.0), fixed=True),
+        "right": sphere(0.01, (3.0, 0.0, 1.0), fixed=True),
+        "one": box(size, (0.0, 0.0, 0.1)),
+        "both": box(size, (3.0, 0.0, 0.1)),
+    }
+    cell = resolved(bodies, (0.0, 0.0, -G), sleeping=True, sleep_time=SLEEP_TIME)
+    ties = [("left", "one"), ("left", "both"), ("right", "both")]
+    cell["scene"]["springs"] = [{"a": a, "b": b, "stiffness": 0.0} for a, b in ties]
+    return Bench(cell, None)
+
+
+def test_what_loses_its_last_spring_may_sleep() -> None:
+    one, both = 3, 4
+    bench = tied()
+    bench.run(40)
+    assert asleep(bench) == []  # what springs join does not sleep
+    apply_event(bench.engine, bench.scene, happens(body="left", remove=True))
+    bench.run(40)
+    assert asleep(bench) == [one]
+    apply_event(bench.engine, bench.scene, happens(body="right", remove=True))
+    bench.run(40)
+    assert asleep(bench) == [one, both]
