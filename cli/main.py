@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import signal
 import sys
@@ -66,6 +67,9 @@ def main() -> None:
     """Run the command line; exit 0 good, 1 a check failed, 2 usage, 3 a log, 4 internal, 130."""
     from lavendersim.errors import ConfigWarning, LavenderError
 
+    # Configs, plans and results are many objects that live on; looking through them for circles
+    # takes a tenth of a run of hundreds of cells.
+    gc.set_threshold(50_000, 20, 20)
     python_format = warnings.formatwarning
     warnings.formatwarning = lambda message, category, *where, **line: (
         f"{message}\n"  # it begins with the place in the config

@@ -13,8 +13,9 @@ A log has the topics that its plan requires: `/contacts` and `/plot/*` where som
 `/residuals` where `record.residuals` asks for steps, the others always. The metadata record `trace`
 has under `absent` every topic that the log does without, and why.
 
-`/contacts` is identity-posed in the world frame and its data is packed: x y z, then the other
-columns, then red green blue alpha. PointCloud knows no 64-bit integer, so an integer column is
+`/contacts` is identity-posed in the world frame. A point is the row that the engine wrote, eight
+bytes a column, and behind it red green blue alpha and four bytes of nothing; its number of the step
+is in no field, for the message has it. PointCloud knows no 64-bit integer, so an integer column is
 two fields: `name` (its low 32 bits, UINT32) and `name_high` (the rest, INT32).
 
 Simulation time is the only clock: log_time = publish_time = the step's time_ns, sequence = step.

@@ -32,7 +32,8 @@ def soft_conveyor() -> dict[str, Any]:
 def mixed_balls() -> dict[str, Any]:
     """Frictional balls and a frictionless one, with speculative contacts."""
     bodies = balls(friction=0.4)
-    bodies["high"]["surface"] = dict.fromkeys(bodies["high"]["surface"], 0.0)
+    keys = ("friction", "restitution", "compliance", "torsional_friction", "rolling_friction")
+    bodies["high"]["surface"] |= dict.fromkeys(keys, 0.0)
     return cell(bodies, speculative=True, sweeps=200, tolerance=1e-9)
 
 
