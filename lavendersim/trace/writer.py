@@ -1,10 +1,11 @@
 """The writer of logs: blocks of steps into the chunks of an MCAP file.
 
 Steps are cut into groups, and each group is two chunks, bulk then light; a log without poses and
-contacts has light ones only. A group closes with the
-step that fills either stream, so where it closes depends on the steps alone, never on how they
-came in or on a clock: equal runs give equal bytes. Bulk goes first: where a light chunk is whole,
-everything before it is, and a killed run is readable up to its last light chunk.
+contacts has light ones only. A group closes with the step that fills either stream, so where it
+closes depends on the steps alone, never on how they came in or on a clock, and chunks stand in the
+order in which they closed, whichever thread compressed them first: equal runs give equal bytes.
+Bulk goes first: where a light chunk is whole, everything before it is, and a killed run is readable
+up to its last light chunk.
 """
 
 from __future__ import annotations
@@ -12,37 +13,28 @@ from __future__ import annotations
 import json
 import os
 from collections import deque
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
-from functools import lru_cache
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
 import numpy as np
-from mcap.records import Channel, Schema
 from numpy.typing import NDArray
 
 from lavendersim.cell import CellConfig
-from lavendersim.trace import descriptors, layout
+from lavendersim.trace import layout
 from lavendersim.trace.container import (
     INDEX_ENTRY,
     Closed,
     Container,
     FileIndex,
     Messages,
-    Registered,
     closed,
 )
 from lavendersim.trace.encode import Block, Encoded, Encoder
-from lavendersim.trace.schema import (
-    CONTACT_COLUMNS,
-    FORMAT,
-    MULTI_ARRAY_DEFINITION,
-    STRING_DEFINITION,
-    Column,
-)
+from lavendersim.trace.forms import description_chunk, description_records, form_of
+from lavendersim.trace.schema import FORMAT
 from lavendersim.trace.urdf import robot_description
-from lavendersim.trace.wire import Template
 
 # Small, so that a killed run loses little and a plot of the force reads little.
 LIGHT_BYTES = 128 * 1024
@@ -89,14 +81,6 @@ class _Stream:
         entries = sorted(self._entries.items())
         messages = [Messages(channel, np.concatenate(parts)) for channel, parts in entries]
         return closed(b"".join(self._pieces), messages)
-
-
-class _Form(NamedTuple):
-    """What logs of the same bodies, topics and columns have in common."""
-
-    encoder: Encoder
-    light: Registered
-    bulk: Registered
 
 
 class Written(NamedTuple):
@@ -211,7 +195,7 @@ class TraceWriter:
     def _begin(self, block: Block) -> None:
         """Write the scene's geometry and open the streams: the columns are known now."""
         columns = block.step.dtype, block.contact.dtype, block.residual.dtype
-        form = _form(tuple(self._bodies), columns, frozenset(self._topics))
+        form = form_of(tuple(self._bodies), columns, frozenset(self._topics))
         self._encoder = form.encoder
         if "/robot_description" in self._topics:
             self._describe_geometry(block.pose[0].astype(np.float64))
@@ -221,8 +205,8 @@ class TraceWriter:
 
     def _describe_geometry(self, poses: NDArray[np.float64]) -> None:
         """Write the chunk of /robot_description; poses: of the initial state (bodies, 7)."""
-        self._container.register(_description_records())
-        self._write(_description(robot_description(self._bodies, poses)))
+        self._container.register(description_records())
+        self._write(description_chunk(robot_description(self._bodies, poses)))
 
     def _close_group(self) -> None:
         """Hand the open chunks to the compressing threads, and write those that are done."""
@@ -242,67 +226,7 @@ class TraceWriter:
             self._kept.append(one)
 
 
-@lru_cache(maxsize=64)
-def _form(
-    bodies: tuple[str, ...], columns: tuple[np.dtype[Any], ...], topics: frozenset[str]
-) -> _Form:
-    """Return the form of logs with these bodies, columns of step, contact, residual, and topics."""
-    encoder = Encoder(bodies, columns, topics)
-    schemas, channels = [], []
-    if "/tf" in topics:
-        form = descriptors.transforms_schema()
-        schemas.append(Schema(2, form, "protobuf", "foxglove.FrameTransforms"))
-        channels.append(_channel("/tf", 2, "protobuf"))
-    if "/contacts" in topics:
-        form = descriptors.point_cloud_schema()
-        schemas.append(Schema(3, form, "protobuf", "foxglove.PointCloud"))
-        names = [field.name for field in encoder.fields]
-        meanings = {name: CONTACT_COLUMNS[name] for name in names if name in CONTACT_COLUMNS}
-        channels.append(_channel("/contacts", 3, "protobuf", meanings))
-    bulk = Registered.of(schemas, channels)
-
-    step, sweep = encoder.step_columns, encoder.residual_columns
-    schemas = [Schema(4, descriptors.step_schema(step), "protobuf", "lavender.Step")]
-    channels = [_channel("/step", 4, "protobuf", _meanings(step))]
-    if "/residuals" in topics:
-        form = descriptors.residuals_schema(sweep)
-        schemas.append(Schema(5, form, "protobuf", "lavender.Residuals"))
-        channels.append(_channel("/residuals", 5, "protobuf", _meanings(sweep)))
-    if encoder.plots:
-        form = MULTI_ARRAY_DEFINITION.encode()
-        schemas.append(Schema(6, form, "ros2msg", "std_msgs/msg/Float64MultiArray"))
-        channels += [_channel(topic, 6, "cdr") for topic in encoder.plots]
-    return _Form(encoder, Registered.of(schemas, channels), bulk)
-
-
-@lru_cache(maxsize=8)  # the cells of a sweep look alike
-def _description(urdf: str) -> Closed:
-    text, records = urdf.encode() + b"\0", _description_records()
-    head = bytes([0, 1, 0, 0]) + len(text).to_bytes(4, "little")  # CDR, little endian
-    record = layout.record("/robot_description", Template().constant(head + text))
-    payload = records.data + record.rows(1).tobytes()  # its slots stay 0: step 0, time 0
-    entries = np.array([(0, len(records.data))], INDEX_ENTRY)
-    return closed(payload, [Messages(1, entries)])
-
-
-@lru_cache(maxsize=1)
-def _description_records() -> Registered:
-    schema = Schema(1, STRING_DEFINITION.encode(), "ros2msg", "std_msgs/msg/String")
-    return Registered.of([schema], [_channel("/robot_description", 1, "cdr")])
-
-
 def _end_of_group(encoded: Encoded, first: int, room: int) -> int:
     """Return the step that follows the one that fills the chunk; beyond the block if none does."""
     target = encoded.step_start[first] + room
     return int(np.searchsorted(encoded.step_start, target, "left"))
-
-
-def _channel(
-    topic: str, schema: int, encoding: str, meanings: Mapping[str, str] | None = None
-) -> Channel:
-    """Return a channel record; its metadata says what each column means."""
-    return Channel(layout.CHANNELS[topic], topic, encoding, dict(meanings or {}), schema)
-
-
-def _meanings(columns: Sequence[Column]) -> dict[str, str]:
-    return {column.name: column.meaning for column in columns}
