@@ -17,11 +17,12 @@ def digits(value: float) -> str:
     return f"{value:.6g}"
 
 
-def byte_size(count: float) -> str:
+def byte_size(count: float, digits: int = 3) -> str:
     """Return a number of bytes in the unit that suits it."""
     for unit, size in (("TB", 1e12), ("GB", 1e9), ("MB", 1e6), ("kB", 1e3)):
         if count >= 0.9995 * size:  # three digits of the larger unit, never 1e+03
-            return f"{count / size:.3g} {unit}"
+            rounded = float(f"{count / size:.{digits}g}")
+            return f"{rounded:g} {unit}"
     return f"{count:.0f} B"
 
 

@@ -118,6 +118,7 @@ def run(
 
     from .cell import CellJob, CellOfLog
     from .executor import outcomes_of
+    from .log_size import size_warning
     from .overheads import take_overheads, write_overheads
     from .plans import distinct, shared_plans
 
@@ -128,6 +129,8 @@ def run(
     plans = shared_plans(cells)
     seeds = Seeds(experiment)
     root = Path(root)
+    if sentence := size_warning(cells, plans, experiment.text, root):
+        progress.warning(sentence)
     directory = make_directory(experiment, root)
     (directory / "cells").mkdir()
     (directory / CONFIG).write_bytes(experiment.text.encode())
