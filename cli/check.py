@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from lavender_cli import printing, solver_matrix
+from lavender_cli import printing, progress, solver_matrix
 from lavender_cli.run import Configs, Jobs, Runs
 
 
@@ -56,8 +56,8 @@ def check(
     good, verdicts, cells, results = True, [], [], []
     for experiment in experiments:
         printing.warn_of_mistakes(experiment)
-        with printing.reporting(experiment.name) as progress:
-            finished = run(experiment, runs, jobs, progress, overheads=False)
+        with progress.reporting(experiment.name) as shown:
+            finished = run(experiment, runs, jobs, shown, overheads=False)
         good = good and finished.good
         results.append(finished)
         printing.warn_of_not_converged(finished)

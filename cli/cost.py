@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
-from lavender_cli import printing
+from lavender_cli import printing, progress
 from lavender_cli.run import Configs, Jobs, Runs
 
 HEADER = ("setting", "error", "worst at", "order", "residual m/s", "per simulated s", "quartiles")
@@ -50,8 +50,8 @@ def cost(
         check_cost(experiment, repeats)
     tables = []
     for experiment in experiments:
-        with printing.reporting(experiment.name) as progress:
-            costed = take_cost(experiment, runs, jobs, progress, sought, repeats)
+        with progress.reporting(experiment.name) as shown:
+            costed = take_cost(experiment, runs, jobs, shown, sought, repeats)
         run = costed.finished.run
         figures = []
         if plot:

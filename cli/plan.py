@@ -36,17 +36,41 @@ def plan(
     that differ in a choice between laws, such as the solver, share no union: one plan each.
     """
     from lavendersim.runner import load_all
+    from lavendersim.runner.log_size import expected_log_sizes
     from lavendersim.runner.plans import distinct, shared_plans
     from lavendersim.scene.explanation import explain_all
 
     (experiment,) = load_all([config])
-    explained = explain_all(distinct(shared_plans(experiment.cells())))
+    cells = experiment.cells()
+    plans = shared_plans(cells)
+    explained = explain_all(distinct(plans))
+    sizes = expected_log_sizes(cells, plans, experiment.text)
     if as_json:
         tables = [one.as_data() for one in explained]
-        printing.as_json({**tables[0], "others": tables[1:]})
+        printing.as_json({**tables[0], "others": tables[1:], "expected_log_sizes": sizes})
         return
     for one in explained:
         write(one, f"{experiment.name}: {one.title}")
+    for line in size_lines(sizes, [cell.label for cell in cells]):
+        typer.echo(line)
+
+
+def size_lines(sizes: list[int], labels: list[str]) -> list[str]:
+    """Return about how large the logs will be, in all and by cell; of many cells the range."""
+    total, low, high = (_about(size) for size in (sum(sizes), min(sizes), max(sizes)))
+    if len(sizes) == 1:
+        return [f"expected size of the log: about {total}"]
+    each = low if low == high else f"{low} to {high}"
+    lines = [f"expected size of the logs: about {total}, {each} in each of {len(sizes)} cells"]
+    if len(sizes) <= printing.CELLS_SHOWN:
+        lines += [
+            f"  {_about(size):>7}  {label}" for size, label in zip(sizes, labels, strict=True)
+        ]
+    return lines
+
+
+def _about(size: int) -> str:
+    return printing.byte_size(size, digits=2)
 
 
 def write(explained: Explanation, title: str, width: int | None = None) -> None:

@@ -1,12 +1,9 @@
-"""Text that several verbs print: verdicts, costs, warnings, JSON and progress."""
+"""Text that several verbs print: verdicts, costs, warnings and JSON."""
 
 from __future__ import annotations
 
 import json
 import re
-import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
 from typing import Any
 
 import typer
@@ -18,6 +15,24 @@ CELLS_SHOWN = 12  # of a larger sweep the range is printed; results.csv and `sho
 def digits(value: float) -> str:
     """Return a number with the digits a person can use."""
     return f"{value:.6g}"
+
+
+def byte_size(count: float, digits: int = 3) -> str:
+    """Return a number of bytes in the unit that suits it."""
+    for unit, size in (("TB", 1e12), ("GB", 1e9), ("MB", 1e6), ("kB", 1e3)):
+        if count >= 0.9995 * size:  # three digits of the larger unit, never 1e+03
+            rounded = float(f"{count / size:.{digits}g}")
+            return f"{rounded:g} {unit}"
+    return f"{count:.0f} B"
+
+
+def time_span(seconds: float) -> str:
+    """Return a time by the clock on the wall, to the second."""
+    whole = round(seconds)
+    hours, minutes, rest = whole // 3600, whole // 60 % 60, whole % 60
+    if hours:
+        return f"{hours} h {minutes} min"
+    return f"{minutes} min {rest} s" if minutes else f"{rest} s"
 
 
 def summarise(verdicts: list[Any]) -> list[tuple[str, bool, str]]:
@@ -114,40 +129,3 @@ def print_failures(finished: Any) -> None:
 def as_json(data: Any) -> None:
     """Print one JSON document."""
     typer.echo(json.dumps(data, indent=1, default=str))
-
-
-@contextmanager
-def reporting(name: str) -> Iterator[Any]:
-    """Give a runner.Progress that shows compilation always, and a bar on a terminal only."""
-    from lavendersim.runner import Progress
-    from lavendersim.runner.environment import kernel_place
-
-    def compiling(plan: Any) -> None:
-        effects = ", ".join(plan.spec.effects) or "no effects"
-        pairs = ", ".join(plan.spec.shape_pairs) or "no pairs"
-        what = f"{name}: compiling kernels for {effects}; {pairs} ({kernel_place()})"
-        typer.echo(what, err=True)
-
-    if not sys.stderr.isatty():
-
-        def report(what: str, done: int, total: int) -> None:
-            if done == 0:
-                typer.echo(f"{name}: {what}, {total} in all", err=True)
-
-        yield Progress(compiling=compiling, timing=report)
-        return
-    from rich.console import Console
-    from rich.progress import MofNCompleteColumn, TimeRemainingColumn
-    from rich.progress import Progress as Bar
-
-    columns = (*Bar.get_default_columns()[:2], MofNCompleteColumn(), TimeRemainingColumn())
-    with Bar(*columns, console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task(name, total=None)
-
-        def cell_done(done: int, total: int) -> None:
-            bar.update(task, completed=done, total=total)
-
-        def timing(what: str, done: int, total: int) -> None:
-            bar.update(task, description=f"{name}: {what}", completed=done, total=total)
-
-        yield Progress(compiling=compiling, cell_done=cell_done, timing=timing)

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from lavender_cli import overheads, printing
+from lavender_cli import overheads, printing, progress
 
 Configs = Annotated[
     list[Path], typer.Argument(metavar="CONFIG...", help="Config files, or folders of them.")
@@ -33,8 +33,8 @@ def run(
     good, tables, with_overheads = True, [], []
     for experiment in experiments:
         printing.warn_of_mistakes(experiment)
-        with printing.reporting(experiment.name) as progress:
-            finished = run(experiment, runs, jobs, progress)
+        with progress.reporting(experiment.name) as shown:
+            finished = run(experiment, runs, jobs, shown)
         good = good and finished.good
         printing.warn_of_not_converged(finished)
         figures = []

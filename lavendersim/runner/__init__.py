@@ -10,13 +10,14 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from .configs import find_configs, load_all
-    from .experiment_run import Finished, Progress, run
+    from .experiment_run import Finished, run
+    from .progress import Progress
     from .run_directory import RUNS, Run, RunCell, list_runs, open_run
 
 _HOME = {
     "RUNS": "run_directory",
     "Finished": "experiment_run",
-    "Progress": "experiment_run",
+    "Progress": "progress",
     "Run": "run_directory",
     "RunCell": "run_directory",
     "find_configs": "configs",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import cache
 from pathlib import Path
 from time import perf_counter_ns
@@ -32,6 +32,8 @@ from .measured import Measured, measure_cell
 from .problem_dump import ProblemDump
 from .run_directory import RunCell
 
+# Called when the kernel of a cell is there, with what reads how many steps are done.
+Began = Callable[[Callable[[], int]], None]
 STOPPED: Final = -1  # beside the engine's own outcomes: a bound ended the cell
 CAUSES = {
     NOT_FINITE: "is no longer finite",
@@ -146,9 +148,11 @@ def compile_kernel(job: CellJob) -> int:
     return started(build(job.config, job.plan.spec), job.plan)[1]
 
 
-def run_and_measure(job: CellJob) -> tuple[CellOutcome, dict[int, Measured]]:
+def run_and_measure(
+    job: CellJob, began: Began | None = None
+) -> tuple[CellOutcome, dict[int, Measured]]:
     """Simulate one cell, write its log, and measure it for each cell of the sweep that it is of."""
-    outcome, written, worst = simulate(job)
+    outcome, written, worst = simulate(job, began)
     trace = trace_of(written)
     measured = {}
     for index, label, coordinates in job.cells:
@@ -162,14 +166,19 @@ def run_cell(job: CellJob) -> CellOutcome:
     return simulate(job)[0]
 
 
-def simulate(job: CellJob) -> tuple[CellOutcome, Written, WorstStates | None]:
+def simulate(
+    job: CellJob, began: Began | None = None
+) -> tuple[CellOutcome, Written, WorstStates | None]:
     """Simulate one cell and write its log.
 
+    began: called when its kernel is there, with what reads how many steps are done, at any time.
     Returns beside the outcome the log as this process may read it, and its states by `always`.
     """
     physics_ns = logging_ns = 0
     scene = build(job.config, job.plan.spec)
     engine, compile_ns = started(scene, job.plan)
+    if began is not None:
+        began(lambda: int(engine.counters["step"][0]))
     absent = absent_topics(job.plan)
     writer = TraceWriter(
         job.path,

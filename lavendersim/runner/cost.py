@@ -22,9 +22,10 @@ from .cost_errors import SettingError, errors_of, law_of, orders_of, runs_of
 from .cost_targets import answers, front_of
 from .cost_times import Clocked, Times, times_of
 from .environment import machine
-from .experiment_run import Finished, Progress, run
+from .experiment_run import Finished, run
 from .json_table import text_of
 from .overheads import Spread
+from .progress import Progress
 from .run_directory import COST, COST_TABLE, RUNS
 from .timed_engine import clock
 

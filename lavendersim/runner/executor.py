@@ -7,16 +7,17 @@ from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
 from pathlib import Path
 from time import perf_counter
-from typing import Any
+from typing import Any, NamedTuple
 
 from lavendersim.engine.compile import compiler_is_off
 from lavendersim.engine.kernel_cache import directory
+from lavendersim.engine.spec import Spec
 from lavendersim.engine.step import is_compiled
 from lavendersim.errors import UsageError
-from lavendersim.scene.plan import Plan
 
 from .cell import CellJob, CellOutcome, compile_kernel, run_and_measure
 from .measured import Measured
+from .progress import Compilation, Progress, Tally
 
 # Cells that would take less [s] than this one after the other are run in this process: each other
 # process imports numba and loads kernels for 1 to 2 s of processor time before its first step.
@@ -24,19 +25,21 @@ WORTH_PROCESSES = 4.0
 
 
 def outcomes_of(
-    jobs: Sequence[CellJob], workers: int, compiling: Callable[[Plan], None]
+    jobs: Sequence[CellJob], workers: int, progress: Progress
 ) -> Iterator[tuple[CellJob, CellOutcome, dict[int, Measured]]]:
     """Run and measure every job; with several workers they do not come in the order of `jobs`.
 
-    compiling: called before a kernel is compiled, once for each plan that has none yet. Yielded
-    are the job, how it ended, and what was measured, by the cells of the sweep.
+    Yielded are the job, how it ended, and what was measured, by the cells of the sweep.
     """
     if compiler_is_off():
         raise UsageError("NUMBA_DISABLE_JIT is set: lavender runs compiled kernels only, unset it")
     first: dict[tuple[Any, ...], CellJob] = {}
     for job in jobs:
         first.setdefault(job.plan.choices, job)
-    apart = _compile_together(list(first.values()), workers, compiling)
+    missing = _missing(list(first.values()))
+    tally = Tally(jobs)
+    progress.running(tally)
+    apart = _compile_together(missing, workers, progress)
     # The first cell of each plan runs here: it leaves the kernel where other processes find it.
     ordered = sorted(jobs, key=lambda job: first[job.plan.choices] is not job)
     done, taken = 0, 0.0  # and what they took [s]
@@ -45,20 +48,23 @@ def outcomes_of(
         if workers > 1 and done >= len(first) and taken / done * len(rest) > WORTH_PROCESSES:
             break
         job = rest[0]
-        if done < len(first) and not is_compiled(job.plan.spec):
-            compiling(job.plan)
+        compiles = done < len(first) and not is_compiled(job.plan.spec)
+        begun = missing.get(job.plan.spec) if compiles else None
         begin = perf_counter()
-        outcome, measured = run_and_measure(job)
+        outcome, measured = run_and_measure(job, _beginning(job, begun, tally, progress))
+        tally.end(job)
         done, taken = done + 1, taken + perf_counter() - begin - outcome.compile_ns / 1e9
         spent = outcome.compile_ns + apart.pop(job.path, 0)
         yield job, outcome._replace(compile_ns=spent), measured
     rest = ordered[done:]
     if not rest:
         return
+    tally.begin_in_others()
     with _pool(workers, len(rest)) as pool:
         chunk = max(1, len(rest) // (4 * workers))
         found = pool.map(run_and_measure, rest, chunksize=chunk)
         for job, (outcome, measured) in zip(rest, found, strict=True):
+            tally.end(job)
             yield job, outcome, measured
 
 
@@ -67,18 +73,58 @@ def _pool(workers: int, tasks: int) -> ProcessPoolExecutor:
     return ProcessPoolExecutor(min(workers, tasks), get_context("spawn"))
 
 
+class _Missing(NamedTuple):
+    job: CellJob
+    compilation: Compilation
+
+
+def _missing(first: list[CellJob]) -> dict[Spec, _Missing]:
+    """Return each kernel that is to be compiled, once, with the first cell that needs it."""
+    jobs: dict[Spec, CellJob] = {}
+    for job in first:
+        if not is_compiled(job.plan.spec):
+            jobs.setdefault(job.plan.spec, job)
+    if not jobs:
+        return {}
+    from lavendersim.scene.explanation import title_of  # late: only what compiles needs a title
+
+    plans = [job.plan for job in first]
+    return {
+        spec: _Missing(job, Compilation(job.plan, title_of(job.plan, plans), number, len(jobs)))
+        for number, (spec, job) in enumerate(jobs.items(), start=1)
+    }
+
+
+def _beginning(
+    job: CellJob, missing: _Missing | None, tally: Tally, progress: Progress
+) -> Callable[[Callable[[], int]], None]:
+    """Announce what a cell compiles; returns what is to be called when its kernel is there."""
+    if missing is not None:
+        progress.compiling(missing.compilation)
+
+    def began(steps_done: Callable[[], int]) -> None:
+        if missing is not None:
+            progress.compiled(missing.compilation)
+        tally.begin(job, steps_done)
+
+    return began
+
+
 def _compile_together(
-    jobs: list[CellJob], workers: int, compiling: Callable[[Plan], None]
+    missing: dict[Spec, _Missing], workers: int, progress: Progress
 ) -> dict[Path, int]:
     """Compile several plans at once, each in a process of its own; returns the time [ns] by log.
 
     Where one plan is missing, or one process asked for, or no kernel can be kept, nothing is done.
     """
-    missing = [job for job in jobs if not is_compiled(job.plan.spec)]
     if min(workers, len(missing)) < 2 or not directory()[0].name:
         return {}
-    for job in missing:
-        compiling(job.plan)
+    times: dict[Path, int] = {}
+    for one in missing.values():
+        progress.compiling(one.compilation)
     with _pool(workers, len(missing)) as pool:
-        times = pool.map(compile_kernel, missing)
-        return {job.path: spent for job, spent in zip(missing, times, strict=True)}
+        spent = pool.map(compile_kernel, [one.job for one in missing.values()])
+        for one, nanoseconds in zip(missing.values(), spent, strict=True):
+            times[one.job.path] = nanoseconds
+            progress.compiled(one.compilation)
+    return times

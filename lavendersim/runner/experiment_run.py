@@ -21,6 +21,7 @@ from lavendersim.measures import Values, Verdict, judge, meant_to_end_early
 from .checks import check
 from .environment import environment
 from .json_table import text_of
+from .progress import Progress
 from .results import compile_seconds, convergence_notices, write_results
 from .run_directory import (
     CELLS,
@@ -37,8 +38,6 @@ from .run_directory import (
 from .seeds import Seeds
 
 if TYPE_CHECKING:
-    from lavendersim.scene.plan import Plan
-
     from .cell import CellJob, CellOutcome
     from .measured import Measured
 
@@ -72,14 +71,6 @@ class Finished(NamedTuple):
     def not_converged(self) -> list[str]:
         """A sentence for every cell whose steps did not all converge; a warning, no failure."""
         return convergence_notices(self)
-
-
-class Progress(NamedTuple):
-    """What a caller may want to show while a sweep runs; every hook may be left as it is."""
-
-    compiling: Callable[[Plan], None] = lambda plan: None
-    cell_done: Callable[[int, int], None] = lambda done, total: None
-    timing: Callable[[str, int, int], None] = lambda what, done, total: None
 
 
 # What adds to a run's directory: it is given the run and the measures of its cells.
@@ -127,6 +118,7 @@ def run(
 
     from .cell import CellJob, CellOfLog
     from .executor import outcomes_of
+    from .log_size import size_warning
     from .overheads import take_overheads, write_overheads
     from .plans import distinct, shared_plans
 
@@ -137,6 +129,8 @@ def run(
     plans = shared_plans(cells)
     seeds = Seeds(experiment)
     root = Path(root)
+    if sentence := size_warning(cells, plans, experiment.text, root):
+        progress.warning(sentence)
     directory = make_directory(experiment, root)
     (directory / "cells").mkdir()
     (directory / CONFIG).write_bytes(experiment.text.encode())
@@ -165,7 +159,7 @@ def run(
     # The index stands from the start, so that an interrupted run can be listed and replayed.
     _write_index(directory, experiment, pending, ended)
     try:
-        for job, outcome, found in outcomes_of([*different.values()], jobs, progress.compiling):
+        for job, outcome, found in outcomes_of([*different.values()], jobs, progress):
             ended[job.path] = outcome
             taken |= found
             progress.cell_done(len(ended), len(different))

@@ -81,7 +81,7 @@ def explain(plan: Plan, others: Iterable[Plan] = ()) -> Explanation:
     solver = _solver(plan, _without(composed, *brought))
     always = _without(always, solver.kernels, *brought)
     return Explanation(
-        title=_title(plan, others),
+        title=title_of(plan, others),
         digest=spec.digest(),
         spec=spec._asdict(),
         choices=choices,
@@ -182,7 +182,7 @@ def _solver(plan: Plan, composed: Kernels) -> ExplanationItem:
     )
 
 
-def _title(plan: Plan, others: Iterable[Plan]) -> str:
+def title_of(plan: Plan, others: Iterable[Plan]) -> str:
     """Return the choices in which plans of one sweep differ, and how many cells share this one."""
     others = list(others)
     differing = [

@@ -95,6 +95,21 @@ def test_json_has_all_that_the_table_has(drop: Path, tmp_path: Path) -> None:
         assert part["requirement"] in table
 
 
+def test_it_ends_with_the_expected_size_of_the_logs_in_all_and_by_cell(
+    drop: Path, tmp_path: Path
+) -> None:
+    alone = lavender("plan", drop, where=tmp_path).stdout.splitlines()[-1]
+    assert re.fullmatch(r"expected size of the log: about \d+ kB", alone)
+    text = drop.read_text()
+    drop.write_text(text[: text.index("measure:")] + SWEPT)
+    sizes = json.loads(lavender("plan", drop, "--json", where=tmp_path).stdout)
+    assert len(sizes["expected_log_sizes"]) == 3
+    *_, whole, first, second, third = lavender("plan", drop, where=tmp_path).stdout.splitlines()
+    assert re.match(r"expected size of the logs: about \d+ kB, .* in each of 3 cells$", whole)
+    assert [line.split()[-1] for line in (first, second, third)] == ["e=0", "e=0.5", "e=0.8"]
+    assert sizes["expected_log_sizes"][0] == pytest.approx(float(first.split()[0]) * 1e3, rel=0.05)
+
+
 def test_show_tells_the_plan_of_the_log(drop: Path, tmp_path: Path) -> None:
     text = drop.read_text()
     swept = text[: text.index("measure:")].replace("duration: 0.5", "duration: 0.02") + SWEPT

@@ -34,6 +34,7 @@ ELSEWHERE = {
         "scene/laws.py": FACT,
         "scene/build.py": "its vector is a parameter of the run, with the other coefficients",
         "engine/effects/fast_bodies.py": "how fast bodies may fall",
+        "scene/expected_contacts.py": "how soon bodies have landed",
     },
     "external_force": {
         "engine/effects/sleeping.py": "who is pushed does not sleep",

@@ -11,6 +11,7 @@ import lavendersim
 from lavendersim.experiment import load_experiment_text
 from lavendersim.runner import Finished, Progress
 from lavendersim.runner.plans import distinct, shared_plans
+from lavendersim.runner.progress import Compilation
 from lavendersim.scene.plan import CHOICES
 
 SOLVERS = "[projected_gauss_seidel, nonsmooth_conjugate_gradient]"
@@ -74,8 +75,8 @@ class Swept:
         text = (SWEPT % ("numerics.solver", SOLVERS)).replace("[0.2, 0.5, 0.8]", "[0.2, 0.8]")
         text = text[: text.index("measure:\n")]
 
-        def compiling(plan: lavendersim.runner.plans.Plan) -> None:
-            self.compiled.append(plan.spec.solver)
+        def compiling(begun: Compilation) -> None:
+            self.compiled.append(begun.plan.spec.solver)
 
         config = write(folder, text, "swept.yaml")
         self.finished: Finished = lavendersim.run(

@@ -1,0 +1,82 @@
+"""About how large the logs of a run will be, and whether the disk has room for them."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Final
+
+from lavendersim.cell import CellConfig
+from lavendersim.engine.effects import effects_of, row_fields
+from lavendersim.experiment.cell import Cell
+from lavendersim.geometry.bodies import is_movable
+from lavendersim.scene.expected_contacts import expected_contacts
+from lavendersim.scene.plan import Plan
+from lavendersim.trace.expected_size import WORD, StepContent, expected_size
+
+MOST_OF_DISK: Final = 0.1  # of what is free, that logs take without a warning
+# More than logs take, by far: twenty contacts of 250 B a body. It is known at once.
+MOST_PER_STEP: Final = 1_000  # [B]
+MOST_PER_BODY: Final = 5_000  # [B] and step
+
+
+def expected_log_size(config: CellConfig, plan: Plan, as_written: str) -> float:
+    """Return about how many bytes [B] the log of a cell will have."""
+    spec, bodies = plan.spec, config.scene.bodies.values()
+    topics = [topic for effect in effects_of(spec) for topic in effect.channels or ()]
+    steps = config.steps
+    content = StepContent(
+        step_columns=len(row_fields(spec, "step")),
+        contact_columns=row_fields(spec, "contact"),
+        moving=sum(is_movable(body) or body.kinematic for body in bodies),
+        contacts=expected_contacts(config) if "/contacts" in topics else 0.0,
+        sweeps=_logged_sweeps(config, steps),
+    )
+    return expected_size(content, topics, steps, len(bodies), as_written)
+
+
+def expected_log_sizes(cells: Iterable[Cell], plans: Iterable[Plan], as_written: str) -> list[int]:
+    """Return about how many bytes [B] the log of each cell will have."""
+    return [
+        round(expected_log_size(cell.config, plan, as_written))
+        for cell, plan in zip(cells, plans, strict=True)
+    ]
+
+
+def size_warning(cells: Sequence[Cell], plans: Sequence[Plan], as_written: str, root: Path) -> str:
+    """Return a sentence where the logs fill the disk of `root` too far; else nothing."""
+    free = shutil.disk_usage(_existing(root)).free
+    if sum(map(_most, cells)) <= MOST_OF_DISK * free:
+        return ""
+    total = sum(expected_log_sizes(cells, plans, as_written))
+    if total <= MOST_OF_DISK * free:
+        return ""
+    return (
+        f"its logs take about {total / 1e9:.2g} GB, more than a tenth of the {free / 1e9:.2g} GB "
+        f"that are free in {root}"
+    )
+
+
+def _most(cell: Cell) -> float:
+    """Return more bytes [B] than the log of a cell takes."""
+    config = cell.config
+    sweeps = config.numerics.sweeps if config.record.residuals != "none" else 0
+    bodies = len(config.scene.bodies)
+    return (config.steps + 1) * (MOST_PER_STEP + bodies * MOST_PER_BODY + 2 * WORD * sweeps)
+
+
+def _logged_sweeps(config: CellConfig, steps: int) -> float:
+    """Return the sweeps a step whose residuals are logged, at most; the mean over the run."""
+    if config.record.residuals == "none":
+        return 0.0
+    from lavendersim.scene.build import residual_window  # late: numba
+
+    first, last = residual_window(config.record, config.clock)
+    return config.numerics.sweeps * max(0, min(last, steps) - first + 1) / steps
+
+
+def _existing(path: Path) -> Path:
+    """Return the folder that a path will be made in."""
+    path = path.absolute()
+    return next(folder for folder in (path, *path.parents) if folder.exists())

@@ -1,0 +1,125 @@
+"""About how many contacts a step of a scene will have, before it runs.
+
+    contacts
+      settled |          ________    start: bounds that touch, times the points of a manifold
+              |       .'             settled: what movable bodies rest on
+        start | __..'                until then: what lies below g t^2 / 2 has landed
+              +---------+------> t   T = sqrt(2 H / g), H: the height of the scene
+
+A packing of frictional spheres that carries itself has between 4 and 6 neighbours each (Maxwell's
+count of constraints), which is two to three contacts a sphere; a body with faces rests on four.
+"""
+
+from __future__ import annotations
+
+from math import hypot, sqrt
+from typing import Final
+
+import numpy as np
+
+from lavendersim.cell import CellBody, CellConfig, Plane, Sphere
+from lavendersim.geometry.bodies import is_movable
+from lavendersim.geometry.support import extent_against
+
+POINTS: Final = {"sphere": 1, "capsule": 2}  # of a manifold, at most; of any other shape four
+FACE_POINTS: Final = 4
+SPHERE_ON_SPHERES: Final = 2  # contacts of each, at the lower end of the count above
+TOUCHING: Final = 1e-3  # gap, by the size of the smaller body, that counts as none
+AXES: Final = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+
+Bounds = np.ndarray  # (n, 3) [m]
+
+
+def expected_contacts(config: CellConfig) -> float:
+    """Return about how many contacts a step has, the mean over the run."""
+    bodies = list(config.scene.bodies.values())
+    solids = [body for body in bodies if not isinstance(body.shape, Plane)]
+    low, high = _bounds(solids)
+    start = _between_solids(solids, low, high) + _on_planes(bodies, solids, high - low)
+    gravity = config.scene.gravity
+    acceleration = hypot(*gravity)
+    if acceleration == 0.0:
+        return start
+    sizes = (high.max(axis=0) - low.min(axis=0)).tolist()
+    height = sum(size * abs(g) for size, g in zip(sizes, gravity, strict=True)) / acceleration
+    times = config.duration / sqrt(2.0 * height / acceleration)
+    # the mean of (t/T)^2, 1 from T on, over the run
+    landed = times**2 / 3.0 if times < 1.0 else 1.0 - 2.0 / (3.0 * times)
+    return start + landed * (max(start, _settled(solids)) - start)
+
+
+def _points(body: CellBody) -> int:
+    return POINTS.get(body.shape.kind, FACE_POINTS)
+
+
+def _settled(solids: list[CellBody]) -> float:
+    """Return the contacts of a scene in which every movable body rests on something."""
+    movable = [body for body in solids if is_movable(body)]
+    spheres = sum(isinstance(body.shape, Sphere) for body in movable)
+    several = SPHERE_ON_SPHERES if spheres > 1 else 1
+    return sum(several if isinstance(body.shape, Sphere) else _points(body) for body in movable)
+
+
+def _bounds(solids: list[CellBody]) -> tuple[Bounds, Bounds]:
+    """Return the least and the largest coordinates of every body [m]."""
+    low, high = np.empty((len(solids), 3)), np.empty((len(solids), 3))
+    for row, body in enumerate(solids):
+        for axis, direction in enumerate(AXES):
+            against = (-direction[0], -direction[1], -direction[2])
+            low[row, axis] = body.position[axis] - _extent(body, direction)
+            high[row, axis] = body.position[axis] + _extent(body, against)
+    return low, high
+
+
+def _extent(body: CellBody, direction: tuple[float, float, float]) -> float:
+    assert not isinstance(body.shape, Plane)  # it has no centre
+    return extent_against(body.shape, body.orientation, direction)
+
+
+def _between_solids(solids: list[CellBody], low: Bounds, high: Bounds) -> float:
+    """Return the contacts of bodies whose bounds touch, and of spheres that touch themselves."""
+    gap = TOUCHING * (high - low).min(axis=1)
+    low, high = low - gap[:, None] / 2, high + gap[:, None] / 2
+    first, second = _overlapping(low, high)
+    movable = np.array([is_movable(body) for body in solids])
+    points = np.array([_points(body) for body in solids])
+    near = movable[first] | movable[second]
+    spheres = points == POINTS["sphere"]
+    radius, centre = (high - low)[:, 0] / 2, (high + low) / 2
+    apart = np.linalg.norm(centre[first] - centre[second], axis=1) > radius[first] + radius[second]
+    near &= ~(spheres[first] & spheres[second] & apart)
+    return float(np.minimum(points[first], points[second])[near].sum())
+
+
+def _overlapping(low: Bounds, high: Bounds) -> tuple[np.ndarray, np.ndarray]:
+    """Return the pairs of rows whose bounds overlap: sweep and prune along the best axis."""
+    candidates = []
+    for axis in range(3):
+        order = np.argsort(low[:, axis], kind="stable")
+        ends = np.searchsorted(low[order, axis], high[order, axis], "right")
+        candidates.append((ends - np.arange(len(order)) - 1, order))
+    counts, order = min(candidates, key=lambda found: int(found[0].sum()))
+    first = np.repeat(np.arange(len(order)), counts)
+    begins = np.cumsum(counts) - counts
+    second = first + 1 + np.arange(len(first)) - np.repeat(begins, counts)
+    first, second = order[first], order[second]
+    near = np.all((low[first] <= high[second]) & (low[second] <= high[first]), axis=1)
+    return first[near], second[near]
+
+
+def _on_planes(bodies: list[CellBody], solids: list[CellBody], sizes: Bounds) -> float:
+    """Return the contacts of movable bodies that touch a plane."""
+    total = 0.0
+    for shape in (body.shape for body in bodies):
+        if not isinstance(shape, Plane):
+            continue
+        length = hypot(*shape.normal)
+        x, y, z = (one / length for one in shape.normal)
+        for body, size in zip(solids, sizes, strict=True):
+            if not is_movable(body):
+                continue
+            px, py, pz = body.position
+            gap = x * px + y * py + z * pz - shape.offset
+            if gap - _extent(body, (x, y, z)) <= TOUCHING * size.min():
+                total += _points(body)
+    return total
