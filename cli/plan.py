@@ -70,7 +70,8 @@ def size_lines(sizes: list[int], labels: list[str]) -> list[str]:
 
 
 def _about(size: int) -> str:
-    return printing.byte_size(size, digits=2)
+    text: str = printing.byte_size(size, digits=2)
+    return text
 
 
 def write(explained: Explanation, title: str, width: int | None = None) -> None:

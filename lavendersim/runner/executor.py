@@ -44,10 +44,10 @@ def outcomes_of(
     ordered = sorted(jobs, key=lambda job: first[job.plan.choices] is not job)
     done, taken = 0, 0.0  # and what they took [s]
     while done < len(ordered):
-        rest = ordered[done:]
-        if workers > 1 and done >= len(first) and taken / done * len(rest) > WORTH_PROCESSES:
+        left = len(ordered) - done
+        if workers > 1 and done >= len(first) and taken / done * left > WORTH_PROCESSES:
             break
-        job = rest[0]
+        job = ordered[done]
         compiles = done < len(first) and not is_compiled(job.plan.spec)
         begun = missing.get(job.plan.spec) if compiles else None
         begin = perf_counter()
