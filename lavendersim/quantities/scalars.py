@@ -13,6 +13,7 @@ from functools import lru_cache
 
 # Longer numbers carry no more float64 digits, and Python's int() is quadratic in their length.
 LONGEST_NUMBER = 64
+LARGEST_DENOMINATOR = 1_000_000  # of the ratios that a float is taken for
 
 _INTEGER = re.compile(r"[-+]?[0-9]+\Z")
 _OCTAL = re.compile(r"0o[0-7]+\Z")
@@ -50,10 +51,15 @@ class ScalarError(ValueError):
 
 
 def exact(number: float) -> Fraction:
-    """Return the number as written: a ratio's own, else the float's shortest decimal."""
+    """Return the number as written: a ratio's own, else the simple ratio or decimal that it rounds.
+
+    A time written as 5/6 is a float in the resolved config, and that float lies beside 5/6: an
+    event then would act a step late. No decimal of up to six places is read as another ratio.
+    """
     if isinstance(number, Ratio):
         return number.fraction
-    return Fraction(repr(number))
+    simple = Fraction(number).limit_denominator(LARGEST_DENOMINATOR)
+    return simple if float(simple) == number else Fraction(repr(number))
 
 
 def label(value: object) -> str:

@@ -10,6 +10,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from lavendersim.clock import Clock
+from lavendersim.quantities.scalars import exact
 
 TIMESTEPS = [
     Fraction(1, 480),
@@ -132,3 +133,8 @@ def test_one_step_after_the_other_gives_the_same_times(
     assert clock.elapsed(steps[:-1], steps[1:]).tolist() == clock.lengths(steps[1:]).tolist()
     rebuilt = Clock.counted(clock.timestep, clock.changes)
     assert rebuilt.stretches == clock.stretches
+
+
+def test_a_time_written_as_a_ratio_is_the_step_that_begins_there() -> None:
+    """5/6 s are 200 steps of 1/240 s, also where the ratio has become a float on the way."""
+    assert Clock(Fraction(1, 240)).steps_until(exact(5 / 6)) == 200

@@ -66,6 +66,14 @@ def test_ratio_survives_copies_and_processes() -> None:
 
 def test_decimal_is_exact_as_written() -> None:
     assert exact(0.002) == Fraction(1, 500)  # the float itself is no such ratio
+    assert exact(0.123456) == Fraction(123456, 1_000_000)
+    assert exact(1e-9) == Fraction(1, 10**9)
+    assert exact(12345678.25) == Fraction(49382713, 4)
+
+
+@pytest.mark.parametrize("ratio", [Fraction(5, 6), Fraction(1, 240), Fraction(7919, 999_983)])
+def test_a_ratio_that_was_rounded_is_found_again(ratio: Fraction) -> None:
+    assert exact(float(ratio)) == ratio
     assert Fraction(0.002) != Fraction(1, 500)
 
 
