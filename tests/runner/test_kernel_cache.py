@@ -126,7 +126,7 @@ def test_without_any_cache_directory_a_run_compiles_and_says_so(
 def rows_of_a_drop(spec: Spec, config: CellConfig, kernel: Any) -> list[bytes]:
     """Return the recorded rows of 120 steps of a drop under a kernel."""
     engine = build(config, spec).engine(spec)
-    engine._kernel = kernel
+    engine._kernel, engine._entry = kernel, None
     engine.advance(120)
     return [rows.tobytes() for rows in engine.take_rows()]
 
