@@ -8,6 +8,7 @@ tags, anchors or aliases in a config, so nothing is constructed and nothing can 
 from __future__ import annotations
 
 import codecs
+import gc
 import re
 from collections.abc import Iterator
 from typing import Any
@@ -54,11 +55,18 @@ def parse(raw: bytes, name: str, size: int | None = None) -> tuple[Node | None, 
     `size` is the length of the file [byte] when `raw` is only its beginning.
     """
     reading = _Reading(name)
+    # The tree has no circles, and at most MOST_VALUES nodes: looking for some while it grows takes
+    # as long as reading it.
+    collects = gc.isenabled()
+    gc.disable()
     try:
         text = reading.decode(raw, size or len(raw))
         return reading.compose(text), reading.defects
     except _Stop:
         return None, reading.defects
+    finally:
+        if collects:
+            gc.enable()
 
 
 def decode(raw: bytes) -> str:
@@ -114,12 +122,12 @@ class _Reading:
         for event in events:
             start = event.start_mark
             mark = Mark(start.line + 1, start.column + 1)
-            if isinstance(event, yaml.DocumentStartEvent):
+            if isinstance(event, yaml.NodeEvent):
+                self._node(event, mark)
+            elif isinstance(event, yaml.DocumentStartEvent):
                 documents += 1
                 if documents > 1:
                     raise self.stop(mark, "a second document; a file holds one experiment")
-            elif isinstance(event, yaml.NodeEvent):
-                self._node(event, mark)
             elif isinstance(event, yaml.CollectionEndEvent):
                 done = self.stack.pop()
                 content = done.entries if done.is_mapping else tuple(done.items)
@@ -129,13 +137,15 @@ class _Reading:
         self.values += 1
         if self.values > MOST_VALUES:
             raise self.stop(mark, f"more than {MOST_VALUES} values in one file")
-        if isinstance(event, yaml.AliasEvent):
+        if event.__class__ is yaml.AliasEvent:
             if event.anchor not in self.anchors:
                 self.refuse(mark, f"alias *{event.anchor}: there is no such anchor")
             self._place(Node(BROKEN, mark), mark)
             return
-        refused = self._refuse_properties(event, mark)
-        if isinstance(event, yaml.ScalarEvent):
+        refused = False
+        if event.tag is not None or event.anchor is not None:
+            refused = self._refuse_properties(event, mark)
+        if event.__class__ is yaml.ScalarEvent:
             # as an escape such as "\\x1b"; most texts are plain, which is seen at once
             plain = event.value.isascii() and event.value.isprintable()
             if not plain and (match := _UNPRINTABLE.search(event.value)):
