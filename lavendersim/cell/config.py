@@ -57,11 +57,6 @@ class CellConfig(ResolvedModel):
         """Return the text of `as_dict`, in one line."""
         return self.model_dump_json(by_alias=True)
 
-    @classmethod
-    def from_json(cls, text: str | bytes) -> CellConfig:
-        """Return the config that `as_json` gave this text."""
-        return cls.model_validate_json(text)
-
     @property
     def clock(self) -> Clock:
         """The times of its steps."""

@@ -161,11 +161,6 @@ def run_and_measure(
     return outcome, measured
 
 
-def run_cell(job: CellJob) -> CellOutcome:
-    """Simulate one cell and write its log."""
-    return simulate(job)[0]
-
-
 def simulate(
     job: CellJob, began: Began | None = None
 ) -> tuple[CellOutcome, Written, WorstStates | None]:

@@ -149,17 +149,10 @@ def not_converged_steps(not_converged: int, steps: int, tolerance: float | None)
     return f"{not_converged} of {steps} steps above {tolerance:g} m/s"
 
 
-class _Taken(Values):
-    """Measures that were taken already, by the index of a cell."""
-
-    def __init__(self, experiment: Experiment, measured: Sequence[Mapping[str, Any]]) -> None:
-        super().__init__(experiment.measures)
-        self._found = measured
-
-    def row(self, measure: str, cell: Any) -> np.ndarray:
-        """Return the numbers of one cell; NaN where the log had no answer."""
-        value = self._found[cell.index].get(measure, NAN)
-        return np.atleast_1d(NAN if isinstance(value, str) else value).astype(np.float64)
+def _taken(experiment: Experiment, measured: Mapping[str, Any]) -> dict[str, Any]:
+    """Return every measure of a cell; NaN where the log had no answer."""
+    values = {name: measured.get(name, NAN) for name in experiment.measures}
+    return {name: NAN if isinstance(one, str) else one for name, one in values.items()}
 
 
 def _unmet(experiment: Experiment, run: SettingRun) -> list[str]:
@@ -172,7 +165,8 @@ def _unmet(experiment: Experiment, run: SettingRun) -> list[str]:
         replace(inside, index=place, label=cell.label, coordinates=cell.coordinates)
         for place, (cell, inside) in enumerate(zip(experiment.cells(), run.cells, strict=True))
     ]
-    verdicts = judge(experiment.measures, claims, own, _Taken(experiment, run.measured))
+    taken = {place: _taken(experiment, one) for place, one in enumerate(run.measured)}
+    verdicts = judge(experiment.measures, claims, own, Values(experiment.measures, taken))
     for cell in run.cells:
         cell.release()
     return [verdict.node for verdict in verdicts if not verdict.passed]

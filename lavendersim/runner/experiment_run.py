@@ -166,7 +166,7 @@ def run(
     finally:
         _write_index(directory, experiment, pending, ended)
     outcomes = [ended[job.path]._replace(cell=job.cell) for job in pending]
-    finished = Run(directory, {cell.index: cell.config for cell in cells}, experiment)
+    finished = Run(directory, experiment)
     values = Values(experiment.measures, {index: one.values for index, one in taken.items()})
     always = {index: one.always for index, one in taken.items()}
     claims = (experiment.measures, experiment.expectations, finished.cells, values)

@@ -67,12 +67,10 @@ class RunCell:
 class Run:
     """A run on disk.
 
-    configs: of its cells by their index, in the process that ran them; others read them from logs.
-    ran: the experiment, likewise.
+    ran: the experiment, in the process that ran it; others read it and its configs from disk.
     """
 
     path: Path
-    configs: Mapping[int, CellConfig] = field(default_factory=dict, repr=False, compare=False)
     ran: Experiment | None = field(default=None, repr=False, compare=False)
 
     @cached_property
@@ -100,15 +98,15 @@ class Run:
     @cached_property
     def cells(self) -> tuple[RunCell, ...]:
         """The cells that were run, in the order of the sweep."""
-        coordinates = {cell.index: cell.coordinates for cell in self.experiment.cells()}
+        cells = {cell.index: cell for cell in self.experiment.cells()}
         return tuple(
             RunCell(
                 row["index"],
                 row["label"],
-                coordinates[row["index"]],
+                cells[row["index"]].coordinates,
                 self.path / row["file"],
                 row["status"],
-                self.configs.get(row["index"]),
+                cells[row["index"]].config if self.ran is not None else None,
             )
             for row in self._index["cells"]
         )

@@ -23,7 +23,7 @@ import numpy as np
 
 from lavendersim.engine.records import RUNNING, TOUCHING
 from lavendersim.engine.step import is_compiled
-from lavendersim.runner.cell import CellJob, run_cell
+from lavendersim.runner.cell import CellJob, simulate
 from lavendersim.runner.environment import environment
 
 from .minimal_drop import Drop, minimal_drop, start
@@ -95,7 +95,7 @@ def logging_step(timed: Case) -> float:
     with tempfile.TemporaryDirectory() as folder:
         log = Path(folder) / "cell.mcap"
         job = CellJob(0, timed.config, timed.text, log, timed.plan, "none")
-        outcome = run_cell(job)
+        outcome, _, _ = simulate(job)
     assert outcome.status == "complete", outcome.status
     return outcome.logging_ns / MICROSECOND / outcome.steps
 

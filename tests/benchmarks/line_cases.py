@@ -20,8 +20,7 @@ PILE_DURATION = 4.0
 STEPS = 100_000  # of the long ball
 FEW_STEPS = 1_000  # of the short one: what a cell costs by itself
 
-# Masses are no part of the motion, but cells of different masses are different simulations.
-DROPS = """\
+SCENE = """\
 scene:
   bodies:
     floor: {shape: {kind: plane}}
@@ -30,6 +29,11 @@ scene:
       mass: 1.0
       surface: {restitution: 0.5}
       release: {above: floor, clearance: 1.0}
+"""
+# Masses are no part of the motion, but cells of different masses are different simulations.
+DROPS = (
+    SCENE
+    + """\
 numerics: {timestep: 1/240}
 duration: 1.0
 sweep:
@@ -42,22 +46,18 @@ measure:
 expect:
   - {name: it rebounds, measure: rebound, between: [0.0, 1.0]}
 """
+)
 RESTITUTIONS = 20  # 0.1, 0.14, ..., 0.86
 
 # One body of one contact: what a step costs the log at the least. It rests after 3 s.
-BALL = """\
-scene:
-  bodies:
-    floor: {shape: {kind: plane}}
-    ball:
-      shape: {kind: sphere, radius: 0.1}
-      mass: 1.0
-      surface: {restitution: 0.5}
-      release: {above: floor, clearance: 1.0}
+BALL = (
+    SCENE
+    + """\
 numerics: {timestep: 1/250}
 duration: 4.0
 always: {}
 """
+)
 BALL_RATE = 250  # [1/s]
 
 
