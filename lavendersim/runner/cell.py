@@ -13,9 +13,9 @@ import numpy as np
 
 from lavendersim.cell import CellConfig
 from lavendersim.clock import Clock
+from lavendersim.engine.compile_options import source_hash
 from lavendersim.engine.effects import EFFECTS
 from lavendersim.engine.engine import Engine, Rows
-from lavendersim.engine.kernel_cache import source_hash
 from lavendersim.engine.records import DIVERGED, NOT_FINITE, RUNNING, TURNS_TOO_FAST
 from lavendersim.measures.always import WorstStates
 from lavendersim.measures.specs.always import Always

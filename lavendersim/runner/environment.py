@@ -11,7 +11,7 @@ from importlib.metadata import version
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
-    from lavendersim.engine.kernel_cache import Kept
+    from lavendersim.engine.kernel_store import Kept
     from lavendersim.engine.spec import Spec
 
 PACKAGES = ("numpy", "numba", "llvmlite", "mcap", "pydantic", "zstandard", "protobuf")
@@ -39,7 +39,7 @@ def versions() -> dict[str, str]:
 
 def machine() -> dict[str, Any]:
     """Return versions, processor and where kernels are kept."""
-    from lavendersim.engine.kernel_cache import directory
+    from lavendersim.engine.kernel_store import directory
 
     kept, note = directory()
     return {
@@ -54,7 +54,7 @@ def machine() -> dict[str, Any]:
 
 def kernel_place() -> str:
     """Return how often kernels are compiled and where they are kept, in words."""
-    from lavendersim.engine.kernel_cache import directory
+    from lavendersim.engine.kernel_store import directory
 
     kept, note = directory()
     return f"once; {note or f'kept in {kept}'}" if kept.name else note
@@ -78,21 +78,21 @@ class Kernels(NamedTuple):
 
 def kernels(current: bool) -> Kernels:
     """Return what is kept of this version on this machine, or of all others."""
-    from lavendersim.engine.kernel_cache import kept_kernels
+    from lavendersim.engine.kernel_store import kept_kernels
 
     return Kernels.of(each for each in kept_kernels() if each.current == current)
 
 
 def kernel_limit() -> int:
     """Return the size [byte] above which kernels that were not used for longest are deleted."""
-    from lavendersim.engine.kernel_cache import LIMIT
+    from lavendersim.engine.kernel_store import LIMIT
 
     return LIMIT
 
 
 def delete_kernels(current: bool) -> Kernels:
     """Delete the compiled kernels of other versions, with `current` this one's; returns those."""
-    from lavendersim.engine.kernel_cache import kept_kernels
+    from lavendersim.engine.kernel_store import kept_kernels
 
     deleted = [each for each in kept_kernels() if each.current == current]
     for each in deleted:
@@ -102,7 +102,7 @@ def delete_kernels(current: bool) -> Kernels:
 
 def environment(*specs: Spec) -> dict[str, Any]:
     """Return what a reader needs to judge the timings of a run and to repeat it."""
-    from lavendersim.engine.kernel_cache import source_hash
+    from lavendersim.engine.compile_options import source_hash
     from lavendersim.engine.step import advance_for
 
     return {

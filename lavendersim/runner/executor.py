@@ -10,7 +10,7 @@ from time import perf_counter
 from typing import Any, NamedTuple
 
 from lavendersim.engine.compile import compiler_is_off
-from lavendersim.engine.kernel_cache import directory
+from lavendersim.engine.kernel_store import directory
 from lavendersim.engine.spec import Spec
 from lavendersim.engine.step import is_compiled
 from lavendersim.errors import UsageError

@@ -114,7 +114,7 @@ def run(
     before the run counts as finished. A cell that diverges or breaks a bound of `always` ends
     there, with a readable log; the others go on.
     """
-    from lavendersim.engine.kernel_cache import source_hash
+    from lavendersim.engine.compile_options import source_hash
 
     from .cell import CellJob, CellOfLog
     from .executor import outcomes_of

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import pickle
 import re
+from hashlib import sha256
 from typing import NamedTuple
 
 from llvmlite.binding import ObjectFileRef
@@ -16,6 +17,7 @@ from llvmlite.binding import ObjectFileRef
 from lavendersim.engine.engine import Engine
 
 LOCALS = "_3clocals_3e"  # mangled, between a maker and its kernel
+KEY = re.compile(r"_[0-9a-f]{32}(_\d+)?$")  # what tells parts of one name apart
 
 
 class Code(NamedTuple):
@@ -49,6 +51,12 @@ def _object_code(engine: Engine) -> bytes:
     return bytes(code)
 
 
+def text_of(engine: Engine) -> str:
+    """Return the sha256 of an engine's instructions; without the names of symbols."""
+    sections = ObjectFileRef.from_data(_object_code(engine)).sections()
+    return sha256(b"".join(part.data() for part in sections if part.is_text())).hexdigest()
+
+
 def code_of(engine: Engine) -> Code:
     """Read the object code of an engine that has made a step."""
     kernels, size = set(), 0
@@ -59,5 +67,5 @@ def code_of(engine: Engine) -> Code:
                 package, room, *parts = _parts(symbol)
                 if (package, room) == ("lavendersim", "engine") and LOCALS in parts:
                     place = ".".join(parts[: parts.index(LOCALS) - 1])
-                    kernels.add((place, parts[-1].partition(f"_{engine.spec.digest()}")[0]))
+                    kernels.add((place, KEY.sub("", parts[-1])))
     return Code(kernels, size)

@@ -46,7 +46,8 @@ from hashlib import sha256
 from pathlib import Path
 warnings.simplefilter("error", UserWarning)
 import lavendersim
-from lavendersim.engine.kernel_cache import directory, source_hash
+from lavendersim.engine.compile_options import source_hash
+from lavendersim.engine.kernel_store import directory
 finished = lavendersim.run(Path(sys.argv[1]), root=Path(sys.argv[2]))
 print(json.dumps({
     "package": lavendersim.__file__,

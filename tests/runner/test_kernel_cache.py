@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import Any
 
 import pytest
-from numba.core.registry import CPUDispatcher, cpu_target
-from small_configs import DROPS, copy_package, python, run_in_new_process, write
+from numba.core.registry import cpu_target
+from small_configs import DROPS, RUN, copy_package, python, run_in_new_process, write
 
 from lavendersim.cell import CellConfig
-from lavendersim.engine import compile as engine_compile
+from lavendersim.engine import compile_options
 from lavendersim.engine.kernel_cache import KernelCache
 from lavendersim.engine.spec import Spec
 from lavendersim.engine.step import advance_for, make_advance
@@ -59,12 +60,11 @@ def test_a_truncated_kernel_counts_as_absent(
     kept: tuple[Path, Path, dict[str, Any]], tmp_path: Path, length: int
 ) -> None:
     (file,) = kept[1].glob("*.kernel")
-    cache = KernelCache(Spec())
+    cache = KernelCache(Spec(), make_advance(Spec()))
     cache.cache_path = tmp_path
-    context = cpu_target.target_context
-    stored = cache.path(cache.key("signature", context.codegen()))
+    stored = cache.path(cache.key(()))
     stored.write_bytes(file.read_bytes()[:length])
-    assert cache.load_overload("signature", context) is None
+    assert cache.load_overload((), cpu_target.target_context) is None
     assert (cache.hits, cache.misses) == (0, 1)
 
 
@@ -74,7 +74,7 @@ def test_every_change_of_an_engine_source_changes_the_source_hash(
 ) -> None:
     def source_hash() -> str:
         return python(
-            "from lavendersim.engine.kernel_cache import source_hash; print(source_hash())",
+            "from lavendersim.engine.compile_options import source_hash; print(source_hash())",
             PYTHONPATH=str(tmp_path),
         )
 
@@ -134,31 +134,35 @@ def rows_of_a_drop(spec: Spec, config: CellConfig, kernel: Any) -> list[bytes]:
 def test_kernels_without_reference_counting_give_the_same_bits(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    assert "_nrt" in engine_compile.OPTIONS, "this numba was to know the option"
+    assert "_nrt" in compile_options.OPTIONS, "this numba was to know the option"
     cell = load_experiment_text(DROPS, "drops.yaml").cells()[2]
     spec = plan_of(cell.config).spec
     without = rows_of_a_drop(spec, cell.config, advance_for(spec))
-    monkeypatch.delitem(engine_compile.OPTIONS, "_nrt")
+    monkeypatch.delitem(compile_options.OPTIONS, "_nrt")
     counting = make_advance(spec)  # composed here and kept nowhere
     assert counting.targetoptions.get("_nrt", True)
     assert rows_of_a_drop(spec, cell.config, counting) == without
     assert len(without[0]) > 120 * 100
 
 
-def test_kernels_linked_into_their_callers_give_the_same_bits_as_numba_s_own(
-    monkeypatch: pytest.MonkeyPatch,
+# A numba that lacks what `part_compiler` leans on: importing it fails, and `njit` takes its place.
+WITHOUT_PARTS = """
+import sys
+sys.modules["lavendersim.engine.part_compiler"] = None
+from lavendersim.engine import compile
+assert compile.Kernel is None
+"""
+
+
+def test_kernels_by_plain_njit_give_the_same_bits(
+    kept: tuple[Path, Path, dict[str, Any]], tmp_path: Path
 ) -> None:
-    cell = load_experiment_text(DROPS, "drops.yaml").cells()[2]
-    spec = plan_of(cell.config).spec
-    linked = rows_of_a_drop(spec, cell.config, make_advance(spec))
-
-    def refuse(*_: Any) -> None:
-        raise AssertionError("a part was compiled")
-
-    monkeypatch.setattr(engine_compile.LinkedCompiler, "__init__", refuse)
-    monkeypatch.setattr(engine_compile.Kernel, "get_call_template", CPUDispatcher.get_call_template)
-    assert rows_of_a_drop(spec, cell.config, make_advance(spec)) == linked
-    assert len(linked[0]) > 120 * 100
+    config, _, first = kept
+    said = python(
+        WITHOUT_PARTS + RUN, config, tmp_path / "runs", LAVENDER_CACHE_DIR=str(tmp_path / "kernels")
+    )
+    assert json.loads(said.splitlines()[-1])["logs"] == first["logs"]
+    assert not list((tmp_path / "kernels").glob("*.part"))
 
 
 def test_a_numba_that_does_not_know_the_option_gets_the_others() -> None:
@@ -166,5 +170,5 @@ def test_a_numba_that_does_not_know_the_option_gets_the_others() -> None:
         """What a numba without the undocumented option offers."""
 
     options = {"fastmath": False, "nogil": True, "_nrt": False}
-    assert engine_compile.known(options) == options
-    assert engine_compile.known(options, OlderTargetOptions) == {"fastmath": False, "nogil": True}
+    assert compile_options.known(options) == options
+    assert compile_options.known(options, OlderTargetOptions) == {"fastmath": False, "nogil": True}

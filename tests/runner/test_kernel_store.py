@@ -11,16 +11,17 @@ from pathlib import Path
 import pytest
 from small_configs import RUN, python, run_in_new_process, write
 
-from lavendersim.engine import kernel_cache
+from lavendersim.engine import compile_options, kernel_store
 from lavendersim.engine.compile import inner
-from lavendersim.engine.kernel_cache import KernelCache, kept_kernels
+from lavendersim.engine.kernel_cache import KernelCache
+from lavendersim.engine.kernel_store import kept_kernels
 from lavendersim.engine.spec import Spec
 
 
 @pytest.fixture
 def store(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """An empty directory of kernels, in this process."""
-    monkeypatch.setattr(kernel_cache, "directory", lambda: (tmp_path, ""))
+    monkeypatch.setattr(kernel_store, "directory", lambda: (tmp_path, ""))
     return tmp_path
 
 
@@ -31,7 +32,7 @@ def keep(name: str) -> KernelCache:
         return 2 * x
 
     kernel = inner(twice)
-    kernel._cache = KernelCache(Spec(effects=(name,)))
+    kernel._cache = KernelCache(Spec(effects=(name,)), kernel)
     assert kernel(21) == 42
     return kernel._cache
 
@@ -50,7 +51,7 @@ def test_the_kernel_not_used_for_longest_makes_room(
         os.utime(path, ns=(day, path.stat().st_mtime_ns))
     assert (keep("first").hits, keep("first").misses) == (1, 0)
     # Three kernels of one function differ by a few bytes of their names; two fit, three do not.
-    monkeypatch.setattr(kernel_cache, "LIMIT", int(2.5 * max(sizes)))
+    monkeypatch.setattr(kernel_store, "LIMIT", int(2.5 * max(sizes)))
     third = keep("third").spec.digest()
     assert names_in(store) == {digests[0], third}
 
@@ -58,11 +59,11 @@ def test_the_kernel_not_used_for_longest_makes_room(
 def test_everything_stays_while_it_fits(store: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     digests = {keep(name).spec.digest() for name in ("first", "second")}
     total = sum(kept.size for kept in kept_kernels())
-    monkeypatch.setattr(kernel_cache, "LIMIT", total)
-    kernel_cache.make_room()
+    monkeypatch.setattr(kernel_store, "LIMIT", total)
+    kernel_store.make_room()
     assert names_in(store) == digests
-    monkeypatch.setattr(kernel_cache, "LIMIT", total - 1)
-    kernel_cache.make_room()
+    monkeypatch.setattr(kernel_store, "LIMIT", total - 1)
+    kernel_store.make_room()
     assert len(names_in(store)) == 1
 
 
@@ -71,14 +72,14 @@ def test_kernels_of_other_builds_are_distinguished(
 ) -> None:
     keep("ours")
     with monkeypatch.context() as other:
-        other.setattr(kernel_cache, "source_hash", lambda: "other sources")
+        other.setattr(compile_options, "_compiler_hash", lambda: "another compiler")
         keep("theirs")
     stale = {kept.path.name.split("-")[0] for kept in kept_kernels() if not kept.current}
     assert stale == {Spec(effects=("theirs",)).digest()}
     assert len(kept_kernels()) == 2
 
 
-BUILD = "from lavendersim.engine.kernel_cache import build; print(build())"
+BUILD = "from lavendersim.engine.compile_options import build; print(build())"
 
 
 def test_each_setting_of_numba_has_kernels_of_its_own() -> None:
@@ -121,7 +122,8 @@ def test_two_processes_may_write_the_same_kernel_at_once(tmp_path: Path) -> None
     ended = [process.communicate(timeout=120) for process in both]
     assert [process.returncode for process in both] == [0, 0], ended
     logs = [json.loads(out.splitlines()[-1])["logs"] for out, _ in ended]
-    (file,) = kernels.iterdir()  # one kernel and nothing unfinished
+    assert not list(kernels.glob("*unfinished*"))
+    (file,) = kernels.glob("*.kernel")
     written = file.stat().st_mtime_ns
     third = run_in_new_process(config, tmp_path / "third", LAVENDER_CACHE_DIR=str(kernels))
     assert logs == [third["logs"]] * 2

@@ -1,7 +1,7 @@
 """Kernels that different processes compiled do not meet in one that loads them.
 
-Parts that are the same for every plan have the same symbols, and the first one loaded is used.
-Their records differ by plan: numbering types by process would call different records alike.
+Of two symbols with one name the first one loaded is used. Names are made of what the code depends
+on, never of numbers that a process counts: those would call different kernels alike.
 """
 
 from __future__ import annotations

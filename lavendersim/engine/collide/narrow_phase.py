@@ -49,7 +49,6 @@ def make_manifold(spec: Spec, names: tuple[str, ...]):
             return own_manifold(a, b, margin, scratch)
         return others(kind, a, b, margin, scratch)
 
-    manifold.__qualname__ += f"_{names[0]}"  # each link of the chain has a symbol of its own
     return kernel(manifold, spec)
 
 

@@ -55,7 +55,7 @@ def by_friction(spec: Spec, make_frictionless: Any, make_frictional: Any) -> Any
             return frictionless(contact, *others)
         return frictional(contact, *others)
 
-    either.__name__ = f"either_{frictionless.__name__}"  # each has a symbol of its own
+    either.__name__ = f"either_{frictionless.__name__}"  # as `lavender plan` lists them
     either.__qualname__ += f"_{frictionless.__name__}"
     return kernel(either, spec)
 

@@ -67,7 +67,7 @@ def statements(spec: Spec) -> dict[tuple[str, str], int]:
     found: Counter[tuple[str, str]] = Counter()
     for kernel, count in live_statements(advance_for(spec)).items():
         function = kernel.py_func
-        name = function.__qualname__.rpartition("<locals>.")[2].removesuffix(f"_{spec.digest()}")
+        name = function.__qualname__.rpartition("<locals>.")[2]
         found[function.__module__.partition(".engine.")[2], name] += count
     return found
 

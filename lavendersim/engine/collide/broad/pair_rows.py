@@ -26,7 +26,6 @@ def make_copy_fields(spec: Spec, names: Sequence[str]):
         row[name] = template[name]
         copy_others(row, template)
 
-    copy_fields.__qualname__ += f"_{name}"  # each link of the chain has a symbol of its own
     return kernel(copy_fields, spec)
 
 

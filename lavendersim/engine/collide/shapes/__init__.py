@@ -61,8 +61,6 @@ def _first(spec: Spec, shape: Shape, own: Any, others: Any) -> Any:
             return own(body, *arguments)
         return others(body, *arguments)
 
-    # Each link of the chain has a symbol of its own.
-    of_shape.__qualname__ += f"_{shape.name}_{own.__name__}"
     return kernel(of_shape, spec)
 
 

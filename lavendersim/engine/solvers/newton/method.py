@@ -73,7 +73,7 @@ def make_restore(spec: Spec, which: str, set_impulse: Any) -> Any:
             if spins:
                 restore_torques(contact, velocities[contact.a], velocities[contact.b])
 
-    restore.__name__ = f"restore_{which}"  # each has a symbol of its own
+    restore.__name__ = f"restore_{which}"  # as `lavender plan` lists them
     restore.__qualname__ += f"_{which}"
     return kernel(restore, spec)
 

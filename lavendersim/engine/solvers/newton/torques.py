@@ -278,6 +278,6 @@ def make_restore_torques(spec: Spec, which: str) -> Any:
             contact.psi_1, contact.psi_2 = psi_1, psi_2
         apply_spin(contact, va, vb, n, one, two)
 
-    restore.__name__ = f"restore_torques_{which}"  # each has a symbol of its own
+    restore.__name__ = f"restore_torques_{which}"  # as `lavender plan` lists them
     restore.__qualname__ += f"_{which}"
     return kernel(restore, spec)

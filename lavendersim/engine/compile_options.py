@@ -1,0 +1,107 @@
+"""How numba compiles kernels, and one hash of all else that their machine code depends on."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import platform
+import re
+import sys
+from functools import cache
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import numba
+import numpy as np
+from numba.core.cpu import CPUTargetOptions
+from numba.core.registry import cpu_target
+
+# Kernels allocate nothing, and without reference counting a sphere's step costs a third. The option
+# is undocumented: a numba that does not know it compiles with counting, to the same bits.
+UNDOCUMENTED = ("_nrt",)
+
+
+def known(options: dict[str, Any], target_options: Any = CPUTargetOptions) -> dict[str, Any]:
+    """Return `options` without the undocumented ones that numba's `target_options` do not have."""
+    return {
+        name: value
+        for name, value in options.items()
+        if name not in UNDOCUMENTED or hasattr(target_options, name)
+    }
+
+
+# No fastmath and no contraction: results must not depend on the optimiser's mood.
+# error_model numpy: a division by zero gives inf, which the runner reports, and never raises.
+# Nobody calls kernels from C.
+OPTIONS: dict[str, Any] = known(
+    {
+        "error_model": "numpy",
+        "fastmath": False,
+        "nogil": True,
+        "no_cfunc_wrapper": True,
+        "_nrt": False,
+    }
+)
+# What can be set in the environment or in a file and changes machine code. Features and name of the
+# processor are asked of the code generator.
+SETTINGS = (
+    "OPT",
+    "LOOP_VECTORIZE",
+    "SLP_VECTORIZE",
+    "BOUNDSCHECK",
+    "DEBUGINFO_DEFAULT",
+    "EXTEND_VARIABLE_LIFETIMES",
+    "LLVM_REFPRUNE_PASS",
+    "LLVM_REFPRUNE_FLAGS",
+    "USING_SVML",
+)
+
+
+@cache
+def _sources() -> dict[str, bytes]:
+    """Return every engine source by its path in the engine."""
+    root = Path(__file__).parent
+    return {
+        path.relative_to(root).as_posix(): path.read_bytes() for path in sorted(root.rglob("*.py"))
+    }
+
+
+def _digest(sources: dict[str, bytes]) -> str:
+    digest = hashlib.sha256()
+    for path, source in sources.items():
+        digest.update(path.encode() + b"\0" + source + b"\0")
+    return digest.hexdigest()
+
+
+@cache
+def source_hash() -> str:
+    """Return the sha256 of every engine source, by path and content."""
+    return _digest(_sources())
+
+
+@cache
+def _compiler_hash() -> str:
+    """Return the sha256 of the sources that know numba: they say how kernels are compiled."""
+    knows = re.compile(rb"^(from|import) (numba|llvmlite)", re.MULTILINE)
+    return _digest({path: text for path, text in _sources().items() if knows.search(text)})
+
+
+@cache
+def _llvmlite() -> str:
+    return version("llvmlite")
+
+
+def build() -> str:
+    """Return eight hex digits of what all kernels depend on, whatever they do."""
+    parts = (
+        _compiler_hash(),
+        sorted(OPTIONS.items()),
+        (numba.__version__, _llvmlite(), np.__version__, sys.version_info[:3]),
+        platform.machine(),
+        cpu_target.target_context.codegen().magic_tuple(),
+        [getattr(numba.config, name, None) for name in SETTINGS],
+        # Whatever else numba is set to: a needless compilation is cheaper than a wrong kernel.
+        sorted(item for item in os.environ.items() if item[0].startswith("NUMBA_")),
+    )
+    return hashlib.sha256(repr(parts).encode()).hexdigest()[:8]

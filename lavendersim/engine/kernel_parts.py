@@ -1,0 +1,130 @@
+"""Parts of kernels: each one compiled once, to LLVM's bitcode, for every plan that has it.
+
+A part is a kernel that kernels call, for arguments of given types. Its key says what its code
+depends on (`identity`), whatever plan it was composed for; its symbol carries the key, so that code
+from different processes meets under the same name only where it is the same (numba numbers its
+symbols by process, and the first one loaded is used: numba issue 10486). A part holds no code of
+the parts it calls: a whole kernel links each of them once, and optimises them together.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import itertools
+import pickle
+import zlib
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import Any
+
+from . import kernel_store
+from .compile_options import build
+from .identity import UnidentifiableError, identity, is_plain, seen_of
+
+_unnamed = itertools.count()
+
+
+class KernelPart:
+    """Code of a kernel that other kernels call; numba takes it for a library to be linked."""
+
+    def __init__(
+        self, symbol: str, returns: Any, bitcode: bytes, called: tuple[KernelPart, ...], key: str
+    ) -> None:
+        self.symbol, self.returns, self.bitcode, self.called = symbol, returns, bitcode, called
+        self.key = key  # name of the file it is kept in; empty where it cannot be kept
+        self._reload_init: set[Any] = set()
+
+    def _ensure_finalized(self) -> None:
+        """Have nothing to do: what numba asks of a library before it is linked."""
+
+
+def with_called(parts: Iterable[KernelPart]) -> Iterator[KernelPart]:
+    """Yield parts and all that they call, each once, in an order that follows from their code."""
+    seen: set[int] = set()
+    waiting = list(parts)[::-1]
+    while waiting:
+        part = waiting.pop()
+        if id(part) not in seen:
+            seen.add(id(part))
+            yield part
+            waiting += part.called[::-1]
+
+
+def key_of(kernel: Any, arguments: tuple[Any, ...]) -> str:
+    """Return 32 hex digits of what the code of a part depends on; "" where that is not known."""
+    try:
+        of = identity(kernel)
+        text = f"{build()} {of.digest} {seen_of(arguments, of)}"
+    except UnidentifiableError:
+        return ""
+    return hashlib.sha256(text.encode()).hexdigest()[:32]
+
+
+class PartStore:
+    """Parts of this process and, by files, of all that share the directory of kernels."""
+
+    def __init__(self) -> None:
+        self._parts: dict[str, KernelPart] = {}
+        self._new: set[str] = set()  # compiled since `begin`
+        self._anew = False
+        self.alone = True  # whether no part was found since `begin` that was there before
+
+    def begin(self, anew: bool) -> None:
+        """Begin a kernel; with `anew` what is there is not used but compiled again."""
+        self._new, self._anew, self.alone = set(), anew, True
+
+    def find(self, key: str, arguments: tuple[Any, ...]) -> KernelPart | None:
+        """Return the part of a key, from this process or from disk."""
+        for name in (key, _of_records(key, arguments)) if key else ():
+            if name in self._new:
+                return self._parts[name]
+            part = None if self._anew else self._parts.get(name) or self._load(name)
+            if part is not None:
+                self.alone = False
+                return part
+        return None
+
+    def keep(self, part: KernelPart, key: str, arguments: tuple[Any, ...]) -> None:
+        """Remember a part that was just compiled, here and on disk."""
+        if not key:
+            return
+        # A record that is returned has to be the caller's own, with all its fields.
+        name = key if is_plain(part.returns) else _of_records(key, arguments)
+        part.key = name
+        self._parts[name] = part
+        self._new.add(name)
+        if kernel_store.directory()[0].name:
+            keys = tuple(called.key for called in part.called)
+            stored = part.symbol, part.returns, zlib.compress(part.bitcode, 1), keys
+            kernel_store.write(_path(name), pickle.dumps(stored))
+
+    def _load(self, name: str) -> KernelPart | None:
+        """Return a part from disk with all that it calls; None where any of it is missing."""
+        payload = kernel_store.read(_path(name)) if kernel_store.directory()[0].name else None
+        if payload is None:
+            return None
+        symbol, returns, bitcode, keys = pickle.loads(payload)
+        called = [self._parts.get(key) or self._load(key) for key in keys]
+        if any(each is None for each in called):
+            return None
+        part = KernelPart(
+            symbol, returns, zlib.decompress(bitcode), tuple(filter(None, called)), name
+        )
+        self._parts[name] = part
+        return part
+
+
+STORE = PartStore()
+
+
+def _of_records(key: str, arguments: tuple[Any, ...]) -> str:
+    return hashlib.sha256(f"{key} {arguments}".encode()).hexdigest()[:32]
+
+
+def _path(name: str) -> Path:
+    return kernel_store.directory()[0] / f"{build()}-{name}.part"
+
+
+def symbol_of(function: Any, key: str) -> str:
+    """Return a symbol for a part: readable, and of no other code."""
+    return f"{function.__module__}.{function.__qualname__}_{key or f'unnamed{next(_unnamed)}'}"

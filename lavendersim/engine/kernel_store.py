@@ -1,0 +1,105 @@
+"""Where compiled code is kept on disk: one private directory, files written whole, within a limit.
+
+What has not been used for longest makes room for what is new.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import os
+import tempfile
+import time
+from functools import cache
+from pathlib import Path
+from typing import NamedTuple
+
+from .compile_options import build
+
+DIRECTORY_VARIABLE = "LAVENDER_CACHE_DIR"
+LIMIT = 400_000_000  # [byte] of all that is kept
+SUFFIXES = (".kernel", ".part")
+
+
+def _is_private(path: Path) -> bool:
+    """Whether nobody else may write here: what is loaded from here is run."""
+    if os.name != "posix":
+        return True
+    status = path.stat()
+    return status.st_uid == os.getuid() and not status.st_mode & 0o022
+
+
+@cache
+def directory() -> tuple[Path, str]:
+    """Return where kernels are kept and a sentence when that is not the usual place.
+
+    The path is empty when there is no such place.
+    """
+    asked = os.environ.get(DIRECTORY_VARIABLE)
+    usual = Path(os.environ.get("XDG_CACHE_HOME") or "~/.cache").expanduser() / "lavender"
+    fallback = Path(tempfile.gettempdir()) / f"lavender-{os.getuid() if os.name == 'posix' else ''}"
+    chosen = Path(asked) if asked else usual
+    refusal = f"{chosen} cannot be written by this user alone"
+    for path in [chosen] if asked else [chosen, fallback]:
+        with contextlib.suppress(OSError):
+            path.mkdir(parents=True, exist_ok=True, mode=0o700)
+            if _is_private(path) and os.access(path, os.W_OK):
+                return path, "" if path == chosen else f"{refusal}: kernels are kept in {path}"
+    return Path(), f"{refusal}: kernels are compiled anew in every process"
+
+
+def read(path: Path) -> bytes | None:
+    """Return what is kept in a file; None where it is absent or damaged."""
+    try:
+        stored = path.read_bytes()
+    except OSError:
+        return None
+    checksum, payload = stored[:32], stored[32:]
+    if hashlib.sha256(payload).digest() != checksum:
+        return None
+    with contextlib.suppress(OSError):  # when it was used last, whatever the disk notes itself
+        os.utime(path, ns=(time.time_ns(), path.stat().st_mtime_ns))
+    return payload
+
+
+def write(path: Path, payload: bytes) -> None:
+    """Keep something in a file, in one move, so that no reader sees half of it."""
+    with contextlib.suppress(OSError):  # a full or read-only disk costs time, not the run
+        handle, name = tempfile.mkstemp(f".unfinished{path.suffix}", dir=path.parent)
+        with os.fdopen(handle, "wb") as file:
+            file.write(hashlib.sha256(payload).digest() + payload)
+        os.replace(name, path)
+
+
+class Kept(NamedTuple):
+    """Compiled code on disk: a whole kernel, or a part of some."""
+
+    path: Path
+    size: int  # [byte]
+    used: int  # [ns] since the epoch, when it was last written or loaded
+    current: bool  # whether this numba on this machine, as it is set, would load it
+
+
+def kept_kernels() -> list[Kept]:
+    """Return the compiled code on disk, what was used last at the end."""
+    folder, own = directory()[0], build()
+    found = []
+    for entry in os.scandir(folder) if folder.name else ():
+        if entry.name.endswith(SUFFIXES):
+            with contextlib.suppress(OSError):  # another process may delete it at any time
+                status = entry.stat()
+                current = own in entry.name.split("-")
+                found.append(Kept(Path(entry.path), status.st_size, status.st_atime_ns, current))
+    return sorted(found, key=lambda kept: (kept.used, kept.path))
+
+
+def make_room() -> None:
+    """Delete what was not used for longest until the rest fits `LIMIT`."""
+    kept = kept_kernels()
+    total = sum(each.size for each in kept)
+    for each in kept:
+        if total <= LIMIT:
+            return
+        with contextlib.suppress(OSError):
+            each.path.unlink()
+        total -= each.size

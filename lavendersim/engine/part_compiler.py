@@ -1,0 +1,259 @@
+"""Numba's compiler for kernels: parts compiled once, linked and optimised in whole kernels.
+
+The one place that leans on what numba keeps to itself. Where another numba does not have it, this
+file cannot be imported, and `compile` takes plain `njit`: slower to compile, with the same bits.
+"""
+
+from __future__ import annotations
+
+import itertools
+from copy import copy
+from functools import partial
+from typing import Any, NamedTuple
+
+from llvmlite.binding import Linkage, parse_bitcode
+from numba.core import types
+from numba.core.codegen import JITCodeLibrary
+from numba.core.compiler import Compiler, DefaultPassBuilder
+from numba.core.compiler_lock import global_compiler_lock
+from numba.core.compiler_machinery import PassManager
+from numba.core.funcdesc import ExternalFunctionDescriptor, default_mangler
+from numba.core.itanium_mangler import mangle
+from numba.core.registry import CPUDispatcher
+from numba.core.sigutils import normalize_signature
+from numba.core.typing.templates import make_concrete_template, signature
+
+from .kernel_parts import STORE, KernelPart, key_of, symbol_of, with_called
+
+_objects = itertools.count()
+
+
+class _Linking(JITCodeLibrary):
+    """Code that calls parts: which ones is noted, and left to the whole kernel to link."""
+
+    def __init__(self, codegen: Any, name: str) -> None:
+        super().__init__(codegen, name)
+        self.parts: list[KernelPart] = []
+
+    def add_linking_library(self, library: Any) -> None:
+        """Note a part; link all else, as numba does."""
+        if not isinstance(library, KernelPart):
+            super().add_linking_library(library)
+        elif library not in self.parts:
+            self.parts.append(library)
+
+
+class PartCode(_Linking):
+    """Code of a kernel that other kernels call: optimised in each whole kernel it is linked into.
+
+    Numba would optimise and assemble every kernel by itself as well, with all that it calls. None
+    of that is ever run, and it doubles the time an engine takes to compile.
+    """
+
+    def _optimize_final_module(self) -> None:
+        """Leave that to the kernel this is linked into."""
+
+    def _finalize_final_module(self) -> None:
+        """Make no machine code."""
+        self._finalized = True
+
+    def part(self, symbol: str, returns: Any) -> KernelPart:
+        """Return the part; of its symbols other code sees only its own."""
+        self._ensure_finalized()
+        module = self._final_module
+        for function in module.functions:
+            if not function.is_declaration and function.name != symbol:
+                function.linkage = Linkage.internal
+        return KernelPart(symbol, returns, module.as_bitcode(), tuple(self.parts), "")
+
+
+class KernelObject(_Linking):
+    """Code of a kernel that Python calls, with all its parts."""
+
+    def finalize(self) -> None:
+        """Link every part, directly called or not, once."""
+        self._symbols = set()
+        for part in with_called(self.parts):
+            self._symbols.add(part.symbol)
+            self._final_module.link_in(parse_bitcode(part.bitcode))
+        super().finalize()
+
+    def _optimize_final_module(self) -> None:
+        """Optimise: parts are called from here alone, so what is called once is merged in whole."""
+        for function in self._final_module.functions:
+            merged = function.name in self._symbols or function.linkage == Linkage.linkonce_odr
+            if merged and not function.is_declaration:
+                function.linkage = Linkage.internal
+        super()._optimize_final_module()
+
+
+def _rename(state: Any, function: Any, symbol: str) -> None:
+    """Let numba call the code of `function` by `symbol`."""
+    own = f"{function.__module__}.{function.__qualname__}"
+    names = {own: symbol, f".NumbaEnv.{own}": f".NumbaEnv.{symbol}"}
+
+    def mangler(name: str, argtypes: Any, *, abi_tags: Any = (), uid: Any = None) -> Any:
+        if name in names:
+            return mangle(names[name], ())
+        return default_mangler(name, argtypes, abi_tags=abi_tags, uid=uid)
+
+    state.targetctx.mangler = mangler  # a context that is made for each compilation
+
+
+# Passes of numba's that serve closures, generators, literal arguments, array expressions and
+# functions to be inlined before typing, and those that only explain: no kernel has any of it.
+NEEDLESS = frozenset(
+    {
+        "WithLifting",
+        "InlineClosureLikes",
+        "MakeFunctionToJitFunction",
+        "InlineInlinables",
+        "FindLiterallyCalls",
+        "LiteralUnroll",
+        "LiteralPropagationSubPipelinePass",
+        "InlineOverloads",
+        "NopythonRewrites",
+        "NoPythonSupportedFeatureValidation",
+        "IRLegalization",
+        "AnnotateTypes",
+        "DumpParforDiagnostics",
+    }
+)
+
+
+def _pipeline(state: Any) -> PassManager:
+    """Return numba's pipeline for a function in nopython mode, without what no kernel needs."""
+    whole, pipeline = DefaultPassBuilder.define_nopython_pipeline(state), PassManager("kernel")
+    for compiler_pass, description in whole.passes:
+        if compiler_pass.__name__ not in NEEDLESS:
+            pipeline.add_pass(compiler_pass, description)
+    pipeline.finalize()
+    return pipeline
+
+
+_SCALARS = types.Number, types.Boolean, types.NoneType, types.Literal
+_resolved: dict[Any, Any] = {}
+
+
+def _quick(typingctx: Any) -> Any:
+    """Return a typing context that remembers what functions of scalars return.
+
+    Numba asks some twenty templates for the type of every sum of two numbers, each time.
+    """
+    quick = copy(typingctx)
+
+    def resolve_function_type(function: Any, args: Any, kws: Any) -> Any:
+        scalar = isinstance(function, types.Function) and not kws
+        if not scalar or not all(isinstance(kind, _SCALARS) for kind in args):
+            return typingctx.resolve_function_type(function, args, kws)
+        found = _resolved.get((function, args))
+        if found is None:
+            found = _resolved[function, args] = typingctx.resolve_function_type(function, args, kws)
+        return found
+
+    quick.resolve_function_type = resolve_function_type
+    return quick
+
+
+class PartCompiler(Compiler):
+    """Numba's pipeline for a kernel that only kernels call."""
+
+    def __init__(
+        self, function, symbol, typingctx, targetctx, library, args, return_type, flags, locals
+    ):
+        flags.no_compile = flags.no_cpython_wrapper = True
+        part = PartCode(targetctx.codegen(), "part")
+        super().__init__(typingctx, targetctx, part, args, return_type, flags, locals)
+        _rename(self.state, function, symbol)
+        self.state.typingctx = _quick(typingctx)
+
+    def define_pipelines(self):
+        """Return numba's pipeline without what no kernel needs."""
+        return [_pipeline(self.state)]
+
+
+class ObjectCompiler(Compiler):
+    """Numba's pipeline for a kernel that Python calls; its code can be kept on disk."""
+
+    def __init__(
+        self, function, symbol, typingctx, targetctx, library, args, return_type, flags, locals
+    ):
+        whole = KernelObject(targetctx.codegen(), "whole")
+        whole.enable_object_caching()
+        super().__init__(typingctx, targetctx, whole, args, return_type, flags, locals)
+        _rename(self.state, function, symbol)
+        self.state.typingctx = _quick(typingctx)
+
+    def define_pipelines(self):
+        """Return numba's pipeline without what no kernel needs."""
+        return [_pipeline(self.state)]
+
+
+class Linked(NamedTuple):
+    """A part as kernels call it: what numba looks its code up by, and how it is called."""
+
+    entry: object
+    signature: Any
+
+
+class Kernel(CPUDispatcher):
+    """Compiled code of one function for each signature; a door to Python only where Python calls.
+
+    One kernel in a hundred is called from Python (`overloads`); the others are parts of it.
+    """
+
+    _compiler: Any  # numba does not declare its own
+
+    def __init__(self, *arguments: Any, **named: Any) -> None:
+        super().__init__(*arguments, **named)
+        self.linked: dict[tuple[Any, ...], Linked] = {}  # by the types of the arguments
+
+    def get_call_template(self, args: Any, kws: Any) -> Any:
+        """Compile for a kernel that calls this one."""
+        pysig, args = self._compiler.fold_argument_types(args, kws)
+        args = tuple(args)
+        with global_compiler_lock:
+            if args not in self.linked:
+                self.linked[args] = self._link(args)
+        name = self.py_func.__name__
+        signatures = [each.signature for each in self.linked.values()]
+        template = make_concrete_template(f"CallTemplate({name})", key=name, signatures=signatures)
+        return template, pysig, args, {}
+
+    def get_overload(self, sig: Any) -> Any:
+        """Return what the code that a kernel calls is looked up by."""
+        return self.linked[tuple(normalize_signature(sig)[0])].entry
+
+    def _link(self, args: tuple[Any, ...]) -> Linked:
+        """Let kernels call this one, by a part that was there or is compiled now."""
+        key = key_of(self, args)
+        part = STORE.find(key, args)
+        if part is None:
+            part = self._compiled(key, args)
+            STORE.keep(part, key, args)
+        entry = object()
+        called = ExternalFunctionDescriptor(part.symbol, part.returns, args)
+        self.targetctx.insert_user_function(entry, called, [part])
+        return Linked(entry, signature(part.returns, *args))
+
+    def _compiled(self, key: str, args: tuple[Any, ...]) -> KernelPart:
+        symbol = symbol_of(self.py_func, key)
+        self._compiler.pipeline_class = partial(PartCompiler, self.py_func, symbol)
+        result = self._compiler.compile(args, None)
+        part: KernelPart = result.library.part(
+            result.fndesc.mangled_name, result.signature.return_type
+        )
+        return part
+
+    def compile(self, sig: Any) -> Any:
+        """Compile for Python, which needs a door."""
+        with global_compiler_lock:
+            args = tuple(normalize_signature(sig)[0])
+            # Code of one kernel may be in a process twice, loaded and compiled: each has its name.
+            symbol = f"{symbol_of(self.py_func, key_of(self, args))}_{next(_objects)}"
+            self._compiler.pipeline_class = partial(ObjectCompiler, self.py_func, symbol)
+            return super().compile(sig)
+
+    def has_door(self, args: tuple[Any, ...]) -> bool:
+        """Whether Python can call the code compiled for these types."""
+        return args in self.overloads
