@@ -188,10 +188,10 @@ def _seen(kind: Any, of: Identity) -> str:
         access = kind.ndim, kind.layout, kind.mutable, kind.aligned
         return f"[{item}]{size}{access}"
     if isinstance(kind, types.BaseTuple):
-        made_by = getattr(kind, "instance_class", tuple)
-        fields = getattr(kind, "fields", ())
+        made_by = getattr(kind, "instance_class", tuple)  # a NamedTuple has its fields' names
         inside = " ".join(_seen(each, of) for each in _types_in(kind))
-        return f"{type(kind).__name__} {made_by.__qualname__}{fields}({inside})"
+        named = getattr(made_by, "_fields", ())
+        return f"{type(kind).__name__} {made_by.__qualname__}{named}({inside})"
     plain = types.Number, types.Boolean, types.NoneType, types.Literal, types.Omitted
     if isinstance(kind, plain) or not type(kind).__module__.startswith("numba."):
         return str(kind)

@@ -104,14 +104,15 @@ class PartStore:
         if payload is None:
             return None
         symbol, returns, bitcode, keys = pickle.loads(payload)
-        called = [self._parts.get(key) or self._load(key) for key in keys]
-        if any(each is None for each in called):
-            return None
-        part = KernelPart(
-            symbol, returns, zlib.decompress(bitcode), tuple(filter(None, called)), name
-        )
-        self._parts[name] = part
-        return part
+        called = []
+        for key in keys:
+            part = self._parts.get(key) or self._load(key)
+            if part is None:
+                return None
+            called.append(part)
+        whole = KernelPart(symbol, returns, zlib.decompress(bitcode), tuple(called), name)
+        self._parts[name] = whole
+        return whole
 
 
 STORE = PartStore()
