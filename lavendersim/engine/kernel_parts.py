@@ -39,13 +39,16 @@ class KernelPart:
 
 
 def with_called(parts: Iterable[KernelPart]) -> Iterator[KernelPart]:
-    """Yield parts and all that they call, each once, in an order that follows from their code."""
-    seen: set[int] = set()
+    """Yield parts and all that they call, each once, in an order that follows from their code.
+
+    One symbol is one code, however often it was compiled.
+    """
+    seen: set[str] = set()
     waiting = list(parts)[::-1]
     while waiting:
         part = waiting.pop()
-        if id(part) not in seen:
-            seen.add(id(part))
+        if part.symbol not in seen:
+            seen.add(part.symbol)
             yield part
             waiting += part.called[::-1]
 

@@ -9,6 +9,7 @@ from numba import int64
 from numba.core.errors import TypingError
 
 from lavendersim.engine.compile import compiling, inner
+from lavendersim.engine.kernel_parts import STORE
 
 
 def chain_of_two():
@@ -65,6 +66,32 @@ def test_a_kernel_compiled_later_finds_what_was_compiled_twice() -> None:
         return square(square(x))
 
     assert fourth_power(3) == 81
+
+
+def test_a_part_that_was_compiled_twice_is_linked_once() -> None:
+    """The first caller holds what was compiled first, and both end in one kernel."""
+    square, square_plus_one = chain_of_two()
+
+    @inner
+    def before(x):
+        return square_plus_one(x)
+
+    assert before(3) == 10
+    STORE.begin(anew=True)
+    again, _ = chain_of_two()
+
+    @inner
+    def once_more(x):
+        return again(x)
+
+    assert once_more(3) == 9
+    STORE.begin(anew=False)
+
+    @inner
+    def all_of_it(x):
+        return before(x) + once_more(x)
+
+    assert all_of_it(3) == 19
 
 
 def test_the_collector_is_back_after_a_compilation_that_failed() -> None:
