@@ -7,8 +7,8 @@ from typing import Annotated
 
 import typer
 
-from lavender_cli import printing, progress, solver_matrix
-from lavender_cli.run import Configs, Jobs, Runs
+from lavender_cli import printing, progress, solver_matrix, time_errors
+from lavender_cli.run import Configs, Jobs, Refine, Runs
 
 
 def check(
@@ -31,6 +31,7 @@ def check(
             "commas between; `all` is every one.",
         ),
     ] = None,
+    refine: Refine = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print the verdicts as JSON.")] = False,
 ) -> None:
     """Run experiments and print every verdict, cell by cell. Exits 1 when one fails.
@@ -39,12 +40,15 @@ def check(
     fails a case in more than what the case declares; a known failure is
     no pass, but no error either.
     """
+    from lavendersim.errors import UsageError
     from lavendersim.figures import check_page_path, write_report
     from lavendersim.runner import load_all, run
 
     if solver:
         from lavendersim.runner.solver_matrix import chosen
 
+        if refine:
+            raise UsageError("--refine tells time errors of one solver: leave out --solver")
         chosen(solver)  # a wrong name is refused before any file is read
     experiments = load_all(configs, reduced=not full)
     if report is not None:
@@ -53,7 +57,7 @@ def check(
         if not solver_matrix.check_solvers(experiments, solver, runs, jobs, report, as_json):
             raise typer.Exit(1)
         return
-    good, verdicts, cells, results = True, [], [], []
+    good, verdicts, cells, results, refined = True, [], [], [], []
     for experiment in experiments:
         printing.warn_of_mistakes(experiment)
         with progress.reporting(experiment.name) as shown:
@@ -61,6 +65,8 @@ def check(
         good = good and finished.good
         results.append(finished)
         printing.warn_of_not_converged(finished)
+        found = time_errors.refine(finished, jobs) if refine else []
+        refined += [{"experiment": experiment.name, **row} for row in time_errors.as_table(found)]
         cells += [
             {"experiment": experiment.name, "cell": cell.label, "status": cell.status}
             for cell in finished.run.cells
@@ -76,11 +82,14 @@ def check(
                 f"{printing.digits(verdict.measured)}, expected {verdict.expected}"
             )
         printing.print_failures(finished)
+        if refine:
+            time_errors.print_table(found)
     if report is not None:
         write_report(results, report)
         typer.echo(f"report {report}", err=True)
     if as_json:
-        printing.as_json({"passed": good, "cells": cells, "verdicts": verdicts})
+        table = {"passed": good, "cells": cells, "verdicts": verdicts}
+        printing.as_json(table | ({"time_errors": refined} if refine else {}))
     else:
         passed = sum(bool(verdict["passed"]) for verdict in verdicts)
         ended = sum(cell["status"] == "complete" for cell in cells)

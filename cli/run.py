@@ -7,13 +7,17 @@ from typing import Annotated
 
 import typer
 
-from lavender_cli import overheads, printing, progress
+from lavender_cli import overheads, printing, progress, time_errors
 
 Configs = Annotated[
     list[Path], typer.Argument(metavar="CONFIG...", help="Config files, or folders of them.")
 ]
 Jobs = Annotated[
     int, typer.Option("--jobs", "-j", min=1, help="Processes; logs are the same for any number.")
+]
+Refine = Annotated[
+    bool,
+    typer.Option("--refine", help="Run again at h/2 and h/4: each measure's time error."),
 ]
 Runs = Annotated[Path, typer.Option("--runs", metavar="DIR", help="Where runs are kept.")]
 
@@ -23,6 +27,7 @@ def run(
     plot: Annotated[bool, typer.Option("--plot", help="Draw the figures afterwards.")] = False,
     jobs: Jobs = 1,
     runs: Runs = Path("runs"),
+    refine: Refine = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print the results as JSON.")] = False,
 ) -> None:
     """Run experiments, log every step, judge what was expected. Exits 1 when a check fails."""
@@ -44,10 +49,16 @@ def run(
             figures = draw(finished.run, finished.run.path / "figures")
         if experiment.overhead is not None:
             with_overheads.append(finished.run)
+        refined = time_errors.refine(finished, jobs) if refine else []
         if as_json:
-            tables.append({**finished.run.results(), "run": finished.run.path, "figures": figures})
+            table = {**finished.run.results(), "run": finished.run.path, "figures": figures}
+            if refine:
+                table["time_errors"] = time_errors.as_table(refined)
+            tables.append(table)
             continue
         printing.print_summary(finished)
+        if refine:
+            time_errors.print_table(refined)
         overheads.print_table(finished.run)
         for figure in figures:
             typer.echo(f"  figure {figure}")

@@ -57,6 +57,17 @@ class CellConfig(ResolvedModel):
         """Return the text of `as_dict`, in one line."""
         return self.model_dump_json(by_alias=True)
 
+    def refined(self, divisor: int) -> CellConfig:
+        """Return the same cell at timesteps of 1/divisor, those of events included."""
+        numerics = self.numerics.model_copy(update={"timestep": self.numerics.timestep / divisor})
+        events = tuple(
+            event.model_copy(update={"timestep": event.timestep / divisor})
+            if isinstance(event, CellTimestep)
+            else event
+            for event in self.events
+        )
+        return self.model_copy(update={"numerics": numerics, "events": events})
+
     @property
     def clock(self) -> Clock:
         """The times of its steps."""

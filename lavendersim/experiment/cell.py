@@ -65,6 +65,7 @@ class Cell:
     _root: Node = field(repr=False, compare=False)
     _point: Point = field(repr=False, compare=False)
     _name: str = field(repr=False, compare=False)  # of the file, for messages
+    divisor: int = 1  # of the timestep that the file gives it
 
     @cached_property
     def config(self) -> CellConfig:
@@ -73,7 +74,7 @@ class Cell:
         config = build_cell(self._root, self._point, report)
         if config is None:
             raise ConfigError(report.defects)
-        return config
+        return config if self.divisor == 1 else config.refined(self.divisor)
 
     def defect(self, path: Path, message: str) -> Defect:
         """Return a defect at a key, an item or a swept value of this cell."""

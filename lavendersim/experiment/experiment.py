@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -29,6 +29,7 @@ class Experiment:
     _cells: tuple[Cell, ...] = field(repr=False)
     reduced: bool = False  # a slow one, at its reduced length
     solver: str | None = None  # of every cell, instead of what the config says
+    divisor: int = 1  # of the timestep of every cell
 
     @property
     def question(self) -> str:
@@ -107,6 +108,11 @@ class Experiment:
         sweep = self.config.sweep
         products = (sweep,) if isinstance(sweep, dict) else sweep
         return {axis.path for product in products for axis in product.values()}
+
+    def refined(self, divisor: int) -> Experiment:
+        """Return the same experiment with every cell at timesteps of 1/divisor."""
+        cells = tuple(replace(cell, divisor=divisor) for cell in self._cells)
+        return replace(self, _cells=cells, divisor=divisor)
 
     def cells(self) -> tuple[Cell, ...]:
         """All cells of the sweep, the first axis slowest; one cell without a sweep."""

@@ -83,16 +83,20 @@ def _exactly(expectation: ExpectSpec, numbers: Floats, cell: Cell) -> Outcome:
 def _equals(expectation: ExpectSpec, numbers: Floats, cell: Cell) -> Outcome:
     assert expectation.equals is not None
     spec = expectation.equals
+    target, allowed = _allowed(spec, cell)
+    expected = f"{target!r} ({spec.closed_form.form})" if spec.closed_form else repr(target)
+    excess = np.abs(numbers - target) - allowed
+    return _worst(numbers, excess, expected, _tolerance_text(spec), allowed)
+
+
+def _allowed(spec: Equals, cell: Cell) -> tuple[float, float]:
+    """Return the number that a measure is to equal, and its tolerance."""
     if spec.closed_form is not None:
         target = evaluate_form(spec.closed_form, cell.config)
-        expected = f"{target!r} ({spec.closed_form.form})"
     else:
         assert spec.value is not None
         target = spec.value
-        expected = repr(target)
-    allowed = max(spec.absolute, spec.relative * abs(target))
-    excess = np.abs(numbers - target) - allowed
-    return _worst(numbers, excess, expected, _tolerance_text(spec), allowed)
+    return target, max(spec.absolute, spec.relative * abs(target))
 
 
 def _tolerance_text(spec: Equals) -> str:
@@ -128,3 +132,19 @@ JUDGES: Final[dict[str, Callable[[ExpectSpec, Floats, Cell], Outcome]]] = {
     "equals": _equals,
     "row": _row,
 }
+
+
+def room(expectation: ExpectSpec, value: Value, cell: Cell) -> float | None:
+    """Return what a claim on one cell leaves to a measure's value; None where it has no number.
+
+    Of `equals` that is its tolerance, of a bound how far the value is from it: of a row, the least.
+    A value that changes by more may change the verdict.
+    """
+    numbers = np.atleast_1d(np.asarray(value, dtype=float))
+    if expectation.equals is not None:
+        return _allowed(expectation.equals, cell)[1]
+    if expectation.exactly is not None:
+        return 0.0
+    bounds = [expectation.at_most, expectation.at_least, *(expectation.between or ())]
+    left = [float(np.min(np.abs(numbers - bound))) for bound in bounds if bound is not None]
+    return min(left) if left else None

@@ -204,6 +204,7 @@ def _write_index(
         "experiment": experiment.name,
         "reduced": experiment.reduced,
         "solver": experiment.solver,
+        "timestep_divisor": experiment.divisor,
         "cells": rows,
     }
     _write_json(directory / CELLS, table)

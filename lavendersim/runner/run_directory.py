@@ -22,6 +22,7 @@ CONFIG, RESOLVED = "config.yaml", "resolved.json"
 CELLS, RESULTS, TABLE = "cells.json", "results.json", "results.csv"
 OVERHEADS = "overheads.csv"
 COST, COST_TABLE = "cost.json", "cost.csv"
+REFINED, TIME_ERRORS = "refined", "time_errors.csv"
 ENVIRONMENT, DONE, LATEST = "env.json", "DONE", "latest"
 RUNS = Path("runs")
 # Keys of the tables of older runs, and their names now.
@@ -84,6 +85,7 @@ class Run:
         reduced = bool(self._index.get("reduced", False))
         solver = self._index.get("solver")
         experiment = load_experiment_text(text, str(self.path / CONFIG), reduced, solver)
+        experiment = experiment.refined(self._index.get("timestep_divisor", 1))
         return replace(experiment, name=self.name)
 
     @cached_property

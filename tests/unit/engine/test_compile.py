@@ -70,7 +70,7 @@ def test_a_kernel_compiled_later_finds_what_was_compiled_twice() -> None:
 
 def test_a_part_that_was_compiled_twice_is_linked_once() -> None:
     """The first caller holds what was compiled first, and both end in one kernel."""
-    square, square_plus_one = chain_of_two()
+    _, square_plus_one = chain_of_two()
 
     @inner
     def before(x):
