@@ -17,6 +17,8 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
+from llvmlite.binding import Linkage, parse_bitcode
+
 from . import kernel_store
 from .compile_options import build
 from .identity import UnidentifiableError, identity, is_plain, seen_of
@@ -36,6 +38,17 @@ class KernelPart:
 
     def _ensure_finalized(self) -> None:
         """Have nothing to do: what numba asks of a library before it is linked."""
+
+    def _get_module_for_linking(self) -> Any:
+        """Return the part with all that it calls, for a function of numba's that calls it."""
+        module = parse_bitcode(self.bitcode)
+        for part in with_called(self.called):
+            if part.symbol != self.symbol:
+                module.link_in(parse_bitcode(part.bitcode))
+        for function in module.functions:
+            if not function.is_declaration and function.linkage == Linkage.external:
+                function.linkage = Linkage.linkonce_odr
+        return module
 
 
 def with_called(parts: Iterable[KernelPart]) -> Iterator[KernelPart]:

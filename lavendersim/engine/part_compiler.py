@@ -11,7 +11,8 @@ from copy import copy
 from functools import partial
 from typing import Any, NamedTuple
 
-from llvmlite.binding import Linkage, parse_bitcode
+from llvmlite import ir
+from llvmlite.binding import Linkage, llvm_version_info, parse_bitcode
 from numba.core import types
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler, DefaultPassBuilder
@@ -24,6 +25,9 @@ from numba.core.sigutils import normalize_signature
 from numba.core.typing.templates import make_concrete_template, signature
 
 from .kernel_parts import STORE, KernelPart, key_of, symbol_of, with_called
+
+if llvm_version_info < (17, 0, 0):
+    raise ImportError("pointers have types: a part serves one layout of records only")
 
 _objects = itertools.count()
 
@@ -87,8 +91,8 @@ class KernelObject(_Linking):
         super()._optimize_final_module()
 
 
-def _rename(state: Any, function: Any, symbol: str) -> None:
-    """Let numba call the code of `function` by `symbol`."""
+def _prepare(state: Any, function: Any, symbol: str) -> None:
+    """Let numba call the code of `function` by `symbol`, and parts by theirs."""
     own = f"{function.__module__}.{function.__qualname__}"
     names = {own: symbol, f".NumbaEnv.{own}": f".NumbaEnv.{symbol}"}
 
@@ -97,7 +101,18 @@ def _rename(state: Any, function: Any, symbol: str) -> None:
             return mangle(names[name], ())
         return default_mangler(name, argtypes, abi_tags=abi_tags, uid=uid)
 
-    state.targetctx.mangler = mangler  # a context that is made for each compilation
+    def declare_function(module: Any, called: Any) -> Any:
+        expected = context.call_conv.get_function_type(called.restype, called.argtypes)
+        there = module.globals.get(called.mangled_name)
+        if there is not None and there.function_type != expected:
+            # A part is called for records of two layouts that look the same to it. To LLVM all
+            # pointers are alike, but llvmlite has one declaration for a name in a module.
+            module = ir.Module(context=module.context)
+        return type(context).declare_function(context, module, called)
+
+    context = state.targetctx  # made for this compilation alone
+    context.mangler, context.declare_function = mangler, declare_function
+    state.typingctx = _quick(state.typingctx)
 
 
 # Passes of numba's that serve closures, generators, literal arguments, array expressions and
@@ -164,8 +179,7 @@ class PartCompiler(Compiler):
         flags.no_compile = flags.no_cpython_wrapper = True
         part = PartCode(targetctx.codegen(), "part")
         super().__init__(typingctx, targetctx, part, args, return_type, flags, locals)
-        _rename(self.state, function, symbol)
-        self.state.typingctx = _quick(typingctx)
+        _prepare(self.state, function, symbol)
 
     def define_pipelines(self):
         """Return numba's pipeline without what no kernel needs."""
@@ -181,8 +195,7 @@ class ObjectCompiler(Compiler):
         whole = KernelObject(targetctx.codegen(), "whole")
         whole.enable_object_caching()
         super().__init__(typingctx, targetctx, whole, args, return_type, flags, locals)
-        _rename(self.state, function, symbol)
-        self.state.typingctx = _quick(typingctx)
+        _prepare(self.state, function, symbol)
 
     def define_pipelines(self):
         """Return numba's pipeline without what no kernel needs."""

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import gc
 
+import numpy as np
 import pytest
-from numba import int64
+from numba import int64, njit
 from numba.core.errors import TypingError
 
 from lavendersim.engine.compile import compiling, inner
@@ -111,3 +112,30 @@ def test_the_collector_is_back_after_a_compilation_that_failed() -> None:
         attempt()
     assert resting == [True]
     assert gc.isenabled()
+
+
+def test_one_part_serves_records_of_two_layouts_in_one_kernel() -> None:
+    """Both have `x` at the same place: to the part they look the same."""
+
+    @inner
+    def doubled(row):
+        return 2.0 * row.x
+
+    @inner
+    def sum_of_both(short, long):
+        return doubled(short[0]) + doubled(long[0])
+
+    short = np.array([(1.5,)], [("x", "f8")])
+    long = np.array([(3.0, 7.0)], [("x", "f8"), ("y", "f8")])
+    with compiling():
+        assert sum_of_both(short, long) == 9.0
+
+
+def test_numba_s_own_function_may_call_a_kernel() -> None:
+    _, square_plus_one = chain_of_two()
+
+    @njit
+    def twice(x):
+        return 2 * square_plus_one(x)
+
+    assert twice(3) == 20
