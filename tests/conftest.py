@@ -5,10 +5,16 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from hypothesis.internal.conjecture import providers
 
 from tests.drop_config import DROP
 
 pytest_plugins = ["pytester"]
+
+# Hypothesis also draws numbers that stand in the sources it finds loaded: any new file, and which
+# tests a process ran before, would change every world that is drawn.
+if hasattr(providers, "_get_local_constants"):
+    providers._get_local_constants = providers.Constants
 
 ROOT = Path(__file__).parents[1]
 # `pytest -m quick`: what must be seen before every commit. One claim of every layer, in at most two
