@@ -105,7 +105,7 @@ def _prepare(state: Any, function: Any, symbol: str) -> None:
         expected = context.call_conv.get_function_type(called.restype, called.argtypes)
         there = module.globals.get(called.mangled_name)
         if there is not None and there.function_type != expected:
-            # A part is called for records of two layouts that look the same to it. To LLVM all
+            # Records of two layouts that look the same to a part are given to it. To LLVM all
             # pointers are alike, but llvmlite has one declaration for a name in a module.
             module = ir.Module(context=module.context)
         return type(context).declare_function(context, module, called)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, Final
 
 from matplotlib.figure import Figure
@@ -25,26 +26,31 @@ FEW_ENTRIES: Final = 4  # of a legend that finds space among the lines
 NARROWEST: Final = 6.8  # [inch] a single panel is wider, for its caption
 
 
+# By the index of a cell: its measures that were taken already.
+Taken = Mapping[int, Mapping[str, Any]]
+
 panels.load_all()
 
 
 def draw(run: Any, directory: Path) -> list[Path]:
     """Write `<experiment>.png` and `.svg` into the directory; returns them, none without a figure.
 
-    `run` has `.experiment`, `.cells` and, where it differs from the file's, a `.name`. Cells
-    without a readable log are left out and counted in the caption.
+    `run` has `.experiment`, `.cells` and, where it differs from the file's, a `.name`; in the
+    process that ran it `.taken`, the measures of its cells. Cells without a readable log are left
+    out and counted in the caption.
     """
     experiment = run.experiment
     if experiment.figure is None:
         return []
     name = getattr(run, "name", experiment.name)  # a run kept its file as config.yaml
-    return write(Path(directory) / name, compose, experiment, list(run.cells))
+    taken = getattr(run, "taken", {})
+    return write(Path(directory) / name, compose, experiment, list(run.cells), taken)
 
 
-def compose(experiment: Any, cells: Sequence[Cell]) -> Figure:
-    """Return the page as a matplotlib Figure."""
+def compose(experiment: Any, cells: Sequence[Cell], taken: Taken = MappingProxyType({})) -> Figure:
+    """Return the page as a matplotlib Figure; taken: measures of the cells, by their index."""
     spec: FigureSpec = experiment.figure
-    readable = [cell for cell in cells if _is_readable(cell)]
+    readable = [cell for cell in cells if cell.index in taken or _is_readable(cell)]
     missing = len(cells) - len(readable)
     note = f" Left out: {missing} of {len(cells)} cells have no readable log." if missing else ""
     rows, columns = _grid(len(spec.panels))
@@ -56,7 +62,8 @@ def compose(experiment: Any, cells: Sequence[Cell]) -> Figure:
         legend_below=_shared_entries(spec, readable),
     )
     figure = blank(page)
-    _draw_panels(figure, experiment, readable, shared=page.legend_below > 0)
+    values = Values(experiment.measures, taken)
+    _draw_panels(figure, experiment, readable, values, shared=page.legend_below > 0)
     if page.legend_below:
         legend_below(figure, page)
     return figure
@@ -80,8 +87,9 @@ def _grid(panels: int) -> tuple[int, int]:
     return rows, -(-panels // rows)
 
 
-def _draw_panels(figure: Figure, experiment: Any, cells: Sequence[Cell], shared: bool) -> None:
-    values = Values(experiment.measures)
+def _draw_panels(
+    figure: Figure, experiment: Any, cells: Sequence[Cell], values: Values, shared: bool
+) -> None:
     shown_panels = experiment.figure.panels
     places = figure.subplots(*_grid(len(shown_panels)), squeeze=False).ravel()
     for axes in places[len(shown_panels) :]:

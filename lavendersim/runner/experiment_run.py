@@ -166,8 +166,8 @@ def run(
     finally:
         _write_index(directory, experiment, pending, ended)
     outcomes = [ended[job.path]._replace(cell=job.cell) for job in pending]
-    finished = Run(directory, experiment)
-    values = Values(experiment.measures, {index: one.values for index, one in taken.items()})
+    finished = Run(directory, experiment, {index: one.values for index, one in taken.items()})
+    values = Values(experiment.measures, finished.taken)
     always = {index: one.always for index, one in taken.items()}
     claims = (experiment.measures, experiment.expectations, finished.cells, values)
     verdicts = judge(*claims, experiment.always, always, experiment.controls)

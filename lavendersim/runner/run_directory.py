@@ -69,10 +69,12 @@ class Run:
     """A run on disk.
 
     ran: the experiment, in the process that ran it; others read it and its configs from disk.
+    taken: the measures of its cells by their index, there too; others take them from the logs.
     """
 
     path: Path
     ran: Experiment | None = field(default=None, repr=False, compare=False)
+    taken: Mapping[int, Mapping[str, Any]] = field(default_factory=dict, repr=False, compare=False)
 
     @cached_property
     def experiment(self) -> Experiment:
