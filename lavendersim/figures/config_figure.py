@@ -50,7 +50,7 @@ def draw(run: Any, directory: Path) -> list[Path]:
 def compose(experiment: Any, cells: Sequence[Cell], taken: Taken = MappingProxyType({})) -> Figure:
     """Return the page as a matplotlib Figure; taken: measures of the cells, by their index."""
     spec: FigureSpec = experiment.figure
-    readable = [cell for cell in cells if cell.index in taken or _is_readable(cell)]
+    readable = [cell for cell in cells if (taken and cell.index in taken) or _is_readable(cell)]
     missing = len(cells) - len(readable)
     note = f" Left out: {missing} of {len(cells)} cells have no readable log." if missing else ""
     rows, columns = _grid(len(spec.panels))
