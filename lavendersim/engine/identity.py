@@ -14,6 +14,7 @@ import dis
 import hashlib
 from types import BuiltinFunctionType, CodeType, FunctionType, ModuleType
 from typing import Any, NamedTuple
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numba.core import types
@@ -42,7 +43,7 @@ class _Code(NamedTuple):
     stores: bool
 
 
-_identities: dict[Any, Identity] = {}
+_identities: WeakKeyDictionary[Any, Identity] = WeakKeyDictionary()
 _codes: dict[CodeType, _Code] = {}
 
 
