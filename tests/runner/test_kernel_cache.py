@@ -55,6 +55,23 @@ def test_a_kernel_with_one_flipped_bit_is_ignored_and_written_anew(
     assert copy.read_bytes() != damaged
 
 
+def test_damaged_parts_are_compiled_anew(
+    kept: tuple[Path, Path, dict[str, Any]], tmp_path: Path
+) -> None:
+    config, kernels, first = kept
+    store = tmp_path / "kernels"
+    store.mkdir()
+    parts = sorted(kernels.glob("*.part"))
+    for number, part in enumerate(parts):
+        damaged = bytearray(part.read_bytes())
+        damaged[number % len(damaged)] ^= 1
+        (store / part.name).write_bytes(damaged[: len(damaged) - number % 2])
+    again = run_in_new_process(config, tmp_path / "runs", LAVENDER_CACHE_DIR=str(store))
+    assert again["logs"] == first["logs"]
+    assert parts
+    assert all((store / part.name).read_bytes() == part.read_bytes() for part in parts)
+
+
 @pytest.mark.parametrize("length", [0, 16, 32, 1000], ids="first {} bytes".format)
 def test_a_truncated_kernel_counts_as_absent(
     kept: tuple[Path, Path, dict[str, Any]], tmp_path: Path, length: int
