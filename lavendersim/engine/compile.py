@@ -9,19 +9,24 @@ from __future__ import annotations
 import gc
 import warnings
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from functools import wraps
 from typing import Any
 
 import numba
 from numba.core.errors import NumbaExperimentalFeatureWarning
 
+from . import kernel_store
 from .compile_options import OPTIONS
 from .spec import Spec
 
 Kernel: Any = None
-with suppress(ImportError):
+try:
     from .part_compiler import Kernel
+except ImportError as error:
+    # Numba's own symbols carry counters of the process, and the first of two with one name that is
+    # loaded is used for both (numba issue 10486): only where it was made is such code safe to run.
+    kernel_store.keep_nothing(f"numba {numba.__version__} compiles no parts of kernels ({error})")
 
 
 def compiler_is_off() -> bool:

@@ -73,7 +73,8 @@ class KernelCache:
         self._began = time.thread_time()  # numba compiles next, where there is none
         STORE.begin(self.anew)
         self.used = self.key(signature)
-        payload = kernel_store.read(self.path(self.used)) if self.used and not self.anew else None
+        kept = self.used and self.cache_path.name and not self.anew
+        payload = kernel_store.read(self.path(self.used)) if kept else None
         if payload is None:
             self.misses += 1
             return None

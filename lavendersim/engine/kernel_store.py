@@ -19,6 +19,7 @@ from .compile_options import build
 DIRECTORY_VARIABLE = "LAVENDER_CACHE_DIR"
 LIMIT = 400_000_000  # [byte] of all that is kept
 SUFFIXES = (".kernel", ".part")
+ANEW = "kernels are compiled anew in every process"
 
 
 def _is_private(path: Path) -> bool:
@@ -29,12 +30,25 @@ def _is_private(path: Path) -> bool:
     return status.st_uid == os.getuid() and not status.st_mode & 0o022
 
 
-@cache
+_why_not = ""  # nothing may be kept, whatever the place
+
+
+def keep_nothing(why: str) -> None:
+    """Keep no compiled code from now on: that of this compiler could be taken for another's."""
+    global _why_not
+    _why_not = f"{why}: {ANEW}"
+
+
 def directory() -> tuple[Path, str]:
     """Return where kernels are kept and a sentence when that is not the usual place.
 
     The path is empty when there is no such place.
     """
+    return (Path(), _why_not) if _why_not else _place()
+
+
+@cache
+def _place() -> tuple[Path, str]:
     asked = os.environ.get(DIRECTORY_VARIABLE)
     usual = Path(os.environ.get("XDG_CACHE_HOME") or "~/.cache").expanduser() / "lavender"
     fallback = Path(tempfile.gettempdir()) / f"lavender-{os.getuid() if os.name == 'posix' else ''}"
@@ -45,7 +59,7 @@ def directory() -> tuple[Path, str]:
             path.mkdir(parents=True, exist_ok=True, mode=0o700)
             if _is_private(path) and os.access(path, os.W_OK):
                 return path, "" if path == chosen else f"{refusal}: kernels are kept in {path}"
-    return Path(), f"{refusal}: kernels are compiled anew in every process"
+    return Path(), f"{refusal}: {ANEW}"
 
 
 def read(path: Path) -> bytes | None:
