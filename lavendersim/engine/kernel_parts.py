@@ -33,7 +33,7 @@ class KernelPart:
         self, symbol: str, returns: Any, bitcode: bytes, called: tuple[KernelPart, ...], key: str
     ) -> None:
         self.symbol, self.returns, self.bitcode, self.called = symbol, returns, bitcode, called
-        self.key = key  # name of the file it is kept in; empty where it cannot be kept
+        self.key = key  # names the file it is kept in; empty where it has none
         self._reload_init: set[Any] = set()
 
     def _ensure_finalized(self) -> None:
@@ -89,57 +89,49 @@ class PartStore:
         """Begin a kernel; with `anew` what is there is not used but compiled again."""
         self._new, self._anew, self.alone = set(), anew, True
 
-    def find(self, key: str, arguments: tuple[Any, ...]) -> KernelPart | None:
+    def find(self, key: str) -> KernelPart | None:
         """Return the part of a key, from this process or from disk."""
-        for name in (key, _of_records(key, arguments)) if key else ():
-            if name in self._new:
-                return self._parts[name]
-            part = None if self._anew else self._parts.get(name) or self._load(name)
-            if part is not None:
-                self.alone = False
-                return part
-        return None
+        if key in self._new:
+            return self._parts[key]
+        part = None if self._anew or not key else self._parts.get(key) or self._load(key)
+        if part is not None:
+            self.alone = False
+        return part
 
-    def keep(self, part: KernelPart, key: str, arguments: tuple[Any, ...]) -> None:
+    def keep(self, part: KernelPart) -> None:
         """Remember a part that was just compiled, here and on disk."""
-        if not key:
+        # A record that is returned would have to be each caller's own, with all its fields.
+        if not part.key or not is_plain(part.returns):
             return
-        # A record that is returned has to be the caller's own, with all its fields.
-        name = key if is_plain(part.returns) else _of_records(key, arguments)
-        part.key = name
-        self._parts[name] = part
-        self._new.add(name)
+        self._parts[part.key] = part
+        self._new.add(part.key)
         if kernel_store.directory()[0].name:
             keys = tuple(called.key for called in part.called)
             stored = part.symbol, part.returns, zlib.compress(part.bitcode, 1), keys
-            kernel_store.write(_path(name), pickle.dumps(stored))
+            kernel_store.write(_path(part.key), pickle.dumps(stored))
 
-    def _load(self, name: str) -> KernelPart | None:
+    def _load(self, key: str) -> KernelPart | None:
         """Return a part from disk with all that it calls; None where any of it is missing."""
-        payload = kernel_store.read(_path(name)) if kernel_store.directory()[0].name else None
+        payload = kernel_store.read(_path(key)) if kernel_store.directory()[0].name else None
         if payload is None:
             return None
         symbol, returns, bitcode, keys = pickle.loads(payload)
         called = []
-        for key in keys:
-            part = self._parts.get(key) or self._load(key)
+        for name in keys:
+            part = self._parts.get(name) or self._load(name)
             if part is None:
                 return None
             called.append(part)
-        whole = KernelPart(symbol, returns, zlib.decompress(bitcode), tuple(called), name)
-        self._parts[name] = whole
+        whole = KernelPart(symbol, returns, zlib.decompress(bitcode), tuple(called), key)
+        self._parts[key] = whole
         return whole
 
 
 STORE = PartStore()
 
 
-def _of_records(key: str, arguments: tuple[Any, ...]) -> str:
-    return hashlib.sha256(f"{key} {arguments}".encode()).hexdigest()[:32]
-
-
-def _path(name: str) -> Path:
-    return kernel_store.directory()[0] / f"{build()}-{name}.part"
+def _path(key: str) -> Path:
+    return kernel_store.directory()[0] / f"{build()}-{key}.part"
 
 
 def symbol_of(function: Any, key: str) -> str:

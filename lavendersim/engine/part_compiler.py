@@ -61,14 +61,14 @@ class PartCode(_Linking):
         """Make no machine code."""
         self._finalized = True
 
-    def part(self, symbol: str, returns: Any) -> KernelPart:
+    def part(self, symbol: str, returns: Any, key: str) -> KernelPart:
         """Return the part; of its symbols other code sees only its own."""
         self._ensure_finalized()
         module = self._final_module
         for function in module.functions:
             if not function.is_declaration and function.name != symbol:
                 function.linkage = Linkage.internal
-        return KernelPart(symbol, returns, module.as_bitcode(), tuple(self.parts), "")
+        return KernelPart(symbol, returns, module.as_bitcode(), tuple(self.parts), key)
 
 
 class KernelObject(_Linking):
@@ -170,36 +170,42 @@ def _quick(typingctx: Any) -> Any:
     return quick
 
 
-class PartCompiler(Compiler):
-    """Numba's pipeline for a kernel that only kernels call."""
+class _KernelCompiler(Compiler):
+    """Numba's pipeline for kernels, without what none needs."""
 
     def __init__(
         self, function, symbol, typingctx, targetctx, library, args, return_type, flags, locals
     ):
+        code = self.code(targetctx.codegen(), flags)
+        super().__init__(typingctx, targetctx, code, args, return_type, flags, locals)
+        _prepare(self.state, function, symbol)
+
+    def define_pipelines(self):
+        """Return the one pipeline there is."""
+        return [_pipeline(self.state)]
+
+    def code(self, codegen, flags):
+        """Return the library that the code goes to."""
+        raise NotImplementedError
+
+
+class PartCompiler(_KernelCompiler):
+    """For a kernel that only kernels call."""
+
+    def code(self, codegen, flags):
+        """Return a library that is linked into others."""
         flags.no_compile = flags.no_cpython_wrapper = True
-        part = PartCode(targetctx.codegen(), "part")
-        super().__init__(typingctx, targetctx, part, args, return_type, flags, locals)
-        _prepare(self.state, function, symbol)
-
-    def define_pipelines(self):
-        """Return numba's pipeline without what no kernel needs."""
-        return [_pipeline(self.state)]
+        return PartCode(codegen, "part")
 
 
-class ObjectCompiler(Compiler):
-    """Numba's pipeline for a kernel that Python calls; its code can be kept on disk."""
+class ObjectCompiler(_KernelCompiler):
+    """For a kernel that Python calls; its code can be kept on disk."""
 
-    def __init__(
-        self, function, symbol, typingctx, targetctx, library, args, return_type, flags, locals
-    ):
-        whole = KernelObject(targetctx.codegen(), "whole")
+    def code(self, codegen, flags):
+        """Return a library that links all that it calls."""
+        whole = KernelObject(codegen, "whole")
         whole.enable_object_caching()
-        super().__init__(typingctx, targetctx, whole, args, return_type, flags, locals)
-        _prepare(self.state, function, symbol)
-
-    def define_pipelines(self):
-        """Return numba's pipeline without what no kernel needs."""
-        return [_pipeline(self.state)]
+        return whole
 
 
 class Linked(NamedTuple):
@@ -240,10 +246,10 @@ class Kernel(CPUDispatcher):
     def _link(self, args: tuple[Any, ...]) -> Linked:
         """Let kernels call this one, by a part that was there or is compiled now."""
         key = key_of(self, args)
-        part = STORE.find(key, args)
+        part = STORE.find(key)
         if part is None:
             part = self._compiled(key, args)
-            STORE.keep(part, key, args)
+            STORE.keep(part)
         entry = object()
         called = ExternalFunctionDescriptor(part.symbol, part.returns, args)
         self.targetctx.insert_user_function(entry, called, [part])
@@ -254,7 +260,7 @@ class Kernel(CPUDispatcher):
         self._compiler.pipeline_class = partial(PartCompiler, self.py_func, symbol)
         result = self._compiler.compile(args, None)
         part: KernelPart = result.library.part(
-            result.fndesc.mangled_name, result.signature.return_type
+            result.fndesc.mangled_name, result.signature.return_type, key
         )
         return part
 

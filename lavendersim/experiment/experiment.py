@@ -29,7 +29,6 @@ class Experiment:
     _cells: tuple[Cell, ...] = field(repr=False)
     reduced: bool = False  # a slow one, at its reduced length
     solver: str | None = None  # of every cell, instead of what the config says
-    divisor: int = 1  # of the timestep of every cell
 
     @property
     def question(self) -> str:
@@ -110,9 +109,14 @@ class Experiment:
         return {axis.path for product in products for axis in product.values()}
 
     def refined(self, divisor: int) -> Experiment:
-        """Return the same experiment with every cell at timesteps of 1/divisor."""
-        cells = tuple(replace(cell, divisor=divisor) for cell in self._cells)
-        return replace(self, _cells=cells, divisor=divisor)
+        """Return the same experiment with every cell at timesteps of 1/divisor of its own."""
+        cells = (replace(cell, divisor=cell.divisor * divisor) for cell in self._cells)
+        return replace(self, _cells=tuple(cells))
+
+    @property
+    def divisor(self) -> int:
+        """What the timestep of every cell was divided by."""
+        return self._cells[0].divisor
 
     def cells(self) -> tuple[Cell, ...]:
         """All cells of the sweep, the first axis slowest; one cell without a sweep."""

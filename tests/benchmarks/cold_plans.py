@@ -33,7 +33,7 @@ cell = load_experiment(sys.argv[1]).cells()[0]
 spec = plan_of_cell(cell).spec
 engine = build(cell.config, spec).engine(spec)
 begin, keep, made = process_time(), STORE.keep, []
-STORE.keep = lambda *arguments: (made.append(1), keep(*arguments))
+STORE.keep = lambda part: (made.append(1), keep(part))
 engine.advance(0)
 print(json.dumps({"plan": spec.digest(), "seconds": process_time() - begin, "made": len(made),
                   "found": len(STORE._parts) - len(made), "loaded": engine._kernel._cache.hits}))

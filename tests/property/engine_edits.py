@@ -35,7 +35,6 @@ import hashlib, json, sys
 sys.path.insert(0, sys.argv[2])
 from machine_code import text_of
 import lavendersim
-from lavendersim.engine.kernel_parts import STORE
 from lavendersim.experiment import load_experiment
 from lavendersim.scene.build import build
 from lavendersim.scene.plan import plan_of_cell
