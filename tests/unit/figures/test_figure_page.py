@@ -110,7 +110,12 @@ def test_files_are_those_that_matplotlib_saves(tmp_path: Path) -> None:
         figure = compose("one")
         figure.savefig(tmp_path / "saved.png", dpi=DPI, metadata={"Software": None})
         figure.savefig(tmp_path / "saved.svg", metadata={"Date": None, "Creator": "lavender"})
+        figure = compose("one")
+        figure.savefig(tmp_path / "first.png", dpi=DPI)
+        figure.set_layout_engine("none")  # stays as it was laid out for the PNG
+        figure.savefig(tmp_path / "laid.svg", metadata={"Date": None, "Creator": "lavender"})
     assert png.read_bytes() == (tmp_path / "saved.png").read_bytes()
+    assert svg.read_bytes() == (tmp_path / "laid.svg").read_bytes()
     ours, theirs = (frames(path.read_text()) for path in (svg, tmp_path / "saved.svg"))
     assert len(ours) == 2
     assert ours == pytest.approx(theirs, abs=1.0)  # points
