@@ -16,7 +16,8 @@ if TYPE_CHECKING:
     from lavendersim.runner import RunCell
 
 Metadata = dict[str, dict[str, str]]
-SECTIONS = ("plan", "shape pairs", "forced", "study-only")  # of a log's metadata
+# of a log's metadata
+SECTIONS = ("plan", "shape pairs", "forced", "study-only", "recorded")
 
 
 def show(
@@ -83,6 +84,8 @@ def print_plan(cells: list[RunCell], metadata: Metadata, count: int) -> None:
         typer.echo(typer.style(f"  overridden by hand: {changes}", fg=typer.colors.YELLOW))
     for mistake, text in metadata["study-only"].items():
         typer.echo(typer.style(f"  study-only: {mistake}, {text}", fg=typer.colors.YELLOW))
+    for key, which in metadata["recorded"].items():
+        typer.echo(f"  {key} recorded: {which}")
     parts = {**metadata["plan"], **metadata["shape pairs"]}
     width = max(map(len, parts), default=0)
     off = []

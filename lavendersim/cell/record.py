@@ -1,4 +1,4 @@
-"""What a cell logs beyond state and contacts: residuals of sweeps, contact problems."""
+"""What a cell logs: of which steps contacts and poses, residuals of sweeps, contact problems."""
 
 from __future__ import annotations
 
@@ -12,25 +12,28 @@ from pydantic_core import CoreSchema, core_schema
 from lavendersim.quantities.model import ResolvedModel
 from lavendersim.quantities.quantity import refusal
 
-NONE = "none"
+NONE, ALL = "none", "all"
 # Up to a billion, ten times the steps that a run may have.
 _EVERY = re.compile(r"every ([1-9][0-9]{0,8})")
 
 
 @dataclass(frozen=True)
 class EverySteps:
-    """The text `none`, or `every N`: steps N, 2 N, ... of a run."""
+    """The text `every N`, or the one that stands beside it: of no step, or of all of them."""
+
+    beside: str = NONE
 
     def check(self, value: object) -> str:
         """Return the text, or raise the refusal."""
-        if isinstance(value, str) and (value == NONE or _EVERY.fullmatch(value)):
+        if isinstance(value, str) and (value == self.beside or _EVERY.fullmatch(value)):
             return value
         hint = ""
         if isinstance(value, int) and not isinstance(value, bool) and value > 0:
             hint = f'; did you mean "every {value}"?'
-        elif value == "all":
+        elif value == ALL:
             hint = '; did you mean "every 1"?'
-        raise refusal("none or every N with a whole number of steps N of 1 or more", value, hint)
+        expected = f"{self.beside} or every N with a whole number of steps N of 1 or more"
+        raise refusal(expected, value, hint)
 
     def __get_pydantic_core_schema__(
         self, source: Any, handler: GetCoreSchemaHandler
@@ -42,24 +45,37 @@ class EverySteps:
         self, schema: CoreSchema, handler: GetJsonSchemaHandler
     ) -> dict[str, Any]:
         """Describe the text by its pattern."""
-        return {"type": "string", "pattern": f"^({NONE}|{_EVERY.pattern})$"}
+        return {"type": "string", "pattern": f"^({self.beside}|{_EVERY.pattern})$"}
 
 
 def steps_between(every: str) -> int:
-    """Return N of `every N`, 0 of `none`."""
+    """Return N of `every N`, 0 of `none` and of `all`."""
     found = _EVERY.fullmatch(every)
     return int(found[1]) if found else 0
 
 
-class ResidualWindow(ResolvedModel):
+class TimeWindow(ResolvedModel):
     """A stretch of simulated time [s]."""
 
     begin: float = Field(alias="from")
     end: float = Field(alias="to")
 
 
-class CellRecord(ResolvedModel):
-    """What is logged beyond every step."""
+Recorded = str | TimeWindow  # all, every N, or a stretch of time
 
-    residuals: Literal["none", "all"] | ResidualWindow
+
+def in_words(recorded: Recorded) -> str:
+    """Return of which steps something is recorded, as a config would say it."""
+    if isinstance(recorded, TimeWindow):
+        return f"from {recorded.begin:g} to {recorded.end:g} s"
+    return recorded
+
+
+class CellRecord(ResolvedModel):
+    """What is logged: of which steps, and beyond state and contacts."""
+
+    residuals: Literal["none", "all"] | TimeWindow
     problems: str  # none, or every N
+    # logs of older versions have all of both, and do not say so
+    contacts: Recorded = ALL
+    poses: Recorded = ALL

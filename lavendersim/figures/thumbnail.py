@@ -60,7 +60,7 @@ def _view(trace: Any) -> tuple[np.ndarray, np.ndarray]:
     """Return the directions of the picture's right and of its up."""
     bodies = trace.config.scene.bodies
     movable = [i for i, name in enumerate(trace.bodies) if not bodies[name].fixed]
-    centres = trace.pose[0, movable, :3]
+    centres = trace.recorded_pose.pose[:1, movable, :3].reshape(-1, 3)  # none, where none is there
     gravity = np.asarray(trace.config.scene.gravity)
     pull = math.hypot(*gravity)
     up = -gravity / pull if pull > 0.0 else np.array([0.0, 0.0, 1.0])
@@ -82,7 +82,7 @@ def _outlines(
 
     What was removed is seen where it began, and not at the end.
     """
-    poses = trace.pose
+    rows, poses = trace.recorded_pose
     whole = np.flatnonzero(np.isfinite(poses).all(axis=(1, 2)))
     bodies = [trace.config.scene.bodies[name] for name in trace.bodies]
     solid = [i for i, body in enumerate(bodies) if not isinstance(body.shape, Plane)][:MOST_BODIES]
@@ -92,7 +92,8 @@ def _outlines(
     if len(whole) == 0:
         return outlines, colours, NOTHING
     start, end = poses[whole[0]], poses[whole[-1]]
-    gone = {list(trace.bodies).index(n) for n, row in removals(trace).items() if row <= whole[-1]}
+    last = rows[whole[-1]]
+    gone = {list(trace.bodies).index(n) for n, row in removals(trace).items() if row <= last}
     far = np.cross(up, right)
     for pose, is_end in ((start, False), (end, True)):
         turns = rotation_matrices(pose[:, 3:])

@@ -43,7 +43,7 @@ from lavendersim.measures.kinds.laws import impulses
 
 
 def contacts_of_log(trace: Trace) -> Rows | None:
-    """Return the contact rows; None where nothing can touch."""
+    """Return the contact rows; None where nothing can touch, or not every step has its own."""
     return None if "/contacts" in trace.absent else trace.contact
 
 

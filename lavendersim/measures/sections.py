@@ -37,7 +37,9 @@ class Section(NamedTuple):
 def sections_of(trace: Trace, states: int) -> Iterator[tuple[int, Trace]]:
     """Yield the first states of a log in sections, each with how many went before it."""
     context = (trace.bodies, trace.config, trace.clock, trace.absent)
-    step, pose = trace.step[:states], trace.pose[:states]
+    step = trace.step[:states]
+    posed = "/tf" not in trace.absent
+    pose = trace.pose[:states] if posed else np.empty((len(step), 0, 0))
     begin, none = 0, None
     for contact in trace.contacts_in_parts():
         none = contact[:0]

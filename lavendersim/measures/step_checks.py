@@ -1,6 +1,7 @@
 """The checks of every step (`always`): for each a number in every state of a log, and its bound.
 
-finite       how many numbers of a state or its contacts are not finite
+finite       how many numbers of a state or its contacts are not finite; of poses and contacts where
+             every step has them in the log
 energy       gained since it was lowest, of what is at play (`balance`)
 penetration  the deepest of the step [m]
 impulses     the largest of -lambda_n and |lambda_t| - mu lambda_n of a contact, |psi_n| and |psi_t|
@@ -96,11 +97,12 @@ def _no_body(row: int) -> str:
 
 
 def _finite(trace: Trace) -> Numbers:
-    step, pose = trace.step, trace.pose
+    step = trace.step
     wrong = np.zeros(len(step))
     for name in step.dtype.names or ():
         wrong += ~np.isfinite(step[name])
-    of_body = ~np.isfinite(pose).all(axis=2)
+    pose: Floats = np.empty((len(step), 0, 0)) if "/tf" in trace.absent else trace.pose
+    of_body = np.logical_not(np.isfinite(pose).all(axis=2))
     wrong += of_body.sum(axis=1)
     contacts = contacts_of_log(trace)
     if contacts is not None and len(contacts):
@@ -141,7 +143,7 @@ def _residual(trace: Trace) -> Numbers:
 
     def worst(row: int) -> str:
         index = int(trace.step["residual_contact"][row])
-        if index < 0:
+        if index < 0 or "/contacts" in trace.absent:
             return ""
         first = np.searchsorted(trace.contact["step"], trace.step["step"][row])
         return _pair(trace, trace.contact[int(first) + index])

@@ -100,7 +100,7 @@ def values_of(trace: Trace, plot: Plot) -> npt.NDArray[np.float64]:
 
 def contacts_of(trace: Trace) -> npt.NDArray[Any]:
     """The trace's contacts; the log of a run without any may not even name their fields."""
-    contact = trace.contact
+    contact = trace.recorded_contact
     return contact if len(contact) else np.zeros(0, [(name, "f8") for name in CONTACT_FIELDS])
 
 
@@ -133,7 +133,7 @@ def send(stream: rr.RecordingStream, trace: Trace, room: Extent, scale: ForceSca
 
 def _send_poses(stream: rr.RecordingStream, trace: Trace, times: npt.NDArray[Any]) -> None:
     given = trace.config.scene.bodies
-    pose = trace.pose
+    recorded, pose = trace.recorded_pose
     for body, name in enumerate(trace.bodies):
         if isinstance(given[name].shape, Plane):
             continue  # drawn in the world's frame
@@ -149,7 +149,7 @@ def _send_poses(stream: rr.RecordingStream, trace: Trace, times: npt.NDArray[Any
                 child_frame=[name] * len(here),
                 parent_frame=[WORLD] * len(here),
             )
-            _send(stream, entity(name), times[here], columns)
+            _send(stream, entity(name), times[recorded[here]], columns)
 
 
 def _send_contacts(
@@ -166,8 +166,10 @@ def _send_contacts(
     stream.log(CONTACT_FORCES, rr.CoordinateFrame(WORLD), arrows, static=True)
 
     contact = contacts_of(trace)
-    first = np.searchsorted(contact["step"], trace.step["step"], side="left")
-    end = np.searchsorted(contact["step"], trace.step["step"], side="right")
+    recorded = trace.recorded_rows("/contacts")
+    steps, times = trace.step["step"][recorded], times[recorded]
+    first = np.searchsorted(contact["step"], steps, side="left")
+    end = np.searchsorted(contact["step"], steps, side="right")
     for block in blocks(len(times)):
         lengths = (end - first)[block]
         rows = contact[first[block][0] : end[block][-1]]

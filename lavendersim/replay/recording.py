@@ -35,7 +35,7 @@ def record(trace: Trace, stream: rr.RecordingStream, title: str) -> None:
     bodies = scene.shapes(trace.config)
     room = scene.extent(trace, bodies)
     # Where nothing can touch there are no contacts to place and no forces to scale.
-    touching = "/contacts" not in trace.absent
+    touching = trace.has("/contacts")
     scale = force_scale(columns.contacts_of(trace), room.diagonal) if touching else None
 
     stream.send_recording_name(title)

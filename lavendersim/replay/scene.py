@@ -67,7 +67,7 @@ def extent(trace: Trace, bodies: Iterable[Shape]) -> Extent:
     for shape in bodies:
         if shape.kind == "plane":
             continue
-        positions = trace.pose[:, row_of[shape.name], :3]
+        positions = trace.recorded_pose.pose[:, row_of[shape.name], :3]
         positions = positions[np.isfinite(positions).all(axis=1)]
         if len(positions):
             lows.append(positions.min(axis=0) - shape.bounding_radius)
@@ -112,7 +112,7 @@ def _draw_path(
     stream: rr.RecordingStream, trace: Trace, shape: Shape, colour: tuple[int, int, int]
 ) -> None:
     """A thin line through the body's recorded positions: a still picture then tells its story."""
-    path = trace.pose[:, trace.bodies.index(shape.name), :3]
+    path = trace.recorded_pose.pose[:, trace.bodies.index(shape.name), :3]
     path = path[np.isfinite(path).all(axis=1)]
     if len(path) and np.ptp(path, axis=0).max() > 0:
         path = path[:: 1 + len(path) // PATH_POINTS]

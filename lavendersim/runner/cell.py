@@ -24,6 +24,7 @@ from lavendersim.scene.build import Scene, build
 from lavendersim.scene.events import EventQueue
 from lavendersim.scene.plan import Plan
 from lavendersim.trace import Block, TraceWriter, Written, trace_of
+from lavendersim.trace.recorded import described, partly_recorded
 
 from .accuracy import Accuracy
 from .bounds import Bounds
@@ -182,7 +183,9 @@ def simulate(
         metadata_of(job.plan, job.seeds),
         absent,
     )
-    bounds = Bounds(job.always, scene.names, job.config, scene.clock, absent)
+    # A check finds in a run what it finds in its log.
+    unseen = absent | partly_recorded(described(job.config.record))
+    bounds = Bounds(job.always, scene.names, job.config, scene.clock, unseen)
     events = EventQueue(engine, scene, job.config.events)
     dump = ProblemDump(job.path, job.config.record)
     accuracy = Accuracy(tolerance=job.config.numerics.tolerance)

@@ -36,8 +36,16 @@ CONES = {
     "pyramid": "a pyramid of friction",
     "convex": "the convex relaxation of Coulomb's law",
 }
-IMPACTS = {"captured": "at the step's start", "at_surface": "at the surface"}
-INTEGRATORS = {"midpoint": "midpoint rule", "semi_implicit_euler": "semi-implicit Euler"}
+IMPACTS = {
+    "captured": "at the step's start",
+    "at_surface": "at the surface",
+    "in_order": "at the surface, in order",
+}
+INTEGRATORS = {
+    "midpoint_contact": "midpoint rule, contacts included",
+    "midpoint": "midpoint rule",
+    "semi_implicit_euler": "semi-implicit Euler",
+}
 
 
 class SettingRun(NamedTuple):

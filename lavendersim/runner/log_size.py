@@ -14,8 +14,11 @@ from lavendersim.geometry.bodies import is_movable
 from lavendersim.scene.expected_contacts import expected_contacts
 from lavendersim.scene.plan import Plan
 from lavendersim.trace.expected_size import WORD, StepContent, expected_size
+from lavendersim.trace.recorded import recorded_states
 
 MOST_OF_DISK: Final = 0.1  # of what is free, that logs take without a warning
+# Impacts a step and body beside the contacts that are expected: few have any, in a crowd all.
+IMPACTS: Final = 0.25
 # More than logs take, by far: twenty contacts of 250 B a body. It is known at once.
 MOST_PER_STEP: Final = 1_000  # [B]
 MOST_PER_BODY: Final = 5_000  # [B] and step
@@ -26,11 +29,20 @@ def expected_log_size(config: CellConfig, plan: Plan, as_written: str) -> float:
     spec, bodies = plan.spec, config.scene.bodies.values()
     topics = [topic for effect in effects_of(spec) for topic in effect.channels or ()]
     steps = config.steps
+    clock, record = config.clock, config.record
+    posed, touched = (
+        recorded_states(which, clock, steps) / (steps + 1)
+        for which in (record.poses, record.contacts)
+    )
+    moving = sum(is_movable(body) or body.kinematic for body in bodies)
+    contacts = expected_contacts(config)
+    if spec.has("impact_order"):
+        contacts += IMPACTS * moving
     content = StepContent(
         step_columns=len(row_fields(spec, "step")),
         contact_columns=row_fields(spec, "contact"),
-        moving=sum(is_movable(body) or body.kinematic for body in bodies),
-        contacts=expected_contacts(config) if "/contacts" in topics else 0.0,
+        moving=posed * moving,
+        contacts=touched * contacts if "/contacts" in topics else 0.0,
         sweeps=_logged_sweeps(config, steps),
     )
     return expected_size(content, topics, steps, len(bodies), as_written)

@@ -17,7 +17,9 @@ from google.protobuf import descriptor_pb2, descriptor_pool, message_factory
 from mcap.records import Schema
 from numpy.typing import NDArray
 
+from lavendersim.clock import Clock
 from lavendersim.trace import layout
+from lavendersim.trace.contact_columns import DERIVED, Packed, unpack
 from lavendersim.trace.index import ChunkContent
 from lavendersim.trace.layout import PackedField
 from lavendersim.trace.schema import FORMER_NAMES, HIGH_WORD, KINDS, NUMERIC_TYPES, Column
@@ -108,7 +110,7 @@ def decode_residuals(chunk: ChunkContent, columns: Sequence[Column]) -> Table:
 def decode_poses(
     chunk: ChunkContent, template: Template, bodies: int
 ) -> tuple[Rows, NDArray[np.float64]]:
-    """Return steps (n,) and poses (n, bodies, 7) of a bulk chunk; template: the layout of /tf."""
+    """Return steps (n,) and poses (n, bodies, 7) of a chunk; template: the layout of /tf."""
     entries = chunk.messages[layout.CHANNELS["/tf"]]
     rows = _matching(template, chunk.data, entries["offset"])
     shape = (len(rows), bodies, layout.POSE)
@@ -129,10 +131,8 @@ def _message_class(name: str, descriptors: bytes) -> Any:
 def packed_fields(schema: Schema, chunk: ChunkContent) -> tuple[tuple[PackedField, ...], int]:
     """Return the fields and the stride [B] that the first PointCloud of a chunk states."""
     cloud = _message_class(schema.name, schema.data)()
-    offset = int(chunk.messages[layout.CHANNELS["/contacts"]]["offset"][0])
-    length = int(gather(chunk.data, np.array([offset + 1]), 8).view("<u8")[0, 0])
-    begin = offset + layout.RECORD_HEADER + layout.MESSAGE_HEADER
-    cloud.ParseFromString(chunk.data[begin : offset + layout.RECORD_HEADER + length].tobytes())
+    offset = chunk.messages[layout.CHANNELS["/contacts"]]["offset"][0]
+    cloud.ParseFromString(_body(chunk, int(offset)))
     fields = tuple(PackedField(f.name, f.offset, f.type) for f in cloud.fields)
     return fields, cloud.point_stride
 
@@ -170,7 +170,7 @@ def contact_row(fields: tuple[PackedField, ...], stride: int) -> np.dtype[Any]:
 def decode_contacts(
     chunk: ChunkContent, fields: Sequence[PackedField], stride: int, frame: str
 ) -> Table:
-    """Return the contact table of a bulk chunk."""
+    """Return the contact table of a chunk of points."""
     entries = chunk.messages[layout.CHANNELS["/contacts"]]
     head = layout.contact_layout(tuple(fields), stride, frame)
     offsets = entries["offset"].astype(np.int64)
@@ -186,6 +186,43 @@ def decode_contacts(
     table["step"] = np.repeat(_sequence(head, rows), counts)
     table["time"] = np.repeat(seconds(entries["time"]), counts)
     return table
+
+
+def decode_columns(
+    chunk: ChunkContent, schema: Schema, derived: tuple[str, ...], clock: Clock
+) -> Table:
+    """Return the contact table of a chunk of columns."""
+    entries = chunk.messages[layout.CHANNELS["/contact_columns"]]
+    tables = []
+    for offset in entries["offset"].astype(np.int64):
+        message = _message_class(schema.name, schema.data)()
+        message.ParseFromString(_body(chunk, int(offset)))
+        numbers = (message.steps, message.times, message.counts)
+        steps, times, counts = (np.frombuffer(one, "<i8") for one in numbers)
+        names = tuple(message.names)
+        columns = [("step", "i8"), *zip(names, message.kinds, strict=True)]
+        table = _table([*columns, *((name, "f8") for name in (*derived, "time"))], counts.sum())
+        unpack(Packed(message.keys, message.planes), names, table)
+        table["step"] = np.repeat(steps, counts)
+        table["time"] = np.repeat(seconds(times), counts)
+        tables.append(_derived(table, derived, clock))
+    return np.concatenate(tables)
+
+
+def _derived(table: Table, derived: tuple[str, ...], clock: Clock) -> Table:
+    """Fill the columns that follow from others."""
+    timesteps = clock.lengths(table["step"]) if derived else None
+    with np.errstate(all="ignore"):  # what is not finite stays so, as in the kernel
+        for name in derived:
+            table[name] = DERIVED[name].value(table, timesteps)
+    return table
+
+
+def _body(chunk: ChunkContent, offset: int) -> bytes:
+    """Return the data of the message whose record stands there."""
+    length = int(gather(chunk.data, np.array([offset + 1]), 8).view("<u8")[0, 0])
+    begin = offset + layout.RECORD_HEADER + layout.MESSAGE_HEADER
+    return chunk.data[begin : offset + layout.RECORD_HEADER + length].tobytes()
 
 
 def _sequence(template: Template, rows: Bytes) -> Rows:

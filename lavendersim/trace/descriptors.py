@@ -7,7 +7,7 @@ definitions (https://github.com/foxglove/foxglove-sdk, schemas/proto) field by f
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any
+from typing import Any, Final
 
 from google.protobuf import timestamp_pb2
 from google.protobuf.descriptor_pb2 import FieldDescriptorProto as Field
@@ -51,6 +51,23 @@ def residuals_schema(columns: Iterable[Column]) -> bytes:
         ("sweeps", 2, Field.TYPE_MESSAGE, ".lavender.Sweep", "repeated"),
     ]
     _message(file, "Residuals", fields)
+    return _bundle(file)
+
+
+CONTACT_COLUMNS: Final = ("steps", "times", "counts", "names", "kinds", "keys", "planes")
+
+
+def contact_columns_schema() -> bytes:
+    """Return the descriptor set of lavender.ContactColumns, see `contact_columns`."""
+    file = _file("lavender/ContactColumns.proto", "lavender")
+    texts = ("names", "kinds")
+    fields = [
+        (name, number, Field.TYPE_STRING, "repeated")
+        if name in texts
+        else (name, number, Field.TYPE_BYTES)
+        for number, name in enumerate(CONTACT_COLUMNS, 1)
+    ]
+    _message(file, "ContactColumns", fields)
     return _bundle(file)
 
 

@@ -1,10 +1,12 @@
-"""The bytes of a block of steps: whole MCAP Message records, in a light and a bulk stream.
+"""The bytes of a block of steps: whole MCAP Message records, in four streams.
 
 Per block, never per message: sizes from the counts, offsets by cumulative sum, then one scatter
 for the fixed part of each kind of message and one for each kind of row that follows it.
 
-    light   | /step /plot.. [/residuals: head, row, row, ..] | next step ..
-    bulk    | /tf /contacts: head, point, point, ..          | next step ..
+    columns  | rows of contacts, for `/contact_columns`; a chunk makes one message of them
+    points   | /contacts: head, point, point, ..              | next step ..
+    poses    | /tf                                            | next step ..
+    light    | /step /plot.. [/residuals: head, row, row, ..] | next step ..
 
 A topic that the log does without takes no byte; a stream without topics is empty.
 """
@@ -12,12 +14,14 @@ A topic that the log does without takes no byte; a stream without topics is empt
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
-from typing import Any, NamedTuple
+from typing import Any, Generic, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lavendersim.trace import layout
+from lavendersim.trace.contact_columns import column_form
+from lavendersim.trace.points import point_form, points_of
 from lavendersim.trace.schema import (
     LOG10_RESIDUAL_FLOOR,
     PLOTS,
@@ -27,9 +31,9 @@ from lavendersim.trace.schema import (
 )
 from lavendersim.trace.wire import Bytes, Rows, Template, padded_varints, scatter, timestamps
 
-# Okabe and Ito's colour-blind safe set
-LOADED = (213, 94, 0, 255)  # vermilion: the contact carries an impulse
-UNLOADED = (86, 180, 233, 255)  # sky blue: it does not
+Kind = TypeVar("Kind")
+WORD = 8  # [B] of a number
+STEP_OF_COLUMNS = 3 * WORD  # its number, its time, how many contacts it has
 
 
 class Block(NamedTuple):
@@ -45,12 +49,32 @@ class Block(NamedTuple):
     residual: NDArray[Any]
 
 
+class Columns(NamedTuple):
+    """The contacts of a block that are recorded."""
+
+    rows: NDArray[Any]
+    steps: Rows  # number of each, (n,)
+    row_start: NDArray[np.int64]  # (n + 1,)
+    recorded: Rows  # whether those of a step are, (n,)
+    counts: Rows
+
+
 class Encoded(NamedTuple):
     """One stream of a block: bytes, where each step starts, and where each message stands."""
 
     data: Bytes
     step_start: NDArray[np.int64]  # (n + 1,)
     messages: dict[int, tuple[Rows, Rows]]  # channel -> rows of the block, byte offsets
+    columns: Columns | None = None  # in place of bytes, of the stream of columns
+
+
+class Streams(NamedTuple, Generic[Kind]):
+    """One thing of each stream, in the order in which their chunks stand in the file."""
+
+    columns: Kind
+    points: Kind
+    poses: Kind
+    light: Kind
 
 
 class Encoder:
@@ -71,10 +95,10 @@ class Encoder:
         self._bodies = len(bodies)
         self._tf = layout.transforms_layout(bodies)
         if "/contacts" in topics:
-            self.fields = layout.contact_fields(contact)
-            self._point = contact.itemsize + layout.COLOUR_WORD  # [B]
+            self.point = point_form(contact)
+            self.columns = column_form(contact)
             frame = layout.root_frame(bodies)
-            self._cloud = layout.contact_layout(self.fields, self._point, frame)
+            self._cloud = layout.contact_layout(self.point.fields, self.point.size, frame)
         self._light = Template().embed(layout.step_layout(self.step_columns))
         self._starts = {layout.CHANNELS["/step"]: 0}
         for topic in self.plots:
@@ -83,8 +107,11 @@ class Encoder:
         self._sweeps = layout.residual_layout()
         self._sweep = layout.residual_row_layout(self.residual_columns)
 
-    def encode(self, block: Block) -> tuple[Encoded, Encoded]:
-        """Return the light and the bulk stream. ValueError when the block contradicts itself."""
+    def encode(self, block: Block, posed: Rows, touched: Rows) -> Streams[Encoded]:
+        """Return the streams of a block. ValueError when it contradicts itself.
+
+        posed, touched: whether poses and contacts of each step are recorded, bool (n,).
+        """
         if (block.step.dtype, block.contact.dtype, block.residual.dtype) != self._dtypes:
             raise ValueError("a block has other columns than the first one")
         if block.pose.shape != (len(block.step), self._bodies, layout.POSE):
@@ -92,7 +119,16 @@ class Encoder:
         for topic, rows in (("/contacts", block.contact), ("/residuals", block.residual)):
             if len(rows) and topic not in self._topics:
                 raise ValueError(f"a block has rows for {topic}, which its log does without")
-        return self._encode_light(block), self._encode_bulk(block)
+        counts = _counts(block.step["step"], block.contact["step"], "contacts")
+        contacts = block.contact
+        if not touched.all():
+            contacts = contacts[np.repeat(touched, counts)]
+        return Streams(
+            self._columns(block.step, contacts, counts, touched),
+            self._encode_points(block.step, contacts, counts, touched),
+            self._encode_poses(block, posed),
+            self._encode_light(block),
+        )
 
     def _encode_light(self, block: Block) -> Encoded:
         step = block.step
@@ -127,48 +163,50 @@ class Encoder:
             scatter(data, _ranks(heads + head, counts[asked], row), tails)
         return Encoded(data, start, messages)
 
-    def _encode_bulk(self, block: Block) -> Encoded:
-        step = block.step
-        posed, touching = "/tf" in self._topics, "/contacts" in self._topics
-        sizes = np.full(len(step), len(self._tf) if posed else 0, np.int64)
-        counts = _counts(step["step"], block.contact["step"], "contacts")
-        if touching:
-            sizes += len(self._cloud) + counts * self._point
-        start = _cumulative(sizes)
+    def _encode_poses(self, block: Block, posed: Rows) -> Encoded:
+        if "/tf" not in self._topics:
+            return _nothing(len(block.step))
+        start = _cumulative(posed * len(self._tf))
         data = np.empty(start[-1], np.uint8)
-        every = np.arange(len(step))
-        messages: dict[int, tuple[Rows, Rows]] = {}
-        heads = start[:-1]
-        if posed:
-            self._put_poses(data, heads, block)
-            messages[layout.CHANNELS["/tf"]] = (every, heads)
-            heads = heads + len(self._tf)
-        if touching:
-            self._put_contacts(data, heads, counts, block)
-            messages[layout.CHANNELS["/contacts"]] = (every, heads)
-        return Encoded(data, start, messages)
-
-    def _put_poses(self, data: Bytes, heads: Rows, block: Block) -> None:
-        step = block.step
+        kept = np.flatnonzero(posed)
+        step, heads = block.step[kept], start[kept]
         rows = self._clocked(self._tf, step)
         if self._bodies:
-            poses = np.asarray(block.pose, "<f8")[:, :, [0, 1, 2, 4, 5, 6, 3]]
+            poses = np.asarray(block.pose[kept], "<f8")[:, :, [0, 1, 2, 4, 5, 6, 3]]
             self._tf.put(rows, "timestamp", _repeat(timestamps(step["time_ns"]), self._bodies))
-            self._tf.put(rows, "pose", poses.reshape(len(step), -1))
+            self._tf.put(rows, "pose", poses.reshape(len(step), self._bodies * layout.POSE))
         scatter(data, heads, rows)
+        return Encoded(data, start, {layout.CHANNELS["/tf"]: (kept, heads)})
 
-    def _put_contacts(self, data: Bytes, heads: Rows, counts: Rows, block: Block) -> None:
-        step, point = block.step, self._point
+    def _columns(
+        self, step: NDArray[Any], contacts: NDArray[Any], counts: Rows, touched: Rows
+    ) -> Encoded:
+        if "/contacts" not in self._topics:
+            return _nothing(len(step))
+        size = STEP_OF_COLUMNS + counts * WORD * len(self.columns.names)
+        start = _cumulative(touched * size)
+        rows = Columns(contacts, step["step"], _cumulative(touched * counts), touched, counts)
+        return Encoded(np.empty(0, np.uint8), start, {}, rows)
+
+    def _encode_points(
+        self, step: NDArray[Any], contacts: NDArray[Any], counts: Rows, touched: Rows
+    ) -> Encoded:
+        if "/contacts" not in self._topics:
+            return _nothing(len(step))
+        point = self.point.size
+        start = _cumulative(touched * (len(self._cloud) + counts * point))
+        data = np.empty(start[-1], np.uint8)
+        kept = np.flatnonzero(touched)
+        step, heads, counts = step[kept], start[kept], counts[kept]
         rows = self._clocked(self._cloud, step)
         self._cloud.put(rows, "timestamp", timestamps(step["time_ns"]))
         self._cloud.put(rows, "data_length", padded_varints(counts * point))
         self._put_length(self._cloud, rows, counts * point)
         scatter(data, heads, rows)
-        if len(block.contact):
-            points = _ranks(heads + len(self._cloud), counts, point)
-            rows = np.ascontiguousarray(block.contact).view(np.uint8)
-            scatter(data, points, rows.reshape(len(block.contact), -1))
-            scatter(data, points + block.contact.itemsize, _colours(block.contact))
+        if len(contacts):
+            offsets = _ranks(heads + len(self._cloud), counts, point)
+            scatter(data, offsets, points_of(self.point, contacts))
+        return Encoded(data, start, {layout.CHANNELS["/contacts"]: (kept, heads)})
 
     @staticmethod
     def _clocked(template: Template, step: NDArray[Any]) -> Bytes:
@@ -185,13 +223,9 @@ class Encoder:
         template.put(rows, "length", length.astype("<u8"))
 
 
-def _colours(contact: NDArray[Any]) -> Bytes:
-    """Return the colour words of contacts, (n, 8)."""
-    words = np.zeros((2, layout.COLOUR_WORD), np.uint8)
-    words[0, :4], words[1, :4] = UNLOADED, LOADED
-    names = contact.dtype.names or ()
-    loaded = contact["impulse_n"] > 0 if "impulse_n" in names else np.ones(len(contact), bool)
-    return words[loaded.astype(np.intp)]
+def _nothing(steps: int) -> Encoded:
+    """Return the stream of a topic that the log does without."""
+    return Encoded(np.empty(0, np.uint8), np.zeros(steps + 1, np.int64), {})
 
 
 def _words(column: NDArray[Any]) -> Rows:

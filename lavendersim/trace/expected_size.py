@@ -7,9 +7,9 @@ numbers it leaves a share that depends on what the scene does: of a stack at res
 that churns most. The shares here lie between, as measured (level 1) on shipped configs:
 
     numbers of          at rest     falling     churning    taken
-    /step, /plot        0.5         0.25        1.0         SHARE_OF_STEP
-    /tf                 0.2         0.6         0.9         SHARE_OF_POSE
-    /contacts           0.2         -           0.7         0.0
+    /step, /plot        0.6         0.3         0.8         SHARE_OF_STEP
+    /tf                 0.4         0.4         1.0         SHARE_OF_POSE
+    contacts            0.1         -           0.6         SHARE_OF_CONTACT
 """
 
 from __future__ import annotations
@@ -20,12 +20,14 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from lavendersim.trace import layout
+from lavendersim.trace.contact_columns import column_form
 from lavendersim.trace.container import INDEX_ENTRY
+from lavendersim.trace.points import point_form
 
 WORD: Final = 8  # [B] of a number
 SHARE_OF_STEP: Final = 0.5
 SHARE_OF_POSE: Final = 0.7
-SHARE_OF_CONTACT: Final = 0.45
+SHARE_OF_CONTACT: Final = 0.27
 # Resolved config, body by body, is written as it is: 920 B each in shipped scenes of 2 to 1005.
 BYTES_PER_BODY: Final = 920
 # Schemas, channels, the plan's reasons and versions, in each of the same scenes.
@@ -38,8 +40,8 @@ class StepContent(NamedTuple):
 
     step_columns: int
     contact_columns: Sequence[tuple[str, str]]  # name and numpy kind of each
-    moving: int  # bodies whose pose changes
-    contacts: float
+    moving: float  # bodies whose pose changes and is recorded
+    contacts: float  # that are recorded
     sweeps: float = 0.0  # whose residuals are logged
 
 
@@ -51,7 +53,8 @@ def expected_size(
     if "/tf" in topics:
         numbers += content.moving * layout.POSE * WORD * SHARE_OF_POSE
     if "/contacts" in topics:
-        point = np.dtype(list(content.contact_columns)).itemsize + layout.COLOUR_WORD
+        row = np.dtype(list(content.contact_columns))
+        point = point_form(row).size + WORD * len(column_form(row).names)
         numbers += content.contacts * point * SHARE_OF_CONTACT
     # a sweep has its number and its residual, and what repeats is gone
     numbers += content.sweeps * WORD

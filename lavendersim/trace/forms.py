@@ -6,6 +6,7 @@ often the look of the scene is.
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from typing import Any, NamedTuple
@@ -14,8 +15,9 @@ import numpy as np
 from mcap.records import Channel, Schema
 
 from lavendersim.trace import descriptors, layout
+from lavendersim.trace.contact_columns import ColumnForm, rules_of
 from lavendersim.trace.container import INDEX_ENTRY, Closed, Messages, Registered, closed
-from lavendersim.trace.encode import Encoder
+from lavendersim.trace.encode import Encoder, Streams
 from lavendersim.trace.schema import (
     CONTACT_COLUMNS,
     MULTI_ARRAY_DEFINITION,
@@ -24,13 +26,14 @@ from lavendersim.trace.schema import (
 )
 from lavendersim.trace.wire import Template
 
+RULES = "derived"  # of the metadata of /contact_columns: column -> rule, as JSON
+
 
 class Form(NamedTuple):
     """What logs of the same bodies, topics and columns have in common."""
 
     encoder: Encoder
-    light: Registered
-    bulk: Registered
+    streams: Streams[Registered]
 
 
 @lru_cache(maxsize=64)
@@ -39,18 +42,19 @@ def form_of(
 ) -> Form:
     """Return the form of logs with these bodies, columns of step, contact, residual, and topics."""
     encoder = Encoder(bodies, columns, topics)
-    schemas, channels = [], []
+    poses = points = numbers = Registered.of((), ())
     if "/tf" in topics:
         form = descriptors.transforms_schema()
-        schemas.append(Schema(2, form, "protobuf", "foxglove.FrameTransforms"))
-        channels.append(_channel("/tf", 2, "protobuf"))
+        schema = Schema(2, form, "protobuf", "foxglove.FrameTransforms")
+        poses = Registered.of([schema], [_channel("/tf", 2, "protobuf")])
     if "/contacts" in topics:
         form = descriptors.point_cloud_schema()
-        schemas.append(Schema(3, form, "protobuf", "foxglove.PointCloud"))
-        names = [field.name for field in encoder.fields]
-        meanings = {name: CONTACT_COLUMNS[name] for name in names if name in CONTACT_COLUMNS}
-        channels.append(_channel("/contacts", 3, "protobuf", meanings))
-    bulk = Registered.of(schemas, channels)
+        schema = Schema(3, form, "protobuf", "foxglove.PointCloud")
+        points = Registered.of([schema], [_channel("/contacts", 3, "protobuf")])
+        form = descriptors.contact_columns_schema()
+        schema = Schema(7, form, "protobuf", "lavender.ContactColumns")
+        channel = _channel("/contact_columns", 7, "protobuf", _of_contacts(encoder.columns))
+        numbers = Registered.of([schema], [channel])
 
     step, sweep = encoder.step_columns, encoder.residual_columns
     schemas = [Schema(4, descriptors.step_schema(step), "protobuf", "lavender.Step")]
@@ -63,7 +67,7 @@ def form_of(
         form = MULTI_ARRAY_DEFINITION.encode()
         schemas.append(Schema(6, form, "ros2msg", "std_msgs/msg/Float64MultiArray"))
         channels += [_channel(topic, 6, "cdr") for topic in encoder.plots]
-    return Form(encoder, Registered.of(schemas, channels), bulk)
+    return Form(encoder, Streams(numbers, points, poses, Registered.of(schemas, channels)))
 
 
 @lru_cache(maxsize=8)  # the cells of a sweep look alike
@@ -89,6 +93,15 @@ def _channel(
 ) -> Channel:
     """Return a channel record; its metadata says what each column means."""
     return Channel(layout.CHANNELS[topic], topic, encoding, dict(meanings or {}), schema)
+
+
+def _of_contacts(form: ColumnForm) -> dict[str, str]:
+    """Return what each column of a contact means, and the rules of those that are not stored."""
+    names = (*form.names, *form.derived)
+    meanings = {name: CONTACT_COLUMNS[name] for name in names if name in CONTACT_COLUMNS}
+    if form.derived:
+        meanings[RULES] = json.dumps(rules_of(form))
+    return meanings
 
 
 def _meanings(columns: Sequence[Column]) -> dict[str, str]:

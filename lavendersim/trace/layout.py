@@ -10,12 +10,11 @@ from __future__ import annotations
 import struct
 from collections.abc import Sequence
 from functools import lru_cache
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-import numpy as np
 from mcap.opcode import Opcode
 
-from lavendersim.trace.schema import COLOURS, HIGH_WORD, NUMERIC_TYPES, Column
+from lavendersim.trace.schema import Column
 from lavendersim.trace.wire import FIXED64, LENGTH, VARINT, VARINT_WIDTH, Template, tag, varint
 
 RECORD_HEADER = 9  # opcode and length
@@ -33,6 +32,7 @@ CHANNELS = {
     "/plot/force": 6,
     "/plot/penetration": 7,
     "/plot/log10_residual": 8,
+    "/contact_columns": 9,
 }
 
 
@@ -121,33 +121,15 @@ def residual_layout() -> Template:
     return record("/residuals", Template().word(1, "step"), open_ended=True)
 
 
-COLOUR_WORD = 8  # red green blue alpha, and four bytes that say nothing
+def bytes_field(number: int, length: int) -> bytes:
+    """Return what stands before the bytes of a protobuf field of so many."""
+    return tag(number, LENGTH) + varint(length)
 
 
-def contact_fields(row: np.dtype[Any]) -> tuple[PackedField, ...]:
-    """Return the packed fields of points that are contact rows as they stand, a colour behind each.
-
-    x y z come first in the list; the bytes of `step` are in no field, the message has it.
-    """
-    fields: list[PackedField] = []
-    places = dict(row.fields or {})
-    missing = [axis for axis in "xyz" if axis not in places]
-    if missing:
-        raise TypeError(f"contacts lack the columns {missing}")
-    for name in sorted(places, key=lambda name: (name not in "xyz", places[name][1])):
-        kind, offset = row[name].str[1:], places[name][1]
-        if name == "step":
-            continue
-        if kind == "f8":
-            fields.append(PackedField(name, offset, NUMERIC_TYPES["f8"]))
-        elif kind == "i8":
-            fields.append(PackedField(name, offset, NUMERIC_TYPES["u4"]))
-            fields.append(PackedField(name + HIGH_WORD, offset + 4, NUMERIC_TYPES["i4"]))
-        else:
-            raise TypeError(f"contact column {name!r} is {row[name]}; float64 or int64 needed")
-    end = row.itemsize
-    fields += [PackedField(c, end + i, NUMERIC_TYPES["u1"]) for i, c in enumerate(COLOURS)]
-    return tuple(fields)
+def message_head(topic: str, sequence: int, clock: int, length: int) -> bytes:
+    """Return what of a Message record stands before its data; clock: its time [ns]."""
+    head = struct.pack("<HIQQ", CHANNELS[topic], sequence, clock, clock)
+    return bytes([Opcode.MESSAGE]) + struct.pack("<Q", MESSAGE_HEADER + length) + head
 
 
 @lru_cache(maxsize=64)

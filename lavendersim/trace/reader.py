@@ -1,6 +1,6 @@
 """The reader of logs: columns, each loaded when it is first asked for.
 
-Reading `step` or `residual` touches the light chunks only; `contact` and `pose` the bulk ones.
+Reading `step` or `residual` touches the light chunks only, `contact` and `pose` each their own.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from fractions import Fraction
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,14 +20,24 @@ from lavendersim.clock import Clock
 from lavendersim.errors import TraceError, UsageError
 from lavendersim.trace import decode, layout
 from lavendersim.trace.absent import absent_table
+from lavendersim.trace.contact_columns import known_rules
+from lavendersim.trace.forms import RULES
 from lavendersim.trace.index import ChunkContent, damage, read_summary
+from lavendersim.trace.recorded import KEYS, RECORDED, is_recorded, partly_recorded
 from lavendersim.trace.scan import scan
 from lavendersim.trace.schema import FORMAT, RESIDUAL_COLUMNS, STEP_COLUMNS, Column
 from lavendersim.trace.source import JustWritten, LogFile, Source
-from lavendersim.trace.writer import ABSENT, DESCRIPTION, ENDING, TIMESTEP_CHANGES, Written
+from lavendersim.trace.writer import ABSENT, COLUMNS, DESCRIPTION, ENDING, TIMESTEP_CHANGES, Written
 
 COMPLETE = "complete"
 INCOMPLETE = "incomplete"
+
+
+class RecordedPoses(NamedTuple):
+    """The poses that a log has, of every step or of some."""
+
+    rows: NDArray[np.intp]  # of `step`
+    pose: NDArray[np.float64]  # (rows, bodies, 7)
 
 
 class Trace:
@@ -51,6 +61,10 @@ class Trace:
             self.clock = _clock(description)
             # topic -> why this log does without it; logs before there was a choice have them all
             self.absent: dict[str, str] = json.loads(description.get(ABSENT, "{}"))
+            # topic -> of which steps alone it has it; those are in `recorded_pose` and so on
+            partly = partly_recorded(self.metadata.get(RECORDED, {}))
+            self.partly = {t: why for t, why in partly.items() if t not in self.absent}
+            self.absent |= self.partly
             self.status = self.metadata[ENDING]["status"] if finished else INCOMPLETE
         self.complete = self.status == COMPLETE
 
@@ -89,28 +103,57 @@ class Trace:
     def pose(self) -> NDArray[np.float64]:
         """Poses (rows, bodies, 7): x y z [m], qw qx qy qz; the same rows as `step`.
 
-        UsageError for a log without /tf.
+        UsageError for a log without /tf, or of some steps alone.
         """
         if "/tf" in self.absent:
+            raise UsageError(self.why_not("/tf"))
+        return self.recorded_pose.pose
+
+    @cached_property
+    def recorded_pose(self) -> RecordedPoses:
+        """The poses of the steps of which the log has them. UsageError for a log without /tf."""
+        if not self.has("/tf"):
             raise UsageError(self.why_not("/tf"))
         with damage(self.path, "/tf"):
             form, count = layout.transforms_layout(self.bodies), len(self.bodies)
             parts = [decode.decode_poses(c, form, count) for c in self._chunks("/tf")]
             steps = np.concatenate([np.empty(0, np.int64), *(steps for steps, _ in parts)])
-            if not np.array_equal(steps, self.step["step"]):
-                raise ValueError("it has other steps than /step")
+            rows = self.recorded_rows("/tf")
+            if not np.array_equal(steps, self.step["step"][rows]):
+                raise ValueError("it has other steps than it should")
             empty = np.empty((0, len(self.bodies), layout.POSE))
-            return np.concatenate([empty, *(poses for _, poses in parts)])
+            return RecordedPoses(rows, np.concatenate([empty, *(poses for _, poses in parts)]))
+
+    def recorded_rows(self, topic: str) -> NDArray[np.intp]:
+        """Return the rows of `step` of which the log has a topic, /tf or /contacts."""
+        steps = self.step["step"]
+        if topic not in self.partly:
+            return np.arange(len(steps))
+        return np.flatnonzero(
+            is_recorded(getattr(self.config.record, KEYS[topic]), self.clock, steps)
+        )
+
+    def has(self, topic: str) -> bool:
+        """Tell whether the log has a topic, of every step or of some."""
+        return topic not in self.absent or topic in self.partly
 
     @cached_property
     def contact(self) -> NDArray[Any]:
         """One row per contact and step: `step`, the file's columns, and `time` [s].
 
-        Without /contacts an empty table, which gives the reason where a column is asked of it.
+        Without /contacts, or with those of some steps alone, an empty table, which gives the
+        reason where a column is asked of it.
         """
         if "/contacts" in self.absent:
             return absent_table(self.why_not("/contacts"))
-        parts = list(self.contacts_in_parts())
+        return self.recorded_contact
+
+    @cached_property
+    def recorded_contact(self) -> NDArray[Any]:
+        """Like `contact`, of the steps of which the log has them; see `recorded_rows`."""
+        if not self.has("/contacts"):
+            return absent_table(self.why_not("/contacts"))
+        parts = list(self._contact_parts())
         if not parts:
             return decode.join((), [("step", "i8"), ("time", "f8")])
         # As bytes: of records numpy would join column by column.
@@ -120,11 +163,28 @@ class Trace:
     def contacts_in_parts(self) -> Iterator[NDArray[Any]]:
         """Yield the rows of `contact` in parts of whole steps, read as they are asked for.
 
-        A long run of many bodies has more of them than memory holds. None without /contacts.
+        A long run of many bodies has more of them than memory holds. None without /contacts, or
+        with those of some steps alone.
         """
-        if "contact" in self.__dict__:  # read already
-            yield self.contact
+        if "/contacts" in self.absent:
             return
+        if "recorded_contact" in self.__dict__:  # read already
+            yield self.recorded_contact
+            return
+        yield from self._contact_parts()
+
+    def _contact_parts(self) -> Iterator[NDArray[Any]]:
+        schema = self._source.schema(layout.CHANNELS[COLUMNS])
+        if schema is None:
+            yield from self._contacts_of_points()
+            return
+        with damage(self.path, COLUMNS):
+            derived = self._derived()
+            for chunk in self._chunks(COLUMNS):
+                yield decode.decode_columns(chunk, schema, derived, self.clock)
+
+    def _contacts_of_points(self) -> Iterator[NDArray[Any]]:
+        """Yield the contacts of a log whose points are all that it has of them, as older ones."""
         with damage(self.path, "/contacts"):
             frame = layout.root_frame(self.bodies)
             fields: tuple[layout.PackedField, ...] = ()
@@ -136,7 +196,9 @@ class Trace:
                 yield decode.decode_contacts(chunk, fields, stride, frame)
 
     def why_not(self, topic: str) -> str:
-        """Return the reason why this log has no such topic, as a sentence."""
+        """Return the reason why this log has no such topic, or not all of it, as a sentence."""
+        if topic in self.partly:
+            return f"{self.path}: this log has not every step of {topic}: {self.partly[topic]}"
         return f"{self.path}: this log has no {topic}: {self.absent[topic]}"
 
     @cached_property
@@ -156,6 +218,15 @@ class Trace:
         """Return the columns of a topic; a run that ended before its first step has `default`."""
         schema = self._source.schema(layout.CHANNELS[topic])
         return default if schema is None else decode.columns_in(schema, message)
+
+    def _derived(self) -> tuple[str, ...]:
+        """Return the columns of contacts that rules give back; of older logs, none."""
+        described = self._source.described(layout.CHANNELS[COLUMNS])
+        rules = json.loads(described.get(RULES, "{}"))
+        try:
+            return known_rules(rules)
+        except ValueError as error:
+            raise TraceError(f"{self.path}: {error}") from None
 
     def _chunks(self, topic: str) -> Iterator[ChunkContent]:
         return self._source.chunks(layout.CHANNELS[topic])

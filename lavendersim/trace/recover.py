@@ -52,8 +52,8 @@ def _is_whole(path: Path) -> bool:
     try:
         trace = open_trace(path)
         LogFile(path, read_summary(path)).config_data()
-        for name in ("step", "contact", "pose", "residual", "as_written"):
-            if name != "pose" or "/tf" not in trace.absent:
+        for name in ("step", "recorded_contact", "recorded_pose", "residual", "as_written"):
+            if name != "recorded_pose" or trace.has("/tf"):
                 getattr(trace, name)
     except TraceError:
         return False

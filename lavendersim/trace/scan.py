@@ -1,7 +1,7 @@
 """The whole part of a killed run's log, found by walking its records from the start.
 
 What is not whole, or fails a check, ends the walk; what counts ends at the last light chunk, for
-the writer puts a light chunk behind the bulk chunk of the same steps.
+the writer puts a light chunk behind the other chunks of the same steps.
 """
 
 from __future__ import annotations
@@ -101,7 +101,8 @@ def _note_chunk(index: FileIndex, data: bytes, start: int, end: int, stop: int) 
     for group in messages:
         entry.message_index_offsets[group.channel] = position
         position += len(message_index(group))
-        index.counts[group.channel] = len(group.entries)
+        count = index.counts.get(group.channel, 0) + len(group.entries)
+        index.counts[group.channel] = count
     index.chunks.append(entry)
     for opcode, first, last in spans(content.prologue):
         note(index, parse(content.prologue[first:last], PARSERS[opcode]))

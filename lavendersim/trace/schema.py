@@ -3,20 +3,23 @@
 | topic | schema | encoding | one message per |
 |---|---|---|---|
 | `/robot_description` | std_msgs/msg/String | ros2msg, cdr | run: the URDF of the scene |
-| `/tf` | foxglove.FrameTransforms | protobuf | step: pose of every body in the world frame |
-| `/contacts` | foxglove.PointCloud | protobuf | step: all contacts, also when it has none |
+| `/tf` | foxglove.FrameTransforms | protobuf | recorded step: pose of every body, world frame |
+| `/contacts` | foxglove.PointCloud | protobuf | recorded step: where contacts are, also none |
+| `/contact_columns` | lavender.ContactColumns | protobuf | recorded steps: CONTACT_COLUMNS |
 | `/step` | lavender.Step | protobuf | step: STEP_COLUMNS |
 | `/residuals` | lavender.Residuals | protobuf | step of `record.residuals`: RESIDUAL_COLUMNS |
 | `/plot/*` | std_msgs/msg/Float64MultiArray | ros2msg, cdr | step: one number, for viewers |
 
 A log has the topics that its plan requires: `/contacts` and `/plot/*` where something can touch,
 `/residuals` where `record.residuals` asks for steps, the others always. The metadata record `trace`
-has under `absent` every topic that the log does without, and why.
+has under `absent` every topic that the log does without, and why. Steps are all of them, unless the
+metadata record `recorded` says of which `/tf` and `/contacts` alone are.
 
-`/contacts` is identity-posed in the world frame. A point is the row that the engine wrote, eight
-bytes a column, and behind it red green blue alpha and four bytes of nothing; its number of the step
-is in no field, for the message has it. PointCloud knows no 64-bit integer, so an integer column is
-two fields: `name` (its low 32 bits, UINT32) and `name_high` (the rest, INT32).
+`/contacts` is identity-posed in the world frame, and for viewers (`points`): float32, and red green
+blue alpha. `/contact_columns` has every column of the same contacts to the last bit, but for those
+that follow from others: the channel's metadata has the rules of these under `derived`
+(`contact_columns`). Logs of older versions have none; their points are the rows that the engine
+wrote, an integer column in two fields: `name` (its low 32 bits, UINT32) and `name_high` (the rest).
 
 Simulation time is the only clock: log_time = publish_time = the step's time_ns, sequence = step.
 `trace` has the `timestep` [s], and where it changes `timestep_changes`: [steps done, timestep], ...

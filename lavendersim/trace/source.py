@@ -42,6 +42,9 @@ class Source(Protocol):
     def schema(self, channel: int) -> Schema | None:
         """Return the schema of a channel; None where the log has no such channel."""
 
+    def described(self, channel: int) -> dict[str, str]:
+        """Return what the log says of a channel."""
+
     def chunks(self, channel: int) -> Iterator[ChunkContent]:
         """Yield the chunks that hold messages of a channel."""
 
@@ -94,6 +97,10 @@ class LogFile:
         found = self._index.channels.get(channel)
         return None if found is None else self._index.schemas[found.schema_id]
 
+    def described(self, channel: int) -> dict[str, str]:
+        """Return what the log says of a channel."""
+        return dict(self._index.channels[channel].metadata)
+
     def chunks(self, channel: int) -> Iterator[ChunkContent]:
         """Yield the chunks that hold messages of a channel."""
         with self._path.open("rb") as stream:
@@ -131,6 +138,10 @@ class JustWritten:
     def schema(self, channel: int) -> Schema | None:
         """Return the schema of a channel; None where the log has no such channel."""
         return LogFile(self._written.path, self._written.entries).schema(channel)
+
+    def described(self, channel: int) -> dict[str, str]:
+        """Return what the log says of a channel."""
+        return LogFile(self._written.path, self._written.entries).described(channel)
 
     def chunks(self, channel: int) -> Iterator[ChunkContent]:
         """Yield the chunks that hold messages of a channel."""

@@ -6,7 +6,7 @@ What an effect adds to a contact it logs itself: its `contact_columns` and its h
 from ..records import TOUCHING
 from ..spec import Spec
 from .decision import Decision, Facts
-from .effect import Column, Effect, Hooks, Kernel, kernel
+from .effect import Column, Derived, Effect, Hooks, Kernel, kernel
 
 
 def decide(facts: Facts) -> Decision:
@@ -36,14 +36,23 @@ def make(spec: Spec, loggers):
     row_residual, forget = make_row_residual(spec), make_forget(spec)
     watch_signorini, watch_coulomb = make_watch_signorini(spec), make_watch_coulomb(spec)
     log_more = chain(loggers, spec)
+    ordered = spec.has("impact_order")
 
     def log_contacts(contacts, count, velocities, params, counters, log):
         contact_rows = log.contact
         row = log.step[counters.step_rows]
         force, deepest = 0.0, 0.0
-        written = 0
-        counters.residual_row = -1
-        forget(counters)
+        written, most = 0, -1.0
+        first, last = True, True
+        if ordered:
+            first = counters.parts == 0
+            last = params.dt == params.timestep - counters.elapsed
+        if first:
+            counters.residual_row = -1
+            forget(counters)
+        else:
+            force, deepest = row.total_normal_force, row.max_penetration
+            written, most = row.contact_count, row.residual
         for c in range(count):
             contact, out = contacts[c], contact_rows[counters.contact_rows + written]
             va, vb = velocities[contact.a], velocities[contact.b]
@@ -53,11 +62,13 @@ def make(spec: Spec, loggers):
                 acts = contact.lambda_n != 0.0
                 if loads:
                     acts = acts or contact.loaded == 1
-                if contact.phi > TOUCHING and not acts:
+                # What touches without a push has a row in the part that ends the step.
+                touches = contact.phi <= TOUCHING and last
+                if not (touches or acts):
                     watch_signorini(counters, -1, contact, v_n)
                     continue
             watch_signorini(counters, written, contact, v_n)
-            if c == counters.residual_contact:
+            if c == counters.residual_contact and counters.residual > most:
                 counters.residual_row = written
             written += 1
             out.step = counters.step + 1
@@ -69,7 +80,7 @@ def make(spec: Spec, loggers):
             out.approach_velocity = contact.v_n_pre
             out.normal_velocity = v_n
             out.impulse_n = contact.lambda_n
-            out.force_n = contact.lambda_n / params.dt
+            out.force_n = contact.lambda_n / params.timestep
             out.inverse_effective_mass = contact.k_n
             out.target = contact.target
             out.residual = residual
@@ -80,6 +91,8 @@ def make(spec: Spec, loggers):
             # A NaN is deeper than anything, or it would not be seen.
             if out.penetration > deepest or out.penetration != out.penetration:
                 deepest = out.penetration
+        counters.residual = max(counters.residual, most)
+        row.residual = counters.residual
         row.contact_count = written
         row.total_normal_force = force
         row.max_penetration = deepest
@@ -92,6 +105,19 @@ def make_step_row(spec: Spec) -> Kernel:
     from ..violations import make_log_signorini
 
     return make_log_signorini(spec)
+
+
+def penetration_of(rows, timestep):
+    """Return the penetration [m] of logged contacts; a NaN stays, as in the kernel."""
+    import numpy as np  # late: configs are read without it
+
+    depth = 0.0 - rows["separation"]
+    return np.where(depth <= 0.0, 0.0, depth)
+
+
+def force_of(rows, timestep):
+    """Return the normal force [N] of logged contacts."""
+    return rows["impulse_n"] / timestep
 
 
 EFFECT = Effect(
@@ -111,7 +137,13 @@ EFFECT = Effect(
         Column("ny", "f8", "unit normal from A to B, world y"),
         Column("nz", "f8", "unit normal from A to B, world z"),
         Column("separation", "f8", "signed distance, negative inside", "m"),
-        Column("penetration", "f8", "max(-separation, 0)", "m"),
+        Column(
+            "penetration",
+            "f8",
+            "max(-separation, 0)",
+            "m",
+            derived=Derived("max(0 - separation, 0)", ("separation",), penetration_of),
+        ),
         Column(
             "approach_velocity", "f8", "normal velocity of B relative to A before the solve", "m/s"
         ),
@@ -119,7 +151,13 @@ EFFECT = Effect(
             "normal_velocity", "f8", "normal velocity of B relative to A after the solve", "m/s"
         ),
         Column("impulse_n", "f8", "normal impulse on B", "N s"),
-        Column("force_n", "f8", "impulse_n / timestep: the step's average", "N"),
+        Column(
+            "force_n",
+            "f8",
+            "impulse_n / timestep: the step's average",
+            "N",
+            derived=Derived("impulse_n / timestep", ("impulse_n",), force_of),
+        ),
         Column("inverse_effective_mass", "f8", "along the normal", "1/kg"),
         Column(
             "target", "f8", "b + b_rest: the row asked v_n + target + gamma impulse_n >= 0", "m/s"
@@ -136,6 +174,9 @@ EFFECT = Effect(
         ),
         Column("signorini_contact", "i8", "row of the contact that has it; -1 none", number=22),
     ),
-    channels=("/contacts", "/plot/force", "/plot/penetration", "/plot/log10_residual"),
+    channels=(
+        *("/contacts", "/contact_columns"),
+        *("/plot/force", "/plot/penetration", "/plot/log10_residual"),
+    ),
     hooks=Hooks(log_contacts=make, step_row=make_step_row),
 )

@@ -1,4 +1,4 @@
-"""The section `always` in a file: its balances are judged where the log has both of their sides.
+"""The section `always` in a file: a check is made where the log has what it is taken from.
 
 The work of a surface that moves by itself, and the momentum that a medium or falling asleep takes,
 are in no log.
@@ -8,13 +8,18 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator
+from typing import Final
 
 from lavendersim.engine.effects import EFFECTS
+from lavendersim.experiment.models.recorded import not_recorded
 from lavendersim.experiment.models.tree import described
 from lavendersim.experiment.text.node import Node, key_mark
 from lavendersim.experiment.text.place import Place
-from lavendersim.measures.specs.always import NONE, Always
+from lavendersim.measures.specs.always import CHECKS, FINITE, NONE, READS, Always
 from lavendersim.quantities.found import quoted
+from lavendersim.quantities.readings import POSES, SUMS
+
+DEFAULTS: Final = {check: Always.model_fields[check].default for check in CHECKS if check != FINITE}
 
 
 class AlwaysSection(Always):
@@ -22,16 +27,27 @@ class AlwaysSection(Always):
 
     @classmethod
     def rules(cls, at: Place) -> None:
-        """A balance has both of its sides in the log; half a balance cannot be judged."""
-        for check, reasons in (
-            ("energy", _unknown_work(at.root)),
-            ("momentum", _unknown_impulse(at.root)),
-        ):
+        """What a check is taken from is in the log; half a balance cannot be judged."""
+        unlogged = {"energy": _unknown_work(at.root), "momentum": _unknown_impulse(at.root)}
+        for check, default in DEFAULTS.items():
             bound = at.get(check)
-            if bound is None or bound.text != NONE:
-                mark = bound.mark if bound is not None else key_mark(at.root, "always")
-                for reason in itertools.islice(reasons, 1):
-                    at.refuse(mark, f"{check}: {reason}; specify {check}: none")
+            if (default if bound is None else bound.text) == NONE:
+                continue
+            mark = bound.mark if bound is not None else key_mark(at.root, "always")
+            reasons = itertools.chain(unlogged.get(check, ()), _unrecorded(at.root, check))
+            for reason in itertools.islice(reasons, 1):
+                at.refuse(mark, f"{check}: {reason}; specify {check}: none")
+
+
+def _unrecorded(root: Node, check: str) -> Iterator[str]:
+    """Yield why the log has not of every step what a check takes."""
+    taken = READS.get(check, SUMS)
+    acts = root.items_at("events") or root.items_at("scene", "forces")
+    if check == "energy" and acts:  # what they do is counted by where the bodies are
+        taken |= POSES
+    reason = not_recorded(root, taken)
+    if reason is not None:
+        yield f"it {reason}"
 
 
 def _unknown_work(root: Node) -> Iterator[str]:

@@ -14,6 +14,7 @@ from lavendersim.experiment.models.events import Event
 from lavendersim.experiment.models.expectation_names import expectation_rules
 from lavendersim.experiment.models.overhead import OverheadSpec
 from lavendersim.experiment.models.record import Record
+from lavendersim.experiment.models.recorded import recording_rules
 from lavendersim.experiment.models.scene import Scene
 from lavendersim.experiment.models.steps import step_rules
 from lavendersim.experiment.models.study import Study
@@ -99,7 +100,9 @@ class CellSource(ConfigModel):
     duration: Annotated[float, Quantity("s", above=0)] = Field(
         description="[s] simulated time of a run"
     )
-    record: Record = Field(default=Record(), description="what is logged beyond every step")
+    record: Record = Field(
+        default=Record(), description="what is logged of which steps, and beyond every step"
+    )
     effects: Effects = Field(
         default=Effects(), description="effects forced in or kept out, against the plan; for study"
     )
@@ -162,6 +165,7 @@ class ExperimentConfig(CellSource):
 
     @classmethod
     def rules(cls, at: Place) -> None:
-        """Expectations have names of their own, and what must fail exists."""
+        """Expectations have names of their own, what must fail exists, what is taken is logged."""
         super().rules(at)
         expectation_rules(at)
+        recording_rules(at)

@@ -1,4 +1,4 @@
-"""The `record` section of a config: what is kept beyond every step's state and contacts."""
+"""The `record` section of a config: what is logged of which steps, and what beyond every step."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, Tag
 
-from lavendersim.cell.record import NONE, EverySteps
+from lavendersim.cell.record import ALL, NONE, EverySteps
 from lavendersim.experiment.models.tree import duration_of
 from lavendersim.experiment.text.place import Place
 from lavendersim.quantities.model import ConfigModel
@@ -45,9 +45,25 @@ Residuals = Annotated[
 ]
 
 
-class Record(ConfigModel):
-    """What is logged beyond every step's state and contacts."""
+def _steps_form(value: Any) -> str | None:
+    # a number is read as the text, which says how it would be right
+    forms: dict[type, str] = {str: "every", int: "every", dict: "window"}
+    return forms.get(type(value))
 
+
+Steps = Annotated[
+    Annotated[str, EverySteps(ALL), Tag("every")] | Annotated[Window, Tag("window")],
+    either("all, every N or {from: seconds, to: seconds}", _steps_form),
+]
+
+
+class Record(ConfigModel):
+    """What is logged of which steps, and beyond their state and contacts."""
+
+    contacts: Steps = Field(
+        default=ALL, description="of which steps: all, every N, or {from, to} [s]"
+    )
+    poses: Steps = Field(default=ALL, description="of which steps: all, every N, or {from, to} [s]")
     residuals: Residuals = Field(default="none", description="[m/s] residual of every sweep")
     problems: Annotated[str, EverySteps()] = Field(
         default=NONE,

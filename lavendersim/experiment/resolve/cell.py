@@ -7,7 +7,7 @@ from typing import Any
 from lavendersim.cell.config import CellConfig, CellEffects, CellStudy
 from lavendersim.cell.events import CellEvent, CellTimestep
 from lavendersim.cell.numerics import Numerics
-from lavendersim.cell.record import CellRecord, ResidualWindow
+from lavendersim.cell.record import CellRecord, TimeWindow
 from lavendersim.experiment.models.events import Event
 from lavendersim.experiment.models.experiment import CellSource, NumericsSource
 from lavendersim.experiment.models.record import Record, Window
@@ -59,11 +59,18 @@ def _event(event: Event) -> CellEvent | CellTimestep:
 
 
 def _record(record: Record) -> CellRecord:
-    residuals: Any = record.residuals
-    if isinstance(residuals, Window):
-        window = {"from": residuals.begin, "to": residuals.end}
-        residuals = ResidualWindow.model_validate(window)
-    return CellRecord(residuals=residuals, problems=record.problems)
+    return CellRecord(
+        residuals=_steps(record.residuals),
+        problems=record.problems,
+        contacts=_steps(record.contacts),
+        poses=_steps(record.poses),
+    )
+
+
+def _steps(recorded: str | Window) -> Any:
+    if isinstance(recorded, str):
+        return recorded
+    return TimeWindow.model_validate({"from": recorded.begin, "to": recorded.end})
 
 
 __all__ = ["CellConfig", "Numerics", "resolve_cell", "resolve_numerics"]

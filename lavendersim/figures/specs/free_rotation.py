@@ -9,11 +9,13 @@ from pydantic import Field
 from lavendersim.figures.specs.base import Panel
 from lavendersim.quantities.names import BodyName
 from lavendersim.quantities.quantity import Quantity
+from lavendersim.quantities.readings import POSES
 
 
 class FreeRotation(Panel):
     """Angular velocity in body axes: Jacobi's solution as lines, the log as markers."""
 
+    READS = POSES
     kind: Literal["free_rotation"]
     body: BodyName = Field(description="the free body; the only movable one")
     markers: Annotated[int, Quantity(whole=True, minimum=2)] = Field(

@@ -11,6 +11,7 @@ from lavendersim.measures.specs.expectation import Reduction
 from lavendersim.quantities.model import ConfigModel
 from lavendersim.quantities.names import AxisName, MeasureName
 from lavendersim.quantities.quantity import Quantity
+from lavendersim.quantities.readings import SUMS
 
 
 class Onset(ConfigModel):
@@ -24,6 +25,7 @@ class Onset(ConfigModel):
 class MeasureAgainstAxis(Panel):
     """A measure against a swept axis: markers at the mean, a band from min to max of the rest."""
 
+    READS = SUMS  # beside its measure
     kind: Literal["measure_against_axis"]
     measure: MeasureName = Field(description="the measure on the y axis")
     axis: AxisName = Field(description="the swept axis on the x axis")

@@ -8,11 +8,13 @@ from pydantic import Field
 
 from lavendersim.figures.specs.base import Number, Panel
 from lavendersim.quantities.names import AxisName, MeasureName
+from lavendersim.quantities.readings import SUMS
 
 
 class MeasureByName(Panel):
     """A measure for every value of an axis, names or numbers one below the other."""
 
+    READS = SUMS  # beside its measure
     kind: Literal["measure_by_name"]
     measure: MeasureName = Field(description="the measure on the x axis; its largest of several")
     axis: AxisName = Field(description="the swept axis whose values stand on the y axis")

@@ -9,11 +9,13 @@ from pydantic import Field
 from lavendersim.figures.specs.base import Number, Panel
 from lavendersim.measures.specs.selection import Selection
 from lavendersim.quantities.names import AxisName, MeasureName
+from lavendersim.quantities.readings import SUMS
 
 
 class StabilityMap(Panel):
     """How far one axis can go before a bound breaks, over two others, as colours with numbers."""
 
+    READS = SUMS  # beside its measure
     kind: Literal["stability_map"]
     axis: AxisName = Field(description="the swept axis on the x axis")
     rows: AxisName = Field(description="the swept axis on the y axis")

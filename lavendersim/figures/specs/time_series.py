@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from collections.abc import Mapping
+from typing import Annotated, Final, Literal
 
 from pydantic import Field
 
 from lavendersim.figures.specs.base import Ideal, Number, Panel
 from lavendersim.quantities.names import BodyName, PlaneName
 from lavendersim.quantities.quantity import Quantity
+from lavendersim.quantities.readings import CONTACTS, POSES, SUMS, Readings
 
 Column = Literal[
     "penetration",
@@ -24,8 +26,23 @@ Column = Literal[
 ]
 
 
+OF_COLUMNS: Final = {
+    "penetration": CONTACTS,
+    "normal_force": CONTACTS,
+    "clearance": POSES,
+    "drift": POSES,
+    "overlap": POSES,
+}
+
+
 class TimeSeries(Panel):
     """A logged quantity against time, one line with markers per cell."""
+
+    @classmethod
+    def reads(cls, given: Mapping[str, str | None]) -> Readings:
+        """What its column is taken from, and contacts where time is counted from the first."""
+        counted = CONTACTS if given.get("start") == "first_contact" else SUMS
+        return counted | OF_COLUMNS.get(given.get("column") or "", SUMS)
 
     kind: Literal["time_series"]
     column: Column = Field(

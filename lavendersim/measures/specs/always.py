@@ -19,6 +19,7 @@ from pydantic import Field, Tag
 
 from lavendersim.quantities.model import ConfigModel
 from lavendersim.quantities.quantity import Quantity, either
+from lavendersim.quantities.readings import CONTACTS, POSES
 
 NONE: Final = "none"
 DERIVED: Final = "derived"
@@ -83,6 +84,14 @@ class Always(ConfigModel):
     )
 
 
+# What a check takes of every step of a log; of the others, the sums of `/step`.
+READS: Final = {
+    "energy": CONTACTS,  # and poses, where forces do work or events give energy
+    "penetration": CONTACTS,
+    "impulses": CONTACTS,
+    "momentum": CONTACTS,
+    "speed": POSES,
+}
 # The names of the checks, in the order in which they are judged.
 CHECKS: Final = (FINITE, *(name for name in Always.model_fields if name != "stop"))
 # Those that a run is stopped by; one that is no longer finite ends by itself.

@@ -7,11 +7,13 @@ from typing import Literal
 from pydantic import Field
 
 from lavendersim.measures.specs.base import Measure, Seconds
+from lavendersim.quantities.readings import SUMS
 
 
 class ResidualBySweep(Measure):
     """Residual [m/s] before sweep 1 and after each sweep (a row of numbers) of one step."""
 
+    READS = SUMS
     kind: Literal["residual_by_sweep"]
     after: Seconds = Field(description="the first step that ends after this time [s] is taken")
 
@@ -19,5 +21,6 @@ class ResidualBySweep(Measure):
 class FinalResidual(Measure):
     """Residual [m/s] after the last sweep of one step."""
 
+    READS = SUMS
     kind: Literal["final_residual"]
     after: Seconds = Field(description="the first step that ends after this time [s] is taken")

@@ -9,6 +9,7 @@ from pydantic import Field
 from lavendersim.measures.specs.base import Measure, PairMeasure
 from lavendersim.quantities.names import BodyName, PlaneName
 from lavendersim.quantities.quantity import Quantity
+from lavendersim.quantities.readings import CONTACTS, SUMS
 
 
 class FirstApex(Measure):
@@ -66,6 +67,7 @@ class StepsAboveForce(PairMeasure):
 class ImpulseBalance(Measure):
     """Relative distance of impulse from momentum change plus weight times time, whole scene."""
 
+    READS = CONTACTS
     kind: Literal["impulse_balance"]
     window: Literal["first_impact", "all"] = Field(
         default="first_impact",
@@ -76,4 +78,5 @@ class ImpulseBalance(Measure):
 class MomentumDrift(Measure):
     """Largest change of the scene's momentum over the run, over its largest momentum."""
 
+    READS = SUMS
     kind: Literal["momentum_drift"]

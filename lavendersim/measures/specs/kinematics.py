@@ -9,12 +9,15 @@ from pydantic import Field, model_validator
 from lavendersim.measures.specs.base import Measure, Seconds
 from lavendersim.quantities.names import BodyName
 from lavendersim.quantities.quantity import Quantity, Vector, Vector3, sentence_error
+from lavendersim.quantities.readings import POSES
 
 Direction = Annotated[Vector3, Vector(3, Quantity())]
 
 
 class _Between(Measure):
     """A measure of the motion between two times."""
+
+    READS = POSES
 
     body: BodyName = Field(description="the body")
     begin: Seconds = Field(default=0.0, alias="from", description="first time [s]")
@@ -65,6 +68,7 @@ class MeanAngularVelocity(_Along):
 class TopSpeed(Measure):
     """Greatest speed [m/s] of any centre: displacement between neighbouring states over time."""
 
+    READS = POSES
     kind: Literal["top_speed"]
     after: Seconds = Field(default=0.0, description="[s] only motion after this time")
     bodies: tuple[BodyName, ...] = Field(
@@ -75,6 +79,7 @@ class TopSpeed(Measure):
 class RestTime(Measure):
     """Time [s] from which on no centre moves faster than a threshold; NaN if one still does."""
 
+    READS = POSES
     kind: Literal["rest_time"]
     slower_than: Annotated[float, Quantity("m/s", above=0)] = Field(description="threshold [m/s]")
     bodies: tuple[BodyName, ...] = Field(
@@ -85,6 +90,7 @@ class RestTime(Measure):
 class Tilt(Measure):
     """Angle [degree] between an axis of a body at the end of the run and at its start."""
 
+    READS = POSES
     kind: Literal["tilt"]
     body: BodyName = Field(description="the body")
     axis: Direction = Field(default=(0.0, 0.0, 1.0), description="axis in the body's frame")

@@ -6,17 +6,20 @@ from the config alone.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Literal
 
 from pydantic import Field
 
 from lavendersim.measures.specs.base import Measure, Seconds
 from lavendersim.quantities.names import BodyName, PlaneName
+from lavendersim.quantities.readings import CONTACTS, POSES, SUMS, Readings
 
 
 class ForceError(Measure):
     """Largest |vertical contact force / weight - 1| [-] of what rests, in any step of a window."""
 
+    READS = CONTACTS
     kind: Literal["force_error"]
     body: BodyName | None = Field(
         default=None,
@@ -36,6 +39,11 @@ class EnergyDrift(Measure):
         default=None, description="where its potential energy is zero; the world's origin if absent"
     )
 
+    @classmethod
+    def reads(cls, given: Mapping[str, str | None]) -> Readings:
+        """Its height above the plane, where it is given one."""
+        return POSES if "above" in given else SUMS
+
 
 class EnergyGain(Measure):
     """Largest E/E0 - 1 [-] over the run: above 0 where energy was gained."""
@@ -48,10 +56,16 @@ class EnergyGain(Measure):
         default=None, description="where its potential energy is zero; the world's origin if absent"
     )
 
+    @classmethod
+    def reads(cls, given: Mapping[str, str | None]) -> Readings:
+        """Its height above the plane, where it is given one."""
+        return POSES if "above" in given else SUMS
+
 
 class AngularMomentumDrift(Measure):
     """Largest |L - L0| / |L0| [-] of the scene's angular momentum vector over the run."""
 
+    READS = SUMS
     kind: Literal["angular_momentum_drift"]
 
 
@@ -62,6 +76,7 @@ class LawViolation(Measure):
     cone [N s] and dissipation [J] of Signorini's and Coulomb's law, whichever was solved.
     """
 
+    READS = SUMS
     kind: Literal["law_violation"]
     part: Literal["natural_map", "signorini", "cone", "dissipation"] = Field(
         description="which part of the law"
@@ -72,4 +87,5 @@ class LawViolation(Measure):
 class NotConvergedSteps(Measure):
     """Number of steps that did not converge: their residual stayed above the tolerance."""
 
+    READS = SUMS
     kind: Literal["not_converged_steps"]

@@ -12,11 +12,13 @@ from pydantic import Field
 from lavendersim.measures.specs.base import Measure, Seconds
 from lavendersim.quantities.names import BodyName, PlaneName
 from lavendersim.quantities.quantity import Quantity
+from lavendersim.quantities.readings import POSES
 
 
 class ApexError(Measure):
     """|apex / (e^(2 k) h) - 1| [-] of the k-th apex of a body dropped from the clearance h."""
 
+    READS = POSES
     kind: Literal["apex_error"]
     body: BodyName = Field(description="the bouncing body")
     above: PlaneName = Field(description="the plane it bounces on")
@@ -28,6 +30,7 @@ class ApexError(Measure):
 class Drift(Measure):
     """Greatest distance [m] of any centre from where it was at a given time."""
 
+    READS = POSES
     kind: Literal["drift"]
     after: Seconds = Field(default=0.5, description="the time of the pose it is counted from [s]")
     bodies: tuple[BodyName, ...] = Field(
@@ -38,6 +41,7 @@ class Drift(Measure):
 class SlipDistance(Measure):
     """Distance [m] between a body's centre at the beginning and at the end of a window."""
 
+    READS = POSES
     kind: Literal["slip_distance"]
     body: BodyName = Field(description="the body")
     last: Seconds = Field(default=1.0, description="length of the window at the end [s]")
@@ -46,6 +50,7 @@ class SlipDistance(Measure):
 class Creep(Measure):
     """Mean speed [m/s] of a body over a window: `slip_distance` over the window's length."""
 
+    READS = POSES
     kind: Literal["creep"]
     body: BodyName = Field(description="the body")
     last: Seconds = Field(default=1.0, description="length of the window at the end [s]")
@@ -58,6 +63,7 @@ class EffectiveFriction(Measure):
     a body that holds.
     """
 
+    READS = POSES
     kind: Literal["effective_friction"]
     body: BodyName = Field(description="the sliding body")
     on: PlaneName = Field(description="the plane it slides on")
@@ -71,6 +77,7 @@ class PassedThrough(Measure):
     starts farthest outside it.
     """
 
+    READS = POSES
     kind: Literal["passed_through"]
     body: BodyName = Field(description="the body that may pass")
     wall: BodyName = Field(description="a plane or a fixed box")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Literal
 
 from lavendersim.measures.specs.base import Measure
+from lavendersim.quantities.readings import CONTACTS
 
 
 class Optimality(Measure):
@@ -16,4 +17,5 @@ class Optimality(Measure):
     give: times the inverse effective mass, or the sum of the inverse masses.
     """
 
+    READS = CONTACTS
     kind: Literal["optimality"]

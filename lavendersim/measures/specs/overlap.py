@@ -8,6 +8,7 @@ from pydantic import Field
 
 from lavendersim.measures.specs.base import Measure, Seconds
 from lavendersim.quantities.quantity import Quantity
+from lavendersim.quantities.readings import POSES
 
 Stride = Annotated[int, Quantity("", minimum=1, whole=True)]
 
@@ -15,6 +16,7 @@ Stride = Annotated[int, Quantity("", minimum=1, whole=True)]
 class Overlap(Measure):
     """Deepest penetration [m] of any two bodies at the end of the run, from their geometry."""
 
+    READS = POSES
     kind: Literal["overlap"]
     last: Seconds = Field(default=1.0, description="length of the window at the end [s]")
     every: Stride = Field(

@@ -9,6 +9,7 @@ from pydantic import Field
 from lavendersim.measures.specs.base import Measure, Seconds
 from lavendersim.quantities.names import BodyName
 from lavendersim.quantities.quantity import Quantity
+from lavendersim.quantities.readings import POSES
 
 # |omega| dt of a step must stay small for a flip to be found between the samples around it
 Flips = Annotated[int, Quantity("", minimum=1, whole=True)]
@@ -20,6 +21,7 @@ class VelocityError(Measure):
     The larger of |v - v*| and rho |omega - omega*|, rho the radius of the body about its centre.
     """
 
+    READS = POSES
     kind: Literal["velocity_error"]
     body: BodyName = Field(description="the body that hits; the only movable one")
     other: BodyName = Field(description="the plane or fixed body it hits")
@@ -28,6 +30,7 @@ class VelocityError(Measure):
 class AngularVelocityError(Measure):
     """Largest |omega - omega*| / |omega(0)| [-], body axes, from Jacobi's free rotation."""
 
+    READS = POSES
     kind: Literal["angular_velocity_error"]
     body: BodyName = Field(description="the free body; the only movable one")
     until: Seconds | None = Field(default=None, description="[s] the whole run when absent")
@@ -39,6 +42,7 @@ class FlipTimeError(Measure):
     A flip: the component of omega about the axis of the middle moment changes its sign.
     """
 
+    READS = POSES
     kind: Literal["flip_time_error"]
     body: BodyName = Field(description="the free body; the only movable one")
     flips: Flips = Field(description="how many flips are compared, from the first [-]")

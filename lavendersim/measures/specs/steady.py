@@ -8,6 +8,7 @@ from pydantic import Field
 
 from lavendersim.measures.specs.base import Measure, PairMeasure, Seconds
 from lavendersim.quantities.quantity import Quantity
+from lavendersim.quantities.readings import SUMS
 
 
 class SteadyForce(PairMeasure):
@@ -46,4 +47,5 @@ class SettlingTime(PairMeasure):
 class SimulatedDuration(Measure):
     """Simulated time [s] at the last logged step."""
 
+    READS = SUMS
     kind: Literal["simulated_duration"]

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from lavendersim.trace import Block, TraceWriter
+from lavendersim.trace.contact_columns import DERIVED
 from lavendersim.trace.schema import CONTACT_COLUMNS, STEP_COLUMNS
 from tests.made_cells import made_cell
 
@@ -44,6 +45,7 @@ def run(steps: int, seed: int = 0, extra: tuple[str, ...] = (), contacts: int = 
     for name, kind in fields:
         contact[name] = _noise(random, len(contact), kind)
     contact["step"] = np.repeat(step["step"], counts)
+    follow(contact, np.full(len(contact), float(TIMESTEP)))
     asked = np.flatnonzero(random.random(steps) < 0.3)
     residual = np.zeros(len(asked) * 5, [("step", "i8"), ("sweep", "i8"), ("residual", "f8")])
     residual["step"] = np.repeat(asked, 5)
@@ -52,6 +54,16 @@ def run(steps: int, seed: int = 0, extra: tuple[str, ...] = (), contacts: int = 
     pose = _noise(random, steps * len(BODIES) * 7, "f8").reshape(steps, len(BODIES), 7)
     pose[0] = [0.0, 0.0, 0.5, 1.0, 0.0, 0.0, 0.0]  # a scene is built from finite poses
     return Block(step, contact, pose, residual)
+
+
+def follow(contact: Any, timesteps: Any) -> None:
+    """Give the columns that follow from others the values by which they do, as an engine has them.
+
+    timesteps: [s] of each row.
+    """
+    with np.errstate(all="ignore"):
+        for name, derived in DERIVED.items():
+            contact[name] = derived.value(contact, timesteps)
 
 
 def _noise(random: np.random.Generator, count: int, kind: str) -> Any:

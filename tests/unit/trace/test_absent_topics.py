@@ -18,7 +18,7 @@ STEPS = 900  # several groups of steps
 TOUCH = "nothing can touch (plan: contact_log off)"
 ASKED = "record.residuals is none (plan: residual_log off)"
 PLOTS = ("/plot/force", "/plot/penetration", "/plot/log10_residual")
-CONTACTS = dict.fromkeys(("/contacts", *PLOTS), TOUCH)
+CONTACTS = dict.fromkeys(("/contacts", "/contact_columns", *PLOTS), TOUCH)
 RESIDUALS = {"/residuals": ASKED}
 POSES = {"/robot_description": "?", "/tf": "?"}
 ALWAYS = {"/robot_description", "/tf", "/step"}
@@ -54,9 +54,12 @@ def test_where_nothing_can_touch_a_log_holds_geometry_poses_and_steps_alone(free
 def test_whoever_says_nothing_gets_every_topic(block: Block, tmp_path: Path) -> None:
     found = topics_in(write(tmp_path / "run.mcap", [block]))
     asked = len(np.unique(block.residual["step"]))
+    groups = found["/contact_columns"]  # one message of many steps in each
+    assert 1 <= groups < STEPS / 100
     assert found == dict.fromkeys([*ALWAYS, *CONTACTS], STEPS) | {
         "/robot_description": 1,
         "/residuals": asked,
+        "/contact_columns": groups,
     }
     trace = open_trace(tmp_path / "run.mcap")
     assert trace.absent == {}

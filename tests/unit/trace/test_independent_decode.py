@@ -17,7 +17,16 @@ from sample import BODIES, run, write
 from lavendersim.trace import Block
 
 STEPS = 400
-KINDS = {5: "<u4", 6: "<i4", 8: "<f8", 1: "u1"}
+KINDS = {5: "<u4", 6: "<i4", 7: "<f4", 8: "<f8", 1: "u1"}
+# Of a float32 points keep all 24 bits of positions, rounded to 2^-24 of the number, and eleven
+# behind the first of the others: cutting takes less than 2^-11, and rounding before it 2^-24.
+EXACTLY, ROUGHLY = 2.0**-24, 2.0**-11 + 2.0**-24
+SHOWN = {
+    **dict.fromkeys(("x", "y", "z"), EXACTLY),
+    **dict.fromkeys(("nx", "ny", "nz", "force_n", "penetration"), ROUGHLY),
+}
+BULK = ("/tf", "/contacts", "/contact_columns")  # each in chunks of its own
+LOADED = (213, 94, 0, 255)  # vermilion: the contact carries an impulse
 
 
 @pytest.fixture(scope="module")
@@ -74,14 +83,16 @@ def test_transforms(path: Path, block: Block) -> None:
             assert transform.parent_frame_id == "world"
 
 
-def test_contacts(path: Path, block: Block) -> None:
+def test_points(path: Path, block: Block) -> None:
+    """What viewers see: every contact where it is, its normal, force and penetration."""
     found = list(messages(path, "/contacts"))
     assert len(found) == STEPS  # also where there are none, so that viewers clear
     for row, (_, cloud) in zip(block.step, found, strict=True):
         rows = block.contact[block.contact["step"] == row["step"]]
         assert cloud.timestamp.ToNanoseconds() == row["time_ns"]
         assert (cloud.frame_id, cloud.pose.orientation.w) == ("world", 1.0)
-        assert [field.name for field in cloud.fields][:3] == ["x", "y", "z"]
+        names = [field.name for field in cloud.fields]
+        assert names == [*SHOWN, "red", "green", "blue", "alpha"]
         assert len(cloud.data) == len(rows) * cloud.point_stride
         for field in cloud.fields:
             dtype = np.dtype(
@@ -93,10 +104,53 @@ def test_contacts(path: Path, block: Block) -> None:
                 }
             )
             values = np.frombuffer(cloud.data, dtype)["v"]
-            if field.type == 8:
-                assert values.tobytes() == rows[field.name].tobytes()
-            elif field.name in (block.contact.dtype.names or ()):
-                assert np.array_equal(values, rows[field.name] & 0xFFFFFFFF)
+            if field.name in SHOWN:
+                true = rows[field.name]
+                within = np.abs(true) > np.finfo(np.float32).tiny  # a float32 has all its digits
+                pairs = values[within], true[within]
+                assert np.allclose(*pairs, rtol=SHOWN[field.name], atol=0.0, equal_nan=True)
+                assert np.all(values[true == 0.0] == 0.0)
+            else:
+                loaded = LOADED[names.index(field.name) - len(SHOWN)]
+                assert ((values == loaded) | ~(rows["impulse_n"] > 0)).all()
+
+
+def test_contact_columns(path: Path, block: Block) -> None:
+    """Number by number, as docs/architecture.md has it: keys summed up, planes put together."""
+    rows = iter(block.contact)
+    for message, group in messages(path, "/contact_columns"):
+        steps, times, counts = (
+            np.frombuffer(one, "<i8").tolist() for one in (group.steps, group.times, group.counts)
+        )
+        assert (message.sequence, message.log_time) == (steps[0], times[0])
+        of_step = [step for step, count in zip(steps, counts, strict=True) for _ in range(count)]
+        count, names = len(of_step), list(group.names)
+        known = [name for name in names if name in ("body_a", "body_b", "feature")]
+        numbers = [name for name in names if name not in known]
+        differences = np.frombuffer(group.keys, "<i8").reshape(len(known), count)
+        keys = list(zip(*(np.cumsum(one).tolist() for one in differences), strict=True))
+        order = sorted(range(count), key=lambda row: (keys[row], row))
+        found: list[dict[str, int]] = [dict(zip(known, key, strict=True)) for key in keys]
+        for m, name in enumerate(numbers):
+            before = None
+            for place, row in enumerate(order):
+                size = len(numbers) * count
+                heaviest_first = group.planes[m * count + place :: size]
+                bits = int.from_bytes(heaviest_first, "big")
+                if before is not None and keys[before] == keys[row]:
+                    bits ^= found[before][name]
+                found[row][name] = bits
+                before = row
+        for step, one in zip(of_step, found, strict=True):
+            row = next(rows)
+            assert step == row["step"]
+            for name, kind in zip(names, group.kinds, strict=True):
+                if name in known:
+                    assert one[name] == row[name]
+                else:
+                    assert kind == "f8"
+                    assert one[name].to_bytes(8, "little") == row[name].tobytes()
+    assert next(rows, None) is None
 
 
 def test_residuals(path: Path, block: Block) -> None:
@@ -147,8 +201,8 @@ def test_a_reader_that_cannot_seek_sees_the_same_messages(path: Path) -> None:
 
 def test_messages_of_a_chunk_stand_in_order_of_time(path: Path) -> None:
     with path.open("rb") as stream:
-        last: dict[bool, int] = {}
+        last: dict[str, int] = {}
         for _, channel, message in NonSeekingReader(stream).iter_messages(log_time_order=False):
-            bulk = channel.topic in ("/tf", "/contacts")
-            assert message.log_time >= last.get(bulk, 0)
-            last[bulk] = message.log_time
+            stream = channel.topic if channel.topic in BULK else "light"
+            assert message.log_time >= last.get(stream, 0)
+            last[stream] = message.log_time

@@ -10,6 +10,8 @@ from pathlib import Path
 import pytest
 from sample import run, write
 
+from lavendersim.trace.layout import CHANNELS
+
 
 def rerun(*arguments: str | Path) -> str:
     command = [sys.executable, "-m", "rerun", *map(str, arguments)]
@@ -17,13 +19,18 @@ def rerun(*arguments: str | Path) -> str:
 
 
 @pytest.fixture(scope="module")
-def chunks(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
+def log(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A log whose groups have several chunks of contacts: 50 steps of some 40 kB."""
+    return write(tmp_path_factory.mktemp("rerun") / "run.mcap", [run(50, contacts=400)])
+
+
+@pytest.fixture(scope="module")
+def chunks(log: Path) -> dict[str, str]:
     """Entity -> all columns that rerun made for it."""
-    folder = tmp_path_factory.mktemp("rerun")
-    log = write(folder / "run.mcap", [run(50)])
-    rerun("mcap", "convert", log, "-o", folder / "run.rrd")
+    converted = log.with_suffix(".rrd")
+    rerun("mcap", "convert", log, "-o", converted)
     found: dict[str, str] = {}
-    listed = rerun("rrd", "print", folder / "run.rrd")
+    listed = rerun("rrd", "print", converted)
     for entity, columns in re.findall(r" - (/\S+) - data columns: \[(.*)\]", listed):
         found[entity] = found.get(entity, "") + columns + " "
     return found
@@ -46,3 +53,13 @@ def chunks(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
 )
 def test_rerun_finds(chunks: dict[str, str], entity: str, component: str) -> None:
     assert component in chunks[entity].split()
+
+
+def test_rerun_checks_the_log_without_an_issue(log: Path) -> None:
+    """Its own check: chunks in order on every timeline, topics without conflicts."""
+    listed = re.findall(
+        r"^(\w+) +\d+ +\d+ +(/\S+) +(.+)$", rerun("mcap", "check", "--full", log), re.M
+    )
+    assert len(listed) == len(CHANNELS)
+    assert {topic for _, topic, _ in listed} == set(CHANNELS)
+    assert {(status, issue.strip()) for status, _, issue in listed} == {("ok", "—")}

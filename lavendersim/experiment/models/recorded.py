@@ -1,0 +1,55 @@
+"""What is not recorded of every step cannot be measured, drawn or held over every step.
+
+record: {contacts: every 4}
+measure: {force: {kind: peak_force, body: ball}}   # refused: it takes the contacts of every step
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Protocol
+
+from lavendersim.cell.record import ALL
+from lavendersim.experiment.text.node import Node
+from lavendersim.experiment.text.place import Place
+from lavendersim.figures.specs.catalogue import KINDS as PANELS
+from lavendersim.measures.specs.catalogue import KINDS as MEASURES
+from lavendersim.quantities.readings import EVERYTHING, Readings
+
+
+class Reader(Protocol):
+    """A kind of measure or panel."""
+
+    def reads(self, given: Mapping[str, str | None]) -> Readings:
+        """Return what it takes of every step."""
+
+
+def not_recorded(root: Node, taken: Readings) -> str | None:
+    """Return why a log has not of every step what is taken of it; None where it has."""
+    for key in sorted(taken & EVERYTHING):
+        recorded = root.get("record", key)
+        if recorded is None or recorded.text == ALL:
+            continue
+        begin, end = recorded.number_at("from"), recorded.number_at("to")
+        within = f"from {begin:g} to {end:g} s" if begin is not None and end is not None else ""
+        if words := recorded.text or within:
+            return f"takes the {key} of every step, and record.{key} is {words}"
+    return None
+
+
+def recording_rules(at: Place) -> None:
+    """Refuse measures and panels that take what is not recorded of every step."""
+    for measure in at.node.entries_at("measure").values():
+        _refuse(at, measure, MEASURES)
+    for panel in at.node.items_at("figure", "panels"):
+        _refuse(at, panel, PANELS)
+
+
+def _refuse(at: Place, node: Node, kinds: Mapping[str, Reader]) -> None:
+    kind = node.get("kind")
+    if kind is None or kind.text is None or kind.text not in kinds:
+        return
+    given = {key: value.text for key, value in node.entries.items()}
+    reason = not_recorded(at.root, kinds[kind.text].reads(given))
+    if reason is not None:
+        at.refuse(kind.mark, f"kind: {kind.text} {reason}; expected all")

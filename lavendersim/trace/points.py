@@ -1,0 +1,70 @@
+"""Points of `/contacts`, for viewers: where contacts are, their normals, force and penetration.
+
+    point | x y z, float32 | nx ny nz force_n penetration, cut float32 | red green blue alpha |
+
+Digits that nobody reads off a picture do not compress, so they are cut: what a contact is to the
+last bit stands in `/contact_columns`, column by column.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lavendersim.trace.layout import PackedField
+from lavendersim.trace.schema import COLOURS, NUMERIC_TYPES
+from lavendersim.trace.wire import Bytes
+
+# Okabe and Ito's colour-blind safe set
+LOADED = (213, 94, 0, 255)  # vermilion: the contact carries an impulse
+UNLOADED = (86, 180, 233, 255)  # sky blue: it does not
+
+POSITION: Final = ("x", "y", "z")  # in all digits of a float32: a scene may be far from the origin
+# Of a float32's 23 bits of mantissa these keep 11, to one in two thousand.
+ROUGHLY: Final = ("nx", "ny", "nz", "force_n", "penetration")
+KEPT_BITS: Final = 11
+_KEPT = np.uint32(0xFFFFFFFF << (23 - KEPT_BITS) & 0xFFFFFFFF)
+
+
+class PointForm(NamedTuple):
+    """What stands in a point."""
+
+    fields: tuple[PackedField, ...]  # x y z first
+    names: tuple[str, ...]  # columns, four bytes each, then the colour
+    size: int  # [B]
+
+
+@lru_cache(maxsize=64)
+def point_form(row: np.dtype[Any]) -> PointForm:
+    """Return the form of the points of contacts; row: the engine's. TypeError without a place."""
+    given = row.names or ()
+    missing = [axis for axis in POSITION if axis not in given]
+    if missing:
+        raise TypeError(f"contacts lack the columns {missing}")
+    names = (*POSITION, *(name for name in ROUGHLY if name in given))
+    fields = [PackedField(name, 4 * k, NUMERIC_TYPES["f4"]) for k, name in enumerate(names)]
+    end = 4 * len(names)
+    fields += [PackedField(c, end + i, NUMERIC_TYPES["u1"]) for i, c in enumerate(COLOURS)]
+    return PointForm(tuple(fields), names, end + len(COLOURS))
+
+
+def points_of(form: PointForm, contacts: NDArray[Any]) -> Bytes:
+    """Return contacts as points, (n, form.size)."""
+    count = len(form.names)
+    words = np.empty((len(contacts), count + 1), "<u4")
+    numbers = words.view("<f4")
+    with np.errstate(over="ignore"):  # beyond float32 a number is shown as infinite
+        for column, name in enumerate(form.names):
+            numbers[:, column] = contacts[name]
+    words[:, len(POSITION) : count] &= _KEPT
+    loaded = contacts["impulse_n"] > 0 if "impulse_n" in (contacts.dtype.names or ()) else True
+    words[:, count] = np.where(loaded, _word(LOADED), _word(UNLOADED))
+    return words.view(np.uint8).reshape(len(contacts), -1)
+
+
+def _word(colour: tuple[int, int, int, int]) -> np.uint32:
+    """Return red green blue alpha as one little-endian word."""
+    return np.uint32(int.from_bytes(bytes(colour), "little"))
