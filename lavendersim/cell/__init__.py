@@ -16,7 +16,7 @@ from lavendersim.cell.choices import (
 from lavendersim.cell.config import CellConfig, CellEffects, CellStudy
 from lavendersim.cell.events import CellEvent, CellTimestep
 from lavendersim.cell.numerics import Numerics
-from lavendersim.cell.record import CellRecord, ResidualWindow
+from lavendersim.cell.record import CellRecord, TimeWindow
 from lavendersim.cell.scene import CellForce, CellScene
 from lavendersim.cell.shapes import (
     Box,
@@ -61,9 +61,9 @@ __all__ = [
     "Plane",
     "Preset",
     "Release",
-    "ResidualWindow",
     "Solver",
     "Sphere",
     "Surface",
     "Switch",
+    "TimeWindow",
 ]

@@ -7,8 +7,8 @@ from typing import Final, Literal
 from lavendersim.engine.solvers import SolverName
 
 Solver = SolverName
-Impacts = Literal["captured", "at_surface"]
-Integrator = Literal["semi_implicit_euler", "midpoint"]
+Impacts = Literal["captured", "at_surface", "in_order"]
+Integrator = Literal["semi_implicit_euler", "midpoint", "midpoint_contact"]
 FrictionCone = Literal["disc", "pyramid", "convex"]
 Order = Literal["coloured", "forward", "backward", "symmetric", "random"]
 Preset = Literal["chapter", "default"]

@@ -77,13 +77,15 @@ class Numerics(ConfigModel):
         "more",
     )
     impacts: Impacts = Field(
-        default="at_surface",
-        description="when restitution acts: `captured`, at the start of the step that finds the "
-        "contact, or `at_surface`, at the time within the step when the surfaces meet",
+        default="in_order",
+        description="when impacts happen: `captured`, at the start of the step that finds the "
+        "contact; `at_surface`, at the time within the step when the surfaces meet, all with the "
+        "velocities of its start; or `in_order`, each at its time, after those before it",
     )
     integrator: Integrator = Field(
-        default="midpoint",
-        description="of poses between contacts: `semi_implicit_euler` or `midpoint`",
+        default="midpoint_contact",
+        description="`semi_implicit_euler`; `midpoint`, of poses between contacts; or "
+        "`midpoint_contact`, of contacts that last, too: order 2 in time wherever nothing strikes",
     )
     friction_cone: FrictionCone = Field(
         default="disc",

@@ -95,7 +95,7 @@ def make_slip_velocity(spec: Spec):
     """
     if not spec.has("friction"):
         return None
-    moving_surface = spec.has("surface_velocity")
+    moving_surface = spec.has("surface_velocity") or spec.has("contact_midpoint")
     relative_velocity = make_relative_velocity(spec)
 
     def slip_velocity(contact, va, vb):
@@ -142,7 +142,7 @@ def make_apply_vector(spec: Spec):
 def make_complete_block(spec: Spec):
     """Return `kernel(contact, body_a, body_b, va, vb, pair) -> k_n`: frame, levers and the 3x3."""
     moving_surface, surface_velocity = made_once(spec, "surface_velocity")
-    swept = spec.has("fast_bodies")
+    swept, shifted = spec.has("fast_bodies"), spec.has("contact_midpoint")
 
     def complete_block(contact, body_a, body_b, va, vb, pair):
         half = 0.5 * contact.phi
@@ -171,6 +171,8 @@ def make_complete_block(spec: Spec):
         k_22 = contact.t2x * x + contact.t2y * y + contact.t2z * z
         scale = 1.0 / (k_11 * k_22 - k_12 * k_12)
         contact.i_11, contact.i_12, contact.i_22 = k_22 * scale, -k_12 * scale, k_11 * scale
+        if shifted:
+            contact.surface_1, contact.surface_2 = 0.0, 0.0
         if moving_surface:
             surface_velocity(contact, body_a, body_b)
         half_gap = 0.5 * (k_11 - k_22)

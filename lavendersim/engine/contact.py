@@ -208,7 +208,7 @@ def make_append_contact(spec: Spec, capture):
     friction, frictionless = spec.has("friction"), has_frictionless(spec)
     compliant = spec.has("compliance")
     at_surface = spec.has("impact_time")
-    forced = spec.has("impact_time") or spec.has("midpoint")
+    forced = spec.has("impact_time") or spec.has("midpoint") or spec.has("contact_midpoint")
     normal_velocity = make_normal_velocity(spec)
     complete_block: Any = make_complete_block(spec) if friction else None
     spins = resists_turning(spec)

@@ -115,7 +115,36 @@ class Engine:
     def _grow_contacts(self, capacity: int) -> None:
         self.state = memory.with_contacts(self.spec, self.state, capacity)
         self.workspace = memory.for_contacts(self.spec, self.workspace, self.state)
-        self.log = self._allocate_log()
+        before, self.log = self.log, self._allocate_log()
+        self._keep_unfinished(before)
+
+    def _keep_unfinished(self, before: memory.Log) -> None:
+        """Move the rows of a step of which parts are left to the head of the empty columns."""
+        counters = self.counters[0]
+        at, step = int(counters["contact_rows"]), int(counters["step_rows"])
+        history = before.residual[: counters["residual_rows"]]
+        self._take_all()
+        if not counters["parts"] or not self.block_steps:
+            return
+        count = int(before.step["contact_count"][step])
+        self.log.contact[:count] = before.contact[at : at + count].copy()
+        self.log.step[0] = before.step[step].copy()
+        own = history[history["step"] == counters["step"] + 1]
+        self.log.residual[: len(own)] = own
+        counters["residual_rows"] = len(own)
+
+    def _take_all(self) -> None:
+        for name in ("step_rows", "contact_rows", "residual_rows"):
+            self.counters[name] = 0
+
+    def _grow_log(self) -> None:
+        """Make room for a step with more rows than a block has: one made in many parts."""
+        before = self.log
+        self.log = before._replace(
+            contact=np.zeros(2 * len(before.contact), before.contact.dtype),
+            residual=np.zeros(2 * len(before.residual), before.residual.dtype),
+        )
+        self._keep_unfinished(before)
 
     def _grow_pairs(self) -> None:
         needed = int(self.workspace.broad_phase.state["needed"][0])
@@ -143,6 +172,9 @@ class Engine:
                 continue
             if status == WOKEN:
                 continue
+            if status == ROWS_FULL and not self.counters["step_rows"][0] and self.block_steps:
+                self._grow_log()
+                continue
             if status != CONTACTS_FULL:
                 return status
             if self.counters["step_rows"][0]:
@@ -163,14 +195,14 @@ class Engine:
     def take_rows(self) -> Rows:
         """Return copies of the rows written since the last call and empty the columns."""
         count, log = self.counters[0], self.log
+        history = log.residual[: count["residual_rows"]]
         rows = Rows(
             log.step[: count["step_rows"]].copy(),
             log.pose[: count["step_rows"]].copy(),
             log.contact[: count["contact_rows"]].copy(),
-            log.residual[: count["residual_rows"]].copy(),
+            history[history["step"] <= count["step"]],  # of steps that are done
         )
-        for name in ("step_rows", "contact_rows", "residual_rows"):
-            self.counters[name] = 0
+        self._keep_unfinished(log)
         return rows
 
     def problem(self) -> StepProblem | None:

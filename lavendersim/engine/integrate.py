@@ -13,6 +13,7 @@ from typing import Any
 
 from .compile import kernel
 from .effects import made_once
+from .effects.gyroscopic import make_turn_by_mean
 from .records import NOT_FINITE, TURNS_TOO_FAST
 from .rotation import inertia_times, turn
 from .spec import Spec
@@ -20,17 +21,20 @@ from .spec import Spec
 # MOTION.carried: a contact carries the body from its impact on, or through the whole step.
 AFTERWARDS = 1
 ALWAYS = 2
+LASTING = 3  # through the whole step, and its surfaces do not approach as it begins
 
 
 def keeps_motion(spec: Spec) -> bool:
     """Whether the step needs to know what bodies did before the solve."""
-    return any(spec.has(name) for name in ("speculative", "midpoint", "impact_time"))
+    return any(
+        spec.has(name) for name in ("speculative", "midpoint", "impact_time", "contact_midpoint")
+    )
 
 
 def make_begin(spec: Spec, accelerate: Any) -> Any:
     """Return `kernel(bodies, velocities, motion, params)`: forces act; their effect is noted."""
     torque = spec.has("rotation")
-    kinematic = spec.has("kinematic")
+    kinematic, centred = spec.has("kinematic"), spec.has("contact_midpoint")
 
     def begin(bodies, velocities, motion, params):
         for i in range(bodies.shape[0]):
@@ -44,6 +48,8 @@ def make_begin(spec: Spec, accelerate: Any) -> Any:
             if kinematic:
                 moves = moves or body.kinematic == 1
             m.reach = 0.0
+            if centred:
+                m.midway = 0
             if moves:
                 m.dvx, m.dvy, m.dvz = v.vx - m.vx, v.vy - m.vy, v.vz - m.vz
                 speed = sqrt(v.vx * v.vx + v.vy * v.vy + v.vz * v.vz)
@@ -85,11 +91,23 @@ def make_undo(spec: Spec) -> Any:
     return kernel(undo, spec)
 
 
+def make_stand(spec: Spec) -> Any:
+    """Return `kernel(velocities, motion)`: in an instant forces change nothing."""
+
+    def stand(velocities, motion):
+        for i in range(velocities.shape[0]):
+            m = motion[i]
+            m.dvx, m.dvy, m.dvz = 0.0, 0.0, 0.0
+
+    return kernel(stand, spec)
+
+
 def make_classify(spec: Spec) -> Any:
     """Return `kernel(contacts, count, motion, params)`: free, carried or in an impact."""
-    at_surface = spec.has("impact_time")
+    at_surface, centred = spec.has("impact_time"), spec.has("contact_midpoint")
 
     def classify(contacts, count, motion, params):
+        abrupt = False
         for i in range(motion.shape[0]):
             motion[i].carried, motion[i].tau = 0, params.dt
         for c in range(count):
@@ -105,7 +123,34 @@ def make_classify(spec: Spec) -> Any:
                         a.carried = max(a.carried, AFTERWARDS)
                         b.carried = max(b.carried, AFTERWARDS)
                 else:
-                    a.carried, b.carried = ALWAYS, ALWAYS
+                    lasts = False
+                    if centred:
+                        lasts = contact.lasts == 1
+                    if not lasts:
+                        a.carried, b.carried = ALWAYS, ALWAYS
+                        abrupt = True
+        if centred:
+            for c in range(count):
+                contact = contacts[c]
+                if contact.lambda_n > 0.0 and contact.lasts == 1:
+                    a, b = motion[contact.a], motion[contact.b]
+                    if a.carried == 0 and a.tau == params.dt:
+                        a.carried = LASTING
+                    if b.carried == 0 and b.tau == params.dt:
+                        b.carried = LASTING
+            # What is pushed by a body whose velocity jumps, jumps with it.
+            while abrupt:
+                abrupt = False
+                for c in range(count):
+                    contact = contacts[c]
+                    if contact.lambda_n > 0.0 and contact.lasts == 1:
+                        a, b = motion[contact.a], motion[contact.b]
+                        if a.carried == LASTING and b.carried != LASTING:
+                            if contact.inv_m_a > 0.0 and contact.inv_m_b > 0.0:
+                                a.carried, abrupt = ALWAYS, True
+                        elif b.carried == LASTING and a.carried != LASTING:
+                            if contact.inv_m_a > 0.0 and contact.inv_m_b > 0.0:
+                                b.carried, abrupt = ALWAYS, True
 
     return kernel(classify, spec)
 
@@ -121,8 +166,9 @@ def make_displace(spec: Spec) -> Any:
     turns = spec.has("rotation")
     midpoint = spec.has("midpoint")
     at_surface = spec.has("impact_time")
-    uneven = spec.has("gyroscopic")
+    uneven, centred = spec.has("gyroscopic"), spec.has("contact_midpoint")
     integrate_rotation: Any = make_turn(spec)
+    turn_by_mean: Any = make_turn_by_mean(spec) if centred and uneven else None
     _, jump = made_once(spec, "add_spin")
 
     def displace(body, v, m, dt):
@@ -155,6 +201,28 @@ def make_displace(spec: Spec) -> Any:
                     return integrate_rotation(body, v, rest) and solved
                 return True
         x, y, z = v.vx * dt, v.vy * dt, v.vz * dt
+        if centred:
+            lasting = m.carried == LASTING
+            if lasting:
+                half = 0.5 * dt
+                x, y, z = half * (m.vx + v.vx), half * (m.vy + v.vy), half * (m.vz + v.vz)
+            if turns and (lasting or m.midway == 1):
+                body.x += x
+                body.y += y
+                body.z += z
+                even = True
+                if uneven:
+                    even = body.inv_ix == body.inv_iy and body.inv_iy == body.inv_iz
+                if even and lasting:
+                    half = 0.5 * dt
+                    turn(body, half * (m.wx + v.wx), half * (m.wy + v.wy), half * (m.wz + v.wz))
+                    return True
+                if even or m.midway == 0:
+                    return integrate_rotation(body, v, dt)
+                # Impulses changed its spin at the middle, and so its turn.
+                v.wx, v.wy, v.wz = m.wx, m.wy, m.wz
+                turn_by_mean(body, v, m.mean_x, m.mean_y, m.mean_z, dt)
+                return True
         if midpoint:
             if m.carried == 0:
                 half = 0.5 * dt

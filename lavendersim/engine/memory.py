@@ -45,10 +45,28 @@ class State(NamedTuple):
     links: np.ndarray  # what effects join two bodies by
 
 
+class Trial(NamedTuple):
+    """Where two bodies are looked at elsewhere (`impact_location`): rows of theirs meanwhile."""
+
+    bodies: np.ndarray  # (4,) two bodies, and the parts of them that collide
+    velocities: np.ndarray  # (2,)
+    contact: np.ndarray  # (1,)
+
+
+class Middle(NamedTuple):
+    """What a step keeps while its contacts are looked at in its middle (`midpoint_passes`)."""
+
+    poses: np.ndarray  # (n,) rows of the bodies at its start
+    free: np.ndarray  # (n,) velocities that forces alone lead to
+    lead: np.ndarray  # (n,) velocities before forces and impulses, spins those at the middle
+
+
 class Workspace(NamedTuple):
     """What a step works in."""
 
     collision: Scratch
+    trial: Trial
+    middle: Middle
     ordering: Ordering
     islands: np.ndarray  # (n,) int64 label of a body's island, `islands`
     solver: Any  # what the solver allocates
@@ -104,8 +122,20 @@ def allocate_workspace(
 ) -> Workspace:
     """Return the workspace of a state; templates: of the broad phase."""
     bodies, near = len(state.bodies), spec.has("broad_phase")
+    centred = bodies if spec.has("contact_midpoint") else 0
+    tried = 1 if spec.has("impact_order") else 0
     empty = Workspace(
         collision=allocate_scratch(hulls),
+        trial=Trial(
+            np.zeros(4 * tried, state.bodies.dtype),
+            np.zeros(2 * tried, state.velocities.dtype),
+            np.zeros(tried, state.contacts.dtype),
+        ),
+        middle=Middle(
+            np.zeros(centred, state.bodies.dtype),
+            np.zeros(centred, state.velocities.dtype),
+            np.zeros(centred, state.velocities.dtype),
+        ),
         ordering=allocate_ordering(bodies, 0),
         islands=np.zeros(bodies if spec.has("sleeping") else 0, np.int64),
         solver=(),

@@ -33,6 +33,9 @@ COMPOUND: Final = 6
 # Far above: bodies would hover visibly before they touch.
 TOUCHING: Final = 1e-9
 
+# Length of a part of a step that is an impact: forces have no time to act in it [s].
+INSTANT: Final = 1e-12
+
 # Why `advance` returned.
 RUNNING: Final = 0
 ROWS_FULL: Final = 1  # trace columns are full: hand them on and call again
@@ -90,7 +93,11 @@ MOTION: Final[list[Field]] = [
     ("dvy", F8),
     ("dvz", F8),
     ("tau", F8),  # time of its first impact, from the start of the step; dt without one [s]
-    ("carried", I8),  # by a contact. 0: free; else AFTERWARDS or ALWAYS, see `integrate`
+    ("carried", I8),  # by a contact. 0: free; else AFTERWARDS, ALWAYS, LASTING: see `integrate`
+    ("midway", I8),  # 1: its velocity was changed by impulses at the middle of the step
+    ("mean_x", F8),  # mean spin of the step, where midway is 1 [rad/s]
+    ("mean_y", F8),
+    ("mean_z", F8),
     ("reach", F8),  # farthest a point of it moves in the step [m]
 ]
 
@@ -137,7 +144,8 @@ POINT: Final[list[Field]] = [
 ]
 
 PARAMETERS: Final[list[Field]] = [
-    ("dt", F8),  # timestep [s]
+    ("dt", F8),  # timestep; within a step the length of the part that is being made [s]
+    ("timestep", F8),  # of the step that is being made, all its parts [s]
     ("gx", F8),  # gravity [m/s^2]
     ("gy", F8),
     ("gz", F8),
@@ -159,6 +167,13 @@ PARAMETERS: Final[list[Field]] = [
 
 COUNTERS: Final[list[Field]] = [
     ("started", I8),  # 1 once the initial state is recorded
+    ("elapsed", F8),  # of a step that is made in parts, so far [s]
+    ("parts", I8),  # made of it so far
+    ("spent", I8),  # rows of contacts that they had
+    ("unordered", I8),  # 1 when its impacts are no longer made in order
+    ("part_sweeps", I8),  # sums over its parts: of sweeps,
+    ("part_not_converged", I8),  # whether one did not converge,
+    ("part_stronge", I8),  # and whether Stronge's law replaced Newton's in one
     ("step", I8),  # steps done since the start
     ("contacts", I8),  # rows in use, this step
     ("cached", I8),  # rows in use in the cache

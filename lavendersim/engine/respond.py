@@ -16,6 +16,9 @@ from .compile import chain, kernel
 from .contact import make_append_contact, make_apply_start
 from .effects import made_by, made_once
 from .integrate import make_classify
+from .midpoint_passes import make_midpoint_passes, make_stand_up
+from .midpoint_rows import make_lasting
+from .records import INSTANT
 from .solvers.catalogue import SOLVERS
 from .solvers.solver import ContactSystem
 from .spec import Spec
@@ -45,8 +48,18 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
     loaded = bool(loads)
     preload: Any = chain(loads, spec) if loaded else None
 
+    ordered, centred = spec.has("impact_order"), spec.has("contact_midpoint")
+    lasting: Any = make_lasting(spec) if centred else None
+    midpoint_passes: Any = None
+    if centred:
+        midpoint_passes = make_midpoint_passes(spec, append_contact, preload, solve)
+    stand_up: Any = make_stand_up(spec) if centred else None
+
     def respond(state, count, workspace, params, counters, log):
         bodies, velocities, motion = state.bodies, state.velocities, state.motion
+        lasts = True  # an impulse of an instant is no guess for a force
+        if ordered:
+            lasts = params.dt > INSTANT
         contacts, cache, pairs = state.contacts, state.cache, state.pairs
         order = workspace.ordering.order
         for c in range(count):
@@ -56,14 +69,27 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
             for c in range(count):
                 contact = contacts[c]
                 note(contact, velocities[contact.a], velocities[contact.b])
+        predicted = predicts
+        if ordered:
+            # Motion between impacts has none, unless they are left without order.
+            predicted = not lasts or counters.unordered == 1
+            if not predicted:
+                for c in range(count):
+                    contacts[c].is_impact, contacts[c].tau = 0, params.dt
         if predicts:
-            predict_impacts(contacts, count, motion, params)
+            if predicted:
+                predict_impacts(contacts, count, motion, params)
+        if centred:
+            for c in range(count):
+                lasting(contacts[c], params)
+            for i in range(velocities.shape[0]):
+                workspace.middle.free[i] = velocities[i]
         if loaded:
             for c in range(count):
                 preload(contacts[c], velocities, motion)
         if keeps_free:
             keep_free(velocities, workspace.free_velocities)
-        if warms:
+        if warms and lasts:
             match_contacts(contacts, count, bodies, cache, counters, params)
             for c in range(count):
                 contact = contacts[c]
@@ -77,14 +103,22 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
         solve(system, workspace.solver, params, counters, log.residual)
         if watched:
             settle(system, motion, workspace.solver, params, counters, log.residual)
+        midway = False
+        if centred:
+            if lasts:
+                midway = midpoint_passes(state, count, workspace, params, counters, log)
         if logs:
             log_contacts(contacts, count, velocities, params, counters, log)
-        if warms:
+        if warms and lasts:
             store_contacts(contacts, count, bodies, cache, counters, params)
-        if projects:
+        counters.projection_sweeps = 0
+        if projects and lasts:
             counters.projection_sweeps = project_positions(
                 contacts, order, count, velocities, state.pseudo, params
             )
+        if centred:
+            if midway:
+                stand_up(bodies, workspace.middle.poses)
 
     return kernel(respond, spec)
 

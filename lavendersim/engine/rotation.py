@@ -75,3 +75,11 @@ def turn(body, angle_x, angle_y, angle_z):
     scale = 1.0 / sqrt(nw * nw + nx * nx + ny * ny + nz * nz)
     body.qw, body.qx, body.qy, body.qz = nw * scale, nx * scale, ny * scale, nz * scale
     orient(body)
+
+
+@inner
+def half_turn(body, wx, wy, wz, dt):
+    """Turn `body` by half of what `turn` by omega dt would: twice this is that."""
+    whole = sqrt(1.0 + 0.25 * dt * dt * (wx * wx + wy * wy + wz * wz))
+    share = dt / (1.0 + whole)
+    turn(body, share * wx, share * wy, share * wz)

@@ -4,6 +4,7 @@ accelerate   v += dt * forces; before contacts are looked for where the rest of 
              velocities before and after (`integrate.keeps_motion`), else once they are found
 collide      contacts at the pose the step begins with, and those the step may make
 respond      velocities that respect every contact (`respond`)
+order        what part of the step comes next: an impact, or motion up to the next (`impact_order`)
 integrate    poses by semi-implicit Euler, the midpoint rule, or flight up to an impact and on from
              it (`integrate`); and out of what still penetrates, without velocity
 log          the trace row of the step
@@ -23,12 +24,17 @@ from .integrate import (
     make_classify,
     make_finish,
     make_integrate,
+    make_stand,
     make_undo,
 )
 from .kernel_cache import cached
-from .records import CONTACTS_FULL, DIVERGED, PAIRS_FULL, ROWS_FULL, RUNNING, WOKEN
+from .parts import make_end_step, make_forget_history, make_gather_parts
+from .records import CONTACTS_FULL, DIVERGED, INSTANT, PAIRS_FULL, ROWS_FULL, RUNNING, WOKEN
 from .respond import make_pass_by, make_respond
 from .spec import Spec
+
+# More rows of contacts than a step may spend on its parts (`impact_order`).
+ALL_SPENT = 1 << 40
 
 
 def make_advance(spec: Spec) -> Any:
@@ -63,6 +69,11 @@ def make_advance(spec: Spec) -> Any:
     starting = made_by(spec, "start_step")
     starts = bool(starting)
     start_step: Any = chain(starting, spec) if starts else None
+    ordered, order = made_once(spec, "order_impacts")
+    gather: Any = make_gather_parts(spec) if ordered else None
+    forget_history: Any = make_forget_history(spec) if ordered and record_residuals else None
+    end_step: Any = make_end_step(spec) if ordered else None
+    stand: Any = make_stand(spec) if ordered else None
     sleeps, measure_speeds = made_once(spec, "measure_speeds")
     _, wake = made_once(spec, "wake")
     _, update_sleeping = made_once(spec, "update_sleeping")
@@ -77,15 +88,30 @@ def make_advance(spec: Spec) -> Any:
                     log_links(log.step[counters.step_rows], state.links, bodies)
                 log_step(bodies, velocities, params, counters, log)
         counters.started = 1
-        for _ in range(steps):
-            if records:
-                if counters.step_rows == log.step.shape[0]:
-                    return ROWS_FULL
+        if touches:
+            pull = workspace.collision.outline_a.pull
+            pull[0], pull[1], pull[2] = params.gx, params.gy, params.gz
+        done = 0
+        while done < steps:
+            begins = True
+            if ordered:
+                begins = counters.parts == 0
+            if begins:
+                params.timestep = params.dt
+            if ordered:
+                params.dt = params.timestep - counters.elapsed
+            if begins:
+                if records:
+                    if counters.step_rows == log.step.shape[0]:
+                        return ROWS_FULL
+                if sleeps:
+                    measure_speeds(bodies, velocities)
             if record_residuals:
+                if ordered:
+                    forget_history(counters, log.residual)
                 if counters.residual_rows + params.sweeps + 1 > log.residual.shape[0]:
+                    params.dt = params.timestep
                     return ROWS_FULL
-            if sleeps:
-                measure_speeds(bodies, velocities)
             if starts:
                 start_step(bodies, velocities)
             if keeps:
@@ -112,7 +138,11 @@ def make_advance(spec: Spec) -> Any:
             elif count < 0:
                 full = CONTACTS_FULL
             if records:
-                if full == RUNNING and counters.contact_rows + count > log.contact.shape[0]:
+                rows = counters.contact_rows + count
+                if ordered:
+                    if not begins:
+                        rows += log.step[counters.step_rows].contact_count
+                if full == RUNNING and rows > log.contact.shape[0]:
                     full = ROWS_FULL
             if sleeps:
                 if full == RUNNING and wake(bodies, contacts, count, params):
@@ -120,7 +150,27 @@ def make_advance(spec: Spec) -> Any:
             if full != RUNNING:
                 if keeps:
                     undo(velocities, motion)
+                params.dt = params.timestep
                 return full
+            instant = False
+            if ordered:
+                left = params.dt
+                if records:
+                    row = log.step[counters.step_rows]
+                    logged, most = row.contact_count, row.residual
+                    force, deepest = row.total_normal_force, row.max_penetration
+                count, length = order(state, count, workspace, params, counters)
+                instant = length == 0.0
+                if length < left:
+                    undo(velocities, motion)
+                    params.dt = max(length, INSTANT)
+                if instant:
+                    stand(velocities, motion)
+                elif length < left:
+                    begin(bodies, velocities, motion, params)
+                    if linked:
+                        act_between(state.links, bodies, velocities, motion, params)
+                        finish(bodies, velocities, motion, params)
             if accelerates and not keeps:
                 for i in range(bodies.shape[0]):
                     if bodies[i].inv_m > 0.0:
@@ -135,18 +185,40 @@ def make_advance(spec: Spec) -> Any:
                         passed = True
                 if not passed:
                     respond(state, count, workspace, params, counters, log)
+            if ordered:
+                if instant:
+                    if counters.not_converged == 1:
+                        # It cannot be solved by itself: the rest of the step has no order.
+                        undo(velocities, motion)
+                        counters.spent = ALL_SPENT
+                        if records:
+                            row = log.step[counters.step_rows]
+                            row.contact_count, row.residual = logged, most
+                            row.total_normal_force, row.max_penetration = force, deepest
+                        continue
+                    gather(counters)
+                    continue
+                gather(counters)
             if keeps and touches:
                 classify(contacts, count, motion, params)
             moved = counters.projection_sweeps > 0
             diverged, cause = integrate(bodies, velocities, motion, state.pseudo, moved, params.dt)
+            if ordered:
+                if length < left and diverged < 0:
+                    counters.elapsed += length
+                    continue
+                params.dt = params.timestep
             if sleeps:
                 update_sleeping(state, count, workspace.islands, params)
+            done += 1
             counters.step += 1
             counters.contacts = count
             if records:
                 if linked:
                     log_links(log.step[counters.step_rows], state.links, bodies)
                 log_step(bodies, velocities, params, counters, log)
+            if ordered:
+                end_step(counters)
             if diverged >= 0:
                 counters.body, counters.cause = diverged, cause
                 return DIVERGED

@@ -21,13 +21,15 @@ from lavendersim.engine.spec import Spec
 from lavendersim.engine.step import is_compiled
 
 MODULES = {effect.name: effect for effect in EFFECTS}
-# What lets a law in that the numerics or the study choose, by the key that its module names.
-LETS_IN = {
-    "impacts": "at_surface",
-    "integrator": "midpoint",
-    "speculative": True,
-    "solver": "adaptive",
-    "mistake": "capture_in_sweeps",
+# What lets a law in that the numerics or the study choose: values of the key that its module names.
+LETS_IN: dict[str, tuple[Any, ...]] = {
+    "impact_time": ("at_surface", "in_order"),
+    "impact_order": ("in_order",),
+    "midpoint": ("midpoint", "midpoint_contact"),
+    "contact_midpoint": ("midpoint_contact",),
+    "speculative": (True,),
+    "newton": ("adaptive",),
+    "capture_in_sweeps": ("capture_in_sweeps",),
 }
 LOGS = {  # tables of `Rows`, and the effect that fills each
     "step": "step_log",
@@ -55,7 +57,7 @@ def may_idle(cell: dict[str, Any], name: str, record: bool = True) -> bool:
 
 def _is_let_in(cell: dict[str, Any], name: str) -> bool:
     chosen = MODULES[name].chosen_by
-    return chosen is None or bool(cell[chosen.section][chosen.key] == LETS_IN[chosen.key])
+    return chosen is None or cell[chosen.section][chosen.key] in LETS_IN[name]
 
 
 class Run:

@@ -1,13 +1,15 @@
 """What an isolated world of any shapes keeps: frictional, bouncing, soft, at default numerics.
 
 Every impulse acts on two bodies with opposite signs: momentum is kept to round-off. Its moment is
-kept where both act on one line at one instant. `impact_time` lets bodies fly on to the instant tau
-of the impact but takes the line of the step's start, so one impact changes the moment by
+kept where both act on one line at one instant, as the impacts of rigid bodies do, one after the
+other (`impact_order`). What is no impact takes time: a soft contact, and the touch of rigid bodies
+between impacts where others push them, too. Their bodies move on while the line stays that of one
+pose, so one contact may change the moment by
 
-    dL = (phi n + v tau) x p + (I(tau) - I(0)) domega,   v, tau <= dt: of the centres; p on B
+    dL = (phi n + v t) x p + (I(t) - I(0)) domega,   v, t <= dt: of the centres; p on B
 
-the first with the gap's and the flight's lever, the last because the jump of the spin is that of
-the pose at the start. All are of first order in dt. The bound below takes each at its largest.
+the first with the gap's and the motion's lever, the last because the jump of the spin is that of
+another pose. All are of first order in dt. The bound below takes each at its largest.
 """
 
 from __future__ import annotations
@@ -15,7 +17,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from hypothesis import given
-from zoo import DT, SOME, Bench, bench, impulses, run, soft, vectors, zoos
+from hypothesis import strategies as st
+from zoo import DT, SHAPES, SOME, Bench, bench, impulses, run, soft, vectors, zoos
 
 STEPS = 40
 
@@ -58,7 +61,7 @@ def first_order(world: Bench, before: np.ndarray, spins: np.ndarray, contacts) -
 
 @given(zoos(compliance=soft))
 @SOME
-def test_moment_of_momentum_changes_by_the_flight_of_impacts_and_nothing_else(bodies):
+def test_moment_of_momentum_changes_by_the_motion_under_contacts_and_nothing_else(bodies):
     """Without projection, which turns a body at constant omega and so changes its I omega."""
     world = bench(bodies, projection=0.0)
     world.run(0)
@@ -74,9 +77,23 @@ def test_moment_of_momentum_changes_by_the_flight_of_impacts_and_nothing_else(bo
         start = moments[-1]
 
 
-@given(zoos(("sphere",), count=(2, 2)))
+@pytest.mark.parametrize(
+    ("kinds", "count"),
+    [
+        pytest.param(("sphere",), (2, 5), id="balls"),
+        pytest.param(
+            *(SHAPES, (2, 2)),
+            id="any two",
+            marks=pytest.mark.xfail(
+                strict=True, reason="what parts and turns may meet again unseen within the step"
+            ),
+        ),
+    ],
+)
+@given(st.data())
 @SOME
-@pytest.mark.xfail(strict=True, reason="impacts act along the normal of the step's start")
-def test_moment_of_momentum_of_two_balls_is_kept_to_round_off(bodies):
+def test_moment_of_momentum_of_what_only_strikes_is_kept_to_round_off(kinds, count, data):
+    bodies = data.draw(zoos(kinds, count))
     angular = vectors(run(bodies, STEPS).step, "angular_momentum_")
+    # Sums as above, of levers of some metres; and surfaces meet to 1e-9 m squared, by Newton.
     assert np.abs(angular - angular[0]).max() < 1e-12 * mass_speeds(bodies)

@@ -28,6 +28,8 @@ SECTIONS = {
         *("cohesion", "static_friction"),
     ),
     "impacts-at-the-surface": ("impact_time", "impact_energy"),
+    "impacts-in-order": ("impact_order",),
+    "contact-at-the-middle-of-the-step": ("contact_midpoint",),
     "torques-at-a-contact": ("torsional_friction", "rolling_friction"),
     "warm-start": ("warm_start",),
     "newtons-method": ("newton",),

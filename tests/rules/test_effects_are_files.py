@@ -42,6 +42,7 @@ ELSEWHERE = {
     },
     "compliance": {
         "engine/effects/fast_bodies.py": "springs give energy back",
+        "engine/effects/impact_order.py": "what gives way takes time: no impact of an instant",
         "engine/contact.py": ROW,
         "engine/assemble.py": ROW,
         "engine/residual.py": ROW,
@@ -58,6 +59,7 @@ ELSEWHERE = {
         "engine/effects/capture_in_sweeps.py": "makes a mistake with it",
         "engine/effects/fast_bodies.py": "captured, it gives energy",
         "engine/effects/impact_energy.py": "takes the place of its law",
+        "engine/effects/impact_order.py": "a rebound tells an impact from a lasting contact",
     },
     "speculative": {
         "engine/effects/decision.py": FACT,
@@ -193,7 +195,7 @@ from lavendersim.trace import open_trace
 contact = open_trace(path).contact
 with path.open("rb") as stream:
     channels = make_reader(stream).get_summary().channels.values()
-(meanings,) = [channel.metadata for channel in channels if channel.topic == "/contacts"]
+(meanings,) = [channel.metadata for channel in channels if channel.topic == "/contact_columns"]
 print(json.dumps({"pressing": contact["impulse_n"].tolist(), "meaning": meanings["cushion_impulse"],
                   "cushion": contact["cushion_impulse"].tolist()}))
 """

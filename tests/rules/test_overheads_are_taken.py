@@ -37,6 +37,7 @@ IDLE = {  # in effects/sphere.yaml, with the reason why no config has it at work
     "external_force": FORCES,
     "rotation": NEEDED,
     "contact_torque": NEEDED,
+    "impact_order": "another law where a scene requires it; of one ball on a plane it is idle",
     "impact_energy": SWEPT,
     "stabilisation": "the default numerics, which all timed scenes have, project instead",
     "newton": "where a scene requires it, solves without it are another solver's",
@@ -47,6 +48,7 @@ IDLE = {  # in effects/sphere.yaml, with the reason why no config has it at work
 CHOSEN = "a key of the config chooses between two laws; neither is an overhead of the other"
 NOT_ALONE = {
     "midpoint": CHOSEN,
+    "contact_midpoint": CHOSEN,
     "impact_time": CHOSEN,
     "speculative": CHOSEN,
     "capture_in_sweeps": CHOSEN,

@@ -27,8 +27,8 @@ KINDS = (
     "hard/crowd/rush_to_the_centre",
     "effects/spring",
 )
-# The shares that zstd leaves lie between those of rest and of churning, which are at most 3.5 times
-# (contacts: 0.2 and 0.7) and 4 times (/step: 0.25 and 1) apart: from between, either is within 2.3.
+# The shares that zstd leaves lie between those of rest and of churning, which are at most 5 times
+# (contacts: 0.12 and 0.59) and 3 times (/step: 0.3 and 0.8) apart: from between, within 2.3.
 # The number of contacts is right where bodies rest, else within what they may have: 3 in all.
 FACTOR = 3.0
 

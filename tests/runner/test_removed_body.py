@@ -8,6 +8,7 @@ floor goes at 0.6 s. Once with pairs that are listed, once with those that the e
 from __future__ import annotations
 
 import io
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -18,9 +19,9 @@ from matplotlib.image import imread
 import lavendersim
 from lavendersim.figures.style import LOOKS
 from lavendersim.figures.thumbnail import thumbnail
-from lavendersim.measures.sections import Section
 from lavendersim.runner.experiment_run import Finished
 from lavendersim.trace import Trace, open_trace
+from lavendersim.trace.reader import RecordedPoses
 
 G = 9.81
 SCENE = """
@@ -119,8 +120,13 @@ def test_a_thumbnail_shows_it_as_long_as_it_is_there(finished: Finished) -> None
     log = trace(finished, "off", at=0.3)
     shown = []
     for states in (73, 74):
-        whole = (log.bodies, log.config, log.clock, log.absent)
-        part = Section(log.step[:states], log.contact, log.pose[:states], *whole)
+        part = SimpleNamespace(
+            step=log.step[:states],
+            recorded_pose=RecordedPoses(np.arange(states), log.pose[:states]),
+            bodies=log.bodies,
+            config=log.config,
+            clock=log.clock,
+        )
         picture = imread(io.BytesIO(thumbnail(part)))[:, :, :3]
         shown.append(bool((np.abs(picture - to_rgb(LOOKS[GUEST].colour)).max(axis=2) < 0.01).any()))
     assert shown == [True, False]

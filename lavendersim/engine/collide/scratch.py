@@ -58,6 +58,7 @@ class Outline(NamedTuple):
 
     corners: np.ndarray  # (n,) VECTOR
     plane: np.ndarray  # (1,) PLANE_OF_FEATURE
+    pull: np.ndarray  # (3,) gravity: where what stands on a round cap tips to [m/s^2]
 
 
 class Scratch(NamedTuple):
@@ -89,9 +90,13 @@ def allocate_scratch(geometry: HullGeometry | None = None) -> Scratch:
             axes=np.zeros((3, 3)), half=np.zeros(3), centre=np.zeros(3), offset=np.zeros(3)
         )
 
+    pull = np.zeros(3)
+
     def outline() -> Outline:
         return Outline(
-            corners=np.zeros(longest, dtype(VECTOR)), plane=np.zeros(1, dtype(PLANE_OF_FEATURE))
+            corners=np.zeros(longest, dtype(VECTOR)),
+            plane=np.zeros(1, dtype(PLANE_OF_FEATURE)),
+            pull=pull,
         )
 
     return Scratch(

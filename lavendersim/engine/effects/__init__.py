@@ -9,7 +9,7 @@ from typing import Any, Final, Literal
 from ..records import Field
 from ..spec import Spec
 from .decision import BodyFacts, Decision, Facts, PairFacts
-from .effect import CHAINED, Column, Effect, Hooks, hook_names
+from .effect import CHAINED, Column, Derived, Effect, Hooks, hook_names
 
 # Order matters within a hook: kernels of one hook run in this order.
 NAMES: Final = (
@@ -31,7 +31,9 @@ NAMES: Final = (
     "static_friction",
     "cohesion",
     "midpoint",
+    "contact_midpoint",
     "impact_time",
+    "impact_order",
     "speculative",
     "fast_bodies",
     "restitution",
@@ -115,6 +117,7 @@ __all__ = [
     "BodyFacts",
     "Column",
     "Decision",
+    "Derived",
     "Effect",
     "Facts",
     "Hooks",

@@ -19,26 +19,36 @@ def decide(facts: Facts) -> Decision:
     return Decision(False, "every body is one shape")
 
 
+def make_place_part(spec):
+    """Return `kernel(bodies, i)`: a part follows its owner; a body that has none stays."""
+    from ..rotation import orient, to_world
+
+    def place_part(bodies, i):
+        part = bodies[i]
+        if part.owner != i:
+            whole = bodies[part.owner]
+            x, y, z = to_world(whole, part.px, part.py, part.pz)
+            part.x, part.y, part.z = whole.x + x, whole.y + y, whole.z + z
+            a, b, c, d = whole.qw, whole.qx, whole.qy, whole.qz
+            w, x, y, z = part.pqw, part.pqx, part.pqy, part.pqz
+            qw = a * w - b * x - c * y - d * z
+            qx = a * x + b * w + c * z - d * y
+            qy = a * y - b * z + c * w + d * x
+            qz = a * z + b * y - c * x + d * w
+            scale = 1.0 / sqrt(qw * qw + qx * qx + qy * qy + qz * qz)
+            part.qw, part.qx, part.qy, part.qz = qw * scale, qx * scale, qy * scale, qz * scale
+            orient(part)
+
+    return kernel(place_part, spec)
+
+
 def make(spec):
     """Return `kernel(bodies)`: parts follow their owners."""
-    from ..rotation import orient, to_world
+    place_part = make_place_part(spec)
 
     def place_parts(bodies):
         for i in range(bodies.shape[0]):
-            part = bodies[i]
-            if part.owner != i:
-                whole = bodies[part.owner]
-                x, y, z = to_world(whole, part.px, part.py, part.pz)
-                part.x, part.y, part.z = whole.x + x, whole.y + y, whole.z + z
-                a, b, c, d = whole.qw, whole.qx, whole.qy, whole.qz
-                w, x, y, z = part.pqw, part.pqx, part.pqy, part.pqz
-                qw = a * w - b * x - c * y - d * z
-                qx = a * x + b * w + c * z - d * y
-                qy = a * y - b * z + c * w + d * x
-                qz = a * z + b * y - c * x + d * w
-                scale = 1.0 / sqrt(qw * qw + qx * qx + qy * qy + qz * qz)
-                part.qw, part.qx, part.qy, part.qz = qw * scale, qx * scale, qy * scale, qz * scale
-                orient(part)
+            place_part(bodies, i)
 
     return kernel(place_parts, spec)
 
@@ -60,5 +70,5 @@ EFFECT = Effect(
             ("pqz", "f8"),
         ],
     ),
-    hooks=Hooks(place_parts=make),
+    hooks=Hooks(place_parts=make, place_part=make_place_part),
 )

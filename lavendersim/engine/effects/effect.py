@@ -23,6 +23,18 @@ Kernel = Any  # a compiled function
 Maker = Callable[..., Kernel]  # (spec, ...) -> kernel; what it is given beside the spec: see Hooks
 
 
+class Derived(NamedTuple):
+    """How a column follows from others of its row, bit for bit: a log does not store it.
+
+    A log keeps the rule by which its reader gives the column back, so a rule is never changed:
+    another one has another text.
+    """
+
+    rule: str  # in the names of columns, as the log has it
+    sources: tuple[str, ...]  # the columns it follows from
+    value: Callable[[Any, Any], Any]  # (rows, timestep of each [s]) -> the column
+
+
 class Column(NamedTuple):
     """One number of a log row."""
 
@@ -32,6 +44,7 @@ class Column(NamedTuple):
     unit: str = ""  # "" where it is a count, an index, a hash or a direction
     number: int = 0  # of the field in the messages of /step and /residuals; fixed for ever
     when: Callable[[Spec], bool] | None = None  # the engines of the effect that log it; None: all
+    derived: Derived | None = None  # None: it is stored
 
     @property
     def text(self) -> str:
@@ -80,6 +93,7 @@ class Hooks:
     measure_speeds: Maker | None = None  # (bodies, velocities), before forces act
     refresh_inertia: Maker | None = None  # (bodies, velocities), when forces have acted
     place_parts: Maker | None = None  # (bodies), before collision detection
+    place_part: Maker | None = None  # (bodies, row)
     find_pairs: Maker | None = None  # the broad phase, see `collide.broad.broad_phase`
     is_still: Maker | None = None  # (body) -> whether it cannot move in this step
     wake: Maker | None = None  # (bodies, contacts, count, params) -> whether a body woke
@@ -91,6 +105,7 @@ class Hooks:
     torsion_residual: Maker | None = None  # (contact, spin) -> r [rad/s]
     rolling_residual: Maker | None = None  # (contact, w1, w2) -> r [rad/s]
     note_slip: Maker | None = None  # (contact, va, vb): the slip before the solve
+    order_impacts: Maker | None = None  # (state, count, workspace, params, counters): see there
     predict_impacts: Maker | None = None  # (contacts, count, motion, params), before the solve
     keep_free: Maker | None = None  # (velocities, free), before any contact impulse acts
     match: Maker | None = None  # (contacts, count, bodies, cache, counters, params)

@@ -8,7 +8,7 @@ a sweep needs both and nothing else of a body.
 
 from ..spec import Spec
 from .decision import Decision, Facts, PairFacts, by_pair
-from .effect import Column, Effect, Fields, Hooks, Kernel, kernel
+from .effect import Column, Derived, Effect, Fields, Hooks, Kernel, kernel
 from .keys import COEFFICIENT, SurfaceKey, geometric_mean
 
 
@@ -56,11 +56,14 @@ def make_contact_row(spec):
     """Return `kernel(out, contact, va, vb)` that fills its columns of a contact."""
     from ..block import make_slip_velocity
 
-    slip_velocity = make_slip_velocity(spec)
+    slip_velocity, centred = make_slip_velocity(spec), spec.has("contact_midpoint")
 
     def log_friction(out, contact, va, vb):
         out.impulse_t1, out.impulse_t2 = contact.lambda_1, contact.lambda_2
         _, out.slip_t1, out.slip_t2 = slip_velocity(contact, va, vb)
+        if centred:
+            if contact.slides == 2:  # the row has the sum of both ends'
+                out.slip_t1, out.slip_t2 = 0.5 * out.slip_t1, 0.5 * out.slip_t2
         out.t1x, out.t1y, out.t1z = contact.t1x, contact.t1y, contact.t1z
         out.friction = contact.mu
 
@@ -73,6 +76,39 @@ def make_step_row(spec: Spec) -> Kernel:
 
     return make_log_coulomb(spec)
 
+
+def _duff(rows):
+    """Return side and a of logged normals: see `block.set_tangents`, whose bits these are."""
+    import numpy as np  # late: configs are read without it
+
+    z = rows["nz"]
+    side = np.where(z >= 0.0, 1.0, -1.0)
+    return side, -1.0 / (side + z)
+
+
+def tangent_x(rows, timestep):
+    """Return the first tangent's x of logged contacts."""
+    side, a = _duff(rows)
+    return 1.0 + side * rows["nx"] * rows["nx"] * a
+
+
+def tangent_y(rows, timestep):
+    """Return the first tangent's y of logged contacts."""
+    side, a = _duff(rows)
+    return side * (rows["nx"] * rows["ny"] * a)
+
+
+def tangent_z(rows, timestep):
+    """Return the first tangent's z of logged contacts."""
+    side, _ = _duff(rows)
+    return -side * rows["nx"]
+
+
+NORMAL = ("nx", "ny", "nz")
+SIDE = "s = 1 if nz >= 0 else -1"
+TANGENT_X = Derived(f"1 + s nx nx a, a = -1 / (s + nz), {SIDE}", NORMAL, tangent_x)
+TANGENT_Y = Derived(f"s (nx ny a), a = -1 / (s + nz), {SIDE}", NORMAL, tangent_y)
+TANGENT_Z = Derived(f"-s nx, {SIDE}", NORMAL, tangent_z)
 
 EFFECT = Effect(
     name="friction",
@@ -123,9 +159,9 @@ EFFECT = Effect(
             "slip of B's surface on A's after the solve, moving surfaces included, along t2",
             "m/s",
         ),
-        Column("t1x", "f8", "first unit tangent, world x"),
-        Column("t1y", "f8", "first unit tangent, world y"),
-        Column("t1z", "f8", "first unit tangent, world z"),
+        Column("t1x", "f8", "first unit tangent, world x", derived=TANGENT_X),
+        Column("t1y", "f8", "first unit tangent, world y", derived=TANGENT_Y),
+        Column("t1z", "f8", "first unit tangent, world z", derived=TANGENT_Z),
         Column("friction", "f8", "coefficient of the pair", "-"),
     ),
     step_columns=(

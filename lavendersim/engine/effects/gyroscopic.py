@@ -33,20 +33,11 @@ def decide(facts: Facts) -> Decision:
     return Decision(False, "no body that may turn has unequal principal inertias")
 
 
-def make(spec):
-    """Return `kernel(body, velocity, dt) -> solved` that replaces the plain turn."""
-    from ..rotation import to_body, to_world, turn
+def make_find_middle(spec):
+    """Return `kernel(body, px, py, pz, dt) -> (mx, my, mz, found)`: m of a momentum, body axes."""
 
-    def integrate_gyroscopic(body, velocity, dt):
-        wx, wy, wz = velocity.wx, velocity.wy, velocity.wz
-        if wx == 0.0 and wy == 0.0 and wz == 0.0:
-            return True
+    def find_middle(body, px, py, pz, dt):
         ix, iy, iz = body.inv_ix, body.inv_iy, body.inv_iz
-        if ix == iy and iy == iz:  # a round body turns at constant omega, to the bit
-            turn(body, wx * dt, wy * dt, wz * dt)
-            return True
-        bx, by, bz = to_body(body, wx, wy, wz)
-        px, py, pz = bx / ix, by / iy, bz / iz
         # (m x I^-1 m)_x = m_y m_z (1/I_z - 1/I_y), and so round the axes.
         a, b, c = 0.5 * dt * (iz - iy), 0.5 * dt * (ix - iz), 0.5 * dt * (iy - ix)
         mx, my, mz = px, py, pz
@@ -74,6 +65,28 @@ def make(spec):
             if dx * dx + dy * dy + dz * dz <= FOUND * size:
                 found = True
                 break
+        return mx, my, mz, found
+
+    return kernel(find_middle, spec)
+
+
+def make(spec):
+    """Return `kernel(body, velocity, dt) -> solved` that replaces the plain turn."""
+    from ..rotation import to_body, to_world, turn
+
+    find_middle = make_find_middle(spec)
+
+    def integrate_gyroscopic(body, velocity, dt):
+        wx, wy, wz = velocity.wx, velocity.wy, velocity.wz
+        if wx == 0.0 and wy == 0.0 and wz == 0.0:
+            return True
+        ix, iy, iz = body.inv_ix, body.inv_iy, body.inv_iz
+        if ix == iy and iy == iz:  # a round body turns at constant omega, to the bit
+            turn(body, wx * dt, wy * dt, wz * dt)
+            return True
+        bx, by, bz = to_body(body, wx, wy, wz)
+        px, py, pz = bx / ix, by / iy, bz / iz
+        mx, my, mz, found = find_middle(body, px, py, pz, dt)
         if not found:
             return False
         wx, wy, wz = to_world(body, ix * mx, iy * my, iz * mz)
@@ -83,6 +96,52 @@ def make(spec):
         return True
 
     return kernel(integrate_gyroscopic, spec)
+
+
+def make_turn_midway(spec):
+    """Return `kernel(body, start, m, lead, x, y, z, dt)`: half a turn, with what impulses change.
+
+    body: stands at a middle found before, with its spin there in `start.w` + what impulses change;
+    start: its row at the start of the step. (x, y, z): spin that the step ends with at that middle;
+    lead: spin there before impulses, replaced. With L = I (w - lead) the momentum that they give,
+        m = P + L/2 + dt/2 m x I^-1 m,   the step's mean spin I^-1 m = lead + I^-1 L/2.
+    """
+    from ..rotation import half_turn, inertia_times, inverse_inertia_times, to_body, to_world
+
+    find_middle = make_find_middle(spec)
+
+    def turn_midway(body, start, m, lead, x, y, z, dt):
+        lx, ly, lz = inertia_times(body, x - lead.wx, y - lead.wy, z - lead.wz)
+        gx, gy, gz = to_body(body, lx, ly, lz)
+        bx, by, bz = to_body(start, m.wx, m.wy, m.wz)
+        ix, iy, iz = start.inv_ix, start.inv_iy, start.inv_iz
+        px, py, pz = bx / ix + 0.5 * gx, by / iy + 0.5 * gy, bz / iz + 0.5 * gz
+        px, py, pz, _ = find_middle(start, px, py, pz, dt)
+        wx, wy, wz = to_world(start, ix * px, iy * py, iz * pz)
+        body.qw, body.qx, body.qy, body.qz = start.qw, start.qx, start.qy, start.qz
+        half_turn(body, wx, wy, wz, dt)
+        x, y, z = inverse_inertia_times(body, lx, ly, lz)
+        lead.wx, lead.wy, lead.wz = wx - 0.5 * x, wy - 0.5 * y, wz - 0.5 * z
+
+    return kernel(turn_midway, spec)
+
+
+def make_turn_by_mean(spec):
+    """Return `kernel(body, velocity, x, y, z, dt)`: turn with the mean spin of the step.
+
+    velocity: spin at its start, replaced by that at its end: in body axes 2 omega_m - omega_0.
+    """
+    from ..rotation import to_body, to_world, turn
+
+    def turn_by_mean(body, velocity, x, y, z, dt):
+        ax, ay, az = to_body(body, velocity.wx, velocity.wy, velocity.wz)
+        bx, by, bz = to_body(body, x, y, z)
+        turn(body, x * dt, y * dt, z * dt)
+        velocity.wx, velocity.wy, velocity.wz = to_world(
+            body, 2.0 * bx - ax, 2.0 * by - ay, 2.0 * bz - az
+        )
+
+    return kernel(turn_by_mean, spec)
 
 
 def make_jump(spec):

@@ -25,7 +25,7 @@ HALVINGS = 60
 
 def decide(facts: Facts) -> Decision:
     """On where impacts at the surface may bounce with friction."""
-    if facts.impacts != "at_surface":
+    if facts.impacts == "captured":
         return Decision(False, f"impacts are {facts.impacts}")
     if not any(pair.surface.restitution > 0.0 for pair in facts.pairs):
         return Decision(False, "every pair that may touch has restitution 0")

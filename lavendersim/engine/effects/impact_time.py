@@ -21,15 +21,17 @@ SLOWEST = 4.0
 
 def decide(facts: Facts) -> Decision:
     """On when the numerics ask for it and something can touch."""
-    if facts.impacts != "at_surface":
+    if facts.impacts == "captured":
         return Decision(False, f"impacts are {facts.impacts}")
     if facts.pairs:
-        return Decision(True, "impacts are at_surface")
+        return Decision(True, f"impacts are {facts.impacts}")
     return Decision(False, "nothing can touch")
 
 
 def make_foresee(spec):
     """Return `kernel(contact, params)`: when the surfaces meet in free flight, and how fast."""
+
+    ordered = spec.has("impact_order")
 
     def foresee(contact, params):
         dt = params.dt
@@ -49,7 +51,10 @@ def make_foresee(spec):
         separation_speed = contact.e * approach_speed
         # A flight that outlasts the step, or a plastic impact worth the name.
         flies_on = 2.0 * separation_speed > -a * rest
-        if flies_on or approach_speed > SLOWEST * abs(contact.dv_n):
+        change = contact.dv_n
+        if ordered:  # of a whole step, whatever its part
+            change *= params.timestep / dt
+        if flies_on or approach_speed > SLOWEST * abs(change):
             contact.tau, contact.approach_speed = tau, approach_speed
             contact.separation_speed = separation_speed
             contact.after = a * rest if flies_on else 0.0

@@ -10,7 +10,7 @@ from .effect import Choice, Effect, Fields
 
 def decide(facts: Facts) -> Decision:
     """On when the numerics ask for it and something accelerates bodies between contacts."""
-    if facts.integrator != "midpoint":
+    if facts.integrator == "semi_implicit_euler":
         return Decision(False, f"the integrator is {facts.integrator}")
     from . import EFFECTS  # by the time it is asked, all are there
 

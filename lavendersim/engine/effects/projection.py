@@ -29,6 +29,7 @@ def make(spec):
     apply_impulse = make_apply_impulse(spec)
     torque = spec.has("contact_torque")
     friction, midpoint = spec.has("friction"), spec.has("midpoint")
+    centred = spec.has("contact_midpoint")
 
     def project_positions(contacts, order, count, velocities, pseudo, params):
         asked = False
@@ -38,6 +39,9 @@ def make(spec):
             if midpoint:
                 if contact.lambda_n == 0.0:
                     v_n -= 0.5 * contact.dv_n
+                elif centred:
+                    if contact.lasts == 1:
+                        v_n = 0.5 * (v_n + contact.middle_n)
             excess = -(contact.phi + v_n * params.dt) - params.slop
             contact.correction = params.projection * max(excess, 0.0)
             contact.push = 0.0

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from lavendersim.cell import CellConfig, CellTimestep, ResidualWindow
+from lavendersim.cell import CellConfig, CellTimestep, TimeWindow
 from lavendersim.experiment import load_experiment, load_experiment_text
 
 CONFIGS = Path(__file__).parents[3] / "configs"
@@ -71,7 +71,7 @@ def test_everything_that_a_cell_can_hold_comes_back_with_its_types() -> None:
     assert again.scene.bodies["ball"].release is not None
     assert again.scene.bodies["ball"].release.phase == Fraction(3, 16)
     assert isinstance(again.events[0], CellTimestep)
-    assert again.record.residuals == ResidualWindow.model_validate({"from": 0.1, "to": 0.2})
+    assert again.record.residuals == TimeWindow.model_validate({"from": 0.1, "to": 0.2})
 
 
 def test_a_key_that_no_cell_has_is_refused() -> None:

@@ -41,7 +41,7 @@ def test_the_tables_are_those_of_the_models() -> None:
 def test_every_model_has_a_table_or_is_described_in_words() -> None:
     tables = re.findall(r"<!-- \w+: ([\w ]+) -->", TEXT)
     shown = {name for names in tables for name in names.split()}
-    in_words = {"ArrangedBody", "Axis", "AxisAngle", "Effects", "Record", "Reduced", "Window"}
+    in_words = {"ArrangedBody", "Axis", "AxisAngle", "Effects", "Reduced", "Window"}
     of_effects = {
         model.__name__ for key in SCENE_KEYS for model in models_below(Annotated[key.type, ""])
     }

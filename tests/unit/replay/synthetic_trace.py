@@ -15,6 +15,7 @@ import numpy as np
 
 from lavendersim.cell import CellConfig
 from lavendersim.clock import Clock
+from lavendersim.trace.reader import RecordedPoses
 from tests.oracle.cells import cell
 
 G = 9.81
@@ -51,6 +52,24 @@ class SyntheticTrace:
     complete: bool = True
     path: Path = Path("cells/ball_and_box.mcap")
     clock: Clock = field(default_factory=lambda: Clock(Fraction(1, 240)))
+
+    @property
+    def recorded_pose(self) -> RecordedPoses:
+        """Rows of `step`, and their poses: all of them."""
+        return RecordedPoses(self.recorded_rows("/tf"), self.pose)
+
+    @property
+    def recorded_contact(self) -> Any:
+        """All contacts."""
+        return self.contact
+
+    def recorded_rows(self, topic: str) -> Any:
+        """All rows of `step`."""
+        return np.arange(len(self.step))
+
+    def has(self, topic: str) -> bool:
+        """Whether the log has a topic."""
+        return topic not in self.absent
 
     @property
     def config(self) -> CellConfig:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from laboratory import body, config, plane, resolved
 
-from lavendersim.cell import CellRecord, ResidualWindow
+from lavendersim.cell import CellRecord, TimeWindow
 from lavendersim.engine.spec import Spec
 from lavendersim.scene.build import Scene, build, residual_window
 from lavendersim.scene.events import EventQueue
@@ -155,7 +155,7 @@ def test_a_timestep_and_what_is_made_of_it_change_together() -> None:
 
 def test_a_window_of_residuals_is_counted_in_steps_of_their_length() -> None:
     bench = Bench(events=[{"at": 0.2, "timestep": "1/4"}])
-    window = ResidualWindow.model_validate({"from": 0.2, "to": 0.95})
+    window = TimeWindow.model_validate({"from": 0.2, "to": 0.95})
     record = CellRecord(residuals=window, problems="none")  # steps end at 0.2, 0.45, 0.7, 0.95
     assert residual_window(record, bench.scene.clock) == (2, 5)
 

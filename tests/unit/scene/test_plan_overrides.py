@@ -24,13 +24,17 @@ numerics: {numerics}
 duration: 0.1
 """
 BY_NAME = {effect.name: effect for effect in EFFECTS}
-# Key of the numerics -> the value that the preset `default` has, and the first other one.
+# Effect -> the first value of its key that has it, and the first that has it not.
 LAWS = {
-    "impacts": ("at_surface", "captured"),
-    "integrator": ("midpoint", "semi_implicit_euler"),
+    "impact_time": ("at_surface", "captured"),
+    "impact_order": ("in_order", "captured"),
+    "midpoint": ("midpoint", "semi_implicit_euler"),
+    "contact_midpoint": ("midpoint_contact", "semi_implicit_euler"),
     "speculative": ("true", "false"),
-    "solver": ("adaptive", "projected_gauss_seidel"),
+    "newton": ("adaptive", "projected_gauss_seidel"),
 }
+# One ball and one plane need no order of impacts.
+ANOTHER = "    other: {shape: {kind: sphere, radius: 0.1}, mass: 1.0, position: [9, 0, 9]}\n"
 LAWFUL = [effect.name for effect in EFFECTS if effect.chosen_by]
 MISTAKE = "capture_in_sweeps"  # chosen by the study; all others by the numerics
 CHOSEN = [name for name in LAWFUL if name != MISTAKE]
@@ -143,7 +147,7 @@ def test_what_needs_it_can_be_switched_off_as_well() -> None:
 @pytest.mark.parametrize("name", CHOSEN)
 def test_a_law_is_chosen_by_the_numerics_alone(name: str) -> None:
     _, key = choice(name)
-    chosen, other = LAWS[key]
+    chosen, other = LAWS[name]
     preset = f"{{{key}: {other}}}"
     text = config(f"{name}: on", mu=0.5, numerics=preset)
     assert refused(text) == [
@@ -152,6 +156,7 @@ def test_a_law_is_chosen_by_the_numerics_alone(name: str) -> None:
     ]
     for force in ("", ", force: true"):
         text = config(f"{name}: off{force}", mu=0.5, numerics="default")
+        text = text.replace("numerics:", ANOTHER + "numerics:")
         assert refused(text) == [
             f"{where(text, name)}: effects.{name}: the numerics choose it; "
             f"write `numerics: {{{key}: {other}}}` instead"
@@ -169,7 +174,7 @@ def test_a_law_that_the_numerics_chose_can_be_had_idle(name: str) -> None:
         "release: {above: floor, clearance: 0.05}", "position: [0, 0, 1]"
     )
     assert not planned(alone.replace(f"effects: {{{name}: on}}\n", "")).spec.has(name)
-    assert planned(alone).forced == {name: "forced on"}
+    assert planned(alone).forced == dict.fromkeys((name, *BY_NAME[name].needs), "forced on")
 
 
 def test_a_mistake_is_chosen_by_the_study_alone() -> None:

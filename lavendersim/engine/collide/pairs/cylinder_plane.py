@@ -1,7 +1,7 @@
 """Manifold of a plane A and a cylinder B: up to four points of its rims. n is the plane's normal.
 
-Standing, the lower cap touches by an octagon fixed to the cylinder (shapes/cylinder.py), one corner
-of it moved to the rim's lowest point when it tilts; lying, each rim touches by its lowest point.
+Standing, the lower cap touches by an octagon (shapes/cylinder.py), whose first corner is where the
+cylinder would tip to; lying, each rim touches by its lowest point.
 The features: 0..7 corners of the octagon, 8 and 9 the lowest points of the rims at -z and +z.
 """
 

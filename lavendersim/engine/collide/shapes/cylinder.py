@@ -1,7 +1,7 @@
 """Cylinder: radius hx, half length hz along its z [m].
 
-Its cap as a feature is an inscribed octagon whose corners are fixed to the body, but for one that
-is moved to the rim's lowest point when the cap is tilted. Faces: 0 the lower cap, 1 the upper.
+Its cap as a feature is an inscribed octagon, turned to where the body would tip to. Faces: 0 the
+lower cap, 1 the upper.
 """
 
 from __future__ import annotations
@@ -16,8 +16,8 @@ from ..records import DISC, LINE, NO_FEATURE, Feature, put_normal
 from ..scratch import CAP_CORNERS
 from ..shape import Shape
 
-# A cap tilted less than this [rad] keeps the octagon of its own: the lowest point of its rim lies
-# less than 1e-7 radii deeper, and its direction is mostly noise.
+# A cap tilted less than this [rad] stands: the lowest point of its rim lies less than 1e-6 radii
+# deeper, and its direction is mostly noise.
 LEVEL = 1e-6
 # The side of a cylinder, in names of features; its caps are 0 and 1.
 SIDE = 2
@@ -39,23 +39,28 @@ def octagon_corner(k):
 
 @inner
 def put_cap(body, centre, local, outline):
-    """Write the octagon and the disc of the cap that looks along `local`, in the body's frame."""
+    """Write the octagon and the disc of the cap that looks along `local`, in the body's frame.
+
+    Its first corner is where the body would tip to: the rim's lowest point when it tilts, else the
+    one along gravity, so that it stands as long as a disc does.
+    """
     up = 1.0 if local.z >= 0.0 else -1.0
+    x, y = local.x, local.y
+    across = sqrt(x * x + y * y)
+    if not across > LEVEL:
+        pull = outline.pull
+        along = into_body(body, Vec3(pull[0], pull[1], pull[2]))
+        x, y = along.x, along.y
+        across = sqrt(x * x + y * y)
+        if not across > LEVEL * abs(along.z):
+            x, y, across = 1.0, 0.0, 1.0
+    x, y = x / across, y / across
     for k in range(CAP_CORNERS):
         c, s = octagon_corner(k)
         # Seen from below the octagon turns the other way.
-        put_corner(body, centre, Vec3(body.hx * c, up * body.hx * s, up * body.hz), outline, k)
-    across = sqrt(local.x * local.x + local.y * local.y)
-    if across > LEVEL:
-        nearest, best = 0, -2.0
-        for k in range(CAP_CORNERS):
-            c, s = octagon_corner(k)
-            cosine = c * local.x + up * s * local.y
-            if cosine > best:
-                nearest, best = k, cosine
-        share = body.hx / across
-        lowest = Vec3(share * local.x, share * local.y, up * body.hz)
-        put_corner(body, centre, lowest, outline, nearest)
+        s *= up
+        corner = Vec3(body.hx * (x * c - y * s), body.hx * (y * c + x * s), up * body.hz)
+        put_corner(body, centre, corner, outline, k)
     plane = outline.plane[0]
     put_normal(plane, Vec3(body.r02 * up, body.r12 * up, body.r22 * up))
     plane.x = centre.x + plane.nx * body.hz

@@ -84,7 +84,7 @@ def update_shift(contact, slip, stalls):
 
 
 def _make_start_block(spec: Spec):
-    moving_surface = spec.has("surface_velocity")
+    moving_surface = spec.has("surface_velocity") or spec.has("contact_midpoint")
     relative_velocity = make_relative_velocity(spec)
 
     def start_block(contact, va, vb, softness, at_rest, stalls):

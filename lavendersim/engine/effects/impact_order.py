@@ -1,0 +1,265 @@
+"""Impact order: impacts that follow each other within a step happen at their own times.
+
+A step is made in parts. Before each the next impact is foreseen, from the free motion of bodies:
+    phi + v tau + a tau^2/2 = 0,   v, a: rate of the gap and its change by forces,
+and then located on the shapes themselves (`impact_location`). The bodies move to there, and what
+meets is solved as an impact alone: poses stand still, forces have no time to act. Surfaces that
+have not met take no part in it, nor do those that part; what they do to each other comes after. So
+a contact ahead acts only when it is met, along the normal that it then has.
+
+Slow meetings are no impacts: with a rebound that would end within FLIGHT steps, or without rebound
+below SLOW times what forces change in a step. They are contacts of the motion (`impact_time`).
+A step has WORK rows of contacts to spend on its parts. The rest of one that has spent them, or
+whose bodies overlap, or whose impact cannot be solved by itself, is made in one part: its impacts
+at their times but without their order (/step: unordered).
+"""
+
+from __future__ import annotations
+
+from math import sqrt
+from typing import Any
+
+from ..records import TOUCHING
+from ..spec import Spec
+from .decision import Decision, Facts
+from .effect import Choice, Column, Effect, Fields, Hooks, kernel
+
+# Shortest flight after an impact, in timesteps: shorter ones are contact.
+FLIGHT = 1.0 / 64.0
+# Slowest impact without a rebound, in what forces change in a step.
+SLOW = 1.0
+# Slowest of all [m/s], and as a share of the speeds of the bodies: what a solve leaves.
+CREEP, ROUND_OFF = 1e-7, 1e-9
+# Rows of contacts that the parts of one step may have in all; one that is not met is a 16th.
+WORK = 4096
+# Bodies that overlap by more are moved apart first: what they do has no order in time [m].
+OVERLAP = 5e-5
+NEVER = 1e300  # [s]
+LAST = 1.0 - 1e-9  # first guess, in what is left of the step, where only shapes tell
+
+
+def decide(facts: Facts) -> Decision:
+    """On when the numerics ask for it and impacts may follow each other, or turn as they come."""
+    if facts.impacts != "in_order":
+        return Decision(False, f"impacts are {facts.impacts}")
+    if not facts.pairs:
+        return Decision(False, "nothing can touch")
+    if facts.pair_count == 1 and facts.pairs[0].shape_pair == "sphere_plane":
+        return Decision(False, "one ball and one plane: no impact follows another within a step")
+    if facts.stabilisation_gain > 0.0:
+        return Decision(False, "stabilisation_gain pushes by the step: it has no order in time")
+    return Decision(True, "impacts are in_order")
+
+
+def make_approach(spec: Spec) -> Any:
+    """Return `kernel(contact, bodies, motion, left) -> (v, a)`: rate of the gap, by free motion.
+
+    v: at the start [m/s]; a: its change by forces [m/s^2], which act for `left` seconds.
+    """
+    turns = spec.has("rotation")
+
+    def approach(contact, bodies, motion, left):
+        body_a, body_b = bodies[contact.a], bodies[contact.b]
+        ma, mb = motion[contact.a], motion[contact.b]
+        nx, ny, nz = contact.nx, contact.ny, contact.nz
+        v = nx * (mb.vx - ma.vx) + ny * (mb.vy - ma.vy) + nz * (mb.vz - ma.vz)
+        if turns:
+            rx, ry, rz = contact.x - body_b.x, contact.y - body_b.y, contact.z - body_b.z
+            v += nx * (mb.wy * rz - mb.wz * ry)
+            v += ny * (mb.wz * rx - mb.wx * rz)
+            v += nz * (mb.wx * ry - mb.wy * rx)
+            rx, ry, rz = contact.x - body_a.x, contact.y - body_a.y, contact.z - body_a.z
+            v -= nx * (ma.wy * rz - ma.wz * ry)
+            v -= ny * (ma.wz * rx - ma.wx * rz)
+            v -= nz * (ma.wx * ry - ma.wy * rx)
+        a = nx * (mb.dvx - ma.dvx) + ny * (mb.dvy - ma.dvy) + nz * (mb.dvz - ma.dvz)
+        return v, a / left
+
+    return kernel(approach, spec)
+
+
+def make_is_impact(spec: Spec) -> Any:
+    """Return `kernel(contact, motion, speed, a, e, params) -> whether it is an impact`.
+
+    speed: at which surfaces meet [m/s]; a: change of that by forces [m/s^2]; e: coefficient of
+    restitution.
+    """
+
+    def is_impact(contact, motion, speed, a, e, params):
+        ma, mb = motion[contact.a], motion[contact.b]
+        if not speed > CREEP + ROUND_OFF * (ma.reach + mb.reach) / params.dt:
+            return False
+        if 2.0 * e * speed > FLIGHT * max(-a, 0.0) * params.timestep:
+            if e > 0.0:
+                return True
+        # What forces change of either body: contacts may hold the one and not the other.
+        x, y, z = contact.nx, contact.ny, contact.nz
+        forced = abs(x * ma.dvx + y * ma.dvy + z * ma.dvz)
+        forced += abs(x * mb.dvx + y * mb.dvy + z * mb.dvz)
+        return speed > SLOW * forced * params.timestep / params.dt
+
+    return kernel(is_impact, spec)
+
+
+def make_order(spec: Spec) -> Any:
+    """Return `kernel(state, count, workspace, params, counters) -> (count, length)` of the part.
+
+    params.dt: what is left of the step, for which forces have acted (`motion`). length: of the part
+    [s]; 0: it is an impact. The contacts that take part in it are the first `count` rows.
+    """
+    from ..flush_contacts import make_drop_flush
+    from ..impact_location import make_locate
+
+    approach, is_impact = make_approach(spec), make_is_impact(spec)
+    locate, drop_flush = make_locate(spec, approach), make_drop_flush(spec, approach)
+    edged = drop_flush is not None
+    turns = spec.has("rotation")
+    restitution, compliance = spec.has("restitution"), spec.has("compliance")
+
+    def foresee(contact, pair, bodies, motion, params):
+        # Fills waits and due; returns whether an impact happens now.
+        left = params.dt
+        contact.waits, contact.located, contact.due = 0, 0, NEVER
+        if compliance:
+            if pair.compliance > 0.0:  # it takes time: no impulse at an instant
+                return False
+        ma, mb = motion[contact.a], motion[contact.b]
+        speed_sum = (ma.reach + mb.reach) / left
+        v, a = approach(contact, bodies, motion, left)
+        e = 0.0
+        if restitution:
+            e = pair.restitution
+        gap = contact.phi if contact.phi > TOUCHING else 0.0
+        least = CREEP + ROUND_OFF * speed_sum
+        if gap == 0.0 and v < 0.0:
+            return is_impact(contact, motion, -v, a, e, params)
+        end = contact.phi + left * (v + 0.5 * a * left)
+        # What leaves a gap in free flight is no contact of this part.
+        if v > least and end > params.slop:
+            contact.waits = 1
+        squared = v * v - 2.0 * a * gap
+        if squared > 0.0 and (v < 0.0 or a < 0.0):
+            speed = sqrt(squared)
+            if is_impact(contact, motion, speed, a, e, params):
+                # The root that comes first, in the form that does not cancel.
+                due = (v + speed) / -a if v > 0.0 else 2.0 * gap / (speed - v)
+                if gap > 0.0 or due >= FLIGHT * params.timestep:
+                    contact.waits = 1
+                    if due < left:
+                        contact.due = due
+        if turns:
+            if contact.waits == 1 and contact.due == NEVER and gap > 0.0:
+                # Surfaces that turn may come nearer by as much as this: their shapes decide.
+                spin = sqrt(ma.wx * ma.wx + ma.wy * ma.wy + ma.wz * ma.wz)
+                spin += sqrt(mb.wx * mb.wx + mb.wy * mb.wy + mb.wz * mb.wz)
+                if end < 0.5 * spin * speed_sum * left * left:
+                    contact.due = LAST * left
+        return False
+
+    foresee = kernel(foresee, spec)
+
+    def keep_meeting(contacts, count, bodies, motion, params):
+        # What touches and does not part; what is apart has no part in the impact.
+        kept = 0
+        for c in range(count):
+            contact = contacts[c]
+            ahead = contact.phi > TOUCHING and contact.waits == 1
+            if contact.phi <= max(params.slop, TOUCHING) and not ahead:
+                v, _ = approach(contact, bodies, motion, params.dt)
+                far = motion[contact.a].reach + motion[contact.b].reach
+                if v <= CREEP + ROUND_OFF * far / params.dt:
+                    if kept < c:
+                        contacts[kept] = contacts[c]
+                    kept += 1
+        return kept
+
+    keep_meeting = kernel(keep_meeting, spec)
+
+    def first_due(contacts, count):
+        first, due = -1, NEVER
+        for c in range(count):
+            if contacts[c].due < due:
+                first, due = c, contacts[c].due
+        return first, due
+
+    first_due = kernel(first_due, spec)
+
+    def order(state, count, workspace, params, counters):
+        bodies, motion, contacts = state.bodies, state.motion, state.contacts
+        left = params.dt
+        if edged:
+            count = drop_flush(state, count, workspace, params)
+        meets, waiting, touching = False, False, 0
+        for c in range(count):
+            contact = contacts[c]
+            if contact.phi > TOUCHING:
+                # Beyond what both can move: no part of this step, whatever happens in it.
+                if contact.phi > motion[contact.a].reach + motion[contact.b].reach:
+                    contact.waits, contact.located, contact.due = 0, 0, NEVER
+                    continue
+            else:
+                touching += 1
+                if contact.phi < -OVERLAP:
+                    counters.unordered = 1
+                    return count, left
+            if foresee(contact, state.pairs[contact.pair], bodies, motion, params):
+                meets = True
+            if contact.waits == 1:
+                waiting = True
+        if not (meets or waiting):
+            return count, left
+        counters.spent += 1 + touching + count // 16
+        if counters.spent > WORK:
+            counters.unordered = 1
+            return count, left
+        if meets:
+            return keep_meeting(contacts, count, bodies, motion, params), 0.0
+        length = left
+        while True:
+            first, due = first_due(contacts, count)
+            if first < 0 or due >= left:
+                break
+            contact = contacts[first]
+            if contact.located == 1:
+                length = due
+                break
+            contact.located, contact.due = 1, locate(state, contact, workspace, params)
+        kept = 0
+        for c in range(count):
+            if contacts[c].waits == 0:
+                if kept < c:
+                    contacts[kept] = contacts[c]
+                kept += 1
+        return kept, length
+
+    return kernel(order, spec)
+
+
+def make_step_row(spec: Spec) -> Any:
+    """Return `kernel(row, bodies, counters)` that fills its columns of a step."""
+
+    def log_parts(row, bodies, counters):
+        row.parts, row.unordered = counters.parts, counters.unordered
+
+    return kernel(log_parts, spec)
+
+
+EFFECT = Effect(
+    name="impact_order",
+    decide=decide,
+    per="contact",
+    needs=("impact_time",),
+    chosen_by=Choice("impacts"),
+    fields=Fields(
+        contact=[
+            ("waits", "i8"),  # 1: not met in this part, or it parts: no row of it
+            ("located", "i8"),  # 1: `due` is from the shapes themselves
+            ("due", "f8"),  # when the surfaces meet, from the start of the part [s]
+        ],
+    ),
+    step_columns=(
+        Column("parts", "i8", "parts that the step was made in, impacts included", number=33),
+        Column("unordered", "i8", "1 when impacts of the step were left without order", number=34),
+    ),
+    hooks=Hooks(order_impacts=make_order, step_row=make_step_row),
+)

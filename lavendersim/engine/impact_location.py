@@ -1,0 +1,109 @@
+"""When two bodies in free motion meet, found on their shapes.
+
+Newton's method on the separation phi(t) of a contact's features, at the poses of free motion:
+    x(t) = x + v t + a t^2/2,    q(t): turned for t,    t <- t - phi / (d phi / dt)
+From before a meeting of convex bodies it does not pass it; one that only grazes or misses ends
+where the surfaces part. Source of the idea: conservative advancement (B. Mirtich, 1996).
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from .collide.narrow_phase import make_manifold
+from .compile import kernel
+from .effects import made_once
+from .integrate import make_turn
+from .records import TOUCHING
+from .spec import Spec
+
+PASSES = 40
+NEVER = 1e300
+
+
+def make_locate(spec: Spec, approach: Any) -> Any:
+    """Return `kernel(state, contact, workspace, params) -> when`, NEVER where they miss [s].
+
+    contact: one ahead, with a first guess in `due`. The rows of the bodies are left as they were.
+    """
+    manifold = make_manifold(spec, spec.shape_pairs)
+    turns, compound = spec.has("rotation"), spec.has("compound")
+    turn: Any = make_turn(spec)
+    _, place_part = made_once(spec, "place_part")
+
+    def displace(body, velocity, m, t, left):
+        share = 0.5 * t * t / left
+        body.x += m.vx * t + share * m.dvx
+        body.y += m.vy * t + share * m.dvy
+        body.z += m.vz * t + share * m.dvz
+        if turns:
+            velocity.wx, velocity.wy, velocity.wz = m.wx, m.wy, m.wz
+            turn(body, velocity, t)
+
+    displace = kernel(displace, spec)
+
+    def locate(state, ahead, workspace, params):
+        bodies, velocities, motion = state.bodies, state.velocities, state.motion
+        trial = workspace.trial
+        kept, spun = trial.bodies, trial.velocities
+        points, normal = workspace.collision.manifold.points, workspace.collision.manifold.normal
+        row = state.pairs[ahead.pair]
+        i, j = row.a, row.b
+        owner_i, owner_j = i, j
+        if compound:
+            owner_i, owner_j = bodies[i].owner, bodies[j].owner
+        kept[0], kept[1] = bodies[owner_i], bodies[owner_j]
+        kept[2], kept[3] = bodies[i], bodies[j]
+        spun[0], spun[1] = velocities[owner_i], velocities[owner_j]
+        left = params.dt
+        ma, mb = motion[owner_i], motion[owner_j]
+        margin = TOUCHING + ma.reach + mb.reach
+        t, when, late = ahead.due, NEVER, False
+        contact = trial.contact[0]
+        contact.a, contact.b = owner_i, owner_j
+        for _ in range(PASSES):
+            bodies[owner_i], bodies[owner_j] = kept[0], kept[1]
+            displace(bodies[owner_i], spun[0], ma, t, left)
+            displace(bodies[owner_j], spun[1], mb, t, left)
+            if compound:
+                place_part(bodies, i)
+                place_part(bodies, j)
+            count = manifold(row.kind, bodies[i], bodies[j], margin, workspace.collision)
+            if count == 0:
+                break
+            least = 0
+            for k in range(1, count):
+                if points[k].phi < points[least].phi:
+                    least = k
+            for k in range(count):
+                if points[k].feature == ahead.feature:
+                    least = k
+            point = points[least]
+            contact.x, contact.y, contact.z = point.x, point.y, point.z
+            contact.nx, contact.ny, contact.nz = normal[0], normal[1], normal[2]
+            phi = point.phi
+            v, a = approach(contact, bodies, motion, left)
+            v += a * t
+            if abs(phi) <= 0.25 * TOUCHING:
+                # Newton's next step has twice as many digits: no friction with a lever of its own.
+                when = t - phi / v if v < 0.0 else NEVER
+                break
+            if not v < 0.0:
+                # They part: never met, unless they turn and meet in the rest.
+                if not turns or late or phi < 0.0:
+                    break
+                t, late = left, True
+                continue
+            before = t
+            t = min(t - phi / v, left)
+            if t <= 0.0:
+                t = 0.5 * before
+            when = t
+            if t == before:
+                when = NEVER if phi > TOUCHING else t
+                break
+        bodies[owner_i], bodies[owner_j] = kept[0], kept[1]
+        bodies[i], bodies[j] = kept[2], kept[3]
+        return when
+
+    return kernel(locate, spec)

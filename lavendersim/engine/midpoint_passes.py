@@ -1,0 +1,189 @@
+"""Solve the contacts of a step where they are at its middle (`effects.contact_midpoint`).
+
+The middle is where the velocities of the last solve lead: a fixed point, found in a few passes,
+each with its own rows and solve. A step in which nothing turns is done after the first, at its
+start.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from .compile import kernel
+from .contact import make_apply_start
+from .effects import made_once
+from .midpoint_rows import (
+    SAME,
+    make_begin_slip,
+    make_is_turning,
+    make_keep_start,
+    make_lasting,
+    make_look,
+    make_shift,
+    make_stand_midway,
+    make_stay,
+    make_take_kept,
+)
+from .parts import make_forget_history
+from .residual import make_residual
+from .solvers.solver import ContactSystem
+from .spec import Spec
+
+# Each pass gains some two digits where bodies turn by a tenth of a radian in a step.
+PASSES = 8
+
+
+def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: Any) -> Any:
+    """Return `kernel(state, count, workspace, params, counters, log) -> whether it passed`.
+
+    After a solve at the start of the step. Bodies then stand at the middle: see `make_stand_up`.
+    append_contact, preload: kernels of `respond`; preload: None where nothing is preloaded.
+    """
+    friction, turns = spec.has("friction"), spec.has("rotation")
+    is_turning, begin_slip = make_is_turning(spec), make_begin_slip(spec)
+    lasting = make_lasting(spec)
+    keep_start, stay = make_keep_start(spec), make_stay(spec)
+    stand_midway, look, shift = make_stand_midway(spec), make_look(spec), make_shift(spec)
+    carries_inertia, refresh_inertia = made_once(spec, "refresh_inertia")
+    warms, match_contacts = made_once(spec, "match")
+    _, store_contacts = made_once(spec, "store")
+    apply_start, take_kept = make_apply_start(spec), make_take_kept(spec)
+    keeps_free, keep_free = made_once(spec, "keep_free")
+    at_surface, loaded = spec.has("impact_time"), preload is not None
+    records = spec.has("residual_log")
+    # A step has room for the sweeps of one solve: those of the last.
+    forget_history: Any = make_forget_history(spec) if records else None
+    residual = make_residual(spec)
+
+    def has_impact(contacts, count):
+        found = False
+        for c in range(count):
+            found = found or contacts[c].is_impact == 1
+        return found
+
+    has_impact = kernel(has_impact, spec)
+
+    def restore(velocities, free, lead, motion):
+        for i in range(velocities.shape[0]):
+            v, before = velocities[i], free[i]
+            v.vx, v.vy, v.vz = before.vx, before.vy, before.vz
+            if turns:
+                # What forces added to the spin of the start, they add to that of the middle.
+                spin, m = lead[i], motion[i]
+                v.wx = before.wx + (spin.wx - m.wx)
+                v.wy = before.wy + (spin.wy - m.wy)
+                v.wz = before.wz + (spin.wz - m.wz)
+
+    restore = kernel(restore, spec)
+
+    def midpoint_passes(state, count, workspace, params, counters, log):
+        bodies, velocities, motion = state.bodies, state.velocities, state.motion
+        contacts, cache, pairs = state.contacts, state.cache, state.pairs
+        poses, free, lead = workspace.middle
+        if counters.not_converged == 1:
+            return False
+        if at_surface:
+            if has_impact(contacts, count):
+                return False
+        slip_turns = False
+        if friction:
+            slip_turns = begin_slip(contacts, count, velocities, motion)
+        if not (slip_turns or is_turning(contacts, count, bodies, motion, params)):
+            return False
+        for i in range(bodies.shape[0]):
+            poses[i] = bodies[i]
+            if turns:
+                spin, m = lead[i], motion[i]
+                spin.wx, spin.wy, spin.wz = m.wx, m.wy, m.wz
+        keep_start(contacts, count)
+        sweeps = counters.sweeps
+        order = workspace.ordering.order
+        system = ContactSystem(contacts, order, count, bodies, velocities)
+        for _ in range(PASSES):
+            if warms:
+                store_contacts(contacts, count, bodies, cache, counters, params)
+            stand_midway(bodies, velocities, motion, lead, poses, params.dt)
+            look(state, count, poses, workspace)
+            restore(velocities, free, lead, motion)
+            if carries_inertia:
+                refresh_inertia(bodies, velocities)
+            for c in range(count):
+                contact = contacts[c]
+                append_contact(contact, bodies, velocities, motion, pairs[contact.pair], params)
+                shift(contact, lead, params)
+                if contact.lasts == 0:  # it has no middle: what is met there may be elsewhere
+                    stay(contact, bodies, poses)
+                    append_contact(contact, bodies, velocities, motion, pairs[contact.pair], params)
+            if loaded:
+                for c in range(count):
+                    preload(contacts[c], velocities, motion)
+            if keeps_free:
+                keep_free(velocities, workspace.free_velocities)
+            if warms:
+                match_contacts(contacts, count, bodies, cache, counters, params)
+                for c in range(count):
+                    contact = contacts[c]
+                    if contact.lambda_n > 0.0:
+                        apply_start(contact, velocities[contact.a], velocities[contact.b])
+            missed, _ = residual(contacts, count, velocities)
+            if records:
+                forget_history(counters, log.residual)
+            solve(system, workspace.solver, params, counters, log.residual)
+            sweeps += counters.sweeps
+            if missed <= SAME:
+                break
+        if counters.not_converged == 1:
+            # What is solved at the start is better than what is not solved at the middle.
+            for i in range(bodies.shape[0]):
+                bodies[i], velocities[i] = poses[i], free[i]
+            if carries_inertia:
+                refresh_inertia(bodies, velocities)
+            for c in range(count):
+                contact = contacts[c]
+                stay(contact, bodies, poses)
+                append_contact(contact, bodies, velocities, motion, pairs[contact.pair], params)
+                lasting(contact, params)
+            if loaded:
+                for c in range(count):
+                    preload(contacts[c], velocities, motion)
+            for c in range(count):
+                contact = contacts[c]
+                if contact.kept_n > 0.0:
+                    take_kept(contact)
+                    apply_start(contact, velocities[contact.a], velocities[contact.b])
+            if records:
+                forget_history(counters, log.residual)
+            solve(system, workspace.solver, params, counters, log.residual)
+            counters.sweeps += sweeps
+            return False
+        counters.sweeps = sweeps
+        for i in range(motion.shape[0]):
+            motion[i].midway = 0
+        for c in range(count):
+            contact = contacts[c]
+            if contact.lambda_n > 0.0:
+                motion[contact.a].midway, motion[contact.b].midway = 1, 1
+        for i in range(motion.shape[0]):
+            if motion[i].midway == 0:  # it flies, from the start of the step
+                v, before = velocities[i], free[i]
+                v.vx, v.vy, v.vz = before.vx, before.vy, before.vz
+                if turns:
+                    v.wx, v.wy, v.wz = before.wx, before.wy, before.wz
+            elif turns:
+                v, spin, m = velocities[i], lead[i], motion[i]
+                m.mean_x = 0.5 * (spin.wx + v.wx)
+                m.mean_y = 0.5 * (spin.wy + v.wy)
+                m.mean_z = 0.5 * (spin.wz + v.wz)
+        return True
+
+    return kernel(midpoint_passes, spec)
+
+
+def make_stand_up(spec: Spec) -> Any:
+    """Return `kernel(bodies, poses)`: bodies stand again where the step began."""
+
+    def stand_up(bodies, poses):
+        for i in range(bodies.shape[0]):
+            bodies[i] = poses[i]
+
+    return kernel(stand_up, spec)

@@ -1,0 +1,312 @@
+"""Contact rows at the middle of the step (`effects.contact_midpoint`): where, and what they ask.
+
+lasting   which contacts may last; their slip at the start of the step
+stand     bodies at the middle, by the velocities found so far; the geometry of contacts there
+shift     what a row asks beyond v_n + target >= 0, once it is completed at the middle
+"""
+
+from __future__ import annotations
+
+from math import sqrt
+from typing import Any
+
+from .block import make_relative_velocity
+from .collide.narrow_phase import make_manifold
+from .compile import kernel
+from .contact import make_normal_velocity
+from .effects import made_once
+from .effects.frictionless_contact import has_frictionless
+from .effects.gyroscopic import make_turn_midway
+from .records import PLANE, TOUCHING
+from .rotation import half_turn
+from .spec import Spec
+
+# Change of a surface's velocity in half a step that a row may miss [m/s]: what solves leave.
+SAME = 1e-9
+# A contact lasts that begins to approach or part no faster than these shares: of what forces
+# change in a step, and of what the turning of its surfaces changes in half a step.
+FORCED, TURNED = 0.05, 0.5
+# It may have a gap of this share of what the turning of its surfaces moves them by.
+AJAR = 0.25
+# Contacts are looked for at the middle up to this share of a body's size apart.
+APART = 0.1
+# It slides throughout when the slip is so many times its change.
+SLIDES = 2.0
+
+
+def make_is_turning(spec: Spec) -> Any:
+    """Return `kernel(contacts, count, bodies, motion, params) -> whether the geometry changes`."""
+    turns = spec.has("rotation")
+
+    def is_turning(contacts, count, bodies, motion, params):
+        for c in range(count):
+            contact = contacts[c]
+            ma, mb = motion[contact.a], motion[contact.b]
+            x, y, z = mb.vx - ma.vx, mb.vy - ma.vy, mb.vz - ma.vz
+            speed = sqrt(x * x + y * y + z * z)
+            body_a, body_b = bodies[contact.a], bodies[contact.b]
+            rate, size = 0.0, 1e300
+            if body_a.shape != PLANE:
+                size = body_a.bound
+            if body_b.shape != PLANE:
+                size = min(size, body_b.bound)
+            if body_a.shape != PLANE and body_b.shape != PLANE:
+                rate = speed / size
+            if turns:
+                spin = sqrt(ma.wx * ma.wx + ma.wy * ma.wy + ma.wz * ma.wz)
+                spin += sqrt(mb.wx * mb.wx + mb.wy * mb.wy + mb.wz * mb.wz)
+                rate += spin
+                speed += spin * size
+            if rate * speed * params.dt > SAME:
+                return True
+        return False
+
+    return kernel(is_turning, spec)
+
+
+def make_lasting(spec: Spec) -> Any:
+    """Return `kernel(contact, params)`, of a row completed at the start: whether it lasts."""
+    friction = spec.has("friction")
+
+    def lasting(contact, params):
+        contact.begin_n = contact.v_n_pre - contact.dv_n
+        contact.middle_n = contact.begin_n
+        forced = abs(contact.dv_n) * params.timestep / params.dt
+        closed = contact.phi <= params.slop
+        calm = -(FORCED * forced + 100.0 * SAME) <= contact.begin_n <= 100.0 * SAME
+        contact.lasts = 1 if closed and calm else 0
+        if friction:
+            contact.slides = 0
+
+    return kernel(lasting, spec)
+
+
+def make_begin_slip(spec: Spec) -> Any:
+    """Return `kernel(contacts, count, velocities, motion) -> whether the slip turns`.
+
+    Of rows solved at the start: their slip then, and whether it counts in the mean: where they
+    slide throughout, or where friction would else do work on it. None without friction.
+    """
+    if not spec.has("friction"):
+        return None
+    relative_velocity = make_relative_velocity(spec)
+
+    def begin_slip(contacts, count, velocities, motion):
+        turned = False
+        for c in range(count):
+            contact = contacts[c]
+            x, y, z = relative_velocity(contact, motion[contact.a], motion[contact.b])
+            v = relative_velocity(contact, velocities[contact.a], velocities[contact.b])
+            dx, dy, dz = v[0] - x, v[1] - y, v[2] - z
+            one, two = contact.surface_1, contact.surface_2
+            x += contact.t1x * one + contact.t2x * two
+            y += contact.t1y * one + contact.t2y * two
+            z += contact.t1z * one + contact.t2z * two
+            contact.begin_x, contact.begin_y, contact.begin_z = x, y, z
+            slip, change = sqrt(x * x + y * y + z * z), sqrt(dx * dx + dy * dy + dz * dz)
+            contact.slides = 1 if slip > SLIDES * change else 0
+            if contact.slides == 0:
+                along = contact.lambda_1 * (contact.t1x * x + contact.t1y * y + contact.t1z * z)
+                along += contact.lambda_2 * (contact.t2x * x + contact.t2y * y + contact.t2z * z)
+                if along > 0.0:
+                    contact.slides = 1
+            elif contact.lambda_n > 0.0:
+                across_x, across_y = y * dz - z * dy, z * dx - x * dz
+                across_z = x * dy - y * dx
+                across = sqrt(across_x * across_x + across_y * across_y + across_z * across_z)
+                if across > SAME * slip:
+                    turned = True
+        return turned
+
+    return kernel(begin_slip, spec)
+
+
+def make_stand_midway(spec: Spec) -> Any:
+    """Return `kernel(bodies, velocities, motion, lead, poses, dt)`: bodies at the step's middle.
+
+    velocities: at the end, as far as they are known. poses: rows of the bodies at the start.
+    lead: velocities before any impulse; of uneven bodies their spin at the middle, which turns with
+    the body. Those of the last middle, replaced.
+    """
+    turns, uneven = spec.has("rotation"), spec.has("gyroscopic")
+    kinematic = spec.has("kinematic")
+    turn_midway: Any = make_turn_midway(spec) if uneven else None
+
+    def stand_midway(bodies, velocities, motion, lead, poses, dt):
+        for i in range(bodies.shape[0]):
+            v, m, free = velocities[i], motion[i], lead[i]
+            free.vx, free.vy, free.vz = m.vx, m.vy, m.vz
+            body, start = bodies[i], poses[i]
+            moves = start.inv_m > 0.0
+            if kinematic:
+                moves = moves or start.kinematic == 1
+            if not moves:
+                continue
+            quarter = 0.25 * dt
+            body.x = start.x + quarter * (m.vx + v.vx)
+            body.y = start.y + quarter * (m.vy + v.vy)
+            body.z = start.z + quarter * (m.vz + v.vz)
+            if turns:
+                even = True
+                if uneven:
+                    even = body.inv_ix == body.inv_iy and body.inv_iy == body.inv_iz
+                if even:
+                    x, y, z = m.wx + v.wx, m.wy + v.wy, m.wz + v.wz
+                    body.qw, body.qx, body.qy, body.qz = start.qw, start.qx, start.qy, start.qz
+                    half_turn(body, 0.5 * x, 0.5 * y, 0.5 * z, dt)
+                else:
+                    turn_midway(body, start, m, free, v.wx, v.wy, v.wz, dt)
+
+    return kernel(stand_midway, spec)
+
+
+def make_look(spec: Spec) -> Any:
+    """Return `kernel(state, count, poses, workspace)`: contacts as they are where bodies stand.
+
+    A point that the manifold no longer has stays on its two bodies: see `stay`.
+    """
+    manifold = make_manifold(spec, spec.shape_pairs)
+    compound, place_parts = made_once(spec, "place_parts")
+    swept, stay = spec.has("fast_bodies"), make_stay(spec)
+
+    def look(state, count, poses, workspace):
+        bodies, contacts = state.bodies, state.contacts
+        scratch = workspace.collision
+        points, normal = scratch.manifold.points, scratch.manifold.normal
+        if compound:
+            place_parts(bodies)
+        first = 0
+        while first < count:
+            pair = contacts[first].pair
+            last, margin = first, TOUCHING
+            while last < count and contacts[last].pair == pair:
+                margin = max(margin, abs(contacts[last].phi))
+                last += 1
+            row = state.pairs[pair]
+            a, b = bodies[row.a], bodies[row.b]
+            # The middle may be apart where both ends touch: by less than the bodies' sizes.
+            size = a.bound if b.shape == PLANE else b.bound
+            if a.shape != PLANE and b.shape != PLANE:
+                size = min(a.bound, b.bound)
+            found = manifold(row.kind, a, b, margin + APART * size, scratch)
+            for c in range(first, last):
+                contact = contacts[c]
+                stay(contact, bodies, poses)
+                best = -1
+                for k in range(found):
+                    if points[k].feature == contact.feature:
+                        best = k
+                if best < 0 and found == 1 and last == first + 1:
+                    best = 0
+                if best >= 0:
+                    point = points[best]
+                    contact.x, contact.y, contact.z = point.x, point.y, point.z
+                    contact.nx, contact.ny, contact.nz = normal[0], normal[1], normal[2]
+                    if swept:
+                        contact.tangential_x, contact.tangential_y = 0.0, 0.0
+                        contact.tangential_z = 0.0
+            first = last
+
+    return kernel(look, spec)
+
+
+def make_stay(spec: Spec) -> Any:
+    """Return `kernel(contact, bodies, poses)`: the contact of the start, where the bodies stand."""
+    swept = spec.has("fast_bodies")
+
+    def stay(contact, bodies, poses):
+        body, before = bodies[contact.b], poses[contact.b]
+        if body.inv_m == 0.0:
+            body, before = bodies[contact.a], poses[contact.a]
+        contact.x = contact.at_x + (body.x - before.x)
+        contact.y = contact.at_y + (body.y - before.y)
+        contact.z = contact.at_z + (body.z - before.z)
+        contact.nx, contact.ny, contact.nz = contact.at_nx, contact.at_ny, contact.at_nz
+        if swept:
+            contact.tangential_x, contact.tangential_y = contact.at_tx, contact.at_ty
+            contact.tangential_z = contact.at_tz
+
+    return kernel(stay, spec)
+
+
+def make_keep_start(spec: Spec) -> Any:
+    """Return `kernel(contacts, count)`: keep geometry and impulses of the solve at the start."""
+    swept, friction = spec.has("fast_bodies"), spec.has("friction")
+    torsional, rolling = spec.has("torsional_friction"), spec.has("rolling_friction")
+
+    def keep_start(contacts, count):
+        for c in range(count):
+            contact = contacts[c]
+            contact.at_x, contact.at_y, contact.at_z = contact.x, contact.y, contact.z
+            contact.at_nx, contact.at_ny, contact.at_nz = contact.nx, contact.ny, contact.nz
+            contact.kept_n = contact.lambda_n
+            if friction:
+                contact.kept_1, contact.kept_2 = contact.lambda_1, contact.lambda_2
+            if torsional:
+                contact.kept_psi_n = contact.psi_n
+            if rolling:
+                contact.kept_psi_1, contact.kept_psi_2 = contact.psi_1, contact.psi_2
+            if swept:
+                contact.at_tx, contact.at_ty = contact.tangential_x, contact.tangential_y
+                contact.at_tz = contact.tangential_z
+
+    return kernel(keep_start, spec)
+
+
+def make_take_kept(spec: Spec) -> Any:
+    """Return `kernel(contact)`: the impulses of the solve at the start."""
+    friction = spec.has("friction")
+    torsional, rolling = spec.has("torsional_friction"), spec.has("rolling_friction")
+
+    def take_kept(contact):
+        contact.lambda_n = contact.kept_n
+        if friction:
+            contact.lambda_1, contact.lambda_2 = contact.kept_1, contact.kept_2
+        if torsional:
+            contact.psi_n = contact.kept_psi_n
+        if rolling:
+            contact.psi_1, contact.psi_2 = contact.kept_psi_1, contact.kept_psi_2
+
+    return kernel(take_kept, spec)
+
+
+def make_shift(spec: Spec) -> Any:
+    """Return `kernel(contact, lead, params)`, of a row at the middle: b, where a contact lasts."""
+    friction, frictionless = spec.has("friction"), has_frictionless(spec)
+    normal_velocity = make_normal_velocity(spec)
+    relative_velocity = make_relative_velocity(spec)
+
+    def shift(contact, lead, params):
+        la, lb = lead[contact.a], lead[contact.b]
+        contact.middle_n = normal_velocity(contact, la, lb)
+        b = contact.middle_n - min(contact.begin_n, 0.0)
+        ajar = max(contact.phi - params.slop, 0.0)
+        forced = abs(contact.dv_n) * params.timestep / params.dt
+        turned = TURNED * abs(b) + 100.0 * SAME
+        contact.lasts = 0
+        calm = -(FORCED * forced + turned) <= contact.begin_n <= turned
+        if not calm or ajar > AJAR * params.dt * abs(b):
+            return
+        contact.lasts = 1
+        if ajar > 0.0:
+            contact.target = ajar / params.dt + b
+        else:
+            contact.target += b
+        if friction:
+            frictional = True
+            if frictionless:
+                frictional = contact.frictional == 1
+            if frictional:
+                x, y, z = relative_velocity(contact, la, lb)
+                sx, sy, sz = contact.begin_x, contact.begin_y, contact.begin_z
+                one = contact.t1x * x + contact.t1y * y + contact.t1z * z + contact.surface_1
+                two = contact.t2x * x + contact.t2y * y + contact.t2z * z + contact.surface_2
+                if contact.slides > 0:
+                    contact.slides = 2
+                else:
+                    one -= contact.t1x * sx + contact.t1y * sy + contact.t1z * sz
+                    two -= contact.t2x * sx + contact.t2y * sy + contact.t2z * sz
+                contact.surface_1 += one
+                contact.surface_2 += two
+
+    return kernel(shift, spec)

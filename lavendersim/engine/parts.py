@@ -1,0 +1,46 @@
+"""Counts of a step that is made in parts (`effects.impact_order`): sums until the step ends."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from .compile import kernel
+from .spec import Spec
+
+
+def make_gather_parts(spec: Spec) -> Any:
+    """Return `kernel(counters)`, after a part: `counters` tells of the step so far."""
+
+    def gather(counters):
+        counters.parts += 1
+        counters.part_sweeps += counters.sweeps
+        counters.part_not_converged |= counters.not_converged
+        counters.part_stronge |= counters.stronge
+        counters.sweeps = counters.part_sweeps
+        counters.not_converged = counters.part_not_converged
+        counters.stronge = counters.part_stronge
+
+    return kernel(gather, spec)
+
+
+def make_forget_history(spec: Spec) -> Any:
+    """Return `kernel(counters, rows)`: a step has the sweeps of its last part alone."""
+
+    def forget_history(counters, rows):
+        while counters.residual_rows > 0:
+            if rows[counters.residual_rows - 1].step != counters.step + 1:
+                break
+            counters.residual_rows -= 1
+
+    return kernel(forget_history, spec)
+
+
+def make_end_step(spec: Spec) -> Any:
+    """Return `kernel(counters)`: the next part is the first of a step."""
+
+    def end_step(counters):
+        counters.elapsed = 0.0
+        counters.parts, counters.spent, counters.unordered = 0, 0, 0
+        counters.part_sweeps, counters.part_not_converged, counters.part_stronge = 0, 0, 0
+
+    return kernel(end_step, spec)
