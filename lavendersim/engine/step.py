@@ -190,6 +190,7 @@ def make_advance(spec: Spec) -> Any:
                     if counters.not_converged == 1:
                         # It cannot be solved by itself: the rest of the step has no order.
                         undo(velocities, motion)
+                        params.dt = params.timestep
                         counters.spent = ALL_SPENT
                         if records:
                             row = log.step[counters.step_rows]
