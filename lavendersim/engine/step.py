@@ -33,9 +33,6 @@ from .records import CONTACTS_FULL, DIVERGED, INSTANT, PAIRS_FULL, ROWS_FULL, RU
 from .respond import make_pass_by, make_respond
 from .spec import Spec
 
-# More rows of contacts than a step may spend on its parts (`impact_order`).
-ALL_SPENT = 1 << 40
-
 
 def make_advance(spec: Spec) -> Any:
     """Compose `advance(state, workspace, log, parameters, counters, steps) -> status` (`memory`).
@@ -155,10 +152,6 @@ def make_advance(spec: Spec) -> Any:
             instant = False
             if ordered:
                 left = params.dt
-                if records:
-                    row = log.step[counters.step_rows]
-                    logged, most = row.contact_count, row.residual
-                    force, deepest = row.total_normal_force, row.max_penetration
                 count, length = order(state, count, workspace, params, counters)
                 instant = length == 0.0
                 if length < left:
@@ -187,16 +180,6 @@ def make_advance(spec: Spec) -> Any:
                     respond(state, count, workspace, params, counters, log)
             if ordered:
                 if instant:
-                    if counters.not_converged == 1:
-                        # It cannot be solved by itself: the rest of the step has no order.
-                        undo(velocities, motion)
-                        params.dt = params.timestep
-                        counters.spent = ALL_SPENT
-                        if records:
-                            row = log.step[counters.step_rows]
-                            row.contact_count, row.residual = logged, most
-                            row.total_normal_force, row.max_penetration = force, deepest
-                        continue
                     gather(counters)
                     continue
                 gather(counters)

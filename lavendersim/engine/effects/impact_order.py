@@ -78,24 +78,34 @@ def make_approach(spec: Spec) -> Any:
     return kernel(approach, spec)
 
 
-def make_is_impact(spec: Spec) -> Any:
-    """Return `kernel(contact, motion, speed, a, e, params) -> whether it is an impact`.
+def make_forced(spec: Spec) -> Any:
+    """Return `kernel(contact, motion) -> speed`: what forces change of either body's in the part.
 
-    speed: at which surfaces meet [m/s]; a: change of that by forces [m/s^2]; e: coefficient of
-    restitution.
+    Contacts may hold the one body and not the other: the rate of the gap may change by as much.
     """
 
-    def is_impact(contact, motion, speed, a, e, params):
+    def forced(contact, motion):
         ma, mb = motion[contact.a], motion[contact.b]
-        if not speed > CREEP + ROUND_OFF * (ma.reach + mb.reach) / params.dt:
+        x, y, z = contact.nx, contact.ny, contact.nz
+        of_a = abs(x * ma.dvx + y * ma.dvy + z * ma.dvz)
+        return of_a + abs(x * mb.dvx + y * mb.dvy + z * mb.dvz)
+
+    return kernel(forced, spec)
+
+
+def make_is_impact(spec: Spec) -> Any:
+    """Return `kernel(speed, least, forced, a, e, params) -> whether it is an impact`.
+
+    speed: at which surfaces meet [m/s]; least: slowest of all; forced: see `make_forced`; a: change
+    of the rate of the gap by forces [m/s^2]; e: coefficient of restitution.
+    """
+
+    def is_impact(speed, least, forced, a, e, params):
+        if not speed > least:
             return False
         if 2.0 * e * speed > FLIGHT * max(-a, 0.0) * params.timestep:
             if e > 0.0:
                 return True
-        # What forces change of either body: contacts may hold the one and not the other.
-        x, y, z = contact.nx, contact.ny, contact.nz
-        forced = abs(x * ma.dvx + y * ma.dvy + z * ma.dvz)
-        forced += abs(x * mb.dvx + y * mb.dvy + z * mb.dvz)
         return speed > SLOW * forced * params.timestep / params.dt
 
     return kernel(is_impact, spec)
@@ -110,7 +120,7 @@ def make_order(spec: Spec) -> Any:
     from ..flush_contacts import make_drop_flush
     from ..impact_location import make_locate
 
-    approach, is_impact = make_approach(spec), make_is_impact(spec)
+    approach, forced, is_impact = make_approach(spec), make_forced(spec), make_is_impact(spec)
     locate, drop_flush = make_locate(spec, approach), make_drop_flush(spec, approach)
     edged = drop_flush is not None
     turns = spec.has("rotation")
@@ -126,34 +136,34 @@ def make_order(spec: Spec) -> Any:
         ma, mb = motion[contact.a], motion[contact.b]
         speed_sum = (ma.reach + mb.reach) / left
         v, a = approach(contact, bodies, motion, left)
-        e = 0.0
+        e, change = 0.0, forced(contact, motion)
         if restitution:
             e = pair.restitution
         gap = contact.phi if contact.phi > TOUCHING else 0.0
         least = CREEP + ROUND_OFF * speed_sum
         if gap == 0.0 and v < 0.0:
-            return is_impact(contact, motion, -v, a, e, params)
-        end = contact.phi + left * (v + 0.5 * a * left)
-        # What leaves a gap in free flight is no contact of this part.
-        if v > least and end > params.slop:
+            return is_impact(-v, least, change, a, e, params)
+        # What leaves a gap, whatever holds its bodies, is no contact of this part.
+        if v > least + change and contact.phi + left * (v - 0.5 * change) > params.slop:
             contact.waits = 1
+        ahead = False
         squared = v * v - 2.0 * a * gap
         if squared > 0.0 and (v < 0.0 or a < 0.0):
             speed = sqrt(squared)
-            if is_impact(contact, motion, speed, a, e, params):
+            if is_impact(speed, least, change, a, e, params):
                 # The root that comes first, in the form that does not cancel.
                 due = (v + speed) / -a if v > 0.0 else 2.0 * gap / (speed - v)
-                if gap > 0.0 or due >= FLIGHT * params.timestep:
-                    contact.waits = 1
-                    if due < left:
-                        contact.due = due
+                ahead = gap > 0.0 or due >= FLIGHT * params.timestep
+                if ahead and due < left:
+                    contact.waits, contact.due = 1, due
         if turns:
-            if contact.waits == 1 and contact.due == NEVER and gap > 0.0:
+            if (ahead or contact.waits == 1) and contact.due == NEVER and gap > 0.0:
                 # Surfaces that turn may come nearer by as much as this: their shapes decide.
                 spin = sqrt(ma.wx * ma.wx + ma.wy * ma.wy + ma.wz * ma.wz)
                 spin += sqrt(mb.wx * mb.wx + mb.wy * mb.wy + mb.wz * mb.wz)
+                end = contact.phi + left * (v + 0.5 * a * left)
                 if end < 0.5 * spin * speed_sum * left * left:
-                    contact.due = LAST * left
+                    contact.waits, contact.due = 1, LAST * left
         return False
 
     foresee = kernel(foresee, spec)
