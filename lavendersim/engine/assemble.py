@@ -50,7 +50,7 @@ def step_problem(spec: Spec, contacts: np.ndarray, velocities: np.ndarray) -> St
         linear, angular = _velocity_of(velocities, side.body)
         along = np.einsum("cik,ck->ci", frames, linear)
         free += side.sign * (along + np.einsum("cik,ck->ci", side.levers, angular))
-    if spec.has("friction") and "surface_1" in (contacts.dtype.names or ()):
+    if spec.has("friction") and spec.shifts_slip:
         free[:, 1:] += frictional[:, None] * _columns(contacts, "surface_1", "surface_2")
     problem = ContactProblem(
         begin,

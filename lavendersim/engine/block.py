@@ -95,7 +95,7 @@ def make_slip_velocity(spec: Spec):
     """
     if not spec.has("friction"):
         return None
-    moving_surface = spec.has("surface_velocity") or spec.has("contact_midpoint")
+    shifted = spec.shifts_slip
     relative_velocity = make_relative_velocity(spec)
 
     def slip_velocity(contact, va, vb):
@@ -103,7 +103,7 @@ def make_slip_velocity(spec: Spec):
         v_n = contact.nx * x + contact.ny * y + contact.nz * z
         v_1 = contact.t1x * x + contact.t1y * y + contact.t1z * z
         v_2 = contact.t2x * x + contact.t2y * y + contact.t2z * z
-        if moving_surface:
+        if shifted:
             v_1 += contact.surface_1
             v_2 += contact.surface_2
         return v_n, v_1, v_2
@@ -142,7 +142,7 @@ def make_apply_vector(spec: Spec):
 def make_complete_block(spec: Spec):
     """Return `kernel(contact, body_a, body_b, va, vb, pair) -> k_n`: frame, levers and the 3x3."""
     moving_surface, surface_velocity = made_once(spec, "surface_velocity")
-    swept, shifted = spec.has("fast_bodies"), spec.has("contact_midpoint")
+    swept, shifted = spec.has("fast_bodies"), spec.shifts_slip
 
     def complete_block(contact, body_a, body_b, va, vb, pair):
         half = 0.5 * contact.phi

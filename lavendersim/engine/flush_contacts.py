@@ -14,12 +14,12 @@ from __future__ import annotations
 
 from typing import Any
 
+from .approach import make_approach, make_keep_present, make_rate, make_slowest
 from .collide.shapes import make_radius, make_support
 from .compile import kernel
-from .effects.impact_order import CREEP, ROUND_OFF
 from .records import PLANE, TOUCHING
 from .spec import Spec
-from .vectors import Vec3
+from .vectors import Vec3, dot, minus, plus, position
 
 # Height of a step that is none, in slops.
 FLUSH = 10.0
@@ -29,16 +29,16 @@ ALONG = 1.0 - 1e-12
 MOST = 512
 
 
-def make_drop_flush(spec: Spec, approach: Any) -> Any:
+def make_drop_flush(spec: Spec) -> Any:
     """Return `kernel(state, count, workspace, params) -> count`: without such contacts.
 
-    approach: `kernel(contact, bodies, motion, left) -> (v, a)`, see `impact_order`. None where no
-    pair has an edge.
+    None where no pair has an edge.
     """
     if not any("plane" not in name for name in spec.shape_pairs):
         return None
     support, radius = make_support(spec), make_radius(spec)
-    turns = spec.has("rotation")
+    approach, rate, slowest = make_approach(spec), make_rate(spec), make_slowest(spec)
+    keep_present = make_keep_present(spec)
     sleeps = spec.has("sleeping")
 
     def passes(state, contact, other, workspace, params, least):
@@ -55,28 +55,17 @@ def make_drop_flush(spec: Spec, approach: Any) -> Any:
         x, y, z = sign * other.nx, sign * other.ny, sign * other.nz
         if x * contact.nx + y * contact.ny + z * contact.nz > ALONG:
             return False
+        m = Vec3(x, y, z)
         row = state.pairs[contact.pair]
         a, b = bodies[row.a], bodies[row.b]
         hulls = workspace.collision.hulls
-        p, q = support(a, Vec3(x, y, z), hulls), support(b, Vec3(-x, -y, -z), hulls)
-        apart = x * (b.x + q.x - a.x - p.x)
-        apart += y * (b.y + q.y - a.y - p.y)
-        apart += z * (b.z + q.z - a.z - p.z)
-        if apart - radius(a) - radius(b) < -(FLUSH * params.slop + TOUCHING):
+        p = plus(position(a), support(a, m, hulls))
+        q = plus(position(b), support(b, Vec3(-x, -y, -z), hulls))
+        if dot(m, minus(q, p)) - radius(a) - radius(b) < -(FLUSH * params.slop + TOUCHING):
             return False
-        ma, mb = motion[contact.a], motion[contact.b]
-        v = x * (mb.vx - ma.vx) + y * (mb.vy - ma.vy) + z * (mb.vz - ma.vz)
-        if turns:
-            rx, ry, rz = b.x + q.x, b.y + q.y, b.z + q.z
-            body_a, body_b = bodies[contact.a], bodies[contact.b]
-            rx, ry, rz = rx - body_b.x, ry - body_b.y, rz - body_b.z
-            v += x * (mb.wy * rz - mb.wz * ry)
-            v += y * (mb.wz * rx - mb.wx * rz)
-            v += z * (mb.wx * ry - mb.wy * rx)
-            rx, ry, rz = a.x + p.x - body_a.x, a.y + p.y - body_a.y, a.z + p.z - body_a.z
-            v -= x * (ma.wy * rz - ma.wz * ry)
-            v -= y * (ma.wz * rx - ma.wx * rz)
-            v -= z * (ma.wx * ry - ma.wy * rx)
+        arm_a = minus(p, position(bodies[contact.a]))
+        arm_b = minus(q, position(bodies[contact.b]))
+        v = rate(m, motion[contact.a], motion[contact.b], arm_a, arm_b)
         return v >= -least
 
     passes = kernel(passes, spec)
@@ -93,16 +82,13 @@ def make_drop_flush(spec: Spec, approach: Any) -> Any:
         bodies, contacts, motion = state.bodies, state.contacts, state.motion
         if count > MOST:
             return count
-        kept = 0
         for c in range(count):
             contact = contacts[c]
             row = state.pairs[contact.pair]
             flush = False
             if bodies[row.a].shape != PLANE and bodies[row.b].shape != PLANE:
-                far = motion[contact.a].reach + motion[contact.b].reach
-                least = CREEP + ROUND_OFF * far / params.dt
-                v, _ = approach(contact, bodies, motion, params.dt)
-                if v < -least:
+                least = slowest(contact, bodies, motion)
+                if approach(contact, bodies, motion) < -least:
                     for o in range(count):
                         other = contacts[o]
                         if other.pair == contact.pair or other.phi > params.slop + TOUCHING:
@@ -116,11 +102,6 @@ def make_drop_flush(spec: Spec, approach: Any) -> Any:
                             flush = True
                             break
             contact.waits = 1 if flush else 0
-        for c in range(count):
-            if contacts[c].waits == 0:
-                if kept < c:
-                    contacts[kept] = contacts[c]
-                kept += 1
-        return kept
+        return keep_present(contacts, count)
 
     return kernel(drop_flush, spec)

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from .approach import NEVER, make_approach, make_forced
 from .collide.narrow_phase import make_manifold
 from .compile import kernel
 from .effects import made_once
@@ -18,15 +19,15 @@ from .records import TOUCHING
 from .spec import Spec
 
 PASSES = 40
-NEVER = 1e300
 
 
-def make_locate(spec: Spec, approach: Any) -> Any:
+def make_locate(spec: Spec) -> Any:
     """Return `kernel(state, contact, workspace, params) -> when`, NEVER where they miss [s].
 
     contact: one ahead, with a first guess in `due`. The rows of the bodies are left as they were.
     """
-    manifold = make_manifold(spec, spec.shape_pairs)
+    manifold, approach = make_manifold(spec, spec.shape_pairs), make_approach(spec)
+    forced = make_forced(spec)
     turns, compound = spec.has("rotation"), spec.has("compound")
     turn: Any = make_turn(spec)
     _, place_part = made_once(spec, "place_part")
@@ -82,8 +83,8 @@ def make_locate(spec: Spec, approach: Any) -> Any:
             contact.x, contact.y, contact.z = point.x, point.y, point.z
             contact.nx, contact.ny, contact.nz = normal[0], normal[1], normal[2]
             phi = point.phi
-            v, a = approach(contact, bodies, motion, left)
-            v += a * t
+            dv, _ = forced(contact, motion)
+            v = approach(contact, bodies, motion) + dv * t / left
             if abs(phi) <= 0.25 * TOUCHING:
                 # Newton's next step has twice as many digits: no friction with a lever of its own.
                 when = t - phi / v if v < 0.0 else NEVER

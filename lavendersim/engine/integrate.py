@@ -15,7 +15,7 @@ from .compile import kernel
 from .effects import made_once
 from .effects.gyroscopic import make_turn_by_mean
 from .records import NOT_FINITE, TURNS_TOO_FAST
-from .rotation import inertia_times, turn
+from .rotation import inertia_times, is_round, turn
 from .spec import Spec
 
 # MOTION.carried: a contact carries the body from its impact on, or through the whole step.
@@ -212,7 +212,7 @@ def make_displace(spec: Spec) -> Any:
                 body.z += z
                 even = True
                 if uneven:
-                    even = body.inv_ix == body.inv_iy and body.inv_iy == body.inv_iz
+                    even = is_round(body)
                 if even and lasting:
                     half = 0.5 * dt
                     turn(body, half * (m.wx + v.wx), half * (m.wy + v.wy), half * (m.wz + v.wz))

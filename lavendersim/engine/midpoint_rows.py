@@ -18,7 +18,7 @@ from .effects import made_once
 from .effects.frictionless_contact import has_frictionless
 from .effects.gyroscopic import make_turn_midway
 from .records import PLANE, TOUCHING
-from .rotation import half_turn
+from .rotation import half_turn, is_round
 from .spec import Spec
 
 # Change of a surface's velocity in half a step that a row may miss [m/s]: what solves leave.
@@ -149,7 +149,7 @@ def make_stand_midway(spec: Spec) -> Any:
             if turns:
                 even = True
                 if uneven:
-                    even = body.inv_ix == body.inv_iy and body.inv_iy == body.inv_iz
+                    even = is_round(body)
                 if even:
                     x, y, z = m.wx + v.wx, m.wy + v.wy, m.wz + v.wz
                     body.qw, body.qx, body.qy, body.qz = start.qw, start.qx, start.qy, start.qz

@@ -27,6 +27,12 @@ def orient(body):
 
 
 @inner
+def is_round(body):
+    """Whether its inertia is the same about every axis: a free spin does not change."""
+    return body.inv_ix == body.inv_iy and body.inv_iy == body.inv_iz
+
+
+@inner
 def to_world(body, x, y, z):
     """Rotate a vector from the body's frame to the world's."""
     return (

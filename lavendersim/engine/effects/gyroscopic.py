@@ -153,10 +153,10 @@ def make_jump(spec):
         beta dw . L + beta^2 dw . I dw / 2 = dw . L + dw . I_0 dw / 2,    L = I omega;
     a jump that takes all that its direction can take has no such root, and scales the spin instead.
     """
-    from ..rotation import inertia_times
+    from ..rotation import inertia_times, is_round
 
     def jump(body, velocity, x, y, z, twice_spent):
-        if body.inv_ix == body.inv_iy and body.inv_iy == body.inv_iz:
+        if is_round(body):
             velocity.wx += x
             velocity.wy += y
             velocity.wz += z

@@ -60,6 +60,7 @@ def make_settle(spec: Spec, solve: Any, classify: Any) -> Any:
     Called after `solve`; sets counters.stronge to 1 where it took Stronge's law.
     """
     from ..block import make_slip_velocity
+    from ..parts import make_forget_history
     from ..stronge import make_leave
 
     slip_velocity = make_slip_velocity(spec)
@@ -102,15 +103,8 @@ def make_settle(spec: Spec, solve: Any, classify: Any) -> Any:
 
     aim = kernel(aim, spec)
 
-    def forget_sweeps(counters, rows):
-        # A step has room for the sweeps of one solve: those of the solve that counts, the last.
-        if records:
-            while counters.residual_rows > 0:
-                if rows[counters.residual_rows - 1].step != counters.step + 1:
-                    break
-                counters.residual_rows -= 1
-
-    forget_sweeps = kernel(forget_sweeps, spec)
+    # A step has room for the sweeps of one solve: those of the solve that counts, the last.
+    forget_history: Any = make_forget_history(spec) if records else None
 
     def settle(system, motion, workspace, params, counters, rows):
         contacts, count, velocities = system.contacts, system.count, system.velocities
@@ -136,7 +130,8 @@ def make_settle(spec: Spec, solve: Any, classify: Any) -> Any:
             return
         counters.stronge = 1
         aim(contacts, count, 1.0)
-        forget_sweeps(counters, rows)
+        if records:
+            forget_history(counters, rows)
         solve(system, workspace, params, counters, rows)
         total, size = work_of(contacts, count, velocities, motion, params)
         if total <= ROUND_OFF * size:
@@ -145,7 +140,8 @@ def make_settle(spec: Spec, solve: Any, classify: Any) -> Any:
         for _ in range(HALVINGS):
             share = 0.5 * (low + high)
             aim(contacts, count, share)
-            forget_sweeps(counters, rows)
+            if records:
+                forget_history(counters, rows)
             solve(system, workspace, params, counters, rows)
             total, size = work_of(contacts, count, velocities, motion, params)
             if total <= ROUND_OFF * size:
@@ -153,7 +149,8 @@ def make_settle(spec: Spec, solve: Any, classify: Any) -> Any:
             else:
                 high = share
         aim(contacts, count, low)
-        forget_sweeps(counters, rows)
+        if records:
+            forget_history(counters, rows)
         solve(system, workspace, params, counters, rows)
 
     return kernel(settle, spec)

@@ -19,6 +19,14 @@ from __future__ import annotations
 from math import sqrt
 from typing import Any
 
+from ..approach import (
+    NEVER,
+    make_approach,
+    make_forced,
+    make_keep_present,
+    make_relative_speed,
+    make_slowest,
+)
 from ..records import TOUCHING
 from ..spec import Spec
 from .decision import Decision, Facts
@@ -28,13 +36,10 @@ from .effect import Choice, Column, Effect, Fields, Hooks, kernel
 FLIGHT = 1.0 / 64.0
 # Slowest impact without a rebound, in what forces change in a step.
 SLOW = 1.0
-# Slowest of all [m/s], and as a share of the speeds of the bodies: what a solve leaves.
-CREEP, ROUND_OFF = 1e-7, 1e-9
 # Rows of contacts that the parts of one step may have in all; one that is not met is a 16th.
 WORK = 4096
 # Bodies that overlap by more are moved apart first: what they do has no order in time [m].
 OVERLAP = 5e-5
-NEVER = 1e300  # [s]
 LAST = 1.0 - 1e-9  # first guess, in what is left of the step, where only shapes tell
 
 
@@ -51,62 +56,21 @@ def decide(facts: Facts) -> Decision:
     return Decision(True, "impacts are in_order")
 
 
-def make_approach(spec: Spec) -> Any:
-    """Return `kernel(contact, bodies, motion, left) -> (v, a)`: rate of the gap, by free motion.
-
-    v: at the start [m/s]; a: its change by forces [m/s^2], which act for `left` seconds.
-    """
-    turns = spec.has("rotation")
-
-    def approach(contact, bodies, motion, left):
-        body_a, body_b = bodies[contact.a], bodies[contact.b]
-        ma, mb = motion[contact.a], motion[contact.b]
-        nx, ny, nz = contact.nx, contact.ny, contact.nz
-        v = nx * (mb.vx - ma.vx) + ny * (mb.vy - ma.vy) + nz * (mb.vz - ma.vz)
-        if turns:
-            rx, ry, rz = contact.x - body_b.x, contact.y - body_b.y, contact.z - body_b.z
-            v += nx * (mb.wy * rz - mb.wz * ry)
-            v += ny * (mb.wz * rx - mb.wx * rz)
-            v += nz * (mb.wx * ry - mb.wy * rx)
-            rx, ry, rz = contact.x - body_a.x, contact.y - body_a.y, contact.z - body_a.z
-            v -= nx * (ma.wy * rz - ma.wz * ry)
-            v -= ny * (ma.wz * rx - ma.wx * rz)
-            v -= nz * (ma.wx * ry - ma.wy * rx)
-        a = nx * (mb.dvx - ma.dvx) + ny * (mb.dvy - ma.dvy) + nz * (mb.dvz - ma.dvz)
-        return v, a / left
-
-    return kernel(approach, spec)
-
-
-def make_forced(spec: Spec) -> Any:
-    """Return `kernel(contact, motion) -> speed`: what forces change of either body's in the part.
-
-    Contacts may hold the one body and not the other: the rate of the gap may change by as much.
-    """
-
-    def forced(contact, motion):
-        ma, mb = motion[contact.a], motion[contact.b]
-        x, y, z = contact.nx, contact.ny, contact.nz
-        of_a = abs(x * ma.dvx + y * ma.dvy + z * ma.dvz)
-        return of_a + abs(x * mb.dvx + y * mb.dvy + z * mb.dvz)
-
-    return kernel(forced, spec)
-
-
 def make_is_impact(spec: Spec) -> Any:
-    """Return `kernel(speed, least, forced, a, e, params) -> whether it is an impact`.
+    """Return `kernel(speed, least, dv, most, e, params) -> whether it is an impact`.
 
-    speed: at which surfaces meet [m/s]; least: slowest of all; forced: see `make_forced`; a: change
-    of the rate of the gap by forces [m/s^2]; e: coefficient of restitution.
+    speed: at which surfaces meet [m/s]; least: see `approach.make_slowest`; dv, most: see
+    `approach.make_forced`; e: coefficient of restitution.
     """
 
-    def is_impact(speed, least, forced, a, e, params):
+    def is_impact(speed, least, dv, most, e, params):
         if not speed > least:
             return False
-        if 2.0 * e * speed > FLIGHT * max(-a, 0.0) * params.timestep:
-            if e > 0.0:
+        share = params.timestep / params.dt
+        if e > 0.0:
+            if 2.0 * e * speed > FLIGHT * max(-dv, 0.0) * share:
                 return True
-        return speed > SLOW * forced * params.timestep / params.dt
+        return speed > SLOW * most * share
 
     return kernel(is_impact, spec)
 
@@ -120,8 +84,10 @@ def make_order(spec: Spec) -> Any:
     from ..flush_contacts import make_drop_flush
     from ..impact_location import make_locate
 
-    approach, forced, is_impact = make_approach(spec), make_forced(spec), make_is_impact(spec)
-    locate, drop_flush = make_locate(spec, approach), make_drop_flush(spec, approach)
+    approach, forced, slowest = make_approach(spec), make_forced(spec), make_slowest(spec)
+    relative_speed, is_impact = make_relative_speed(spec), make_is_impact(spec)
+    keep_present = make_keep_present(spec)
+    locate, drop_flush = make_locate(spec), make_drop_flush(spec)
     edged = drop_flush is not None
     turns = spec.has("rotation")
     restitution, compliance = spec.has("restitution"), spec.has("compliance")
@@ -133,24 +99,22 @@ def make_order(spec: Spec) -> Any:
         if compliance:
             if pair.compliance > 0.0:  # it takes time: no impulse at an instant
                 return False
-        ma, mb = motion[contact.a], motion[contact.b]
-        speed_sum = (ma.reach + mb.reach) / left
-        v, a = approach(contact, bodies, motion, left)
-        e, change = 0.0, forced(contact, motion)
+        v, (dv, most) = approach(contact, bodies, motion), forced(contact, motion)
+        least, a = slowest(contact, bodies, motion), dv / left
+        e = 0.0
         if restitution:
             e = pair.restitution
         gap = contact.phi if contact.phi > TOUCHING else 0.0
-        least = CREEP + ROUND_OFF * speed_sum
         if gap == 0.0 and v < 0.0:
-            return is_impact(-v, least, change, a, e, params)
+            return is_impact(-v, least, dv, most, e, params)
         # What leaves a gap, whatever holds its bodies, is no contact of this part.
-        if v > least + change and contact.phi + left * (v - 0.5 * change) > params.slop:
+        if v > least + most and contact.phi + left * (v - 0.5 * most) > params.slop:
             contact.waits = 1
         ahead = False
         squared = v * v - 2.0 * a * gap
         if squared > 0.0 and (v < 0.0 or a < 0.0):
             speed = sqrt(squared)
-            if is_impact(speed, least, change, a, e, params):
+            if is_impact(speed, least, dv, most, e, params):
                 # The root that comes first, in the form that does not cancel.
                 due = (v + speed) / -a if v > 0.0 else 2.0 * gap / (speed - v)
                 ahead = gap > 0.0 or due >= FLIGHT * params.timestep
@@ -159,25 +123,25 @@ def make_order(spec: Spec) -> Any:
         if turns:
             if (ahead or contact.waits == 1) and contact.due == NEVER and gap > 0.0:
                 # Surfaces that turn may come nearer by as much as this: their shapes decide.
+                ma, mb = motion[contact.a], motion[contact.b]
                 spin = sqrt(ma.wx * ma.wx + ma.wy * ma.wy + ma.wz * ma.wz)
                 spin += sqrt(mb.wx * mb.wx + mb.wy * mb.wy + mb.wz * mb.wz)
-                end = contact.phi + left * (v + 0.5 * a * left)
-                if end < 0.5 * spin * speed_sum * left * left:
+                end = contact.phi + left * (v + 0.5 * dv)
+                nearer = 0.5 * spin * relative_speed(contact, bodies, motion) * left * left
+                if end < nearer:
                     contact.waits, contact.due = 1, LAST * left
         return False
 
     foresee = kernel(foresee, spec)
 
-    def keep_meeting(contacts, count, bodies, motion, params):
+    def keep_meeting(contacts, count, bodies, motion, slop):
         # What touches and does not part; what is apart has no part in the impact.
         kept = 0
         for c in range(count):
             contact = contacts[c]
             ahead = contact.phi > TOUCHING and contact.waits == 1
-            if contact.phi <= max(params.slop, TOUCHING) and not ahead:
-                v, _ = approach(contact, bodies, motion, params.dt)
-                far = motion[contact.a].reach + motion[contact.b].reach
-                if v <= CREEP + ROUND_OFF * far / params.dt:
+            if contact.phi <= max(slop, TOUCHING) and not ahead:
+                if approach(contact, bodies, motion) <= slowest(contact, bodies, motion):
                     if kept < c:
                         contacts[kept] = contacts[c]
                     kept += 1
@@ -223,7 +187,7 @@ def make_order(spec: Spec) -> Any:
             counters.unordered = 1
             return count, left
         if meets:
-            return keep_meeting(contacts, count, bodies, motion, params), 0.0
+            return keep_meeting(contacts, count, bodies, motion, params.slop), 0.0
         length = left
         while True:
             first, due = first_due(contacts, count)
@@ -234,13 +198,7 @@ def make_order(spec: Spec) -> Any:
                 length = due
                 break
             contact.located, contact.due = 1, locate(state, contact, workspace, params)
-        kept = 0
-        for c in range(count):
-            if contacts[c].waits == 0:
-                if kept < c:
-                    contacts[kept] = contacts[c]
-                kept += 1
-        return kept, length
+        return keep_present(contacts, count), length
 
     return kernel(order, spec)
 

@@ -84,7 +84,7 @@ def update_shift(contact, slip, stalls):
 
 
 def _make_start_block(spec: Spec):
-    moving_surface = spec.has("surface_velocity") or spec.has("contact_midpoint")
+    shifted = spec.shifts_slip
     relative_velocity = make_relative_velocity(spec)
 
     def start_block(contact, va, vb, softness, at_rest, stalls):
@@ -92,7 +92,7 @@ def _make_start_block(spec: Spec):
         contact.velocity_n = contact.nx * x + contact.ny * y + contact.nz * z + contact.target
         contact.velocity_1 = contact.t1x * x + contact.t1y * y + contact.t1z * z
         contact.velocity_2 = contact.t2x * x + contact.t2y * y + contact.t2z * z
-        if moving_surface:
+        if shifted:
             contact.velocity_1 += contact.surface_1
             contact.velocity_2 += contact.surface_2
         if at_rest:

@@ -1,0 +1,122 @@
+"""How fast surfaces approach or part in free motion (`records.MOTION`), and what is no approach.
+
+v > 0: they part. Speeds are those of the bodies to each other: no observer changes what meets.
+"""
+
+from __future__ import annotations
+
+from math import sqrt
+from typing import Any
+
+from .compile import kernel
+from .records import PLANE
+from .spec import Spec
+
+NEVER = 1e300  # [s]
+# Slowest approach [m/s], and as a share of the bodies' speed to each other: what solves leave.
+CREEP, ROUND_OFF = 1e-7, 1e-9
+
+
+def make_rate(spec: Spec) -> Any:
+    """Return `kernel(n, ma, mb, arm_a, arm_b) -> v`: of a point of B from one of A, along n [m/s].
+
+    ma, mb: rows of `motion`; arm_a, arm_b: the points, from the centres of their bodies.
+    """
+    turns = spec.has("rotation")
+
+    def rate(n, ma, mb, arm_a, arm_b):
+        v = n.x * (mb.vx - ma.vx) + n.y * (mb.vy - ma.vy) + n.z * (mb.vz - ma.vz)
+        if turns:
+            v += n.x * (mb.wy * arm_b.z - mb.wz * arm_b.y)
+            v += n.y * (mb.wz * arm_b.x - mb.wx * arm_b.z)
+            v += n.z * (mb.wx * arm_b.y - mb.wy * arm_b.x)
+            v -= n.x * (ma.wy * arm_a.z - ma.wz * arm_a.y)
+            v -= n.y * (ma.wz * arm_a.x - ma.wx * arm_a.z)
+            v -= n.z * (ma.wx * arm_a.y - ma.wy * arm_a.x)
+        return v
+
+    return kernel(rate, spec)
+
+
+def make_approach(spec: Spec) -> Any:
+    """Return `kernel(contact, bodies, motion) -> v`: rate of its gap as the part begins [m/s]."""
+    from .vectors import Vec3, minus, position
+
+    rate = make_rate(spec)
+
+    def approach(contact, bodies, motion):
+        at = position(contact)
+        arm_a = minus(at, position(bodies[contact.a]))
+        arm_b = minus(at, position(bodies[contact.b]))
+        n = Vec3(contact.nx, contact.ny, contact.nz)
+        return rate(n, motion[contact.a], motion[contact.b], arm_a, arm_b)
+
+    return kernel(approach, spec)
+
+
+def make_forced(spec: Spec) -> Any:
+    """Return `kernel(contact, motion) -> (dv, most)`: what forces change of v in the part [m/s].
+
+    dv: of both bodies in free flight; most: where contacts hold the one body and not the other.
+    """
+
+    def forced(contact, motion):
+        ma, mb = motion[contact.a], motion[contact.b]
+        x, y, z = contact.nx, contact.ny, contact.nz
+        dv = x * (mb.dvx - ma.dvx) + y * (mb.dvy - ma.dvy) + z * (mb.dvz - ma.dvz)
+        of_a = abs(x * ma.dvx + y * ma.dvy + z * ma.dvz)
+        return dv, of_a + abs(x * mb.dvx + y * mb.dvy + z * mb.dvz)
+
+    return kernel(forced, spec)
+
+
+def make_relative_speed(spec: Spec) -> Any:
+    """Return `kernel(contact, bodies, motion) -> speed`: at most, of points of its bodies [m/s]."""
+    from .vectors import length, minus, position
+
+    turns = spec.has("rotation")
+
+    def turning(contact, body, m):
+        # A plane has no size: its spin moves what is at the contact.
+        size = body.bound
+        if body.shape == PLANE:
+            size = length(minus(position(contact), position(body)))
+        return size * sqrt(m.wx * m.wx + m.wy * m.wy + m.wz * m.wz)
+
+    turning = kernel(turning, spec)
+
+    def relative_speed(contact, bodies, motion):
+        ma, mb = motion[contact.a], motion[contact.b]
+        x, y, z = mb.vx - ma.vx, mb.vy - ma.vy, mb.vz - ma.vz
+        speed = sqrt(x * x + y * y + z * z)
+        if turns:
+            speed += turning(contact, bodies[contact.a], ma)
+            speed += turning(contact, bodies[contact.b], mb)
+        return speed
+
+    return kernel(relative_speed, spec)
+
+
+def make_slowest(spec: Spec) -> Any:
+    """Return `kernel(contact, bodies, motion) -> speed` up to which its surfaces do not move."""
+    relative_speed = make_relative_speed(spec)
+
+    def slowest(contact, bodies, motion):
+        return CREEP + ROUND_OFF * relative_speed(contact, bodies, motion)
+
+    return kernel(slowest, spec)
+
+
+def make_keep_present(spec: Spec) -> Any:
+    """Return `kernel(contacts, count) -> count`: without those that wait."""
+
+    def keep_present(contacts, count):
+        kept = 0
+        for c in range(count):
+            if contacts[c].waits == 0:
+                if kept < c:
+                    contacts[kept] = contacts[c]
+                kept += 1
+        return kept
+
+    return kernel(keep_present, spec)
