@@ -13,6 +13,9 @@ from .records import PLANE
 from .spec import Spec
 
 NEVER = 1e300  # [s]
+# When it is due: by the rate of its own gap, a guess for any feature of its pair, or found on
+# the shapes.
+GUESSED, ELSEWHERE, LOCATED = 0, 1, 2
 # Slowest approach [m/s], and as a share of the bodies' speed to each other: what solves leave.
 CREEP, ROUND_OFF = 1e-7, 1e-9
 
@@ -70,29 +73,55 @@ def make_forced(spec: Spec) -> Any:
     return kernel(forced, spec)
 
 
-def make_relative_speed(spec: Spec) -> Any:
-    """Return `kernel(contact, bodies, motion) -> speed`: at most, of points of its bodies [m/s]."""
+def make_turning(spec: Spec) -> Any:
+    """Return `kernel(contact, bodies, motion) -> speed`, at most, by the spins of both [m/s]."""
     from .vectors import length, minus, position
 
     turns = spec.has("rotation")
 
-    def turning(contact, body, m):
+    def turning_of(contact, body, m):
         # A plane has no size: its spin moves what is at the contact.
         size = body.bound
         if body.shape == PLANE:
             size = length(minus(position(contact), position(body)))
         return size * sqrt(m.wx * m.wx + m.wy * m.wy + m.wz * m.wz)
 
-    turning = kernel(turning, spec)
+    turning_of = kernel(turning_of, spec)
+
+    def turning(contact, bodies, motion):
+        speed = 0.0
+        if turns:
+            speed += turning_of(contact, bodies[contact.a], motion[contact.a])
+            speed += turning_of(contact, bodies[contact.b], motion[contact.b])
+        return speed
+
+    return kernel(turning, spec)
+
+
+def make_nearest_rate(spec: Spec) -> Any:
+    """Return `kernel(contact, bodies, motion) -> v`: least rate of any gap along the normal [m/s].
+
+    Bodies that n separates by phi are apart for as long as phi + v t > 0, whatever turns.
+    """
+    turning = make_turning(spec)
+
+    def nearest_rate(contact, bodies, motion):
+        ma, mb = motion[contact.a], motion[contact.b]
+        x, y, z = contact.nx, contact.ny, contact.nz
+        v = x * (mb.vx - ma.vx) + y * (mb.vy - ma.vy) + z * (mb.vz - ma.vz)
+        return v - turning(contact, bodies, motion)
+
+    return kernel(nearest_rate, spec)
+
+
+def make_relative_speed(spec: Spec) -> Any:
+    """Return `kernel(contact, bodies, motion) -> speed`: at most, of points of its bodies [m/s]."""
+    turning = make_turning(spec)
 
     def relative_speed(contact, bodies, motion):
         ma, mb = motion[contact.a], motion[contact.b]
         x, y, z = mb.vx - ma.vx, mb.vy - ma.vy, mb.vz - ma.vz
-        speed = sqrt(x * x + y * y + z * z)
-        if turns:
-            speed += turning(contact, bodies[contact.a], ma)
-            speed += turning(contact, bodies[contact.b], mb)
-        return speed
+        return sqrt(x * x + y * y + z * z) + turning(contact, bodies, motion)
 
     return kernel(relative_speed, spec)
 

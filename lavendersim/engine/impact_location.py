@@ -3,14 +3,17 @@
 Newton's method on the separation phi(t) of a contact's features, at the poses of free motion:
     x(t) = x + v t + a t^2/2,    q(t): turned for t,    t <- t - phi / (d phi / dt)
 From before a meeting of convex bodies it does not pass it; one that only grazes or misses ends
-where the surfaces part. Source of the idea: conservative advancement (B. Mirtich, 1996).
+where the surfaces part. Where they overlap and part, the middle of the time between is tried.
+Bodies that part and turn may meet with any of their features: they are followed from the start, as
+far at a time as none of their points can move.
+Source of the idea: conservative advancement (B. Mirtich, 1996).
 """
 
 from __future__ import annotations
 
 from typing import Any
 
-from .approach import NEVER, make_approach, make_forced
+from .approach import ELSEWHERE, GUESSED, NEVER, make_approach, make_forced, make_nearest_rate
 from .collide.narrow_phase import make_manifold
 from .compile import kernel
 from .effects import made_once
@@ -18,7 +21,9 @@ from .integrate import make_turn
 from .records import TOUCHING
 from .spec import Spec
 
-PASSES = 40
+PASSES = 80
+# Shortest, of what is left of the step, in which bodies that part are looked at again.
+STRIDE = 1.0 / 32.0
 
 
 def make_locate(spec: Spec) -> Any:
@@ -27,7 +32,7 @@ def make_locate(spec: Spec) -> Any:
     contact: one ahead, with a first guess in `due`. The rows of the bodies are left as they were.
     """
     manifold, approach = make_manifold(spec, spec.shape_pairs), make_approach(spec)
-    forced = make_forced(spec)
+    forced, nearest_rate = make_forced(spec), make_nearest_rate(spec)
     turns, compound = spec.has("rotation"), spec.has("compound")
     turn: Any = make_turn(spec)
     _, place_part = made_once(spec, "place_part")
@@ -60,6 +65,8 @@ def make_locate(spec: Spec) -> Any:
         ma, mb = motion[owner_i], motion[owner_j]
         margin = TOUCHING + ma.reach + mb.reach
         t, when, late = ahead.due, NEVER, False
+        marches = ahead.located == ELSEWHERE
+        low, high = 0.0, NEVER  # apart, overlapping
         contact = trial.contact[0]
         contact.a, contact.b = owner_i, owner_j
         for _ in range(PASSES):
@@ -71,14 +78,16 @@ def make_locate(spec: Spec) -> Any:
                 place_part(bodies, j)
             count = manifold(row.kind, bodies[i], bodies[j], margin, workspace.collision)
             if count == 0:
+                when = NEVER
                 break
             least = 0
             for k in range(1, count):
                 if points[k].phi < points[least].phi:
                     least = k
-            for k in range(count):
-                if points[k].feature == ahead.feature:
-                    least = k
+            if ahead.located == GUESSED:
+                for k in range(count):
+                    if points[k].feature == ahead.feature:
+                        least = k
             point = points[least]
             contact.x, contact.y, contact.z = point.x, point.y, point.z
             contact.nx, contact.ny, contact.nz = normal[0], normal[1], normal[2]
@@ -88,18 +97,35 @@ def make_locate(spec: Spec) -> Any:
             if abs(phi) <= 0.25 * TOUCHING:
                 # Newton's next step has twice as many digits: no friction with a lever of its own.
                 when = t - phi / v if v < 0.0 else NEVER
-                break
-            if not v < 0.0:
+                if when < NEVER or not marches:
+                    break
+            if phi < -0.25 * TOUCHING:
+                high = t
+            else:
+                low = t
+            if marches and high == NEVER:
+                when = NEVER
+                if t >= left:
+                    break
+                rate = abs(dv) - nearest_rate(contact, bodies, motion)
+                stride = STRIDE * left
+                if rate * stride < phi:
+                    stride = phi / rate if rate * left > phi else left
+                t = min(t + stride, left)
+                continue
+            before = t
+            if v < 0.0:
+                t -= phi / v
+            elif high == NEVER:
                 # They part: never met, unless they turn and meet in the rest.
-                if not turns or late or phi < 0.0:
+                if not turns or late:
+                    when = NEVER
                     break
                 t, late = left, True
                 continue
-            before = t
-            t = min(t - phi / v, left)
-            if t <= 0.0:
-                t = 0.5 * before
-            when = t
+            if v >= 0.0 or not low < t < high:
+                t = 0.5 * (low + high) if high < NEVER else t
+            t = when = min(t, left)
             if t == before:
                 when = NEVER if phi > TOUCHING else t
                 break

@@ -20,10 +20,14 @@ from math import sqrt
 from typing import Any
 
 from ..approach import (
+    ELSEWHERE,
+    GUESSED,
+    LOCATED,
     NEVER,
     make_approach,
     make_forced,
     make_keep_present,
+    make_nearest_rate,
     make_relative_speed,
     make_slowest,
 )
@@ -86,6 +90,7 @@ def make_order(spec: Spec) -> Any:
 
     approach, forced, slowest = make_approach(spec), make_forced(spec), make_slowest(spec)
     relative_speed, is_impact = make_relative_speed(spec), make_is_impact(spec)
+    nearest_rate = make_nearest_rate(spec)
     keep_present = make_keep_present(spec)
     locate, drop_flush = make_locate(spec), make_drop_flush(spec)
     edged = drop_flush is not None
@@ -95,7 +100,7 @@ def make_order(spec: Spec) -> Any:
     def foresee(contact, pair, bodies, motion, params):
         # Fills waits and due; returns whether an impact happens now.
         left = params.dt
-        contact.waits, contact.located, contact.due = 0, 0, NEVER
+        contact.waits, contact.located, contact.due = 0, GUESSED, NEVER
         if compliance:
             if pair.compliance > 0.0:  # it takes time: no impulse at an instant
                 return False
@@ -127,8 +132,7 @@ def make_order(spec: Spec) -> Any:
                 spin = sqrt(ma.wx * ma.wx + ma.wy * ma.wy + ma.wz * ma.wz)
                 spin += sqrt(mb.wx * mb.wx + mb.wy * mb.wy + mb.wz * mb.wz)
                 end = contact.phi + left * (v + 0.5 * dv)
-                nearer = 0.5 * spin * relative_speed(contact, bodies, motion) * left * left
-                if end < nearer:
+                if end < 0.5 * spin * relative_speed(contact, bodies, motion) * left * left:
                     contact.waits, contact.due = 1, LAST * left
         return False
 
@@ -148,6 +152,27 @@ def make_order(spec: Spec) -> Any:
         return kept
 
     keep_meeting = kernel(keep_meeting, spec)
+
+    def look_elsewhere(contacts, count, bodies, motion, left):
+        # Bodies that part where they touched, and turn, may meet with other features of theirs.
+        first = 0
+        while first < count:
+            pair, last, waits, least, soonest = contacts[first].pair, first, True, first, left
+            while last < count and contacts[last].pair == pair:
+                contact = contacts[last]
+                waits = waits and contact.waits == 1
+                dv, _ = forced(contact, motion)
+                rate = abs(dv) - nearest_rate(contact, bodies, motion)
+                gap = max(contact.phi, 0.0)
+                if rate * soonest > gap:
+                    least, soonest = last, gap / rate
+                last += 1
+            if waits and soonest < left:
+                contact = contacts[least]
+                contact.located, contact.due = ELSEWHERE, min(contact.due, soonest)
+            first = last
+
+    look_elsewhere = kernel(look_elsewhere, spec)
 
     def first_due(contacts, count):
         first, due = -1, NEVER
@@ -169,7 +194,7 @@ def make_order(spec: Spec) -> Any:
             if contact.phi > TOUCHING:
                 # Beyond what both can move: no part of this step, whatever happens in it.
                 if contact.phi > motion[contact.a].reach + motion[contact.b].reach:
-                    contact.waits, contact.located, contact.due = 0, 0, NEVER
+                    contact.waits, contact.located, contact.due = 0, GUESSED, NEVER
                     continue
             else:
                 touching += 1
@@ -188,16 +213,19 @@ def make_order(spec: Spec) -> Any:
             return count, left
         if meets:
             return keep_meeting(contacts, count, bodies, motion, params.slop), 0.0
+        if turns:
+            look_elsewhere(contacts, count, bodies, motion, left)
         length = left
         while True:
             first, due = first_due(contacts, count)
             if first < 0 or due >= left:
                 break
             contact = contacts[first]
-            if contact.located == 1:
+            if contact.located == LOCATED:
                 length = due
                 break
-            contact.located, contact.due = 1, locate(state, contact, workspace, params)
+            due = locate(state, contact, workspace, params)
+            contact.located, contact.due = LOCATED, due
         return keep_present(contacts, count), length
 
     return kernel(order, spec)
@@ -221,7 +249,7 @@ EFFECT = Effect(
     fields=Fields(
         contact=[
             ("waits", "i8"),  # 1: not met in this part, or it parts: no row of it
-            ("located", "i8"),  # 1: `due` is from the shapes themselves
+            ("located", "i8"),  # GUESSED for its feature, or ELSEWHERE; LOCATED on the shapes
             ("due", "f8"),  # when the surfaces meet, from the start of the part [s]
         ],
     ),
