@@ -9,6 +9,7 @@ from lavendersim.engine.solvers import SolverName
 Solver = SolverName
 Impacts = Literal["captured", "at_surface", "in_order"]
 Integrator = Literal["semi_implicit_euler", "midpoint", "midpoint_contact"]
+ComplianceLaw = Literal["spring", "regularised"]
 FrictionCone = Literal["disc", "pyramid", "convex"]
 Order = Literal["coloured", "forward", "backward", "symmetric", "random"]
 Preset = Literal["chapter", "default"]

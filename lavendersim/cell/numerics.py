@@ -10,7 +10,7 @@ from typing import Annotated
 
 from pydantic import Field
 
-from lavendersim.cell.choices import FrictionCone, Impacts, Integrator, Order, Solver
+from lavendersim.cell.choices import ComplianceLaw, FrictionCone, Impacts, Integrator, Order, Solver
 from lavendersim.quantities.model import ConfigModel
 from lavendersim.quantities.quantity import Quantity
 
@@ -86,6 +86,11 @@ class Numerics(ConfigModel):
         default="midpoint_contact",
         description="`semi_implicit_euler`; `midpoint`, of poses between contacts; or "
         "`midpoint_contact`, of contacts that last, too: order 2 in time wherever nothing strikes",
+    )
+    compliance_law: ComplianceLaw = Field(
+        default="spring",
+        description="what a compliance makes of a contact: a `spring`; or, `regularised`, a softer "
+        "row, whose penetration follows from stabilisation and projection",
     )
     friction_cone: FrictionCone = Field(
         default="disc",

@@ -66,7 +66,7 @@ def make_is_turning(spec: Spec) -> Any:
 
 def make_lasting(spec: Spec) -> Any:
     """Return `kernel(contact, params)`, of a row completed at the start: whether it lasts."""
-    friction = spec.has("friction")
+    friction, springs = spec.has("friction"), spec.has("contact_spring")
 
     def lasting(contact, params):
         contact.begin_n = contact.v_n_pre - contact.dv_n
@@ -75,6 +75,9 @@ def make_lasting(spec: Spec) -> Any:
         closed = contact.phi <= params.slop
         calm = -(FORCED * forced + 100.0 * SAME) <= contact.begin_n <= 100.0 * SAME
         contact.lasts = 1 if closed and calm else 0
+        if springs:
+            if contact.spring_compliance > 0.0:  # its force has no jump
+                contact.lasts = 1
         if friction:
             contact.slides = 0
 
@@ -273,6 +276,7 @@ def make_take_kept(spec: Spec) -> Any:
 def make_shift(spec: Spec) -> Any:
     """Return `kernel(contact, lead, params)`, of a row at the middle: b, where a contact lasts."""
     friction, frictionless = spec.has("friction"), has_frictionless(spec)
+    springs, spring_row = made_once(spec, "spring_row")
     normal_velocity = make_normal_velocity(spec)
     relative_velocity = make_relative_velocity(spec)
 
@@ -284,11 +288,17 @@ def make_shift(spec: Spec) -> Any:
         forced = abs(contact.dv_n) * params.timestep / params.dt
         turned = TURNED * abs(b) + 100.0 * SAME
         contact.lasts = 0
+        soft = False
+        if springs:
+            soft = contact.spring_compliance > 0.0
         calm = -(FORCED * forced + turned) <= contact.begin_n <= turned
-        if not calm or ajar > AJAR * params.dt * abs(b):
+        if not soft and (not calm or ajar > AJAR * params.dt * abs(b)):
             return
         contact.lasts = 1
-        if ajar > 0.0:
+        if soft:
+            if springs:
+                spring_row(contact, contact.middle_n, params)
+        elif ajar > 0.0:
             contact.target = ajar / params.dt + b
         else:
             contact.target += b

@@ -194,6 +194,7 @@ COUNTERS: Final[list[Field]] = [
     ("cone_contact", I8),
     ("dissipation", F8),
     ("dissipation_contact", I8),
+    ("contact_energy", F8),  # that contacts store at the end of the last step [J]
     ("body", I8),  # body that diverged
     ("cause", I8),  # NOT_FINITE or TURNS_TOO_FAST
     ("step_rows", I8),  # trace rows written since the caller emptied the columns

@@ -42,6 +42,7 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
     classify: Any = make_classify(spec) if watched else None
     _, settle = made_once(spec, "limit_impacts", solve, classify)
     projects, project_positions = made_once(spec, "project")
+    stores, contact_energy = made_once(spec, "contact_energy")
     logs = spec.has("contact_log")
     keeps_free, keep_free = made_once(spec, "keep_free")
     loads = made_by(spec, "preload")
@@ -107,6 +108,8 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
         if centred:
             if lasts:
                 midway = midpoint_passes(state, count, workspace, params, counters, log)
+        if stores and lasts:
+            counters.contact_energy = contact_energy(contacts, count, velocities, params)
         if logs:
             log_contacts(contacts, count, velocities, params, counters, log)
         if warms and lasts:
@@ -131,7 +134,7 @@ def make_pass_by(spec: Spec, log_contacts: Any) -> Any:
         counters.sweeps, counters.projection_sweeps = 0, 0
         counters.residual, counters.residual_contact = 0.0, -1
         counters.not_converged, counters.stronge, counters.sharpen = 0, 0, 0
-        counters.cached = 0
+        counters.cached, counters.contact_energy = 0, 0.0
         if logs:
             log_contacts(contacts, 0, velocities, params, counters, log)
 

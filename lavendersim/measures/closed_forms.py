@@ -151,6 +151,8 @@ def steady_penetration_above_slop(cell: CellConfig, moving: CellBody, plane: Cel
     left = 1.0 - cell.numerics.projection
     load = mass_of(moving) * _pull(cell, plane)
     indentation = mixed(moving.surface, plane.surface).compliance * load
+    if cell.numerics.compliance_law == "spring" and cell.numerics.stabilisation_gain == 0.0:
+        return float(indentation) - cell.numerics.slop
     return float(left * indentation / (1.0 - left * (1.0 - cell.numerics.stabilisation_gain)))
 
 

@@ -59,7 +59,26 @@ def stored(trace: Trace) -> Floats:
     total = np.zeros(len(trace.step))
     for name in _present(trace.step, STORED):
         total += trace.step[name]
+    if "contact_energy" in _present(trace.step, STORED) and trace.step["step"][0] == 0:
+        total[0] += _stored_at_first(trace)
     return total
+
+
+def _stored_at_first(trace: Trace) -> float:
+    """Return what contacts store as the run begins [J]: the state before the first step has none.
+
+    From where the first step found them; what it meets on its way has no penetration.
+    """
+    contacts = trace.contact[trace.contact["step"] == 1] if "/contacts" not in trace.absent else []
+    compliances = [trace.config.scene.bodies[name].surface.compliance for name in trace.bodies]
+    found: dict[tuple[int, int, int], float] = {}
+    for row in contacts:
+        key = (row["body_a"], row["body_b"], row["feature"])
+        compliance = compliances[row["body_a"]] + compliances[row["body_b"]]
+        if compliance > 0.0:
+            depth = max(-float(row["separation"]), 0.0)
+            found.setdefault(key, 0.5 * depth * depth / compliance)
+    return sum(found.values())
 
 
 def outer_impulse(trace: Trace) -> Floats:

@@ -86,6 +86,7 @@ def facts_of(config: CellConfig, record: bool = True) -> Facts:
         mistake=config.study.mistake,
         integrator=numerics.integrator,
         solver=numerics.solver,
+        compliance_law=numerics.compliance_law,
         friction_cone=numerics.friction_cone,
         scene=config.scene,
         sleeping=numerics.sleeping,

@@ -5,15 +5,17 @@ from __future__ import annotations
 from typing import Any, Final
 
 from lavendersim.cell import Surface
-from lavendersim.engine.effects import BY_NAME, BodyFacts, Facts, PairFacts
+from lavendersim.engine.effects import BY_NAME, SURFACE_KEYS, BodyFacts, Facts, PairFacts
 
+# With every property that a surface can have.
+SURFACE: Final = Surface(**{key.name: 1.0 for key in SURFACE_KEYS})
 # A scene in which boxes fall, touch and slide: what is off there, the numerics have switched off.
 BUSY: Final[dict[str, Any]] = {
     "bodies": tuple(
         BodyFacts(name, "box", movable=True, spins=True, round=False, size=1.0, least_size=1.0)
         for name in ("a", "b")
     ),
-    "pairs": (PairFacts("a", "b", Surface(restitution=1.0, friction=1.0)),) * 2,
+    "pairs": (PairFacts("a", "b", SURFACE),) * 2,
     "pair_count": 2,
     "gravity": (0.0, 0.0, -1.0),
 }

@@ -24,6 +24,7 @@ CHOICES: Final = (
     "speculative",
     "impacts",
     "integrator",
+    "compliance_law",
     "friction_cone",
     "order",
     "sleeping",

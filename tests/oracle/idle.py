@@ -27,6 +27,7 @@ LETS_IN: dict[str, tuple[Any, ...]] = {
     "impact_order": ("in_order",),
     "midpoint": ("midpoint", "midpoint_contact"),
     "contact_midpoint": ("midpoint_contact",),
+    "contact_spring": ("spring",),
     "speculative": (True,),
     "newton": ("adaptive",),
     "capture_in_sweeps": ("capture_in_sweeps",),

@@ -192,6 +192,7 @@ CASES: dict[str, tuple[str, ...]] = {
     "impact_energy": ("slow frictionless impacts", "slow frictional impacts"),
     "stabilisation": ("balls",),
     "compliance": ("balls", "conjugate balls"),
+    "contact_spring": ("flying brick",),
     "warm_start": ("cold balls",),
     "newton": ("single ball",),
     "projection": ("balls",),

@@ -35,6 +35,7 @@ CHOSEN: dict[str, tuple[str, tuple[Any, ...]]] = {  # effects that are there by 
     "impact_order": ("impacts", ("in_order",)),
     "midpoint": ("integrator", ("midpoint", "midpoint_contact")),
     "contact_midpoint": ("integrator", ("midpoint_contact",)),
+    "contact_spring": ("compliance_law", ("spring",)),
     "speculative": ("speculative", (True,)),
 }
 # Effects that a drawn plan may leave out: of each it is known what requires it.
@@ -84,6 +85,7 @@ LAWS: dict[str, Any] = {
     "order": "coloured",
     "impacts": "in_order",
     "integrator": "midpoint_contact",
+    "compliance_law": "spring",
     "speculative": True,
 }
 FULL = Drawn(_closed(EVERY, LAWS), SOLIDS, LAWS, tolerance=True, over_relaxation=False)
@@ -101,6 +103,7 @@ def plans(draw: Any) -> Drawn:
         "order": draw(st.sampled_from(orders)) if ordered else "coloured",
         "impacts": draw(st.sampled_from(IMPACTS)),
         "integrator": draw(st.sampled_from(INTEGRATORS)),
+        "compliance_law": draw(st.sampled_from(("spring", "regularised"))),
         "speculative": draw(st.booleans()),
     }
     spared = {name for name in SPARED if draw(st.booleans())}

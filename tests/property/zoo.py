@@ -24,6 +24,7 @@ ZOO = Spec(
         "compound",
         "contact_log",
         "contact_midpoint",
+        "contact_spring",
         "contact_torque",
         "fast_bodies",
         "friction",

@@ -25,7 +25,7 @@ SECTIONS = {
     "rows": (
         *("contact_torque", "friction", "frictionless_contact"),
         *("stabilisation", "compliance", "restitution", "surface_velocity", "capture_in_sweeps"),
-        *("cohesion", "static_friction"),
+        *("cohesion", "contact_spring", "static_friction"),
     ),
     "impacts-at-the-surface": ("impact_time", "impact_energy"),
     "impacts-in-order": ("impact_order",),

@@ -18,7 +18,7 @@ from lavendersim.runner.overhead_pairs import Pair, pairs_of
 AT_WORK = {
     "effects/carried.yaml": (
         *("drag", "kinematic", "torsional_friction", "rolling_friction", "surface_velocity"),
-        *("cohesion", "compliance"),
+        "cohesion",
     ),
     "effects/pile.yaml": ("broad_phase", "fast_bodies"),
     "effects/sphere.yaml": ("frictionless_contact", "restitution"),
@@ -38,8 +38,10 @@ IDLE = {  # in effects/sphere.yaml, with the reason why no config has it at work
     "rotation": NEEDED,
     "contact_torque": NEEDED,
     "impact_order": "another law where a scene requires it; of one ball on a plane it is idle",
+    "contact_spring": "another law where a scene requires it",
     "impact_energy": SWEPT,
     "stabilisation": "the default numerics, which all timed scenes have, project instead",
+    "compliance": "where a scene requires it, its law needs it",
     "newton": "where a scene requires it, solves without it are another solver's",
     "sleeping": NONE,
     "residual_log": SWEPT,

@@ -41,6 +41,7 @@ NAMES: Final = (
     "impact_energy",
     "stabilisation",
     "compliance",
+    "contact_spring",
     "warm_start",
     "newton",
     "projection",

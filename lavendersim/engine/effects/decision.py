@@ -62,6 +62,7 @@ class Facts(NamedTuple):
     scene: Any = None  # of the config, for effects with keys of their own in it
     mistake: str = "none"  # a deliberate error, for study
     integrator: str = "semi_implicit_euler"
+    compliance_law: str = "regularised"
     friction_cone: str = "disc"
     solver: str = "adaptive"
     sleeping: bool = False

@@ -111,6 +111,8 @@ class Hooks:
     match: Maker | None = None  # (contacts, count, bodies, cache, counters, params)
     recapture: Maker | None = None  # (contact, w, params) -> w, in every sweep
     limit_impacts: Maker | None = None  # made with (spec, solve, classify); after the solve
+    spring_row: Maker | None = None  # (contact, v_n, params): its target and gamma
+    contact_energy: Maker | None = None  # (contacts, count, velocities, params) -> stored [J]
     log_contacts: Maker | None = None  # made with (spec, kernels of contact_row); after the solve
     store: Maker | None = None  # (contacts, count, bodies, cache, counters, params)
     project: Maker | None = None  # (contacts, order, count, velocities, pseudo, params) -> sweeps

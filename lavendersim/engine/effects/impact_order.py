@@ -19,18 +19,6 @@ from __future__ import annotations
 from math import sqrt
 from typing import Any
 
-from ..approach import (
-    ELSEWHERE,
-    GUESSED,
-    LOCATED,
-    NEVER,
-    make_approach,
-    make_forced,
-    make_keep_present,
-    make_nearest_rate,
-    make_relative_speed,
-    make_slowest,
-)
 from ..records import TOUCHING
 from ..spec import Spec
 from .decision import Decision, Facts
@@ -53,7 +41,9 @@ def decide(facts: Facts) -> Decision:
         return Decision(False, f"impacts are {facts.impacts}")
     if not facts.pairs:
         return Decision(False, "nothing can touch")
-    if facts.pair_count == 1 and facts.pairs[0].shape_pair == "sphere_plane":
+    only = facts.pairs[0]
+    rigid = only.surface.compliance == 0.0  # where a spring begins to push is met in time
+    if facts.pair_count == 1 and only.shape_pair == "sphere_plane" and rigid:
         return Decision(False, "one ball and one plane: no impact follows another within a step")
     if facts.stabilisation_gain > 0.0:
         return Decision(False, "stabilisation_gain pushes by the step: it has no order in time")
@@ -85,6 +75,18 @@ def make_order(spec: Spec) -> Any:
     params.dt: what is left of the step, for which forces have acted (`motion`). length: of the part
     [s]; 0: it is an impact. The contacts that take part in it are the first `count` rows.
     """
+    from ..approach import (
+        ELSEWHERE,
+        GUESSED,
+        LOCATED,
+        NEVER,
+        make_approach,
+        make_forced,
+        make_keep_present,
+        make_nearest_rate,
+        make_relative_speed,
+        make_slowest,
+    )
     from ..flush_contacts import make_drop_flush
     from ..impact_location import make_locate
 
@@ -96,20 +98,25 @@ def make_order(spec: Spec) -> Any:
     edged = drop_flush is not None
     turns = spec.has("rotation")
     restitution, compliance = spec.has("restitution"), spec.has("compliance")
+    springs = spec.has("contact_spring")
 
     def foresee(contact, pair, bodies, motion, params):
         # Fills waits and due; returns whether an impact happens now.
         left = params.dt
         contact.waits, contact.located, contact.due = 0, GUESSED, NEVER
+        soft = False  # its impulse takes time: none at an instant
         if compliance:
-            if pair.compliance > 0.0:  # it takes time: no impulse at an instant
-                return False
+            soft = pair.compliance > 0.0
+        if soft and not springs:
+            return False
         v, (dv, most) = approach(contact, bodies, motion), forced(contact, motion)
         least, a = slowest(contact, bodies, motion), dv / left
         e = 0.0
         if restitution:
             e = pair.restitution
         gap = contact.phi if contact.phi > TOUCHING else 0.0
+        if soft and gap == 0.0:
+            return False
         if gap == 0.0 and v < 0.0:
             return is_impact(-v, least, dv, most, e, params)
         # What leaves a gap, whatever holds its bodies, is no contact of this part.
@@ -138,11 +145,14 @@ def make_order(spec: Spec) -> Any:
 
     foresee = kernel(foresee, spec)
 
-    def keep_meeting(contacts, count, bodies, motion, slop):
+    def keep_meeting(contacts, count, pairs, bodies, motion, slop):
         # What touches and does not part; what is apart has no part in the impact.
         kept = 0
         for c in range(count):
             contact = contacts[c]
+            if springs:
+                if pairs[contact.pair].compliance > 0.0:
+                    continue
             ahead = contact.phi > TOUCHING and contact.waits == 1
             if contact.phi <= max(slop, TOUCHING) and not ahead:
                 if approach(contact, bodies, motion) <= slowest(contact, bodies, motion):
@@ -153,7 +163,7 @@ def make_order(spec: Spec) -> Any:
 
     keep_meeting = kernel(keep_meeting, spec)
 
-    def look_elsewhere(contacts, count, bodies, motion, left):
+    def follow_turning(contacts, count, bodies, motion, left):
         # Bodies that part where they touched, and turn, may meet with other features of theirs.
         first = 0
         while first < count:
@@ -172,7 +182,7 @@ def make_order(spec: Spec) -> Any:
                 contact.located, contact.due = ELSEWHERE, min(contact.due, soonest)
             first = last
 
-    look_elsewhere = kernel(look_elsewhere, spec)
+    follow: Any = kernel(follow_turning, spec) if turns else None
 
     def first_due(contacts, count):
         first, due = -1, NEVER
@@ -198,7 +208,10 @@ def make_order(spec: Spec) -> Any:
                     continue
             else:
                 touching += 1
-                if contact.phi < -OVERLAP:
+                deep = contact.phi < -OVERLAP
+                if springs:
+                    deep = deep and state.pairs[contact.pair].compliance == 0.0
+                if deep:
                     counters.unordered = 1
                     return count, left
             if foresee(contact, state.pairs[contact.pair], bodies, motion, params):
@@ -212,9 +225,10 @@ def make_order(spec: Spec) -> Any:
             counters.unordered = 1
             return count, left
         if meets:
-            return keep_meeting(contacts, count, bodies, motion, params.slop), 0.0
+            slop = params.slop
+            return keep_meeting(contacts, count, state.pairs, bodies, motion, slop), 0.0
         if turns:
-            look_elsewhere(contacts, count, bodies, motion, left)
+            follow(contacts, count, bodies, motion, left)
         length = left
         while True:
             first, due = first_due(contacts, count)

@@ -31,11 +31,14 @@ def decide(facts: Facts) -> Decision:
 def make_foresee(spec):
     """Return `kernel(contact, params)`: when the surfaces meet in free flight, and how fast."""
 
-    ordered = spec.has("impact_order")
+    ordered, springs = spec.has("impact_order"), spec.has("contact_spring")
 
     def foresee(contact, params):
         dt = params.dt
         contact.tau, contact.is_impact = dt, 0
+        if springs:
+            if contact.spring_compliance > 0.0:
+                return
         v, a = contact.v_n_pre - contact.dv_n, contact.dv_n / dt
         # Surfaces that touch or overlap meet at once.
         gap = contact.phi if contact.phi > TOUCHING else 0.0
@@ -70,7 +73,7 @@ def make_predict_impacts(spec):
     Of a body's contacts the first to meet is the impact, with those that meet at the same place
     within the slop; later ones are treated from that time on.
     """
-    foresee = make_foresee(spec)
+    foresee, springs = make_foresee(spec), spec.has("contact_spring")
 
     def predict_impacts(contacts, count, motion, params):
         dt = params.dt
@@ -86,6 +89,9 @@ def make_predict_impacts(spec):
                     motion[contact.b].tau = min(motion[contact.b].tau, contact.tau)
         for c in range(count):
             contact = contacts[c]
+            if springs:
+                if contact.spring_compliance > 0.0:
+                    continue
             first = dt
             if contact.inv_m_a > 0.0:
                 first = min(first, motion[contact.a].tau)

@@ -29,7 +29,7 @@ def make(spec):
     apply_impulse = make_apply_impulse(spec)
     torque = spec.has("contact_torque")
     friction, midpoint = spec.has("friction"), spec.has("midpoint")
-    centred = spec.has("contact_midpoint")
+    centred, springs = spec.has("contact_midpoint"), spec.has("contact_spring")
 
     def project_positions(contacts, order, count, velocities, pseudo, params):
         asked = False
@@ -44,6 +44,9 @@ def make(spec):
                         v_n = 0.5 * (v_n + contact.middle_n)
             excess = -(contact.phi + v_n * params.dt) - params.slop
             contact.correction = params.projection * max(excess, 0.0)
+            if springs:
+                if contact.spring_compliance > 0.0:  # it rests where its force holds it
+                    contact.correction = 0.0
             contact.push = 0.0
             contact.inv_k_n = 1.0 / contact.k_n
             if contact.correction > 0.0:

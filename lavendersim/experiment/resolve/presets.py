@@ -36,6 +36,7 @@ CHAPTER: Final = Numerics(
     speculative=False,
     impacts="captured",
     integrator="semi_implicit_euler",
+    compliance_law="regularised",
     friction_cone="disc",
     sleeping=False,
     sleep_speed=0.005,

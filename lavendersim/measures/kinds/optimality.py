@@ -42,7 +42,10 @@ def optimality(spec: Optimality, trace: Trace) -> Floats:
     bodies = [trace.config.scene.bodies[name] for name in trace.bodies]
     dt = trace.clock.lengths(steps)
     residual = np.asarray(trace.step["residual"])[np.searchsorted(trace.step["step"], steps)]
-    gamma = _summed(contacts, [one.surface.compliance for one in bodies]) / dt**2
+    if "gamma" in (contacts.dtype.names or ()):
+        gamma = np.asarray(contacts["gamma"])
+    else:
+        gamma = _summed(contacts, [one.surface.compliance for one in bodies]) / dt**2
     least = _summed(contacts, [inverse_mass(one) for one in bodies])
     pushed = (contacts["inverse_effective_mass"] + gamma) * contacts["impulse_n"]
     away = contacts["normal_velocity"] + contacts["target"] + gamma * contacts["impulse_n"]

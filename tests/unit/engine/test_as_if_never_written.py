@@ -102,11 +102,16 @@ def as_it_is() -> list[str]:
     return found
 
 
-@pytest.mark.parametrize(("effect", "elsewhere"), [("drag", False), ("compliance", True)])
+@pytest.mark.parametrize(
+    ("effects", "elsewhere"),
+    [(("drag",), False), (("contact_spring", "compliance"), True)],
+    ids=["drag", "compliance"],
+)
 def test_a_pruned_effect_leaves_no_instruction(
-    effect: str, elsewhere: bool, as_it_is: list[str], tmp_path: Path
+    effects: tuple[str, ...], elsewhere: bool, as_it_is: list[str], tmp_path: Path
 ) -> None:
     without = shutil.ignore_patterns("__pycache__")
     shutil.copytree(ROOT / "lavendersim", tmp_path / "lavendersim", ignore=without)
-    assert (cut_out(tmp_path / "lavendersim/engine", effect) > 0) == elsewhere
+    for effect in effects:
+        assert (cut_out(tmp_path / "lavendersim/engine", effect) > 0) == elsewhere
     assert instructions(tmp_path) == as_it_is

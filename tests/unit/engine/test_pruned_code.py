@@ -41,7 +41,7 @@ INLINED_DIFFERENTLY = {
 }
 # Without a pair that may touch there is nothing to compile. Code may be looked at where the effect
 # would be another law.
-TOUCHING = {"impact_time": "balls", "speculative": "balls"}
+TOUCHING = {"impact_time": "balls", "speculative": "balls", "contact_spring": "balls"}
 # Effects that call the kernel.
 CALLED_BY = {"pose_log": ("step_log",)}
 RECORDS = ("body", "velocity", "pair", "contact", "cache", "contact_row", "step_row")

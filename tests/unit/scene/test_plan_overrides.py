@@ -30,10 +30,12 @@ LAWS = {
     "impact_order": ("in_order", "captured"),
     "midpoint": ("midpoint", "semi_implicit_euler"),
     "contact_midpoint": ("midpoint_contact", "semi_implicit_euler"),
+    "contact_spring": ("spring", "regularised"),
     "speculative": ("true", "false"),
     "newton": ("adaptive", "projected_gauss_seidel"),
 }
 # One ball and one plane need no order of impacts.
+SOFT = "surface: {compliance: 1e-4, "  # nor does what is rigid need a law of compliance
 ANOTHER = "    other: {shape: {kind: sphere, radius: 0.1}, mass: 1.0, position: [9, 0, 9]}\n"
 LAWFUL = [effect.name for effect in EFFECTS if effect.chosen_by]
 MISTAKE = "capture_in_sweeps"  # chosen by the study; all others by the numerics
@@ -156,7 +158,7 @@ def test_a_law_is_chosen_by_the_numerics_alone(name: str) -> None:
     ]
     for force in ("", ", force: true"):
         text = config(f"{name}: off{force}", mu=0.5, numerics="default")
-        text = text.replace("numerics:", ANOTHER + "numerics:")
+        text = text.replace("numerics:", ANOTHER + "numerics:").replace("surface: {", SOFT)
         assert refused(text) == [
             f"{where(text, name)}: effects.{name}: the numerics choose it; "
             f"write `numerics: {{{key}: {other}}}` instead"

@@ -30,6 +30,7 @@ def test_chapter_is_frozen() -> None:
         "speculative": False,
         "impacts": "captured",
         "integrator": "semi_implicit_euler",
+        "compliance_law": "regularised",
         "friction_cone": "disc",
         "sleeping": False,
         "sleep_speed": 0.005,

@@ -1,0 +1,142 @@
+"""A compliance is the spring that it says: c N at rest, its period, and damping where it is given.
+
+Closed forms of an oscillator that rests on its contacts. With omega^2 = 1/(m c) a ball that is let
+go where it just touches swings about c m g and never leaves. All scenes are run in one engine.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+
+import numpy as np
+import pytest
+from shared_runs import GRAVITY, States, config, run_scenes
+
+C, OMEGA = 1e-4, 100.0  # [m/N], [1/s] of 1 kg
+HALVED = (240, 480, 960)
+# Steps are solved to 1e-9 m/s, which moves a body by no more than that times the timestep; a spring
+# undamped keeps what each of up to 960 of them adds.
+SOLVED = 1e-9
+BALL = "{{shape: {{kind: sphere, radius: 0.1}}, mass: 1.0, surface: one, position: [{x}, 0, {z}]}}"
+GRAVITY_OF = f"[0, 0, {-GRAVITY}]"
+FLOOR = "{shape: {kind: plane}}"
+
+
+def spring(ball: str, rate: int, duration: float, more: str = "", floor: str = FLOOR) -> str:
+    """Return the config of a body on a floor whose contact has the compliance C."""
+    surface = f"compliance: {C}{more}"
+    return config({"floor": floor, "ball": ball}, rate, duration, surface, GRAVITY_OF)
+
+
+def scenes() -> dict[str, str]:
+    """Return all scenes of this file by name."""
+    touching, above = BALL.format(x=0, z=0.1), BALL.format(x=0, z=0.15)
+    shape = "{kind: box, size: [0.4, 0.3, 0.2]}"
+    box = f"{{shape: {shape}, mass: 1.0, surface: one, position: [0, 0, 0.1]}}"
+    column = {"floor": FLOOR} | {f"ball{i}": BALL.format(x=0, z=0.1 + 0.2 * i) for i in range(3)}
+    found = {
+        "box": spring(box, 240, 1.0, ", damping_ratio: 0.5"),
+        "column": config(column, 240, 6.0, f"compliance: {C}, damping_ratio: 0.5", GRAVITY_OF),
+    }
+    for rate in (60, 240, 1000):
+        found[f"rest {rate}"] = spring(touching, rate, 1.0, ", damping_ratio: 0.7")
+    for rate in HALVED:
+        found[f"swing {rate}"] = spring(touching, rate, 0.25)
+        found[f"damped {rate}"] = spring(touching, rate, 0.25, ", damping_ratio: 0.2")
+        found[f"bounce {rate}"] = spring(above, rate, 1.0)
+    found["bounce, restitution"] = spring(above, 240, 1.0, ", restitution: 0.5")
+    return found
+
+
+@pytest.fixture(scope="module")
+def ran() -> dict[str, States]:
+    return run_scenes(scenes())
+
+
+def heights(states: States, body: str = "ball") -> np.ndarray:
+    place, _, _ = states.of(body)
+    return place[:, 2]
+
+
+def orders(errors: list[float]) -> list[float]:
+    return [math.log2(coarse / fine) for coarse, fine in itertools.pairwise(errors)]
+
+
+@pytest.mark.parametrize("rate", [60, 240, 1000])
+def test_ball_rests_at_its_load_times_its_compliance(ran: dict[str, States], rate: int) -> None:
+    # Damped by exp(-0.7 omega t) at least as far as the rule damps: at 60 Hz, omega dt = 1.7, by
+    # (1 - zeta omega dt + ...)/(1 + zeta omega dt + ...) = 0.27 a step.
+    depth = 0.1 - heights(ran[f"rest {rate}"])[-1]
+    assert depth == pytest.approx(C * GRAVITY, abs=SOLVED)
+
+
+def test_box_rests_on_four_springs(ran: dict[str, States]) -> None:
+    depth = 0.1 - heights(ran["box"])[-1]
+    assert depth == pytest.approx(C * GRAVITY / 4.0, abs=SOLVED)
+
+
+def test_springs_of_two_surfaces_are_in_series(ran: dict[str, States]) -> None:
+    tops = [heights(ran["column"], f"ball{i}")[-1] for i in range(3)]
+    expected, sunk = [], 0.0
+    for i, compliance in enumerate((C, 2.0 * C, 2.0 * C)):
+        sunk += compliance * (3 - i) * GRAVITY
+        expected.append(0.1 + 0.2 * i - sunk)
+    # The slowest mode of the column, some omega/4, is damped by exp(-0.5/16 omega t): 7e-9.
+    assert tops == pytest.approx(expected, abs=1e-8)
+
+
+def test_spring_swings_at_its_period_to_order_2(ran: dict[str, States]) -> None:
+    errors = []
+    for rate in HALVED:
+        states = ran[f"swing {rate}"]
+        truth = 0.1 - C * GRAVITY * (1.0 - np.cos(OMEGA * states.time))
+        errors.append(float(np.abs(heights(states) - truth).max()))
+        # The rule turns the phase by 2 atan(omega dt/2) a step, and loses no amplitude.
+        omega = 2.0 * rate * math.atan(OMEGA / (2.0 * rate))
+        swung = 0.1 - C * GRAVITY * (1.0 - np.cos(omega * states.time))
+        assert np.abs(heights(states) - swung).max() < SOLVED
+    # A phase wrong by p = omega^3 dt^2 t/12, 0.36 at 240 Hz: sin p departs from p by p^2/6, 2 %.
+    assert orders(errors) == pytest.approx([2.0, 2.0], abs=0.1)
+
+
+def test_damped_spring_is_of_order_2(ran: dict[str, States]) -> None:
+    zeta = 0.2
+    damped = OMEGA * math.sqrt(1.0 - zeta**2)
+    errors = []
+    for rate in HALVED:
+        t = ran[f"damped {rate}"].time
+        swing = np.cos(damped * t) + zeta * OMEGA / damped * np.sin(damped * t)
+        truth = 0.1 - C * GRAVITY * (1.0 - np.exp(-zeta * OMEGA * t) * swing)
+        errors.append(float(np.abs(heights(ran[f"damped {rate}"]) - truth).max()))
+    # The next term of the error is a share (omega dt)^2 of it: 0.17 at 240 Hz.
+    assert orders(errors) == pytest.approx([2.0, 2.0], abs=0.2)
+
+
+def total_energy(states: States) -> np.ndarray:
+    return states.energy() + states.step["contact_energy"]
+
+
+@pytest.mark.parametrize("rate", HALVED)
+def test_spring_keeps_the_energy_while_it_is_pressed(ran: dict[str, States], rate: int) -> None:
+    energy = total_energy(ran[f"swing {rate}"])
+    assert np.abs(energy - GRAVITY * 0.1).max() < 1e-12
+
+
+@pytest.mark.parametrize("rate", HALVED)
+def test_bounce_on_a_spring_wins_nothing_and_loses_a_step_of_its_way(
+    ran: dict[str, States], rate: int
+) -> None:
+    energy = total_energy(ran[f"bounce {rate}"])
+    start = GRAVITY * 0.15
+    assert np.all(np.diff(energy) < 1e-12)
+    # It begins to push at the surface. In the step in which it leaves it is pushed as if it stayed:
+    # what that spring would have stored is lost, at most (v dt)^2/(2 c) in each of two bounces.
+    leaving = GRAVITY * 0.05 / (C * rate**2)
+    assert start - energy[-1] <= 2.0 * leaving
+
+
+def test_spring_has_no_impact(ran: dict[str, States]) -> None:
+    """Its restitution has no effect."""
+    with_restitution = heights(ran["bounce, restitution"])
+    assert np.array_equal(with_restitution, heights(ran["bounce 240"]))
