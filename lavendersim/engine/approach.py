@@ -13,9 +13,9 @@ from .records import PLANE
 from .spec import Spec
 
 NEVER = 1e300  # [s]
-# When it is due: by the rate of its own gap, a guess for any feature of its pair, or found on
-# the shapes.
-GUESSED, ELSEWHERE, LOCATED = 0, 1, 2
+# When a contact is due: by the rate of its own gap; a guess for any feature of its pair; found on
+# the shapes; not in this step; or now.
+GUESSED, ELSEWHERE, LOCATED, FAR, MEETS = 0, 1, 2, 3, 4
 # Slowest approach [m/s], and as a share of the bodies' speed to each other: what solves leave.
 CREEP, ROUND_OFF = 1e-7, 1e-9
 

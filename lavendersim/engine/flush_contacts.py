@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from .approach import make_approach, make_keep_present, make_rate, make_slowest
+from .approach import CREEP, make_keep_present, make_rate, make_slowest
 from .collide.shapes import make_radius, make_support
 from .compile import kernel
 from .records import PLANE, TOUCHING
@@ -32,12 +32,13 @@ MOST = 512
 def make_drop_flush(spec: Spec) -> Any:
     """Return `kernel(state, count, workspace, params) -> count`: without such contacts.
 
+    Of rows with the `rate` of their gaps, none of which waits.
     None where no pair has an edge.
     """
     if not any("plane" not in name for name in spec.shape_pairs):
         return None
     support, radius = make_support(spec), make_radius(spec)
-    approach, rate, slowest = make_approach(spec), make_rate(spec), make_slowest(spec)
+    rate, slowest = make_rate(spec), make_slowest(spec)
     keep_present = make_keep_present(spec)
     sleeps = spec.has("sleeping")
 
@@ -86,9 +87,11 @@ def make_drop_flush(spec: Spec) -> Any:
             contact = contacts[c]
             row = state.pairs[contact.pair]
             flush = False
+            if contact.rate >= -CREEP:
+                continue
             if bodies[row.a].shape != PLANE and bodies[row.b].shape != PLANE:
                 least = slowest(contact, bodies, motion)
-                if approach(contact, bodies, motion) < -least:
+                if contact.rate < -least:
                     for o in range(count):
                         other = contacts[o]
                         if other.pair == contact.pair or other.phi > params.slop + TOUCHING:
@@ -101,7 +104,8 @@ def make_drop_flush(spec: Spec) -> Any:
                         if joins and passes(state, contact, other, workspace, params, least):
                             flush = True
                             break
-            contact.waits = 1 if flush else 0
+            if flush:
+                contact.waits = 1
         return keep_present(contacts, count)
 
     return kernel(drop_flush, spec)

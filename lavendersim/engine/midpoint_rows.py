@@ -23,6 +23,8 @@ from .spec import Spec
 
 # Change of a surface's velocity in half a step that a row may miss [m/s]: what solves leave.
 SAME = 1e-9
+# What moves slower changes no geometry, whatever turns [m/s].
+STILL = 100.0 * SAME
 # A contact lasts that begins to approach or part no faster than these shares: of what forces
 # change in a step, and of what the turning of its surfaces changes in half a step.
 FORCED, TURNED = 0.05, 0.5
@@ -32,6 +34,25 @@ AJAR = 0.25
 APART = 0.1
 # It slides throughout when the slip is so many times its change.
 SLIDES = 2.0
+
+
+def make_stirs(spec: Spec) -> Any:
+    """Return `kernel(bodies, motion) -> whether anything moves as the step begins`."""
+    turns = spec.has("rotation")
+
+    def stirs(bodies, motion):
+        for i in range(motion.shape[0]):
+            m = motion[i]
+            squared = m.vx * m.vx + m.vy * m.vy + m.vz * m.vz
+            if turns:
+                if bodies[i].shape != PLANE:
+                    spin = m.wx * m.wx + m.wy * m.wy + m.wz * m.wz
+                    squared += bodies[i].bound * bodies[i].bound * spin
+            if squared > STILL * STILL:
+                return True
+        return False
+
+    return kernel(stirs, spec)
 
 
 def make_is_turning(spec: Spec) -> Any:

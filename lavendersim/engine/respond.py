@@ -17,7 +17,7 @@ from .contact import make_append_contact, make_apply_start
 from .effects import made_by, made_once
 from .integrate import make_classify
 from .midpoint_passes import make_midpoint_passes, make_stand_up
-from .midpoint_rows import make_lasting
+from .midpoint_rows import make_lasting, make_stirs
 from .records import INSTANT
 from .solvers.catalogue import SOLVERS
 from .solvers.solver import ContactSystem
@@ -51,6 +51,7 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
 
     ordered, centred = spec.has("impact_order"), spec.has("contact_midpoint")
     lasting: Any = make_lasting(spec) if centred else None
+    stirs: Any = make_stirs(spec) if centred else None
     midpoint_passes: Any = None
     if centred:
         midpoint_passes = make_midpoint_passes(spec, append_contact, preload, solve)
@@ -83,8 +84,10 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
         if centred:
             for c in range(count):
                 lasting(contacts[c], params)
-            for i in range(velocities.shape[0]):
-                workspace.middle.free[i] = velocities[i]
+            moving = lasts and stirs(bodies, motion)
+            if moving:
+                for i in range(velocities.shape[0]):
+                    workspace.middle.free[i] = velocities[i]
         if loaded:
             for c in range(count):
                 preload(contacts[c], velocities, motion)
@@ -106,7 +109,7 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
             settle(system, motion, workspace.solver, params, counters, log.residual)
         midway = False
         if centred:
-            if lasts:
+            if moving:
                 midway = midpoint_passes(state, count, workspace, params, counters, log)
         if stores and lasts:
             counters.contact_energy = contact_energy(contacts, count, velocities, params)

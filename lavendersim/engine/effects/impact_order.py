@@ -9,9 +9,10 @@ a contact ahead acts only when it is met, along the normal that it then has.
 
 Slow meetings are no impacts: with a rebound that would end within FLIGHT steps, or without rebound
 below SLOW times what forces change in a step. They are contacts of the motion (`impact_time`).
-A step has WORK rows of contacts to spend on its parts. The rest of one that has spent them, or
-whose bodies overlap, or whose impact cannot be solved by itself, is made in one part: its impacts
-at their times but without their order (/step: unordered).
+An impact takes along what touches and does not part; nothing else. One may have CROWD rows of
+contacts, and a step has WORK of them to spend on its parts. The rest of one that has spent them or
+meets a larger impact, or whose bodies overlap, is made in one part: its impacts at their times but
+without their order (/step: unordered).
 """
 
 from __future__ import annotations
@@ -29,7 +30,9 @@ FLIGHT = 1.0 / 64.0
 # Slowest impact without a rebound, in what forces change in a step.
 SLOW = 1.0
 # Rows of contacts that the parts of one step may have in all; one that is not met is a 16th.
-WORK = 4096
+WORK = 512
+# An impact of more rows is not made by itself.
+CROWD = 64
 # Bodies that overlap by more are moved apart first: what they do has no order in time [m].
 OVERLAP = 5e-5
 LAST = 1.0 - 1e-9  # first guess, in what is left of the step, where only shapes tell
@@ -76,9 +79,12 @@ def make_order(spec: Spec) -> Any:
     [s]; 0: it is an impact. The contacts that take part in it are the first `count` rows.
     """
     from ..approach import (
+        CREEP,
         ELSEWHERE,
+        FAR,
         GUESSED,
         LOCATED,
+        MEETS,
         NEVER,
         make_approach,
         make_forced,
@@ -103,15 +109,16 @@ def make_order(spec: Spec) -> Any:
     def foresee(contact, pair, bodies, motion, params):
         # Fills waits and due; returns whether an impact happens now.
         left = params.dt
-        contact.waits, contact.located, contact.due = 0, GUESSED, NEVER
         soft = False  # its impulse takes time: none at an instant
         if compliance:
             soft = pair.compliance > 0.0
         if soft and not springs:
             return False
-        v, (dv, most) = approach(contact, bodies, motion), forced(contact, motion)
-        least, a = slowest(contact, bodies, motion), dv / left
-        e = 0.0
+        v = contact.rate
+        if contact.phi <= TOUCHING and abs(v) <= CREEP:
+            return False
+        (dv, most), least = forced(contact, motion), slowest(contact, bodies, motion)
+        a, e = dv / left, 0.0
         if restitution:
             e = pair.restitution
         gap = contact.phi if contact.phi > TOUCHING else 0.0
@@ -145,23 +152,45 @@ def make_order(spec: Spec) -> Any:
 
     foresee = kernel(foresee, spec)
 
-    def keep_meeting(contacts, count, pairs, bodies, motion, slop):
-        # What touches and does not part; what is apart has no part in the impact.
-        kept = 0
+    def is_struck(contact, bodies, motion):
+        # What does not move hands nothing on.
+        struck = motion[contact.a].struck == 1 and bodies[contact.a].inv_m > 0.0
+        return struck or (motion[contact.b].struck == 1 and bodies[contact.b].inv_m > 0.0)
+
+    is_struck = kernel(is_struck, spec)
+
+    def mark_impact(contacts, count, pairs, bodies, motion, slop):
+        # All but the rows of the impact wait: what touches what is struck, and does not part.
+        # Returns how many they are.
+        for i in range(motion.shape[0]):
+            motion[i].struck = 0
         for c in range(count):
             contact = contacts[c]
+            takes_part = contact.phi <= TOUCHING or (contact.phi <= slop and contact.waits == 0)
             if springs:
-                if pairs[contact.pair].compliance > 0.0:
-                    continue
-            ahead = contact.phi > TOUCHING and contact.waits == 1
-            if contact.phi <= max(slop, TOUCHING) and not ahead:
-                if approach(contact, bodies, motion) <= slowest(contact, bodies, motion):
-                    if kept < c:
-                        contacts[kept] = contacts[c]
-                    kept += 1
-        return kept
+                takes_part = takes_part and pairs[contact.pair].compliance == 0.0
+            if takes_part:
+                takes_part = contact.rate <= slowest(contact, bodies, motion)
+            contact.waits = 0 if takes_part else 1
+            if contact.located == MEETS:
+                motion[contact.a].struck = 1
+                motion[contact.b].struck = 1
+        spreads, rows = True, 0
+        while spreads:
+            spreads, rows = False, 0
+            for c in range(count):
+                contact = contacts[c]
+                if contact.waits == 0 and is_struck(contact, bodies, motion):
+                    rows += 1
+                    a, b = motion[contact.a], motion[contact.b]
+                    spreads = spreads or a.struck == 0 or b.struck == 0
+                    a.struck, b.struck = 1, 1
+        for c in range(count):
+            if not is_struck(contacts[c], bodies, motion):
+                contacts[c].waits = 1
+        return rows
 
-    keep_meeting = kernel(keep_meeting, spec)
+    mark_impact = kernel(mark_impact, spec)
 
     def follow_turning(contacts, count, bodies, motion, left):
         # Bodies that part where they touched, and turn, may meet with other features of theirs.
@@ -193,20 +222,41 @@ def make_order(spec: Spec) -> Any:
 
     first_due = kernel(first_due, spec)
 
+    def begin_order(state, count):
+        # Whether anything moves that touches or may: what rests on each other has no order.
+        bodies, motion, contacts = state.bodies, state.motion, state.contacts
+        moves = False
+        for c in range(count):
+            contact = contacts[c]
+            contact.waits, contact.located, contact.due, contact.rate = 0, GUESSED, NEVER, 0.0
+            if contact.phi > TOUCHING:
+                # Beyond what both can move: no part of this step, whatever happens in it.
+                if contact.phi > motion[contact.a].reach + motion[contact.b].reach:
+                    contact.located = FAR
+                    continue
+                moves = True
+            elif contact.phi < -OVERLAP:
+                moves = True
+            contact.rate = approach(contact, bodies, motion)
+            if abs(contact.rate) > CREEP:
+                moves = True
+        return moves
+
+    begin_order = kernel(begin_order, spec)
+
     def order(state, count, workspace, params, counters):
         bodies, motion, contacts = state.bodies, state.motion, state.contacts
         left = params.dt
+        if not begin_order(state, count):
+            return count, left
         if edged:
             count = drop_flush(state, count, workspace, params)
         meets, waiting, touching = False, False, 0
         for c in range(count):
             contact = contacts[c]
-            if contact.phi > TOUCHING:
-                # Beyond what both can move: no part of this step, whatever happens in it.
-                if contact.phi > motion[contact.a].reach + motion[contact.b].reach:
-                    contact.waits, contact.located, contact.due = 0, GUESSED, NEVER
-                    continue
-            else:
+            if contact.located == FAR:
+                continue
+            if contact.phi <= TOUCHING:
                 touching += 1
                 deep = contact.phi < -OVERLAP
                 if springs:
@@ -215,18 +265,20 @@ def make_order(spec: Spec) -> Any:
                     counters.unordered = 1
                     return count, left
             if foresee(contact, state.pairs[contact.pair], bodies, motion, params):
-                meets = True
+                contact.located, meets = MEETS, True
             if contact.waits == 1:
                 waiting = True
         if not (meets or waiting):
             return count, left
-        counters.spent += 1 + touching + count // 16
-        if counters.spent > WORK:
+        rows = touching
+        if meets:
+            rows = mark_impact(contacts, count, state.pairs, bodies, motion, params.slop)
+        counters.spent += 1 + rows + count // 16
+        if counters.spent > WORK or (meets and rows > CROWD):
             counters.unordered = 1
             return count, left
         if meets:
-            slop = params.slop
-            return keep_meeting(contacts, count, state.pairs, bodies, motion, slop), 0.0
+            return keep_present(contacts, count), 0.0
         if turns:
             follow(contacts, count, bodies, motion, left)
         length = left
@@ -263,7 +315,8 @@ EFFECT = Effect(
     fields=Fields(
         contact=[
             ("waits", "i8"),  # 1: not met in this part, or it parts: no row of it
-            ("located", "i8"),  # GUESSED for its feature, or ELSEWHERE; LOCATED on the shapes
+            ("located", "i8"),  # GUESSED, ELSEWHERE, LOCATED or FAR, see `approach`
+            ("rate", "f8"),  # of the gap, as the part begins [m/s]
             ("due", "f8"),  # when the surfaces meet, from the start of the part [s]
         ],
     ),
