@@ -102,8 +102,7 @@ def make_drop_flush(spec: Spec) -> Any:
                             joins = other.a == contact.b or other.b == contact.b
                             joins = joins and is_movable(bodies[contact.b])
                         if joins and passes(state, contact, other, workspace, params, least):
-                            flush = True
-                            break
+                            flush, other.passed_on = True, 1
             if flush:
                 contact.waits = 1
         return keep_present(contacts, count)

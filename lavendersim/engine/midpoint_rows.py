@@ -192,6 +192,7 @@ def make_look(spec: Spec) -> Any:
     manifold = make_manifold(spec, spec.shape_pairs)
     compound, place_parts = made_once(spec, "place_parts")
     swept, stay = spec.has("fast_bodies"), make_stay(spec)
+    ordered = spec.has("impact_order")
 
     def look(state, count, poses, workspace):
         bodies, contacts = state.bodies, state.contacts
@@ -202,9 +203,11 @@ def make_look(spec: Spec) -> Any:
         first = 0
         while first < count:
             pair = contacts[first].pair
-            last, margin = first, TOUCHING
+            last, margin, passes_on = first, TOUCHING, False
             while last < count and contacts[last].pair == pair:
                 margin = max(margin, abs(contacts[last].phi))
+                if ordered:
+                    passes_on = passes_on or contacts[last].passed_on == 1
                 last += 1
             row = state.pairs[pair]
             a, b = bodies[row.a], bodies[row.b]
@@ -212,7 +215,9 @@ def make_look(spec: Spec) -> Any:
             size = a.bound if b.shape == PLANE else b.bound
             if a.shape != PLANE and b.shape != PLANE:
                 size = min(a.bound, b.bound)
-            found = manifold(row.kind, a, b, margin + APART * size, scratch)
+            found = 0
+            if not passes_on:  # beyond a seam is another's face, not its edge
+                found = manifold(row.kind, a, b, margin + APART * size, scratch)
             for c in range(first, last):
                 contact = contacts[c]
                 stay(contact, bodies, poses)

@@ -229,6 +229,7 @@ def make_order(spec: Spec) -> Any:
         for c in range(count):
             contact = contacts[c]
             contact.waits, contact.located, contact.due, contact.rate = 0, GUESSED, NEVER, 0.0
+            contact.passed_on = 0
             if contact.phi > TOUCHING:
                 # Beyond what both can move: no part of this step, whatever happens in it.
                 if contact.phi > motion[contact.a].reach + motion[contact.b].reach:
@@ -317,6 +318,7 @@ EFFECT = Effect(
             ("waits", "i8"),  # 1: not met in this part, or it parts: no row of it
             ("located", "i8"),  # GUESSED, ELSEWHERE, LOCATED or FAR, see `approach`
             ("rate", "f8"),  # of the gap, as the part begins [m/s]
+            ("passed_on", "i8"),  # 1: its body is about to slide or roll from it to a flush one
             ("due", "f8"),  # when the surfaces meet, from the start of the part [s]
         ],
     ),
