@@ -25,6 +25,7 @@ LIST = "lavendersim/engine/effects/__init__.py"
 CHAINED = [effect for effect in EFFECTS if effect.hooks.accelerate or effect.hooks.capture]
 FACT = "a property of the scene, which predicates may ask for, has the same name"
 ROW = "a soft row is a term in what every solver computes"
+TIME = "what gives way takes time: no impact of an instant"
 SPRING = "it has a penetration of its own, and no impact"
 LAW = "a row ahead of touching must be looked for, and its body's flight be kept"
 # Where else a name stands, as an identifier or a string, and why it must.
@@ -43,7 +44,9 @@ ELSEWHERE = {
     },
     "compliance": {
         "engine/effects/fast_bodies.py": "springs give energy back",
-        "engine/effects/impact_order.py": "what gives way takes time: no impact of an instant",
+        "engine/effects/impact_order.py": TIME,
+        "engine/foreseen_impacts.py": TIME,
+        "engine/struck_bodies.py": TIME,
         "engine/effects/contact_spring.py": "is another law of it",
         "engine/contact.py": ROW,
         "engine/assemble.py": ROW,
@@ -58,6 +61,8 @@ ELSEWHERE = {
     },
     "contact_spring": {
         "engine/effects/impact_order.py": SPRING,
+        "engine/foreseen_impacts.py": SPRING,
+        "engine/struck_bodies.py": SPRING,
         "engine/effects/impact_time.py": SPRING,
         "engine/effects/projection.py": SPRING,
         "engine/midpoint_rows.py": SPRING,
@@ -66,7 +71,7 @@ ELSEWHERE = {
         "engine/effects/capture_in_sweeps.py": "makes a mistake with it",
         "engine/effects/fast_bodies.py": "captured, it gives energy",
         "engine/effects/impact_energy.py": "takes the place of its law",
-        "engine/effects/impact_order.py": "a rebound tells an impact from a lasting contact",
+        "engine/foreseen_impacts.py": "a rebound tells an impact from a lasting contact",
     },
     "speculative": {
         "engine/effects/decision.py": FACT,

@@ -7,17 +7,16 @@ meets is solved as an impact alone: poses stand still, forces have no time to ac
 have not met take no part in it, nor do those that part; what they do to each other comes after. So
 a contact ahead acts only when it is met, along the normal that it then has.
 
-Slow meetings are no impacts: with a rebound that would end within FLIGHT steps, or without rebound
-below SLOW times what forces change in a step. They are contacts of the motion (`impact_time`).
-An impact takes along what touches and does not part; nothing else. One may have CROWD rows of
-contacts, and a step has WORK of them to spend on its parts. The rest of one that has spent them or
-meets a larger impact, or whose bodies overlap, is made in one part: its impacts at their times but
-without their order (/step: unordered).
+Slow meetings are no impacts (`foreseen_impacts`): with a rebound that would end within FLIGHT
+steps, or without rebound below SLOW times what forces change in a step. They are contacts of the
+motion (`impact_time`). An impact takes along what touches and does not part (`struck_bodies`), and
+nothing else. One may have CROWD rows of contacts, and a step has WORK of them to spend on its
+parts. The rest of one that has spent them or meets a larger impact, or whose bodies overlap, is
+made in one part: its impacts at their times but without their order (/step: unordered).
 """
 
 from __future__ import annotations
 
-from math import sqrt
 from typing import Any
 
 from ..records import TOUCHING
@@ -25,17 +24,12 @@ from ..spec import Spec
 from .decision import Decision, Facts
 from .effect import Choice, Column, Effect, Fields, Hooks, kernel
 
-# Shortest flight after an impact, in timesteps: shorter ones are contact.
-FLIGHT = 1.0 / 64.0
-# Slowest impact without a rebound, in what forces change in a step.
-SLOW = 1.0
 # Rows of contacts that the parts of one step may have in all; one that is not met is a 16th.
 WORK = 512
 # An impact of more rows is not made by itself.
 CROWD = 64
 # Bodies that overlap by more are moved apart first: what they do has no order in time [m].
 OVERLAP = 5e-5
-LAST = 1.0 - 1e-9  # first guess, in what is left of the step, where only shapes tell
 
 
 def decide(facts: Facts) -> Decision:
@@ -53,25 +47,6 @@ def decide(facts: Facts) -> Decision:
     return Decision(True, "impacts are in_order")
 
 
-def make_is_impact(spec: Spec) -> Any:
-    """Return `kernel(speed, least, dv, most, e, params) -> whether it is an impact`.
-
-    speed: at which surfaces meet [m/s]; least: see `approach.make_slowest`; dv, most: see
-    `approach.make_forced`; e: coefficient of restitution.
-    """
-
-    def is_impact(speed, least, dv, most, e, params):
-        if not speed > least:
-            return False
-        share = params.timestep / params.dt
-        if e > 0.0:
-            if 2.0 * e * speed > FLIGHT * max(-dv, 0.0) * share:
-                return True
-        return speed > SLOW * most * share
-
-    return kernel(is_impact, spec)
-
-
 def make_order(spec: Spec) -> Any:
     """Return `kernel(state, count, workspace, params, counters) -> (count, length)` of the part.
 
@@ -80,138 +55,25 @@ def make_order(spec: Spec) -> Any:
     """
     from ..approach import (
         CREEP,
-        ELSEWHERE,
         FAR,
         GUESSED,
         LOCATED,
         MEETS,
         NEVER,
         make_approach,
-        make_forced,
         make_keep_present,
-        make_nearest_rate,
-        make_relative_speed,
-        make_slowest,
     )
     from ..flush_contacts import make_drop_flush
+    from ..foreseen_impacts import make_follow, make_foresee
     from ..impact_location import make_locate
+    from ..struck_bodies import make_mark_impact
 
-    approach, forced, slowest = make_approach(spec), make_forced(spec), make_slowest(spec)
-    relative_speed, is_impact = make_relative_speed(spec), make_is_impact(spec)
-    nearest_rate = make_nearest_rate(spec)
-    keep_present = make_keep_present(spec)
+    approach, foresee, follow = make_approach(spec), make_foresee(spec), make_follow(spec)
     locate, drop_flush = make_locate(spec), make_drop_flush(spec)
+    mark_impact, keep_present = make_mark_impact(spec), make_keep_present(spec)
     edged = drop_flush is not None
     turns = spec.has("rotation")
-    restitution, compliance = spec.has("restitution"), spec.has("compliance")
     springs = spec.has("contact_spring")
-
-    def foresee(contact, pair, bodies, motion, params):
-        # Fills waits and due; returns whether an impact happens now.
-        left = params.dt
-        soft = False  # its impulse takes time: none at an instant
-        if compliance:
-            soft = pair.compliance > 0.0
-        if soft and not springs:
-            return False
-        v = contact.rate
-        if contact.phi <= TOUCHING and abs(v) <= CREEP:
-            return False
-        (dv, most), least = forced(contact, motion), slowest(contact, bodies, motion)
-        a, e = dv / left, 0.0
-        if restitution:
-            e = pair.restitution
-        gap = contact.phi if contact.phi > TOUCHING else 0.0
-        if soft and gap == 0.0:
-            return False
-        if gap == 0.0 and v < 0.0:
-            return is_impact(-v, least, dv, most, e, params)
-        # What leaves a gap, whatever holds its bodies, is no contact of this part.
-        if v > least + most and contact.phi + left * (v - 0.5 * most) > params.slop:
-            contact.waits = 1
-        ahead = False
-        squared = v * v - 2.0 * a * gap
-        if squared > 0.0 and (v < 0.0 or a < 0.0):
-            speed = sqrt(squared)
-            if is_impact(speed, least, dv, most, e, params):
-                # The root that comes first, in the form that does not cancel.
-                due = (v + speed) / -a if v > 0.0 else 2.0 * gap / (speed - v)
-                ahead = gap > 0.0 or due >= FLIGHT * params.timestep
-                if ahead and due < left:
-                    contact.waits, contact.due = 1, due
-        if turns:
-            if (ahead or contact.waits == 1) and contact.due == NEVER and gap > 0.0:
-                # Surfaces that turn may come nearer by as much as this: their shapes decide.
-                ma, mb = motion[contact.a], motion[contact.b]
-                spin = sqrt(ma.wx * ma.wx + ma.wy * ma.wy + ma.wz * ma.wz)
-                spin += sqrt(mb.wx * mb.wx + mb.wy * mb.wy + mb.wz * mb.wz)
-                end = contact.phi + left * (v + 0.5 * dv)
-                if end < 0.5 * spin * relative_speed(contact, bodies, motion) * left * left:
-                    contact.waits, contact.due = 1, LAST * left
-        return False
-
-    foresee = kernel(foresee, spec)
-
-    def is_struck(contact, bodies, motion):
-        # What does not move hands nothing on.
-        struck = motion[contact.a].struck == 1 and bodies[contact.a].inv_m > 0.0
-        return struck or (motion[contact.b].struck == 1 and bodies[contact.b].inv_m > 0.0)
-
-    is_struck = kernel(is_struck, spec)
-
-    def mark_impact(contacts, count, pairs, bodies, motion, slop):
-        # All but the rows of the impact wait: what touches what is struck, and does not part.
-        # Returns how many they are.
-        for i in range(motion.shape[0]):
-            motion[i].struck = 0
-        for c in range(count):
-            contact = contacts[c]
-            takes_part = contact.phi <= TOUCHING or (contact.phi <= slop and contact.waits == 0)
-            if springs:
-                takes_part = takes_part and pairs[contact.pair].compliance == 0.0
-            if takes_part:
-                takes_part = contact.rate <= slowest(contact, bodies, motion)
-            contact.waits = 0 if takes_part else 1
-            if contact.located == MEETS:
-                motion[contact.a].struck = 1
-                motion[contact.b].struck = 1
-        spreads, rows = True, 0
-        while spreads:
-            spreads, rows = False, 0
-            for c in range(count):
-                contact = contacts[c]
-                if contact.waits == 0 and is_struck(contact, bodies, motion):
-                    rows += 1
-                    a, b = motion[contact.a], motion[contact.b]
-                    spreads = spreads or a.struck == 0 or b.struck == 0
-                    a.struck, b.struck = 1, 1
-        for c in range(count):
-            if not is_struck(contacts[c], bodies, motion):
-                contacts[c].waits = 1
-        return rows
-
-    mark_impact = kernel(mark_impact, spec)
-
-    def follow_turning(contacts, count, bodies, motion, left):
-        # Bodies that part where they touched, and turn, may meet with other features of theirs.
-        first = 0
-        while first < count:
-            pair, last, waits, least, soonest = contacts[first].pair, first, True, first, left
-            while last < count and contacts[last].pair == pair:
-                contact = contacts[last]
-                waits = waits and contact.waits == 1
-                dv, _ = forced(contact, motion)
-                rate = abs(dv) - nearest_rate(contact, bodies, motion)
-                gap = max(contact.phi, 0.0)
-                if rate * soonest > gap:
-                    least, soonest = last, gap / rate
-                last += 1
-            if waits and soonest < left:
-                contact = contacts[least]
-                contact.located, contact.due = ELSEWHERE, min(contact.due, soonest)
-            first = last
-
-    follow: Any = kernel(follow_turning, spec) if turns else None
 
     def first_due(contacts, count):
         first, due = -1, NEVER

@@ -1,0 +1,136 @@
+"""Impacts that the rest of a step may have, foreseen row by row (`effects.impact_order`).
+
+foresee   by the rate of a row's own gap: which rows wait, and when the next is due
+follow    pairs of which no row lasts: bodies that turn may meet with any of their features
+"""
+
+from __future__ import annotations
+
+from math import sqrt
+from typing import Any
+
+from .approach import (
+    CREEP,
+    ELSEWHERE,
+    NEVER,
+    make_forced,
+    make_nearest_rate,
+    make_relative_speed,
+    make_slowest,
+)
+from .compile import kernel
+from .records import TOUCHING
+from .spec import Spec
+
+# Shortest flight after an impact, in timesteps: shorter ones are contact.
+FLIGHT = 1.0 / 64.0
+# Slowest impact without a rebound, in what forces change in a step.
+SLOW = 1.0
+LAST = 1.0 - 1e-9  # first guess, in what is left of the step, where only shapes tell
+
+
+def make_is_impact(spec: Spec) -> Any:
+    """Return `kernel(speed, least, dv, most, e, params) -> whether it is an impact`.
+
+    speed: at which surfaces meet [m/s]; least: see `approach.make_slowest`; dv, most: see
+    `approach.make_forced`; e: coefficient of restitution.
+    """
+
+    def is_impact(speed, least, dv, most, e, params):
+        if not speed > least:
+            return False
+        share = params.timestep / params.dt
+        if e > 0.0:
+            if 2.0 * e * speed > FLIGHT * max(-dv, 0.0) * share:
+                return True
+        return speed > SLOW * most * share
+
+    return kernel(is_impact, spec)
+
+
+def make_foresee(spec: Spec) -> Any:
+    """Return `kernel(contact, pair, bodies, motion, params) -> whether an impact happens now`.
+
+    Fills waits and due of a row whose `rate` is known. params.dt: what is left of the step.
+    """
+    forced, slowest = make_forced(spec), make_slowest(spec)
+    relative_speed, is_impact = make_relative_speed(spec), make_is_impact(spec)
+    turns = spec.has("rotation")
+    restitution, compliance = spec.has("restitution"), spec.has("compliance")
+    springs = spec.has("contact_spring")
+
+    def foresee(contact, pair, bodies, motion, params):
+        left = params.dt
+        soft = False  # its impulse takes time: none at an instant
+        if compliance:
+            soft = pair.compliance > 0.0
+        if soft and not springs:
+            return False
+        v = contact.rate
+        if contact.phi <= TOUCHING and abs(v) <= CREEP:
+            return False
+        (dv, most), least = forced(contact, motion), slowest(contact, bodies, motion)
+        a, e = dv / left, 0.0
+        if restitution:
+            e = pair.restitution
+        gap = contact.phi if contact.phi > TOUCHING else 0.0
+        if soft and gap == 0.0:
+            return False
+        if gap == 0.0 and v < 0.0:
+            return is_impact(-v, least, dv, most, e, params)
+        # What leaves a gap, whatever holds its bodies, is no contact of this part.
+        if v > least + most and contact.phi + left * (v - 0.5 * most) > params.slop:
+            contact.waits = 1
+        ahead = False
+        squared = v * v - 2.0 * a * gap
+        if squared > 0.0 and (v < 0.0 or a < 0.0):
+            speed = sqrt(squared)
+            if is_impact(speed, least, dv, most, e, params):
+                # The root that comes first, in the form that does not cancel.
+                due = (v + speed) / -a if v > 0.0 else 2.0 * gap / (speed - v)
+                ahead = gap > 0.0 or due >= FLIGHT * params.timestep
+                if ahead and due < left:
+                    contact.waits, contact.due = 1, due
+        if turns:
+            if (ahead or contact.waits == 1) and contact.due == NEVER and gap > 0.0:
+                # Surfaces that turn may come nearer by as much as this: their shapes decide.
+                ma, mb = motion[contact.a], motion[contact.b]
+                spin = sqrt(ma.wx * ma.wx + ma.wy * ma.wy + ma.wz * ma.wz)
+                spin += sqrt(mb.wx * mb.wx + mb.wy * mb.wy + mb.wz * mb.wz)
+                end = contact.phi + left * (v + 0.5 * dv)
+                if end < 0.5 * spin * relative_speed(contact, bodies, motion) * left * left:
+                    contact.waits, contact.due = 1, LAST * left
+        return False
+
+    return kernel(foresee, spec)
+
+
+def make_follow(spec: Spec) -> Any:
+    """Return `kernel(contacts, count, bodies, motion, left)`; None where nothing turns.
+
+    Bodies that part where they touched, and turn, may meet with other features of theirs: of such
+    a pair one row is due as soon as any of their points can have closed the gap.
+    """
+    if not spec.has("rotation"):
+        return None
+    forced, nearest_rate = make_forced(spec), make_nearest_rate(spec)
+
+    def follow(contacts, count, bodies, motion, left):
+        first = 0
+        while first < count:
+            pair, last, waits, least, soonest = contacts[first].pair, first, True, first, left
+            while last < count and contacts[last].pair == pair:
+                contact = contacts[last]
+                waits = waits and contact.waits == 1
+                dv, _ = forced(contact, motion)
+                rate = abs(dv) - nearest_rate(contact, bodies, motion)
+                gap = max(contact.phi, 0.0)
+                if rate * soonest > gap:
+                    least, soonest = last, gap / rate
+                last += 1
+            if waits and soonest < left:
+                contact = contacts[least]
+                contact.located, contact.due = ELSEWHERE, min(contact.due, soonest)
+            first = last
+
+    return kernel(follow, spec)
