@@ -28,6 +28,7 @@ NUMERICS: dict[str, Any] = {
     "speculative": False,
     "impacts": "captured",
     "integrator": "semi_implicit_euler",
+    "compliance_law": "regularised",
     "friction_cone": "disc",
     "sleeping": False,
     "sleep_speed": 0.005,

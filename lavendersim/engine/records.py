@@ -98,7 +98,7 @@ MOTION: Final[list[Field]] = [
     ("mean_x", F8),  # mean spin of the step, where midway is 1 [rad/s]
     ("mean_y", F8),
     ("mean_z", F8),
-    ("struck", I8),  # 1: it takes part in the impact of an instant
+    ("in_impact", I8),  # 1: it takes part in the impact of an instant
     ("reach", F8),  # farthest a point of it moves in the step [m]
 ]
 

@@ -212,8 +212,9 @@ class _Pen:
         plan, draw = self.plan, self.draw
         rate = draw(st.one_of(st.sampled_from((30, 60, 240, 10_000)), st.integers(30, 10_000)))
         relaxed = 0.02 + 1.96 * self.share() if plan.over_relaxation else 1.0
-        # A gain and impacts in order exclude each other: it is idle beside them.
-        gains = "impact_order" not in plan.effects and self.has("stabilisation")
+        # A gain excludes impacts in order and springs of contacts: it is idle beside them.
+        excluded = {"impact_order", "contact_spring"} & {*plan.effects}
+        gains = not excluded and self.has("stabilisation")
         return {
             **plan.numerics,
             "timestep": f"1/{rate}",

@@ -46,7 +46,7 @@ ELSEWHERE = {
         "engine/effects/fast_bodies.py": "springs give energy back",
         "engine/effects/impact_order.py": TIME,
         "engine/foreseen_impacts.py": TIME,
-        "engine/struck_bodies.py": TIME,
+        "engine/impact_rows.py": TIME,
         "engine/effects/contact_spring.py": "is another law of it",
         "engine/contact.py": ROW,
         "engine/assemble.py": ROW,
@@ -62,7 +62,7 @@ ELSEWHERE = {
     "contact_spring": {
         "engine/effects/impact_order.py": SPRING,
         "engine/foreseen_impacts.py": SPRING,
-        "engine/struck_bodies.py": SPRING,
+        "engine/impact_rows.py": SPRING,
         "engine/effects/impact_time.py": SPRING,
         "engine/effects/projection.py": SPRING,
         "engine/midpoint_rows.py": SPRING,

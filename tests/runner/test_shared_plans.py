@@ -21,6 +21,7 @@ VALUES = {
     "speculative": "[false, true]",
     "impacts": "[captured, at_surface]",
     "integrator": "[semi_implicit_euler, midpoint]",
+    "compliance_law": "[spring, regularised]",
     "friction_cone": "[disc, convex]",
     "order": "[coloured, random]",
     "sleeping": "[false, true]",

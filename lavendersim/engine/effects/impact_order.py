@@ -9,7 +9,7 @@ a contact ahead acts only when it is met, along the normal that it then has.
 
 Slow meetings are no impacts (`foreseen_impacts`): with a rebound that would end within FLIGHT
 steps, or without rebound below SLOW times what forces change in a step. They are contacts of the
-motion (`impact_time`). An impact takes along what touches and does not part (`struck_bodies`), and
+motion (`impact_time`). An impact takes along what touches and does not part (`impact_rows`), and
 nothing else. One may have CROWD rows of contacts, and a step has WORK of them to spend on its
 parts. The rest of one that has spent them or meets a larger impact, or whose bodies overlap, is
 made in one part: its impacts at their times but without their order (/step: unordered).
@@ -66,7 +66,7 @@ def make_order(spec: Spec) -> Any:
     from ..flush_contacts import make_drop_flush
     from ..foreseen_impacts import make_follow, make_foresee
     from ..impact_location import make_locate
-    from ..struck_bodies import make_mark_impact
+    from ..impact_rows import make_mark_impact
 
     approach, foresee, follow = make_approach(spec), make_foresee(spec), make_follow(spec)
     locate, drop_flush = make_locate(spec), make_drop_flush(spec)

@@ -43,10 +43,10 @@ def make(spec):
                     if contact.lasts == 1:
                         v_n = 0.5 * (v_n + contact.middle_n)
             excess = -(contact.phi + v_n * params.dt) - params.slop
-            contact.correction = params.projection * max(excess, 0.0)
             if springs:
                 if contact.spring_compliance > 0.0:  # it rests where its force holds it
-                    contact.correction = 0.0
+                    excess = 0.0
+            contact.correction = params.projection * max(excess, 0.0)
             contact.push = 0.0
             contact.inv_k_n = 1.0 / contact.k_n
             if contact.correction > 0.0:

@@ -13,21 +13,21 @@ from .spec import Spec
 def make_mark_impact(spec: Spec) -> Any:
     """Return `kernel(contacts, count, pairs, bodies, motion, slop) -> rows` of the impact.
 
-    They are those that touch what is struck, and do not part; all others wait. An impact is handed
-    on from body to body, until nothing more is struck.
+    They are those that touch a body of the impact, and do not part; all others wait. An impact is
+    handed on from body to body, as far as it goes.
     """
     slowest, springs = make_slowest(spec), spec.has("contact_spring")
 
-    def is_struck(contact, bodies, motion):
+    def hands_on(contact, bodies, motion):
         # What does not move hands nothing on.
-        struck = motion[contact.a].struck == 1 and bodies[contact.a].inv_m > 0.0
-        return struck or (motion[contact.b].struck == 1 and bodies[contact.b].inv_m > 0.0)
+        by_a = motion[contact.a].in_impact == 1 and bodies[contact.a].inv_m > 0.0
+        return by_a or (motion[contact.b].in_impact == 1 and bodies[contact.b].inv_m > 0.0)
 
-    is_struck = kernel(is_struck, spec)
+    hands_on = kernel(hands_on, spec)
 
     def mark_impact(contacts, count, pairs, bodies, motion, slop):
         for i in range(motion.shape[0]):
-            motion[i].struck = 0
+            motion[i].in_impact = 0
         for c in range(count):
             contact = contacts[c]
             takes_part = contact.phi <= TOUCHING or (contact.phi <= slop and contact.waits == 0)
@@ -37,20 +37,20 @@ def make_mark_impact(spec: Spec) -> Any:
                 takes_part = contact.rate <= slowest(contact, bodies, motion)
             contact.waits = 0 if takes_part else 1
             if contact.located == MEETS:
-                motion[contact.a].struck = 1
-                motion[contact.b].struck = 1
+                motion[contact.a].in_impact = 1
+                motion[contact.b].in_impact = 1
         spreads, rows = True, 0
         while spreads:
             spreads, rows = False, 0
             for c in range(count):
                 contact = contacts[c]
-                if contact.waits == 0 and is_struck(contact, bodies, motion):
+                if contact.waits == 0 and hands_on(contact, bodies, motion):
                     rows += 1
                     a, b = motion[contact.a], motion[contact.b]
-                    spreads = spreads or a.struck == 0 or b.struck == 0
-                    a.struck, b.struck = 1, 1
+                    spreads = spreads or a.in_impact == 0 or b.in_impact == 0
+                    a.in_impact, b.in_impact = 1, 1
         for c in range(count):
-            if not is_struck(contacts[c], bodies, motion):
+            if not hands_on(contacts[c], bodies, motion):
                 contacts[c].waits = 1
         return rows
 
