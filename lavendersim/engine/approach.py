@@ -5,12 +5,12 @@ v > 0: they part. Speeds are those of the bodies to each other: no observer chan
 
 from __future__ import annotations
 
-from math import sqrt
 from typing import Any
 
-from .compile import kernel
+from .compile import inner, kernel
 from .records import PLANE
 from .spec import Spec
+from .vectors import Vec3, dot, length, minus, position
 
 NEVER = 1e300  # [s]
 # When a contact is due: by the rate of its own gap; a guess for any feature of its pair; found on
@@ -18,6 +18,24 @@ NEVER = 1e300  # [s]
 GUESSED, ELSEWHERE, LOCATED, FAR, MEETS = 0, 1, 2, 3, 4
 # Slowest approach [m/s], and as a share of the bodies' speed to each other: what solves leave.
 CREEP, ROUND_OFF = 1e-7, 1e-9
+
+
+@inner
+def normal(contact):
+    """Return the normal of a row, from A to B."""
+    return Vec3(contact.nx, contact.ny, contact.nz)
+
+
+@inner
+def relative_velocity(ma, mb):
+    """Return the velocity of B's centre from A's [m/s]; ma, mb: rows of `motion`."""
+    return minus(Vec3(mb.vx, mb.vy, mb.vz), Vec3(ma.vx, ma.vy, ma.vz))
+
+
+@inner
+def gained(m):
+    """Return what forces change of a body's velocity in the part [m/s]; m: its row of `motion`."""
+    return Vec3(m.dvx, m.dvy, m.dvz)
 
 
 def make_rate(spec: Spec) -> Any:
@@ -28,7 +46,7 @@ def make_rate(spec: Spec) -> Any:
     turns = spec.has("rotation")
 
     def rate(n, ma, mb, arm_a, arm_b):
-        v = n.x * (mb.vx - ma.vx) + n.y * (mb.vy - ma.vy) + n.z * (mb.vz - ma.vz)
+        v = dot(n, relative_velocity(ma, mb))
         if turns:
             v += n.x * (mb.wy * arm_b.z - mb.wz * arm_b.y)
             v += n.y * (mb.wz * arm_b.x - mb.wx * arm_b.z)
@@ -43,16 +61,13 @@ def make_rate(spec: Spec) -> Any:
 
 def make_approach(spec: Spec) -> Any:
     """Return `kernel(contact, bodies, motion) -> v`: rate of its gap as the part begins [m/s]."""
-    from .vectors import Vec3, minus, position
-
     rate = make_rate(spec)
 
     def approach(contact, bodies, motion):
         at = position(contact)
         arm_a = minus(at, position(bodies[contact.a]))
         arm_b = minus(at, position(bodies[contact.b]))
-        n = Vec3(contact.nx, contact.ny, contact.nz)
-        return rate(n, motion[contact.a], motion[contact.b], arm_a, arm_b)
+        return rate(normal(contact), motion[contact.a], motion[contact.b], arm_a, arm_b)
 
     return kernel(approach, spec)
 
@@ -64,19 +79,14 @@ def make_forced(spec: Spec) -> Any:
     """
 
     def forced(contact, motion):
-        ma, mb = motion[contact.a], motion[contact.b]
-        x, y, z = contact.nx, contact.ny, contact.nz
-        dv = x * (mb.dvx - ma.dvx) + y * (mb.dvy - ma.dvy) + z * (mb.dvz - ma.dvz)
-        of_a = abs(x * ma.dvx + y * ma.dvy + z * ma.dvz)
-        return dv, of_a + abs(x * mb.dvx + y * mb.dvy + z * mb.dvz)
+        n, of_a, of_b = normal(contact), gained(motion[contact.a]), gained(motion[contact.b])
+        return dot(n, minus(of_b, of_a)), abs(dot(n, of_a)) + abs(dot(n, of_b))
 
     return kernel(forced, spec)
 
 
 def make_turning(spec: Spec) -> Any:
     """Return `kernel(contact, bodies, motion) -> speed`, at most, by the spins of both [m/s]."""
-    from .vectors import length, minus, position
-
     turns = spec.has("rotation")
 
     def turning_of(contact, body, m):
@@ -84,7 +94,7 @@ def make_turning(spec: Spec) -> Any:
         size = body.bound
         if body.shape == PLANE:
             size = length(minus(position(contact), position(body)))
-        return size * sqrt(m.wx * m.wx + m.wy * m.wy + m.wz * m.wz)
+        return size * length(Vec3(m.wx, m.wy, m.wz))
 
     turning_of = kernel(turning_of, spec)
 
@@ -106,10 +116,8 @@ def make_nearest_rate(spec: Spec) -> Any:
     turning = make_turning(spec)
 
     def nearest_rate(contact, bodies, motion):
-        ma, mb = motion[contact.a], motion[contact.b]
-        x, y, z = contact.nx, contact.ny, contact.nz
-        v = x * (mb.vx - ma.vx) + y * (mb.vy - ma.vy) + z * (mb.vz - ma.vz)
-        return v - turning(contact, bodies, motion)
+        v = relative_velocity(motion[contact.a], motion[contact.b])
+        return dot(normal(contact), v) - turning(contact, bodies, motion)
 
     return kernel(nearest_rate, spec)
 
@@ -119,9 +127,8 @@ def make_relative_speed(spec: Spec) -> Any:
     turning = make_turning(spec)
 
     def relative_speed(contact, bodies, motion):
-        ma, mb = motion[contact.a], motion[contact.b]
-        x, y, z = mb.vx - ma.vx, mb.vy - ma.vy, mb.vz - ma.vz
-        return sqrt(x * x + y * y + z * z) + turning(contact, bodies, motion)
+        v = relative_velocity(motion[contact.a], motion[contact.b])
+        return length(v) + turning(contact, bodies, motion)
 
     return kernel(relative_speed, spec)
 
@@ -134,18 +141,3 @@ def make_slowest(spec: Spec) -> Any:
         return CREEP + ROUND_OFF * relative_speed(contact, bodies, motion)
 
     return kernel(slowest, spec)
-
-
-def make_keep_present(spec: Spec) -> Any:
-    """Return `kernel(contacts, count) -> count`: without those that wait."""
-
-    def keep_present(contacts, count):
-        kept = 0
-        for c in range(count):
-            if contacts[c].waits == 0:
-                if kept < c:
-                    contacts[kept] = contacts[c]
-                kept += 1
-        return kept
-
-    return kernel(keep_present, spec)

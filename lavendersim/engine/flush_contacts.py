@@ -14,9 +14,10 @@ from __future__ import annotations
 
 from typing import Any
 
-from .approach import CREEP, make_keep_present, make_rate, make_slowest
+from .approach import CREEP, make_rate, make_slowest
 from .collide.shapes import make_radius, make_support
 from .compile import kernel
+from .impact_rows import make_keep_present
 from .records import PLANE, TOUCHING
 from .spec import Spec
 from .vectors import Vec3, dot, minus, plus, position

@@ -1,4 +1,4 @@
-"""Which rows take part in the impact of an instant (`effects.impact_order`)."""
+"""Which rows take part in a part of a step (`effects.impact_order`): all others wait."""
 
 from __future__ import annotations
 
@@ -55,3 +55,18 @@ def make_mark_impact(spec: Spec) -> Any:
         return rows
 
     return kernel(mark_impact, spec)
+
+
+def make_keep_present(spec: Spec) -> Any:
+    """Return `kernel(contacts, count) -> count`: without those that wait."""
+
+    def keep_present(contacts, count):
+        kept = 0
+        for c in range(count):
+            if contacts[c].waits == 0:
+                if kept < c:
+                    contacts[kept] = contacts[c]
+                kept += 1
+        return kept
+
+    return kernel(keep_present, spec)

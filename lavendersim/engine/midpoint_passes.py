@@ -50,9 +50,7 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
     apply_start, take_kept = make_apply_start(spec), make_take_kept(spec)
     keeps_free, keep_free = made_once(spec, "keep_free")
     at_surface, loaded = spec.has("impact_time"), preload is not None
-    records = spec.has("residual_log")
-    # A step has room for the sweeps of one solve: those of the last.
-    forget_history: Any = make_forget_history(spec) if records else None
+    forget_history = make_forget_history(spec)
     residual = make_residual(spec)
 
     def has_impact(contacts, count):
@@ -126,8 +124,7 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
                     if contact.lambda_n > 0.0:
                         apply_start(contact, velocities[contact.a], velocities[contact.b])
             missed, _ = residual(contacts, count, velocities)
-            if records:
-                forget_history(counters, log.residual)
+            forget_history(counters, log.residual)
             solve(system, workspace.solver, params, counters, log.residual)
             sweeps += counters.sweeps
             if missed <= SAME:
@@ -151,14 +148,11 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
                 if contact.kept_n > 0.0:
                     take_kept(contact)
                     apply_start(contact, velocities[contact.a], velocities[contact.b])
-            if records:
-                forget_history(counters, log.residual)
+            forget_history(counters, log.residual)
             solve(system, workspace.solver, params, counters, log.residual)
             counters.sweeps += sweeps
             return False
         counters.sweeps = sweeps
-        for i in range(motion.shape[0]):
-            motion[i].midway = 0
         for c in range(count):
             contact = contacts[c]
             if contact.lambda_n > 0.0:

@@ -24,13 +24,15 @@ def make_gather_parts(spec: Spec) -> Any:
 
 
 def make_forget_history(spec: Spec) -> Any:
-    """Return `kernel(counters, rows)`: a step has the sweeps of its last part alone."""
+    """Return `kernel(counters, rows)`: a step has the sweeps of the solve that counts, the last."""
+    records = spec.has("residual_log")
 
     def forget_history(counters, rows):
-        while counters.residual_rows > 0:
-            if rows[counters.residual_rows - 1].step != counters.step + 1:
-                break
-            counters.residual_rows -= 1
+        if records:
+            while counters.residual_rows > 0:
+                if rows[counters.residual_rows - 1].step != counters.step + 1:
+                    break
+                counters.residual_rows -= 1
 
     return kernel(forget_history, spec)
 

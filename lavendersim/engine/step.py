@@ -68,7 +68,7 @@ def make_advance(spec: Spec) -> Any:
     start_step: Any = chain(starting, spec) if starts else None
     ordered, order = made_once(spec, "order_impacts")
     gather: Any = make_gather_parts(spec) if ordered else None
-    forget_history: Any = make_forget_history(spec) if ordered and record_residuals else None
+    forget_history: Any = make_forget_history(spec) if ordered else None
     end_step: Any = make_end_step(spec) if ordered else None
     stand: Any = make_stand(spec) if ordered else None
     sleeps, measure_speeds = made_once(spec, "measure_speeds")

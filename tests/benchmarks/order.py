@@ -18,20 +18,18 @@ import json
 import sys
 from pathlib import Path
 from statistics import median
-from time import perf_counter_ns
 from typing import Any
 
-from lavendersim.engine.records import DIVERGED
 from lavendersim.experiment import load_experiment
 from lavendersim.runner.environment import environment
-from lavendersim.scene.build import build
-from lavendersim.scene.plan import Plan, plan_of
+from lavendersim.scene.plan import plan_of
 
 from .as_process import ROOT
+from .engine import engine_step
+from .scenes import Case
 
 BAR = 1.03
 MOST_STEPS = 480
-MICROSECOND = 1000.0  # [ns]
 SCENES = (
     *("cost/drop", "cost/incline", "cost/stack_of_six", "cost/pyramid", "cost/pile"),
     *("scenes/rest", "scenes/oblique_impact", "hard/structure/dominoes"),
@@ -44,32 +42,24 @@ LAWS: dict[str, dict[str, str]] = {
 }
 
 
-def config_of(scene: str, laws: dict[str, str]) -> Any:
-    """Return the first cell of a shipped config under other laws."""
-    config = load_experiment(ROOT / f"configs/{scene}.yaml").cells()[0].config
-    return config.model_copy(update={"numerics": config.numerics.model_copy(update=laws)})
-
-
-def step_time(config: Any, plan: Plan) -> float:
-    """Return the time of a step [us], from the start of the scene."""
-    engine = build(config, plan.spec).engine(plan.spec)
-    engine.advance(0)
-    steps = min(config.steps, MOST_STEPS)
-    begin = perf_counter_ns()
-    assert engine.advance(steps) != DIVERGED
-    return (perf_counter_ns() - begin) / MICROSECOND / steps
+def under(scene: str, laws: dict[str, str]) -> Case:
+    """Return the first cell of a shipped config under other laws, unlogged."""
+    path = ROOT / f"configs/{scene}.yaml"
+    config = load_experiment(path).cells()[0].config
+    config = config.model_copy(update={"numerics": config.numerics.model_copy(update=laws)})
+    plan = plan_of(config, record=False)
+    return Case(config, plan, min(config.steps, MOST_STEPS), path.read_text())
 
 
 def measure(repeats: int, scenes: tuple[str, ...] = SCENES) -> dict[str, Any]:
     """Time all scenes under all laws, in turn."""
-    configs = {(scene, name): config_of(scene, LAWS[name]) for scene in scenes for name in LAWS}
-    plans = {key: plan_of(config, record=False) for key, config in configs.items()}
-    for key, config in configs.items():
-        step_time(config, plans[key])  # compiles
-    samples: dict[tuple[str, str], list[float]] = {key: [] for key in configs}
+    cases = {(scene, name): under(scene, LAWS[name]) for scene in scenes for name in LAWS}
+    for each in cases.values():
+        each.engine()  # compiles
+    samples: dict[tuple[str, str], list[float]] = {key: [] for key in cases}
     for repeat in range(repeats):
-        for key in list(configs)[:: -1 if repeat % 2 else 1]:
-            samples[key].append(step_time(configs[key], plans[key]))
+        for key in list(cases)[:: -1 if repeat % 2 else 1]:
+            samples[key].append(engine_step(cases[key], 0, 1))
     rows = []
     for scene in scenes:
         first = samples[scene, "first order"]
@@ -79,7 +69,7 @@ def measure(repeats: int, scenes: tuple[str, ...] = SCENES) -> dict[str, Any]:
             for name, each in found.items()
         }
         rows.append({"scene": scene, "samples": found, "ratios": ratios})
-    specs = [plan.spec for plan in plans.values()]
+    specs = [each.plan.spec for each in cases.values()]
     return {"unit": "us/step", "rows": rows, "environment": environment(*specs)}
 
 

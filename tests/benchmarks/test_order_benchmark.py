@@ -15,9 +15,8 @@ def test_every_scene_is_timed_under_every_law() -> None:
 
 
 def test_laws_are_those_of_the_plans() -> None:
-    config = order.config_of("scenes/rest", order.LAWS["first order"])
-    effects = order.plan_of(config, record=False).spec.effects
-    assert not {"impact_order", "contact_midpoint"} & set(effects)
-    default = order.config_of("scenes/rest", order.LAWS["default"])
-    effects = order.plan_of(default, record=False).spec.effects
-    assert {"impact_order", "contact_midpoint"} <= set(effects)
+    second = {"impact_order", "contact_midpoint"}
+    first_order = order.under("scenes/rest", order.LAWS["first order"])
+    assert not second & set(first_order.plan.spec.effects)
+    default = order.under("scenes/rest", order.LAWS["default"])
+    assert second <= set(default.plan.spec.effects)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+import math
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
@@ -78,6 +80,11 @@ def _columns(records: np.ndarray, names: Iterable[str]) -> np.ndarray:
     have = records.dtype.names or ()
     nothing = np.zeros(len(records))
     return np.column_stack([records[one].copy() if one in have else nothing for one in names])
+
+
+def orders(errors: Iterable[float]) -> list[float]:
+    """Return the observed orders of errors at timesteps that are halved from one to the next."""
+    return [math.log2(coarse / fine) for coarse, fine in itertools.pairwise(errors)]
 
 
 def flow(values: Iterable[float]) -> str:

@@ -6,35 +6,35 @@ go where it just touches swings about c m g and never leaves. All scenes are run
 
 from __future__ import annotations
 
-import itertools
 import math
 
 import numpy as np
 import pytest
-from shared_runs import GRAVITY, States, config, run_scenes
+from shared_runs import GRAVITY, States, ball, config, orders, run_scenes
 
 C, OMEGA = 1e-4, 100.0  # [m/N], [1/s] of 1 kg
 HALVED = (240, 480, 960)
 # Steps are solved to 1e-9 m/s, which moves a body by no more than that times the timestep; a spring
 # undamped keeps what each of up to 960 of them adds.
 SOLVED = 1e-9
-BALL = "{{shape: {{kind: sphere, radius: 0.1}}, mass: 1.0, surface: one, position: [{x}, 0, {z}]}}"
 GRAVITY_OF = f"[0, 0, {-GRAVITY}]"
-FLOOR = "{shape: {kind: plane}}"
+FLOOR = "{shape: {kind: plane}}"  # rigid
 
 
-def spring(ball: str, rate: int, duration: float, more: str = "", floor: str = FLOOR) -> str:
+def spring(body: str, rate: int, duration: float, more: str = "") -> str:
     """Return the config of a body on a floor whose contact has the compliance C."""
     surface = f"compliance: {C}{more}"
-    return config({"floor": floor, "ball": ball}, rate, duration, surface, GRAVITY_OF)
+    return config({"floor": FLOOR, "ball": body}, rate, duration, surface, GRAVITY_OF)
 
 
 def scenes() -> dict[str, str]:
     """Return all scenes of this file by name."""
-    touching, above = BALL.format(x=0, z=0.1), BALL.format(x=0, z=0.15)
+    touching, above = ball(0.1, 1.0, (0, 0, 0.1)), ball(0.1, 1.0, (0, 0, 0.15))
     shape = "{kind: box, size: [0.4, 0.3, 0.2]}"
     box = f"{{shape: {shape}, mass: 1.0, surface: one, position: [0, 0, 0.1]}}"
-    column = {"floor": FLOOR} | {f"ball{i}": BALL.format(x=0, z=0.1 + 0.2 * i) for i in range(3)}
+    column = {"floor": FLOOR} | {
+        f"ball{i}": ball(0.1, 1.0, (0, 0, 0.1 + 0.2 * i)) for i in range(3)
+    }
     found = {
         "box": spring(box, 240, 1.0, ", damping_ratio: 0.5"),
         "column": config(column, 240, 6.0, f"compliance: {C}, damping_ratio: 0.5", GRAVITY_OF),
@@ -57,10 +57,6 @@ def ran() -> dict[str, States]:
 def heights(states: States, body: str = "ball") -> np.ndarray:
     place, _, _ = states.of(body)
     return place[:, 2]
-
-
-def orders(errors: list[float]) -> list[float]:
-    return [math.log2(coarse / fine) for coarse, fine in itertools.pairwise(errors)]
 
 
 @pytest.mark.parametrize("rate", [60, 240, 1000])

@@ -7,13 +7,12 @@ beginning of a step, both errors are of first order.
 
 from __future__ import annotations
 
-import itertools
 import math
 from typing import NamedTuple
 
 import numpy as np
 import pytest
-from shared_runs import GRAVITY, States, config, flow, run_scenes
+from shared_runs import GRAVITY, States, config, flow, orders, run_scenes
 
 UP = np.array([0.0, 0.0, 1.0])
 ROLLING, NODDING = (120, 240, 480), (480, 960, 1920)  # steps a second
@@ -102,10 +101,6 @@ def energy_error(states: States) -> float:
     """Return the largest change of the energy, over that of the start without the height."""
     energy = states.energy()
     return float(abs(energy / energy[0] - 1.0).max())
-
-
-def orders(errors: list[float]) -> list[float]:
-    return [math.log2(coarse / fine) for coarse, fine in itertools.pairwise(errors)]
 
 
 def test_the_wheel_needs_less_friction_than_it_has() -> None:

@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 import pytest
-from shared_runs import States, config, flow, plane, run_scenes
+from shared_runs import States, config, flow, run_scenes
 
 RATES = (60, 240)
 RADIUS, SIDE = 0.1, 0.5  # of the body, of a tile [m]
@@ -61,8 +61,7 @@ def name_of(shape: str, rate: int, angle: float, start: tuple[float, float]) -> 
 def ran() -> dict[str, States]:
     texts = {
         name_of(shape, rate, angle, start): config(
-            # The plane far below lets the shapes of all scenes be the same.
-            tiles() | {"below": plane(offset=-9.0), "body": rolling(shape, angle, start)},
+            tiles() | {"body": rolling(shape, angle, start)},
             rate,
             DURATION,
             "friction: 0.5",
@@ -71,7 +70,7 @@ def ran() -> dict[str, States]:
         for shape, rate, angle in CASES
         for start in STARTS
     }
-    return {name: run_scenes({name: text})[name] for name, text in texts.items()}
+    return run_scenes(texts)
 
 
 @pytest.mark.parametrize(("shape", "rate", "angle"), CASES)

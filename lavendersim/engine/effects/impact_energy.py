@@ -66,7 +66,7 @@ def make_settle(spec: Spec, solve: Any, classify: Any) -> Any:
     slip_velocity = make_slip_velocity(spec)
     leave = make_leave(spec)
     some_frictionless = spec.has("frictionless_contact")
-    records = spec.has("residual_log")
+    forget_history = make_forget_history(spec)
 
     def work_of(contacts, count, velocities, motion, params):
         # Of all impulses, at each body's time of impact: before and after it forces work alone.
@@ -103,9 +103,6 @@ def make_settle(spec: Spec, solve: Any, classify: Any) -> Any:
 
     aim = kernel(aim, spec)
 
-    # A step has room for the sweeps of one solve: those of the solve that counts, the last.
-    forget_history: Any = make_forget_history(spec) if records else None
-
     def settle(system, motion, workspace, params, counters, rows):
         contacts, count, velocities = system.contacts, system.count, system.velocities
         counters.stronge = 0
@@ -130,8 +127,7 @@ def make_settle(spec: Spec, solve: Any, classify: Any) -> Any:
             return
         counters.stronge = 1
         aim(contacts, count, 1.0)
-        if records:
-            forget_history(counters, rows)
+        forget_history(counters, rows)
         solve(system, workspace, params, counters, rows)
         total, size = work_of(contacts, count, velocities, motion, params)
         if total <= ROUND_OFF * size:
@@ -140,8 +136,7 @@ def make_settle(spec: Spec, solve: Any, classify: Any) -> Any:
         for _ in range(HALVINGS):
             share = 0.5 * (low + high)
             aim(contacts, count, share)
-            if records:
-                forget_history(counters, rows)
+            forget_history(counters, rows)
             solve(system, workspace, params, counters, rows)
             total, size = work_of(contacts, count, velocities, motion, params)
             if total <= ROUND_OFF * size:
@@ -149,8 +144,7 @@ def make_settle(spec: Spec, solve: Any, classify: Any) -> Any:
             else:
                 high = share
         aim(contacts, count, low)
-        if records:
-            forget_history(counters, rows)
+        forget_history(counters, rows)
         solve(system, workspace, params, counters, rows)
 
     return kernel(settle, spec)

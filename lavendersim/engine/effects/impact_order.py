@@ -61,12 +61,11 @@ def make_order(spec: Spec) -> Any:
         MEETS,
         NEVER,
         make_approach,
-        make_keep_present,
     )
     from ..flush_contacts import make_drop_flush
     from ..foreseen_impacts import make_follow, make_foresee
     from ..impact_location import make_locate
-    from ..impact_rows import make_mark_impact
+    from ..impact_rows import make_keep_present, make_mark_impact
 
     approach, foresee, follow = make_approach(spec), make_foresee(spec), make_follow(spec)
     locate, drop_flush = make_locate(spec), make_drop_flush(spec)
