@@ -29,6 +29,8 @@ NUMERICS: dict[str, Any] = {
     "impacts": "captured",
     "integrator": "semi_implicit_euler",
     "compliance_law": "regularised",
+    "accuracy": None,
+    "smallest_timestep": 1e-9,
     "friction_cone": "disc",
     "sleeping": False,
     "sleep_speed": 0.005,

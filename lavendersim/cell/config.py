@@ -58,7 +58,14 @@ class CellConfig(ResolvedModel):
         return self.model_dump_json(by_alias=True)
 
     def refined(self, divisor: int) -> CellConfig:
-        """Return the same cell at timesteps of 1/divisor, those of events included."""
+        """Return the same cell at timesteps of 1/divisor, those of events included.
+
+        One whose steps are as long as its accuracy allows: at the accuracy such substeps have.
+        """
+        if self.numerics.accuracy is not None:
+            accuracy = self.numerics.accuracy / divisor**2
+            numerics = self.numerics.model_copy(update={"accuracy": accuracy})
+            return self.model_copy(update={"numerics": numerics})
         numerics = self.numerics.model_copy(update={"timestep": self.numerics.timestep / divisor})
         events = tuple(
             event.model_copy(update={"timestep": event.timestep / divisor})

@@ -21,6 +21,15 @@ class Numerics(ConfigModel):
     timestep: Annotated[Fraction, Quantity("s", above=0, exact=True)] = Field(
         default=Fraction(1, 240), description="[s] a ratio such as 1/480 is kept exactly"
     )
+    accuracy: Annotated[float, Quantity(above=0, below=1)] | None = Field(
+        default=None,
+        description="relative error that the run may have: the engine makes each timestep in "
+        "substeps whose estimated errors sum up to no more; null: every step is one timestep long",
+    )
+    smallest_timestep: Annotated[float, Quantity("s", minimum=1e-10)] = Field(
+        default=1e-9,
+        description="[s] of substeps; a run that would need shorter ones for its accuracy ends",
+    )
     solver: Solver = Field(
         default="adaptive",
         description="`projected_gauss_seidel`, `block_gauss_seidel` (its sweeps on packed "

@@ -30,6 +30,7 @@ from .record_layout import (
 from .records import COUNTERS, MOTION, dtype
 from .solvers.catalogue import SOLVERS
 from .spec import Spec
+from .step_doubling import allocate_control, with_capacity
 
 
 class State(NamedTuple):
@@ -43,6 +44,7 @@ class State(NamedTuple):
     motion: np.ndarray  # (n,) MOTION: what a body did within the step
     pseudo: np.ndarray  # (n,) pseudo-velocities of the positional projection, as velocities
     links: np.ndarray  # what effects join two bodies by
+    control: Any  # of the length of substeps: `step_doubling.Control`, or ()
 
 
 class Trial(NamedTuple):
@@ -106,6 +108,7 @@ def allocate_state(
         motion=np.zeros(moving, dtype(MOTION)),
         pseudo=np.zeros(projected, velocities.dtype),
         links=allocate_links(spec, 0) if links is None else links,
+        control=allocate_control(spec, bodies, velocities, capacity),
     )
 
 
@@ -114,7 +117,11 @@ def with_contacts(spec: Spec, state: State, capacity: int) -> State:
     cache = np.zeros(capacity if spec.has("warm_start") else 0, state.cache.dtype)
     if len(cache):
         cache[: len(state.cache)] = state.cache
-    return state._replace(contacts=np.zeros(capacity, state.contacts.dtype), cache=cache)
+    return state._replace(
+        contacts=np.zeros(capacity, state.contacts.dtype),
+        cache=cache,
+        control=with_capacity(state.control, capacity),
+    )
 
 
 def allocate_workspace(

@@ -1,4 +1,4 @@
-"""Counts of a step that is made in parts (`effects.impact_order`): sums until the step ends."""
+"""Counts of a step that is made in parts: sums (`effects.impact_order`, `error_control`)."""
 
 from __future__ import annotations
 
@@ -42,6 +42,8 @@ def make_end_step(spec: Spec) -> Any:
 
     def end_step(counters):
         counters.elapsed = 0.0
+        counters.substeps, counters.rejected, counters.part_unordered = 0, 0, 0
+        counters.shortest, counters.estimated_error = 0.0, 0.0
         counters.parts, counters.spent, counters.unordered = 0, 0, 0
         counters.part_sweeps, counters.part_not_converged, counters.part_stronge = 0, 0, 0
 

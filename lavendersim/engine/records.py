@@ -47,6 +47,7 @@ DIVERGED: Final = 3  # the run cannot go on; `counters.body` and `.cause` name t
 # Why a run diverged.
 NOT_FINITE: Final = 0  # the body's state is no longer finite
 TURNS_TOO_FAST: Final = 1  # the body turns so far in a step that its rotation has no solution
+INACCURATE: Final = 2  # no substep is short enough for the accuracy asked for
 
 BODY: Final[list[Field]] = [
     ("x", F8),  # centre of mass [m]
@@ -174,7 +175,12 @@ COUNTERS: Final[list[Field]] = [
     ("unordered", I8),  # 1 when its impacts are no longer made in order
     ("part_sweeps", I8),  # sums over its parts: of sweeps,
     ("part_not_converged", I8),  # whether one did not converge,
+    ("part_unordered", I8),  # whether impacts of one were left without order,
     ("part_stronge", I8),  # and whether Stronge's law replaced Newton's in one
+    ("substeps", I8),  # of the step so far, see `step_doubling`
+    ("rejected", I8),  # substeps that were taken back
+    ("shortest", F8),  # length of the shortest [s]
+    ("estimated_error", F8),  # sum of theirs, relative [-]
     ("step", I8),  # steps done since the start
     ("contacts", I8),  # rows in use, this step
     ("cached", I8),  # rows in use in the cache

@@ -29,9 +29,26 @@ from .integrate import (
 )
 from .kernel_cache import cached
 from .parts import make_end_step, make_forget_history, make_gather_parts
-from .records import CONTACTS_FULL, DIVERGED, INSTANT, PAIRS_FULL, ROWS_FULL, RUNNING, WOKEN
+from .records import (
+    CONTACTS_FULL,
+    DIVERGED,
+    INACCURATE,
+    INSTANT,
+    PAIRS_FULL,
+    ROWS_FULL,
+    RUNNING,
+    WOKEN,
+)
 from .respond import make_pass_by, make_respond
 from .spec import Spec
+from .step_doubling import (
+    GO_ON,
+    MISSED,
+    NOTHING,
+    make_abandon,
+    make_begin_substep,
+    make_end_span,
+)
 
 
 def make_advance(spec: Spec) -> Any:
@@ -67,9 +84,14 @@ def make_advance(spec: Spec) -> Any:
     starts = bool(starting)
     start_step: Any = chain(starting, spec) if starts else None
     ordered, order = made_once(spec, "order_impacts")
-    gather: Any = make_gather_parts(spec) if ordered else None
-    forget_history: Any = make_forget_history(spec) if ordered else None
-    end_step: Any = make_end_step(spec) if ordered else None
+    controlled = spec.has("error_control")
+    in_parts = ordered or controlled
+    gather: Any = make_gather_parts(spec) if in_parts else None
+    forget_history: Any = make_forget_history(spec) if in_parts else None
+    end_step: Any = make_end_step(spec) if in_parts else None
+    begin_substep: Any = make_begin_substep(spec) if controlled else None
+    end_span: Any = make_end_span(spec) if controlled else None
+    abandon: Any = make_abandon(spec) if controlled else None
     stand: Any = make_stand(spec) if ordered else None
     sleeps, measure_speeds = made_once(spec, "measure_speeds")
     _, wake = made_once(spec, "wake")
@@ -91,11 +113,11 @@ def make_advance(spec: Spec) -> Any:
         done = 0
         while done < steps:
             begins = True
-            if ordered:
+            if in_parts:
                 begins = counters.parts == 0
             if begins:
                 params.timestep = params.dt
-            if ordered:
+            if ordered and not controlled:
                 params.dt = params.timestep - counters.elapsed
             if begins:
                 if records:
@@ -103,10 +125,17 @@ def make_advance(spec: Spec) -> Any:
                         return ROWS_FULL
                 if sleeps:
                     measure_speeds(bodies, velocities)
+            if controlled:
+                control = state.control.record[0]
+                if control.phase == NOTHING:
+                    begin_substep(state, params, counters, log.step)
+                params.dt = control.until - counters.elapsed
             if record_residuals:
-                if ordered:
+                if in_parts:
                     forget_history(counters, log.residual)
                 if counters.residual_rows + params.sweeps + 1 > log.residual.shape[0]:
+                    if controlled:
+                        abandon(state, params, counter, log.step)
                     params.dt = params.timestep
                     return ROWS_FULL
             if starts:
@@ -136,7 +165,7 @@ def make_advance(spec: Spec) -> Any:
                 full = CONTACTS_FULL
             if records:
                 rows = counters.contact_rows + count
-                if ordered:
+                if in_parts:
                     if not begins:
                         rows += log.step[counters.step_rows].contact_count
                 if full == RUNNING and rows > log.contact.shape[0]:
@@ -147,6 +176,8 @@ def make_advance(spec: Spec) -> Any:
             if full != RUNNING:
                 if keeps:
                     undo(velocities, motion)
+                if controlled:
+                    abandon(state, params, counter, log.step)
                 params.dt = params.timestep
                 return full
             instant = False
@@ -178,11 +209,10 @@ def make_advance(spec: Spec) -> Any:
                         passed = True
                 if not passed:
                     respond(state, count, workspace, params, counters, log)
-            if ordered:
-                if instant:
-                    gather(counters)
-                    continue
+            if in_parts:
                 gather(counters)
+                if instant:
+                    continue
             if keeps and touches:
                 classify(contacts, count, motion, params)
             moved = counters.projection_sweeps > 0
@@ -191,6 +221,18 @@ def make_advance(spec: Spec) -> Any:
                 if length < left and diverged < 0:
                     counters.elapsed += length
                     continue
+            if controlled:
+                if diverged >= 0:
+                    counters.body, counters.cause = diverged, cause
+                outcome = end_span(state, count, params, counter, log.step, diverged >= 0)
+                if outcome == GO_ON:
+                    continue
+                if outcome == MISSED:
+                    if diverged < 0:
+                        counters.cause = INACCURATE
+                    params.dt = params.timestep
+                    return DIVERGED
+            if in_parts:
                 params.dt = params.timestep
             if sleeps:
                 update_sleeping(state, count, workspace.islands, params)
@@ -201,7 +243,7 @@ def make_advance(spec: Spec) -> Any:
                 if linked:
                     log_links(log.step[counters.step_rows], state.links, bodies)
                 log_step(bodies, velocities, params, counters, log)
-            if ordered:
+            if in_parts:
                 end_step(counters)
             if diverged >= 0:
                 counters.body, counters.cause = diverged, cause

@@ -16,7 +16,7 @@ from lavendersim.clock import Clock
 from lavendersim.engine.compile_options import source_hash
 from lavendersim.engine.effects import EFFECTS
 from lavendersim.engine.engine import Engine, Rows
-from lavendersim.engine.records import DIVERGED, NOT_FINITE, RUNNING, TURNS_TOO_FAST
+from lavendersim.engine.records import DIVERGED, INACCURATE, NOT_FINITE, RUNNING, TURNS_TOO_FAST
 from lavendersim.measures.always import WorstStates
 from lavendersim.measures.specs.always import Always
 from lavendersim.measures.specs.catalogue import MeasureSpec
@@ -40,6 +40,10 @@ CAUSES = {
     NOT_FINITE: "is no longer finite",
     TURNS_TOO_FAST: "turns too far in one timestep for its rotation to be solved",
 }
+NO_SUBSTEP: Final = (
+    "cannot be made as accurate as asked for ({accuracy:g}): the estimated error of a substep of "
+    "{length:.3g} s is {error:.3g}, and none may be shorter than {smallest:g} s,"
+)
 
 
 class CellOfLog(NamedTuple):
@@ -131,8 +135,17 @@ def divergence(scene: Scene, engine: Engine) -> str:
     counters = engine.counters[0]
     step = int(counters["step"])
     name = scene.names[int(counters["body"])]
-    what = CAUSES[int(counters["cause"])]
-    time = float(scene.clock.time(step))
+    cause, time = int(counters["cause"]), float(scene.clock.time(step))
+    what = CAUSES.get(cause, "")
+    if cause == INACCURATE:
+        missed, params = engine.state.control.record[0], engine.parameters[0]
+        what = NO_SUBSTEP.format(
+            accuracy=params["accuracy"],
+            length=missed["length"],
+            error=missed["error"],
+            smallest=params["smallest_timestep"],
+        )
+        time += float(missed["start"])
     return f"diverged: body {name} {what} after step {step} (t = {time:.9g} s)"
 
 

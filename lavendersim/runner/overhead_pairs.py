@@ -71,10 +71,10 @@ def _pair(effect: Effect, reason: str, plans: Plans) -> Pair:
         return pair._replace(why_not=f"timed with {effect.overhead_with}: see there")
     chosen = [each for each in (name, *needs(name)) if not has_law(each, plans.facts)]
     if on and is_law(name):
-        section, key = choice(name)
+        key, section, _ = choice(name)
         return pair._replace(why_not=f"chosen by {section}.{key}: another law without")
     if chosen:
-        section, key = choice(chosen[0])
+        key, section, _ = choice(chosen[0])
         through = "" if chosen[0] == name else f" through {chosen[0]}"
         return pair._replace(why_not=f"{section}.{key} chooses another law{through}")
     base = plans.logged if _is_log(effect) else plans.silent

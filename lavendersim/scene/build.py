@@ -72,8 +72,10 @@ def _parameters(config: CellConfig, clock: Clock) -> np.ndarray:
     p = parameters[0]
     p["gx"], p["gy"], p["gz"] = config.scene.gravity
     for name in p.dtype.names or ():
-        if name in Numerics.model_fields and name not in ("tolerance",):
-            p[name] = getattr(numerics, name)
+        value = getattr(numerics, name, None)  # null is written where it means something, below
+        if value is not None:
+            p[name] = value
+    p["duration"] = config.duration
     if not numerics.warm_start:
         # An engine shared with warm cells: no cosine is this large, so nothing is carried over.
         p["cache_normal_cosine"] = 2.0

@@ -5,7 +5,14 @@ from __future__ import annotations
 from typing import Any, Final
 
 from lavendersim.cell import Surface
-from lavendersim.engine.effects import BY_NAME, SURFACE_KEYS, BodyFacts, Facts, PairFacts
+from lavendersim.engine.effects import (
+    BY_NAME,
+    SURFACE_KEYS,
+    BodyFacts,
+    Choice,
+    Facts,
+    PairFacts,
+)
 
 # With every property that a surface can have.
 SURFACE: Final = Surface(**{key.name: 1.0 for key in SURFACE_KEYS})
@@ -34,12 +41,12 @@ def needs(name: str) -> tuple[str, ...]:
     return tuple(found)
 
 
-def choice(name: str) -> tuple[str, str]:
-    """Return the section and the key of a config that choose an effect; it is a law."""
+def choice(name: str) -> Choice:
+    """Return the key of a config that chooses an effect, and its section; it is a law."""
     chosen = BY_NAME[name].chosen_by
     if chosen is None:
         raise ValueError(f"no key of a config chooses {name}")
-    return chosen.section, chosen.key
+    return chosen
 
 
 def is_law(name: str) -> bool:

@@ -90,7 +90,9 @@ def _switch(made: Overridden, name: str, switch: str, facts: Facts, section: Cel
     if name == "contact_log":
         return "the sums in /step are those of the contacts that are logged; leave it on"
     if is_law(name):
-        chooser = "the numerics choose" if choice(name)[0] == "numerics" else "the study chooses"
+        chooser = (
+            "the numerics choose" if choice(name).section == "numerics" else "the study chooses"
+        )
         return f"{chooser} it; write {_choosing(name, facts, on=False)} instead"
     if not section.force:
         return (
@@ -145,10 +147,12 @@ def _choosing(name: str, facts: Facts, on: bool) -> str:
 
     Nothing where that key alone does not do it.
     """
-    section, key = choice(name)
+    key, section, examples = choice(name)
     annotation: Any = SECTIONS[section].model_fields[key].annotation
-    for value in (False, True) if annotation is bool else get_args(annotation):
+    named = (False, True) if annotation is bool else get_args(annotation)
+    for value in examples or named:
         if BY_NAME[name].decide(facts._replace(**BUSY, **{key: value})).on == on:
-            written = str(value).lower() if isinstance(value, bool) else value
+            written = "null" if value is None else value
+            written = str(value).lower() if isinstance(value, bool) else written
             return f"`{section}: {{{key}: {written}}}`"
     return ""

@@ -25,6 +25,7 @@ CHOICES: Final = (
     "impacts",
     "integrator",
     "compliance_law",
+    "error_control",
     "friction_cone",
     "order",
     "sleeping",
@@ -191,7 +192,9 @@ def _on(decisions: Mapping[str, Decision]) -> tuple[str, ...]:
 
 
 def _choices(config: CellConfig) -> tuple[Any, ...]:
-    chosen = {**dict(config.numerics), **dict(config.study), "effects": _switched(config.effects)}
+    numerics = config.numerics
+    made = {"error_control": numerics.accuracy is not None, "effects": _switched(config.effects)}
+    chosen = {**dict(numerics), **dict(config.study), **made}
     return tuple(chosen[name] for name in CHOICES)
 
 

@@ -28,6 +28,7 @@ LETS_IN: dict[str, tuple[Any, ...]] = {
     "midpoint": ("midpoint", "midpoint_contact"),
     "contact_midpoint": ("midpoint_contact",),
     "contact_spring": ("spring",),
+    "error_control": (),  # an accuracy, and then it has something to do
     "speculative": (True,),
     "newton": ("adaptive",),
     "capture_in_sweeps": ("capture_in_sweeps",),

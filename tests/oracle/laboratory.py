@@ -25,8 +25,8 @@ from tests.made_cells import NUMERICS
 # Effects that put another law in a law's place: no coefficient of theirs takes them away.
 OTHER_LAWS = {
     *("broad_phase", "capture_in_sweeps", "fast_bodies", "impact_energy", "impact_time"),
-    *("contact_midpoint", "contact_spring", "impact_order", "midpoint", "newton", "sleeping"),
-    "speculative",
+    *("contact_midpoint", "contact_spring", "error_control", "impact_order", "midpoint", "newton"),
+    *("sleeping", "speculative"),
 }
 # Every other effect and the shapes of most tests: one compilation serves them.
 EVERYTHING = Spec(

@@ -29,6 +29,7 @@ SECTIONS = {
     ),
     "impacts-at-the-surface": ("impact_time", "impact_energy"),
     "impacts-in-order": ("impact_order",),
+    "error-control": ("error_control",),
     "contact-at-the-middle-of-the-step": ("contact_midpoint",),
     "torques-at-a-contact": ("torsional_friction", "rolling_friction"),
     "warm-start": ("warm_start",),

@@ -50,6 +50,7 @@ ELSEWHERE = {
         "engine/effects/contact_spring.py": "is another law of it",
         "engine/contact.py": ROW,
         "engine/assemble.py": ROW,
+        "engine/error_estimate.py": SPRING,
         "engine/residual.py": ROW,
         "engine/solvers/row_update.py": ROW,
         "engine/solvers/newton/response.py": ROW,

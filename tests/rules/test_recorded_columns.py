@@ -12,7 +12,7 @@ from lavendersim.trace.schema import CONTACT_COLUMNS, RESIDUAL_COLUMNS, STEP_COL
 UNIT = re.compile(r"\[[^]]+\]")
 # Counts, indices, hashes and directions have no unit.
 WITHOUT_UNIT = {
-    "parts", "unordered",
+    "parts", "unordered", "substeps", "rejected", "estimated_error",
     "step", "contact_count", "sweeps", "residual_contact", "state_hash", "sweep",
     "awake", "stronge", "not_converged",
     "signorini_contact", "cone_contact", "dissipation_contact",

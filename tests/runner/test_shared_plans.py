@@ -35,7 +35,19 @@ PATHS = {name: f"numerics.{name}" for name in VALUES} | {
 
 
 def test_every_choice_can_be_swept() -> None:
-    assert set(VALUES) == set(CHOICES)
+    assert {*VALUES, "error_control"} == set(CHOICES)  # of that see below
+
+
+def test_cells_with_an_accuracy_share_an_engine_and_those_without_another() -> None:
+    """An axis has no value for none; a union of products has cells without the axis."""
+    e = "e: {path: scene.bodies.ball.surface.restitution, values: [0.2, 0.5, 0.8]}"
+    asked = "accuracy: {path: numerics.accuracy, values: [1e-2, 1e-4]}"
+    text = DROPS.replace("numerics: chapter", "numerics: default")
+    text = text.replace(f"  {e}\n", f"  - {{{e}}}\n  - {{{e}, {asked}}}\n")
+    plans = shared_plans(load_experiment_text(text, "swept.yaml").cells())
+    controlled = [plan.spec.has("error_control") for plan in plans]
+    assert controlled == [False] * 3 + [True] * 6
+    assert len(distinct(plans)) == 2
 
 
 @pytest.mark.parametrize("choice", VALUES)

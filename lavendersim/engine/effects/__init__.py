@@ -9,7 +9,7 @@ from typing import Any, Final, Literal
 from ..records import Field
 from ..spec import Spec
 from .decision import BodyFacts, Decision, Facts, PairFacts
-from .effect import CHAINED, Column, Derived, Effect, Hooks, hook_names
+from .effect import CHAINED, Choice, Column, Derived, Effect, Hooks, hook_names
 
 # Order matters within a hook: kernels of one hook run in this order.
 NAMES: Final = (
@@ -34,6 +34,7 @@ NAMES: Final = (
     "contact_midpoint",
     "impact_time",
     "impact_order",
+    "error_control",
     "speculative",
     "fast_bodies",
     "restitution",
@@ -116,6 +117,7 @@ __all__ = [
     "SCENE_KEYS",
     "SURFACE_KEYS",
     "BodyFacts",
+    "Choice",
     "Column",
     "Decision",
     "Derived",

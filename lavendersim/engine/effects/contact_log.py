@@ -36,7 +36,7 @@ def make(spec: Spec, loggers):
     row_residual, forget = make_row_residual(spec), make_forget(spec)
     watch_signorini, watch_coulomb = make_watch_signorini(spec), make_watch_coulomb(spec)
     log_more = chain(loggers, spec)
-    ordered = spec.has("impact_order")
+    in_parts = spec.has("impact_order") or spec.has("error_control")
 
     def log_contacts(contacts, count, velocities, params, counters, log):
         contact_rows = log.contact
@@ -44,7 +44,7 @@ def make(spec: Spec, loggers):
         force, deepest = 0.0, 0.0
         written, most = 0, -1.0
         first, last = True, True
-        if ordered:
+        if in_parts:
             first = counters.parts == 0
             last = params.dt == params.timestep - counters.elapsed
         if first:

@@ -147,6 +147,7 @@ class Choice(NamedTuple):
 
     key: str
     section: str = "numerics"
+    examples: tuple[Any, ...] = ()  # of its values, with and without; none: the key names them all
 
 
 @dataclass(frozen=True, kw_only=True)

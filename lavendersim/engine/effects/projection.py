@@ -3,6 +3,8 @@
 Pseudo-velocities u (metres and radians per step, zero at the start) are solved for by projected
 Gauss-Seidel on the rows of the step:
     n . u  >=  projection * max(d_1 - slop, 0),   d_1 = -(phi + v_n dt)
+In substeps (`error_control`) the share is that of their length: what a step moves bodies apart by
+does not depend on their number.
 d_1 is the penetration after the velocity step, to first order. A pair that does not push moves by
 the mean of its old and new velocity where the integrator is `midpoint`, and v_n is that mean's: by
 the new one alone it would be moved out of an overlap that it never reaches. u is added to the poses
@@ -30,9 +32,12 @@ def make(spec):
     torque = spec.has("contact_torque")
     friction, midpoint = spec.has("friction"), spec.has("midpoint")
     centred, springs = spec.has("contact_midpoint"), spec.has("contact_spring")
+    controlled = spec.has("error_control")
 
     def project_positions(contacts, order, count, velocities, pseudo, params):
-        asked = False
+        share, asked = params.projection, False
+        if controlled:
+            share *= params.dt / params.timestep
         for c in range(count):
             contact = contacts[c]
             v_n = normal_velocity(contact, velocities[contact.a], velocities[contact.b])
@@ -46,7 +51,7 @@ def make(spec):
             if springs:
                 if contact.spring_compliance > 0.0:  # it rests where its force holds it
                     excess = 0.0
-            contact.correction = params.projection * max(excess, 0.0)
+            contact.correction = share * max(excess, 0.0)
             contact.push = 0.0
             contact.inv_k_n = 1.0 / contact.k_n
             if contact.correction > 0.0:

@@ -8,6 +8,7 @@ from pydantic import ConfigDict, Field, Tag
 
 from lavendersim.cell.choices import Preset, Switch
 from lavendersim.cell.numerics import Numerics
+from lavendersim.experiment.models.accuracy import accuracy_rules
 from lavendersim.experiment.models.always import AlwaysSection
 from lavendersim.experiment.models.cost import CostSpec
 from lavendersim.experiment.models.events import Event
@@ -114,6 +115,7 @@ class CellSource(ConfigModel):
     def rules(cls, at: Place) -> None:
         """The run has some steps and not too many; sweeps are ordered where there are any."""
         step_rules(at)
+        accuracy_rules(at)
         solver = at.get("numerics", "solver")
         for key, idle in (("over_relaxation", "1"), ("order", "coloured")):
             value = at.get("numerics", key)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 
@@ -16,6 +16,9 @@ from lavendersim.figures.style import DARK, GREY, look
 from lavendersim.measures.interfaces import Cell
 from lavendersim.measures.sweep_judgements import along_axis, first_rise
 from lavendersim.measures.values import Values
+
+# Of lines drawn for comparison.
+DASHES: Final = ((0, (1, 1.5)), (0, (6, 2)), (0, (5, 2, 1, 2)))
 
 
 def marker_size(index: int, count: int) -> float:
@@ -41,9 +44,25 @@ def _draw_orders(axes: Any, orders: Sequence[float], band: Band) -> None:
             band.mean[-1] * (band.places / band.places[-1]) ** order,
             color=GREY,
             linewidth=1.1,
-            linestyle=((0, (1, 1.5)), (0, (6, 2)), (0, (5, 2, 1, 2)))[index % 3],
+            linestyle=DASHES[index % 3],
             label=f"order {order:g}",
             zorder=1,
+        )
+
+
+def _draw_proportions(axes: Any, factors: Sequence[float], places: np.ndarray) -> None:
+    """Draw lines y = k x over the places."""
+    ends = np.array([places.min(), places.max()])
+    for index, factor in enumerate(factors):
+        label = "y = x" if factor == 1.0 else f"y = {factor:g} x"
+        axes.plot(
+            ends,
+            factor * ends,
+            color=GREY,
+            linewidth=1.1,
+            label=label,
+            zorder=1,
+            linestyle=DASHES[index % 3],
         )
 
 
@@ -80,6 +99,8 @@ def draw_panel(
         ticks_at_values(axes, band.places)
         if index == 0:
             _draw_orders(axes, panel.orders, band)
+            if panel.proportions and len(band.places):
+                _draw_proportions(axes, panel.proportions, band.places)
     for index, onset in enumerate(panel.onsets):
         stations = along_axis(shown, values.of(panel.measure), panel.axis, onset.reduce)
         place = first_rise(*stations, onset.level / panel.factor) * panel.x_factor
@@ -87,6 +108,6 @@ def draw_panel(
             place,
             color=DARK,
             linewidth=1.1,
-            linestyle=((0, (1, 1.5)), (0, (6, 2)))[index % 2],
+            linestyle=DASHES[index % 2],
             label=f"{onset.label}: {place:.2f}",
         )

@@ -43,3 +43,7 @@ class MeasureAgainstAxis(Panel):
         description="slopes drawn for comparison: y as this power of x, through the last point of "
         "the first series [-]",
     )
+    proportions: tuple[Annotated[float, Quantity(above=0)], ...] = Field(
+        default=(),
+        description="lines y = k x drawn for comparison, by their k, in the units drawn [-]",
+    )

@@ -31,6 +31,8 @@ def test_chapter_is_frozen() -> None:
         "impacts": "captured",
         "integrator": "semi_implicit_euler",
         "compliance_law": "regularised",
+        "accuracy": None,
+        "smallest_timestep": 1e-9,
         "friction_cone": "disc",
         "sleeping": False,
         "sleep_speed": 0.005,

@@ -1,0 +1,189 @@
+"""What two ways through a substep differ by, relative to the motion (`effects.error_control`).
+
+    e = max over bodies of max(dx/L, dv/U)/3
+    dx = |x - x'| + R theta       farthest that a point of the body is off [m]
+    dv = |v - v'| + R |w - w'|    and its velocity [m/s]
+    U = fastest speed of a point of it so far, at least R/T
+    L = path length of the run, if it goes on at that speed; at least R
+R: radius about the centre of mass that holds the body, T: duration of the run. What solves leave is
+no error of the timestep: below NOISE times their residual dv says nothing.
+
+At the end of a step a velocity violates its contacts by O(dt^2), because they hold at the middle;
+the next step begins with it and does not add to it. So dv is taken without the part that contacts
+would take away: with J (dv + M^-1 J^T p) = 0 of all rows that push, and of tangents that stick.
+"""
+
+from __future__ import annotations
+
+from math import sqrt
+from typing import Any, Final
+
+from .block import make_relative_velocity
+from .compile import inner, kernel
+from .contact import make_apply_block, make_normal_velocity
+from .effects.frictionless_contact import has_frictionless
+from .records import Field
+from .spec import Spec
+
+# A step of order 2 made in halves is off by a third of what it differs from the whole by.
+SHARE = 1.0 / 3.0
+# Velocities that two solves of one problem may differ by, in residuals; positions [m].
+NOISE, PLACE_NOISE = 4.0, 1e-10
+# Sweeps of the differences of velocities over contacts.
+SWEEPS = 20
+# A contact sticks whose friction is less than this share of the most it may be.
+STICKS = 0.999
+
+# What a body has done since the run began.
+PATH: Final[list[Field]] = [
+    ("length", "f8"),  # of the path of its centre, and of its rim about it [m]
+    ("fastest", "f8"),  # speed of its fastest point, at most [m/s]
+]
+
+
+@inner
+def distance(one, other):
+    """Return how far two centres are apart [m]."""
+    x, y, z = one.x - other.x, one.y - other.y, one.z - other.z
+    return sqrt(x * x + y * y + z * z)
+
+
+@inner
+def angle(one, other):
+    """Return the angle between two orientations, at most a little too large [rad]."""
+    x = one.qw * other.qx - one.qx * other.qw - one.qy * other.qz + one.qz * other.qy
+    y = one.qw * other.qy - one.qy * other.qw - one.qz * other.qx + one.qx * other.qz
+    z = one.qw * other.qz - one.qz * other.qw - one.qx * other.qy + one.qy * other.qx
+    return 2.0 * sqrt(x * x + y * y + z * z)
+
+
+@inner
+def speed_of(v):
+    """Return |v| [m/s]."""
+    return sqrt(v.vx * v.vx + v.vy * v.vy + v.vz * v.vz)
+
+
+@inner
+def spin_of(v):
+    """Return |w| [rad/s]."""
+    return sqrt(v.wx * v.wx + v.wy * v.wy + v.wz * v.wz)
+
+
+def make_respect_contacts(spec: Spec) -> Any:
+    """Return `kernel(contacts, count, velocities, noise)`: of differences of velocities.
+
+    Takes from them what the contacts of the substep's end would, by Gauss-Seidel's method.
+    """
+    normal_velocity, apply_block = make_normal_velocity(spec), make_apply_block(spec)
+    friction, mixed = spec.has("friction"), has_frictionless(spec)
+    compliant = spec.has("compliance")
+    relative_velocity: Any = make_relative_velocity(spec)
+
+    def acts(contact):
+        pushes = contact.lambda_n > 0.0
+        if compliant:
+            pushes = pushes and contact.gamma == 0.0
+        return pushes
+
+    acts = kernel(acts, spec)
+
+    def sticks(contact):
+        if mixed:
+            if contact.frictional == 0:
+                return False
+        one, two, most = contact.lambda_1, contact.lambda_2, STICKS * contact.mu * contact.lambda_n
+        return one * one + two * two < most * most
+
+    if friction:
+        sticks = kernel(sticks, spec)
+
+    def respect_contacts(contacts, count, velocities, noise):
+        for _ in range(SWEEPS):
+            largest = 0.0
+            for c in range(count):
+                contact = contacts[c]
+                if acts(contact):
+                    va, vb = velocities[contact.a], velocities[contact.b]
+                    v_n = normal_velocity(contact, va, vb)
+                    largest = max(largest, abs(v_n))
+                    apply_block(contact, va, vb, -v_n / contact.k_n, 0.0, 0.0)
+                    if friction:
+                        if sticks(contact):
+                            x, y, z = relative_velocity(contact, va, vb)
+                            v_1 = contact.t1x * x + contact.t1y * y + contact.t1z * z
+                            v_2 = contact.t2x * x + contact.t2y * y + contact.t2z * z
+                            largest = max(largest, abs(v_1), abs(v_2))
+                            one = contact.i_11 * v_1 + contact.i_12 * v_2
+                            two = contact.i_12 * v_1 + contact.i_22 * v_2
+                            apply_block(contact, va, vb, 0.0, -one, -two)
+            if largest <= noise:
+                break
+
+    return kernel(respect_contacts, spec)
+
+
+def make_add_paths(spec: Spec) -> Any:
+    """Return `kernel(bodies, velocities, before, paths)`: those through a substep added.
+
+    before: rows of the bodies at its start.
+    """
+    turns = spec.has("rotation")
+
+    def add_paths(bodies, velocities, before, paths):
+        for i in range(bodies.shape[0]):
+            body, v = bodies[i], velocities[i]
+            if body.inv_m > 0.0:
+                length = distance(body, before[i])
+                speed = speed_of(v)
+                if turns:
+                    length += body.bound * angle(body, before[i])
+                    speed += body.bound * spin_of(v)
+                paths[i].length += length
+                paths[i].fastest = max(paths[i].fastest, speed)
+
+    return kernel(add_paths, spec)
+
+
+def make_estimate(spec: Spec) -> Any:
+    """Return `kernel(state, count, other, differences, paths, left, params, residual)`.
+
+    other: bodies that the whole substep led to; differences: of velocities, to be made from those
+    that it led to. left: of the run, behind the substep [s]; residual: of its last solve [m/s].
+    Returns e, the error of the same body that solves may leave, and that body; -1: none has one.
+    """
+    turns, touches = spec.has("rotation"), bool(spec.shape_pairs)
+    respect_contacts: Any = make_respect_contacts(spec) if touches else None
+
+    def subtract(v, dv):
+        dv.vx, dv.vy, dv.vz = v.vx - dv.vx, v.vy - dv.vy, v.vz - dv.vz
+        if turns:
+            dv.wx, dv.wy, dv.wz = v.wx - dv.wx, v.wy - dv.wy, v.wz - dv.wz
+
+    subtract = kernel(subtract, spec)
+
+    def estimate(state, count, other, differences, paths, left, params, residual):
+        bodies, velocities = state.bodies, state.velocities
+        noise = NOISE * min(residual, params.tolerance)
+        for i in range(bodies.shape[0]):
+            subtract(velocities[i], differences[i])
+        if touches:
+            respect_contacts(state.contacts, count, differences, noise)
+        largest, floor, worst = 0.0, 0.0, -1
+        for i in range(bodies.shape[0]):
+            body, v = bodies[i], velocities[i]
+            if body.inv_m > 0.0:
+                off, dv, speed = distance(body, other[i]), speed_of(differences[i]), speed_of(v)
+                if turns:
+                    off += body.bound * angle(body, other[i])
+                    dv += body.bound * spin_of(differences[i])
+                    speed += body.bound * spin_of(v)
+                speed = max(speed, paths[i].fastest, body.bound / params.duration)
+                length = max(body.bound, paths[i].length + speed * left)
+                error = max(off / length, dv / speed)
+                # A NaN is larger than anything.
+                if not error <= largest:
+                    largest, worst = error, i
+                    floor = max(PLACE_NOISE / length, noise / speed)
+        return SHARE * largest, SHARE * floor, worst
+
+    return kernel(estimate, spec)

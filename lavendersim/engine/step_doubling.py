@@ -1,0 +1,275 @@
+"""Substeps of a step made twice, whole and in halves (`effects.error_control`), and what is kept.
+
+begin     keep the state that a substep begins with, and choose its length
+end_span  when the whole of it, or one half, is made: what comes next
+abandon   back to where the substep begins, for a step that its caller begins again
+"""
+
+from __future__ import annotations
+
+from math import sqrt
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+
+from .compile import kernel
+from .error_estimate import PATH, make_add_paths, make_estimate
+from .record_layout import cache_dtype, step_row_dtype
+from .records import COUNTERS, Field, dtype
+from .spec import Spec
+
+# What is being made of a substep.
+NOTHING, WHOLE, FIRST_HALF, SECOND_HALF = 0, 1, 2, 3
+# What `end_span` says.
+GO_ON, STEP_ENDS, MISSED = 0, 1, 2
+# Estimates add up as if errors never cancelled: those of smooth motion may be so many times the
+# accuracy in all, and kinks may add it once more.
+CANCELS = 3.0
+# A substep is proposed with a little less than the length that would be just right; it grows and
+# shrinks by no more than these factors.
+CAUTION, SHRINK, GROW = 0.9, 0.1, 4.0
+# Share of what is unspent that one substep may spend beyond its own.
+AT_ONCE = 1.0 / 16.0
+
+CONTROL: Final[list[Field]] = [
+    ("phase", "i8"),  # NOTHING, WHOLE, ...
+    ("start", "f8"),  # of the substep, from the start of the step [s]
+    ("length", "f8"),  # of the substep [s]
+    ("end", "f8"),  # of the substep, from the start of the step [s]
+    ("until", "f8"),  # end of what is being made, from the start of the step [s]
+    ("proposed", "f8"),  # length of the next substep; 0: as long as can be [s]
+    ("smooth", "f8"),  # length of the last substep that spent no more than its own [s]
+    ("before", "f8"),  # time of the run when the step begins [s]
+    ("spent", "f8"),  # estimated error of the run so far, relative [-]
+    ("error", "f8"),  # of the substep that was made last [-]
+]
+
+
+class Control(NamedTuple):
+    """What error control keeps: of the run, and of the start of a substep; n bodies, m contacts."""
+
+    record: np.ndarray  # (1,) CONTROL
+    paths: np.ndarray  # (n,) PATH
+    bodies: np.ndarray  # (n,) at the start of the substep
+    velocities: np.ndarray  # (n,)
+    cache: np.ndarray  # (m,)
+    counters: np.ndarray  # (1,)
+    row: np.ndarray  # (1,) of the log; none where nothing is logged
+    whole: np.ndarray  # (n,) bodies that the whole substep leads to
+    differences: np.ndarray  # (n,) velocities that it leads to, then what they differ by
+
+
+def allocate_control(spec: Spec, bodies: np.ndarray, velocities: np.ndarray, capacity: int) -> Any:
+    """Return the memory of error control for so many contacts; () without it."""
+    if not spec.has("error_control"):
+        return ()
+    return Control(
+        record=np.zeros(1, dtype(CONTROL)),
+        paths=np.zeros(len(bodies), dtype(PATH)),
+        bodies=np.zeros_like(bodies),
+        velocities=np.zeros_like(velocities),
+        cache=np.zeros(capacity if spec.has("warm_start") else 0, cache_dtype(spec)),
+        counters=np.zeros(1, dtype(COUNTERS)),
+        row=np.zeros(1 if spec.has("step_log") else 0, step_row_dtype(spec)),
+        whole=np.zeros_like(bodies),
+        differences=np.zeros_like(velocities),
+    )
+
+
+def with_capacity(control: Any, capacity: int) -> Any:
+    """Return the memory with room for so many contacts, between substeps."""
+    if not control or not len(control.cache):
+        return control
+    return control._replace(cache=np.zeros(capacity, control.cache.dtype))
+
+
+def make_begin_substep(spec: Spec) -> Any:
+    """Return `kernel(state, params, counters, rows)`: keep the state, choose a length.
+
+    rows: of steps, in the log.
+    """
+    warms, logs = spec.has("warm_start"), spec.has("step_log")
+
+    def begin_substep(state, params, counters, rows):
+        control = state.control
+        record = control.record[0]
+        if counters.parts == 0:
+            record.start = 0.0
+        for i in range(state.bodies.shape[0]):
+            control.bodies[i] = state.bodies[i]
+            control.velocities[i] = state.velocities[i]
+        if warms:
+            for c in range(counters.cached):
+                control.cache[c] = state.cache[c]
+        control.counters[0] = counters
+        if logs:
+            control.row[0] = rows[counters.step_rows]
+        left = params.timestep - record.start
+        record.phase, record.length, record.until = WHOLE, left, params.timestep
+        shortest = params.smallest_timestep
+        if 0.0 < record.proposed < left and shortest < left:
+            # Two of nearly equal lengths rather than a long one and what remains.
+            record.length = max(min(record.proposed, 0.5 * left), shortest)
+            record.until = record.start + record.length
+        record.end = record.until
+
+    return kernel(begin_substep, spec)
+
+
+def make_restore(spec: Spec) -> Any:
+    """Return `kernel(state, params, counter, rows)`: all as the substep began."""
+    warms, logs, sleeps = spec.has("warm_start"), spec.has("step_log"), spec.has("sleeping")
+    turns = spec.has("rotation")
+
+    def keep_awake(kept, body):
+        # Who woke in the substep is awake when it is made again.
+        if kept.asleep == 1 and body.asleep == 0:
+            kept.asleep, kept.rest, kept.inv_m = 0, 0.0, kept.own_inv_m
+            if turns:
+                kept.inv_ix, kept.inv_iy, kept.inv_iz = (
+                    kept.own_inv_ix,
+                    kept.own_inv_iy,
+                    kept.own_inv_iz,
+                )
+
+    if sleeps:
+        keep_awake = kernel(keep_awake, spec)
+
+    def restore(state, params, counter, rows):
+        control = state.control
+        for i in range(state.bodies.shape[0]):
+            if sleeps:
+                keep_awake(control.bodies[i], state.bodies[i])
+            state.bodies[i] = control.bodies[i]
+            state.velocities[i] = control.velocities[i]
+        counter[0] = control.counters[0]
+        if warms:
+            for c in range(counter[0].cached):
+                state.cache[c] = control.cache[c]
+        if logs:
+            rows[counter[0].step_rows] = control.row[0]
+        params.dt = params.timestep
+
+    return kernel(restore, spec)
+
+
+def make_abandon(spec: Spec) -> Any:
+    """Return `kernel(state, params, counter, rows)`: a substep that is begun anew."""
+    restore = make_restore(spec)
+
+    def abandon(state, params, counter, rows):
+        record = state.control.record[0]
+        if record.phase != NOTHING:
+            restore(state, params, counter, rows)
+        record.phase = NOTHING
+
+    return kernel(abandon, spec)
+
+
+def make_judge(spec: Spec) -> Any:
+    """Return `kernel(record, params, error, floor) -> whether it is kept`; proposes the next.
+
+    floor: below it the estimate says nothing.
+    """
+
+    def judge(record, params, error, floor):
+        done = (record.before + record.end) / params.duration
+        own = CANCELS * params.accuracy * record.length / params.duration
+        unspent = params.accuracy * (1.0 + CANCELS * done) - record.spent
+        own = max(own, floor)
+        allowed = max(own, AT_ONCE * unspent)
+        record.error = error
+        factor = GROW
+        if error > 0.0:
+            factor = min(CAUTION * sqrt(own / error), GROW)
+        length = factor * record.length
+        if error <= own:
+            # One that the end of the step cut short says nothing against a longer one.
+            if factor >= 1.0 and record.length < record.proposed:
+                length = max(length, record.proposed)
+            record.proposed = record.smooth = length
+            return True
+        if error <= allowed:
+            # Behind a kink, for which it was shortened, the next is tried as long as before; where
+            # that fails it was no kink.
+            kink = record.length < 0.5 * record.smooth
+            record.proposed = record.smooth if kink else length
+            record.smooth = record.length
+            return True
+        factor = SHRINK
+        if error - error == 0.0:
+            factor = max(SHRINK, min(CAUTION * sqrt(allowed / error), 0.5))
+        record.proposed = factor * record.length
+        return False
+
+    return kernel(judge, spec)
+
+
+def make_end_span(spec: Spec) -> Any:
+    """Return `kernel(state, count, params, counter, rows, failed) -> GO_ON, STEP_ENDS or MISSED`.
+
+    count: of contacts of the part that ends; failed: a body is no longer finite, or turns too far.
+    """
+    restore, judge = make_restore(spec), make_judge(spec)
+    estimate, add_paths = make_estimate(spec), make_add_paths(spec)
+
+    def end_half(counters):
+        counters.part_unordered |= counters.unordered
+        counters.spent, counters.unordered = 0, 0
+
+    end_half = kernel(end_half, spec)
+
+    def end_span(state, count, params, counter, rows, failed):
+        control, counters = state.control, counter[0]
+        record = control.record[0]
+        counters.elapsed = record.until
+        if not failed:
+            if record.phase == WHOLE:
+                for i in range(state.bodies.shape[0]):
+                    control.whole[i] = state.bodies[i]
+                    control.differences[i] = state.velocities[i]
+                restore(state, params, counter, rows)
+                record.phase = FIRST_HALF
+                record.until = record.start + 0.5 * record.length
+                return GO_ON
+            if record.phase == FIRST_HALF:
+                record.phase = SECOND_HALF
+                record.until = record.end
+                end_half(counters)
+                return GO_ON
+        record.phase = NOTHING
+        error, floor, worst = np.inf, 0.0, counters.body
+        if not failed:
+            left = params.duration - (record.before + record.end)
+            error, floor, worst = estimate(
+                state,
+                count,
+                control.whole,
+                control.differences,
+                control.paths,
+                left,
+                params,
+                counters.residual,
+            )
+        if judge(record, params, error, floor):
+            add_paths(state.bodies, state.velocities, control.bodies, control.paths)
+            record.spent += max(error - floor, 0.0)
+            record.start = record.end
+            end_half(counters)
+            half = 0.5 * record.length
+            counters.shortest = half if counters.substeps == 0 else min(counters.shortest, half)
+            counters.substeps += 2
+            counters.estimated_error += error
+            if record.start < params.timestep:
+                return GO_ON
+            counters.unordered = counters.part_unordered
+            record.before += params.timestep
+            return STEP_ENDS
+        restore(state, params, counter, rows)
+        if record.length <= params.smallest_timestep:
+            record.proposed, counters.body = record.length, worst
+            return MISSED
+        counters.rejected += 1
+        return GO_ON
+
+    return kernel(end_span, spec)
