@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 from laboratory import Bench, body, resolved
@@ -58,10 +60,12 @@ def test_linear_drag_is_implicit_euler() -> None:
     np.testing.assert_allclose(one.velocity[0], expected, rtol=STEPS * 4e-16)
 
 
+@pytest.mark.parametrize("effects", [SPEC, SPEC.including("midpoint")], ids=["Euler", "midpoint"])
 @pytest.mark.parametrize("coefficient", [1e3, 1e9])
-def test_drag_of_any_size_slows_and_never_turns_back(coefficient: float) -> None:
+def test_drag_of_any_size_slows_and_never_turns_back(coefficient: float, effects: Spec) -> None:
     drag = {"linear": coefficient, "quadratic": coefficient, "angular": coefficient}
-    one = bench(velocity=(100.0, 0.0, 0.0), angular_velocity=(0.0, 0.0, 10.0), drag=drag)
+    thrown = body(BRICK, velocity=(100.0, 0, 0), angular_velocity=(0, 0, 10.0), drag=drag)
+    one = Bench(resolved({"brick": thrown}, (0.0, 0.0, 0.0)), spec=effects)
     speed, spin = 100.0, 10.0
     for _ in range(3):
         one.run(1)
@@ -85,3 +89,42 @@ def test_no_drag_changes_no_bit() -> None:
     without = Bench(cell, spec=SPEC._replace(effects=("gravity", "rotation")))
     one, other = with_effect.run(STEPS), without.run(STEPS)
     assert one.pose.tobytes() == other.pose.tobytes()
+
+
+def fallen(steps: int, drag: dict[str, float], seconds: int = 1) -> Bench:
+    """Return a thing of 1 kg that fell from rest, by the midpoint rule."""
+    cell = resolved({"brick": body(BRICK, drag=drag, angular_velocity=(0, 0, 5.0))}, (0, 0, -G))
+    cell["numerics"]["timestep"] = f"{seconds}/{steps}"
+    one = Bench(cell, spec=SPEC.including("midpoint"))
+    one.run(steps)
+    return one
+
+
+@pytest.mark.parametrize("drag", [{"linear": 2.0}, {"quadratic": 0.5}])
+def test_a_fall_by_the_midpoint_rule_is_of_second_order(drag: dict[str, float]) -> None:
+    """m v' = m g - c1 v: v = v_t (1 - e^{-c1 t}); m v' = m g - c2 v^2: v = v_t tanh(g t/v_t)."""
+    if "linear" in drag:
+        exact = G / 2.0 * (1.0 - math.exp(-2.0))
+    else:
+        terminal = math.sqrt(G / 0.5)
+        exact = terminal * math.tanh(G / terminal)
+    errors = [abs(-fallen(n, drag).velocity[0, 2] - exact) for n in (40, 80, 160)]
+    # The next term is of relative size dt/tau = 1/20 at the coarsest, tau half a second.
+    assert math.log2(errors[0] / errors[1]) == pytest.approx(2.0, abs=0.1)
+    assert math.log2(errors[1] / errors[2]) == pytest.approx(2.0, abs=0.05)
+
+
+def test_a_spin_decays_at_second_order() -> None:
+    moment = resolved({"brick": body(BRICK)})["scene"]["bodies"]["brick"]["inertia"][2]
+    exact = 5.0 * math.exp(-0.01 / moment)
+    errors = [abs(fallen(n, {"angular": 0.01}).spin[0, 2] - exact) for n in (20, 40, 80)]
+    assert math.log2(errors[0] / errors[1]) == pytest.approx(2.0, abs=0.1)
+    assert math.log2(errors[1] / errors[2]) == pytest.approx(2.0, abs=0.05)
+
+
+@pytest.mark.parametrize(("linear", "quadratic"), [(4.0, 0.0), (0.0, 2.5), (1.0, 1.5)])
+def test_a_fall_by_the_midpoint_rule_ends_at_the_same_speed(linear, quadratic) -> None:
+    """Where v_0 is the terminal speed v' is, for any dt."""
+    one = fallen(20 * 30, {"linear": linear, "quadratic": quadratic}, 20)
+    speed = -one.velocity[0, 2]
+    assert (linear + quadratic * speed) * speed == pytest.approx(G, rel=1e-13)
