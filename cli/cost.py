@@ -134,12 +134,12 @@ def _truth(table: dict[str, Any]) -> str:
 
 
 def _cells(row: dict[str, Any]) -> tuple[str, ...]:
-    from lavendersim.runner.cost_targets import effort_of, percent, rate_of, short_time
+    from lavendersim.runner.cost_targets import effort_of, percent, short_time, steps_of
 
     spread = row["ns_per_second"]
     name, start = f"{row['solver']:28} {row['preset']:7}", "warm" if row["warm_start"] else "cold"
     return (
-        f"{name} {rate_of(row['timestep']):>8} {effort_of(row):>12} {start}",
+        f"{name} {steps_of(row):>13} {effort_of(row):>12} {start}",
         "none" if row["error"] is None else percent(row["error"]),
         row["worst_at"],
         "" if row["order"] is None else f"{row['order']:.1f}",

@@ -19,6 +19,7 @@ SOLVER_LOOKS: Final = {
     for place, name in enumerate(sorted(get_args(Solver), key=lambda name: name != "adaptive"))
 }
 MARKERS: Final = ("o", "s", "^", "D", "v", "P", "X", "*")  # of timesteps, the coarsest first
+CONTROLLED: Final = "<"  # marker of an accuracy that is asked for
 RINGS: Final = {
     "specified": {"marker": "o", "markersize": 14, "markeredgewidth": 1.6},
     "chapter": {"marker": "s", "markersize": 14, "markeredgewidth": 1.6},
@@ -40,7 +41,8 @@ class Looks(NamedTuple):
     def of(cls, rows: Sequence[Row]) -> Looks:
         """Give every solver, timestep and preset its look, in the order of the grid."""
         shown = {row["solver"] for row in rows}
-        steps = sorted({row["timestep"] for row in rows}, key=lambda step: -Fraction(step))
+        fixed = [row for row in rows if not is_controlled(row)]
+        steps = sorted({row["timestep"] for row in fixed}, key=lambda step: -Fraction(step))
         presets = list(dict.fromkeys(row["preset"] for row in rows if row["role"] != "chapter"))
         lines = ("-", (0, (4, 2)))
         return cls(
@@ -53,7 +55,7 @@ class Looks(NamedTuple):
         """Return the marker of a setting: full where it starts warm, hollow where cold."""
         colour = self.solvers[row["solver"]].colour
         return {
-            "marker": self.timesteps[row["timestep"]],
+            "marker": CONTROLLED if is_controlled(row) else self.timesteps[row["timestep"]],
             "markersize": 6.5,
             "markerfacecolor": colour if row["warm_start"] else "white",
             "markeredgecolor": colour,
@@ -62,18 +64,24 @@ class Looks(NamedTuple):
         }
 
 
+def is_controlled(row: Row) -> bool:
+    """Whether an accuracy was asked for; tables of before do not say."""
+    return row.get("accuracy") is not None
+
+
 def curves_of(rows: Sequence[Row]) -> Iterator[list[Row]]:
     """Yield the settings that one knob joins: the one that a solver has most values of."""
     knobs: dict[str, Key] = {
         "timestep": lambda row: -Fraction(row["timestep"]),
         "effort": lambda row: (row["sweeps"], -(row["tolerance"] or 0.0)),
     }
-    grid = [row for row in rows if row["role"] != "chapter"]
+    grid = [row for row in rows if row["role"] != "chapter" and not is_controlled(row)]
     for family in _grouped(grid, lambda row: (row["preset"], row["solver"], row["warm_start"])):
         counts = {name: len({knob(row) for row in family}) for name, knob in knobs.items()}
         along, across = sorted(knobs, key=lambda name: -counts[name])
         for curve in _grouped(family, knobs[across]):
             yield sorted(curve, key=knobs[along])
+    yield from _grouped([row for row in rows if is_controlled(row)], lambda row: row["preset"])
 
 
 def _grouped(rows: Sequence[Row], key: Key) -> Iterator[list[Row]]:
@@ -99,6 +107,8 @@ def handles_of(table: dict[str, Any], looks: Looks) -> list[Line2D]:
             for name, line in looks.presets.items()
         ]
     handles += [dot(marker, f"{step} s") for step, marker in looks.timesteps.items()]
+    if any(is_controlled(row) for row in rows):
+        handles.append(dot(CONTROLLED, "accuracy asked for"))
     if not all(row["warm_start"] for row in rows):
         handles.append(dot("o", "cold start", markerfacecolor="white"))
     rings = {row["role"]: row for row in rows if row["role"] in RINGS}

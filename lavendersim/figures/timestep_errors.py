@@ -20,7 +20,11 @@ FLOOR: Final = 1e-15  # [-] smaller errors are round-off
 def draw_timestep_errors(axes: Any, table: dict[str, Any], looks: Any) -> None:
     """Draw, for every solver and preset, the settings that were solved best, and slopes 1 and 2."""
     describe(axes, "error against timestep, solved best", "timestep [ms]", "", "log", "log")
-    rows = [row for row in table["rows"] if row["error"] is not None and row["role"] != "chapter"]
+    rows = [
+        row
+        for row in table["rows"]
+        if row["error"] is not None and row["role"] != "chapter" and row.get("accuracy") is None
+    ]
     if not rows:
         axes.text(0.5, 0.5, "no setting has an error", transform=axes.transAxes, ha="center")
         return

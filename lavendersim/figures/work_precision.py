@@ -34,8 +34,9 @@ CAPTION: Final = (
     "left is cheap, down is accurate. Medians of {repeats} interleaved repeats; the bars, most of "
     "them shorter than a marker is wide, hold the median in 19 of 20 cases. Crossed: the setting "
     "failed (it diverged, did not converge to its tolerance, or broke a claim of the experiment). "
-    "Thin lines join settings that differ in one knob; the dark line is the front: no setting is "
-    "cheaper and as good. Errors below 1e-15 are round-off and drawn there. Neither compilation "
+    "Thin lines join settings that differ in one knob, accuracies asked for among them; the dark "
+    "line is the front: no setting is cheaper and as good. Errors below 1e-15 are round-off and "
+    "drawn there. Neither compilation "
     "nor logging is in any time. {processor}, clock {clock}. {targets}"
 )
 

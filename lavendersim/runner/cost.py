@@ -126,6 +126,7 @@ def _rows(
                 "role": setting.role,
                 "preset": setting.preset,
                 **{**setting.knobs, "timestep": str(setting.timestep)},
+                "accuracy": setting.accuracy,
                 "error": error.error,
                 "worst_at": error.worst_at,
                 "order": order,
@@ -174,7 +175,7 @@ def _finite(value: Any) -> Any:
 
 
 COLUMNS: Final = (
-    *("role", "preset", "timestep", "solver", "sweeps", "tolerance", "warm_start"),
+    *("role", "preset", "timestep", "solver", "sweeps", "tolerance", "warm_start", "accuracy"),
     *("error", "worst_at", "order", "worst_residual", "not_converged_steps", "failed", "front"),
     *("median", "lower_quartile", "upper_quartile", "low", "high", "compile_s", "law"),
 )

@@ -114,7 +114,15 @@ def name_of(row: Row) -> str:
 
 def _knobs(row: Row) -> str:
     start = "warm" if row["warm_start"] else "cold"
-    return f"{row['solver']}, {rate_of(row['timestep'])}, {effort_of(row)}, {start}"
+    return f"{row['solver']}, {steps_of(row)}, {effort_of(row)}, {start}"
+
+
+def steps_of(row: Row) -> str:
+    """Return what decides the length of steps: their rate, or the accuracy asked for."""
+    accuracy = row.get("accuracy")  # tables of before do not say
+    if accuracy is None:
+        return rate_of(row["timestep"])
+    return f"accuracy {accuracy:.0e}".replace("e-0", "e-")
 
 
 def rate_of(timestep: str) -> str:

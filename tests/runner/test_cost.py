@@ -16,6 +16,7 @@ from lavendersim.experiment.sweeps.cost_grid import fragment_of, over_the_grid, 
 from lavendersim.figures.work_precision import compose, draw_work_precision
 from lavendersim.runner import open_run, run
 from lavendersim.runner.cost import Costed, take_cost
+from lavendersim.runner.cost_targets import answers
 
 BALL = """\
 question: What does a bounce cost?
@@ -86,8 +87,48 @@ def test_the_grid_is_the_product_of_its_lists_with_what_the_config_specifies_fir
         assert numerics.slop == (0.001 if setting.role == "chapter" else 0.002)
 
 
+def test_accuracies_are_asked_for_where_the_laws_are_of_order_two() -> None:
+    for numerics, few in (("default", 4), ("{integrator: midpoint}", 0), ("chapter", 0)):
+        text = GRID.replace("{preset: chapter, slop: 0.002}", numerics)
+        asked = [
+            one
+            for one in settings_of(load_experiment_text(text, "ball.yaml"))
+            if one.accuracy is not None
+        ]
+        assert len(asked) == few
+        for one in asked:
+            assert (one.solver, one.timestep, one.tolerance) == ("adaptive", Fraction(1, 60), 1e-9)
+    both = GRID.replace("cost:", "cost:\n  presets: [default, chapter]\n  accuracies: [1e-3]")
+    both = both.replace("{preset: chapter, slop: 0.002}", "default")
+    settings = settings_of(load_experiment_text(both, "ball.yaml"))
+    assert [one.preset for one in settings if one.accuracy == 1e-3] == ["default"]
+
+
+def test_an_accuracy_answers_a_target() -> None:
+    """The cheapest that reaches it, by name and as what is to be pasted."""
+    plain = {"preset": "default", "solver": "adaptive", "timestep": "1/60", "sweeps": 50}
+    plain |= {"tolerance": 1e-9, "warm_start": True, "failed": "", "role": "grid"}
+    time = {"median": 2e6, "low": 2e6, "high": 2e6}
+    rows = [
+        {**plain, "accuracy": 1e-4, "error": 1e-4, "ns_per_second": time, "fragment": "asked"},
+        {**plain, "accuracy": None, "error": 1e-2, "ns_per_second": time, "fragment": "equal"},
+    ]
+    (answer,) = answers(rows, [1e-3])
+    assert answer["fragment"] == "asked"
+    assert answer["sentence"] == (
+        "0.1 % costs 2 ms per simulated second: adaptive, accuracy 1e-4, to 1e-9 m/s, warm"
+    )
+
+
 def test_a_fragment_gives_its_setting_and_states_no_more_than_it_must() -> None:
-    for numerics in ("{preset: chapter, slop: 0.002}", "chapter", "default", "{timestep: 1/60}"):
+    asked = "{accuracy: 2e-3, slop: 1e-6}"  # and the grid has equal timesteps beside it
+    for numerics in (
+        "{preset: chapter, slop: 0.002}",
+        "chapter",
+        "default",
+        "{timestep: 1/60}",
+        asked,
+    ):
         text = GRID.replace("{preset: chapter, slop: 0.002}", numerics)
         experiment = load_experiment_text(text, "ball.yaml")
         settings = settings_of(experiment)

@@ -1,7 +1,8 @@
 """The section `cost`: a grid of settings, an error, and the truth it is taken from.
 
-The grid is timestep x solver x (sweeps or tolerance) x warm start. Its error is one measure of the
-experiment, compared with what is true.
+The grid is timestep x solver x (sweeps or tolerance) x warm start; beside it stand accuracies that
+are asked for in place of a timestep. Its error is one measure of the experiment, compared with what
+is true.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ from lavendersim.quantities.quantity import Quantity, either
 
 # Names of the grid's own axes.
 GRID_NAMES: Final = frozenset(
-    {"numerics", "preset", "timestep", "solver", "sweeps", "tolerance", "warm_start"}
+    {"numerics", "preset", "timestep", "solver", "sweeps", "tolerance", "warm_start", "accuracy"}
 )
 FEWEST_REPEATS = 7  # of six samples the interval that holds the median is all of them
 FEW = "of fewer, one slow moment of the machine decides where the median lies"
@@ -31,6 +32,7 @@ FEW = "of fewer, one slow moment of the machine decides where the median lies"
 Timestep = Annotated[Fraction, Quantity("s", above=0, exact=True)]
 Sweeps = Annotated[int, Quantity(whole=True, minimum=1, maximum=1_000_000)]
 Tolerance = Annotated[float, Quantity("m/s", above=0)]
+Accuracy = Annotated[float, Quantity(above=0, below=1)]
 Share = Annotated[float, Quantity(above=0)]
 Repeats = Annotated[int, Quantity(whole=True, minimum=FEWEST_REPEATS, maximum=1000, hint=FEW)]
 
@@ -108,6 +110,11 @@ class CostSpec(ConfigModel):
     )
     warm_start: Annotated[tuple[bool, ...], Field(min_length=1)] = Field(
         default=(True, False), description="true, false or both"
+    )
+    accuracies: tuple[Accuracy, ...] = Field(
+        default=(1e-2, 1e-3, 1e-4, 1e-5),
+        description="asked for of `adaptive` at the longest of the timesteps and the least of the "
+        "tolerances, where the laws are of order 2; []: none",
     )
     not_converged: Annotated[float, Quantity(minimum=0, maximum=1)] = Field(
         default=0.01,

@@ -1,7 +1,8 @@
 """The grid of settings of a `cost` section, as one experiment that sweeps them.
 
-A setting is a preset and five of the numerics: timestep, solver, sweeps, tolerance, warm start. It
-becomes a product of the sweep, with the experiment's own axes inside it:
+A setting is a preset and five of the numerics: timestep, solver, sweeps, tolerance, warm start; and
+an accuracy, where steps are made in substeps. It becomes a product of the sweep, with the
+experiment's own axes inside it:
 
     - {preset: .., timestep: .., solver: .., sweeps: .., tolerance: .., warm_start: .., <own axes>}
     - {numerics: chapter, <own axes>}                                       the chapter's setting
@@ -51,11 +52,13 @@ class Setting(NamedTuple):
     sweeps: int  # at most
     tolerance: float | None  # [m/s]
     warm_start: bool
+    accuracy: float | None = None  # None: every step is one timestep long
 
     @property
     def knobs(self) -> dict[str, Any]:
         """The numerics it sets."""
-        return {name: getattr(self, name) for name in KNOBS}
+        asked = {} if self.accuracy is None else {"accuracy": self.accuracy}
+        return {name: getattr(self, name) for name in KNOBS} | asked
 
     @property
     def curve(self) -> tuple[Any, ...]:
@@ -63,7 +66,8 @@ class Setting(NamedTuple):
         own = (
             self.role == "chapter"
         )  # whatever else the config specifies, it has the preset's numbers
-        return (own, self.preset, self.solver, self.sweeps, self.tolerance, self.warm_start)
+        effort = self.sweeps, self.tolerance, self.warm_start, self.accuracy
+        return (own, self.preset, self.solver, *effort)
 
     @property
     def coordinates(self) -> dict[str, Any]:
@@ -79,11 +83,12 @@ def settings_of(experiment: Experiment) -> list[Setting]:
     assert spec is not None
     preset, others = _specified(experiment)
     numerics = experiment.cells()[0].config.numerics
-    specified = Setting("specified", preset, **{name: getattr(numerics, name) for name in KNOBS})
+    own = {name: getattr(numerics, name) for name in (*KNOBS, "accuracy")}
+    specified = Setting("specified", preset, **own)
     values = PRESETS[CHAPTER]
     chapter = Setting("chapter", CHAPTER, **{name: getattr(values, name) for name in KNOBS})
     alone = {specified[1:]} | ({chapter[1:]} if not others else set())
-    grid = [each for each in dict.fromkeys(_grid(spec, specified)) if each[1:] not in alone]
+    grid = [each for each in dict.fromkeys(_grid(spec, specified, others)) if each[1:] not in alone]
     settings = [specified, *grid]
     if others or specified[1:] != chapter[1:]:
         settings.append(chapter)
@@ -94,7 +99,7 @@ def settings_of(experiment: Experiment) -> list[Setting]:
     return settings
 
 
-def _grid(spec: CostSpec, specified: Setting) -> Iterator[Setting]:
+def _grid(spec: CostSpec, specified: Setting, others: Mapping[str, Any]) -> Iterator[Setting]:
     presets = spec.presets or (specified.preset,)
     solvers = get_args(Solver) if spec.solvers == "all" else spec.solvers
     most = DEFAULT.sweeps if specified.tolerance is None else specified.sweeps
@@ -106,6 +111,17 @@ def _grid(spec: CostSpec, specified: Setting) -> Iterator[Setting]:
         else:
             for sweeps in spec.sweeps:
                 yield Setting("grid", preset, timestep, solver, sweeps, None, warm)
+    warm, tolerance = any(spec.warm_start), min(spec.tolerances)
+    for preset, accuracy in product(presets, spec.accuracies):
+        if _is_of_order_two({**dict(PRESETS[preset]), **others}):
+            longest = max(spec.timesteps)
+            yield Setting("grid", preset, longest, "adaptive", most, tolerance, warm, accuracy)
+
+
+def _is_of_order_two(numerics: Mapping[str, Any]) -> bool:
+    """Whether the errors of substeps can be estimated: see `models.accuracy`."""
+    laws = numerics["impacts"], numerics["integrator"], numerics["stabilisation_gain"]
+    return laws == ("in_order", "midpoint_contact", 0)
 
 
 def _specified(experiment: Experiment) -> tuple[str, dict[str, Any]]:
@@ -113,7 +129,9 @@ def _specified(experiment: Experiment) -> tuple[str, dict[str, Any]]:
     root, _ = parse(experiment.text.encode(), experiment.name)
     assert root is not None
     preset, values = specified_numerics(root)
-    return preset, {key: node.data for key, node in values.items() if key not in KNOBS}
+    return preset, {
+        key: node.data for key, node in values.items() if key not in (*KNOBS, "accuracy")
+    }
 
 
 def over_the_grid(experiment: Experiment, settings: list[Setting]) -> Experiment:
@@ -123,6 +141,8 @@ def over_the_grid(experiment: Experiment, settings: list[Setting]) -> Experiment
     root = with_new_spellings(root, experiment.name)
     data = {key: value for key, value in root.data.items() if key not in _LEFT_OUT}
     data.setdefault("numerics", "default")
+    if isinstance(data["numerics"], Mapping):  # an axis gives it back to the config's own setting
+        data["numerics"] = {k: v for k, v in data["numerics"].items() if k != "accuracy"}
     own = data.pop("sweep", None) or {}
     products = own if isinstance(own, tuple) else (own,)
     data["sweep"] = [
