@@ -29,6 +29,7 @@ NUMERICS: dict[str, Any] = {
     "impacts": "captured",
     "integrator": "semi_implicit_euler",
     "compliance_law": "regularised",
+    "simultaneous_impacts": "together",
     "accuracy": None,
     "smallest_timestep": 1e-9,
     "friction_cone": "disc",

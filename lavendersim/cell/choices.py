@@ -8,6 +8,7 @@ from lavendersim.engine.solvers import SolverName
 
 Solver = SolverName
 Impacts = Literal["captured", "at_surface", "in_order"]
+SimultaneousImpacts = Literal["together", "pairwise"]
 Integrator = Literal["semi_implicit_euler", "midpoint", "midpoint_contact"]
 ComplianceLaw = Literal["spring", "regularised"]
 FrictionCone = Literal["disc", "pyramid", "convex"]

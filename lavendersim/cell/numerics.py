@@ -10,7 +10,15 @@ from typing import Annotated
 
 from pydantic import Field
 
-from lavendersim.cell.choices import ComplianceLaw, FrictionCone, Impacts, Integrator, Order, Solver
+from lavendersim.cell.choices import (
+    ComplianceLaw,
+    FrictionCone,
+    Impacts,
+    Integrator,
+    Order,
+    SimultaneousImpacts,
+    Solver,
+)
 from lavendersim.quantities.model import ConfigModel
 from lavendersim.quantities.quantity import Quantity
 
@@ -90,6 +98,12 @@ class Numerics(ConfigModel):
         description="when impacts happen: `captured`, at the start of the step that finds the "
         "contact; `at_surface`, at the time within the step when the surfaces meet, all with the "
         "velocities of its start; or `in_order`, each at its time, after those before it",
+    )
+    simultaneous_impacts: SimultaneousImpacts = Field(
+        default="together",
+        description="impacts of one instant, `in_order`: `together`, by Newton's law for all of "
+        "them at once; or `pairwise`, two bodies at a time, the fastest approach first: the limit "
+        "of small gaps",
     )
     integrator: Integrator = Field(
         default="midpoint_contact",

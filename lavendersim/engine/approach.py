@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import Any
 
 from .compile import inner, kernel
-from .records import PLANE
+from .records import PLANE, TOUCHING
 from .spec import Spec
 from .vectors import Vec3, dot, length, minus, position
 
@@ -18,6 +18,8 @@ NEVER = 1e300  # [s]
 GUESSED, ELSEWHERE, LOCATED, FAR, MEETS = 0, 1, 2, 3, 4
 # Slowest approach [m/s], and as a share of the bodies' speed to each other: what solves leave.
 CREEP, ROUND_OFF = 1e-7, 1e-9
+# Shares of a step that are too short to tell an acceleration.
+SHORT = 1e-6
 
 
 @inner
@@ -36,6 +38,64 @@ def relative_velocity(ma, mb):
 def gained(m):
     """Return what forces change of a body's velocity in the part [m/s]; m: its row of `motion`."""
     return Vec3(m.dvx, m.dvy, m.dvz)
+
+
+@inner
+def ahead(m):
+    """Return what is reckoned to change of a body's velocity in the part [m/s]; m: its row."""
+    return Vec3(m.ahead_x, m.ahead_y, m.ahead_z)
+
+
+def make_expect(spec: Spec) -> Any:
+    """Return `kernel(contacts, count, bodies, motion, left)`: what changes velocities ahead.
+
+    Forces do, of what is free. What touches and neither approaches nor parts is held by its
+    contacts: it is reckoned to accelerate as in the last part of a step.
+    """
+    slowest = make_slowest(spec)
+
+    def hold(body, m, left):
+        if body.inv_m > 0.0:
+            m.ahead_x, m.ahead_y, m.ahead_z = body.ax * left, body.ay * left, body.az * left
+
+    hold = kernel(hold, spec)
+
+    def expect(contacts, count, bodies, motion, left):
+        for i in range(motion.shape[0]):
+            m = motion[i]
+            m.ahead_x, m.ahead_y, m.ahead_z = m.dvx, m.dvy, m.dvz
+        for c in range(count):
+            contact = contacts[c]
+            if contact.phi <= TOUCHING:
+                if abs(contact.rate) <= slowest(contact, bodies, motion):
+                    hold(bodies[contact.a], motion[contact.a], left)
+                    hold(bodies[contact.b], motion[contact.b], left)
+
+    return kernel(expect, spec)
+
+
+def make_note_acceleration(spec: Spec) -> Any:
+    """Return `kernel(bodies, velocities, motion, params)`, once a part of some length is solved."""
+
+    def note_acceleration(bodies, velocities, motion, params):
+        if params.dt < SHORT * params.timestep:
+            return
+        for i in range(motion.shape[0]):
+            body, v, m = bodies[i], velocities[i], motion[i]
+            body.ax = (v.vx - m.vx) / params.dt
+            body.ay = (v.vy - m.vy) / params.dt
+            body.az = (v.vz - m.vz) / params.dt
+
+    return kernel(note_acceleration, spec)
+
+
+def make_change_ahead(spec: Spec) -> Any:
+    """Return `kernel(contact, motion) -> change` of v that is reckoned with in the part [m/s]."""
+
+    def change_ahead(contact, motion):
+        return dot(normal(contact), minus(ahead(motion[contact.b]), ahead(motion[contact.a])))
+
+    return kernel(change_ahead, spec)
 
 
 def make_rate(spec: Spec) -> Any:

@@ -13,6 +13,7 @@ from .approach import (
     CREEP,
     ELSEWHERE,
     NEVER,
+    make_change_ahead,
     make_forced,
     make_nearest_rate,
     make_relative_speed,
@@ -54,6 +55,7 @@ def make_foresee(spec: Spec) -> Any:
     Fills waits and due of a row whose `rate` is known. params.dt: what is left of the step.
     """
     forced, slowest = make_forced(spec), make_slowest(spec)
+    change_ahead = make_change_ahead(spec)
     relative_speed, is_impact = make_relative_speed(spec), make_is_impact(spec)
     turns = spec.has("rotation")
     restitution, compliance = spec.has("restitution"), spec.has("compliance")
@@ -70,7 +72,7 @@ def make_foresee(spec: Spec) -> Any:
         if contact.phi <= TOUCHING and abs(v) <= CREEP:
             return False
         (dv, most), least = forced(contact, motion), slowest(contact, bodies, motion)
-        a, e = dv / left, 0.0
+        a, e = change_ahead(contact, motion) / left, 0.0
         if restitution:
             e = pair.restitution
         gap = contact.phi if contact.phi > TOUCHING else 0.0

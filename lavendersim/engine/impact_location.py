@@ -1,7 +1,8 @@
-"""When two bodies in free motion meet, found on their shapes.
+"""When two bodies meet, found on their shapes.
 
 Newton's method on the separation phi(t) of a contact's features, at the poses of free motion:
     x(t) = x + v t + a t^2/2,    q(t): turned for t,    t <- t - phi / (d phi / dt)
+a: by forces, or of what contacts hold as in the last part of a step (`approach.make_expect`).
 From before a meeting of convex bodies it does not pass it; one that only grazes or misses ends
 where the surfaces part. Where they overlap and part, the middle of the time between is tried.
 Bodies that part and turn may meet with any of their features: they are followed from the start, as
@@ -13,7 +14,14 @@ from __future__ import annotations
 
 from typing import Any
 
-from .approach import ELSEWHERE, GUESSED, NEVER, make_approach, make_forced, make_nearest_rate
+from .approach import (
+    ELSEWHERE,
+    GUESSED,
+    NEVER,
+    make_approach,
+    make_change_ahead,
+    make_nearest_rate,
+)
 from .collide.narrow_phase import make_manifold
 from .compile import kernel
 from .effects import made_once
@@ -32,16 +40,16 @@ def make_locate(spec: Spec) -> Any:
     contact: one ahead, with a first guess in `due`. The rows of the bodies are left as they were.
     """
     manifold, approach = make_manifold(spec, spec.shape_pairs), make_approach(spec)
-    forced, nearest_rate = make_forced(spec), make_nearest_rate(spec)
+    change_ahead, nearest_rate = make_change_ahead(spec), make_nearest_rate(spec)
     turns, compound = spec.has("rotation"), spec.has("compound")
     turn: Any = make_turn(spec)
     _, place_part = made_once(spec, "place_part")
 
     def displace(body, velocity, m, t, left):
         share = 0.5 * t * t / left
-        body.x += m.vx * t + share * m.dvx
-        body.y += m.vy * t + share * m.dvy
-        body.z += m.vz * t + share * m.dvz
+        body.x += m.vx * t + share * m.ahead_x
+        body.y += m.vy * t + share * m.ahead_y
+        body.z += m.vz * t + share * m.ahead_z
         if turns:
             velocity.wx, velocity.wy, velocity.wz = m.wx, m.wy, m.wz
             turn(body, velocity, t)
@@ -92,7 +100,7 @@ def make_locate(spec: Spec) -> Any:
             contact.x, contact.y, contact.z = point.x, point.y, point.z
             contact.nx, contact.ny, contact.nz = normal[0], normal[1], normal[2]
             phi = point.phi
-            dv, _ = forced(contact, motion)
+            dv = change_ahead(contact, motion)
             v = approach(contact, bodies, motion) + dv * t / left
             if abs(phi) <= 0.25 * TOUCHING:
                 # Newton's next step has twice as many digits: no friction with a lever of its own.

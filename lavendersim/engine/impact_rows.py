@@ -9,12 +9,53 @@ from .compile import kernel
 from .records import TOUCHING
 from .spec import Spec
 
+# Approaches that differ by less than this share are equally fast: round-off parts no symmetry.
+EQUAL = 1e-9
+
 
 def make_mark_impact(spec: Spec) -> Any:
     """Return `kernel(contacts, count, pairs, bodies, motion, slop) -> rows` of the impact.
 
-    They are those that touch a body of the impact, and do not part; all others wait. An impact is
-    handed on from body to body, as far as it goes.
+    All others wait.
+    """
+    return _make_pairwise(spec) if spec.has("pairwise_impacts") else _make_together(spec)
+
+
+def _make_pairwise(spec: Spec) -> Any:
+    """Rows between the two bodies that approach fastest, of those that meet."""
+    slowest, springs = make_slowest(spec), spec.has("contact_spring")
+
+    def mark_pairs(contacts, count, pairs, bodies, motion, slop):
+        fastest = 0.0
+        for c in range(count):
+            if contacts[c].located == MEETS:
+                fastest = min(fastest, contacts[c].rate)
+        for c in range(count):
+            contacts[c].waits = 1
+        rows = 0
+        for c in range(count):
+            first = contacts[c]
+            if first.located != MEETS or first.rate > fastest * (1.0 - EQUAL):
+                continue
+            for d in range(count):
+                contact = contacts[d]
+                if contact.a != first.a or contact.b != first.b or contact.waits == 0:
+                    continue
+                takes_part = contact.phi <= max(TOUCHING, slop)
+                if springs:
+                    takes_part = takes_part and pairs[contact.pair].compliance == 0.0
+                if takes_part and contact.rate <= slowest(contact, bodies, motion):
+                    contact.waits = 0
+                    rows += 1
+        return rows
+
+    return kernel(mark_pairs, spec)
+
+
+def _make_together(spec: Spec) -> Any:
+    """Rows that touch a body of the impact, and do not part.
+
+    An impact is handed on from body to body, as far as it goes.
     """
     slowest, springs = make_slowest(spec), spec.has("contact_spring")
 

@@ -93,6 +93,10 @@ MOTION: Final[list[Field]] = [
     ("dvx", F8),  # change of velocity by forces [m/s]
     ("dvy", F8),
     ("dvz", F8),
+    # Change of velocity that foreseen impacts reckon with: by forces, or as in the last part [m/s]
+    ("ahead_x", F8),
+    ("ahead_y", F8),
+    ("ahead_z", F8),
     ("tau", F8),  # time of its first impact, from the start of the step; dt without one [s]
     ("carried", I8),  # by a contact. 0: free; else AFTERWARDS, ALWAYS, LASTING: see `integrate`
     ("midway", I8),  # 1: its velocity was changed by impulses at the middle of the step

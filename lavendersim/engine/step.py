@@ -15,6 +15,7 @@ from __future__ import annotations
 from functools import cache
 from typing import Any
 
+from .approach import make_note_acceleration
 from .collide import narrow_phase
 from .compile import chain, composing, kernel
 from .effects import BY_NAME, made_by, made_once
@@ -84,6 +85,7 @@ def make_advance(spec: Spec) -> Any:
     starts = bool(starting)
     start_step: Any = chain(starting, spec) if starts else None
     ordered, order = made_once(spec, "order_impacts")
+    note_acceleration: Any = make_note_acceleration(spec) if ordered else None
     controlled = spec.has("error_control")
     in_parts = ordered or controlled
     gather: Any = make_gather_parts(spec) if in_parts else None
@@ -213,6 +215,8 @@ def make_advance(spec: Spec) -> Any:
                 gather(counters)
                 if instant:
                     continue
+            if ordered:
+                note_acceleration(bodies, velocities, motion, params)
             if keeps and touches:
                 classify(contacts, count, motion, params)
             moved = counters.projection_sweeps > 0

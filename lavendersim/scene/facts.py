@@ -83,6 +83,7 @@ def facts_of(config: CellConfig, record: bool = True) -> Facts:
         pair_count=sum(pair.row_pairs for pair in pairs),
         speculative=numerics.speculative,
         impacts=numerics.impacts,
+        simultaneous_impacts=numerics.simultaneous_impacts,
         accuracy=numerics.accuracy,
         mistake=config.study.mistake,
         integrator=numerics.integrator,

@@ -23,6 +23,7 @@ CHOICES: Final = (
     "solver",
     "speculative",
     "impacts",
+    "simultaneous_impacts",
     "integrator",
     "compliance_law",
     "error_control",

@@ -25,6 +25,7 @@ MODULES = {effect.name: effect for effect in EFFECTS}
 LETS_IN: dict[str, tuple[Any, ...]] = {
     "impact_time": ("at_surface", "in_order"),
     "impact_order": ("in_order",),
+    "pairwise_impacts": ("pairwise",),
     "midpoint": ("midpoint", "midpoint_contact"),
     "contact_midpoint": ("midpoint_contact",),
     "contact_spring": ("spring",),

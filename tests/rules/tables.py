@@ -28,7 +28,7 @@ SECTIONS = {
         *("cohesion", "contact_spring", "static_friction"),
     ),
     "impacts-at-the-surface": ("impact_time", "impact_energy"),
-    "impacts-in-order": ("impact_order",),
+    "impacts-in-order": ("impact_order", "pairwise_impacts"),
     "error-control": ("error_control",),
     "contact-at-the-middle-of-the-step": ("contact_midpoint",),
     "torques-at-a-contact": ("torsional_friction", "rolling_friction"),

@@ -54,6 +54,7 @@ NOT_ALONE = {
     "impact_time": CHOSEN,
     "speculative": CHOSEN,
     "capture_in_sweeps": CHOSEN,
+    "pairwise_impacts": CHOSEN,
     "error_control": "a key of the config asks for it: it is no overhead of equal timesteps",
     "pose_log": "it comes and goes with step_log, and is timed with it",
 }

@@ -20,6 +20,7 @@ VALUES = {
     "solver": SOLVERS,
     "speculative": "[false, true]",
     "impacts": "[captured, at_surface]",
+    "simultaneous_impacts": "[together, pairwise]",
     "integrator": "[semi_implicit_euler, midpoint]",
     "compliance_law": "[spring, regularised]",
     "friction_cone": "[disc, convex]",

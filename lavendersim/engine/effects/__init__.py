@@ -34,6 +34,7 @@ NAMES: Final = (
     "contact_midpoint",
     "impact_time",
     "impact_order",
+    "pairwise_impacts",
     "error_control",
     "speculative",
     "fast_bodies",

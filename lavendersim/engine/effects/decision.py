@@ -59,6 +59,7 @@ class Facts(NamedTuple):
     pair_count: int = 0  # pairs of bodies that may touch
     speculative: bool = False
     impacts: str = "captured"
+    simultaneous_impacts: str = "together"
     accuracy: float | None = None  # asked for, relative; None: fixed timesteps
     scene: Any = None  # of the config, for effects with keys of their own in it
     mistake: str = "none"  # a deliberate error, for study

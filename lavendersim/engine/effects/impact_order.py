@@ -2,7 +2,8 @@
 
 A step is made in parts. Before each the next impact is foreseen, from the free motion of bodies:
     phi + v tau + a tau^2/2 = 0,   v, a: rate of the gap and its change by forces,
-and then located on the shapes themselves (`impact_location`). The bodies move to there, and what
+and then located on the shapes themselves (`impact_location`); what contacts hold is reckoned to
+accelerate as in the last part. The bodies move to there, and what
 meets is solved as an impact alone: poses stand still, forces have no time to act. Surfaces that
 have not met take no part in it, nor do those that part; what they do to each other comes after. So
 a contact ahead acts only when it is met, along the normal that it then has.
@@ -61,12 +62,14 @@ def make_order(spec: Spec) -> Any:
         MEETS,
         NEVER,
         make_approach,
+        make_expect,
     )
     from ..flush_contacts import make_drop_flush
     from ..foreseen_impacts import make_follow, make_foresee
     from ..impact_location import make_locate
     from ..impact_rows import make_keep_present, make_mark_impact
 
+    expect = make_expect(spec)
     approach, foresee, follow = make_approach(spec), make_foresee(spec), make_follow(spec)
     locate, drop_flush = make_locate(spec), make_drop_flush(spec)
     mark_impact, keep_present = make_mark_impact(spec), make_keep_present(spec)
@@ -111,6 +114,7 @@ def make_order(spec: Spec) -> Any:
         left = params.dt
         if not begin_order(state, count):
             return count, left
+        expect(state.contacts, count, bodies, motion, left)
         if edged:
             count = drop_flush(state, count, workspace, params)
         meets, waiting, touching = False, False, 0
@@ -175,6 +179,7 @@ EFFECT = Effect(
     needs=("impact_time",),
     chosen_by=Choice("impacts"),
     fields=Fields(
+        body=[("ax", "f8"), ("ay", "f8"), ("az", "f8")],  # in the last part of a step [m/s^2]
         contact=[
             ("waits", "i8"),  # 1: not met in this part, or it parts: no row of it
             ("located", "i8"),  # GUESSED, ELSEWHERE, LOCATED or FAR, see `approach`

@@ -37,6 +37,7 @@ CHAPTER: Final = Numerics(
     cache_normal_cosine=0.95,
     speculative=False,
     impacts="captured",
+    simultaneous_impacts="together",
     integrator="semi_implicit_euler",
     compliance_law="regularised",
     friction_cone="disc",

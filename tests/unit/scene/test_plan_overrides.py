@@ -8,7 +8,7 @@ from lavendersim.engine.collide import SHAPE_PAIRS
 from lavendersim.engine.effects import EFFECTS
 from lavendersim.errors import ConfigError
 from lavendersim.experiment import load_experiment_text
-from lavendersim.scene.laws import choice
+from lavendersim.scene.laws import choice, needs
 from lavendersim.scene.plan import Plan, plan_of_cell
 
 SCENE = """\
@@ -28,6 +28,7 @@ BY_NAME = {effect.name: effect for effect in EFFECTS}
 LAWS = {
     "impact_time": ("at_surface", "captured"),
     "impact_order": ("in_order", "captured"),
+    "pairwise_impacts": ("pairwise", "together"),
     "midpoint": ("midpoint", "semi_implicit_euler"),
     "contact_midpoint": ("midpoint_contact", "semi_implicit_euler"),
     "contact_spring": ("spring", "regularised"),
@@ -170,7 +171,8 @@ def test_a_law_is_chosen_by_the_numerics_alone(name: str) -> None:
 @pytest.mark.parametrize("name", [name for name in CHOSEN if name != "error_control"])
 def test_a_law_that_the_numerics_chose_can_be_had_idle(name: str) -> None:
     """Nothing touches or falls here: the law has nothing to do, and is no other law."""
-    alone = config(f"{name}: on", numerics="default").replace(
+    numerics = f"{{{choice(name).key}: {LAWS[name][0]}}}"
+    alone = config(f"{name}: on", numerics=numerics).replace(
         "  bodies:\n", "  gravity: [0, 0, 0]\n  bodies:\n"
     )
     floor = next(line for line in alone.splitlines(keepends=True) if "floor: {" in line)
@@ -178,7 +180,7 @@ def test_a_law_that_the_numerics_chose_can_be_had_idle(name: str) -> None:
         "release: {above: floor, clearance: 0.05}", "position: [0, 0, 1]"
     )
     assert not planned(alone.replace(f"effects: {{{name}: on}}\n", "")).spec.has(name)
-    assert planned(alone).forced == dict.fromkeys((name, *BY_NAME[name].needs), "forced on")
+    assert planned(alone).forced == dict.fromkeys((name, *needs(name)), "forced on")
 
 
 def test_a_mistake_is_chosen_by_the_study_alone() -> None:

@@ -29,6 +29,7 @@ def test_chapter_is_frozen() -> None:
         "cache_normal_cosine": 0.95,
         "speculative": False,
         "impacts": "captured",
+        "simultaneous_impacts": "together",
         "integrator": "semi_implicit_euler",
         "compliance_law": "regularised",
         "accuracy": None,
