@@ -49,13 +49,13 @@ def ahead(m):
 def make_expect(spec: Spec) -> Any:
     """Return `kernel(contacts, count, bodies, motion, left)`: what changes velocities ahead.
 
-    Forces do, of what is free. What touches and neither approaches nor parts is held by its
-    contacts: it is reckoned to accelerate as in the last part of a step.
+    Forces do, of what is free. What touches and neither approaches nor parts is held against them
+    by its contacts: it is reckoned to accelerate as in the last part of a step.
     """
     slowest = make_slowest(spec)
 
     def hold(body, m, left):
-        if body.inv_m > 0.0:
+        if body.inv_m > 0.0 and (m.dvx != 0.0 or m.dvy != 0.0 or m.dvz != 0.0):
             m.ahead_x, m.ahead_y, m.ahead_z = body.ax * left, body.ay * left, body.az * left
 
     hold = kernel(hold, spec)

@@ -6,11 +6,9 @@ from typing import Any
 
 from .approach import MEETS, make_slowest
 from .compile import kernel
+from .effects import made_once
 from .records import TOUCHING
 from .spec import Spec
-
-# Approaches that differ by less than this share are equally fast: round-off parts no symmetry.
-EQUAL = 1e-9
 
 
 def make_mark_impact(spec: Spec) -> Any:
@@ -18,38 +16,8 @@ def make_mark_impact(spec: Spec) -> Any:
 
     All others wait.
     """
-    return _make_pairwise(spec) if spec.has("pairwise_impacts") else _make_together(spec)
-
-
-def _make_pairwise(spec: Spec) -> Any:
-    """Rows between the two bodies that approach fastest, of those that meet."""
-    slowest, springs = make_slowest(spec), spec.has("contact_spring")
-
-    def mark_pairs(contacts, count, pairs, bodies, motion, slop):
-        fastest = 0.0
-        for c in range(count):
-            if contacts[c].located == MEETS:
-                fastest = min(fastest, contacts[c].rate)
-        for c in range(count):
-            contacts[c].waits = 1
-        rows = 0
-        for c in range(count):
-            first = contacts[c]
-            if first.located != MEETS or first.rate > fastest * (1.0 - EQUAL):
-                continue
-            for d in range(count):
-                contact = contacts[d]
-                if contact.a != first.a or contact.b != first.b or contact.waits == 0:
-                    continue
-                takes_part = contact.phi <= max(TOUCHING, slop)
-                if springs:
-                    takes_part = takes_part and pairs[contact.pair].compliance == 0.0
-                if takes_part and contact.rate <= slowest(contact, bodies, motion):
-                    contact.waits = 0
-                    rows += 1
-        return rows
-
-    return kernel(mark_pairs, spec)
+    otherwise, mark = made_once(spec, "mark_impact")
+    return mark if otherwise else _make_together(spec)
 
 
 def _make_together(spec: Spec) -> Any:

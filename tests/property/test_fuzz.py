@@ -14,11 +14,10 @@ import pytest
 import yaml
 from fuzz import drawn_plans, finds, first_config
 from fuzz_laws import broken, loaded, run
-from fuzz_scenes import FULL, SOLIDS, Drawn
+from fuzz_scenes import EVERY, FULL, SOLIDS, Drawn
 from idle import compile_together
 
 from lavendersim.engine.collide import SHAPE_PAIRS
-from lavendersim.engine.effects import EFFECTS
 
 CONFIGS = int(os.environ.get("LAVENDER_TEST_FUZZ", "300"))
 ENGINES = {"everything": FULL, **{f"drawn {k}": plan for k, plan in enumerate(drawn_plans(2))}}
@@ -51,7 +50,7 @@ def test_what_was_found_once_breaks_no_law(path: Path) -> None:
 
 def test_the_fullest_engine_has_every_effect_and_pair_of_shapes() -> None:
     spec = loaded(first_config(FULL))[1]
-    assert {*spec.effects} == {e.name for e in EFFECTS if not e.study_only}
+    assert {*spec.effects} == EVERY
     assert {*spec.shape_pairs} == {*SHAPE_PAIRS}
     assert FULL.shapes == SOLIDS
 

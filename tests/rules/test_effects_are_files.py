@@ -43,6 +43,7 @@ ELSEWHERE = {
         "scene/events.py": "forces begin and end during the run",
     },
     "compliance": {
+        "engine/effects/pairwise_impacts.py": TIME,
         "engine/effects/fast_bodies.py": "springs give energy back",
         "engine/effects/impact_order.py": TIME,
         "engine/foreseen_impacts.py": TIME,
@@ -61,6 +62,7 @@ ELSEWHERE = {
         "engine/solvers/accelerated_projected_gradient.py": ROW,
     },
     "contact_spring": {
+        "engine/effects/pairwise_impacts.py": SPRING,
         "engine/effects/impact_order.py": SPRING,
         "engine/foreseen_impacts.py": SPRING,
         "engine/impact_rows.py": SPRING,

@@ -105,6 +105,7 @@ class Hooks:
     torsion_residual: Maker | None = None  # (contact, spin) -> r [rad/s]
     rolling_residual: Maker | None = None  # (contact, w1, w2) -> r [rad/s]
     note_slip: Maker | None = None  # (contact, va, vb): the slip before the solve
+    mark_impact: Maker | None = None  # (contacts, count, pairs, bodies, motion, slop) -> rows of it
     order_impacts: Maker | None = None  # (state, count, workspace, params, counters): see there
     predict_impacts: Maker | None = None  # (contacts, count, motion, params), before the solve
     keep_free: Maker | None = None  # (velocities, free), before any contact impulse acts

@@ -12,8 +12,15 @@ A sequence of impacts with e < 1 ends where an approach is so slow that it is no
 
 from __future__ import annotations
 
+from typing import Any
+
+from ..records import TOUCHING
+from ..spec import Spec
 from .decision import Decision, Facts
-from .effect import Choice, Effect
+from .effect import Choice, Effect, Hooks, kernel
+
+# Approaches that differ by less than this share are equally fast: round-off parts no symmetry.
+EQUAL = 1e-9
 
 
 def decide(facts: Facts) -> Decision:
@@ -25,10 +32,47 @@ def decide(facts: Facts) -> Decision:
     return Decision(True, "simultaneous_impacts are pairwise")
 
 
+def make_mark_impact(spec: Spec) -> Any:
+    """Return `kernel(contacts, count, pairs, bodies, motion, slop) -> rows` of the impact.
+
+    They are those between the two bodies that approach fastest, of all that meet.
+    """
+    from ..approach import MEETS, make_slowest
+
+    slowest, springs = make_slowest(spec), spec.has("contact_spring")
+
+    def mark_pairs(contacts, count, pairs, bodies, motion, slop):
+        fastest = 0.0
+        for c in range(count):
+            if contacts[c].located == MEETS:
+                fastest = min(fastest, contacts[c].rate)
+        for c in range(count):
+            contacts[c].waits = 1
+        rows = 0
+        for c in range(count):
+            first = contacts[c]
+            if first.located != MEETS or first.rate > fastest * (1.0 - EQUAL):
+                continue
+            for d in range(count):
+                contact = contacts[d]
+                if contact.a != first.a or contact.b != first.b or contact.waits == 0:
+                    continue
+                takes_part = contact.phi <= max(TOUCHING, slop)
+                if springs:
+                    takes_part = takes_part and pairs[contact.pair].compliance == 0.0
+                if takes_part and contact.rate <= slowest(contact, bodies, motion):
+                    contact.waits = 0
+                    rows += 1
+        return rows
+
+    return kernel(mark_pairs, spec)
+
+
 EFFECT = Effect(
     name="pairwise_impacts",
     decide=decide,
     per="contact",
     needs=("impact_order",),
     chosen_by=Choice("simultaneous_impacts"),
+    hooks=Hooks(mark_impact=make_mark_impact),
 )
