@@ -31,8 +31,8 @@ class Numerics(ConfigModel):
     )
     accuracy: Annotated[float, Quantity(above=0, below=1)] | None = Field(
         default=None,
-        description="relative error that the run may have: the engine makes each timestep in "
-        "substeps whose estimated errors sum up to no more; null: every step is one timestep long",
+        description="relative error that the run may have: each timestep is made in substeps "
+        "whose lengths follow from their estimated errors; null: every step is one timestep long",
     )
     smallest_timestep: Annotated[float, Quantity("s", minimum=1e-10)] = Field(
         default=1e-9,

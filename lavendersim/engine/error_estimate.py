@@ -24,6 +24,7 @@ from .contact import make_apply_block, make_normal_velocity
 from .effects.frictionless_contact import has_frictionless
 from .records import Field
 from .spec import Spec
+from .vectors import Vec3, length, minus, position
 
 # A step of order 2 made in halves is off by a third of what it differs from the whole by.
 SHARE = 1.0 / 3.0
@@ -44,8 +45,7 @@ PATH: Final[list[Field]] = [
 @inner
 def distance(one, other):
     """Return how far two centres are apart [m]."""
-    x, y, z = one.x - other.x, one.y - other.y, one.z - other.z
-    return sqrt(x * x + y * y + z * z)
+    return length(minus(position(one), position(other)))
 
 
 @inner
@@ -57,16 +57,17 @@ def angle(one, other):
     return 2.0 * sqrt(x * x + y * y + z * z)
 
 
-@inner
-def speed_of(v):
-    """Return |v| [m/s]."""
-    return sqrt(v.vx * v.vx + v.vy * v.vy + v.vz * v.vz)
+def make_point_speed(spec: Spec) -> Any:
+    """Return `kernel(body, v) -> |v| + R |w|`: no point of the body is faster [m/s]."""
+    turns = spec.has("rotation")
 
+    def point_speed(body, v):
+        speed = length(Vec3(v.vx, v.vy, v.vz))
+        if turns:
+            speed += body.bound * length(Vec3(v.wx, v.wy, v.wz))
+        return speed
 
-@inner
-def spin_of(v):
-    """Return |w| [rad/s]."""
-    return sqrt(v.wx * v.wx + v.wy * v.wy + v.wz * v.wz)
+    return kernel(point_speed, spec)
 
 
 def make_respect_contacts(spec: Spec) -> Any:
@@ -127,19 +128,17 @@ def make_add_paths(spec: Spec) -> Any:
 
     before: rows of the bodies at its start.
     """
-    turns = spec.has("rotation")
+    turns, point_speed = spec.has("rotation"), make_point_speed(spec)
 
     def add_paths(bodies, velocities, before, paths):
         for i in range(bodies.shape[0]):
-            body, v = bodies[i], velocities[i]
+            body = bodies[i]
             if body.inv_m > 0.0:
-                length = distance(body, before[i])
-                speed = speed_of(v)
+                moved = distance(body, before[i])
                 if turns:
-                    length += body.bound * angle(body, before[i])
-                    speed += body.bound * spin_of(v)
-                paths[i].length += length
-                paths[i].fastest = max(paths[i].fastest, speed)
+                    moved += body.bound * angle(body, before[i])
+                paths[i].length += moved
+                paths[i].fastest = max(paths[i].fastest, point_speed(body, velocities[i]))
 
     return kernel(add_paths, spec)
 
@@ -152,6 +151,7 @@ def make_estimate(spec: Spec) -> Any:
     Returns e, the error of the same body that solves may leave, and that body; -1: none has one.
     """
     turns, touches = spec.has("rotation"), bool(spec.shape_pairs)
+    point_speed = make_point_speed(spec)
     respect_contacts: Any = make_respect_contacts(spec) if touches else None
 
     def subtract(v, dv):
@@ -170,20 +170,19 @@ def make_estimate(spec: Spec) -> Any:
             respect_contacts(state.contacts, count, differences, noise)
         largest, floor, worst = 0.0, 0.0, -1
         for i in range(bodies.shape[0]):
-            body, v = bodies[i], velocities[i]
+            body = bodies[i]
             if body.inv_m > 0.0:
-                off, dv, speed = distance(body, other[i]), speed_of(differences[i]), speed_of(v)
+                off, dv = distance(body, other[i]), point_speed(body, differences[i])
                 if turns:
                     off += body.bound * angle(body, other[i])
-                    dv += body.bound * spin_of(differences[i])
-                    speed += body.bound * spin_of(v)
+                speed = point_speed(body, velocities[i])
                 speed = max(speed, paths[i].fastest, body.bound / params.duration)
-                length = max(body.bound, paths[i].length + speed * left)
-                error = max(off / length, dv / speed)
+                path = max(body.bound, paths[i].length + speed * left)
+                error = max(off / path, dv / speed)
                 # A NaN is larger than anything.
                 if not error <= largest:
                     largest, worst = error, i
-                    floor = max(PLACE_NOISE / length, noise / speed)
+                    floor = max(PLACE_NOISE / path, noise / speed)
         return SHARE * largest, SHARE * floor, worst
 
     return kernel(estimate, spec)

@@ -8,6 +8,11 @@ from .compile import kernel
 from .spec import Spec
 
 
+def has_parts(spec: Spec) -> bool:
+    """Whether the steps of an engine are made in parts."""
+    return spec.has("impact_order") or spec.has("error_control")
+
+
 def make_gather_parts(spec: Spec) -> Any:
     """Return `kernel(counters)`, after a part: `counters` tells of the step so far."""
 

@@ -29,7 +29,7 @@ from .integrate import (
     make_undo,
 )
 from .kernel_cache import cached
-from .parts import make_end_step, make_forget_history, make_gather_parts
+from .parts import has_parts, make_end_step, make_forget_history, make_gather_parts
 from .records import (
     CONTACTS_FULL,
     DIVERGED,
@@ -87,7 +87,7 @@ def make_advance(spec: Spec) -> Any:
     ordered, order = made_once(spec, "order_impacts")
     note_acceleration: Any = make_note_acceleration(spec) if ordered else None
     controlled = spec.has("error_control")
-    in_parts = ordered or controlled
+    in_parts = has_parts(spec)
     gather: Any = make_gather_parts(spec) if in_parts else None
     forget_history: Any = make_forget_history(spec) if in_parts else None
     end_step: Any = make_end_step(spec) if in_parts else None

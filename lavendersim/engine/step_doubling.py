@@ -38,7 +38,7 @@ CONTROL: Final[list[Field]] = [
     ("end", "f8"),  # of the substep, from the start of the step [s]
     ("until", "f8"),  # end of what is being made, from the start of the step [s]
     ("proposed", "f8"),  # length of the next substep; 0: as long as can be [s]
-    ("smooth", "f8"),  # length of the last substep that spent no more than its own [s]
+    ("smooth", "f8"),  # length that is tried again behind a kink [s]
     ("before", "f8"),  # time of the run when the step begins [s]
     ("spent", "f8"),  # estimated error of the run so far, relative [-]
     ("error", "f8"),  # of the substep that was made last [-]

@@ -9,6 +9,7 @@ from typing import Any, Final
 import numpy as np
 from matplotlib.ticker import NullFormatter, NullLocator
 
+from lavendersim.figures.cost_looks import is_controlled
 from lavendersim.figures.drawing import describe, ticks_at_values
 from lavendersim.figures.style import GREY
 
@@ -23,7 +24,7 @@ def draw_timestep_errors(axes: Any, table: dict[str, Any], looks: Any) -> None:
     rows = [
         row
         for row in table["rows"]
-        if row["error"] is not None and row["role"] != "chapter" and row.get("accuracy") is None
+        if row["error"] is not None and row["role"] != "chapter" and not is_controlled(row)
     ]
     if not rows:
         axes.text(0.5, 0.5, "no setting has an error", transform=axes.transAxes, ha="center")

@@ -162,3 +162,16 @@ def test_together_the_ball_on_the_floor_stays(together: dict[str, States], rate:
     flown = states.time[-1] - v / GRAVITY
     speeds = states.velocity[-1, 1:, 2]
     np.testing.assert_allclose(speeds, [0.0, v - GRAVITY * flown], atol=IMPACTS)
+
+
+@pytest.mark.parametrize("rate", RATES)
+def test_a_ball_that_its_floor_holds_while_it_slides_is_met_on_its_surface(rate: int) -> None:
+    """Gravity leans against the thrown one, which has as much of it along the floor, and falls."""
+    thrown = ball(RADIUS, 1.0, (-0.4, 0.0, 0.15), (2.0, 0.0, 0.2))
+    bodies = {"floor": plane(), "slides": ball(0.1, 1.0, (0, 0, 0.1)), "thrown": thrown}
+    text = config(bodies, rate, 0.2, "restitution: 0.5", f"[-2, 0, {-GRAVITY}]")
+    (states,) = run_scenes({"thrown": text}).values()
+    rows = states.contact[(states.contact["body_a"] == 1) & (states.contact["body_b"] == 2)]
+    # Located to 1e-9 m; g dt^2/2 were 1.4 mm at 60 Hz.
+    assert abs(rows["separation"][0]) <= 1e-9
+    assert rows["impulse_n"][0] > 0.1

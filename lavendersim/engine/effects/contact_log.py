@@ -26,6 +26,7 @@ def make(spec: Spec, loggers):
     log: `memory.Log`; the caller guarantees room.
     """
     from ..compile import chain
+    from ..parts import has_parts
     from ..residual import make_row_residual
     from ..violations import make_forget, make_watch_coulomb, make_watch_signorini
     from . import effects_of
@@ -36,7 +37,7 @@ def make(spec: Spec, loggers):
     row_residual, forget = make_row_residual(spec), make_forget(spec)
     watch_signorini, watch_coulomb = make_watch_signorini(spec), make_watch_coulomb(spec)
     log_more = chain(loggers, spec)
-    in_parts = spec.has("impact_order") or spec.has("error_control")
+    in_parts = has_parts(spec)
 
     def log_contacts(contacts, count, velocities, params, counters, log):
         contact_rows = log.contact

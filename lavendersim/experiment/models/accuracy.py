@@ -3,11 +3,19 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
+from typing import Any, Final
 
 from lavendersim.experiment.text.place import Place
 
 # Steps of order 2, impacts at their times: else halves of a step tell nothing of its error.
-_LAWS = (("impacts", "in_order"), ("integrator", "midpoint_contact"))
+_LAWS: Final = (("impacts", "in_order"), ("integrator", "midpoint_contact"))
+
+
+def is_of_order_two(numerics: Mapping[str, Any]) -> bool:
+    """Whether the errors of substeps can be estimated under these numerics."""
+    laws = all(numerics[key] == needed for key, needed in _LAWS)
+    return laws and not numerics["stabilisation_gain"] > 0
 
 
 def accuracy_rules(at: Place) -> None:

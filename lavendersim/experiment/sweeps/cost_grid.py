@@ -23,6 +23,7 @@ import yaml
 from lavendersim.cell.choices import Solver
 from lavendersim.experiment.experiment import Experiment
 from lavendersim.experiment.load import load_experiment_text
+from lavendersim.experiment.models.accuracy import is_of_order_two
 from lavendersim.experiment.models.cost import CostSpec
 from lavendersim.experiment.resolve.presets import DEFAULT, PRESETS, specified_numerics
 from lavendersim.experiment.text.former import with_new_spellings
@@ -113,15 +114,9 @@ def _grid(spec: CostSpec, specified: Setting, others: Mapping[str, Any]) -> Iter
                 yield Setting("grid", preset, timestep, solver, sweeps, None, warm)
     warm, tolerance = any(spec.warm_start), min(spec.tolerances)
     for preset, accuracy in product(presets, spec.accuracies):
-        if _is_of_order_two({**dict(PRESETS[preset]), **others}):
+        if is_of_order_two({**dict(PRESETS[preset]), **others}):
             longest = max(spec.timesteps)
             yield Setting("grid", preset, longest, "adaptive", most, tolerance, warm, accuracy)
-
-
-def _is_of_order_two(numerics: Mapping[str, Any]) -> bool:
-    """Whether the errors of substeps can be estimated: see `models.accuracy`."""
-    laws = numerics["impacts"], numerics["integrator"], numerics["stabilisation_gain"]
-    return laws == ("in_order", "midpoint_contact", 0)
 
 
 def _specified(experiment: Experiment) -> tuple[str, dict[str, Any]]:
