@@ -4,7 +4,7 @@ What stands in the file: `schema`. Written by `TraceWriter`, read by `open_trace
 makes a readable file of what a killed run left.
 """
 
-from lavendersim.trace.encode import Block
+from lavendersim.trace.blocks import Block
 from lavendersim.trace.reader import Trace, open_trace, trace_of
 from lavendersim.trace.recover import RecoveryReport, recover
 from lavendersim.trace.writer import TraceWriter, Written

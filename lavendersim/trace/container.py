@@ -126,11 +126,11 @@ class Closed(NamedTuple):
     """A chunk that takes no more messages, ready to be written."""
 
     chunk: Chunk
-    payload: bytes
+    payload: bytes | memoryview
     messages: list[Messages]
 
 
-def closed(payload: bytes, messages: Iterable[Messages]) -> Closed:
+def closed(payload: bytes | memoryview, messages: Iterable[Messages]) -> Closed:
     """Return the compressed chunk of some messages; may be called from any thread."""
     messages = [group for group in messages if len(group.entries)]
     times = np.concatenate([group.entries["time"] for group in messages])

@@ -15,15 +15,16 @@ import numpy as np
 from mcap.records import Channel, Schema
 
 from lavendersim.trace import descriptors, layout
-from lavendersim.trace.contact_columns import ColumnForm, rules_of
+from lavendersim.trace.contact_columns import ColumnForm, column_form, rules_of
 from lavendersim.trace.container import INDEX_ENTRY, Closed, Messages, Registered, closed
-from lavendersim.trace.encode import Encoder, Streams
+from lavendersim.trace.encode import Encoder, Streams, encoders
 from lavendersim.trace.schema import (
     CONTACT_COLUMNS,
     MULTI_ARRAY_DEFINITION,
     STRING_DEFINITION,
     Column,
 )
+from lavendersim.trace.streams import Light
 from lavendersim.trace.wire import Template
 
 RULES = "derived"  # of the metadata of /contact_columns: column -> rule, as JSON
@@ -32,8 +33,9 @@ RULES = "derived"  # of the metadata of /contact_columns: column -> rule, as JSO
 class Form(NamedTuple):
     """What logs of the same bodies, topics and columns have in common."""
 
-    encoder: Encoder
-    streams: Streams[Registered]
+    columns: tuple[np.dtype[Any], ...]  # of the tables step, contact and residual
+    encoders: Streams[Encoder]
+    streams: Streams[Registered]  # schemas and channels
 
 
 @lru_cache(maxsize=64)
@@ -41,7 +43,9 @@ def form_of(
     bodies: tuple[str, ...], columns: tuple[np.dtype[Any], ...], topics: frozenset[str]
 ) -> Form:
     """Return the form of logs with these bodies, columns of step, contact, residual, and topics."""
-    encoder = Encoder(bodies, columns, topics)
+    encoded = encoders(bodies, columns, topics)
+    light = encoded.light
+    assert isinstance(light, Light)
     poses = points = numbers = Registered.of((), ())
     if "/tf" in topics:
         form = descriptors.transforms_schema()
@@ -53,21 +57,21 @@ def form_of(
         points = Registered.of([schema], [_channel("/contacts", 3, "protobuf")])
         form = descriptors.contact_columns_schema()
         schema = Schema(7, form, "protobuf", "lavender.ContactColumns")
-        channel = _channel("/contact_columns", 7, "protobuf", _of_contacts(encoder.columns))
+        channel = _channel("/contact_columns", 7, "protobuf", _of_contacts(column_form(columns[1])))
         numbers = Registered.of([schema], [channel])
 
-    step, sweep = encoder.step_columns, encoder.residual_columns
+    step, sweep = light.step_columns, light.residual_columns
     schemas = [Schema(4, descriptors.step_schema(step), "protobuf", "lavender.Step")]
     channels = [_channel("/step", 4, "protobuf", _meanings(step))]
     if "/residuals" in topics:
         form = descriptors.residuals_schema(sweep)
         schemas.append(Schema(5, form, "protobuf", "lavender.Residuals"))
         channels.append(_channel("/residuals", 5, "protobuf", _meanings(sweep)))
-    if encoder.plots:
+    if light.plots:
         form = MULTI_ARRAY_DEFINITION.encode()
         schemas.append(Schema(6, form, "ros2msg", "std_msgs/msg/Float64MultiArray"))
-        channels += [_channel(topic, 6, "cdr") for topic in encoder.plots]
-    return Form(encoder, Streams(numbers, points, poses, Registered.of(schemas, channels)))
+        channels += [_channel(topic, 6, "cdr") for topic in light.plots]
+    return Form(columns, encoded, Streams(numbers, points, poses, Registered.of(schemas, channels)))
 
 
 @lru_cache(maxsize=8)  # the cells of a sweep look alike

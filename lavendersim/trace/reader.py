@@ -27,7 +27,8 @@ from lavendersim.trace.recorded import KEYS, RECORDED, is_recorded, partly_recor
 from lavendersim.trace.scan import scan
 from lavendersim.trace.schema import FORMAT, RESIDUAL_COLUMNS, STEP_COLUMNS, Column
 from lavendersim.trace.source import JustWritten, LogFile, Source
-from lavendersim.trace.writer import ABSENT, COLUMNS, DESCRIPTION, ENDING, TIMESTEP_CHANGES, Written
+from lavendersim.trace.streams import COLUMNS
+from lavendersim.trace.writer import ABSENT, DESCRIPTION, ENDING, TIMESTEP_CHANGES, Written
 
 COMPLETE = "complete"
 INCOMPLETE = "incomplete"

@@ -1,8 +1,8 @@
-"""Fixed protobuf layouts whose slots numpy fills for many messages at once.
+"""Fixed protobuf layouts whose slots are filled for many messages at once.
 
 A message whose layout does not change from step to step is one template: constant bytes (tags,
 lengths, names) with holes (slots) in it. Writing n messages is tiling the template n times and
-filling the holes column by column; reading is checking the constant bytes and taking the holes.
+filling the holes (`message_form`); reading is checking the constant bytes and taking the holes.
 
     template   05 len.. ch.. [seq.] [log_time] [publish_time] 09 [8 bytes] 11 [8 bytes] ...
                                                               tag  slot    tag  slot
@@ -55,15 +55,6 @@ def padded_varints(values: Rows) -> Bytes:
     return out
 
 
-def timestamps(time_ns: Rows) -> Rows:
-    """Return n slots holding the body of a google.protobuf.Timestamp after its first tag."""
-    out = np.empty((len(time_ns), TIMESTAMP_WIDTH), np.uint8)
-    out[:, :VARINT_WIDTH] = padded_varints(time_ns // NANOSECONDS)
-    out[:, VARINT_WIDTH] = tag(2, VARINT)[0]
-    out[:, VARINT_WIDTH + 1 :] = padded_varints(time_ns % NANOSECONDS)
-    return as_slots(out)
-
-
 def as_slots(matrix: Bytes) -> Rows:
     """Return (n,) void items, one per row of an (n, width) byte matrix."""
     slots: Rows = np.ascontiguousarray(matrix).view(f"V{matrix.shape[1]}")[:, 0]
@@ -99,6 +90,16 @@ class Template:
 
     def __len__(self) -> int:
         return len(self._bytes)
+
+    @property
+    def data(self) -> bytes:
+        """Return its bytes, 0 in the slots."""
+        return bytes(self._bytes)
+
+    @property
+    def slots(self) -> dict[str, tuple[int, list[int]]]:
+        """Return by name how wide slots are [B], and where they begin."""
+        return {name: (self._sizes[name], offsets) for name, offsets in self._slots.items()}
 
     def constant(self, data: bytes) -> Template:
         """Append bytes that are the same in every message."""
@@ -143,16 +144,6 @@ class Template:
     def rows(self, count: int) -> Bytes:
         """Return (count, size) bytes: the template, its slots still empty."""
         return np.tile(np.frombuffer(bytes(self._bytes), np.uint8), (count, 1))
-
-    def put(self, rows: Bytes, name: str, values: Rows) -> None:
-        """Fill a slot: values are (n,), or (n, k) for a name that stands for k slots."""
-        view, offsets = self._view(rows, name)
-        slots = np.ascontiguousarray(values).view(f"V{self._sizes[name]}")
-        if slots.ndim == 2:
-            view[:, offsets] = slots
-        else:
-            for offset in offsets:
-                view[:, offset] = slots
 
     def take(self, rows: Bytes, name: str) -> Rows:
         """Return (n, k) void items: what stands in the slots of that name."""

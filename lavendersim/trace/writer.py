@@ -25,17 +25,10 @@ from numpy.typing import NDArray
 
 from lavendersim.cell import CellConfig
 from lavendersim.trace import layout
-from lavendersim.trace.contact_columns import ColumnForm, ContactGroup, message_of
-from lavendersim.trace.container import (
-    INDEX_ENTRY,
-    Closed,
-    Container,
-    FileIndex,
-    Messages,
-    closed,
-)
-from lavendersim.trace.encode import Block, Encoded, Encoder, Streams
-from lavendersim.trace.forms import description_chunk, description_records, form_of
+from lavendersim.trace.blocks import Block, Counted, cumulative
+from lavendersim.trace.container import Closed, Container, FileIndex, closed
+from lavendersim.trace.encode import Encoder, Streams, checked
+from lavendersim.trace.forms import Form, description_chunk, description_records, form_of
 from lavendersim.trace.recorded import RECORDED, described, is_recorded
 from lavendersim.trace.schema import FORMAT
 from lavendersim.trace.urdf import robot_description
@@ -45,15 +38,14 @@ LIGHT_BYTES = 128 * 1024
 # Large enough to compress well, small enough that a viewer can hold a few.
 BULK_BYTES = 1024 * 1024
 # Most of what a contact's numbers have in common they have with those of the step before.
-COLUMNS: Final = "/contact_columns"
 COLUMN_BYTES = 4 * 1024 * 1024
 BEFORE: Final = ("columns", "points")  # may close before their group does
 CHUNK_BYTES = Streams(COLUMN_BYTES, BULK_BYTES, BULK_BYTES, LIGHT_BYTES)
 
-# Threads that compress chunks beside the simulation, for all logs that this process writes, and
-# how many chunks of a log may wait for them: that bounds its memory.
+# Threads that lay out and compress chunks beside the simulation, for all logs that this process
+# writes, and how much of a log may wait for them [byte]: that bounds its memory.
 COMPRESSORS: Final = min(4, os.cpu_count() or 1)
-MOST_WAITING: Final = 2 * COMPRESSORS
+MOST_WAITING: Final = 64 * 1024 * 1024
 _threads = ThreadPoolExecutor(COMPRESSORS, "trace")
 # Of a log up to this size [byte] the chunks are kept, so that who wrote it reads them from memory.
 KEPT_BYTES: Final = 256 * 1024 * 1024
@@ -65,70 +57,27 @@ TIMESTEP_CHANGES = "timestep_changes"  # and [steps done, timestep] of each; whe
 
 
 class _Stream:
-    """The open chunk of one stream: pieces of encoded blocks, and where their messages stand."""
+    """The open chunk of one stream: parts of blocks, laid out when it closes."""
 
-    def __init__(self, prologue: bytes) -> None:
+    def __init__(self, encoder: Encoder, prologue: bytes) -> None:
         self.size = 0  # message bytes; the prologue does not count
-        self._pieces = [prologue]
-        self._entries: dict[int, list[Any]] = {}
+        self._encoder, self._prologue = encoder, prologue
+        self._parts: list[Any] = []
 
-    def take(self, encoded: Encoded, times: Any, first: int, last: int) -> None:
-        """Append the steps first..last of an encoded block."""
-        begin, end = int(encoded.step_start[first]), int(encoded.step_start[last])
-        shift = len(self._pieces[0]) + self.size - begin
-        for channel, (rows, offsets) in encoded.messages.items():
-            low, high = np.searchsorted(rows, (first, last))
-            entries = np.empty(high - low, INDEX_ENTRY)
-            entries["time"] = times[rows[low:high]]
-            entries["offset"] = offsets[low:high] + shift
-            self._entries.setdefault(channel, []).append(entries)
-        self._pieces.append(encoded.data[begin:end].tobytes())
-        self.size += end - begin
+    def take(self, counted: Counted, start: Any, first: int, last: int) -> None:
+        """Append the steps first..last of a block; start: where each begins in the stream."""
+        size = int(start[last] - start[first])
+        if size:
+            self._parts.append(self._encoder.part(counted, first, last))
+            self.size += size
 
     def close(self) -> Closed:
         """Return the chunk; may be called from any thread."""
-        entries = sorted(self._entries.items())
-        messages = [Messages(channel, np.concatenate(parts)) for channel, parts in entries]
-        return closed(b"".join(self._pieces), messages)
+        return closed(*self._encoder.encode(self._prologue, self._parts, self.size))
 
     def next(self) -> _Stream:
         """Return the stream that follows when this one is closed."""
-        return _Stream(b"")
-
-
-class _ColumnStream:
-    """The open chunk of columns: contacts of whole steps, which become one message."""
-
-    def __init__(self, prologue: bytes, form: ColumnForm | None = None) -> None:
-        self.size = 0
-        self._prologue, self._form = prologue, form
-        self._parts: list[tuple[Any, ...]] = []  # rows, and number, time and count of each step
-
-    def take(self, encoded: Encoded, times: Any, first: int, last: int) -> None:
-        """Append the steps first..last of a block."""
-        begin, end = int(encoded.step_start[first]), int(encoded.step_start[last])
-        self.size += end - begin
-        if encoded.columns is not None and end > begin:
-            rows, steps, start, recorded, counts = encoded.columns
-            kept = np.flatnonzero(recorded[first:last]) + first
-            mine = rows[start[first] : start[last]]
-            self._parts.append((mine, steps[kept], times[kept], counts[kept]))
-
-    def close(self) -> Closed:
-        """Return the chunk; may be called from any thread."""
-        assert self._form is not None
-        columns = zip(*self._parts, strict=True)
-        rows, steps, times, counts = (np.concatenate(column) for column in columns)
-        group = ContactGroup(steps, times.astype(np.int64), counts, rows)
-        body = message_of(group, self._form)
-        head = layout.message_head(COLUMNS, int(steps[0]), int(times[0]), sum(map(len, body)))
-        payload = b"".join([self._prologue, head, *body])
-        entries = np.array([(times[0], len(self._prologue))], INDEX_ENTRY)
-        return closed(payload, [Messages(layout.CHANNELS[COLUMNS], entries)])
-
-    def next(self) -> _ColumnStream:
-        """Return the stream that follows when this one is closed."""
-        return _ColumnStream(b"", self._form)
+        return _Stream(self._encoder, b"")
 
 
 class Written(NamedTuple):
@@ -161,7 +110,7 @@ class TraceWriter:
         self._path, self._config, self._as_written = Path(path), config, as_written
         self._bodies = config.scene.bodies
         self._clock = clock = config.clock
-        self._encoder: Encoder | None = None
+        self._form: Form | None = None
         self._last_step = -1
         self._container = Container(self._path)
         self._container.attach(AS_WRITTEN, "application/yaml", as_written.encode())
@@ -183,8 +132,9 @@ class TraceWriter:
             if name in (DESCRIPTION, ENDING, RECORDED):
                 raise ValueError(f"metadata may not be called {name!r}")
             self._describe(name, values)
-        self._open = _opened()
-        self._closing: deque[Future[Closed]] = deque()  # in the order of the file
+        self._open: dict[str, _Stream] = {}  # by the names of Streams; none before the first step
+        self._closing: deque[tuple[Future[Closed], int]] = deque()  # as in the file, and sizes
+        self._waiting = 0  # sum of these sizes [byte]
         self._kept: list[Closed] | None = []
         self._kept_bytes = 0
 
@@ -201,25 +151,26 @@ class TraceWriter:
             raise ValueError("steps do not ascend, or exceed 32 bits")
         if "/step" not in self._topics:
             raise ValueError("a log without /step takes no steps")
-        if self._encoder is None:
+        if self._form is None:
             self._begin(block)
-        assert self._encoder is not None
+        assert self._form is not None
         record = self._config.record
         posed, touched = (
             is_recorded(which, self._clock, step["step"])
             for which in (record.poses, record.contacts)
         )
-        encoded = self._encoder.encode(block, posed, touched)
-        times = step["time_ns"].astype(np.uint64)
+        columns = self._form.columns
+        counted = checked(block, posed, touched, columns, (self._topics, len(self._bodies)))
+        encoders = self._form.encoders
+        starts = Streams(*(cumulative(encoder.sizes(counted)) for encoder in encoders))
         self._last_step = int(step["step"][-1])
         first = 0
         while first < len(step):
-            ends = Streams(
-                *map(_end_of_chunk, encoded, self._open, CHUNK_BYTES, [first] * len(encoded))
-            )
+            streams = self._open.values()
+            ends = Streams(*map(_end_of_chunk, starts, streams, CHUNK_BYTES, [first] * 4))
             last = min(*ends, len(step))
-            for stream, part in zip(self._open, encoded, strict=True):
-                stream.take(part, times, first, last)
+            for stream, start in zip(streams, starts, strict=True):
+                stream.take(counted, start, first, last)
             if last == min(ends.poses, ends.light):
                 self._close(*Streams._fields)
             else:
@@ -228,10 +179,10 @@ class TraceWriter:
 
     def close(self, status: str) -> Written:
         """End the log; status is `complete`, or why the run ended early."""
-        for future in self._closing:
-            self._write(future.result())
-        self._closing.clear()
-        for stream in self._open:
+        if sum(stream.size for stream in self._open.values()) > BULK_BYTES:
+            self._close(*self._open)
+        self._write_all()
+        for stream in self._open.values():
             if stream.size:
                 self._write(stream.close())
         self._describe(ENDING, {"status": status})
@@ -241,8 +192,7 @@ class TraceWriter:
 
     def abandon(self) -> None:
         """Let the file go as a killed run would leave it."""
-        for future in self._closing:
-            self._write(future.result())
+        self._write_all()
         self._container.abandon()
 
     def _describe(self, name: str, values: Mapping[str, str]) -> None:
@@ -252,15 +202,15 @@ class TraceWriter:
     def _begin(self, block: Block) -> None:
         """Write the scene's geometry and open the streams: the columns are known now."""
         columns = block.step.dtype, block.contact.dtype, block.residual.dtype
-        form = form_of(tuple(self._bodies), columns, frozenset(self._topics))
-        self._encoder = form.encoder
+        self._form = form = form_of(tuple(self._bodies), columns, frozenset(self._topics))
         if "/robot_description" in self._topics:
             self._describe_geometry(block.pose[0].astype(np.float64))
         for registered in form.streams:
             self._container.register(registered)
-        first, *others = (registered.data for registered in form.streams)
-        stored = form.encoder.columns if "/contacts" in self._topics else None
-        self._open = Streams(_ColumnStream(first, stored), *map(_Stream, others))
+        for name, encoder, registered in zip(
+            Streams._fields, form.encoders, form.streams, strict=True
+        ):
+            self._open[name] = _Stream(encoder, registered.data)
 
     def _describe_geometry(self, poses: NDArray[np.float64]) -> None:
         """Write the chunk of /robot_description; poses: of the initial state (bodies, 7)."""
@@ -273,15 +223,22 @@ class TraceWriter:
         One without a message yet goes on, with the records that open its first chunk.
         """
         for name in names:
-            stream = getattr(self._open, name)
+            stream = self._open[name]
             if stream.size:
-                self._closing.append(_threads.submit(stream.close))
-                self._open = self._open._replace(**{name: stream.next()})
-        self._write_closed()
+                self._closing.append((_threads.submit(stream.close), stream.size))
+                self._waiting += stream.size
+                self._open[name] = stream.next()
+        while self._closing and (self._closing[0][0].done() or self._waiting > MOST_WAITING):
+            self._write_next()
 
-    def _write_closed(self) -> None:
-        while self._closing and (self._closing[0].done() or len(self._closing) > MOST_WAITING):
-            self._write(self._closing.popleft().result())
+    def _write_next(self) -> None:
+        future, size = self._closing.popleft()
+        self._write(future.result())
+        self._waiting -= size
+
+    def _write_all(self) -> None:
+        while self._closing:
+            self._write_next()
 
     def _write(self, one: Closed) -> None:
         self._container.write_chunk(one)
@@ -292,11 +249,7 @@ class TraceWriter:
             self._kept.append(one)
 
 
-def _opened() -> Streams[Any]:
-    return Streams(_ColumnStream(b""), _Stream(b""), _Stream(b""), _Stream(b""))
-
-
-def _end_of_chunk(encoded: Encoded, stream: Any, most: int, first: int) -> int:
+def _end_of_chunk(start: Any, stream: _Stream, most: int, first: int) -> int:
     """Return the step that follows the one that fills the chunk; beyond the block if none does."""
-    target = encoded.step_start[first] + most - stream.size
-    return int(np.searchsorted(encoded.step_start, target, "left"))
+    target = start[first] + most - stream.size
+    return int(np.searchsorted(start, target, "left"))

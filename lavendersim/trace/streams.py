@@ -1,0 +1,253 @@
+"""The four streams of a log: how rows of steps become the messages of a chunk."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lavendersim.trace import layout
+from lavendersim.trace.blocks import Counted, cumulative
+from lavendersim.trace.contact_columns import ContactGroup, column_form, message_of
+from lavendersim.trace.container import INDEX_ENTRY, Messages
+from lavendersim.trace.message_form import (
+    TIME,
+    WORD,
+    columns_of_words,
+    heads_of,
+    message_form,
+    words_of,
+)
+from lavendersim.trace.points import point_form, points_of
+from lavendersim.trace.schema import (
+    LOG10_RESIDUAL_FLOOR,
+    PLOTS,
+    RESIDUAL_COLUMNS,
+    STEP_COLUMNS,
+    columns_of,
+)
+from lavendersim.trace.wire import Rows, Template, scatter
+
+STEP_OF_COLUMNS: Final = 3 * WORD  # its number, its time, how many contacts it has
+TF_ORDER: Final = (0, 1, 2, 4, 5, 6, 3)  # x y z qx qy qz qw, of x y z qw qx qy qz
+COLUMNS: Final = "/contact_columns"
+# The bytes of a chunk, and where each channel has messages in them.
+Laid = tuple[bytes | memoryview, list[Messages]]
+
+
+class Chunk:
+    """The bytes of a chunk, filled part by part, and where its messages stand in it."""
+
+    def __init__(self, prologue: bytes, size: int) -> None:
+        self.data = np.empty(len(prologue) + size, np.uint8)
+        self.data[: len(prologue)] = np.frombuffer(prologue, np.uint8)
+        self.end = len(prologue)  # of what is filled
+        self._entries: dict[int, list[NDArray[Any]]] = {}
+
+    def note(self, topic: str, heads: Rows, starts: Rows) -> None:
+        """Note where messages stand; heads: words of their steps."""
+        entries = np.empty(len(starts), INDEX_ENTRY)
+        entries["time"], entries["offset"] = heads[:, TIME], starts
+        self._entries.setdefault(layout.CHANNELS[topic], []).append(entries)
+
+    def filled(self) -> Laid:
+        """Return bytes and index."""
+        assert self.end == len(self.data), "a chunk has other bytes than were counted"
+        entries = sorted(self._entries.items())
+        return self.data.data, [Messages(c, np.concatenate(parts)) for c, parts in entries]
+
+
+class Light:
+    """`/step`, the plots, and the sweeps of steps that have them."""
+
+    def __init__(
+        self, step: np.dtype[Any], residual: np.dtype[Any], topics: Collection[str]
+    ) -> None:
+        self.step_columns = columns_of(step, STEP_COLUMNS)
+        names = [name for name in residual.names or () if name != "step"]
+        self.residual_columns = columns_of(residual[names], RESIDUAL_COLUMNS)
+        self.plots = [t for t, name in PLOTS.items() if t in topics and name in (step.names or ())]
+        light = Template().embed(layout.step_layout(self.step_columns))
+        self._starts = {"/step": 0}
+        for topic in self.plots:
+            self._starts[topic] = len(light)
+            light.embed(layout.plot_layout(topic))
+        places = columns_of_words(step)
+        columns = [places[column.name] for column in self.step_columns]
+        heads = {"plot": [2 + k for k in range(len(self.plots))]} if self.plots else {}
+        self._light = message_form(light, {"step": columns}, heads)
+        self._sweeps = message_form(layout.residual_layout(), {}, {"step": [0], "length": [2]})
+        places = columns_of_words(residual)
+        columns = [places[column.name] for column in self.residual_columns]
+        row = layout.residual_row_layout(self.residual_columns)
+        self._sweep = message_form(row, {"sweep": columns}, {})
+
+    def sizes(self, counted: Counted) -> Rows:
+        """Return the bytes of each step [B] (n,)."""
+        swept = np.diff(counted.residual_start)
+        heads = (swept > 0) * len(self._sweeps)
+        sizes: Rows = len(self._light) + heads + swept * len(self._sweep)
+        return sizes
+
+    def part(self, counted: Counted, first: int, last: int) -> Any:
+        """Return the rows of steps and of their sweeps, and how many each has."""
+        start = counted.residual_start[first : last + 1]
+        sweeps = counted.block.residual[start[0] : start[-1]]
+        return counted.block.step[first:last], sweeps, np.diff(start)
+
+    def encode(self, prologue: bytes, parts: Sequence[Any], size: int) -> Laid:
+        """Return the bytes of a chunk and its index."""
+        chunk = Chunk(prologue, size)
+        for step, sweeps, swept in parts:
+            sizes = len(self._light) + (swept > 0) * len(self._sweeps) + swept * len(self._sweep)
+            starts = chunk.end + cumulative(sizes)
+            plotted = [_plotted(topic, step[PLOTS[topic]]) for topic in self.plots]
+            heads = heads_of(step, *plotted)
+            self._light.fill(chunk.data, starts[:-1], words_of(step), heads)
+            for topic, offset in self._starts.items():
+                chunk.note(topic, heads, starts[:-1] + offset)
+            if len(sweeps):
+                self._fill_sweeps(chunk, starts[:-1] + len(self._light), step, sweeps, swept)
+            chunk.end = int(starts[-1])
+        return chunk.filled()
+
+    def _fill_sweeps(
+        self, chunk: Chunk, starts: Rows, step: Rows, sweeps: Rows, swept: Rows
+    ) -> None:
+        asked = np.flatnonzero(swept)
+        starts, swept = starts[asked], swept[asked]
+        heads = heads_of(step[asked], _record_length(self._sweeps, swept * len(self._sweep)))
+        self._sweeps.fill(chunk.data, starts, heads, heads)
+        chunk.note("/residuals", heads, starts)
+        rows = _ranks(starts + len(self._sweeps), swept, len(self._sweep))
+        words = words_of(sweeps)
+        self._sweep.fill(chunk.data, rows, words, words)
+
+
+class Poses:
+    """`/tf`: the poses of all bodies in a message."""
+
+    def __init__(self, bodies: Sequence[str]) -> None:
+        columns = [layout.POSE * body + k for body in range(len(bodies)) for k in TF_ORDER]
+        words = {"pose": columns} if bodies else {}
+        self._tf = message_form(layout.transforms_layout(bodies), words, {})
+
+    def sizes(self, counted: Counted) -> Rows:
+        """Return the bytes of each step [B] (n,)."""
+        sizes: Rows = counted.posed * len(self._tf)
+        return sizes
+
+    def part(self, counted: Counted, first: int, last: int) -> Any:
+        """Return the rows and poses of the steps that have them recorded."""
+        step, pose = counted.block.step[first:last], counted.block.pose[first:last]
+        posed = counted.posed[first:last]
+        return (step, pose) if posed.all() else (step[posed], pose[posed])
+
+    def encode(self, prologue: bytes, parts: Sequence[Any], size: int) -> Laid:
+        """Return the bytes of a chunk and its index."""
+        chunk = Chunk(prologue, size)
+        for step, pose in parts:
+            starts = chunk.end + np.arange(len(step) + 1) * len(self._tf)
+            words = np.ascontiguousarray(pose, np.float64).view(np.uint64)
+            heads = heads_of(step)
+            self._tf.fill(chunk.data, starts[:-1], words.reshape(len(step), -1), heads)
+            chunk.note("/tf", heads, starts[:-1])
+            chunk.end = int(starts[-1])
+        return chunk.filled()
+
+
+class Points:
+    """`/contacts`: a cloud of points in a message."""
+
+    def __init__(self, bodies: Sequence[str], contact: np.dtype[Any]) -> None:
+        self.form = point_form(contact)
+        frame = layout.root_frame(bodies)
+        cloud = layout.contact_layout(self.form.fields, self.form.size, frame)
+        self._cloud = message_form(cloud, {}, {"length": [2], "data_length": [3]})
+
+    def sizes(self, counted: Counted) -> Rows:
+        """Return the bytes of each step [B] (n,)."""
+        contacts = np.diff(counted.contact_start)
+        sizes: Rows = counted.touched * (len(self._cloud) + contacts * self.form.size)
+        return sizes
+
+    def part(self, counted: Counted, first: int, last: int) -> Any:
+        """Return the rows and contacts of the steps that have them recorded."""
+        return _touched(counted, first, last)
+
+    def encode(self, prologue: bytes, parts: Sequence[Any], size: int) -> Laid:
+        """Return the bytes of a chunk and its index."""
+        chunk = Chunk(prologue, size)
+        for step, contacts, counts in parts:
+            starts = chunk.end + cumulative(len(self._cloud) + counts * self.form.size)
+            length = counts * self.form.size
+            heads = heads_of(step, _record_length(self._cloud, length), length)
+            self._cloud.fill(chunk.data, starts[:-1], heads, heads)
+            chunk.note("/contacts", heads, starts[:-1])
+            if len(contacts):
+                offsets = _ranks(starts[:-1] + len(self._cloud), counts, self.form.size)
+                scatter(chunk.data, offsets, points_of(self.form, contacts))
+            chunk.end = int(starts[-1])
+        return chunk.filled()
+
+
+class ContactColumns:
+    """`/contact_columns`: one message of all contacts of a chunk."""
+
+    def __init__(self, contact: np.dtype[Any]) -> None:
+        self.form = column_form(contact)
+
+    def sizes(self, counted: Counted) -> Rows:
+        """Return the bytes of each step before they are packed [B] (n,)."""
+        contacts = np.diff(counted.contact_start)
+        sizes: Rows = counted.touched * (STEP_OF_COLUMNS + contacts * WORD * len(self.form.names))
+        return sizes
+
+    def part(self, counted: Counted, first: int, last: int) -> Any:
+        """Return the rows and contacts of the steps that have them recorded."""
+        return _touched(counted, first, last)
+
+    def encode(self, prologue: bytes, parts: Sequence[Any], size: int) -> Laid:
+        """Return the bytes of a chunk and its index."""
+        steps = [step for step, _, _ in parts if len(step)]
+        numbers = np.concatenate([step["step"] for step in steps])
+        times = np.concatenate([step["time_ns"] for step in steps])
+        counts = np.concatenate([counts for _, _, counts in parts])
+        rows = np.concatenate([contacts for _, contacts, _ in parts])
+        body = message_of(ContactGroup(numbers, times, counts, rows), self.form)
+        head = layout.message_head(COLUMNS, int(numbers[0]), int(times[0]), sum(map(len, body)))
+        entries = np.array([(times[0], len(prologue))], INDEX_ENTRY)
+        return b"".join([prologue, head, *body]), [Messages(layout.CHANNELS[COLUMNS], entries)]
+
+
+def _touched(counted: Counted, first: int, last: int) -> tuple[Rows, Rows, Rows]:
+    """Return rows, contacts and their counts of the steps that have contacts recorded."""
+    step, start = counted.block.step[first:last], counted.contact_start[first : last + 1]
+    contacts, counts = counted.block.contact[start[0] : start[-1]], np.diff(start)
+    touched = counted.touched[first:last]
+    if touched.all():
+        return step, contacts, counts
+    return step[touched], contacts[np.repeat(touched, counts)], counts[touched]
+
+
+def _plotted(topic: str, values: NDArray[Any]) -> NDArray[np.float64]:
+    if not topic.endswith("log10_residual"):
+        return np.ascontiguousarray(values, np.float64)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        drawn: NDArray[np.float64] = np.maximum(np.log10(values), LOG10_RESIDUAL_FLOOR)
+    return drawn
+
+
+def _record_length(head: Any, tail: Rows) -> Rows:
+    """Return the length in a record's header, which does not count: of a head and its tail."""
+    length: Rows = len(head) - layout.RECORD_HEADER + tail
+    return length
+
+
+def _ranks(starts: Rows, counts: Rows, size: int) -> Rows:
+    """Return the byte offset of every row: rows of one owner stand one after the other."""
+    before = cumulative(counts)[:-1]
+    row: Rows = np.repeat(starts - before * size, counts) + np.arange(counts.sum()) * size
+    return row
