@@ -5,9 +5,10 @@ makes a readable file of what a killed run left.
 """
 
 from lavendersim.trace.blocks import Block
-from lavendersim.trace.reader import Trace, open_trace, trace_of
+from lavendersim.trace.reader import Trace, open_trace
 from lavendersim.trace.recover import RecoveryReport, recover
 from lavendersim.trace.writer import TraceWriter, Written
+from lavendersim.trace.written_trace import trace_of
 
 __all__ = [
     "Block",

@@ -126,7 +126,6 @@ class Closed(NamedTuple):
     """A chunk that takes no more messages, ready to be written."""
 
     chunk: Chunk
-    payload: bytes | memoryview
     messages: list[Messages]
 
 
@@ -142,7 +141,7 @@ def closed(payload: bytes | memoryview, messages: Iterable[Messages]) -> Closed:
         uncompressed_crc=zlib.crc32(payload),
         uncompressed_size=len(payload),
     )
-    return Closed(chunk, payload, messages)
+    return Closed(chunk, messages)
 
 
 def message_index(messages: Messages) -> bytes:

@@ -26,9 +26,9 @@ from lavendersim.trace.index import ChunkContent, damage, read_summary
 from lavendersim.trace.recorded import KEYS, RECORDED, is_recorded, partly_recorded
 from lavendersim.trace.scan import scan
 from lavendersim.trace.schema import FORMAT, RESIDUAL_COLUMNS, STEP_COLUMNS, Column
-from lavendersim.trace.source import JustWritten, LogFile, Source
+from lavendersim.trace.source import LogFile, Source
 from lavendersim.trace.streams import COLUMNS
-from lavendersim.trace.writer import ABSENT, DESCRIPTION, ENDING, TIMESTEP_CHANGES, Written
+from lavendersim.trace.writer import ABSENT, DESCRIPTION, ENDING, TIMESTEP_CHANGES
 
 COMPLETE = "complete"
 INCOMPLETE = "incomplete"
@@ -260,8 +260,3 @@ def open_trace(
             raise
     with damage(path, "the log"):
         return Trace(path, LogFile(path, scan(path).entries), finished=False, config=config)
-
-
-def trace_of(written: Written) -> Trace:
-    """Return a log that this process has just written, its columns not yet decoded."""
-    return Trace(written.path, JustWritten(written), finished=True, config=written.config)

@@ -7,7 +7,6 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, Protocol
 
-import numpy as np
 import yaml
 from mcap.records import Attachment, Schema
 
@@ -118,7 +117,7 @@ class LogFile:
 
 
 class JustWritten:
-    """A log that this process wrote: the same bytes, before they were compressed."""
+    """A log that this process wrote: what describes it is still in memory."""
 
     def __init__(self, written: Written) -> None:
         self._written = written
@@ -145,10 +144,4 @@ class JustWritten:
 
     def chunks(self, channel: int) -> Iterator[ChunkContent]:
         """Yield the chunks that hold messages of a channel."""
-        if self._written.chunks is None:
-            yield from LogFile(self._written.path, self._written.entries).chunks(channel)
-            return
-        for one in self._written.chunks:
-            messages = {group.channel: group.entries for group in one.messages}
-            if channel in messages:
-                yield ChunkContent(np.frombuffer(one.payload, np.uint8), b"", messages)
+        yield from LogFile(self._written.path, self._written.entries).chunks(channel)

@@ -47,7 +47,7 @@ CHUNK_BYTES = Streams(COLUMN_BYTES, BULK_BYTES, BULK_BYTES, LIGHT_BYTES)
 COMPRESSORS: Final = min(4, os.cpu_count() or 1)
 MOST_WAITING: Final = 64 * 1024 * 1024
 _threads = ThreadPoolExecutor(COMPRESSORS, "trace")
-# Of a log up to this size [byte] the chunks are kept, so that who wrote it reads them from memory.
+# Of a log with rows up to this size [byte] they are kept: who wrote it reads them from memory.
 KEPT_BYTES: Final = 256 * 1024 * 1024
 
 AS_WRITTEN, RESOLVED = "config.yaml", "resolved.json"  # attachments
@@ -88,7 +88,7 @@ class Written(NamedTuple):
     metadata: dict[str, dict[str, str]]
     as_written: str
     config: CellConfig
-    chunks: list[Closed] | None  # None: too much to keep, they are read from the file
+    blocks: list[Block] | None  # None: too much to keep, they are read from the file
 
 
 class TraceWriter:
@@ -135,7 +135,7 @@ class TraceWriter:
         self._open: dict[str, _Stream] = {}  # by the names of Streams; none before the first step
         self._closing: deque[tuple[Future[Closed], int]] = deque()  # as in the file, and sizes
         self._waiting = 0  # sum of these sizes [byte]
-        self._kept: list[Closed] | None = []
+        self._kept: list[Block] | None = []
         self._kept_bytes = 0
 
     def append(self, block: Block) -> None:
@@ -164,6 +164,7 @@ class TraceWriter:
         encoders = self._form.encoders
         starts = Streams(*(cumulative(encoder.sizes(counted)) for encoder in encoders))
         self._last_step = int(step["step"][-1])
+        self._keep(block)
         first = 0
         while first < len(step):
             streams = self._open.values()
@@ -184,7 +185,7 @@ class TraceWriter:
         self._write_all()
         for stream in self._open.values():
             if stream.size:
-                self._write(stream.close())
+                self._container.write_chunk(stream.close())
         self._describe(ENDING, {"status": status})
         self._container.finish()
         index, kept = self._container.index, self._kept
@@ -215,7 +216,7 @@ class TraceWriter:
     def _describe_geometry(self, poses: NDArray[np.float64]) -> None:
         """Write the chunk of /robot_description; poses: of the initial state (bodies, 7)."""
         self._container.register(description_records())
-        self._write(description_chunk(robot_description(self._bodies, poses)))
+        self._container.write_chunk(description_chunk(robot_description(self._bodies, poses)))
 
     def _close(self, *names: str) -> None:
         """Hand open chunks to the compressing threads, and write those that are done.
@@ -233,20 +234,19 @@ class TraceWriter:
 
     def _write_next(self) -> None:
         future, size = self._closing.popleft()
-        self._write(future.result())
+        self._container.write_chunk(future.result())
         self._waiting -= size
 
     def _write_all(self) -> None:
         while self._closing:
             self._write_next()
 
-    def _write(self, one: Closed) -> None:
-        self._container.write_chunk(one)
-        self._kept_bytes += len(one.payload)
+    def _keep(self, block: Block) -> None:
+        self._kept_bytes += sum(rows.nbytes for rows in block)
         if self._kept_bytes > KEPT_BYTES:
             self._kept = None
         if self._kept is not None:
-            self._kept.append(one)
+            self._kept.append(block)
 
 
 def _end_of_chunk(start: Any, stream: _Stream, most: int, first: int) -> int:

@@ -55,7 +55,7 @@ def test_a_log_too_large_to_keep_is_read_from_its_file(
 ) -> None:
     monkeypatch.setattr(writer, "KEPT_BYTES", 1000)
     log = written(tmp_path / "run.mcap", MANY)
-    assert log.chunks is None
+    assert log.blocks is None
     assert_equal(trace_of(log), open_trace(log.path))
 
 

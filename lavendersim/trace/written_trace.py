@@ -1,0 +1,95 @@
+"""A log that this process has just written, read from the blocks that went into it.
+
+The same columns as from the file, bit for bit: nothing is decoded that is still in memory.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lavendersim.trace import decode
+from lavendersim.trace.blocks import Block
+from lavendersim.trace.contact_columns import OF_THE_MESSAGE, column_form
+from lavendersim.trace.reader import RecordedPoses, Trace
+from lavendersim.trace.recorded import is_recorded
+from lavendersim.trace.schema import RESIDUAL_COLUMNS, STEP_COLUMNS, columns_of
+from lavendersim.trace.source import JustWritten
+from lavendersim.trace.writer import Written
+
+
+def trace_of(written: Written) -> Trace:
+    """Return a log that this process has just written, its columns not yet read."""
+    if not written.blocks:
+        source = JustWritten(written)
+        return Trace(written.path, source, finished=True, config=written.config)
+    return WrittenTrace(written, written.blocks)
+
+
+class WrittenTrace(Trace):
+    """A log whose blocks are at hand."""
+
+    def __init__(self, written: Written, blocks: Sequence[Block]) -> None:
+        super().__init__(written.path, JustWritten(written), finished=True, config=written.config)
+        self._blocks = blocks
+
+    @cached_property
+    def step(self) -> NDArray[Any]:
+        """One row per logged step: the file's columns, and `time` [s]."""
+        rows = [block.step for block in self._blocks]
+        columns = decode.step_columns(columns_of(rows[0].dtype, STEP_COLUMNS))
+        table = _table(rows, columns)
+        table["time"] = decode.seconds(table["time_ns"])
+        return table
+
+    @cached_property
+    def residual(self) -> NDArray[Any]:
+        """One row per sweep of the steps that were asked for: step, sweep, residual [m/s]."""
+        if "/residuals" in self.absent:
+            return super().residual
+        rows = [block.residual for block in self._blocks]
+        names = [name for name in rows[0].dtype.names or () if name != OF_THE_MESSAGE]
+        columns = columns_of(rows[0][names].dtype, RESIDUAL_COLUMNS)
+        return _table(rows, decode.residual_columns(columns))
+
+    @cached_property
+    def recorded_pose(self) -> RecordedPoses:
+        """The poses of the steps of which the log has them. UsageError for a log without /tf."""
+        if not self.has("/tf"):
+            return super().recorded_pose
+        poses = np.concatenate([block.pose for block in self._blocks])
+        rows = self.recorded_rows("/tf")
+        return RecordedPoses(rows, poses if len(rows) == len(poses) else poses[rows])
+
+    def _contact_parts(self) -> Iterator[NDArray[Any]]:
+        form = column_form(self._blocks[0].contact.dtype)
+        kinds = zip(form.names, form.kinds, strict=True)
+        columns = [("step", "i8"), *kinds, *((name, "f8") for name in (*form.derived, "time"))]
+        for block in self._blocks:
+            contacts, steps = block.contact, block.step["step"]
+            recorded = is_recorded(self.config.record.contacts, self.clock, steps)
+            if not recorded.any():
+                continue
+            if not recorded.all():
+                contacts = contacts[np.isin(contacts["step"], steps[recorded])]
+            table = _table([contacts], columns)
+            rows = np.searchsorted(steps, contacts["step"])
+            table["time"] = decode.seconds(block.step["time_ns"][rows])
+            yield table
+
+
+def _table(parts: Sequence[NDArray[Any]], columns: Sequence[tuple[str, str]]) -> NDArray[Any]:
+    """Return rows as a table of these columns; one that the rows lack is left to the caller."""
+    table = np.empty(sum(map(len, parts)), [(name, "=" + kind) for name, kind in columns])
+    begin = 0
+    for part in parts:
+        end = begin + len(part)
+        for name, _ in columns:
+            if name in (part.dtype.names or ()):
+                table[name][begin:end] = part[name]
+        begin = end
+    return table
