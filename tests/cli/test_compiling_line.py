@@ -11,6 +11,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.kept_kernels import of_scenes
+
 Command = Callable[..., subprocess.CompletedProcess[str]]
 
 
@@ -87,7 +89,7 @@ def test_a_home_that_cannot_be_written_falls_back_and_says_where(
     why = f"{tmp_path}/blocked/lavender cannot be written by this user alone"
     note = f"{why}: kernels are kept in {place}"
     assert f"(once; {note})" in run.stderr
-    assert len(list(place.glob("*.kernel"))) == 1
+    assert len(of_scenes(place)) == 1
     assert note in lavender("doctor", **environment).stdout
 
 

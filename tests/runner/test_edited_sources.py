@@ -12,6 +12,8 @@ from typing import Any, NamedTuple
 import pytest
 from small_configs import copy_package, run_in_new_process, write
 
+from tests.kept_kernels import of_scenes
+
 Found = dict[str, Any]
 
 
@@ -92,8 +94,8 @@ def test_an_edit_is_obeyed_and_ends_with_the_edit(
     assert after["source"] != before["source"]
     assert edit.obeyed(before, after), (before, after)
     source.write_text(text)
-    held = set(kernels.glob("*.kernel"))
+    held = set(of_scenes(kernels))
     again = run("restored")
     # To the byte, with the kernel that the sources as they are left before the edit.
     assert again["logs"] == before["logs"]
-    assert set(kernels.glob("*.kernel")) == held
+    assert set(of_scenes(kernels)) == held

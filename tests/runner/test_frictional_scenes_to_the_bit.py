@@ -18,6 +18,8 @@ from typing import Any
 import pytest
 from small_configs import write
 
+from tests.kept_kernels import of_scenes
+
 # A box that lands on an edge, bounces, slides and tumbles, in the default numerics.
 TUMBLE = """\
 question: Does a tumbling box come out the same again?
@@ -112,7 +114,7 @@ class Scenes:
 
     def written(self) -> dict[Path, int]:
         """Return when each kernel was written [ns]."""
-        return {path: path.stat().st_mtime_ns for path in self.kernels.glob("*.kernel")}
+        return {path: path.stat().st_mtime_ns for path in of_scenes(self.kernels)}
 
     def run(self, workers: int = 1, times: int = 1) -> Any:
         """Return, per time and config, what a new process makes of them."""
@@ -142,7 +144,7 @@ def compiled(scenes: Scenes) -> Any:
     """What the process that compiled the kernels gave, the first time and the second."""
     assert not scenes.kernels.exists()
     found = scenes.run(times=2)
-    assert len(list(scenes.kernels.glob("*.kernel"))) == len(scenes.configs)
+    assert len(of_scenes(scenes.kernels)) == len(scenes.configs)
     return found
 
 

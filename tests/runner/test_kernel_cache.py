@@ -18,6 +18,7 @@ from lavendersim.engine.step import advance_for, make_advance
 from lavendersim.experiment import load_experiment_text
 from lavendersim.scene.build import build
 from lavendersim.scene.plan import plan_of
+from tests.kept_kernels import of_scenes
 
 
 @pytest.fixture(scope="module")
@@ -33,10 +34,10 @@ def test_a_compiled_and_a_loaded_kernel_give_the_same_bytes(
     kept: tuple[Path, Path, dict[str, Any]], tmp_path: Path
 ) -> None:
     config, kernels, compiled = kept
-    written = {path: path.stat().st_mtime_ns for path in kernels.glob("*.kernel")}
+    written = {path: path.stat().st_mtime_ns for path in of_scenes(kernels)}
     assert len(written) == 1, "the first run was to keep its kernel"
     loaded = run_in_new_process(config, tmp_path / "runs", LAVENDER_CACHE_DIR=str(kernels))
-    assert {path: path.stat().st_mtime_ns for path in kernels.glob("*.kernel")} == written
+    assert {path: path.stat().st_mtime_ns for path in of_scenes(kernels)} == written
     assert loaded["logs"] == compiled["logs"]
 
 
@@ -44,7 +45,7 @@ def test_a_kernel_with_one_flipped_bit_is_ignored_and_written_anew(
     kept: tuple[Path, Path, dict[str, Any]], tmp_path: Path
 ) -> None:
     config, kernels, first = kept
-    (file,) = kernels.glob("*.kernel")
+    (file,) = of_scenes(kernels)
     copy = tmp_path / "kernels" / file.name
     copy.parent.mkdir()
     damaged = bytearray(file.read_bytes())
@@ -76,7 +77,7 @@ def test_damaged_parts_are_compiled_anew(
 def test_a_truncated_kernel_counts_as_absent(
     kept: tuple[Path, Path, dict[str, Any]], tmp_path: Path, length: int
 ) -> None:
-    (file,) = kept[1].glob("*.kernel")
+    (file,) = of_scenes(kept[1])
     cache = KernelCache(Spec(), make_advance(Spec()))
     cache.cache_path = tmp_path
     stored = cache.path(cache.key(()))

@@ -16,6 +16,7 @@ from lavendersim.engine.compile import inner
 from lavendersim.engine.kernel_cache import KernelCache
 from lavendersim.engine.kernel_store import kept_kernels
 from lavendersim.engine.spec import Spec
+from tests.kept_kernels import of_scenes
 
 
 @pytest.fixture
@@ -123,7 +124,7 @@ def test_two_processes_may_write_the_same_kernel_at_once(tmp_path: Path) -> None
     assert [process.returncode for process in both] == [0, 0], ended
     logs = [json.loads(out.splitlines()[-1])["logs"] for out, _ in ended]
     assert not list(kernels.glob("*unfinished*"))
-    (file,) = kernels.glob("*.kernel")
+    (file,) = of_scenes(kernels)
     written = file.stat().st_mtime_ns
     third = run_in_new_process(config, tmp_path / "third", LAVENDER_CACHE_DIR=str(kernels))
     assert logs == [third["logs"]] * 2
