@@ -37,21 +37,9 @@ import numpy as np
 from lavendersim.geometry.bodies import is_movable, mass_of, vector
 from lavendersim.geometry.shapes import bounding_radius
 from lavendersim.measures import changes, shares
-from lavendersim.measures.columns import mechanical_energy, rows_of_steps
-from lavendersim.measures.interfaces import Floats, Rows, Trace
-from lavendersim.measures.kinds.laws import impulses
-
-
-def contacts_of_log(trace: Trace) -> Rows | None:
-    """Return the contact rows; None where nothing can touch, or not every step has its own."""
-    return None if "/contacts" in trace.absent else trace.contact
-
-
-def by_step(trace: Trace, contacts: Rows, numbers: Floats) -> Floats:
-    """Return the sum of a number of each contact in every logged step."""
-    positions = rows_of_steps(trace.step, contacts)
-    sums: Floats = np.bincount(positions, numbers, minlength=len(trace.step)).astype(np.float64)
-    return sums
+from lavendersim.measures.columns import mechanical_energy
+from lavendersim.measures.contact_sums import ContactSums
+from lavendersim.measures.interfaces import Floats, Trace
 
 
 class EnergyBalance:
@@ -62,7 +50,7 @@ class EnergyBalance:
         self._given = self._lowest = self._lowest_potential = self._worked = self._put_in = 0.0
         self._own_weight = self._first_potential = self._first_kinetic = 0.0
 
-    def created(self, trace: Trace) -> Floats:
+    def created(self, trace: Trace, sums: ContactSums) -> Floats:
         """Return, in every state, the energy gained since it was lowest over that at play [-].
 
         trace: a log, or its next section: the last state that was counted, without its
@@ -76,7 +64,7 @@ class EnergyBalance:
             self._first_kinetic = float(trace.step["kinetic_energy"][0])
             self._own_weight = _own_weight(trace)
         work, events = changes.work_of_forces(trace), changes.given_by_events(trace)
-        given = _summed(self._given, work + events + _lifted(trace) + _pulled(trace))
+        given = _summed(self._given, work + events + _lifted(trace, sums) + sums.pulled)
         own = mechanical_energy(trace) - given
         lowest = np.minimum(np.minimum.accumulate(own), self._lowest)
         lowest_potential = np.minimum(np.minimum.accumulate(potential), self._lowest_potential)
@@ -101,21 +89,13 @@ class EnergyBalance:
         return result
 
 
-def _pulled(trace: Trace) -> Floats:
-    """Return the energy that contacts gain in each step by drawing their bodies together [J]."""
-    contacts = contacts_of_log(trace)
-    if contacts is None or not shares.pull(contacts).any():
-        return np.zeros(len(trace.step))
-    return by_step(trace, contacts, shares.given_by_pull(contacts))
-
-
 def _summed(before: float, numbers: Floats) -> Floats:
     """Return the running sum behind what was summed before, rounded as if it were one."""
     sums: Floats = np.cumsum(np.concatenate(([before], numbers)))[1:]
     return sums
 
 
-def momentum_imbalance(trace: Trace) -> Floats:
+def momentum_imbalance(trace: Trace, sums: ContactSums) -> Floats:
     """Return the part of each step's change of momentum without a cause, over all causes [-]."""
     gaps = np.zeros(len(trace.step))
     momentum = np.column_stack([trace.step[f"momentum_{axis}"] for axis in "xyz"])
@@ -123,9 +103,8 @@ def momentum_imbalance(trace: Trace) -> Floats:
     dt = trace.clock.elapsed(trace.step["step"][:-1], trace.step["step"][1:])
     gravity, mass = vector(trace.config.scene.gravity), changes.masses(trace)
     forces = changes.forces(trace)
-    outer, size = _impulses(trace)
     others = shares.outer_impulse(trace)
-    outer, size = outer + others, size + np.sqrt((others**2).sum(axis=1))
+    outer, size = sums.outer + others, sums.size + np.sqrt((others**2).sum(axis=1))
     expected = (mass[1:, None] * gravity + forces[1:]) * dt[:, None] + outer[1:]
     imbalance = np.diff(momentum, axis=0) - expected
     carried = np.sqrt(2.0 * mass * trace.step["kinetic_energy"])
@@ -138,21 +117,6 @@ def momentum_imbalance(trace: Trace) -> Floats:
     return gaps
 
 
-def _impulses(trace: Trace) -> tuple[Floats, Floats]:
-    """Return the impulse on everything movable (n, 3), and the sum of sizes, of each step [N s]."""
-    contacts = contacts_of_log(trace)
-    outer, size = np.zeros((len(trace.step), 3)), np.zeros(len(trace.step))
-    if contacts is None or len(contacts) == 0:
-        return outer, size
-    bodies = trace.config.scene.bodies
-    movable = np.array([is_movable(bodies[name]) for name in trace.bodies], dtype=float)
-    vectors = impulses(contacts)
-    sign = movable[contacts["body_b"]] - movable[contacts["body_a"]]  # 0 between two movable ones
-    for axis in range(3):
-        outer[:, axis] = by_step(trace, contacts, sign * vectors[:, axis])
-    return outer, by_step(trace, contacts, np.sqrt((vectors**2).sum(axis=1)))
-
-
 def _own_weight(trace: Trace) -> float:
     """Return the sum of m |g| times the radius of each movable body [J]."""
     pull = math.hypot(*trace.config.scene.gravity)
@@ -160,15 +124,10 @@ def _own_weight(trace: Trace) -> float:
     return pull * sum(mass_of(one) * bounding_radius(one.shape) for one in bodies)
 
 
-def _lifted(trace: Trace) -> Floats:
+def _lifted(trace: Trace, sums: ContactSums) -> Floats:
     """Return the most that the projection can lift in each step [J]."""
-    contacts = contacts_of_log(trace)
-    share = trace.config.numerics.projection
     pull = math.hypot(*trace.config.scene.gravity)
-    if contacts is None or len(contacts) == 0 or share == 0.0 or pull == 0.0:
+    if trace.config.numerics.projection == 0.0 or pull == 0.0:
         return np.zeros(len(trace.step))
-    dt = trace.clock.lengths(contacts["step"])
-    deep = -(contacts["separation"] + contacts["normal_velocity"] * dt)
-    opened = share * np.maximum(deep - trace.config.numerics.slop, 0.0)
-    lifted: Floats = pull * changes.masses(trace) * by_step(trace, contacts, opened)
+    lifted: Floats = pull * changes.masses(trace) * sums.opened
     return lifted

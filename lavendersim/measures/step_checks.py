@@ -23,11 +23,10 @@ import numpy as np
 
 from lavendersim.geometry.bodies import is_movable
 from lavendersim.geometry.shapes import thickness
-from lavendersim.measures.balance import EnergyBalance, contacts_of_log, momentum_imbalance
+from lavendersim.measures.balance import EnergyBalance, momentum_imbalance
 from lavendersim.measures.changes import events_of_bodies, first_starting_at
-from lavendersim.measures.columns import rows_of_steps
+from lavendersim.measures.contact_sums import ContactSums, contacts_of_log, excesses, summed
 from lavendersim.measures.interfaces import Floats, Rows, Trace
-from lavendersim.measures.kinds.optimality import friction_of
 from lavendersim.measures.specs.always import CHECKS, DERIVED, FINITE, NONE, Always
 
 ENERGY: Final = "energy"  # the one check that needs what went before
@@ -50,24 +49,33 @@ class StepChecks:
     A section after the first begins with the last state of the one before, without its contacts.
     """
 
-    def __init__(self, always: Always, checks: Container[str] = CHECKS) -> None:
-        """checks: those of CHECKS that may be made; the others are left out."""
-        self._always, self._energy = always, EnergyBalance()
+    def __init__(
+        self,
+        always: Always,
+        checks: Container[str] = CHECKS,
+        summed: Callable[[Trace], ContactSums] = summed,
+    ) -> None:
+        """checks: those of CHECKS that may be made; the others are left out.
+
+        summed: takes the sums over the contacts of each step.
+        """
+        self._always, self._energy, self._summed = always, EnergyBalance(), summed
         self._checks = [check for check in checks_of(always) if check in checks]
         self._bounds: dict[str, float] = {}
 
     def over(self, trace: Trace) -> Iterator[CheckedSteps]:
         """Yield the checks that are made of a log or its next section, in the order of CHECKS."""
+        sums = self._summed(trace)
         for check in self._checks:
             if check not in self._bounds:
                 self._bounds[check] = bound_of(check, self._always, trace)
-            numbers, bodies = self._numbers(check, trace)
+            numbers, bodies = self._numbers(check, trace, sums)
             yield CheckedSteps(check, UNITS[check], self._bounds[check], numbers, bodies)
 
-    def _numbers(self, check: str, trace: Trace) -> Numbers:
+    def _numbers(self, check: str, trace: Trace, sums: ContactSums) -> Numbers:
         if check == ENERGY:
-            return self._energy.created(trace), _no_body
-        return NUMBERS[check](trace)
+            return self._energy.created(trace, sums), _no_body
+        return NUMBERS[check](trace, sums)
 
 
 def checks_of(always: Always | None) -> tuple[str, ...]:
@@ -96,19 +104,14 @@ def _no_body(row: int) -> str:
     return ""
 
 
-def _finite(trace: Trace) -> Numbers:
+def _finite(trace: Trace, sums: ContactSums) -> Numbers:
     step = trace.step
-    wrong = np.zeros(len(step))
+    wrong = sums.not_finite.copy()
     for name in step.dtype.names or ():
         wrong += ~np.isfinite(step[name])
     pose: Floats = np.empty((len(step), 0, 0)) if "/tf" in trace.absent else trace.pose
     of_body = np.logical_not(np.isfinite(pose).all(axis=2))
     wrong += of_body.sum(axis=1)
-    contacts = contacts_of_log(trace)
-    if contacts is not None and len(contacts):
-        rows = rows_of_steps(step, contacts)
-        for name in _not_finite(contacts):
-            wrong += np.bincount(rows[~np.isfinite(contacts[name])], minlength=len(step))
 
     def first(row: int) -> str:
         return trace.bodies[int(np.argmax(of_body[row]))] if of_body[row].any() else ""
@@ -116,42 +119,31 @@ def _finite(trace: Trace) -> Numbers:
     return wrong, first
 
 
-def _not_finite(contacts: Rows) -> list[str]:
-    """Return the columns of floats that have a number that is not finite, in one pass."""
-    places = dict(contacts.dtype.fields or {})
-    floats = {name: int(places[name][1]) for name in places if places[name][0].kind == "f"}
-    if contacts.dtype.itemsize % 8 or any(offset % 8 for offset in floats.values()):
-        return list(floats)
-    words = np.ascontiguousarray(contacts).view("f8").reshape(len(contacts), -1)
-    wrong = (~np.isfinite(words)).any(axis=0)  # columns of integers are looked at, and left out
-    return [name for name, offset in floats.items() if wrong[offset // 8]]
+def _momentum(trace: Trace, sums: ContactSums) -> Numbers:
+    return momentum_imbalance(trace, sums), _no_body
 
 
-def _momentum(trace: Trace) -> Numbers:
-    return momentum_imbalance(trace), _no_body
+def _penetration(trace: Trace, sums: ContactSums) -> Numbers:
+    return sums.deepest, _of_contacts(trace, lambda contacts: contacts["penetration"])
 
 
-def _penetration(trace: Trace) -> Numbers:
-    contacts = contacts_of_log(trace)
-    if contacts is None:
-        return np.zeros(len(trace.step)), _no_body
-    return _of_contacts(trace, contacts, contacts["penetration"])
+def _impulses(trace: Trace, sums: ContactSums) -> Numbers:
+    return sums.excess, _of_contacts(trace, lambda contacts: excesses(trace, contacts))
 
 
-def _residual(trace: Trace) -> Numbers:
+def _residual(trace: Trace, sums: ContactSums) -> Numbers:
     residual = np.asarray(trace.step["residual"], dtype=float)
 
     def worst(row: int) -> str:
         index = int(trace.step["residual_contact"][row])
         if index < 0 or "/contacts" in trace.absent:
             return ""
-        first = np.searchsorted(trace.contact["step"], trace.step["step"][row])
-        return _pair(trace, trace.contact[int(first) + index])
+        return _pair(trace, contacts_of_row(trace, row)[index])
 
     return residual, worst
 
 
-def _speed(trace: Trace) -> Numbers:
+def _speed(trace: Trace, sums: ContactSums) -> Numbers:
     pose, step = trace.pose, trace.step["step"]
     fastest, body_of_row = np.zeros(len(step)), np.zeros(len(step), dtype=int)
     dt = trace.clock.elapsed(step[:-1], step[1:])
@@ -175,62 +167,36 @@ def _without_jumps(trace: Trace, name: str, speed: Floats) -> Floats:
     return speed
 
 
-def _impulses(trace: Trace) -> Numbers:
-    contacts = contacts_of_log(trace)
-    if contacts is None or len(contacts) == 0:
-        return np.zeros(len(trace.step)), _no_body
-    pushed = contacts["impulse_n"]
-    names = contacts.dtype.names or ()
-    excess = np.maximum(-pushed, 0.0)
-    pressing = np.maximum(pushed, 0.0)
-    if "impulse_t1" in names:
-        bodies = trace.config.scene.bodies
-        mu = friction_of(contacts, [bodies[name].surface for name in trace.bodies])
-        first, second = contacts["impulse_t1"], contacts["impulse_t2"]
-        pyramid = trace.config.numerics.friction_cone == "pyramid"
-        size = np.maximum(abs(first), abs(second)) if pyramid else np.hypot(first, second)
-        excess = np.maximum(excess, size - mu * pressing)
-    # divided by its arm [m], an angular impulse is compared with the normal one
-    for name, components in (
-        ("torsional_friction", ("angular_impulse_n",)),
-        ("rolling_friction", ("angular_impulse_t1", "angular_impulse_t2")),
-    ):
-        if name in names:
-            size = np.hypot.reduce([contacts[one] for one in components])
-            arm = contacts[name]
-            with np.errstate(invalid="ignore", divide="ignore"):
-                beyond = np.where(size > 0.0, size / arm - pressing, 0.0)
-            excess = np.maximum(excess, beyond)
-    rows = rows_of_steps(trace.step, contacts)
-    largest = np.zeros(len(trace.step))
-    with np.errstate(invalid="ignore", divide="ignore"):
-        np.maximum.at(largest, rows, np.abs(pushed))
-        share = np.where(excess == 0.0, 0.0, excess / largest[rows])
-    return _of_contacts(trace, contacts, share)
-
-
-def _of_contacts(trace: Trace, contacts: Rows, numbers: Floats) -> Numbers:
-    """Return the largest number of the contacts of each step, and whose it is."""
-    rows = rows_of_steps(trace.step, contacts)
-    largest = np.zeros(len(trace.step))
-    with np.errstate(invalid="ignore"):
-        np.maximum.at(largest, rows, numbers)  # NaN stays
+def _of_contacts(trace: Trace, numbers: Callable[[Rows], Floats]) -> Callable[[int], str]:
+    """Return what names the bodies of the contact with the largest number in a row's step."""
 
     def worst(row: int) -> str:
-        mine = np.flatnonzero(rows == row)
-        if len(mine) == 0:
+        contacts = contacts_of_row(trace, row)
+        if len(contacts) == 0:
             return ""
-        ranked = np.where(np.isnan(numbers[mine]), np.inf, numbers[mine])
-        return _pair(trace, contacts[mine[int(np.argmax(ranked))]])
+        mine = numbers(contacts)
+        return _pair(trace, contacts[int(np.argmax(np.where(np.isnan(mine), np.inf, mine)))])
 
-    return largest, worst
+    return worst
+
+
+def contacts_of_row(trace: Trace, row: int) -> Rows:
+    """Return the contacts of a row's step; none where the log has none."""
+    contacts = contacts_of_log(trace)
+    if contacts is None or len(contacts) == 0:
+        none: Rows = np.empty(0, [])
+        return none
+    step = trace.step["step"][row]
+    first, last = (np.searchsorted(contacts["step"], step, side) for side in ("left", "right"))
+    mine: Rows = contacts[first:last]
+    return mine
 
 
 def _pair(trace: Trace, contact: np.void) -> str:
     return f"{trace.bodies[contact['body_a']]} and {trace.bodies[contact['body_b']]}"
 
 
-NUMBERS: Final[dict[str, Callable[[Trace], Numbers]]] = {
+NUMBERS: Final[dict[str, Callable[[Trace, ContactSums], Numbers]]] = {
     "finite": _finite,
     "penetration": _penetration,
     "impulses": _impulses,

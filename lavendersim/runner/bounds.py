@@ -15,7 +15,9 @@ import numpy as np
 from lavendersim.cell import CellConfig
 from lavendersim.clock import Clock
 from lavendersim.measures.always import WorstStates
-from lavendersim.measures.interfaces import Floats, Rows
+from lavendersim.measures.contact_sums import ContactSums, nothing
+from lavendersim.measures.contact_sums_kernel import RunningSums
+from lavendersim.measures.interfaces import Floats, Rows, Trace
 from lavendersim.measures.sections import Section
 from lavendersim.measures.specs.always import BEYOND_BOUNDS, STOPPING, Always
 from lavendersim.measures.step_checks import CheckedSteps, StepChecks
@@ -33,7 +35,13 @@ class Bounds:
         clock: Clock,
         absent: Mapping[str, str],
     ) -> None:
-        self._checks = None if always is None else StepChecks(always)
+        self._sums = RunningSums(config, bodies, clock)
+        touches = "/contacts" not in absent
+
+        def summed(part: Trace) -> ContactSums:
+            return self._sums(part.step, part.contact) if touches else nothing(len(part.step))
+
+        self._checks = None if always is None else StepChecks(always, summed=summed)
         self._stops = always is not None and always.stop
         self.worst = None if always is None else WorstStates(always)
         self._cell = (bodies, config, clock, absent)

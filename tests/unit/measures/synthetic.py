@@ -33,6 +33,7 @@ CONTACT = [
     ("nx", "f8"),
     ("ny", "f8"),
     ("nz", "f8"),
+    ("separation", "f8"),
     ("penetration", "f8"),
     ("approach_velocity", "f8"),
     ("normal_velocity", "f8"),
@@ -149,7 +150,7 @@ def contacts(rows: Sequence[tuple[int, float, float]]) -> np.ndarray:
     for row, (step, impulse, penetration) in zip(table, rows, strict=True):
         row["step"], row["body_a"], row["body_b"] = step, 0, 1
         row["nz"] = 1.0
-        row["penetration"] = penetration
+        row["separation"], row["penetration"] = -penetration, penetration
         row["impulse_n"], row["force_n"] = impulse, impulse * 100.0
         row["approach_velocity"], row["normal_velocity"] = -2.0, 1.0
         row["inverse_effective_mass"] = 1.0 / MASS

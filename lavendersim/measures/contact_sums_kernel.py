@@ -1,0 +1,167 @@
+"""The sums over contacts (`contact_sums`) of a cell that runs, by one kernel in one pass.
+
+It serves rows of every form: which columns they have comes as an array, -1 for those they lack.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from math import sqrt
+from typing import Any, Final
+
+import numpy as np
+
+from lavendersim.cell import CellConfig
+from lavendersim.cell.mixing import mixed
+from lavendersim.clock import Clock
+from lavendersim.engine.compile import compiling, inner
+from lavendersim.engine.kernel_cache import cached
+from lavendersim.engine.spec import Spec
+from lavendersim.geometry.bodies import is_movable
+from lavendersim.measures import shares
+from lavendersim.measures.contact_sums import ContactSums, nothing
+from lavendersim.measures.interfaces import Rows
+
+COLUMNS: Final = (
+    *("body_a", "body_b", "nx", "ny", "nz", "t1x", "t1y", "t1z"),
+    *("separation", "penetration", "normal_velocity", "impulse_n", "impulse_t1", "impulse_t2"),
+    *("friction", "torsional_friction", "angular_impulse_n"),
+    *("rolling_friction", "angular_impulse_t1", "angular_impulse_t2"),
+)
+A, B, NX, NY, NZ, T1X, T1Y, T1Z = range(8)
+SEPARATION, PENETRATION, NORMAL_VELOCITY, IMPULSE_N, IMPULSE_T1, IMPULSE_T2 = range(8, 14)
+FRICTION, TORSIONAL, ANGULAR_N, ROLLING, ANGULAR_T1, ANGULAR_T2 = range(14, 20)
+# Columns of what the kernel fills for each step.
+NOT_FINITE, DEEPEST, EXCESS, OUTER_X, OUTER_Y, OUTER_Z, SIZE, OPENED, PULLED = range(9)
+VARIES: Final = -1.0  # in place of a coefficient that changes with the motion
+
+
+def _larger(one, other):
+    """Return the larger of two numbers; NaN is larger than anything."""
+    return one if one > other or one != one else other
+
+
+def _length(first, second):
+    """Return the length of a vector of two components that are not below 0."""
+    larger = first if first > second or first != first else second
+    if larger == 0.0:
+        return 0.0
+    one, other = first / larger, second / larger
+    return larger * sqrt(one * one + other * other)
+
+
+def _make_sum(spec: Spec) -> Any:
+    larger, length = inner(_larger), inner(_length)
+
+    def sum_contacts(numbers, bodies, start, columns, floats, pulls, of_body, mu, choices, sums):
+        projection, slop, pyramid = choices[0], choices[1], choices[2] == 1.0
+        for i in range(start.shape[0] - 1):
+            out, dt, pushed = sums[i], sums[i, OPENED], 0.0
+            out[:] = 0.0
+            for c in range(start[i], start[i + 1]):
+                row = numbers[c]
+                for k in floats:
+                    number = row[k]
+                    if number - number != 0.0:
+                        out[NOT_FINITE] += 1.0
+                a, b = bodies[c, columns[A]], bodies[c, columns[B]]
+                n, v_n = row[columns[IMPULSE_N]], row[columns[NORMAL_VELOCITY]]
+                pull = 0.0
+                for k in pulls:
+                    pull += row[k]
+                net = n - pull if len(pulls) else n
+                x, y, z = row[columns[NX]], row[columns[NY]], row[columns[NZ]]
+                jx, jy, jz = x * net, y * net, z * net
+                excess, pressing = larger(-n, 0.0), larger(n, 0.0)
+                if columns[IMPULSE_T1] >= 0:
+                    one, two = row[columns[IMPULSE_T1]], row[columns[IMPULSE_T2]]
+                    tx, ty, tz = row[columns[T1X]], row[columns[T1Y]], row[columns[T1Z]]
+                    jx, jy, jz = jx + tx * one, jy + ty * one, jz + tz * one
+                    jx += (y * tz - z * ty) * two
+                    jy += (z * tx - x * tz) * two
+                    jz += (x * ty - y * tx) * two
+                    one, two = abs(one), abs(two)
+                    size = larger(one, two) if pyramid else length(one, two)
+                    between = mu[int(of_body[a, 0]), int(of_body[b, 0])]
+                    if between == VARIES:
+                        between = row[columns[FRICTION]]
+                    excess = larger(excess, size - between * pressing)
+                if columns[TORSIONAL] >= 0:
+                    size = abs(row[columns[ANGULAR_N]])
+                    if size != 0.0:
+                        excess = larger(excess, size / row[columns[TORSIONAL]] - pressing)
+                if columns[ROLLING] >= 0:
+                    size = length(abs(row[columns[ANGULAR_T1]]), abs(row[columns[ANGULAR_T2]]))
+                    if size != 0.0:
+                        excess = larger(excess, size / row[columns[ROLLING]] - pressing)
+                sign = of_body[b, 1] - of_body[a, 1]
+                out[OUTER_X] += sign * jx
+                out[OUTER_Y] += sign * jy
+                out[OUTER_Z] += sign * jz
+                out[SIZE] += sqrt(jx * jx + jy * jy + jz * jz)
+                deep = -(row[columns[SEPARATION]] + v_n * dt)
+                out[OPENED] += projection * larger(deep - slop, 0.0)
+                out[PULLED] += larger(-pull * v_n, 0.0)
+                out[DEEPEST] = larger(row[columns[PENETRATION]], out[DEEPEST])
+                out[EXCESS] = larger(excess, out[EXCESS])
+                pushed = larger(abs(n), pushed)
+            if out[EXCESS] != 0.0:
+                out[EXCESS] = out[EXCESS] / pushed
+
+    return inner(sum_contacts)
+
+
+@cache
+def _kernel() -> Any:
+    return cached(_make_sum, Spec())
+
+
+class RunningSums:
+    """Takes the sums of one cell's blocks."""
+
+    def __init__(self, config: CellConfig, bodies: list[str], clock: Clock) -> None:
+        known = [config.scene.bodies[name] for name in bodies]
+        surfaces = [body.surface for body in known]
+        different = list(dict.fromkeys(surfaces))
+        number = {surface: row for row, surface in enumerate(different)}
+        rows = [(number[body.surface], is_movable(body)) for body in known]
+        self._of_body = np.array(rows, np.float64).reshape(-1, 2)
+        self._mu = np.zeros((len(different), len(different)))
+        for i, one in enumerate(different):
+            for j, other in enumerate(different):
+                between = mixed(one, other)
+                varies = shares.varies_friction(between)
+                self._mu[i, j] = VARIES if varies else between.friction
+        numerics = config.numerics
+        pyramid = numerics.friction_cone == "pyramid"
+        self._choices = np.array([numerics.projection, numerics.slop, float(pyramid)])
+        self._clock = clock
+
+    def __call__(self, step: Rows, contacts: Rows) -> ContactSums:
+        """Return the sums of every step; contacts: rows as the engine wrote them, by step."""
+        if len(contacts) == 0:
+            return nothing(len(step))
+        row = contacts.dtype
+        places = {name: int(place[1]) // 8 for name, place in (row.fields or {}).items()}
+        columns = np.array([places.get(name, -1) for name in COLUMNS])
+        floats = np.array([places[name] for name in places if row[name].kind == "f"])
+        pulls = np.array([places[name] for name in shares.PULLS if name in places], np.int64)
+        start = np.zeros(len(step) + 1, np.int64)
+        start[1:] = np.searchsorted(contacts["step"], step["step"], "right")
+        sums = np.zeros((len(step), 9))
+        sums[:, OPENED] = self._clock.lengths(step["step"])  # where the kernel finds it
+        words = np.ascontiguousarray(contacts)
+        with compiling():
+            _kernel()(
+                *(words.view(kind).reshape(len(words), -1) for kind in ("f8", "i8")),
+                *(start, columns, floats, pulls, self._of_body, self._mu, self._choices, sums),
+            )
+        return ContactSums(
+            not_finite=sums[:, NOT_FINITE],
+            deepest=sums[:, DEEPEST],
+            excess=sums[:, EXCESS],
+            outer=sums[:, OUTER_X : OUTER_Z + 1],
+            size=sums[:, SIZE],
+            opened=sums[:, OPENED],
+            pulled=sums[:, PULLED],
+        )
