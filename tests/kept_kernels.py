@@ -1,4 +1,4 @@
-"""Kernels that a folder keeps, told apart: those of scenes, and those that lay out logs."""
+"""Kernels that a folder keeps, by what they serve: those of scenes, and those that lay out logs."""
 
 from __future__ import annotations
 

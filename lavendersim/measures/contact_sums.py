@@ -1,7 +1,7 @@
 """What the checks of every step need of its contacts: sums and maxima over the rows of each step.
 
 `summed` takes them over a log, in numpy. While a cell runs a kernel takes them over the rows as the
-engine wrote them (`contact_sums_kernel`), to the same bits: sums go row by row, and what is
+engine wrote them (`runner.contact_sums_kernel`), to the same bits: sums go row by row, and what is
 computed of a row has the same operations in the same order.
 """
 

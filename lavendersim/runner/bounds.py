@@ -16,12 +16,13 @@ from lavendersim.cell import CellConfig
 from lavendersim.clock import Clock
 from lavendersim.measures.always import WorstStates
 from lavendersim.measures.contact_sums import ContactSums, nothing
-from lavendersim.measures.contact_sums_kernel import RunningSums
 from lavendersim.measures.interfaces import Floats, Rows, Trace
 from lavendersim.measures.sections import Section
 from lavendersim.measures.specs.always import BEYOND_BOUNDS, STOPPING, Always
 from lavendersim.measures.step_checks import CheckedSteps, StepChecks
 from lavendersim.trace import Block
+
+from .contact_sums_kernel import RunningSums
 
 
 class Bounds:

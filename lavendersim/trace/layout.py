@@ -2,7 +2,7 @@
 
 Every layout is a whole MCAP Message record (opcode, length, channel, sequence, log and publish
 time, data), so a chunk is filled by copying rows. Slots: `sequence`, `clock` (log and publish
-time), `timestamp` (protobuf), and the columns under the names given below.
+time), `seconds` and `nanos` (protobuf), and the columns under the names given below.
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 
 Numbers come as two tables of eight-byte words, bit for bit: `words`, the rows of a column table as
 they stand in memory, and `heads`, what a step has beside them. Slots of eight bytes take a column
-of either; of the others (a sequence, a timestamp, a varint) the width tells what they are.
+of either, others the low bytes of a head, or a varint of their width.
 """
 
 from __future__ import annotations
@@ -13,16 +13,17 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lavendersim.trace.wire import Bytes, Rows, Template
+from lavendersim.trace.wire import NANOSECONDS, VARINT_WIDTH, Bytes, Rows, Template
 
 Words = NDArray[np.uint64]
 WORD: Final = 8  # [B]
-STEP, TIME = 0, 1  # columns of heads: the step's number, and its time [ns]
-OF_STEP: Final = {"sequence": [STEP], "clock": [TIME], "timestamp": [TIME]}
+STEP, TIME, SECONDS, NANOS = range(4)  # columns of heads: the step's number, and its time [ns]
+MORE: Final = 4  # where what a message has of its own begins
+OF_STEP: Final = {"sequence": [STEP], "clock": [TIME], "seconds": [SECONDS], "nanos": [NANOS]}
 
 
 class MessageForm(NamedTuple):
-    """A layout and where its numbers come from; see `message_kernels.fill`."""
+    """A layout and where its numbers come from; see `engine.message_kernel`."""
 
     template: Bytes
     slots: Words
@@ -36,9 +37,9 @@ class MessageForm(NamedTuple):
     def fill(self, data: Bytes, starts: Rows, words: Words, heads: Words) -> None:
         """Write one message per start into the bytes of a chunk, which has room for them."""
         if len(starts):
-            from lavendersim.trace.message_kernels import fill  # late: numba
+            from lavendersim.engine.message_kernel import fill_messages  # late: numba
 
-            fill()(
+            fill_messages()(
                 data,
                 starts.astype(np.uint64),
                 self.template,
@@ -59,7 +60,7 @@ def message_form(
     """
     slots: list[tuple[int, int]] = []
     head_slots: list[tuple[int, int]] = []
-    odd_slots: list[tuple[int, int, int]] = []
+    odd_slots: list[tuple[int, int, int, int]] = []
     for name, (size, offsets) in template.slots.items():
         columns = words.get(name) or {**OF_STEP, **heads}[name]
         if len(columns) == 1:
@@ -70,9 +71,9 @@ def message_form(
             elif size == WORD:
                 head_slots.append((offset, column))
             else:
-                odd_slots.append((offset, column, size))
+                odd_slots.append((offset, column, size, size == VARINT_WIDTH))
     data = np.frombuffer(template.data, np.uint8).copy()
-    return MessageForm(data, _table(slots, 2), _table(head_slots, 2), _table(odd_slots, 3))
+    return MessageForm(data, _table(slots, 2), _table(head_slots, 2), _table(odd_slots, 4))
 
 
 def _table(rows: Sequence[Sequence[int]], width: int) -> Words:
@@ -102,9 +103,10 @@ def _is_of_words(row: np.dtype[Any]) -> bool:
 
 def heads_of(step: Rows, *more: Rows) -> Words:
     """Return number and time of steps, and more integers or floats of each, as words."""
-    heads = np.empty((len(step), 2 + len(more)), np.uint64)
+    heads = np.empty((len(step), MORE + len(more)), np.uint64)
     heads[:, STEP] = step["step"]
     heads[:, TIME] = step["time_ns"]
-    for column, numbers in enumerate(more, 2):
+    np.divmod(heads[:, TIME], NANOSECONDS, heads[:, SECONDS], heads[:, NANOS])
+    for column, numbers in enumerate(more, MORE):
         heads[:, column] = numbers.view(np.uint64)
     return heads

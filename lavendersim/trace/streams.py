@@ -13,6 +13,8 @@ from lavendersim.trace.blocks import Counted, cumulative
 from lavendersim.trace.contact_columns import ContactGroup, column_form, message_of
 from lavendersim.trace.container import INDEX_ENTRY, Messages
 from lavendersim.trace.message_form import (
+    MORE,
+    STEP,
     TIME,
     WORD,
     columns_of_words,
@@ -76,9 +78,11 @@ class Light:
             light.embed(layout.plot_layout(topic))
         places = columns_of_words(step)
         columns = [places[column.name] for column in self.step_columns]
-        heads = {"plot": [2 + k for k in range(len(self.plots))]} if self.plots else {}
+        heads = {"plot": [MORE + k for k in range(len(self.plots))]} if self.plots else {}
         self._light = message_form(light, {"step": columns}, heads)
-        self._sweeps = message_form(layout.residual_layout(), {}, {"step": [0], "length": [2]})
+        self._sweeps = message_form(
+            layout.residual_layout(), {}, {"step": [STEP], "length": [MORE]}
+        )
         places = columns_of_words(residual)
         columns = [places[column.name] for column in self.residual_columns]
         row = layout.residual_row_layout(self.residual_columns)
@@ -165,7 +169,7 @@ class Points:
         self.form = point_form(contact)
         frame = layout.root_frame(bodies)
         cloud = layout.contact_layout(self.form.fields, self.form.size, frame)
-        self._cloud = message_form(cloud, {}, {"length": [2], "data_length": [3]})
+        self._cloud = message_form(cloud, {}, {"length": [MORE], "data_length": [MORE + 1]})
 
     def sizes(self, counted: Counted) -> Rows:
         """Return the bytes of each step [B] (n,)."""

@@ -22,7 +22,6 @@ Bytes = NDArray[np.uint8]
 Rows = NDArray[Any]
 
 VARINT_WIDTH = 5  # bytes of a padded varint: 35 bits, enough for 1,000 years of seconds
-TIMESTAMP_WIDTH = 2 * VARINT_WIDTH + 1  # seconds, the tag of nanos, nanos
 NANOSECONDS = 1_000_000_000
 
 # protobuf wire types
@@ -138,7 +137,8 @@ class Template:
 
     def timestamp(self, number: int) -> Template:
         """Append field `number` holding a google.protobuf.Timestamp of fixed width."""
-        inner = Template().constant(tag(1, VARINT)).slot("timestamp", TIMESTAMP_WIDTH)
+        inner = Template().constant(tag(1, VARINT)).slot("seconds", VARINT_WIDTH)
+        inner.constant(tag(2, VARINT)).slot("nanos", VARINT_WIDTH)
         return self.message(number, inner)
 
     def rows(self, count: int) -> Bytes:

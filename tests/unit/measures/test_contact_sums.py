@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 from lavendersim.measures.contact_sums import ContactSums, excesses, summed
-from lavendersim.measures.contact_sums_kernel import COLUMNS, RunningSums
 from lavendersim.measures.sections import Section
+from lavendersim.runner.contact_sums_kernel import COLUMNS, RunningSums
 from tests.made_cells import made_cell
 
 BODIES = ("floor", "ball", "crate", "belt")

@@ -1,25 +1,23 @@
-"""Kernels that lay messages out: rows of numbers into bytes, where templates have their slots.
+"""The kernel that lays messages of a log out: rows of numbers into bytes, at slots of templates.
 
 Compiled once, for logs of every form: what differs between forms (template, slots, columns) comes
-as arrays. They release the interpreter lock, so chunks are laid out beside the simulation. Indices
+as arrays. It releases the interpreter lock, so chunks are laid out beside the simulation. Indices
 are unsigned: numba wraps signed ones, and bytes side by side are then stored one by one.
 """
 
 from __future__ import annotations
 
 from functools import cache
-from typing import Any
 
 import numpy as np
 
-from lavendersim.engine.compile import compiling, inner
-from lavendersim.engine.kernel_cache import cached
-from lavendersim.engine.spec import Spec
-from lavendersim.trace.wire import NANOSECONDS, TIMESTAMP_WIDTH, VARINT_WIDTH
+from .compile import compiling, inner
+from .kernel_cache import cached
+from .spec import Spec
 
 U = np.uint64
-NANOS_TAG = U(0x10)  # field 2, a varint
-_LAST = U(VARINT_WIDTH - 1)
+OFFSET, COLUMN, WIDTH, IS_VARINT = U(0), U(1), U(2), U(3)  # of a slot
+_ONE, _SEVEN, _EIGHT, _LOW, _MORE = U(1), U(7), U(8), U(0x7F), U(0x80)
 
 
 def _put_word(data, at, word):
@@ -34,16 +32,16 @@ def _put_word(data, at, word):
     data[at + U(7)] = np.uint8(word >> U(56))
 
 
-def _put_varint(data, at, value):
+def _put_varint(data, at, width, value):
     """Write a varint of fixed width: padded with continuation bits."""
-    for k in range(_LAST):
-        data[at + k] = np.uint8(value >> (U(7) * k) & U(0x7F) | U(0x80))
-    data[at + _LAST] = np.uint8(value >> (U(7) * _LAST) & U(0x7F))
+    last = width - _ONE
+    for k in range(last):
+        data[at + k] = np.uint8(value >> (_SEVEN * k) & _LOW | _MORE)
+    data[at + last] = np.uint8(value >> (_SEVEN * last) & _LOW)
 
 
-def _make_fill(spec: Spec) -> Any:
+def _make_fill(spec: Spec):
     put_word, put_varint = inner(_put_word), inner(_put_varint)
-    timestamp, varint, second = U(TIMESTAMP_WIDTH), U(VARINT_WIDTH), U(NANOSECONDS)
 
     def fill(data, starts, template, slots, words, head_slots, heads, odd_slots):
         for i in range(U(len(starts))):
@@ -51,38 +49,34 @@ def _make_fill(spec: Spec) -> Any:
             for k in range(U(len(template))):
                 data[start + k] = template[k]
             for s in range(U(len(slots))):
-                put_word(data, start + slots[s, U(0)], words[i, slots[s, U(1)]])
+                put_word(data, start + slots[s, OFFSET], words[i, slots[s, COLUMN]])
             for s in range(U(len(head_slots))):
-                put_word(data, start + head_slots[s, U(0)], heads[i, head_slots[s, U(1)]])
+                put_word(data, start + head_slots[s, OFFSET], heads[i, head_slots[s, COLUMN]])
             for s in range(U(len(odd_slots))):
-                at, width = start + odd_slots[s, U(0)], odd_slots[s, U(2)]
-                word = heads[i, odd_slots[s, U(1)]]
-                if width == timestamp:
-                    put_varint(data, at, word // second)
-                    data[at + varint] = np.uint8(NANOS_TAG)
-                    put_varint(data, at + varint + U(1), word % second)
-                elif width == varint:
-                    put_varint(data, at, word)
+                at, width = start + odd_slots[s, OFFSET], odd_slots[s, WIDTH]
+                word = heads[i, odd_slots[s, COLUMN]]
+                if odd_slots[s, IS_VARINT] == _ONE:
+                    put_varint(data, at, width, word)
                 else:
                     for k in range(width):
-                        data[at + k] = np.uint8(word >> (U(8) * k))
+                        data[at + k] = np.uint8(word >> (_EIGHT * k))
 
     return inner(fill)
 
 
 @cache
-def fill() -> Any:
+def fill_messages():
     """Return `kernel(data, starts, template, slots, words, head_slots, heads, odd_slots)`.
 
     It writes one message, or one row of one, per start; the caller guarantees room.
     data: bytes of a chunk. starts: (n,), where each goes. template: its bytes, slots among them.
     words: (n, m), heads: (n, h), numbers bit for bit. slots, head_slots: (k, 2), byte in the
-    template, and column of words or heads whose eight bytes go there. odd_slots: (k, 3), width [B]
-    besides, and how many low bytes of a head go there, or as a varint or a Timestamp of that width
-    (whole nanoseconds). All but bytes are uint64.
+    template, and column of words or heads whose eight bytes go there. odd_slots: (k, 4), width [B]
+    besides, and whether a varint of that width goes there, or as many low bytes. All but bytes are
+    uint64.
     """
     kernel = cached(_make_fill, Spec())
-    none, no_rows = np.zeros(0, np.uint8), np.zeros((0, 3), U)
+    none, no_rows = np.zeros(0, np.uint8), np.zeros((0, 4), U)
     with compiling():  # here, and not in one of the threads that close chunks
         kernel(none, np.zeros(0, U), none, no_rows, no_rows, no_rows, no_rows, no_rows)
     return kernel
