@@ -39,7 +39,8 @@ from mcap.records import (
 )
 from numpy.typing import NDArray
 
-MAGIC = b"\x89MCAP0\r\n"
+from lavendersim.trace.whole import MAGIC
+
 LIBRARY = "lavender"
 CRC_KEY = "crc32"
 COMPRESSION_LEVEL = 1

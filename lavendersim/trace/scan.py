@@ -16,7 +16,7 @@ from mcap.opcode import Opcode
 from mcap.records import Attachment, AttachmentIndex, Chunk, MetadataIndex
 
 from lavendersim.errors import TraceError
-from lavendersim.trace.container import MAGIC, FileIndex, index_of, message_index
+from lavendersim.trace.container import FileIndex, index_of, message_index
 from lavendersim.trace.index import (
     PARSERS,
     message_indexes,
@@ -27,6 +27,7 @@ from lavendersim.trace.index import (
     spans,
 )
 from lavendersim.trace.layout import CHANNELS
+from lavendersim.trace.whole import MAGIC
 
 
 class Prefix(NamedTuple):

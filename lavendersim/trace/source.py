@@ -22,6 +22,7 @@ from lavendersim.trace.index import (
     read_at,
     read_chunk,
 )
+from lavendersim.trace.whole import check_bytes
 from lavendersim.trace.writer import AS_WRITTEN, RESOLVED, Written
 
 FORMER_RESOLVED = "resolved.yaml"  # of logs before the config was JSON
@@ -29,6 +30,9 @@ FORMER_RESOLVED = "resolved.yaml"  # of logs before the config was JSON
 
 class Source(Protocol):
     """What a trace reads of its log."""
+
+    def verify(self) -> None:
+        """Raise TraceError unless every byte of the log is as it was written."""
 
     def metadata(self) -> dict[str, dict[str, str]]:
         """Return the metadata records by their names."""
@@ -50,10 +54,20 @@ class Source(Protocol):
 
 
 class LogFile:
-    """A log on disk; every record is checked."""
+    """A log on disk; every record is checked, and all its bytes before the first that is read.
+
+    Its metadata have checks of their own, and are read without that.
+    """
 
     def __init__(self, path: Path, index: FileIndex) -> None:
         self._path, self._index = path, index
+        self._verified = False
+
+    def verify(self) -> None:
+        """Raise TraceError unless every byte of the log is as it was written."""
+        if not self._verified:
+            check_bytes(self._path)
+            self._verified = True
 
     def metadata(self) -> dict[str, dict[str, str]]:
         """Return the metadata records by their names."""
@@ -103,12 +117,14 @@ class LogFile:
 
     def chunks(self, channel: int) -> Iterator[ChunkContent]:
         """Yield the chunks that hold messages of a channel."""
+        self.verify()
         with self._path.open("rb") as stream:
             for entry in self._index.chunks:
                 if channel in entry.message_index_offsets:
                     yield read_chunk(stream, entry)
 
     def _attachment(self, name: str) -> bytes:
+        self.verify()
         with damage(self._path, f"attachment {name}"), self._path.open("rb") as stream:
             (entry,) = (entry for entry in self._index.attachments if entry.name == name)
             record: Attachment = parse(read_at(stream, entry.offset, entry.length), Attachment)
@@ -117,11 +133,24 @@ class LogFile:
             return record.data
 
 
+class PartOfLog(LogFile):
+    """What is whole of a damaged log; record by record it is checked, all its bytes cannot be."""
+
+    def verify(self) -> None:
+        """Accept what was found whole."""
+
+
 class JustWritten:
     """A log that this process wrote: the same bytes, before they were compressed."""
 
     def __init__(self, written: Written) -> None:
         self._written = written
+        self._file = LogFile(written.path, written.entries)
+
+    def verify(self) -> None:
+        """Raise TraceError where the log is read from its file, and that has changed."""
+        if self._written.chunks is None:
+            self._file.verify()
 
     def metadata(self) -> dict[str, dict[str, str]]:
         """Return the metadata records by their names."""
@@ -137,16 +166,16 @@ class JustWritten:
 
     def schema(self, channel: int) -> Schema | None:
         """Return the schema of a channel; None where the log has no such channel."""
-        return LogFile(self._written.path, self._written.entries).schema(channel)
+        return self._file.schema(channel)
 
     def described(self, channel: int) -> dict[str, str]:
         """Return what the log says of a channel."""
-        return LogFile(self._written.path, self._written.entries).described(channel)
+        return self._file.described(channel)
 
     def chunks(self, channel: int) -> Iterator[ChunkContent]:
         """Yield the chunks that hold messages of a channel."""
         if self._written.chunks is None:
-            yield from LogFile(self._written.path, self._written.entries).chunks(channel)
+            yield from self._file.chunks(channel)
             return
         for one in self._written.chunks:
             messages = {group.channel: group.entries for group in one.messages}

@@ -8,11 +8,10 @@ from typing import NamedTuple
 
 from lavendersim.errors import TraceError, UsageError
 from lavendersim.trace.container import Container
-from lavendersim.trace.index import damage, read_summary
+from lavendersim.trace.index import damage
 from lavendersim.trace.layout import CHANNELS
-from lavendersim.trace.reader import open_trace
 from lavendersim.trace.scan import Prefix, scan
-from lavendersim.trace.source import LogFile
+from lavendersim.trace.whole import check_bytes
 from lavendersim.trace.writer import ENDING
 
 
@@ -48,13 +47,8 @@ def recover(path: str | Path, out: str | Path) -> RecoveryReport:
 
 
 def _is_whole(path: Path) -> bool:
-    """Whether every column of a log can be read."""
     try:
-        trace = open_trace(path)
-        LogFile(path, read_summary(path)).config_data()
-        for name in ("step", "recorded_contact", "recorded_pose", "residual", "as_written"):
-            if name != "recorded_pose" or trace.has("/tf"):
-                getattr(trace, name)
+        check_bytes(path)
     except TraceError:
         return False
     return True
