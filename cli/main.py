@@ -67,7 +67,7 @@ def lavender(
 
 
 def main() -> None:
-    """Run the command line; exit 0 good, 1 a check failed, 2 usage, 3 a log, 4 internal, 130."""
+    """Run the command line; exit 0 good, 1 a check failed, 2 usage, 3 a log, 4 internal, 5, 130."""
     from lavendersim.errors import ConfigWarning, LavenderError
 
     # Configs, plans and results are many objects that live on; looking through them for circles

@@ -147,12 +147,19 @@ class Run:
         from lavendersim.trace import check_closed
 
         found = []
-        for file in dict.fromkeys(row["file"] for row in self._index["cells"]):
+        for log in self.logs():
             try:
-                check_closed(self.path / file)
+                check_closed(log)
             except TraceError as error:
                 found.append(str(error))
         return found
+
+    def logs(self) -> list[Path]:
+        """Return the logs of the cells; of cells that never began there is none."""
+        rows = self._index["cells"]
+        files = dict.fromkeys(self.path / row["file"] for row in rows)
+        begun = {self.path / row["file"] for row in rows if row["status"] != "pending"}
+        return [file for file in files if file in begun or file.exists()]
 
     @property
     def finished(self) -> bool:

@@ -69,8 +69,8 @@ PARSERS: dict[int, Any] = {
 }
 
 _HEAD = struct.Struct("<BQ")
-_MESSAGE = np.dtype([("opcode", "u1"), ("length", "<u8"), ("channel", "<u2"), ("sequence", "<u4")])
-_CLOCKED = np.dtype([*_MESSAGE.descr, ("log_time", "<u8"), ("publish_time", "<u8")])
+MESSAGE = np.dtype([("opcode", "u1"), ("length", "<u8"), ("channel", "<u2"), ("sequence", "<u4")])
+_CLOCKED = np.dtype([*MESSAGE.descr, ("log_time", "<u8"), ("publish_time", "<u8")])
 
 
 @contextmanager

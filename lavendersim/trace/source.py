@@ -13,6 +13,7 @@ from mcap.records import Attachment, Schema
 
 from lavendersim.cell import CellConfig
 from lavendersim.errors import TraceError
+from lavendersim.trace import layout
 from lavendersim.trace.container import CRC_KEY, FileIndex
 from lavendersim.trace.index import (
     ChunkContent,
@@ -22,8 +23,10 @@ from lavendersim.trace.index import (
     read_at,
     read_chunk,
 )
+from lavendersim.trace.rebuild import description_of, rebuilt_at
+from lavendersim.trace.recorded import RECORDED, described
 from lavendersim.trace.whole import check_bytes
-from lavendersim.trace.writer import AS_WRITTEN, RESOLVED, Written
+from lavendersim.trace.writer import AS_WRITTEN, DESCRIPTION, RESOLVED, Written
 
 FORMER_RESOLVED = "resolved.yaml"  # of logs before the config was JSON
 
@@ -125,8 +128,10 @@ class LogFile:
 
     def _attachment(self, name: str) -> bytes:
         self.verify()
+        entry = next((entry for entry in self._index.attachments if entry.name == name), None)
+        if entry is None:
+            raise TraceError(f"{self._path}: this log has lost its attachment {name}")
         with damage(self._path, f"attachment {name}"), self._path.open("rb") as stream:
-            (entry,) = (entry for entry in self._index.attachments if entry.name == name)
             record: Attachment = parse(read_at(stream, entry.offset, entry.length), Attachment)
             if record.name != name:
                 raise ValueError("another one stands in its place")
@@ -138,6 +143,29 @@ class PartOfLog(LogFile):
 
     def verify(self) -> None:
         """Accept what was found whole."""
+
+    def metadata(self) -> dict[str, dict[str, str]]:
+        """Return the metadata records by their names; those that follow from the config always."""
+        found = super().metadata()
+        if DESCRIPTION not in found or RECORDED not in found:
+            try:
+                config = self.config()
+            except TraceError:
+                return found
+            channels = self._index.channels
+            why = "the log is damaged"
+            absent = {topic: why for topic, c in layout.CHANNELS.items() if c not in channels}
+            found.setdefault(DESCRIPTION, description_of(config, absent))
+            if partly := described(config.record):
+                found.setdefault(RECORDED, partly)
+        return found
+
+    def chunks(self, channel: int) -> Iterator[ChunkContent]:
+        """Yield the chunks that hold messages of a channel."""
+        with damage(self._path, "the log"), self._path.open("rb") as stream:
+            for entry in self._index.chunks:
+                if channel in entry.message_index_offsets:
+                    yield rebuilt_at(stream, entry).content
 
 
 class JustWritten:

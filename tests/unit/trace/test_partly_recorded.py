@@ -137,6 +137,7 @@ def test_a_killed_run_gives_a_prefix(tmp_path: Path) -> None:
         mine = ([step for step in of if step < steps] for of in (contacts, poses))
         assert_holds(log, part, *mine)
         saved.add(steps)
+        (tmp_path / "out.mcap").unlink()
     assert saved
     assert max(saved) < STEPS
 
