@@ -73,6 +73,8 @@ def test_a_cut_log_is_drawn_on_request_and_the_figure_says_so(spoilt: Path) -> N
         figure = compose(run.experiment, run.cells)
     caption = " ".join(" ".join(text.get_text() for text in figure.texts).split())
     assert "INCOMPLETE: the logs of 1 of 2 cells are damaged" in caption
+    labels = [text.get_text() for text in figure.axes[0].get_legend().get_texts()]
+    assert sum(label.endswith(" (incomplete)") for label in labels) == 1
 
 
 def test_one_bit_in_a_chunk_that_the_figure_does_not_read_refuses_it(
