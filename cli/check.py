@@ -84,9 +84,11 @@ def check(
         printing.print_failures(finished)
         if refine:
             time_errors.print_table(found)
+    damaged: list[str] = []
     if report is not None:
-        write_report(results, report)
+        damaged = write_report(results, report)
         typer.echo(f"report {report}", err=True)
+        printing.report_damage(damaged)
     if as_json:
         table = {"passed": good, "cells": cells, "verdicts": verdicts}
         printing.as_json(table | ({"time_errors": refined} if refine else {}))
@@ -102,5 +104,7 @@ def check(
                 else ""
             )
         )
+    if damaged:
+        raise typer.Exit(printing.DAMAGED)
     if not good:
         raise typer.Exit(1)

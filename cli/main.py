@@ -8,6 +8,7 @@ import signal
 import sys
 import traceback
 import warnings
+from collections.abc import Callable
 from typing import Annotated
 
 import typer
@@ -40,9 +41,11 @@ app = typer.Typer(
         "color": False if os.environ.get("NO_COLOR") else None,
     },
 )
-for verb in (run.run, plot.plot, replay.replay, check.check, plan.plan, ls.ls, show.show):
-    app.command()(verb)
-for verb in (cost.cost, solve.solve, recover.recover, schema.schema, doctor.doctor):
+VERBS: tuple[Callable[..., None], ...] = (
+    *(run.run, plot.plot, replay.replay, check.check, plan.plan, ls.ls, show.show),
+    *(cost.cost, solve.solve, recover.recover, schema.schema, doctor.doctor),
+)
+for verb in VERBS:
     app.command()(verb)
 
 
@@ -64,7 +67,7 @@ def lavender(
 
 
 def main() -> None:
-    """Run the command line; exit 0 good, 1 a check failed, 2 usage, 3 a log, 4 internal, 130."""
+    """Run the command line; exit 0 good, 1 a check failed, 2 usage, 3 a log, 4 internal, 5, 130."""
     from lavendersim.errors import ConfigWarning, LavenderError
 
     # Configs, plans and results are many objects that live on; looking through them for circles

@@ -9,6 +9,7 @@ from typing import Any
 import typer
 
 FAILURES_SHOWN = 10
+DAMAGED = 3  # exit code of a verb that met a log which is not whole
 CELLS_SHOWN = 12  # of a larger sweep the range is printed; results.csv and `show` have each
 
 
@@ -113,6 +114,21 @@ def warn_of_not_converged(finished: Any) -> None:
     if len(finished.not_converged) > FAILURES_SHOWN:
         more = len(finished.not_converged) - FAILURES_SHOWN
         typer.echo(f"{finished.run.name}: and {more} more cells, see results.csv", err=True)
+
+
+def report_damage(sentences: list[str], refused: str = "") -> None:
+    """Print to stderr which logs are damaged, the first few; exits with 3 where that is refused.
+
+    refused: what is not done for it; where it is empty the verb goes on.
+    """
+    for sentence in sentences[:FAILURES_SHOWN]:
+        typer.echo(sentence, err=True)
+    if len(sentences) > FAILURES_SHOWN:
+        typer.echo(f"and {len(sentences) - FAILURES_SHOWN} more damaged logs", err=True)
+    if sentences and refused:
+        allow = "--allow-incomplete takes what is whole, and marks it"
+        typer.echo(f"{refused}; {allow}", err=True)
+        raise typer.Exit(DAMAGED)
 
 
 def print_failures(finished: Any) -> None:

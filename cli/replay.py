@@ -7,7 +7,8 @@ from typing import Annotated
 
 import typer
 
-from lavender_cli.run import Runs
+from lavender_cli import printing
+from lavender_cli.run import AllowIncomplete, Runs
 
 
 def replay(
@@ -36,8 +37,12 @@ def replay(
             help="Write a picture of the viewer at --at or the last contact; needs no display.",
         ),
     ] = None,
+    allow_incomplete: AllowIncomplete = False,
 ) -> None:
-    """Replay a run in rerun: bodies, contact forces and their plots over simulated time."""
+    """Replay a run in rerun: bodies, contact forces and their plots over simulated time.
+
+    Exits 3 when its log is damaged.
+    """
     from lavendersim import replay as viewer
     from lavendersim.errors import UsageError
     from lavendersim.runner import open_run
@@ -47,7 +52,7 @@ def replay(
             raise UsageError(f"{path}: the name of this file ends in {suffix}")
     if save_to is not None and at is not None and screenshot_to is None:
         raise UsageError("--at: an .rrd file has no place for it; leave out --save or --at")
-    opened = open_run(run, runs)
+    opened = open_run(run, runs, allow_incomplete)
     cells = opened.cells
     if not 0 <= (cell or 0) < len(cells):
         raise UsageError(f"{opened.path} has cells 0 to {len(cells) - 1}; there is no cell {cell}")
@@ -56,8 +61,11 @@ def replay(
         others = f"0 to {len(cells) - 1}"
         typer.echo(f"replaying cell 0 ({chosen.label}); --cell K shows another, {others}", err=True)
 
+    damaged = list(filter(None, [chosen.damage()]))
+    printing.report_damage(damaged, "nothing is shown" if not allow_incomplete else "")
     trace = chosen.trace()
-    title = " ".join(filter(None, [opened.path.name, chosen.label]))
+    part = f"(INCOMPLETE: {len(trace.step)} steps are whole)" if damaged else ""
+    title = " ".join(filter(None, [opened.path.name, chosen.label, part]))
     if save_to is not None:
         viewer.save(trace, save_to, title)
         typer.echo(save_to)
@@ -67,3 +75,5 @@ def replay(
         typer.echo(screenshot_to)
     if save_to is None and screenshot_to is None:
         viewer.open_viewer(trace, title, at)
+    if damaged:
+        raise typer.Exit(printing.DAMAGED)

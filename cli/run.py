@@ -19,6 +19,13 @@ Refine = Annotated[
     bool,
     typer.Option("--refine", help="Run again at h/2 and h/4: each measure's time error."),
 ]
+AllowIncomplete = Annotated[
+    bool,
+    typer.Option(
+        "--allow-incomplete",
+        help="Of damaged logs take what is whole, marked; exits 3 all the same.",
+    ),
+]
 Runs = Annotated[Path, typer.Option("--runs", metavar="DIR", help="Where runs are kept.")]
 
 

@@ -27,13 +27,17 @@ def show(
     runs: Runs = Path("runs"),
     as_json: Annotated[bool, typer.Option("--json", help="Print the results as JSON.")] = False,
 ) -> None:
-    """Show a run: its question, the effects it simulated, what it measured and its verdicts."""
+    """Show a run: its question, the effects it simulated, what it measured and its verdicts.
+
+    Exits 3 when one of its logs was cut or is damaged where the plan is read.
+    """
     from lavendersim.runner import open_run
 
     opened = open_run(run, runs)
     results = opened.results()
     if as_json:
         printing.as_json(results)
+        _end(opened.cut())
         return
     experiment = opened.experiment
     typer.echo(f"{typer.style(opened.name, bold=True)}  {opened.path}")
@@ -42,7 +46,8 @@ def show(
             typer.echo(f"{name}  {text}")
     if experiment.solver is not None:
         typer.echo(f"solver  {experiment.solver}, instead of the config's")
-    for cells, metadata in plans_of(opened.cells):
+    plans, damaged = plans_of(opened.cells)
+    for cells, metadata in plans:
         print_plan(cells, metadata, len(opened.cells))
     steps = sum(row["steps"] for row in results["cells"])
     logging = sum(row["steps"] * row["logging_us_per_step"] for row in results["cells"])
@@ -61,17 +66,35 @@ def show(
     typer.echo("checks")
     for verdict in results["checks"]:
         typer.echo(f"  {printing.mark(verdict['passed'])}  {verdict['node']}")
+    _end(damaged)
 
 
-def plans_of(cells: Sequence[RunCell]) -> list[tuple[list[RunCell], Metadata]]:
-    """Return each different plan that the logs describe, with the cells that were run by it."""
+def _end(damaged: list[str]) -> None:
+    """Say which logs are damaged, and exit 3 where one is."""
+    printing.report_damage(damaged)
+    if damaged:
+        raise typer.Exit(printing.DAMAGED)
+
+
+def plans_of(cells: Sequence[RunCell]) -> tuple[list[tuple[list[RunCell], Metadata]], list[str]]:
+    """Return each different plan that the logs describe, with the cells that were run by it.
+
+    Beside them a sentence of each log that is damaged and describes none.
+    """
+    from lavendersim.errors import TraceError
+
     plans: dict[str, tuple[list[RunCell], Metadata]] = {}
+    damaged: dict[str, None] = {}
     for cell in cells:
-        metadata = cell.trace().metadata
+        try:
+            metadata = cell.trace().metadata
+        except TraceError as error:
+            damaged[str(error)] = None
+            continue
         cell.release()
         plan = {name: metadata.get(name, {}) for name in SECTIONS}
         plans.setdefault(repr(plan), ([], plan))[0].append(cell)
-    return list(plans.values())
+    return list(plans.values()), list(damaged)
 
 
 def print_plan(cells: list[RunCell], metadata: Metadata, count: int) -> None:

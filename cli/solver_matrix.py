@@ -48,6 +48,7 @@ def check_solvers(
         name, why = next(iter(left_out.items()))
         raise UsageError(f"nothing here is put to several solvers: {name} {why}")
     made: list[Entry] = []
+    damaged: list[str] = []
     try:
         for entry in entries(cases, solvers, runs, jobs):
             made.append(entry)
@@ -58,11 +59,14 @@ def check_solvers(
     finally:
         # what an interrupted matrix has is shown; what it has not stands as not run
         if report is not None:
-            _write(report, cases, solvers, made, left_out)
+            damaged = _write(report, cases, solvers, made, left_out)
         if as_json:
             printing.as_json(as_data(cases, solvers, made, left_out))
         else:
             print_matrix(cases, solvers, made, left_out)
+    printing.report_damage(damaged)
+    if damaged:
+        raise typer.Exit(printing.DAMAGED)
     return all(entry.fine for entry in made)
 
 
@@ -96,7 +100,8 @@ def _write(
     solvers: Sequence[str],
     made: Sequence[Entry],
     left_out: dict[str, str],
-) -> None:
+) -> list[str]:
+    """Write the page; returns a sentence of each log that has no picture for its damage."""
     from lavendersim.figures import write_matrix
     from lavendersim.runner import open_run
     from lavendersim.runner.environment import processor
@@ -105,6 +110,7 @@ def _write(
     shown = {name: open_run(entry.run).cells[0] for name, entry in pictured.items()}
     write_matrix(cases, solvers, made, left_out, shown, processor(), report)
     typer.echo(f"report {report}", err=True)
+    return [sentence for cell in shown.values() if (sentence := cell.damage())]
 
 
 def print_matrix(

@@ -122,7 +122,7 @@ class ExpectationItem(pytest.Item):
             ended = [
                 f"{cell.label or 'the cell'}: {cell.status}\n  log        {cell.path}"
                 for cell in finished.ended_early
-            ]
+            ] + finished.run.cut()
             if ended:
                 raise Unmet("\n".join(ended))
             return

@@ -6,15 +6,19 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from lavendersim.errors import TraceError
+
 
 def draw(run: Any, directory: Path) -> list[Path]:
     """Draw the figures of a run (`.experiment`, `.cells`): its own, its overheads', its cost's.
 
-    Returns the files written. matplotlib is imported here and not before: it takes a quarter of a
-    second.
+    Returns the files written. TraceError, and no file is touched, where a log of the run is damaged
+    (`.damaged`), unless it may be incomplete (`.allow_incomplete`). matplotlib is imported here and
+    not before: it takes a quarter of a second.
     """
     from lavendersim.figures.config_figure import draw as draw_page
 
+    _refuse_damaged(run)
     paths = draw_page(run, directory)
     if getattr(run.experiment, "overhead", None) is not None:
         paths += draw_overheads([run], directory)
@@ -23,6 +27,14 @@ def draw(run: Any, directory: Path) -> list[Path]:
 
         paths += draw_work_precision(run, directory)
     return paths
+
+
+def _refuse_damaged(run: Any) -> None:
+    """Raise TraceError where a log is damaged and may not be; one just written is read strictly."""
+    if getattr(run, "allow_incomplete", True) or getattr(run, "ran", None) is not None:
+        return
+    if damaged := run.damaged():
+        raise TraceError("\n".join(damaged))
 
 
 def draw_overheads(runs: Sequence[Any], directory: Path) -> list[Path]:
@@ -60,11 +72,14 @@ def check_page_path(page: Path) -> None:
     check(page)
 
 
-def write_report(results: Sequence[Any], path: Path) -> None:
-    """Write one self-contained HTML page of finished runs (`runner.Finished`): a row per case."""
+def write_report(results: Sequence[Any], path: Path) -> list[str]:
+    """Write one self-contained HTML page of finished runs (`runner.Finished`): a row per case.
+
+    Returns a sentence of each log that is damaged; they stand in the page as well.
+    """
     from lavendersim.figures.report import write_report as write_page
 
-    write_page(results, path)
+    return write_page(results, path)
 
 
 def write_matrix(

@@ -22,6 +22,7 @@ from lavendersim.measures.selection import select
 from lavendersim.measures.values import Values
 
 SIDE_BY_SIDE: Final = 3  # panels in one row
+FEW_NAMED: Final = 3  # of many cells with damaged logs
 FEW_ENTRIES: Final = 4  # of a legend that finds space among the lines
 NARROWEST: Final = 6.8  # [inch] a single panel is wider, for its caption
 
@@ -37,7 +38,7 @@ def draw(run: Any, directory: Path) -> list[Path]:
 
     `run` has `.experiment`, `.cells` and, where it differs from the file's, a `.name`; in the
     process that ran it `.taken`, the measures of its cells. Cells without a readable log are left
-    out and counted in the caption.
+    out and counted in the caption; where damaged logs are drawn it says of which cells.
     """
     experiment = run.experiment
     if experiment.figure is None:
@@ -53,9 +54,10 @@ def compose(experiment: Any, cells: Sequence[Cell], taken: Taken = MappingProxyT
     readable = [cell for cell in cells if (taken and cell.index in taken) or _is_readable(cell)]
     missing = len(cells) - len(readable)
     note = f" Left out: {missing} of {len(cells)} cells have no readable log." if missing else ""
+    known = [] if taken else readable  # of a run in the process that made it nothing is missing
     rows, columns = _grid(len(spec.panels))
     page = Page(
-        caption=spec.caption + note,
+        caption=_incomplete(known, len(cells)) + spec.caption + note,
         width=max(NARROWEST, PANEL_WIDTH * columns),
         height=PANEL_HEIGHT * rows,
         question=experiment.question,
@@ -103,6 +105,21 @@ def _draw_panels(
         limit(axes, panel)
         if not shared:
             legend(axes)
+
+
+def _incomplete(cells: Sequence[Cell], count: int) -> str:
+    """Return what a caption begins with where logs are damaged: how much is drawn of which."""
+    parts = []
+    for cell in cells:
+        trace = cell.trace()
+        if getattr(trace, "damage", ""):
+            name = cell.label or "the cell"
+            parts.append(f"{name}: {len(trace.step)} steps up to {trace.step['time'][-1]:.4g} s")
+    if not parts:
+        return ""
+    more = f"; and {len(parts) - FEW_NAMED} more" if len(parts) > FEW_NAMED else ""
+    drawn = f"{'; '.join(parts[:FEW_NAMED])}{more}"
+    return f"INCOMPLETE: the logs of {len(parts)} of {count} cells are damaged; drawn is {drawn}. "
 
 
 def _is_readable(cell: Cell) -> bool:

@@ -10,9 +10,13 @@ from typing import Any
 from lavendersim.figures.html_page import address, picture, render, write_whole
 
 
-def write_report(results: Sequence[Any], path: Path) -> None:
-    """Write the page of finished runs (`.run`, `.outcomes`, `.verdicts`, `.good`), whole or not."""
+def write_report(results: Sequence[Any], path: Path) -> list[str]:
+    """Write the page of finished runs (`.run`, `.outcomes`, `.verdicts`, `.good`), whole or not.
+
+    Returns a sentence of each log that is damaged; they stand in the page as well.
+    """
     write_whole(report(results, path.parent), path)
+    return [sentence for result in results for sentence in _damaged(result)]
 
 
 def report(results: Sequence[Any], folder: Path) -> str:
@@ -51,8 +55,16 @@ def _case(result: Any, folder: Path) -> dict[str, Any]:
         "costs": [_cost(outcome) for outcome in result.outcomes],
         "cells": _cells(result, folder),
         "claims": verdicts,
-        "failures": ended + [verdict.message for verdict in verdicts if not verdict.passed],
+        "failures": _damaged(result)
+        + ended
+        + [verdict.message for verdict in verdicts if not verdict.passed],
     }
+
+
+def _damaged(result: Any) -> list[str]:
+    """Return a sentence of each damaged log: of the one that is read all, of others their ends."""
+    found = [_shown(result).damage(), *result.run.cut()]
+    return [sentence for sentence in dict.fromkeys(found) if sentence]
 
 
 def _cells(result: Any, folder: Path) -> list[dict[str, Any]]:

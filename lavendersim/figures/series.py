@@ -43,9 +43,15 @@ def series_of(cells: Sequence[Cell], axis: str | None, label: str = "") -> list[
     split = by_value([cell for cell in cells if axis in cell.coordinates], axis)
     return [
         # Names of solvers are read, not typed, in a figure.
-        Series(template.replace("{}", value.replace("_", " ")), members)
+        Series(template.replace("{}", value.replace("_", " ")) + _mark(members), members)
         for value, members in split.items()
     ]
+
+
+def _mark(cells: Sequence[Cell]) -> str:
+    """Return what an entry of a legend ends with where a log of its cells is damaged."""
+    allowed = [cell for cell in cells if getattr(cell, "allow_incomplete", False)]
+    return " (incomplete)" if any(getattr(cell, "damage", str)() for cell in allowed) else ""
 
 
 def by_value(cells: Sequence[Cell], axis: str) -> dict[str, list[Cell]]:

@@ -45,14 +45,33 @@ class RunCell:
     status: str
     _config: CellConfig | None = field(default=None, repr=False, compare=False)  # where it was run
     _open: list[Trace] = field(default_factory=list, repr=False, compare=False)
+    _damage: list[str] = field(default_factory=list, repr=False, compare=False)  # once looked for
+    allow_incomplete: bool = False  # read what is whole of a damaged log
 
     def trace(self) -> Trace:
-        """Open the cell's log; its columns are read when they are first asked for."""
+        """Open the cell's log; its columns are read when they are first asked for.
+
+        TraceError where it is not whole, unless what is whole of it is allowed.
+        """
         from lavendersim.trace import open_trace  # late: runs are listed without numpy
 
         if not self._open:
-            self._open.append(open_trace(self.path, allow_incomplete=True, config=self._config))
+            self._open.append(open_trace(self.path, self.allow_incomplete, self._config))
         return self._open[0]
+
+    def damage(self) -> str:
+        """Return why the log is not all that was written of the cell; empty where it is.
+
+        Every byte of it is read, once.
+        """
+        if not self._damage:
+            try:
+                trace = self.trace()
+                trace.verify()
+                self._damage.append(trace.damage)
+            except TraceError as error:
+                self._damage.append(str(error))
+        return self._damage[0]
 
     @property
     def config(self) -> CellConfig:
@@ -68,6 +87,7 @@ class RunCell:
 class Run:
     """A run on disk.
 
+    allow_incomplete: of damaged logs what is whole is read, in place of a TraceError.
     ran: the experiment, in the process that ran it; others read it and its configs from disk.
     taken: the measures of its cells by their index, there too; others take them from the logs.
     """
@@ -75,6 +95,7 @@ class Run:
     path: Path
     ran: Experiment | None = field(default=None, repr=False, compare=False)
     taken: Mapping[int, Mapping[str, Any]] = field(default_factory=dict, repr=False, compare=False)
+    allow_incomplete: bool = False
 
     @cached_property
     def experiment(self) -> Experiment:
@@ -111,9 +132,34 @@ class Run:
                 self.path / row["file"],
                 row["status"],
                 cells[row["index"]].config if self.ran is not None else None,
+                allow_incomplete=self.allow_incomplete,
             )
             for row in self._index["cells"]
         )
+
+    def damaged(self) -> list[str]:
+        """Return a sentence of every log that is not all that was written; all are read."""
+        found = {cell.path: cell.damage() for cell in self.cells}
+        return [sentence for sentence in found.values() if sentence]
+
+    def cut(self) -> list[str]:
+        """Return a sentence of every log whose end is not that of a closed one; cheap."""
+        from lavendersim.trace import check_closed
+
+        found = []
+        for log in self.logs():
+            try:
+                check_closed(log)
+            except TraceError as error:
+                found.append(str(error))
+        return found
+
+    def logs(self) -> list[Path]:
+        """Return the logs of the cells; of cells that never began there is none."""
+        rows = self._index["cells"]
+        files = dict.fromkeys(self.path / row["file"] for row in rows)
+        begun = {self.path / row["file"] for row in rows if row["status"] != "pending"}
+        return [file for file in files if file in begun or file.exists()]
 
     @property
     def finished(self) -> bool:
@@ -173,9 +219,12 @@ def list_runs(root: Path = RUNS) -> list[Run]:
     return sorted(found, key=lambda run: run.path.name)
 
 
-def open_run(path: Path | str | None = None, root: Path = RUNS) -> Run:
+def open_run(
+    path: Path | str | None = None, root: Path = RUNS, allow_incomplete: bool = False
+) -> Run:
     """Open a run by its directory or name; without one, the latest finished run.
 
+    allow_incomplete: of damaged logs what is whole is read; see `Trace.damage`.
     Raises UsageError when there is none.
     """
     if path is None:
@@ -186,10 +235,11 @@ def open_run(path: Path | str | None = None, root: Path = RUNS) -> Run:
         named = latest.read_text(encoding="utf-8").strip() if latest.is_file() else ""
         if latest.is_symlink():
             named = os.readlink(latest)
-        return next((run for run in finished if run.path.name == named), finished[-1])
+        found = next((run for run in finished if run.path.name == named), finished[-1])
+        return replace(found, allow_incomplete=allow_incomplete)
     for candidate in (Path(path), root / path):
         if (candidate / CELLS).exists():
-            return Run(candidate)
+            return Run(candidate, allow_incomplete=allow_incomplete)
     raise UsageError(f"{path}: not the directory of a run (it has no {CELLS})")
 
 

@@ -39,7 +39,8 @@ from mcap.records import (
 )
 from numpy.typing import NDArray
 
-MAGIC = b"\x89MCAP0\r\n"
+from lavendersim.trace.whole import MAGIC
+
 LIBRARY = "lavender"
 CRC_KEY = "crc32"
 COMPRESSION_LEVEL = 1
@@ -57,7 +58,7 @@ class Messages(NamedTuple):
 
 @dataclass
 class FileIndex:
-    """What a summary says about the file; enough to read it, or to go on writing it."""
+    """What a summary says about the file; enough to read it."""
 
     schemas: dict[int, Schema] = field(default_factory=dict)
     channels: dict[int, Channel] = field(default_factory=dict)
@@ -162,18 +163,6 @@ class Container:
         self._offset = 0
         self._write(MAGIC + to_bytes(Header(profile="", library=LIBRARY)))
 
-    @classmethod
-    def resume(cls, path: Path, data: bytes, index: FileIndex) -> Container:
-        """Return a container that holds `data`, a prefix of another file that `index` describes."""
-        container = cls(path)
-        container._stream.seek(0)
-        container._stream.truncate()
-        container._crc = container._offset = 0
-        container._write(data)
-        container.index = index
-        container._registered = [Registered.of(index.schemas.values(), index.channels.values())]
-        return container
-
     def attach(self, name: str, media_type: str, data: bytes) -> None:
         """Write an attachment; its times are 0, for no wall clock enters the file."""
         record = to_bytes(Attachment(0, 0, name, media_type, data))
@@ -238,6 +227,11 @@ class Container:
         crc = zlib.crc32(summary + footer[:-4])
         self._write(summary + to_bytes(Footer(start, offset_start, crc)) + MAGIC)
         self.abandon()
+
+    @property
+    def crc(self) -> int:
+        """CRC of all bytes so far; `finish` writes it into DataEnd."""
+        return self._crc
 
     def abandon(self) -> None:
         """Close the file as it stands: without `finish` it is a killed run."""

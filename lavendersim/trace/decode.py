@@ -121,7 +121,8 @@ def decode_poses(
 
 
 @lru_cache(maxsize=8)
-def _message_class(name: str, descriptors: bytes) -> Any:
+def message_class(name: str, descriptors: bytes) -> Any:
+    """Return the class of a protobuf message by its descriptors."""
     pool = descriptor_pool.DescriptorPool()
     for file in descriptor_pb2.FileDescriptorSet.FromString(descriptors).file:
         pool.Add(file)
@@ -130,9 +131,9 @@ def _message_class(name: str, descriptors: bytes) -> Any:
 
 def packed_fields(schema: Schema, chunk: ChunkContent) -> tuple[tuple[PackedField, ...], int]:
     """Return the fields and the stride [B] that the first PointCloud of a chunk states."""
-    cloud = _message_class(schema.name, schema.data)()
+    cloud = message_class(schema.name, schema.data)()
     offset = chunk.messages[layout.CHANNELS["/contacts"]]["offset"][0]
-    cloud.ParseFromString(_body(chunk, int(offset)))
+    cloud.ParseFromString(body_of(chunk, int(offset)))
     fields = tuple(PackedField(f.name, f.offset, f.type) for f in cloud.fields)
     return fields, cloud.point_stride
 
@@ -195,8 +196,8 @@ def decode_columns(
     entries = chunk.messages[layout.CHANNELS["/contact_columns"]]
     tables = []
     for offset in entries["offset"].astype(np.int64):
-        message = _message_class(schema.name, schema.data)()
-        message.ParseFromString(_body(chunk, int(offset)))
+        message = message_class(schema.name, schema.data)()
+        message.ParseFromString(body_of(chunk, int(offset)))
         numbers = (message.steps, message.times, message.counts)
         steps, times, counts = (np.frombuffer(one, "<i8") for one in numbers)
         names = tuple(message.names)
@@ -218,7 +219,7 @@ def _derived(table: Table, derived: tuple[str, ...], clock: Clock) -> Table:
     return table
 
 
-def _body(chunk: ChunkContent, offset: int) -> bytes:
+def body_of(chunk: ChunkContent, offset: int) -> bytes:
     """Return the data of the message whose record stands there."""
     length = int(gather(chunk.data, np.array([offset + 1]), 8).view("<u8")[0, 0])
     begin = offset + layout.RECORD_HEADER + layout.MESSAGE_HEADER

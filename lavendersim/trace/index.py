@@ -41,7 +41,6 @@ from lavendersim.errors import TraceError
 from lavendersim.trace.container import (
     CRC_KEY,
     INDEX_ENTRY,
-    MAGIC,
     FileIndex,
     Messages,
     index_of,
@@ -50,9 +49,8 @@ from lavendersim.trace.container import (
     to_bytes,
 )
 from lavendersim.trace.layout import RECORD_HEADER
+from lavendersim.trace.whole import read_end
 from lavendersim.trace.wire import Bytes, gather
-
-FOOTER_SIZE = RECORD_HEADER + 20
 
 PARSERS: dict[int, Any] = {
     Opcode.HEADER: Header,
@@ -71,8 +69,8 @@ PARSERS: dict[int, Any] = {
 }
 
 _HEAD = struct.Struct("<BQ")
-_MESSAGE = np.dtype([("opcode", "u1"), ("length", "<u8"), ("channel", "<u2"), ("sequence", "<u4")])
-_CLOCKED = np.dtype([*_MESSAGE.descr, ("log_time", "<u8"), ("publish_time", "<u8")])
+MESSAGE = np.dtype([("opcode", "u1"), ("length", "<u8"), ("channel", "<u2"), ("sequence", "<u4")])
+_CLOCKED = np.dtype([*MESSAGE.descr, ("log_time", "<u8"), ("publish_time", "<u8")])
 
 
 @contextmanager
@@ -120,17 +118,7 @@ def spans(data: bytes, start: int = 0) -> Iterator[tuple[int, int, int]]:
 def read_summary(path: Path) -> FileIndex:
     """Return the index of a finished file. TraceError when it is unfinished or damaged."""
     with damage(path, "the summary"), path.open("rb") as stream:
-        size = stream.seek(0, 2)
-        tail = read_at(stream, max(0, size - FOOTER_SIZE - len(MAGIC)), FOOTER_SIZE + len(MAGIC))
-        if not tail.endswith(MAGIC):
-            message = f"{path}: unfinished, its end is missing: the run was killed or the file cut"
-            raise TraceError(f"{message}; `lavender recover {path}` saves what is whole")
-        if read_at(stream, 0, len(MAGIC)) != MAGIC:
-            raise TraceError(f"{path}: not an MCAP file")
-        footer = parse(tail[:FOOTER_SIZE], Footer)
-        summary = read_at(stream, footer.summary_start, size - len(MAGIC) - footer.summary_start)
-        if zlib.crc32(summary[:-4]) != footer.summary_crc:
-            raise ValueError("it fails its CRC")
+        summary = read_end(path, stream).summary
         index = FileIndex()
         for opcode, start, end in spans(summary):
             note(index, parse(summary[start:end], PARSERS[opcode]))

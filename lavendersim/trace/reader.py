@@ -22,16 +22,16 @@ from lavendersim.trace import decode, layout
 from lavendersim.trace.absent import absent_table
 from lavendersim.trace.contact_columns import known_rules
 from lavendersim.trace.forms import RULES
-from lavendersim.trace.index import ChunkContent, damage, read_summary
+from lavendersim.trace.index import ChunkContent, damage
 from lavendersim.trace.recorded import KEYS, RECORDED, is_recorded, partly_recorded
-from lavendersim.trace.scan import scan
 from lavendersim.trace.schema import FORMAT, RESIDUAL_COLUMNS, STEP_COLUMNS, Column
-from lavendersim.trace.source import LogFile, Source
+from lavendersim.trace.source import Source
 from lavendersim.trace.streams import COLUMNS
 from lavendersim.trace.writer import ABSENT, DESCRIPTION, ENDING, TIMESTEP_CHANGES
 
 COMPLETE = "complete"
 INCOMPLETE = "incomplete"
+RECOVERED = "recovered"  # how the status of a log begins that `recover` made of a part of one
 
 
 class RecordedPoses(NamedTuple):
@@ -42,12 +42,18 @@ class RecordedPoses(NamedTuple):
 
 
 class Trace:
-    """One run's log. The columns and their units stand in `schema`."""
+    """One run's log. The columns and their units stand in `schema`.
+
+    status: how the run ended, as its log says: `complete`, diverged, stopped by a bound.
+    damage: a sentence where this is not all that was written of it; empty where it is.
+    """
 
     def __init__(
-        self, path: Path, source: Source, finished: bool, config: CellConfig | None = None
+        self, path: Path, source: Source, damaged: str = "", config: CellConfig | None = None
     ) -> None:
+        """damaged: why this is a part of a log that was not closed or has changed since."""
         self.path = path
+        self.damage = damaged
         if config is not None:
             self.config = config
         self._source = source
@@ -66,8 +72,17 @@ class Trace:
             partly = partly_recorded(self.metadata.get(RECORDED, {}))
             self.partly = {t: why for t, why in partly.items() if t not in self.absent}
             self.absent |= self.partly
-            self.status = self.metadata[ENDING]["status"] if finished else INCOMPLETE
+            self.status = INCOMPLETE if damaged else self.metadata[ENDING]["status"]
+        if self.status.startswith(RECOVERED):
+            self.damage = f"{path}: {self.status}"
         self.complete = self.status == COMPLETE
+
+    def verify(self) -> None:
+        """Raise TraceError unless every byte of the log is as it was written.
+
+        The first column that is read of a log asks for it too.
+        """
+        self._source.verify()
 
     @property
     def timestep(self) -> Fraction:
@@ -238,25 +253,3 @@ def _clock(description: dict[str, str]) -> Clock:
     changes = json.loads(description.get(TIMESTEP_CHANGES, "[]"))
     first = Fraction(description["timestep"])
     return Clock.counted(first, [(done, Fraction(timestep)) for done, timestep in changes])
-
-
-def open_trace(
-    path: str | Path, allow_incomplete: bool = False, config: CellConfig | None = None
-) -> Trace:
-    """Return the log at `path`, its columns not yet read.
-
-    config: that of its cell, where the caller has it already; it is not read from the log then.
-
-    TraceError when the file is missing, damaged, or unfinished. With `allow_incomplete` a killed
-    run is read up to its last whole group of steps; its status is `incomplete`.
-    """
-    path = Path(path)
-    if not path.is_file():
-        raise TraceError(f"{path}: no such log")
-    try:
-        return Trace(path, LogFile(path, read_summary(path)), finished=True, config=config)
-    except TraceError:
-        if not allow_incomplete:
-            raise
-    with damage(path, "the log"):
-        return Trace(path, LogFile(path, scan(path).entries), finished=False, config=config)

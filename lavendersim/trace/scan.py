@@ -1,119 +1,189 @@
-"""The whole part of a killed run's log, found by walking its records from the start.
+"""What is whole of a damaged log: its groups of steps, attachments and metadata.
 
-What is not whole, or fails a check, ends the walk; what counts ends at the last light chunk, for
-the writer puts a light chunk behind the other chunks of the same steps.
+A group is the chunks of some steps, and its light chunk stands behind the others (`writer`):
+
+    columns points poses light | columns points poses light | ...
+
+It counts where all of it is there and of its times. Which chunks stood where nothing can be read
+the summary says; without one, a stretch that cannot be attributed costs the group behind it.
 """
 
 from __future__ import annotations
 
-import struct
+from collections.abc import Iterator
 from pathlib import Path
-from typing import NamedTuple
+from typing import BinaryIO, Final, NamedTuple
 
-import zstandard
-from mcap.exceptions import McapError
 from mcap.opcode import Opcode
-from mcap.records import Attachment, AttachmentIndex, Chunk, MetadataIndex
+from mcap.records import AttachmentIndex, ChunkIndex, Header, MetadataIndex
 
 from lavendersim.errors import TraceError
-from lavendersim.trace.container import MAGIC, FileIndex, index_of, message_index
-from lavendersim.trace.index import (
-    PARSERS,
-    message_indexes,
-    note,
-    open_chunk,
-    parse,
-    parse_metadata,
-    spans,
-)
-from lavendersim.trace.layout import CHANNELS
+from lavendersim.trace.container import LIBRARY, FileIndex, to_bytes
+from lavendersim.trace.groups import GEOMETRY, STEP, Group, Groups
+from lavendersim.trace.index import read_at, read_summary
+from lavendersim.trace.layout import RECORD_HEADER
+from lavendersim.trace.rebuild import REFUSALS, rebuilt
+from lavendersim.trace.source import FORMER_RESOLVED
+from lavendersim.trace.walk import NOTHING, Found, walk
+from lavendersim.trace.whole import MAGIC
+from lavendersim.trace.wire import NANOSECONDS
+from lavendersim.trace.writer import AS_WRITTEN, DESCRIPTION, ENDING, RESOLVED
+
+HEAD: Final = len(MAGIC) + len(to_bytes(Header(profile="", library=LIBRARY)))
 
 
-class Prefix(NamedTuple):
-    """The whole part of a killed run: up to the last light chunk, with all that belongs to it."""
+class Remaining(NamedTuple):
+    """What is whole of a log."""
 
-    entries: FileIndex
-    data: bytes
-    lost: int  # bytes behind it
-    reason: str  # why it ends there
+    entries: FileIndex  # of chunks by their channels
+    groups: list[Group]
+    lost: list[str]  # what is not there, each in words
+    ended: bool  # the log says how the run ended
+    crc: int | None  # of all bytes before DataEnd, where that is whole
 
 
-def scan(path: Path) -> Prefix:
-    """Walk a file from its start. TraceError when not even one group of steps is whole."""
-    data = path.read_bytes()
-    walk = _Walk(data)
+def scan(path: Path) -> Remaining:
+    """Return what is whole of a damaged log. TraceError where not one group of steps is."""
     try:
-        reason = walk.run()
-    except (McapError, zstandard.ZstdError, struct.error, ValueError, MemoryError) as error:
-        reason = str(error) or type(error).__name__
-    if not walk.whole:
-        raise TraceError(f"{path}: nothing to save, no group of steps is whole ({reason})")
-    return Prefix(walk.entries, data[: walk.whole], len(data) - walk.whole, reason)
+        summary = read_summary(path)
+    except TraceError:
+        summary = FileIndex()
+    with path.open("rb") as stream:
+        found = _Scan(path, stream, summary)
+        for record, indexes in _with_indexes(walk(stream)):
+            found.take(record, indexes)
+    if not found.groups.whole:
+        raise TraceError(f"{path}: nothing to save, no group of steps is whole")
+    return Remaining(found.entries, found.groups.whole, found.lost(), found.ended, found.crc)
 
 
-class _Walk:
-    """Where a walk stands: what is whole for certain, and what waits for its light chunk."""
-
-    def __init__(self, data: bytes) -> None:
-        self.data = data
-        self.entries, self.waiting = FileIndex(), FileIndex()
-        self.whole = 0
-
-    def run(self) -> str:
-        """Walk; return why it ended. ValueError and the like when a record fails a check."""
-        records = list(spans(self.data, len(MAGIC)))
-        if not self.data.startswith(MAGIC) or not records or records[0][0] != Opcode.HEADER:
-            raise ValueError("the file does not begin as a log")
-        position = 1
-        while position < len(records):
-            opcode, start, end = records[position]
-            position += 1
-            record = self.data[start:end]
-            if opcode == Opcode.ATTACHMENT:
-                a = parse(record, Attachment)
-                sizes = (start, len(record), a.log_time, a.create_time, len(a.data))
-                self.waiting.attachments.append(AttachmentIndex(*sizes, a.name, a.media_type))
-            elif opcode == Opcode.METADATA:
-                name = parse_metadata(record).name
-                self.waiting.metadata.append(MetadataIndex(start, len(record), name))
-            elif opcode == Opcode.CHUNK:
-                while position < len(records) and records[position][0] == Opcode.MESSAGE_INDEX:
-                    position += 1
-                stop = records[position - 1][2]
-                if _note_chunk(self.waiting, self.data, start, end, stop):
-                    _commit(self.entries, self.waiting)
-                    self.waiting, self.whole = FileIndex(), stop
-            elif opcode == Opcode.DATA_END:
-                return "all steps are whole, only the end of the file is damaged"
-            else:
-                raise ValueError("a record stands where none should")
-        return "the file ends before its time"
+def _with_indexes(records: Iterator[Found]) -> Iterator[tuple[Found, list[Found]]]:
+    """Yield all but message indexes, each with the message indexes that stand behind it."""
+    last: Found | None = None
+    indexes: list[Found] = []
+    for found in records:
+        if found.opcode == Opcode.MESSAGE_INDEX:
+            indexes.append(found)
+            continue
+        if last is not None:
+            yield last, indexes
+        last, indexes = found, []
+    if last is not None:
+        yield last, indexes
 
 
-def _note_chunk(index: FileIndex, data: bytes, start: int, end: int, stop: int) -> bool:
-    """Enter a chunk and the message indexes behind it; tell whether it is a light one."""
-    chunk: Chunk = parse(data[start:end], Chunk)
-    messages = message_indexes(data[end:stop])
-    content = open_chunk(chunk, messages)
-    entry = index_of(chunk, start, end - start)
-    entry.message_index_length = stop - end
-    position = end
-    for group in messages:
-        entry.message_index_offsets[group.channel] = position
-        position += len(message_index(group))
-        count = index.counts.get(group.channel, 0) + len(group.entries)
-        index.counts[group.channel] = count
-    index.chunks.append(entry)
-    for opcode, first, last in spans(content.prologue):
-        note(index, parse(content.prologue[first:last], PARSERS[opcode]))
-    return CHANNELS["/step"] in content.messages
+class _Scan:
+    """Where a walk stands: what is whole so far."""
+
+    def __init__(self, path: Path, stream: BinaryIO, summary: FileIndex) -> None:
+        self._stream, self._summary = stream, summary
+        self.entries = FileIndex(dict(summary.schemas), dict(summary.channels))
+        self.groups = Groups(path, self.entries)
+        self.crc: int | None = None
+        self.ended = False
+        self._expected = HEAD  # up to there nothing is lost but what can be made again
+        self._described = 0  # bytes that are lost before the first chunk
+        self._unclear = False  # a stretch that may have been a chunk
+
+    def take(self, found: Found, indexes: list[Found]) -> None:
+        """Go on by one stretch of the file, and the message indexes behind it."""
+        length = found.end - found.start
+        if found.opcode == Opcode.CHUNK:
+            self._take_chunk(found, indexes)
+        elif found.opcode == Opcode.ATTACHMENT:
+            a = found.record
+            sizes = (found.start, length, a.log_time, a.create_time, len(a.data))
+            self.entries.attachments.append(AttachmentIndex(*sizes, a.name, a.media_type))
+            self._unclear = False
+        elif found.opcode == Opcode.METADATA:
+            name = found.record.name
+            self.entries.metadata.append(MetadataIndex(found.start, length, name))
+            self.ended = self.ended or name == ENDING
+            self._unclear = self._unclear and name == ENDING
+        elif found.opcode == Opcode.DATA_END:
+            self.crc = found.record.data_section_crc
+        elif found.opcode == NOTHING and found.end > self._expected:
+            self._lose(found, indexes)
+
+    def _take_chunk(self, found: Found, indexes: list[Found]) -> None:
+        end = indexes[-1].end if indexes else found.end
+        behind = read_at(self._stream, found.end, end - found.end)
+        try:
+            one = rebuilt(found.record, behind)
+        except REFUSALS:
+            self._lose(found, indexes)
+            return
+        if self._unclear and one.content.messages.keys() != GEOMETRY:  # that is the first chunk
+            self.groups.lose(frozenset())
+        self._unclear = False
+        self._expected = found.end + one.index_length
+        entry = ChunkIndex(
+            chunk_start_offset=found.start,
+            chunk_length=found.end - found.start,
+            compression=one.chunk.compression,
+            compressed_size=len(one.chunk.data),
+            message_start_time=one.chunk.message_start_time,
+            message_end_time=one.chunk.message_end_time,
+            message_index_length=len(behind),
+            message_index_offsets=dict.fromkeys(one.content.messages, 0),
+            uncompressed_size=one.chunk.uncompressed_size,
+        )
+        self.groups.take(entry, one.content)
+
+    def _lose(self, found: Found, indexes: list[Found]) -> None:
+        """Note which chunks stood in a stretch that is none of their own."""
+        if not self.entries.chunks and not self.groups.unfinished:
+            self._described += found.end - found.start
+        if self._summary.chunks:
+            for entry in self._summary.chunks:
+                if found.start <= entry.chunk_start_offset < found.end:
+                    self.groups.lose(frozenset(entry.message_index_offsets))
+        elif indexes:
+            heads = (read_at(self._stream, one.start + RECORD_HEADER, 2) for one in indexes)
+            self.groups.lose(frozenset(int.from_bytes(head, "little") for head in heads))
+        else:
+            self._unclear = True
+
+    def lost(self) -> list[str]:
+        """Return what is not there, in words."""
+        words = [*self._lost_descriptions(), *self._lost_steps()]
+        return words if self.ended else [*words, "how the run ended"]
+
+    def _lost_descriptions(self) -> Iterator[str]:
+        found = {entry.name for entry in self.entries.attachments}
+        found |= {entry.name for entry in self.entries.metadata}
+        summary = self._summary
+        if not summary.chunks:
+            if AS_WRITTEN not in found:
+                yield f"attachment {AS_WRITTEN}"
+            if found.isdisjoint({RESOLVED, FORMER_RESOLVED}):
+                yield f"attachment {RESOLVED}"
+            if DESCRIPTION not in found:
+                yield f"metadata {DESCRIPTION!r}"
+            if self._described and {AS_WRITTEN, RESOLVED, DESCRIPTION} <= found:
+                yield f"{self._described} bytes before the first step"
+        attachments = (entry.name for entry in summary.attachments)
+        yield from (f"attachment {name}" for name in attachments if name not in found)
+        metadata = (entry.name for entry in summary.metadata)
+        yield from (f"metadata {name!r}" for name in metadata if name not in found | {ENDING})
+        (geometry,) = GEOMETRY
+        if geometry in summary.counts and geometry not in self.entries.counts:
+            yield "the scene's shapes, /robot_description"
+
+    def _lost_steps(self) -> Iterator[str]:
+        before, time = 0, 0
+        for group in self.groups.whole:
+            if group.first > before:
+                yield _steps(before, group.first - 1, time, group.begin)
+            before, time = group.last + 1, group.end
+        total = self._summary.counts.get(STEP)
+        if total is not None and total > before:
+            end = max(entry.message_end_time for entry in self._summary.chunks)
+            yield _steps(before, total - 1, time, end)
+        elif total is None and (self.groups.unfinished or self._unclear or not self.ended):
+            yield f"what followed step {before - 1} (t = {time / NANOSECONDS:.9g} s)"
 
 
-def _commit(index: FileIndex, tentative: FileIndex) -> None:
-    index.schemas.update(tentative.schemas)
-    index.channels.update(tentative.channels)
-    index.chunks += tentative.chunks
-    index.attachments += tentative.attachments
-    index.metadata += tentative.metadata
-    for channel, count in tentative.counts.items():
-        index.counts[channel] = index.counts.get(channel, 0) + count
+def _steps(first: int, last: int, begin: int, end: int) -> str:
+    span = f"t = {begin / NANOSECONDS:.9g} to {end / NANOSECONDS:.9g} s"
+    return f"steps {first} to {last} ({span})" if last > first else f"step {first} ({span})"

@@ -12,6 +12,7 @@ from mcap.records import Attachment, Schema
 
 from lavendersim.cell import CellConfig
 from lavendersim.errors import TraceError
+from lavendersim.trace import layout
 from lavendersim.trace.container import CRC_KEY, FileIndex
 from lavendersim.trace.index import (
     ChunkContent,
@@ -21,13 +22,19 @@ from lavendersim.trace.index import (
     read_at,
     read_chunk,
 )
-from lavendersim.trace.writer import AS_WRITTEN, RESOLVED, Written
+from lavendersim.trace.rebuild import description_of, rebuilt_at
+from lavendersim.trace.recorded import RECORDED, described
+from lavendersim.trace.whole import check_bytes
+from lavendersim.trace.writer import AS_WRITTEN, DESCRIPTION, RESOLVED, Written
 
 FORMER_RESOLVED = "resolved.yaml"  # of logs before the config was JSON
 
 
 class Source(Protocol):
     """What a trace reads of its log."""
+
+    def verify(self) -> None:
+        """Raise TraceError unless every byte of the log is as it was written."""
 
     def metadata(self) -> dict[str, dict[str, str]]:
         """Return the metadata records by their names."""
@@ -49,10 +56,20 @@ class Source(Protocol):
 
 
 class LogFile:
-    """A log on disk; every record is checked."""
+    """A log on disk; every record is checked, and all its bytes before the first that is read.
+
+    Its metadata have checks of their own, and are read without that.
+    """
 
     def __init__(self, path: Path, index: FileIndex) -> None:
         self._path, self._index = path, index
+        self._verified = False
+
+    def verify(self) -> None:
+        """Raise TraceError unless every byte of the log is as it was written."""
+        if not self._verified:
+            check_bytes(self._path)
+            self._verified = True
 
     def metadata(self) -> dict[str, dict[str, str]]:
         """Return the metadata records by their names."""
@@ -102,18 +119,52 @@ class LogFile:
 
     def chunks(self, channel: int) -> Iterator[ChunkContent]:
         """Yield the chunks that hold messages of a channel."""
+        self.verify()
         with self._path.open("rb") as stream:
             for entry in self._index.chunks:
                 if channel in entry.message_index_offsets:
                     yield read_chunk(stream, entry)
 
     def _attachment(self, name: str) -> bytes:
+        self.verify()
+        entry = next((entry for entry in self._index.attachments if entry.name == name), None)
+        if entry is None:
+            raise TraceError(f"{self._path}: this log has lost its attachment {name}")
         with damage(self._path, f"attachment {name}"), self._path.open("rb") as stream:
-            (entry,) = (entry for entry in self._index.attachments if entry.name == name)
             record: Attachment = parse(read_at(stream, entry.offset, entry.length), Attachment)
             if record.name != name:
                 raise ValueError("another one stands in its place")
             return record.data
+
+
+class PartOfLog(LogFile):
+    """What is whole of a damaged log; record by record it is checked, all its bytes cannot be."""
+
+    def verify(self) -> None:
+        """Accept what was found whole."""
+
+    def metadata(self) -> dict[str, dict[str, str]]:
+        """Return the metadata records by their names; those that follow from the config always."""
+        found = super().metadata()
+        if DESCRIPTION not in found or RECORDED not in found:
+            try:
+                config = self.config()
+            except TraceError:
+                return found
+            channels = self._index.channels
+            why = "the log is damaged"
+            absent = {topic: why for topic, c in layout.CHANNELS.items() if c not in channels}
+            found.setdefault(DESCRIPTION, description_of(config, absent))
+            if partly := described(config.record):
+                found.setdefault(RECORDED, partly)
+        return found
+
+    def chunks(self, channel: int) -> Iterator[ChunkContent]:
+        """Yield the chunks that hold messages of a channel."""
+        with damage(self._path, "the log"), self._path.open("rb") as stream:
+            for entry in self._index.chunks:
+                if channel in entry.message_index_offsets:
+                    yield rebuilt_at(stream, entry).content
 
 
 class JustWritten:
@@ -121,6 +172,12 @@ class JustWritten:
 
     def __init__(self, written: Written) -> None:
         self._written = written
+        self._file = LogFile(written.path, written.entries)
+
+    def verify(self) -> None:
+        """Raise TraceError where the log is read from its file, and that has changed."""
+        if self._written.blocks is None:
+            self._file.verify()
 
     def metadata(self) -> dict[str, dict[str, str]]:
         """Return the metadata records by their names."""
@@ -136,12 +193,12 @@ class JustWritten:
 
     def schema(self, channel: int) -> Schema | None:
         """Return the schema of a channel; None where the log has no such channel."""
-        return LogFile(self._written.path, self._written.entries).schema(channel)
+        return self._file.schema(channel)
 
     def described(self, channel: int) -> dict[str, str]:
         """Return what the log says of a channel."""
-        return LogFile(self._written.path, self._written.entries).described(channel)
+        return self._file.described(channel)
 
     def chunks(self, channel: int) -> Iterator[ChunkContent]:
         """Yield the chunks that hold messages of a channel."""
-        yield from LogFile(self._written.path, self._written.entries).chunks(channel)
+        yield from self._file.chunks(channel)

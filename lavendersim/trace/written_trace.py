@@ -25,8 +25,7 @@ from lavendersim.trace.writer import Written
 def trace_of(written: Written) -> Trace:
     """Return a log that this process has just written, its columns not yet read."""
     if not written.blocks:
-        source = JustWritten(written)
-        return Trace(written.path, source, finished=True, config=written.config)
+        return Trace(written.path, JustWritten(written), config=written.config)
     return WrittenTrace(written, written.blocks)
 
 
@@ -34,7 +33,7 @@ class WrittenTrace(Trace):
     """A log whose blocks are at hand."""
 
     def __init__(self, written: Written, blocks: Sequence[Block]) -> None:
-        super().__init__(written.path, JustWritten(written), finished=True, config=written.config)
+        super().__init__(written.path, JustWritten(written), config=written.config)
         self._blocks = blocks
 
     @cached_property

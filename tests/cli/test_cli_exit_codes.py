@@ -85,28 +85,6 @@ def test_the_verbs_of_a_run_read_what_it_left(drop: Path, tmp_path: Path) -> Non
     assert "no figure section" in no_figure.stderr
 
 
-def test_a_cut_off_log_is_recovered_and_exits_3(drop: Path, tmp_path: Path) -> None:
-    lavender("run", drop, where=tmp_path)
-    (log,) = (tmp_path / "runs" / "latest" / "cells").glob("*.mcap")
-    cut = tmp_path / "cut.mcap"
-    cut.write_bytes(log.read_bytes()[:-100])
-    done = lavender("recover", cut, tmp_path / "whole.mcap", where=tmp_path)
-    assert done.returncode == 3, done.stderr
-    from lavendersim.trace import open_trace
-
-    assert open_trace(tmp_path / "whole.mcap").status.startswith("recovered")
-
-
-def test_a_log_that_is_not_there_is_a_usage_error_and_a_damaged_one_is_not(tmp_path: Path) -> None:
-    done = lavender("recover", "none.mcap", "whole.mcap", where=tmp_path)
-    assert (done.returncode, done.stderr) == (2, "none.mcap: no such log\n")
-    (tmp_path / "noise.mcap").write_bytes(bytes(100))
-    done = lavender("recover", "noise.mcap", "whole.mcap", where=tmp_path)
-    assert done.returncode == 3
-    assert done.stderr.startswith("noise.mcap: ")
-    assert len(done.stderr.splitlines()) == 1
-
-
 def test_a_folder_with_runs_in_it_is_run_and_collected_again(drop: Path, tmp_path: Path) -> None:
     assert lavender("run", ".", where=tmp_path).returncode == 0
     assert lavender("run", ".", where=tmp_path).returncode == 0

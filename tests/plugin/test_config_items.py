@@ -139,3 +139,33 @@ def test_pytest_takes_no_overheads(pytester: pytest.Pytester) -> None:
     (results,) = (pytester.path / "kept").rglob("results.json")
     assert "overheads" not in json.loads(results.read_text())
     assert not list((pytester.path / "kept").rglob("overheads.csv"))
+
+
+def test_a_log_that_changed_before_it_was_measured_fails_its_expectation(
+    pytester: pytest.Pytester,
+) -> None:
+    """Of a log too large to keep in memory the file is read."""
+    pytester.makeconftest(
+        """
+        from lavendersim.trace import writer
+        from lavendersim.trace.writer import TraceWriter
+
+        writer.KEPT_BYTES = 0
+        close = TraceWriter.close
+
+        def spoil(self, status):
+            written = close(self, status)
+            data = bytearray(written.path.read_bytes())
+            data[len(data) // 2] ^= 1
+            written.path.write_bytes(data)
+            return written
+
+        TraceWriter.close = spoil
+        """
+    )
+    pytester.makefile(".yaml", drop=DROP)
+    result = run(pytester)
+    result.assert_outcomes(passed=1, failed=1)
+    result.stdout.fnmatch_lines(["*expected   a log that can answer*"])
+    result.stdout.fnmatch_lines(["*because    *fail the CRC over all of them*"])
+    result.stdout.no_fnmatch_line("*Traceback*")

@@ -20,6 +20,9 @@ class Cell:
     def trace(self):
         return f"trace of {self.label}"
 
+    def damage(self):
+        return ""
+
 
 @dataclass
 class Run:
@@ -32,7 +35,9 @@ def calls(monkeypatch):
     """What the room was asked for, in order; the room itself stays out of it."""
     made = []
     sweep = Run((Cell("e=0.1"), Cell("e=0.8")))
-    monkeypatch.setattr("lavendersim.runner.open_run", lambda path, root: sweep, raising=False)
+    monkeypatch.setattr(
+        "lavendersim.runner.open_run", lambda path, root, allowed: sweep, raising=False
+    )
     for name in ("open_viewer", "save"):
         monkeypatch.setattr(f"lavendersim.replay.{name}", lambda *a, n=name: made.append((n, *a)))
     shoot = lambda *a: made.append(("screenshot", *a)) or ["warning: too dark"]  # noqa: E731

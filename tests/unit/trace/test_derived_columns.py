@@ -193,15 +193,16 @@ def test_a_killed_run_of_many_contacts_gives_a_prefix(tmp_path: Path) -> None:
         except TraceError:
             saved.add(0)
             continue
-        log: Trace = open_trace(tmp_path / "out.mcap")
+        log: Trace = open_trace(tmp_path / "out.mcap", allow_incomplete=True)
         part = split(block, [report.steps])[0]
         assert log.pose.tobytes() == part.pose.tobytes()
         for name in part.contact.dtype.names or ():
             assert log.contact[name].tobytes() == part.contact[name].tobytes()
-        counted = open_trace(tmp_path / "out.mcap")._source._index.counts  # type: ignore[attr-defined]
+        counted = open_trace(tmp_path / "out.mcap", allow_incomplete=True)._source._index.counts  # type: ignore[attr-defined]
         assert counted[3] == counted[4] == report.steps
         assert counted[9] > 1
         saved.add(report.steps)
+        (tmp_path / "out.mcap").unlink()
     assert len(saved) > 2
     assert max(saved) < steps
     assert CONFIG.clock.timestep == TIMESTEP

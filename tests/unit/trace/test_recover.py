@@ -60,35 +60,10 @@ def test_a_flipped_bit_never_gives_other_data(tmp_path: Path, whole: bytes) -> N
     assert refused > 100  # most bytes are data, and are checked
 
 
-def test_a_flipped_bit_in_a_killed_run_gives_a_prefix(tmp_path: Path, whole: bytes) -> None:
-    path = tmp_path / "killed.mcap"
-    path.write_bytes(whole)
-    truth = open_trace(path)
-    content(truth)  # read now, the file changes below
-    killed = whole[: int(len(whole) * 0.9)]
-    random = np.random.default_rng(8)
-    for position in [*range(8, 1200, 40), *random.integers(0, len(killed), 40)]:
-        flipped = bytearray(killed)
-        flipped[position] ^= 1 << int(random.integers(8))
-        path.write_bytes(flipped)
-        try:
-            trace = open_trace(path, allow_incomplete=True)
-        except TraceError:
-            continue
-        rows, steps = len(trace.step), trace.step["step"]
-        assert trace.step.tobytes() == truth.step[:rows].tobytes()
-        assert trace.pose.tobytes() == truth.pose[:rows].tobytes()
-        expected = truth.contact[np.isin(truth.contact["step"], steps)]
-        assert trace.contact.tobytes() == expected.tobytes()
-        assert trace.config == truth.config
-        described = {k: v for k, v in truth.metadata.items() if k != "lavender"}
-        assert trace.metadata == described
-
-
 def test_a_run_cut_anywhere_recovers_a_prefix(tmp_path: Path, whole: bytes, block: Block) -> None:
     path, out = tmp_path / "cut.mcap", tmp_path / "saved.mcap"
     saved = set()
-    for length in np.linspace(0, len(whole) - 1, 60).astype(int):
+    for length in [*np.linspace(0, len(whole) - 1, 60).astype(int), len(whole) - 100]:
         path.write_bytes(whole[:length])
         with pytest.raises(TraceError):
             open_trace(path)
@@ -98,14 +73,18 @@ def test_a_run_cut_anywhere_recovers_a_prefix(tmp_path: Path, whole: bytes, bloc
             assert "nothing to save" in str(error)  # noqa: PT017 (early cuts hold no step)
             saved.add(0)
             continue
-        trace = open_trace(out)
+        trace = open_trace(out, allow_incomplete=True)
         assert trace.status == report.status
-        assert report.status.startswith("recovered: ")
-        assert not trace.complete
-        assert report.saved + report.lost == length
+        if report.outcome == "whole":  # cut behind all that was recorded
+            assert out.read_bytes() == whole
+        else:
+            assert report.status.startswith("recovered: ")
+            assert "what followed step" in report.lost[0] or report.steps == STEPS
+            assert not trace.complete
         assert len(trace.step) == report.steps
         assert_prefix(trace, block, report.steps)
         saved.add(report.steps)
+        out.unlink()
     assert 0 in saved
     assert STEPS in saved
     assert len(saved) >= 4  # group by group
@@ -117,24 +96,45 @@ def test_a_killed_run_is_read_without_being_rewritten(tmp_path: Path, block: Blo
         open_trace(path)
     trace = open_trace(path, allow_incomplete=True)
     assert (trace.status, trace.complete) == (INCOMPLETE, False)
+    assert "unfinished" in trace.damage
     assert 0 < len(trace.step) < STEPS
     assert_prefix(trace, block, len(trace.step))
 
 
-def test_a_log_can_be_recovered_in_its_place(tmp_path: Path, whole: bytes, block: Block) -> None:
+def test_a_log_is_recovered_beside_itself_and_to_no_file_that_exists(
+    tmp_path: Path, whole: bytes, block: Block
+) -> None:
+    path, beside = tmp_path / "cut.mcap", tmp_path / "cut.recovered.mcap"
+    path.write_bytes(whole[: len(whole) * 3 // 4])
+    report = recover(path)
+    assert report.out == beside
+    assert_prefix(open_trace(beside, allow_incomplete=True), block, report.steps)
+    assert path.read_bytes() == whole[: len(whole) * 3 // 4]
+    for out in (beside, path):
+        before = out.read_bytes()
+        with pytest.raises(UsageError, match="exists already"):
+            recover(path, out)
+        assert out.read_bytes() == before
+    assert sorted(tmp_path.iterdir()) == [path, beside]
+
+
+def test_what_was_recovered_of_a_log_is_no_whole_one(tmp_path: Path, whole: bytes) -> None:
     path = tmp_path / "cut.mcap"
     path.write_bytes(whole[: len(whole) * 3 // 4])
-    report = recover(path, path)
-    assert_prefix(open_trace(path), block, report.steps)
-    assert list(tmp_path.iterdir()) == [path]
+    out = recover(path).out
+    assert out is not None
+    with pytest.raises(TraceError, match="recovered: "):
+        open_trace(out)
+    again = recover(out)
+    assert (again.out, again.outcome) == (None, "part")
 
 
 def test_a_whole_log_needs_no_recovery(tmp_path: Path, whole: bytes) -> None:
     path = tmp_path / "run.mcap"
     path.write_bytes(whole)
-    with pytest.raises(UsageError, match="this log is whole"):
-        recover(path, tmp_path / "out.mcap")
-    assert not (tmp_path / "out.mcap").exists()
+    report = recover(path, tmp_path / "out.mcap")
+    assert (report.out, report.outcome, report.steps, report.lost) == (None, "whole", STEPS, ())
+    assert list(tmp_path.iterdir()) == [path]
 
 
 def test_metadata_are_guarded_though_mcap_does_not(tmp_path: Path, whole: bytes) -> None:

@@ -9,6 +9,7 @@ import yaml
 from sample import AS_WRITTEN, CONFIG, METADATA, run
 
 from lavendersim.cell import CellConfig
+from lavendersim.errors import TraceError
 from lavendersim.trace import Trace, TraceWriter, Written, open_trace, trace_of, writer
 from lavendersim.trace.source import FORMER_RESOLVED
 
@@ -57,6 +58,20 @@ def test_a_log_too_large_to_keep_is_read_from_its_file(
     log = written(tmp_path / "run.mcap", MANY)
     assert log.blocks is None
     assert_equal(trace_of(log), open_trace(log.path))
+
+
+def test_a_log_that_changed_after_it_was_written_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Also in a chunk that nobody asks for."""
+    monkeypatch.setattr(writer, "KEPT_BYTES", 1000)
+    log = written(tmp_path / "run.mcap", MANY)
+    data = bytearray(log.path.read_bytes())
+    data[len(data) // 3] ^= 1
+    log.path.write_bytes(data)
+    for trace in (trace_of(log), open_trace(log.path)):
+        with pytest.raises(TraceError, match="fail the CRC"):
+            _ = trace.step
 
 
 def test_the_config_of_an_older_log_is_read_from_its_yaml(
