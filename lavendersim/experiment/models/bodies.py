@@ -127,7 +127,7 @@ class ArrangedBody(_Matter):
     """A body that stands in several places: all that a body has but its position."""
 
     shape: Annotated[Solid, Field(discriminator="kind")] = Field(
-        description="sphere, box, capsule, cylinder, hull or compound"
+        description=f"{', '.join(SOLIDS[:-1])} or {SOLIDS[-1]}"
     )
 
 

@@ -6,11 +6,11 @@ where its centre of mass stands.
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Union
 
 from pydantic import Field, Tag
 
-from lavendersim.cell.shapes import Box, Capsule, Cylinder, Plane, Sphere
+from lavendersim.cell.shapes import PRIMITIVE_KINDS, PRIMITIVES, Plane, Primitive
 from lavendersim.quantities.model import ConfigModel
 from lavendersim.quantities.quantity import (
     Direction,
@@ -55,14 +55,17 @@ Orientation = Annotated[
     either("a quaternion [w, x, y, z] or {axis: [x, y, z], degrees: angle}", _orientation_form),
 ]
 
-Simple = Sphere | Box | Capsule | Cylinder | Hull
+if TYPE_CHECKING:
+    Simple = Primitive | Hull
+else:
+    Simple = Union[(*PRIMITIVES, Hull)]
 
 
 class Part(ConfigModel):
     """One convex piece of a compound."""
 
     shape: Annotated[Simple, Field(discriminator="kind")] = Field(
-        description="sphere, box, capsule, cylinder or hull"
+        description=f"{', '.join(PRIMITIVE_KINDS)} or hull"
     )
     position: Position = Field(
         default=(0.0, 0.0, 0.0), description="[m] of its centre of mass, in the compound's frame"
@@ -85,7 +88,9 @@ class Compound(ConfigModel):
     )
 
 
-Solid = Sphere | Box | Capsule | Cylinder | Hull | Compound
-Shape = Annotated[
-    Plane | Sphere | Box | Capsule | Cylinder | Hull | Compound, Field(discriminator="kind")
-]
+if TYPE_CHECKING:
+    Solid = Primitive | Hull | Compound
+    Shape = Plane | Primitive | Hull | Compound
+else:
+    Solid = Union[(*PRIMITIVES, Hull, Compound)]
+    Shape = Annotated[Union[(Plane, Solid)], Field(discriminator="kind")]  # noqa: UP007
