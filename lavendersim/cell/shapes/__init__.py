@@ -13,7 +13,7 @@ from pydantic import Field
 from lavendersim.cell.shapes.box import Box
 from lavendersim.cell.shapes.capsule import Capsule
 from lavendersim.cell.shapes.compound import CellCompound, CellPart
-from lavendersim.cell.shapes.convex import PRIMITIVE_KINDS, PRIMITIVES, CellSimple
+from lavendersim.cell.shapes.convex import PRIMITIVES, CellSimple
 from lavendersim.cell.shapes.cylinder import Cylinder
 from lavendersim.cell.shapes.hull import CellHull
 from lavendersim.cell.shapes.plane import Plane
@@ -30,7 +30,6 @@ else:
 
 __all__ = [
     "PRIMITIVES",
-    "PRIMITIVE_KINDS",
     "Box",
     "Capsule",
     "CellCompound",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Final, Union, get_args
+from typing import TYPE_CHECKING, Annotated, Final, Union
 
 from pydantic import Field
 
@@ -19,9 +19,6 @@ PRIMITIVES: Final[tuple[type[Primitive], ...]] = (
     Box,
     Capsule,
     Cylinder,
-)
-PRIMITIVE_KINDS: Final[tuple[str, ...]] = tuple(
-    get_args(model.model_fields["kind"].annotation)[0] for model in PRIMITIVES
 )
 
 if TYPE_CHECKING:

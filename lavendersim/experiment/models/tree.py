@@ -9,14 +9,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Final
 
-from lavendersim.cell.shapes import PRIMITIVE_KINDS
 from lavendersim.engine.effects import MOTION_KEYS
 from lavendersim.experiment.text.node import Node, Path
 
 MOST_BODIES = 100_000  # of a scene; their names alone are some megabytes
 BODIES: Path = ("scene", "bodies")
 ARRANGEMENTS: Path = ("scene", "arrangements")
-SOLIDS: Final = (*PRIMITIVE_KINDS, "hull", "compound")
 # Keys of effects: a body where one is true has no mass, as a fixed one, but it moves.
 PRESCRIBE_MOTION: Final = tuple(key.name for key in MOTION_KEYS)
 

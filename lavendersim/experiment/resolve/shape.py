@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from lavendersim.cell.shapes import CellCompound, CellHull, CellPart, CellSimple
-from lavendersim.experiment.models.shapes import AxisAngle, Compound, Hull, Simple
+from lavendersim.cell.shapes import CellCompound, CellHull, CellPart, CellSimple, Primitive
+from lavendersim.experiment.models.shapes import AxisAngle, Compound, Simple
 from lavendersim.experiment.resolve.placement import SceneError
 from lavendersim.geometry.convex_hull import FlatError, convex_hull
 from lavendersim.geometry.mass_properties import (
@@ -49,10 +49,10 @@ def quaternion_of(orientation: Quaternion | AxisAngle) -> Quaternion:
 
 def _simple(shape: Simple) -> tuple[CellSimple, Solid]:
     """Return a convex shape in its principal frame, and its solid in that frame."""
-    if not isinstance(shape, Hull):
+    if isinstance(shape, Primitive):
         return shape, homogeneous(*shape.homogeneous())
     try:
-        hull = convex_hull(shape.points)
+        hull = convex_hull(shape.corners())
     except FlatError:
         sentence = "points: all of them lie in one plane; a hull needs a volume"
         raise SceneError(("points",), sentence) from None
