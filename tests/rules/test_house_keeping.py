@@ -98,6 +98,23 @@ def test_every_solver_is_a_file_and_a_name() -> None:
     assert [solver.name for solver in SOLVERS.values()] == list(SOLVER_NAMES)
 
 
+# numba calls its own class with nine.
+ARGUMENTS_OF_OTHERS = {("part_compiler.py", "__init__")}
+
+
+def test_nothing_takes_more_than_six_arguments_by_their_place() -> None:
+    """Commands of the command line are called by typer, option by option."""
+    found = []
+    for file in (file for file in files() if file.is_relative_to(ROOT / "lavendersim")):
+        for node in ast.walk(ast.parse(file.read_text())):
+            if isinstance(node, ast.FunctionDef):
+                names = [one.arg for one in (*node.args.posonlyargs, *node.args.args)]
+                count = len(names) - (names[:1] in (["self"], ["cls"]))
+                if count > 6 and (file.name, node.name) not in ARGUMENTS_OF_OTHERS:
+                    found.append(f"{file.name}:{node.lineno}: {node.name} takes {count}")
+    assert found == []
+
+
 def test_every_shape_pair_is_listed() -> None:
     """Pairs without a closed form share a file, with a plane or without; others have their own."""
     files = {name: pair.make.__module__.rpartition(".")[2] for name, pair in SHAPE_PAIRS.items()}

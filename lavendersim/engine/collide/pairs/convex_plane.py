@@ -18,18 +18,13 @@ LOWEST = 1 << 60  # the name of the lowest point
 
 
 @inner
-def put_above(row, body, p, n, below, phi, name):
-    """Write the point half way between the plane and the surface of a body.
-
-    p: of its core, from its centre; below: how far below p the surface lies [m].
-    """
-    down = below + 0.5 * phi
-    middle = Vec3(
+def below(body, p, down, n):
+    """Return the point `down` [m] below p, which is relative to the body's centre."""
+    return Vec3(
         body.x + p.x - down * n.x,
         body.y + p.y - down * n.y,
         body.z + p.z - down * n.z,
     )
-    place(row, middle, phi, name)
 
 
 def make(spec):
@@ -38,9 +33,9 @@ def make(spec):
 
     def convex_plane(plane, body, margin, scratch):
         n, hulls = Vec3(plane.hx, plane.hy, plane.hz), scratch.hulls
-        below = radius(body)
-        height = dot(n, body) - plane.offset - below
-        if height + below - body.bound > margin:
+        r = radius(body)
+        height = dot(n, body) - plane.offset - r
+        if height + r - body.bound > margin:
             return 0
         lowest = support(body, negative(n), hulls)
         phi = height + dot(n, lowest)
@@ -53,10 +48,11 @@ def make(spec):
             above = height + dot(n, p)
             if above <= margin:
                 least = min(least, above)
-                put_above(rows[count], body, p, n, below, above, (found.name << CORNER_BITS) | k)
+                middle = below(body, p, r + 0.5 * above, n)
+                place(rows[count], middle, above, (found.name << CORNER_BITS) | k)
                 count += 1
         if least > phi + TOUCHING:
-            put_above(rows[count], body, lowest, n, below, phi, LOWEST)
+            place(rows[count], below(body, lowest, r + 0.5 * phi, n), phi, LOWEST)
             count += 1
         return write_manifold(scratch.manifold, rows, count, n)
 
