@@ -8,11 +8,14 @@ from pathlib import Path
 import pytest
 from sources import ROOT, files
 
+from lavendersim.cell.shapes import PRIMITIVES
 from lavendersim.engine.collide import SHAPE_PAIRS
+from lavendersim.engine.collide.shapes import SHAPES
 from lavendersim.engine.effects import CHAINED, EFFECTS, Effect, hook_names
 from lavendersim.engine.records import F8, I8, U8
 from lavendersim.engine.solvers import SOLVER_NAMES
 from lavendersim.engine.solvers.catalogue import SOLVERS
+from lavendersim.quantities.kinds import kind_of
 
 ENGINE = ROOT / "lavendersim/engine"
 LONGEST_FILE = 400  # lines; beyond it a file does more than one thing
@@ -113,6 +116,12 @@ def test_nothing_takes_more_than_six_arguments_by_their_place() -> None:
                 if count > 6 and (file.name, node.name) not in ARGUMENTS_OF_OTHERS:
                     found.append(f"{file.name}:{node.lineno}: {node.name} takes {count}")
     assert found == []
+
+
+def test_every_shape_of_a_config_has_kernels() -> None:
+    named = {kind_of(model) for model in PRIMITIVES}
+    assert named | {"plane", "hull", "compound"} == set(SHAPES)
+    assert len({shape.kind for shape in SHAPES.values()}) == len(SHAPES)
 
 
 def test_every_shape_pair_is_listed() -> None:
