@@ -108,7 +108,7 @@ def _write(
 
     pictured = {entry.case: entry for entry in reversed(made) if entry.run is not None}
     shown = {name: open_run(entry.run).cells[0] for name, entry in pictured.items()}
-    write_matrix(cases, solvers, made, left_out, shown, processor(), report)
+    write_matrix(cases, solvers, made, left_out, shown=shown, processor=processor(), path=report)
     typer.echo(f"report {report}", err=True)
     return [sentence for cell in shown.values() if (sentence := cell.damage())]
 

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Mapping
 from typing import Any
 
-from lavendersim.cell import CellBody, CellConfig
+from lavendersim.cell import CellBody, CellConfig, Convex
+from lavendersim.geometry.vectors import Vector3, dot
 
 ORIGIN = [0.0, 0.0, 0.0]
 UPRIGHT = [1.0, 0.0, 0.0, 0.0]
@@ -89,3 +91,30 @@ def made_cell(
         "study": {"mistake": "none"},
     }
     return CellConfig.from_dict({**cell, **sections})
+
+
+class MadeShape(Convex):
+    """A tetrahedron of a kind that no view has a form of its own for."""
+
+    kind = "made"
+
+    def corners(self) -> tuple[Vector3, ...]:
+        """Return its corners [m]."""
+        return (
+            (-0.25, -0.25, -0.25),
+            (0.75, -0.25, -0.25),
+            (-0.25, 0.75, -0.25),
+            (-0.25, -0.25, 0.75),
+        )
+
+    def bounding_radius(self) -> float:
+        """Return the distance of its farthest corner [m]."""
+        return max(math.hypot(*corner) for corner in self.corners())
+
+    def thickness(self) -> float:
+        """Return its width along each axis [m]."""
+        return 1.0
+
+    def extent(self, along: Vector3) -> float:
+        """Return the distance of its farthest corner along a direction [m]."""
+        return max(dot(corner, along) for corner in self.corners())

@@ -13,6 +13,7 @@ from math import sqrt
 from .compile import inner, kernel
 from .effects import made_once
 from .spec import Spec
+from .vectors import Vec3, cross
 
 
 @inner
@@ -40,22 +41,24 @@ def inertia_response(v, x, y, z):
 
 
 @inner
-def point_response(v, inv_m, rx, ry, rz, x, y, z):
-    """Velocity that a unit impulse (x, y, z) at r gives to the body's point r [1/kg]."""
-    wx, wy, wz = inertia_response(v, ry * z - rz * y, rz * x - rx * z, rx * y - ry * x)
-    return (
-        inv_m * x + wy * rz - wz * ry,
-        inv_m * y + wz * rx - wx * rz,
-        inv_m * z + wx * ry - wy * rx,
+def point_response(v, inv_m, r, p):
+    """Velocity that a unit impulse p at r gives to the body's point r [1/kg]."""
+    turn = cross(r, p)
+    wx, wy, wz = inertia_response(v, turn.x, turn.y, turn.z)
+    return Vec3(
+        inv_m * p.x + wy * r.z - wz * r.y,
+        inv_m * p.y + wz * r.x - wx * r.z,
+        inv_m * p.z + wx * r.y - wy * r.x,
     )
 
 
 @inner
 def block_response(contact, va, vb, x, y, z):
     """Relative velocity that a unit impulse (x, y, z) on B, and its opposite on A, gives [1/kg]."""
-    ax, ay, az = point_response(va, contact.inv_m_a, contact.rax, contact.ray, contact.raz, x, y, z)
-    bx, by, bz = point_response(vb, contact.inv_m_b, contact.rbx, contact.rby, contact.rbz, x, y, z)
-    return ax + bx, ay + by, az + bz
+    p = Vec3(x, y, z)
+    a = point_response(va, contact.inv_m_a, Vec3(contact.rax, contact.ray, contact.raz), p)
+    b = point_response(vb, contact.inv_m_b, Vec3(contact.rbx, contact.rby, contact.rbz), p)
+    return a.x + b.x, a.y + b.y, a.z + b.z
 
 
 @inner

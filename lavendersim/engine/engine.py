@@ -63,6 +63,7 @@ class Engine:
         pairs: np.ndarray,
         parameters: np.ndarray,
         poses: np.ndarray,
+        *,
         templates: np.ndarray | None = None,
         hulls: HullGeometry | None = None,
         links: np.ndarray | None = None,

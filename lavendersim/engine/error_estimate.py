@@ -144,10 +144,10 @@ def make_add_paths(spec: Spec) -> Any:
 
 
 def make_estimate(spec: Spec) -> Any:
-    """Return `kernel(state, count, other, differences, paths, left, params, residual)`.
+    """Return `kernel(state, count, left, params, residual)`.
 
-    other: bodies that the whole substep led to; differences: of velocities, to be made from those
-    that it led to. left: of the run, behind the substep [s]; residual: of its last solve [m/s].
+    `state.control` has the bodies that the whole substep led to, and its velocities, which are made
+    differences. left: of the run, behind the substep [s]; residual: of its last solve [m/s].
     Returns e, the error of the same body that solves may leave, and that body; -1: none has one.
     """
     turns, touches = spec.has("rotation"), bool(spec.shape_pairs)
@@ -161,8 +161,10 @@ def make_estimate(spec: Spec) -> Any:
 
     subtract = kernel(subtract, spec)
 
-    def estimate(state, count, other, differences, paths, left, params, residual):
+    def estimate(state, count, left, params, residual):
         bodies, velocities = state.bodies, state.velocities
+        control = state.control
+        other, differences, paths = control.whole, control.differences, control.paths
         noise = NOISE * min(residual, params.tolerance)
         for i in range(bodies.shape[0]):
             subtract(velocities[i], differences[i])

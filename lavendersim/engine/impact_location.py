@@ -32,6 +32,8 @@ from .spec import Spec
 PASSES = 80
 # Shortest, of what is left of the step, in which bodies that part are looked at again.
 STRIDE = 1.0 / 32.0
+# Rows of `memory.Trial`: the two bodies that move, and the rows that collide (parts of them).
+A, B, PART_A, PART_B = range(4)
 
 
 def make_locate(spec: Spec) -> Any:
@@ -66,9 +68,9 @@ def make_locate(spec: Spec) -> Any:
         owner_i, owner_j = i, j
         if compound:
             owner_i, owner_j = bodies[i].owner, bodies[j].owner
-        kept[0], kept[1] = bodies[owner_i], bodies[owner_j]
-        kept[2], kept[3] = bodies[i], bodies[j]
-        spun[0], spun[1] = velocities[owner_i], velocities[owner_j]
+        kept[A], kept[B] = bodies[owner_i], bodies[owner_j]
+        kept[PART_A], kept[PART_B] = bodies[i], bodies[j]
+        spun[A], spun[B] = velocities[owner_i], velocities[owner_j]
         left = params.dt
         ma, mb = motion[owner_i], motion[owner_j]
         margin = TOUCHING + ma.reach + mb.reach
@@ -78,9 +80,9 @@ def make_locate(spec: Spec) -> Any:
         contact = trial.contact[0]
         contact.a, contact.b = owner_i, owner_j
         for _ in range(PASSES):
-            bodies[owner_i], bodies[owner_j] = kept[0], kept[1]
-            displace(bodies[owner_i], spun[0], ma, t, left)
-            displace(bodies[owner_j], spun[1], mb, t, left)
+            bodies[owner_i], bodies[owner_j] = kept[A], kept[B]
+            displace(bodies[owner_i], spun[A], ma, t, left)
+            displace(bodies[owner_j], spun[B], mb, t, left)
             if compound:
                 place_part(bodies, i)
                 place_part(bodies, j)
@@ -137,8 +139,8 @@ def make_locate(spec: Spec) -> Any:
             if t == before:
                 when = NEVER if phi > TOUCHING else t
                 break
-        bodies[owner_i], bodies[owner_j] = kept[0], kept[1]
-        bodies[i], bodies[j] = kept[2], kept[3]
+        bodies[owner_i], bodies[owner_j] = kept[A], kept[B]
+        bodies[i], bodies[j] = kept[PART_A], kept[PART_B]
         return when
 
     return kernel(locate, spec)

@@ -179,7 +179,7 @@ def make_stand_midway(spec: Spec) -> Any:
                     body.qw, body.qx, body.qy, body.qz = start.qw, start.qx, start.qy, start.qz
                     half_turn(body, 0.5 * x, 0.5 * y, 0.5 * z, dt)
                 else:
-                    turn_midway(body, start, m, free, v.wx, v.wy, v.wz, dt)
+                    turn_midway(body, start, m, free, v, dt)
 
     return kernel(stand_midway, spec)
 

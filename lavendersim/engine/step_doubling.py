@@ -241,16 +241,7 @@ def make_end_span(spec: Spec) -> Any:
         error, floor, worst = np.inf, 0.0, counters.body
         if not failed:
             left = params.duration - (record.before + record.end)
-            error, floor, worst = estimate(
-                state,
-                count,
-                control.whole,
-                control.differences,
-                control.paths,
-                left,
-                params,
-                counters.residual,
-            )
+            error, floor, worst = estimate(state, count, left, params, counters.residual)
         if judge(record, params, error, floor):
             add_paths(state.bodies, state.velocities, control.bodies, control.paths)
             record.spent += max(error - floor, 0.0)

@@ -17,7 +17,7 @@ from lavendersim.experiment.experiment import Experiment
 from lavendersim.experiment.models.experiment import ExperimentConfig
 from lavendersim.experiment.models.tree import swept_values
 from lavendersim.experiment.sweeps import axes as sweep
-from lavendersim.experiment.sweeps.reduction import check_reduction, reduce
+from lavendersim.experiment.sweeps.reduced_length import at_reduced_length, check_reduced_length
 from lavendersim.experiment.sweeps.solver_override import with_solver
 from lavendersim.experiment.text.former import with_new_spellings
 from lavendersim.experiment.text.node import Node, key_mark
@@ -68,8 +68,8 @@ def _load(
         report.add(root.mark, f"expected a mapping with scene and duration, {_found(root)}")
         raise ConfigError(report.defects)
     root = with_new_spellings(root, name)
-    check_reduction(root, report)
-    root, shortened = reduce(root) if reduced else (root, False)
+    check_reduced_length(root, report)
+    root, shortened = at_reduced_length(root) if reduced else (root, False)
     root = with_solver(root, solver) if solver is not None else root
     axes = sweep.axes_of(root, report)
     config = _check_first(root, axes, report)

@@ -87,6 +87,7 @@ def write_matrix(
     solvers: Sequence[str],
     entries: Sequence[Any],
     left_out: Mapping[str, str],
+    *,
     shown: Mapping[str, Any],
     processor: str,
     path: Path,

@@ -8,11 +8,12 @@ from __future__ import annotations
 
 import io
 import math
+from functools import lru_cache
 from typing import Any, Final
 
 import numpy as np
 
-from lavendersim.cell import Box, CellHull, CellShape, CellSimple, Cylinder, Plane, Sphere
+from lavendersim.cell import CellShape, Plane
 from lavendersim.figures.style import DARK, GREY, LOOKS
 from lavendersim.geometry.rotations import rotation_matrices, rotation_matrix
 from lavendersim.geometry.shapes import half_space, pieces
@@ -20,7 +21,6 @@ from lavendersim.measures.changes import removals
 
 WIDTH, HEIGHT, DPI = 1.6, 1.1, 100  # inch, inch, dots per inch: 160 x 110 dots
 MARGIN = 0.08  # of the picture, on every side
-ROUND: Final = 20  # corners of a circle: at this size none can be seen
 BEFORE, FIXED = "#e8e8e8", "#bbbbbb"  # where bodies began; what never moves
 NOTHING: Final = np.array([[-1.0, 0.0], [1.0, 1.0]])  # a picture without bodies
 MOST_BODIES = 3000  # of a larger scene the first ones; more are less than a dot each
@@ -125,41 +125,14 @@ def _grounds(trace: Any, right: np.ndarray, up: np.ndarray) -> list[tuple[np.nda
     return found
 
 
+@lru_cache(maxsize=256)
 def _corners(shape: CellShape) -> np.ndarray:
     """Return points (n, 3) in the body's frame [m] whose convex hull is the shape, or nearly."""
     placed = [
-        piece.position + _corners_of(piece.shape) @ rotation_matrix(piece.orientation).T
+        piece.position + np.asarray(piece.shape.corners()) @ rotation_matrix(piece.orientation).T
         for piece in pieces(shape)
     ]
     return np.concatenate(placed)
-
-
-def _corners_of(shape: CellSimple) -> np.ndarray:
-    if isinstance(shape, Box):
-        signs = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
-        return np.asarray(0.5 * signs * np.asarray(shape.size))
-    if isinstance(shape, CellHull):
-        return np.asarray(shape.points)
-    radius, half = shape.radius, 0.0 if isinstance(shape, Sphere) else 0.5 * shape.length
-    angles = 2.0 * np.pi * np.arange(ROUND) / ROUND
-    circle = radius * np.column_stack([np.cos(angles), np.sin(angles), np.zeros(ROUND)])
-    end = np.array([0.0, 0.0, half])
-    if isinstance(shape, Cylinder):
-        return np.concatenate([circle + end, circle - end])
-    # three great circles of a ball look round from everywhere at this size
-    rings = [np.roll(circle, shift, axis=1) for shift in range(3)]
-    tilted = [circle @ turn for turn in _TILTS]
-    ball = np.concatenate(rings + tilted)
-    return np.concatenate([ball + end, ball - end])
-
-
-_HALF = math.sqrt(0.5)
-_TILTS: Final = (
-    np.array([[_HALF, 0, _HALF], [0, 1, 0], [-_HALF, 0, _HALF]]),
-    np.array([[_HALF, 0, -_HALF], [0, 1, 0], [_HALF, 0, _HALF]]),
-    np.array([[1, 0, 0], [0, _HALF, _HALF], [0, -_HALF, _HALF]]),
-    np.array([[1, 0, 0], [0, _HALF, -_HALF], [0, _HALF, _HALF]]),
-)
 
 
 def _hull(points: np.ndarray) -> np.ndarray:

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from lavendersim.cell.body import CellBody
-from lavendersim.cell.shapes import Box, Capsule, Cylinder, Plane, Sphere
+from lavendersim.cell.shapes import Convex, Plane
 from lavendersim.geometry.rotations import Floats, rotation_matrix, unit_quaternion
 from lavendersim.geometry.shapes import extent
 
@@ -64,21 +62,8 @@ def lowest_point(body: CellBody, normal: Floats) -> Floats:
     shape, turn = body.shape, rotation_of(body)
     along = turn.T @ normal
     along[np.abs(along) < 1e-14] = 0.0  # a side at right angles, but for round-off
-    flat, rounded = np.zeros(3), np.zeros(3)
-    match shape:
-        case Sphere():
-            rounded = shape.radius * along
-        case Box():
-            flat = 0.5 * vector(shape.size) * np.sign(along)
-        case Capsule():
-            flat[2] = 0.5 * shape.length * float(np.sign(along[2]))
-            rounded = shape.radius * along
-        case Cylinder():
-            flat[2] = 0.5 * shape.length * float(np.sign(along[2]))
-            across = along * (1.0, 1.0, 0.0)
-            length = math.sqrt(float(across @ across))
-            rounded = shape.radius * across / length if length else across
-        case _:
-            raise ValueError(f"no closed form for the lowest point of a {shape.kind}")
-    point: Floats = vector(body.position) - turn @ (flat + rounded)
+    if not isinstance(shape, Convex):
+        raise ValueError(f"no closed form for the lowest point of a {shape.kind}")
+    x, y, z = along.tolist()
+    point: Floats = vector(body.position) - turn @ vector(shape.farthest_point((x, y, z)))
     return point

@@ -1,12 +1,8 @@
 """Volume, centre of mass and inertia of homogeneous solids.
 
-J is the inertia about the centre of mass over the mass [m^2], r a radius, l a length along z:
+J is the inertia about the centre of mass over the mass [m^2]. Primitives say their own, in closed
+form (`cell/shapes`); of the others:
 
-    sphere    V = 4/3 pi r^3            J = 2/5 r^2
-    box       V = a b c                 J_a = (b^2 + c^2)/12
-    cylinder  V = pi r^2 l              J_z = r^2/2,  J_x = r^2/4 + l^2/12
-    capsule   the cylinder and a ball cut in halves, each with its share of the volume; a half
-              ball's centre of mass stands 3/8 r beyond the cylinder's end
     hull      tetrahedra from a point inside to every triangle (a, b, c) of its faces:
               V = sum det/6,  int x x^T = sum det/120 (s s^T + a a^T + b b^T + c c^T),
               det = a.(b x c),  s = a + b + c
@@ -52,45 +48,9 @@ def _diagonal(x: float, y: float, z: float) -> Matrix:
     return ((x, 0.0, 0.0), (0.0, y, 0.0), (0.0, 0.0, z))
 
 
-def sphere(radius: float) -> Solid:
-    """Return a ball."""
-    moment = 0.4 * (radius * radius)
-    return Solid(_ball(radius), ORIGIN, _diagonal(moment, moment, moment))
-
-
-def box(size: Vector3) -> Solid:
-    """Return a box by its full edges."""
-    x, y, z = (edge * edge for edge in size)
-    moments = ((y + z) / 12.0, (x + z) / 12.0, (x + y) / 12.0)
-    return Solid(math.prod(size), ORIGIN, _diagonal(*moments))
-
-
-def cylinder(radius: float, length: float) -> Solid:
-    """Return a round bar along z."""
-    bar, across, along = _bar(radius, length)
-    return Solid(bar, ORIGIN, _diagonal(across, across, along))
-
-
-def capsule(radius: float, length: float) -> Solid:
-    """Return a round bar along z with half a ball on each end."""
-    bar, across, along = _bar(radius, length)
-    ball, square, half = _ball(radius), radius * radius, length / 2.0
-    volume = bar + ball
-    # A half ball about its centre of mass has 2/5 r^2 - (3/8 r)^2; it stands half + 3/8 r away.
-    ends = 0.4 * square + half * half + 0.75 * half * radius
-    across = (bar * across + ball * ends) / volume
-    along = (bar * along + ball * 0.4 * square) / volume
-    return Solid(volume, ORIGIN, _diagonal(across, across, along))
-
-
-def _ball(radius: float) -> float:
-    return 4.0 / 3.0 * math.pi * radius**3
-
-
-def _bar(radius: float, length: float) -> tuple[float, float, float]:
-    """Return volume, J_x and J_z of a cylinder."""
-    square = radius * radius
-    return math.pi * square * length, square / 4.0 + length * length / 12.0, square / 2.0
+def homogeneous(volume: float, moments: Vector3) -> Solid:
+    """Return the solid whose frame is its principal frame."""
+    return Solid(volume, ORIGIN, _diagonal(*moments))
 
 
 def polyhedron(hull: Polyhedron) -> Solid:

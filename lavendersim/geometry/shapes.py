@@ -10,17 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lavendersim.cell.shapes import (
-    Box,
-    Capsule,
-    CellCompound,
-    CellHull,
-    CellShape,
-    CellSimple,
-    Cylinder,
-    Plane,
-    Sphere,
-)
+from lavendersim.cell.shapes import CellCompound, CellShape, CellSimple, Plane
 from lavendersim.geometry.quaternions import IDENTITY
 from lavendersim.geometry.rotations import Floats, rotation_matrix
 
@@ -48,20 +38,11 @@ def bounding_radius(shape: CellShape) -> float:
     match shape:
         case Plane():
             return math.inf
-        case Sphere():
-            return shape.radius
-        case Box():
-            return 0.5 * math.hypot(*shape.size)
-        case Capsule():
-            return 0.5 * shape.length + shape.radius
-        case Cylinder():
-            return math.hypot(0.5 * shape.length, shape.radius)
-        case CellHull():
-            return max(math.hypot(*point) for point in shape.points)
         case CellCompound():
             return max(
                 math.hypot(*part.position) + bounding_radius(part.shape) for part in shape.parts
             )
+    return shape.bounding_radius()
 
 
 def thickness(shape: CellShape) -> float:
@@ -72,15 +53,9 @@ def thickness(shape: CellShape) -> float:
     match shape:
         case Plane():
             return math.inf
-        case Box():
-            return min(shape.size)
-        case CellHull():
-            return float(np.ptp(np.asarray(shape.points), axis=0).min())
         case CellCompound():
             return min(thickness(part.shape) for part in shape.parts)
-        case Cylinder():
-            return min(2.0 * shape.radius, shape.length)
-    return 2.0 * shape.radius
+    return shape.thickness()
 
 
 def extent(shape: CellShape, rotation: Floats, direction: Floats) -> float:
@@ -89,24 +64,16 @@ def extent(shape: CellShape, rotation: Floats, direction: Floats) -> float:
     rotation: matrix, body to world. This is the support function of the shape.
     """
     match shape:
-        case Sphere():
-            return shape.radius
-        case Box():
-            half = 0.5 * np.asarray(shape.size)
-            return float(half @ np.abs(rotation.T @ direction))
-        case Capsule() | Cylinder():
-            slope = min(1.0, abs(float(rotation[:, 2] @ direction)))
-            across = math.sqrt(1.0 - slope * slope) if isinstance(shape, Cylinder) else 1.0
-            return shape.radius * across + 0.5 * shape.length * slope
-        case CellHull():
-            return float(np.max(np.asarray(shape.points) @ (rotation.T @ direction)))
+        case Plane():
+            raise ValueError("a plane has no extent")
         case CellCompound():
             return max(
                 float((rotation @ np.asarray(part.position)) @ direction)
                 + extent(part.shape, rotation @ rotation_matrix(part.orientation), direction)
                 for part in shape.parts
             )
-    raise ValueError("a plane has no extent")
+    x, y, z = (rotation.T @ direction).tolist()
+    return shape.extent((x, y, z))
 
 
 class Piece(NamedTuple):

@@ -68,6 +68,7 @@ def judge(
     expectations: Sequence[ExpectSpec],
     cells: Sequence[Cell],
     values: Values | None = None,
+    *,
     always: Always | None = None,
     outcomes: AlwaysOutcomes | None = None,
     meant_to_fail: Sequence[ExpectSpec] = (),

@@ -41,6 +41,7 @@ def solve_by_kernel(
     sweeps: int = 10_000,
     start: np.ndarray | None = None,
     history: bool = False,
+    *,
     friction_cone: str = "disc",
     over_relaxation: float = 1.0,
 ) -> Solution:

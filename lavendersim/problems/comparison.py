@@ -88,11 +88,21 @@ class Comparison(NamedTuple):
         return any(attempt.solved for attempt in self.attempts)
 
 
+class _Asked(NamedTuple):
+    """What is asked of every problem."""
+
+    solvers: Sequence[str]
+    tolerance: float
+    sweeps: int | None
+    curves: bool
+
+
 def compare(
     problems: Iterable[tuple[str, ContactProblem]],
     solvers: Sequence[str],
     tolerance: float,
     sweeps: int | None = None,
+    *,
     curves: bool = False,
     solve: Solve | None = None,
     now: Clock = time.perf_counter,
@@ -104,13 +114,14 @@ def compare(
     `solve(problem, solver, tolerance, sweeps)` is `problems.solve.solve` unless another is given;
     referenced: hold velocities against those of `reference`, where it knows what is true.
     """
+    asked = _Asked(solvers, tolerance, sweeps, curves)
     call = solve or _solve()
     if busy is time.process_time and time.get_clock_info("process_time").resolution > FINE:
         busy = now  # a clock of ticks cannot tell: no call passes for interrupted
     for name, problem in problems:
         watch = _Stopwatch(call, now, busy)
         truth = _reference(problem) if referenced else None
-        yield _compare(name, problem, solvers, tolerance, sweeps, curves, watch, truth)
+        yield _compare(name, problem, asked, watch, truth)
 
 
 def _solve() -> Solve:
@@ -184,19 +195,17 @@ class _Stopwatch(NamedTuple):
 def _compare(
     name: str,
     problem: ContactProblem,
-    solvers: Sequence[str],
-    tolerance: float,
-    sweeps: int | None,
-    curves: bool,
+    asked: _Asked,
     watch: _Stopwatch,
     truth: Reference | None,
 ) -> Comparison:
     """Call each solver once to compile it, then timed, then again in turns."""
+    solvers, tolerance = asked.solvers, asked.tolerance
     first = {solver: _Call(problem, solver, tolerance, 1) for solver in solvers}
-    whole = {solver: _Call(problem, solver, tolerance, sweeps) for solver in solvers}
+    whole = {solver: _Call(problem, solver, tolerance, asked.sweeps) for solver in solvers}
     for call in (*first.values(), *whole.values()):
         watch.time(call)
-    steps = {solver: _steps(problem, solver, watch) if curves else [] for solver in solvers}
+    steps = {solver: _steps(problem, solver, watch) if asked.curves else [] for solver in solvers}
     calls = [*whole.values(), *(call for each in steps.values() for call in each)]
     while cheap := [call for call in calls if call.is_cheap]:
         for call in cheap:

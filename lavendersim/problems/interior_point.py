@@ -82,7 +82,7 @@ def interior_point(
             best, least = impulses, residual
         if least <= budget.tolerance or budget.spent or stuck > PATIENCE:
             break
-        there, length, cost = _advance(p, cones, x, z, unit, shift_frozen, strategy)
+        there, length, cost = _advance(p, cones, (x, z), unit, shift_frozen, strategy)
         budget.step(cost, least)
         if there is None:
             break
@@ -106,12 +106,12 @@ def _on_circular_cones(p: ScaledProblem, frictional: np.ndarray) -> Cones:
 def _advance(
     p: ScaledProblem,
     cones: Cones,
-    x: np.ndarray,
-    z: np.ndarray,
+    here: tuple[np.ndarray, np.ndarray],
     unit: float,
     shift_frozen: bool,
     strategy: Strategy,
 ) -> tuple[tuple[np.ndarray, np.ndarray] | None, float, float]:
+    x, z = here
     mean = 0.5 * float((x * z).sum(axis=1).mean())
     side = np.hypot(z[:, 1], z[:, 2])
     frictional = cones.keep[:, 1]

@@ -42,9 +42,14 @@ def kinds_in(module: ModuleType, base: type[Base]) -> dict[str, type[Base]]:
         if not (isinstance(model, type) and issubclass(model, base)):
             continue
         if model.__module__ == module.__name__ and "kind" in model.model_fields:
-            (kind,) = get_args(model.model_fields["kind"].annotation)
-            found[kind] = model
+            found[kind_of(model)] = model
     return found
+
+
+def kind_of(model: type[ConfigModel]) -> str:
+    """Return the value of the key `kind` by which a model is chosen."""
+    (kind,) = get_args(model.model_fields["kind"].annotation)
+    return str(kind)
 
 
 def _kinds_of(entry: EntryPoint, base: type[Base]) -> dict[str, type[Base]]:

@@ -9,7 +9,8 @@ from typing import Any, NamedTuple
 import numpy as np
 import rerun as rr
 
-from lavendersim.cell import Box, Capsule, CellHull, Cylinder, Sphere
+from lavendersim.cell import Box, Capsule, CellHull, Convex, Cylinder, Sphere
+from lavendersim.geometry.convex_hull import Polyhedron, convex_hull
 from lavendersim.geometry.rotations import rotated
 from lavendersim.geometry.shapes import Piece
 from lavendersim.replay.shapes import XYZW, Vector
@@ -47,9 +48,6 @@ def archetypes(pieces: Sequence[Piece], look: Look) -> dict[str, list[Any]]:
 def _draw(pieces: Sequence[Piece], look: Look) -> list[Any]:
     """Return what draws pieces of one kind."""
     shapes = [piece.shape for piece in pieces]
-    hulls = [shape for shape in shapes if isinstance(shape, CellHull)]
-    if hulls:
-        return _hulls(pieces, hulls, look)
     centres = np.array([piece.position for piece in pieces])
     turns = np.array([piece.orientation[XYZW] for piece in pieces])
     boxes = [shape for shape in shapes if isinstance(shape, Box)]
@@ -61,6 +59,8 @@ def _draw(pieces: Sequence[Piece], look: Look) -> list[Any]:
         radii = np.array([ball.radius for ball in balls])
         return [rr.Ellipsoids3D(radii=radii, centers=centres, quaternions=turns, **look.words)]
     bars = [shape for shape in shapes if isinstance(shape, Capsule | Cylinder)]
+    if not bars:
+        return _polyhedra(pieces, [_polyhedron(shape) for shape in shapes], look)
     radii, lengths = np.array([[bar.radius, bar.length] for bar in bars]).T
     size: dict[str, Any] = {"lengths": lengths, "radii": radii, "quaternions": turns}
     if isinstance(bars[0], Cylinder):
@@ -73,12 +73,19 @@ def _draw(pieces: Sequence[Piece], look: Look) -> list[Any]:
     return [rr.Capsules3D(**size, translations=np.array(begins), **look.words)]
 
 
-def _hulls(pieces: Sequence[Piece], hulls: Sequence[CellHull], look: Look) -> list[Any]:
-    """Return the faces of all hulls as one mesh, and their edges as lines."""
+def _polyhedron(shape: Convex) -> Polyhedron:
+    """Return a hull as it is, any other shape as the hull of its corners."""
+    if isinstance(shape, CellHull):
+        return Polyhedron(shape.points, shape.faces)
+    return convex_hull(shape.corners())
+
+
+def _polyhedra(pieces: Sequence[Piece], polyhedra: Sequence[Polyhedron], look: Look) -> list[Any]:
+    """Return the faces of all polyhedra as one mesh, and their edges as lines."""
     corners: list[Vector] = []
     triangles: list[tuple[int, int, int]] = []
     edges: list[Vector] = []
-    for piece, hull in zip(pieces, hulls, strict=True):
+    for piece, hull in zip(pieces, polyhedra, strict=True):
         first = sum(len(points) for points in corners)
         local = np.array(hull.points)
         points = piece.position + rotated(piece.orientation, local)

@@ -8,7 +8,6 @@ sample, `cost.csv` a row a setting.
 from __future__ import annotations
 
 import csv
-import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Final, NamedTuple
@@ -23,7 +22,7 @@ from .cost_targets import answers, front_of
 from .cost_times import Clocked, Times, times_of
 from .environment import machine
 from .experiment_run import Finished, run
-from .json_table import text_of
+from .json_table import finite, text_of
 from .overheads import Spread
 from .progress import Progress
 from .run_directory import COST, COST_TABLE, RUNS
@@ -99,7 +98,8 @@ def take_cost(
             "rows": rows,
             "targets": answers(rows, targets or spec.targets),
         }
-        tables.append(_finite(table))
+        # Not a text, as in `results.json` for people: what reads `cost.json` calculates with it.
+        tables.append(finite(table, lambda _: None))
         (finished.run.path / COST).write_text(text_of(tables[0]), encoding="utf-8")
         _write_csv(finished.run.path / COST_TABLE, tables[0]["rows"])
 
@@ -158,20 +158,6 @@ def _truth(settings: Sequence[Setting], errors: Sequence[SettingError]) -> dict[
                 "failed": error.failed,
             }
     return None
-
-
-def _finite(value: Any) -> Any:
-    """Return `value` with null for what JSON has no number for.
-
-    Not a text, as `results.json` has for people: what reads `cost.json` calculates with it.
-    """
-    if isinstance(value, float) and not math.isfinite(value):
-        return None
-    if isinstance(value, list):
-        return [_finite(item) for item in value]
-    if isinstance(value, dict):
-        return {key: _finite(item) for key, item in value.items()}
-    return value
 
 
 COLUMNS: Final = (

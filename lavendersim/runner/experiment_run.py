@@ -10,6 +10,7 @@ import json
 import os
 from collections.abc import Callable, Sequence
 from datetime import UTC, datetime
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -170,8 +171,9 @@ def run(
     values = Values(experiment.measures, finished.taken)
     always = {index: one.always for index, one in taken.items()}
     claims = (experiment.measures, experiment.expectations, finished.cells, values)
-    verdicts = judge(*claims, experiment.always, always, experiment.controls)
-    raw = judge(*claims, experiment.always, always) if experiment.controls else verdicts
+    judged = partial(judge, *claims, always=experiment.always, outcomes=always)
+    verdicts = judged(meant_to_fail=experiment.controls)
+    raw = judged() if experiment.controls else verdicts
     result = Finished(finished, outcomes, verdicts, raw)
     table = None
     if overheads and experiment.overhead is not None:

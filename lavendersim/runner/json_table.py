@@ -6,7 +6,8 @@ The standard library's indented form is written by Python code, some thirty time
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+import math
+from collections.abc import Callable, Mapping
 from typing import Any
 
 
@@ -15,6 +16,17 @@ def text_of(table: Mapping[str, Any]) -> str:
     return (
         "{\n" + ",\n".join(f" {_text(key)}: {_rows(one)}" for key, one in table.items()) + "\n}\n"
     )
+
+
+def finite(value: Any, instead: Callable[[float], Any]) -> Any:
+    """Return `value` with something instead of every number that JSON does not have."""
+    if isinstance(value, float) and not math.isfinite(value):
+        return instead(value)
+    if isinstance(value, list):
+        return [finite(item, instead) for item in value]
+    if isinstance(value, dict):
+        return {key: finite(item, instead) for key, item in value.items()}
+    return value
 
 
 def _rows(value: Any) -> str:

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import csv
-import math
 from typing import TYPE_CHECKING, Any
 
 from .accuracy import PARTS, Accuracy
-from .json_table import text_of
+from .json_table import finite, text_of
 from .run_directory import RESULTS, TABLE, Run
 
 if TYPE_CHECKING:
@@ -19,17 +18,6 @@ ACCURACY = ("tolerance", "worst_residual", "not_converged_steps")  # m/s, m/s, n
 # The largest of each in any step, and the bodies of the contact that has it.
 _WORST = [name for part in PARTS for name in (f"worst_{part}", f"worst_{part}_contact")]
 VIOLATIONS = tuple(name for name in _WORST if name not in ACCURACY)
-
-
-def _finite(value: Any) -> Any:
-    """Return `value` with what JSON has no number for as text."""
-    if isinstance(value, float) and not math.isfinite(value):
-        return str(value)
-    if isinstance(value, list):
-        return [_finite(item) for item in value]
-    if isinstance(value, dict):
-        return {key: _finite(item) for key, item in value.items()}
-    return value
 
 
 def write_results(
@@ -67,7 +55,7 @@ def write_results(
         "passed": finished.good,
         **({} if overheads is None else {"overheads": overheads}),
     }
-    (run.path / RESULTS).write_text(text_of(_finite(table)), encoding="utf-8")
+    (run.path / RESULTS).write_text(text_of(finite(table, str)), encoding="utf-8")
     _write_csv(run, rows)
 
 

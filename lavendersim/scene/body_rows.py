@@ -10,17 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from lavendersim.cell import (
-    Box,
-    Capsule,
-    CellBody,
-    CellHull,
-    CellPart,
-    CellShape,
-    Cylinder,
-    Plane,
-    Sphere,
-)
+from lavendersim.cell import CellBody, CellHull, CellPart, CellShape, Convex, Plane
 from lavendersim.engine.collide.convex.hull_geometry import (
     HullGeometry,
     Polyhedron,
@@ -106,12 +96,9 @@ def _fill_shape(record: np.void, shape: CellShape) -> None:
             normal = np.asarray(shape.normal, float)
             record["hx"], record["hy"], record["hz"] = normal / np.linalg.norm(normal)
             record["offset"] = shape.offset
-        case Box():
-            record["hx"], record["hy"], record["hz"] = (0.5 * edge for edge in shape.size)
-        case Sphere():
-            record["hx"] = shape.radius
-        case Capsule() | Cylinder():
-            record["hx"], record["hz"] = shape.radius, 0.5 * shape.length
+        case Convex():
+            row = shape.row()
+            _fill(record, row, row.values())
 
 
 def _fill_mass(record: np.void, body: CellBody) -> None:

@@ -51,7 +51,7 @@ class Scene(NamedTuple):
 
     def engine(self, spec: Spec, block_steps: int | None = None) -> Engine:
         """Return an engine at the scene's initial state."""
-        extra = {} if block_steps is None else {"block_steps": block_steps}
+        extra: dict[str, int] = {} if block_steps is None else {"block_steps": block_steps}
         return Engine(
             spec,
             self.bodies,
@@ -59,9 +59,9 @@ class Scene(NamedTuple):
             self.pairs,
             self.parameters,
             self.poses,
-            self.templates,
-            self.hulls,
-            self.links,
+            templates=self.templates,
+            hulls=self.hulls,
+            links=self.links,
             **extra,
         )
 

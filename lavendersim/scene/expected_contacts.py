@@ -17,12 +17,11 @@ from typing import Final
 
 import numpy as np
 
-from lavendersim.cell import CellBody, CellConfig, Plane, Sphere
+from lavendersim.cell import CellBody, CellConfig, Convex, Plane, Sphere
 from lavendersim.geometry.bodies import is_movable
 from lavendersim.geometry.support import extent_against
 
-POINTS: Final = {"sphere": 1, "capsule": 2}  # of a manifold, at most; of any other shape four
-FACE_POINTS: Final = 4
+FACE_POINTS: Final = 4  # of a manifold, at most
 SPHERE_ON_SPHERES: Final = 2  # contacts of each, at the lower end of the count above
 TOUCHING: Final = 1e-3  # gap, by the size of the smaller body, that counts as none
 AXES: Final = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
@@ -49,7 +48,7 @@ def expected_contacts(config: CellConfig) -> float:
 
 
 def _points(body: CellBody) -> int:
-    return POINTS.get(body.shape.kind, FACE_POINTS)
+    return body.shape.MOST_POINTS if isinstance(body.shape, Convex) else FACE_POINTS
 
 
 def _settled(solids: list[CellBody]) -> float:
@@ -84,7 +83,7 @@ def _between_solids(solids: list[CellBody], low: Bounds, high: Bounds) -> float:
     movable = np.array([is_movable(body) for body in solids])
     points = np.array([_points(body) for body in solids])
     near = movable[first] | movable[second]
-    spheres = points == POINTS["sphere"]
+    spheres = np.array([isinstance(body.shape, Sphere) for body in solids])
     radius, centre = (high - low)[:, 0] / 2, (high + low) / 2
     apart = np.linalg.norm(centre[first] - centre[second], axis=1) > radius[first] + radius[second]
     near &= ~(spheres[first] & spheres[second] & apart)

@@ -1,8 +1,9 @@
 """The URDF <visual> elements that show a shape in its body.
 
-URDF knows boxes, spheres and cylinders without files. A capsule is a cylinder and two spheres. A
-hull is drawn by its edges, thin cylinders: a mesh would be a file beside the log. Shapes are given
-in the body's frame, so nothing here knows where the body is, but for planes.
+URDF knows boxes, spheres and cylinders without files. A capsule is a cylinder and two spheres. Any
+other shape is drawn by its edges or those of its corners' hull, thin cylinders: a mesh would be a
+file beside the log. Shapes are given in the body's frame, so nothing here knows where the body is,
+but for planes.
 """
 
 from __future__ import annotations
@@ -25,6 +26,7 @@ from lavendersim.cell import (
     Plane,
     Sphere,
 )
+from lavendersim.geometry.convex_hull import Polyhedron, convex_hull
 from lavendersim.geometry.rotations import frame_along, rotation_matrix
 
 PLANE_THICKNESS = 0.02  # m; thin beside any body, thick enough to be seen edge-on
@@ -81,10 +83,12 @@ def _solid(shape: CellSimple) -> Iterator[Visual]:
                 place = np.array([0.0, 0.0, end * shape.length])
                 yield Visual(_sphere(shape.radius), place, np.eye(3))
         case CellHull():
-            yield from _edges(shape)
+            yield from _edges(Polyhedron(shape.points, shape.faces))
+        case _:
+            yield from _edges(convex_hull(shape.corners()))
 
 
-def _edges(hull: CellHull) -> Iterator[Visual]:
+def _edges(hull: Polyhedron) -> Iterator[Visual]:
     points = np.array(hull.points, float)
     radius = EDGE_SHARE * float(np.linalg.norm(points, axis=1).max())
     pairs = {

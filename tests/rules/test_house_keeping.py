@@ -8,11 +8,14 @@ from pathlib import Path
 import pytest
 from sources import ROOT, files
 
+from lavendersim.cell.shapes import PRIMITIVES
 from lavendersim.engine.collide import SHAPE_PAIRS
+from lavendersim.engine.collide.shapes import SHAPES
 from lavendersim.engine.effects import CHAINED, EFFECTS, Effect, hook_names
 from lavendersim.engine.records import F8, I8, U8
 from lavendersim.engine.solvers import SOLVER_NAMES
 from lavendersim.engine.solvers.catalogue import SOLVERS
+from lavendersim.quantities.kinds import kind_of
 
 ENGINE = ROOT / "lavendersim/engine"
 LONGEST_FILE = 400  # lines; beyond it a file does more than one thing
@@ -98,8 +101,32 @@ def test_every_solver_is_a_file_and_a_name() -> None:
     assert [solver.name for solver in SOLVERS.values()] == list(SOLVER_NAMES)
 
 
+# numba calls its own class with nine.
+ARGUMENTS_OF_OTHERS = {("part_compiler.py", "__init__")}
+
+
+def test_nothing_takes_more_than_six_arguments_by_their_place() -> None:
+    """Commands of the command line are called by typer, option by option."""
+    found = []
+    for file in (file for file in files() if file.is_relative_to(ROOT / "lavendersim")):
+        for node in ast.walk(ast.parse(file.read_text())):
+            if isinstance(node, ast.FunctionDef):
+                names = [one.arg for one in (*node.args.posonlyargs, *node.args.args)]
+                count = len(names) - (names[:1] in (["self"], ["cls"]))
+                if count > 6 and (file.name, node.name) not in ARGUMENTS_OF_OTHERS:
+                    found.append(f"{file.name}:{node.lineno}: {node.name} takes {count}")
+    assert found == []
+
+
+def test_every_shape_of_a_config_has_kernels() -> None:
+    named = {kind_of(model) for model in PRIMITIVES}
+    assert named | {"plane", "hull", "compound"} == set(SHAPES)
+    assert len({shape.kind for shape in SHAPES.values()}) == len(SHAPES)
+
+
 def test_every_shape_pair_is_listed() -> None:
-    """In `convex.py` are the pairs without a closed form; each other one has its own file."""
+    """Pairs without a closed form share a file, with a plane or without; others have their own."""
     files = {name: pair.make.__module__.rpartition(".")[2] for name, pair in SHAPE_PAIRS.items()}
-    assert set(files.values()) == stems_of("collide/pairs")
-    assert all(name == file for name, file in files.items() if file != "convex")
+    shared = {"convex", "convex_plane"}
+    assert set(files.values()) | shared == stems_of("collide/pairs")
+    assert all(name == file for name, file in files.items() if file not in shared)

@@ -140,7 +140,7 @@ def test_a_run_is_judged_as_its_log_is(tmp_path: Path, text: str, ends: str) -> 
     cells = Run(finished.run.path).cells  # as another process finds them
     assert experiment.always is not None
     logs = {cell.index: outcomes_of(experiment.always, cell) for cell in cells}
-    again = judge({}, [], cells, None, experiment.always, logs)
+    again = judge({}, [], cells, always=experiment.always, outcomes=logs)
     taken = [verdict for verdict in finished.raw if verdict.name.startswith(PREFIX)]
     assert len(taken) == len(again) > 0
     assert [repr(verdict) for verdict in again] == [repr(verdict) for verdict in taken]

@@ -2,7 +2,8 @@
 
 A shape is its core, grown by a radius: a sphere is a point, a capsule a segment, grown by theirs;
 boxes, cylinders and hulls are their own cores. A new convex shape is one file in `shapes` that
-declares a `Shape`, and its name in `shapes.SHAPES`; which shapes it collides with: `pairs`.
+declares a `Shape`, and its place in `shapes.DECLARED`: it collides with every other by GJK and EPA,
+where no file of `pairs` has a closed form. What it is to a config and to views: `cell/shapes`.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ class Shape(NamedTuple):
     """A shape of bodies. Kernels take and give vectors as `Vec3`, directions of any length."""
 
     name: str
-    kind: int  # of BODY.shape
+    kind: int = -1  # of BODY.shape; without one of its own, its place in the list
     # kernel(body, direction, hulls) -> the point of the core farthest along it, from the centre,
     # along the world's axes; none: the core is the centre
     make_support: Maker | None = None
@@ -37,3 +38,8 @@ class Shape(NamedTuple):
     polyhedral: bool = False  # whether its faces are polygons
     oriented: bool = True  # whether its body needs ORIENTED_BODY
     fields: tuple[Field, ...] = ()  # further columns of its body
+
+    @property
+    def convex(self) -> bool:
+        """Whether it is the convex hull of a bounded core, grown by a radius."""
+        return self.rounded or self.make_support is not None

@@ -1,7 +1,7 @@
 """What an engine knows of a pair of shapes: its name, the two shapes in order, its manifold kernel.
 
-A pair is one file in `pairs` that declares a `ShapePair`, and its name in `pairs.DECLARED`. Two
-shapes without a closed form are a line in `pairs/convex.py`: GJK and EPA serve any convex shapes.
+A pair is one file in `pairs` that declares a `ShapePair`, and its name in `pairs.DECLARED`. Convex
+shapes that no file has together go by GJK and EPA (`pairs/convex.py`).
 """
 
 from __future__ import annotations

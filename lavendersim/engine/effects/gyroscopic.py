@@ -99,19 +99,20 @@ def make(spec):
 
 
 def make_turn_midway(spec):
-    """Return `kernel(body, start, m, lead, x, y, z, dt)`: half a turn, with what impulses change.
+    """Return `kernel(body, start, m, lead, end, dt)`: half a turn, with what impulses change.
 
     body: stands at a middle found before, with its spin there in `start.w` + what impulses change;
-    start: its row at the start of the step. (x, y, z): spin that the step ends with at that middle;
-    lead: spin there before impulses, replaced. With L = I (w - lead) the momentum that they give,
+    start: its row at the start of the step. end: spin that the step ends with at that middle; lead:
+    spin there before impulses, replaced. With L = I (w - lead) the momentum that they give,
         m = P + L/2 + dt/2 m x I^-1 m,   the step's mean spin I^-1 m = lead + I^-1 L/2.
     """
     from ..rotation import half_turn, inertia_times, inverse_inertia_times, to_body, to_world
 
     find_middle = make_find_middle(spec)
 
-    def turn_midway(body, start, m, lead, x, y, z, dt):
-        lx, ly, lz = inertia_times(body, x - lead.wx, y - lead.wy, z - lead.wz)
+    def turn_midway(body, start, m, lead, end, dt):
+        x, y, z = end.wx - lead.wx, end.wy - lead.wy, end.wz - lead.wz
+        lx, ly, lz = inertia_times(body, x, y, z)
         gx, gy, gz = to_body(body, lx, ly, lz)
         bx, by, bz = to_body(start, m.wx, m.wy, m.wz)
         ix, iy, iz = start.inv_ix, start.inv_iy, start.inv_iz

@@ -16,7 +16,8 @@ from typing import Any, TypeVar
 from pydantic import BaseModel, ValidationError
 
 from lavendersim.experiment.checks.messages import report_errors
-from lavendersim.experiment.models.tree import BODIES, SOLIDS, body_names, swept_values
+from lavendersim.experiment.models.shapes import SOLIDS
+from lavendersim.experiment.models.tree import BODIES, body_names, swept_values
 from lavendersim.experiment.text.node import Mark, Node, Path
 from lavendersim.experiment.text.place import Place
 from lavendersim.experiment.text.report import Report

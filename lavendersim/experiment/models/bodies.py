@@ -9,8 +9,8 @@ from pydantic import Field, Tag
 from lavendersim.cell.body import Release
 from lavendersim.cell.surface import Surface
 from lavendersim.engine.effects import BODY_KEYS, MOTION_KEYS
-from lavendersim.experiment.models.shapes import Orientation, Shape, Solid
-from lavendersim.experiment.models.tree import PRESCRIBE_MOTION, SOLIDS
+from lavendersim.experiment.models.shapes import SOLIDS, TURNED, Orientation, Shape, Solid
+from lavendersim.experiment.models.tree import PRESCRIBE_MOTION
 from lavendersim.experiment.text.place import Place
 from lavendersim.quantities.found import near
 from lavendersim.quantities.model import ConfigModel, declared
@@ -127,7 +127,7 @@ class ArrangedBody(_Matter):
     """A body that stands in several places: all that a body has but its position."""
 
     shape: Annotated[Solid, Field(discriminator="kind")] = Field(
-        description="sphere, box, capsule, cylinder, hull or compound"
+        description=f"{', '.join(SOLIDS[:-1])} or {SOLIDS[-1]}"
     )
 
 
@@ -144,7 +144,7 @@ def _inertia_rules(at: Place, kind: str) -> None:
     inertia = at.get("inertia")
     if inertia is None or inertia.content is None:
         return
-    if kind in ("hull", "compound"):
+    if kind in TURNED:
         at.refuse(at.key("inertia"), f"inertia: {at} is a {kind}; its shape says it, leave it out")
         return
     moments = [item.number for item in inertia.items]

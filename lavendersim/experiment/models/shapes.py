@@ -6,17 +6,20 @@ where its centre of mass stands.
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from abc import abstractmethod
+from typing import TYPE_CHECKING, Annotated, Any, Final, Literal, Union
 
 from pydantic import Field, Tag
 
-from lavendersim.cell.shapes import Box, Capsule, Cylinder, Plane, Sphere
+from lavendersim.cell.shapes import PRIMITIVES, Plane, Primitive
+from lavendersim.quantities.kinds import kind_of
 from lavendersim.quantities.model import ConfigModel
 from lavendersim.quantities.quantity import (
     Direction,
     Position,
     Quantity,
     Vector,
+    Vector3,
     either,
 )
 
@@ -24,7 +27,15 @@ MOST_POINTS = 256  # of a hull: features of contacts are counted in eight bits
 MOST_PARTS = 256
 
 
-class Hull(ConfigModel):
+class Polyhedral(ConfigModel):
+    """A convex polyhedron: after resolving it is a hull in its principal frame."""
+
+    @abstractmethod
+    def corners(self) -> tuple[Vector3, ...]:
+        """Return points [m] whose convex hull it is, in a frame whose axes are the body's."""
+
+
+class Hull(Polyhedral):
     """The convex hull of points; those inside of it count for nothing."""
 
     kind: Literal["hull"]
@@ -33,6 +44,26 @@ class Hull(ConfigModel):
         max_length=MOST_POINTS,
         description="[m] in a frame whose axes are the body's; only differences count",
     )
+
+    def corners(self) -> tuple[Vector3, ...]:
+        """Return the points [m]."""
+        return self.points
+
+
+# Shapes that bodies and parts of compounds may have; the order is that of messages.
+SIMPLE: Final[tuple[type[Primitive | Polyhedral], ...]] = (
+    *PRIMITIVES,
+    Hull,
+)
+KINDS: Final = tuple(kind_of(model) for model in SIMPLE)
+SOLIDS: Final = (*KINDS, "compound")  # all but planes
+# Those whose principal axes are not those of their frame.
+TURNED: Final = tuple(kind for kind in SOLIDS if kind not in map(kind_of, PRIMITIVES))
+
+if TYPE_CHECKING:
+    Simple = Primitive | Polyhedral
+else:
+    Simple = Union[SIMPLE]  # noqa: UP007
 
 
 class AxisAngle(ConfigModel):
@@ -55,14 +86,12 @@ Orientation = Annotated[
     either("a quaternion [w, x, y, z] or {axis: [x, y, z], degrees: angle}", _orientation_form),
 ]
 
-Simple = Sphere | Box | Capsule | Cylinder | Hull
-
 
 class Part(ConfigModel):
     """One convex piece of a compound."""
 
     shape: Annotated[Simple, Field(discriminator="kind")] = Field(
-        description="sphere, box, capsule, cylinder or hull"
+        description=f"{', '.join(KINDS[:-1])} or {KINDS[-1]}"
     )
     position: Position = Field(
         default=(0.0, 0.0, 0.0), description="[m] of its centre of mass, in the compound's frame"
@@ -85,7 +114,9 @@ class Compound(ConfigModel):
     )
 
 
-Solid = Sphere | Box | Capsule | Cylinder | Hull | Compound
-Shape = Annotated[
-    Plane | Sphere | Box | Capsule | Cylinder | Hull | Compound, Field(discriminator="kind")
-]
+if TYPE_CHECKING:
+    Solid = Primitive | Polyhedral | Compound
+    Shape = Plane | Primitive | Polyhedral | Compound
+else:
+    Solid = Union[(*SIMPLE, Compound)]
+    Shape = Annotated[Union[(Plane, Solid)], Field(discriminator="kind")]  # noqa: UP007

@@ -15,7 +15,6 @@ from lavendersim.experiment.text.node import Node, Path
 MOST_BODIES = 100_000  # of a scene; their names alone are some megabytes
 BODIES: Path = ("scene", "bodies")
 ARRANGEMENTS: Path = ("scene", "arrangements")
-SOLIDS: Final = ("sphere", "box", "capsule", "cylinder", "hull", "compound")
 # Keys of effects: a body where one is true has no mass, as a fixed one, but it moves.
 PRESCRIBE_MOTION: Final = tuple(key.name for key in MOTION_KEYS)
 

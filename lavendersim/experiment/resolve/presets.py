@@ -60,6 +60,15 @@ def specified_numerics(root: Node) -> tuple[str, dict[str, Node]]:
     return (preset and preset.text) or "default", values
 
 
+def with_named_preset(root: Node) -> Node:
+    """Return the tree with `numerics: chapter` written as {preset: chapter}."""
+    numerics = root.get("numerics")
+    if numerics is None or numerics.text is None:
+        return root
+    opened = Node({"preset": numerics}, numerics.mark, {"preset": numerics.mark})
+    return graft(root, ("numerics",), opened)
+
+
 def with_preset(root: Node) -> Node:
     """Return the tree with the preset's numbers in its numerics, below those that are written.
 

@@ -4,21 +4,18 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from lavendersim.cell.shapes import (
-    Box,
-    Capsule,
-    CellCompound,
-    CellHull,
-    CellPart,
-    CellSimple,
-    Cylinder,
-    Sphere,
-)
-from lavendersim.experiment.models.shapes import AxisAngle, Compound, Hull, Simple
+from lavendersim.cell.shapes import CellCompound, CellHull, CellPart, CellSimple, Primitive
+from lavendersim.experiment.models.shapes import AxisAngle, Compound, Simple
 from lavendersim.experiment.resolve.placement import SceneError
-from lavendersim.geometry import mass_properties
 from lavendersim.geometry.convex_hull import FlatError, convex_hull
-from lavendersim.geometry.mass_properties import ORIGIN, Placed, Solid, polyhedron, together
+from lavendersim.geometry.mass_properties import (
+    ORIGIN,
+    Placed,
+    Solid,
+    homogeneous,
+    polyhedron,
+    together,
+)
 from lavendersim.geometry.quaternions import IDENTITY, from_axis_angle, inverse, product, to_body
 from lavendersim.geometry.vectors import minus, unit
 from lavendersim.quantities.quantity import Quaternion, Vector3
@@ -52,10 +49,10 @@ def quaternion_of(orientation: Quaternion | AxisAngle) -> Quaternion:
 
 def _simple(shape: Simple) -> tuple[CellSimple, Solid]:
     """Return a convex shape in its principal frame, and its solid in that frame."""
-    if not isinstance(shape, Hull):
-        return shape, _solid(shape)
+    if isinstance(shape, Primitive):
+        return shape, homogeneous(*shape.homogeneous())
     try:
-        hull = convex_hull(shape.points)
+        hull = convex_hull(shape.corners())
     except FlatError:
         sentence = "points: all of them lie in one plane; a hull needs a volume"
         raise SceneError(("points",), sentence) from None
@@ -67,16 +64,6 @@ def _simple(shape: Simple) -> tuple[CellSimple, Solid]:
         kind="hull", points=points, faces=hull.faces, centre=solid.centre, axes=axes
     )
     return resolved, Solid(solid.volume, ORIGIN, moments)
-
-
-def _solid(shape: Sphere | Box | Capsule | Cylinder) -> Solid:
-    """Return the solid of a shape whose frame is its principal frame."""
-    if isinstance(shape, Box):
-        return mass_properties.box(shape.size)
-    if isinstance(shape, Sphere):
-        return mass_properties.sphere(shape.radius)
-    make = mass_properties.capsule if isinstance(shape, Capsule) else mass_properties.cylinder
-    return make(shape.radius, shape.length)
 
 
 def _compound(compound: Compound) -> SolidShape:

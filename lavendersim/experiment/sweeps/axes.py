@@ -13,7 +13,7 @@ from fractions import Fraction
 from typing import Any
 
 from lavendersim.experiment.models.tree import products
-from lavendersim.experiment.resolve.presets import with_preset
+from lavendersim.experiment.resolve.presets import with_named_preset, with_preset
 from lavendersim.experiment.sweeps.paths import find_path
 from lavendersim.experiment.text.node import Node, Path, graft, key_mark
 from lavendersim.experiment.text.report import Report
@@ -180,8 +180,7 @@ def _opened(root: Node, path: Path) -> Node:
         if node is None or node.text is None:
             continue
         if path[:length] == ("numerics",):
-            opened = Node({"preset": node}, node.mark, {"preset": node.mark})
-            root = graft(root, path[:length], opened)
+            root = with_named_preset(root)
         elif (named := root.get("scene", "surfaces", node.text)) is not None:
             root = graft(root, path[:length], named)
     return root

@@ -10,7 +10,7 @@ from __future__ import annotations
 from typing import Final
 
 from lavendersim.experiment.experiment import Experiment
-from lavendersim.experiment.resolve.presets import specified_numerics
+from lavendersim.experiment.resolve.presets import specified_numerics, with_named_preset
 from lavendersim.experiment.text.node import Node, graft
 from lavendersim.experiment.text.parse import parse
 
@@ -21,14 +21,11 @@ OF_THE_SCENE: Final = frozenset({"preset", "timestep"})
 
 def with_solver(root: Node, solver: str) -> Node:
     """Return the tree with this solver in its numerics; everything else as it stands."""
-    numerics = root.get("numerics")
-    mark = numerics.mark if numerics is not None else root.mark
-    if numerics is not None and numerics.text is not None:
-        opened = Node({"preset": numerics}, mark, {"preset": mark})
-        root = graft(root, ("numerics",), opened)
-    elif numerics is not None and not isinstance(numerics.content, dict):
+    root = with_named_preset(root)
+    numerics = root.get("numerics") or Node({}, root.mark)
+    if not isinstance(numerics.content, dict):
         return root  # refused by the model, at its place
-    return graft(root, ("numerics", "solver"), Node(solver, mark))
+    return graft(root, ("numerics", "solver"), Node(solver, numerics.mark))
 
 
 def about_something_else(experiment: Experiment) -> str:

@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from lavendersim.figures.specs.base import Ideal, Number, Panel
-from lavendersim.measures.specs.expectation import Reduction
+from lavendersim.measures.specs.expectation import Aggregate
 from lavendersim.quantities.model import ConfigModel
 from lavendersim.quantities.names import AxisName, MeasureName
 from lavendersim.quantities.quantity import Quantity
@@ -18,7 +18,7 @@ class Onset(ConfigModel):
     """A vertical mark where the measure, several cells reduced to one, rises through a level."""
 
     level: Number = Field(description="the level, in the unit of the y axis")
-    reduce: Reduction = Field(default="mean", description="how several cells become one number")
+    reduce: Aggregate = Field(default="mean", description="how several cells become one number")
     label: str = Field(min_length=1, description="text beside the mark")
 
 

@@ -39,7 +39,7 @@ from lavendersim.quantities.quantity import Quantity, sentence_error
 KNOWN_FAILURE: Final = "known failure"
 Number = Annotated[float, Quantity()]
 Tolerance = Annotated[float, Quantity(minimum=0)]
-Reduction = Literal["max", "min", "mean"]
+Aggregate = Literal["max", "min", "mean"]
 
 CELL_JUDGEMENTS = ("between", "at_most", "at_least", "exactly", "equals", "row")
 SWEEP_JUDGEMENTS = ("increasing", "decreasing", "ratio", "order", "crosses")
@@ -78,7 +78,7 @@ class Ratio(ConfigModel):
     each: tuple[AxisName, ...] = Field(
         default=(), description="judge once for every combination of values of these axes"
     )
-    reduce: Reduction = Field(default="max", description="how several cells become one number")
+    reduce: Aggregate = Field(default="max", description="how several cells become one number")
     at_most: Number | None = Field(default=None, description="largest ratio allowed [-]")
     at_least: Number | None = Field(default=None, description="smallest ratio allowed [-]")
     floor: Tolerance = Field(
@@ -103,7 +103,7 @@ class Order(ConfigModel):
     """The p of measure ~ axis^p: the slope of a line through their logarithms (least squares)."""
 
     along: AxisName = Field(description="the axis, such as the timestep; its values are above 0")
-    reduce: Reduction = Field(default="max", description="how the other axes become one number")
+    reduce: Aggregate = Field(default="max", description="how the other axes become one number")
     at_least: Number = Field(description="smallest order allowed [-]")
     at_most: Number | None = Field(default=None, description="largest order allowed [-]")
     negligible: Tolerance = Field(
@@ -118,7 +118,7 @@ class Crosses(ConfigModel):
 
     along: AxisName = Field(description="the axis, in whose unit the place is given")
     level: Number = Field(description="the level, in the measure's unit")
-    reduce: Reduction = Field(default="mean", description="how the other axes become one number")
+    reduce: Aggregate = Field(default="mean", description="how the other axes become one number")
     between: tuple[Number, Number] = Field(description="bounds of the place, in the axis's unit")
 
 

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from numpy.polynomial.legendre import leggauss
 
-from lavendersim.cell.shapes import Box
+from lavendersim.cell.shapes import Box, Capsule, Cylinder, Sphere
 from lavendersim.experiment.models.shapes import Compound, Hull, Part
 from lavendersim.experiment.resolve.shape import resolve_shape
 from lavendersim.geometry.convex_hull import convex_hull
-from lavendersim.geometry.mass_properties import Solid, box, capsule, cylinder, polyhedron, sphere
+from lavendersim.geometry.mass_properties import Solid, homogeneous, polyhedron
 
 CORNERS = [(x, y, z) for x in (0.0, 0.4) for y in (0.0, 0.6) for z in (0.0, 1.0)]
 BOX = Box(kind="box", size=(0.4, 0.6, 1.0))
@@ -42,20 +42,20 @@ def rod(radius: float, length: float, ends: bool):
 
 
 @pytest.mark.parametrize(
-    ("solid", "pieces"),
+    ("shape", "pieces"),
     [
-        (sphere(0.3), rod(0.3, 0.0, True)[1:]),
-        (cylinder(0.3, 0.7), rod(0.3, 0.7, False)),
-        (capsule(0.3, 0.7), rod(0.3, 0.7, True)),
-        (capsule(0.02, 2.0), rod(0.02, 2.0, True)),
+        (Sphere(kind="sphere", radius=0.3), rod(0.3, 0.0, True)[1:]),
+        (Cylinder(kind="cylinder", radius=0.3, length=0.7), rod(0.3, 0.7, False)),
+        (Capsule(kind="capsule", radius=0.3, length=0.7), rod(0.3, 0.7, True)),
+        (Capsule(kind="capsule", radius=0.02, length=2.0), rod(0.02, 2.0, True)),
     ],
 )
-def test_round_shapes_are_the_sum_of_their_discs(solid, pieces) -> None:
+def test_round_shapes_are_the_sum_of_their_discs(shape, pieces) -> None:
+    found = shape.homogeneous()
     volume, across, along = revolved(pieces)
     # a few dozen roundings of numbers of one sign
-    assert solid.volume == pytest.approx(volume, rel=1e-14)
-    moments = [solid.inertia[k][k] for k in range(3)]
-    assert moments == pytest.approx([across, across, along], rel=1e-14)
+    assert found.volume == pytest.approx(volume, rel=1e-14)
+    assert found.moments == pytest.approx([across, across, along], rel=1e-14)
 
 
 def assert_equal(one: Solid, other: Solid, tolerance: float = 4e-15) -> None:
@@ -66,7 +66,7 @@ def assert_equal(one: Solid, other: Solid, tolerance: float = 4e-15) -> None:
 
 
 def test_hull_of_a_boxs_corners_is_the_box() -> None:
-    block = box(BOX.size)
+    block = homogeneous(*BOX.homogeneous())
     hull = polyhedron(convex_hull(CORNERS))
     assert_equal(hull, Solid(block.volume, (0.2, 0.3, 0.5), block.inertia))
 

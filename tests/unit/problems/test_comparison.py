@@ -49,8 +49,10 @@ class World:
         return self.answer(solver, sweeps)
 
     def compare(self, *solvers: str, curves: bool = False):
-        clocks = (self.now, self.now)
-        (found,) = compare([("made", PROBLEM)], solvers, 1e-10, None, curves, self.solve, *clocks)
+        clocks = {"now": self.now, "busy": self.now}
+        (found,) = compare(
+            [("made", PROBLEM)], solvers, 1e-10, curves=curves, solve=self.solve, **clocks
+        )
         return found
 
 

@@ -8,8 +8,10 @@ import numpy as np
 import pytest
 import rerun as rr
 
+from lavendersim.geometry.shapes import Piece
 from lavendersim.replay.shapes import Shape, shapes
 from lavendersim.replay.solids import Look, archetypes
+from tests.made_cells import MadeShape
 from tests.oracle.cells import cell
 
 LOOK = Look((1, 2, 3), False, "thing", True)
@@ -78,6 +80,15 @@ def test_faces_of_a_hull_are_the_triangles_of_its_mesh() -> None:
     np.testing.assert_allclose(corners, expected, atol=1e-7)
     outward = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     assert ((corners.mean(axis=1) - [0, 0, 1]) * outward).sum(axis=1).min() > 0
+    assert len(values(lines.strips)) == 4
+
+
+def test_a_shape_without_a_form_of_its_own_is_the_hull_of_its_corners() -> None:
+    turned = Piece(MadeShape(), np.array([0.0, 0.0, 1.0]), np.array(TURN))
+    (mesh, lines) = archetypes([turned], LOOK)["made"]
+    expected, _ = archetypes(placed(TETRA).pieces, LOOK)["hull"]
+    corners, others = (np.unique(values(one.vertex_positions), axis=0) for one in (mesh, expected))
+    np.testing.assert_allclose(corners, others, atol=1e-7)
     assert len(values(lines.strips)) == 4
 
 

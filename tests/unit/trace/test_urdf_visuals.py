@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from lavendersim.geometry.rotations import rotation_matrix
 from lavendersim.trace import urdf
 from lavendersim.trace.urdf import robot_description
-from lavendersim.trace.urdf_visuals import roll_pitch_yaw
-from tests.made_cells import made_body
+from lavendersim.trace.urdf_visuals import roll_pitch_yaw, visuals
+from tests.made_cells import MadeShape, made_body
 
 Vector = NDArray[np.float64]
 POSE = np.array([[0.3, 2.0, 1.0, 0.5, 0.5, -0.5, 0.5]])  # that of the body says nothing here
@@ -91,6 +91,16 @@ def test_edges_of_a_hull_end_in_its_corners() -> None:
         half = 0.5 * float(size["length"]) * turn[:, 2]
         ends |= {tuple(np.round(end, 12) + 0.0) for end in (centre - half, centre + half)}
     assert ends == {tuple(point) for point in TETRA["points"]}
+
+
+def test_a_shape_without_a_form_of_its_own_is_drawn_by_its_corners() -> None:
+    edges = visuals(MadeShape(), POSE[0], 1.0)
+    ends = set()
+    for edge in edges:
+        half = 0.5 * float(edge.geometry.split('length="')[1].split('"')[0]) * edge.rotation[:, 2]
+        ends |= {tuple(np.round(edge.position + side * half, 12) + 0.0) for side in (-1.0, 1.0)}
+    assert len(edges) == 6
+    assert ends == set(MadeShape().corners())
 
 
 def test_parts_of_a_compound_are_placed_in_it() -> None:

@@ -16,17 +16,18 @@ from ..records import NO_FEATURE
 from ..shape import Maker, Shape
 from . import box, capsule, cylinder, hull
 
+DECLARED = (
+    Shape("plane", PLANE, oriented=False),
+    Shape("sphere", SPHERE, rounded=True, oriented=False),
+    box.SHAPE,
+    capsule.SHAPE,
+    cylinder.SHAPE,
+    hull.SHAPE,
+    Shape("compound", COMPOUND),  # its parts collide, each as a shape of its own
+)
 SHAPES = {
-    shape.name: shape
-    for shape in (
-        Shape("plane", PLANE, oriented=False),
-        Shape("sphere", SPHERE, rounded=True, oriented=False),
-        box.SHAPE,
-        capsule.SHAPE,
-        cylinder.SHAPE,
-        hull.SHAPE,
-        Shape("compound", COMPOUND),  # its parts collide, each as a shape of its own
-    )
+    shape.name: shape if shape.kind >= 0 else shape._replace(kind=place)
+    for place, shape in enumerate(DECLARED)
 }
 
 

@@ -9,6 +9,7 @@ from ...block import make_slip_velocity
 from ...compile import inner, kernel
 from ...effects.frictionless_contact import has_frictionless
 from ...spec import Spec
+from ...vectors import Vec3, cross
 from .lane_memory import STRIDE, put_one, take_one
 from .lanes import WIDTH
 from .layout import (
@@ -67,28 +68,26 @@ def _make_put_geometry(spec: Spec, eight: bool) -> Any:
 
     put_axis = kernel(put_axis, spec)
 
-    def put_turn(rows, at, own, side, x, y, z):
-        # side L^T (x, y, z) of a body whose factor is `own`
+    def put_turn(rows, at, own, side, arm):
+        # side L^T arm of a body whose factor is `own`
         put_axis(
             rows,
             at,
-            side * (own.xx * x + own.yx * y + own.zx * z),
-            side * (own.yy * y + own.zy * z),
-            side * (own.zz * z),
+            side * (own.xx * arm.x + own.yx * arm.y + own.zx * arm.z),
+            side * (own.yy * arm.y + own.zy * arm.z),
+            side * (own.zz * arm.z),
         )
 
     put_turn = kernel(put_turn, spec)
 
-    def put_turns(rows, at, own, side, contact, rx, ry, rz):
+    def put_turns(rows, at, own, side, contact, r):
         # side L^T (r x axis) of that body for n, t1, t2
-        x, y, z = contact.nx, contact.ny, contact.nz
-        put_turn(rows, at, own, side, ry * z - rz * y, rz * x - rx * z, rx * y - ry * x)
-        x, y, z = contact.t1x, contact.t1y, contact.t1z
-        at += AXIS * step
-        put_turn(rows, at, own, side, ry * z - rz * y, rz * x - rx * z, rx * y - ry * x)
-        x, y, z = contact.t2x, contact.t2y, contact.t2z
-        at += AXIS * step
-        put_turn(rows, at, own, side, ry * z - rz * y, rz * x - rx * z, rx * y - ry * x)
+        n = Vec3(contact.nx, contact.ny, contact.nz)
+        t1 = Vec3(contact.t1x, contact.t1y, contact.t1z)
+        t2 = Vec3(contact.t2x, contact.t2y, contact.t2z)
+        put_turn(rows, at, own, side, cross(r, n))
+        put_turn(rows, at + AXIS * step, own, side, cross(r, t1))
+        put_turn(rows, at + 2 * AXIS * step, own, side, cross(r, t2))
 
     return put_axis, put_turn, kernel(put_turns, spec)
 
@@ -111,8 +110,10 @@ def _make_pack_contact(spec: Spec, eight: bool) -> Any:
         put_axis(rows, at + T1 * step, contact.t1x, contact.t1y, contact.t1z)
         put_axis(rows, at + T2 * step, contact.t2x, contact.t2y, contact.t2z)
         turn_a, turn_b = at + TURN_A * step, at + TURN_B * step
-        put_turns(rows, turn_a, factor[a], -1.0, contact, contact.rax, contact.ray, contact.raz)
-        put_turns(rows, turn_b, factor[b], 1.0, contact, contact.rbx, contact.rby, contact.rbz)
+        lever_a = Vec3(contact.rax, contact.ray, contact.raz)
+        lever_b = Vec3(contact.rbx, contact.rby, contact.rbz)
+        put_turns(rows, turn_a, factor[a], -1.0, contact, lever_a)
+        put_turns(rows, turn_b, factor[b], 1.0, contact, lever_b)
         put(rows, at, INV_M_A, contact.inv_m_a)
         put(rows, at, INV_M_B, contact.inv_m_b)
         v_n, w_1, w_2 = slip_velocity(contact, velocities[a], velocities[b])
@@ -140,10 +141,10 @@ def _make_pack_contact(spec: Spec, eight: bool) -> Any:
                 put(rows, at, I_11, 0.0)
                 put(rows, at, I_12, 0.0)
                 put(rows, at, I_22, 0.0)
-                x, y, z = contact.lever_ax, contact.lever_ay, contact.lever_az
-                put_turn(rows, turn_a, factor[a], -1.0, x, y, z)
-                x, y, z = contact.lever_bx, contact.lever_by, contact.lever_bz
-                put_turn(rows, turn_b, factor[b], 1.0, x, y, z)
+                lever_a = Vec3(contact.lever_ax, contact.lever_ay, contact.lever_az)
+                lever_b = Vec3(contact.lever_bx, contact.lever_by, contact.lever_bz)
+                put_turn(rows, turn_a, factor[a], -1.0, lever_a)
+                put_turn(rows, turn_b, factor[b], 1.0, lever_b)
 
     return kernel(pack_contact, spec)
 

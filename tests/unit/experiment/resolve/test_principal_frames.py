@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from lavendersim.cell.shapes import Box, Cylinder
 from lavendersim.experiment import load_experiment_text
-from lavendersim.geometry import mass_properties
 from lavendersim.geometry.convex_hull import Polyhedron
-from lavendersim.geometry.mass_properties import Placed, Solid, polyhedron, together
+from lavendersim.geometry.mass_properties import Placed, Solid, homogeneous, polyhedron, together
 from lavendersim.geometry.principal_axes import principal
 from lavendersim.geometry.quaternions import axes, inverse, product, to_body, to_world
 from lavendersim.geometry.vectors import unit
@@ -120,9 +120,8 @@ def test_inertia_in_the_bodys_frame_is_its_moments(shape: str) -> None:
 def solid_of(shape: dict) -> Solid:
     if shape["kind"] == "hull":
         return polyhedron(Polyhedron(tuple(map(tuple, shape["points"])), shape["faces"]))
-    if shape["kind"] == "box":
-        return mass_properties.box(tuple(shape["size"]))
-    return mass_properties.cylinder(shape["radius"], shape["length"])
+    model = {"box": Box, "cylinder": Cylinder}[shape["kind"]]
+    return homogeneous(*model.model_validate(shape, strict=False).homogeneous())
 
 
 @pytest.mark.parametrize("shape", [WEDGE, HAMMER])

@@ -11,7 +11,7 @@ from lavendersim.experiment.text.node import Node, graft, key_mark
 from lavendersim.experiment.text.report import Report
 
 
-def check_reduction(root: Node, report: Report) -> None:
+def check_reduced_length(root: Node, report: Report) -> None:
     """Note a slow experiment without a shorter length, and a shorter length of one not slow."""
     reduced = root.get("reduced")
     if _is_slow(root) != (reduced is not None):
@@ -32,7 +32,7 @@ def check_reduction(root: Node, report: Report) -> None:
                 report.add(path.mark, f"{axis}: a reduced length and a swept one; keep one")
 
 
-def reduce(root: Node) -> tuple[Node, bool]:
+def at_reduced_length(root: Node) -> tuple[Node, bool]:
     """Return the tree to run where time is short, and whether that is less than all of it."""
     shorter = root.get("reduced", "duration")
     if not _is_slow(root) or shorter is None:
