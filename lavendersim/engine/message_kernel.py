@@ -43,7 +43,8 @@ def _put_varint(data, at, width, value):
 def _make_fill(spec: Spec):
     put_word, put_varint = inner(_put_word), inner(_put_varint)
 
-    def fill(data, starts, template, slots, words, head_slots, heads, odd_slots):
+    def fill(data, starts, layout, words, heads):
+        template, slots, head_slots, odd_slots = layout
         for i in range(U(len(starts))):
             start = U(starts[i])
             for k in range(U(len(template))):
@@ -66,7 +67,7 @@ def _make_fill(spec: Spec):
 
 @cache
 def fill_messages():
-    """Return `kernel(data, starts, template, slots, words, head_slots, heads, odd_slots)`.
+    """Return `kernel(data, starts, (template, slots, head_slots, odd_slots), words, heads)`.
 
     It writes one message, or one row of one, per start; the caller guarantees room.
     data: bytes of a chunk. starts: (n,), where each goes. template: its bytes, slots among them.
@@ -78,5 +79,5 @@ def fill_messages():
     kernel = cached(_make_fill, Spec())
     none, no_rows = np.zeros(0, np.uint8), np.zeros((0, 4), U)
     with compiling():  # here, and not in one of the threads that close chunks
-        kernel(none, np.zeros(0, U), none, no_rows, no_rows, no_rows, no_rows, no_rows)
+        kernel(none, np.zeros(0, U), (none, no_rows, no_rows, no_rows), no_rows, no_rows)
     return kernel

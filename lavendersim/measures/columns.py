@@ -111,6 +111,7 @@ def first_ending_after(trace: Trace, seconds: float) -> int | None:
 
 def mechanical_energy(trace: Trace) -> Floats:
     """Return kinetic plus potential energy [J] in every logged state."""
-    energy: Floats = trace.step["kinetic_energy"] + trace.step["potential_energy"]
-    energy = energy + shares.stored(trace)
+    with np.errstate(invalid="ignore"):  # of what is beyond all numbers
+        energy: Floats = trace.step["kinetic_energy"] + trace.step["potential_energy"]
+        energy = energy + shares.stored(trace)
     return energy

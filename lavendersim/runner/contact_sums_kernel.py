@@ -53,7 +53,10 @@ def _length(first, second):
 def _make_sum(spec: Spec) -> Any:
     larger, length = inner(_larger), inner(_length)
 
-    def sum_contacts(numbers, bodies, start, columns, floats, pulls, of_body, mu, choices, sums):
+    def sum_contacts(rows, places, scene, sums):
+        numbers, bodies, start = rows
+        columns, floats, pulls = places
+        of_body, mu, choices = scene
         projection, slop, pyramid = choices[0], choices[1], choices[2] == 1.0
         for i in range(start.shape[0] - 1):
             out, dt, pushed = sums[i], sums[i, OPENED], 0.0
@@ -151,10 +154,13 @@ class RunningSums:
         sums = np.zeros((len(step), 9))
         sums[:, OPENED] = self._clock.lengths(step["step"])  # where the kernel finds it
         words = np.ascontiguousarray(contacts)
+        numbers, integers = (words.view(kind).reshape(len(words), -1) for kind in ("f8", "i8"))
         with compiling():
             _kernel()(
-                *(words.view(kind).reshape(len(words), -1) for kind in ("f8", "i8")),
-                *(start, columns, floats, pulls, self._of_body, self._mu, self._choices, sums),
+                (numbers, integers, start),
+                (columns, floats, pulls),
+                (self._of_body, self._mu, self._choices),
+                sums,
             )
         return ContactSums(
             not_finite=sums[:, NOT_FINITE],

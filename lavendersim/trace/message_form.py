@@ -42,12 +42,9 @@ class MessageForm(NamedTuple):
             fill_messages()(
                 data,
                 starts.astype(np.uint64),
-                self.template,
-                self.slots,
+                (self.template, self.slots, self.head_slots, self.odd_slots),
                 words,
-                self.head_slots,
                 heads,
-                self.odd_slots,
             )
 
 
