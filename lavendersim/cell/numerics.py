@@ -18,6 +18,7 @@ from lavendersim.cell.choices import (
     Order,
     SimultaneousImpacts,
     Solver,
+    UndeterminedForces,
 )
 from lavendersim.quantities.model import ConfigModel
 from lavendersim.quantities.quantity import Quantity
@@ -114,6 +115,11 @@ class Numerics(ConfigModel):
         default="spring",
         description="what a compliance makes of a contact: a `spring`; or, `regularised`, a softer "
         "row, whose penetration follows from stabilisation and projection",
+    )
+    undetermined_forces: UndeterminedForces = Field(
+        default="least_norm",
+        description="which impulses redundant contacts have: those of `least_norm`, the limit of "
+        "equal compliances; or `as_solved`, where the solver came to its end",
     )
     friction_cone: FrictionCone = Field(
         default="disc",

@@ -27,12 +27,12 @@ class Surface(declared("Surface", ConfigModel, _KEYS)):  # type: ignore[misc]
             if not key.needs:
                 continue
             node, needed = at.get(key.name), at.get(key.needs)
-            if node is None or node.number is None or node.number <= 0.0:
+            if node.number is None or node.number <= 0.0:
                 continue
             unknown = at.node.torn or at.node.entries.keys() - cls.model_fields.keys()
-            if needed is None and unknown:
+            if not needed and unknown:
                 at.doubt()  # a refused key may have been this one
-            elif needed is None or needed.number == 0.0:
-                found = "none" if needed is None else "0"
+            elif not needed or needed.number == 0.0:
+                found = "0" if needed else "none"
                 sentence = f"{key.name}: above 0 it needs {key.needs} above 0, found {found}"
                 at.refuse(node.mark, sentence)

@@ -43,11 +43,12 @@ MATRIX_CONTACT: list[Field] = [
 
 
 class Coupling(NamedTuple):
-    """W by columns, and the scales of its residual."""
+    """W by columns, and what `scaled_residual` scales by."""
 
     row: np.ndarray  # (m,) contact that a block acts on
     blocks: np.ndarray  # (m, 3, 3) [1/kg]
-    scale: np.ndarray  # (2,) tr W / 3n [1/kg] and |q| [m/s], as `scaled_residual` takes them
+    mean_diagonal: float  # tr W / 3n [1/kg]
+    load: float  # |q|, or 1 without a load [m/s]
 
 
 def make_contact_velocity(spec: Spec) -> Any:

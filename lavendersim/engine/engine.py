@@ -15,6 +15,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from lavendersim.record_tables import copied
+
 from . import memory, removal
 from .assemble import StepProblem, step_problem
 from .collide.broad.broad_phase import allocate_broad_phase
@@ -198,9 +200,9 @@ class Engine:
         count, log = self.counters[0], self.log
         history = log.residual[: count["residual_rows"]]
         rows = Rows(
-            log.step[: count["step_rows"]].copy(),
+            copied(log.step[: count["step_rows"]]),
             log.pose[: count["step_rows"]].copy(),
-            log.contact[: count["contact_rows"]].copy(),
+            copied(log.contact[: count["contact_rows"]]),
             history[history["step"] <= count["step"]],  # of steps that are done
         )
         self._keep_unfinished(log)

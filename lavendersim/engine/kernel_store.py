@@ -14,6 +14,8 @@ from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
+from lavendersim.durable_files import write_whole
+
 from .compile_options import build
 
 DIRECTORY_VARIABLE = "LAVENDER_CACHE_DIR"
@@ -77,12 +79,13 @@ def read(path: Path) -> bytes | None:
 
 
 def write(path: Path, payload: bytes) -> None:
-    """Keep something in a file, in one move, so that no reader sees half of it."""
+    """Keep something in a file, in one move, so that no reader sees half of it.
+
+    It is not flushed, which a new plan with its hundred parts would wait for: what a power loss
+    leaves half, its checksum shows, and it is compiled again.
+    """
     with contextlib.suppress(OSError):  # a full or read-only disk costs time, not the run
-        handle, name = tempfile.mkstemp(f".unfinished{path.suffix}", dir=path.parent)
-        with os.fdopen(handle, "wb") as file:
-            file.write(hashlib.sha256(payload).digest() + payload)
-        os.replace(name, path)
+        write_whole(path, hashlib.sha256(payload).digest() + payload, flush=False, mode=0o600)
 
 
 class Kept(NamedTuple):

@@ -28,9 +28,8 @@ def coupling_of(problem: ContactProblem) -> Coupling:
     contacts = max(problem.contacts, 1)
     trace = np.trace(problem.own_blocks, axis1=1, axis2=2).sum() + problem.gamma.sum()
     norm = float(np.linalg.norm(problem.q))
-    return Coupling(
-        problem.row, problem.blocks, np.array([trace / (3 * contacts), norm if norm > 0.0 else 1.0])
-    )
+    load = norm if norm > 0.0 else 1.0
+    return Coupling(problem.row, problem.blocks, float(trace / (3 * contacts)), load)
 
 
 def contacts_of(problem: ContactProblem, spec: Spec, impulses: np.ndarray) -> np.ndarray:

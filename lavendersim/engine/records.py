@@ -192,6 +192,8 @@ COUNTERS: Final[list[Field]] = [
     ("sweeps", I8),  # sweeps spent in the last step
     ("stronge", I8),  # 1 when Stronge's law replaced Newton's in the last step
     ("newton_steps", I8),  # of Newton's method since the start
+    ("unchosen", F8),  # changes by sweeps since impulses were of least norm [m/s]
+    ("chosen", F8),  # the largest impulse then, as the velocity it gives [m/s]
     ("sharpen", I8),  # 1 when the next solve must end sharper than its tolerance
     ("projection_sweeps", I8),  # and by the positional projection, 0: nothing had to move
     ("residual_contact", I8),  # contact with the largest residual, -1 without contacts

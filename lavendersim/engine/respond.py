@@ -24,6 +24,21 @@ from .solvers.solver import ContactSystem
 from .spec import Spec
 
 
+def make_solve(spec: Spec) -> Any:
+    """Return the solver's kernel, with impulses chosen where the laws leave them open."""
+    solve = SOLVERS[spec.solver].make(spec)
+    chooses, choose_impulses = made_once(spec, "choose_impulses")
+    if not chooses:
+        return solve
+
+    def solve_and_choose(system, workspace, params, counters, residual_rows):
+        solve(system, workspace, params, counters, residual_rows)
+        if counters.not_converged == 0 and system.count > 1:
+            choose_impulses(system, workspace, params, counters)
+
+    return kernel(solve_and_choose, spec)
+
+
 def make_respond(spec: Spec, log_contacts: Any) -> Any:
     """Return `kernel(state, count, workspace, params, counters, log)`, see `memory`.
 
@@ -33,7 +48,7 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
     order_contacts = ordering.make(spec)
     shuffles = spec.order == "random"
     shuffle: Any = ordering.make_shuffle(spec) if shuffles else None
-    solve = SOLVERS[spec.solver].make(spec)
+    solve = make_solve(spec)
     predicts, predict_impacts = made_once(spec, "predict_impacts")
     warms, match_contacts = made_once(spec, "match")
     _, store_contacts = made_once(spec, "store")

@@ -20,7 +20,7 @@ def make_scaled_residual(spec: Spec):
     convex = spec.friction_cone == "convex"
 
     def scaled_residual(contacts, count, velocities):
-        c = velocities.scale[0]
+        c = velocities.mean_diagonal
         total, largest, worst = 0.0, 0.0, -1
         for k in range(count):
             contact = contacts[k]
@@ -36,6 +36,6 @@ def make_scaled_residual(spec: Spec):
             # A NaN wins and stays, or divergence would pass for convergence.
             if worst < 0 or squared > largest or squared != squared:
                 largest, worst = squared, k
-        return sqrt(total) / velocities.scale[1], worst
+        return sqrt(total) / velocities.load, worst
 
     return kernel(scaled_residual, spec)

@@ -89,6 +89,7 @@ def facts_of(config: CellConfig, record: bool = True) -> Facts:
         integrator=numerics.integrator,
         solver=numerics.solver,
         compliance_law=numerics.compliance_law,
+        undetermined_forces=numerics.undetermined_forces,
         friction_cone=numerics.friction_cone,
         scene=config.scene,
         sleeping=numerics.sleeping,

@@ -9,6 +9,7 @@ from lavendersim.cell import CellConfig, CellEffects
 from lavendersim.engine.collide import SHAPE_PAIRS
 from lavendersim.engine.effects import EFFECTS, Decision, Facts
 from lavendersim.engine.effects.decision import named
+from lavendersim.engine.effects.least_norm import is_affordable
 from lavendersim.engine.spec import Spec
 from lavendersim.errors import ConfigError, UsageError
 from lavendersim.experiment.cell import Cell
@@ -26,6 +27,7 @@ CHOICES: Final = (
     "simultaneous_impacts",
     "integrator",
     "compliance_law",
+    "undetermined_forces",
     "error_control",
     "friction_cone",
     "order",
@@ -37,6 +39,7 @@ APART: Final = {
     name: Decision(False, f"no {pair.shapes[0]} and {pair.shapes[1]} may touch")
     for name, pair in SHAPE_PAIRS.items()
 }
+AS_SOLVED: Final = "as_solved"
 DERIVED: Final = "derived"  # no effect is switched by hand
 MOST_LABELS: Final = 4  # of cells in a sentence
 
@@ -116,7 +119,7 @@ def plan_of(config: CellConfig, record: bool = True, cell: CellName = ALONE) -> 
     return Plan(
         spec,
         made.effects,
-        _choices(config),
+        _choices(config, facts),
         made.shape_pairs,
         made.forced,
         (cell,),
@@ -192,9 +195,14 @@ def _on(decisions: Mapping[str, Decision]) -> tuple[str, ...]:
     return tuple(sorted(name for name, decision in decisions.items() if decision.on))
 
 
-def _choices(config: CellConfig) -> tuple[Any, ...]:
+def _choices(config: CellConfig, facts: Facts) -> tuple[Any, ...]:
     numerics = config.numerics
-    made = {"error_control": numerics.accuracy is not None, "effects": _switched(config.effects)}
+    made = {
+        "error_control": numerics.accuracy is not None,
+        # Where many bodies move, they are as solved: an engine of few would choose theirs.
+        "undetermined_forces": numerics.undetermined_forces if is_affordable(facts) else AS_SOLVED,
+        "effects": _switched(config.effects),
+    }
     chosen = {**dict(numerics), **dict(config.study), **made}
     return tuple(chosen[name] for name in CHOICES)
 

@@ -32,6 +32,7 @@ LETS_IN: dict[str, tuple[Any, ...]] = {
     "error_control": (),  # an accuracy, and then it has something to do
     "speculative": (True,),
     "newton": ("adaptive",),
+    "least_norm": ("least_norm",),
     "capture_in_sweeps": ("capture_in_sweeps",),
 }
 LOGS = {  # tables of `Rows`, and the effect that fills each

@@ -149,7 +149,9 @@ SCENES: dict[str, Callable[[], dict[str, Any]]] = {
     "mixed": lambda: cell(mixed(friction=0.4)),
     "others": lambda: cell(others(friction=0.3)),
     "flying brick": lambda: cell(flying(), preset="default", simultaneous_impacts="pairwise"),
-    "single ball": lambda: cell(single(), solver="adaptive", sweeps=50),
+    "single ball": lambda: cell(
+        single(), solver="adaptive", sweeps=50, undetermined_forces="least_norm"
+    ),
     "balls, chapter": lambda: cell(balls(restitution=0.5), preset="chapter"),
     "boxes, chapter": lambda: cell(boxes(), preset="chapter"),
     "mixed, chapter": lambda: cell(mixed(friction=0.4, restitution=0.3), preset="chapter"),
@@ -196,6 +198,7 @@ CASES: dict[str, tuple[str, ...]] = {
     "contact_spring": ("flying brick",),
     "warm_start": ("cold balls",),
     "newton": ("single ball",),
+    "least_norm": ("single ball",),
     "projection": ("balls",),
     "sleeping": ("frictional balls",),
     "step_log": ("balls",),

@@ -37,6 +37,7 @@ CHOSEN: dict[str, tuple[str, tuple[Any, ...]]] = {  # effects that are there by 
     "midpoint": ("integrator", ("midpoint", "midpoint_contact")),
     "contact_midpoint": ("integrator", ("midpoint_contact",)),
     "contact_spring": ("compliance_law", ("spring",)),
+    "least_norm": ("undetermined_forces", ("least_norm",)),
     "speculative": ("speculative", (True,)),
 }
 # Effects that a drawn plan may leave out: of each it is known what requires it.
@@ -88,6 +89,7 @@ LAWS: dict[str, Any] = {
     "simultaneous_impacts": "pairwise",
     "integrator": "midpoint_contact",
     "compliance_law": "spring",
+    "undetermined_forces": "least_norm",
     "speculative": True,
 }
 FULL = Drawn(_closed(EVERY, LAWS), SOLIDS, LAWS, tolerance=True, over_relaxation=False)
@@ -107,6 +109,7 @@ def plans(draw: Any) -> Drawn:
         "simultaneous_impacts": draw(st.sampled_from(("together", "pairwise"))),
         "integrator": draw(st.sampled_from(INTEGRATORS)),
         "compliance_law": draw(st.sampled_from(("spring", "regularised"))),
+        "undetermined_forces": draw(st.sampled_from(("least_norm", "as_solved"))),
         "speculative": draw(st.booleans()),
     }
     spared = {name for name in SPARED if draw(st.booleans())}

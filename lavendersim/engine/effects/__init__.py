@@ -46,6 +46,7 @@ NAMES: Final = (
     "contact_spring",
     "warm_start",
     "newton",
+    "least_norm",
     "projection",
     "sleeping",
     "step_log",

@@ -65,6 +65,7 @@ class Facts(NamedTuple):
     mistake: str = "none"  # a deliberate error, for study
     integrator: str = "semi_implicit_euler"
     compliance_law: str = "regularised"
+    undetermined_forces: str = "as_solved"
     friction_cone: str = "disc"
     solver: str = "adaptive"
     sleeping: bool = False

@@ -112,6 +112,7 @@ class Hooks:
     match: Maker | None = None  # (contacts, count, bodies, cache, counters, params)
     recapture: Maker | None = None  # (contact, w, params) -> w, in every sweep
     limit_impacts: Maker | None = None  # made with (spec, solve, classify); after the solve
+    choose_impulses: Maker | None = None  # (system, workspace, params, counters), once solved
     spring_row: Maker | None = None  # (contact, v_n, params): its target and gamma
     contact_energy: Maker | None = None  # (contacts, count, velocities, params) -> stored [J]
     log_contacts: Maker | None = None  # made with (spec, kernels of contact_row); after the solve

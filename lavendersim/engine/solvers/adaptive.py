@@ -18,7 +18,7 @@ A solve that begins near its solution is over after a sweep and pays for nothing
 
 from __future__ import annotations
 
-from math import log
+from math import inf, log
 from typing import Any
 
 from ..compile import kernel
@@ -63,6 +63,7 @@ def make(spec: Spec):
     residual = make_residual(spec)
     uses_newton = spec.has("newton")
     newton: Any = make_newton(spec) if uses_newton else None
+    chooses = spec.has("least_norm")
 
     def adaptive(system, workspace, params, counters, residual_rows):
         contacts, count, velocities = system.contacts, system.count, system.velocities
@@ -82,6 +83,8 @@ def make(spec: Spec):
         while sweeps < params.sweeps:
             greatest = sweep(system, params)
             sweeps += 1
+            if chooses:
+                counters.unchosen += greatest
             measured = False
             if record_residuals:
                 largest, worst = residual(contacts, count, velocities)
@@ -119,6 +122,8 @@ def make(spec: Spec):
                         counters.newton_steps += steps
                         measured = False
                         if steps > 0:
+                            if chooses:
+                                counters.unchosen = inf
                             counters.sharpen = 1
                             aim = tolerance
                             # Where this was not the last call, sweeps must prepare the next one.

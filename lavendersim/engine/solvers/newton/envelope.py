@@ -16,6 +16,12 @@ from ...compile import inner
 from ...records import F8, Field, dtype
 
 DOF = 6
+# Of the six rows of a body: its velocity along world x, y, z, its angular velocity about them.
+X, Y, Z, WX, WY, WZ = range(DOF)
+# Of the nine rows of a contact: those of body A, of body B, and E' times either's; within each
+# those along the normal and the tangents.
+OF_A, OF_B, SCALED = 0, 3, 6
+N, T1, T2 = range(3)
 # Mass [kg] and world inertia [kg m^2] of a body.
 MASS: Final[list[Field]] = [(name, F8) for name in ("m", "xx", "xy", "xz", "yy", "yz", "zz")]
 

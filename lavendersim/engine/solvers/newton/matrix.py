@@ -5,23 +5,27 @@ It lies in the envelope (`envelope`): block rows of bodies, each from its first 
 
 from __future__ import annotations
 
+from typing import Any
+
 from ...compile import kernel
 from ...spec import Spec
 from ...spin_block import resists_turning
-from .envelope import DOF
-from .response import make_fill_rows, make_stiffness
+from .envelope import DOF, OF_A, OF_B, SCALED, T1, T2, WX, WY, WZ
+from .response import make_fill_rows
 from .torques import make_add_torque_block
 
 
-def make_assemble(spec: Spec):
-    """Return `kernel(contacts, count, size, workspace)`: fill the envelope with M + J^T E' J."""
-    friction = spec.has("friction")
-    fill_rows, stiffness = make_fill_rows(spec), make_stiffness(spec)
+def make_assemble(spec: Spec, stiffness: Any, torques: bool = True):
+    """Return `kernel(contacts, count, size, workspace)`: fill the envelope with M + J^T E' J.
+
+    stiffness: kernel(contact) -> E'. torques: they respond, too.
+    """
+    friction, fill_rows = spec.has("friction"), make_fill_rows(spec)
     directions = 3 if friction else 1
-    spins, add_torque_block = resists_turning(spec), make_add_torque_block(spec)
+    spins, add_torque_block = torques and resists_turning(spec), make_add_torque_block(spec)
 
     def add_block(workspace, p, q, rows_p, rows_q):
-        # += rows_p^T E' rows_q on block row p and block column q <= p; E' rows_q are rows 6..8.
+        # += rows_p^T E' rows_q on block row p and block column q <= p; E' rows_q: the scaled rows.
         values, start, rows = workspace.values, workspace.start, workspace.rows
         offset = DOF * (q - workspace.first[p])
         for i in range(DOF):
@@ -29,7 +33,7 @@ def make_assemble(spec: Spec):
             for j in range(i + 1 if p == q else DOF):
                 total = 0.0
                 for k in range(directions):
-                    total += rows[rows_p + k, i] * rows[6 + k, j]
+                    total += rows[rows_p + k, i] * rows[SCALED + k, j]
                 values[base + j] += total
 
     add_block = kernel(add_block, spec)
@@ -37,12 +41,12 @@ def make_assemble(spec: Spec):
     def scale_rows(rows, source, h):
         for j in range(DOF):
             n = rows[source, j]
-            rows[6, j] = h.nn * n
+            rows[SCALED, j] = h.nn * n
             if friction:
-                one, two = rows[source + 1, j], rows[source + 2, j]
-                rows[6, j] += h.n1 * one + h.n2 * two
-                rows[7, j] = h.n1 * n + h.t11 * one + h.t12 * two
-                rows[8, j] = h.n2 * n + h.t12 * one + h.t22 * two
+                one, two = rows[source + T1, j], rows[source + T2, j]
+                rows[SCALED, j] += h.n1 * one + h.n2 * two
+                rows[SCALED + T1, j] = h.n1 * n + h.t11 * one + h.t12 * two
+                rows[SCALED + T2, j] = h.n2 * n + h.t12 * one + h.t22 * two
 
     scale_rows = kernel(scale_rows, spec)
 
@@ -56,11 +60,11 @@ def make_assemble(spec: Spec):
             own = mass[p]
             for i in range(3):
                 values[start[DOF * p + i] + offset + i] = own.m
-            values[start[DOF * p + 3] + offset + 3] = own.xx
-            base = start[DOF * p + 4] + offset
-            values[base + 3], values[base + 4] = own.xy, own.yy
-            base = start[DOF * p + 5] + offset
-            values[base + 3], values[base + 4], values[base + 5] = own.xz, own.yz, own.zz
+            values[start[DOF * p + WX] + offset + WX] = own.xx
+            base = start[DOF * p + WY] + offset
+            values[base + WX], values[base + WY] = own.xy, own.yy
+            base = start[DOF * p + WZ] + offset
+            values[base + WX], values[base + WY], values[base + WZ] = own.xz, own.yz, own.zz
         for c in range(count):
             contact = contacts[c]
             h = stiffness(contact)
@@ -69,15 +73,15 @@ def make_assemble(spec: Spec):
             if h.nn > 0.0:
                 fill_rows(contact, workspace.rows)
                 if a >= 0:
-                    scale_rows(workspace.rows, 0, h)
-                    add_block(workspace, a, a, 0, 0)
+                    scale_rows(workspace.rows, OF_A, h)
+                    add_block(workspace, a, a, OF_A, OF_A)
                     if b > a:
-                        add_block(workspace, b, a, 3, 0)
+                        add_block(workspace, b, a, OF_B, OF_A)
                 if b >= 0:
-                    scale_rows(workspace.rows, 3, h)
-                    add_block(workspace, b, b, 3, 3)
+                    scale_rows(workspace.rows, OF_B, h)
+                    add_block(workspace, b, b, OF_B, OF_B)
                     if a > b:
-                        add_block(workspace, a, b, 0, 3)
+                        add_block(workspace, a, b, OF_A, OF_B)
             if spins:
                 add_torque_block(contact, a, b, workspace)
 

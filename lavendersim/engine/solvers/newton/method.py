@@ -54,12 +54,13 @@ EXACTNESS = 0.01
 ASSEMBLY = 1000
 
 
-def make_restore(spec: Spec, which: str, set_impulse: Any) -> Any:
+def make_restore(spec: Spec, which: str, set_impulse: Any, torques: bool = True) -> Any:
     """Return `kernel(contacts, count, velocities)`: impulses and torques as they were kept.
 
-    which: at the `start` of the round, or the `best` so far; velocities follow.
+    which: at the `start` of the round, or the `best` so far; velocities follow. torques: whether
+    they are restored, too.
     """
-    friction, spins = spec.has("friction"), resists_turning(spec)
+    friction, spins = spec.has("friction"), torques and resists_turning(spec)
     restore_torques = make_restore_torques(spec, which)
     kept_n, kept_1, kept_2 = (f"{which}_{axis}" for axis in "n12")
 
@@ -78,22 +79,11 @@ def make_restore(spec: Spec, which: str, set_impulse: Any) -> Any:
     return kernel(restore, spec)
 
 
-def make_newton(spec: Spec):
-    """Return `kernel(system, workspace, tolerance, allowance, sticking_guess)`.
-
-    It returns the number of steps, none when the system is larger than its arrays and no more than
-    fit into `allowance` multiplications, and whether the sticking guess, that all contacts are at
-    rest, still holds. Impulses, torques and velocities leave consistent with each other.
-    """
-    friction = spec.has("friction")
-    residual, apply_block = make_residual(spec), make_apply_block(spec)
-    start, projected_impulse = make_start(spec), make_projected_impulse(spec)
-    assemble_mass, minimise = make_assemble_mass(spec), make_minimise(spec)
-    spins = resists_turning(spec)
-    accept_torques, keep_torques = make_accept_torques(spec), make_keep_torques(spec)
+def make_set_impulse(spec: Spec):
+    """Return `kernel(contact, velocities, n, one, two)`: new impulses, and velocities with them."""
+    friction, apply_block = spec.has("friction"), make_apply_block(spec)
 
     def set_impulse(contact, velocities, n, one, two):
-        # Impulses in place of those there are, and velocities with them.
         change_n, change_1, change_2 = n - contact.lambda_n, 0.0, 0.0
         contact.lambda_n = n
         if friction:
@@ -102,7 +92,13 @@ def make_newton(spec: Spec):
         va, vb = velocities[contact.a], velocities[contact.b]
         apply_block(contact, va, vb, change_n, change_1, change_2)
 
-    set_impulse = kernel(set_impulse, spec)
+    return kernel(set_impulse, spec)
+
+
+def make_accept(spec: Spec, set_impulse: Any):
+    """Return `kernel(contacts, count, velocities)`: impulses of a minimum in place of those now."""
+    friction, spins = spec.has("friction"), resists_turning(spec)
+    projected_impulse, accept_torques = make_projected_impulse(spec), make_accept_torques(spec)
 
     def accept(contacts, count, velocities):
         for c in range(count):
@@ -118,10 +114,15 @@ def make_newton(spec: Spec):
             if spins:
                 accept_torques(contact, velocities[contact.a], velocities[contact.b])
 
-    accept = kernel(accept, spec)
+    return kernel(accept, spec)
+
+
+def make_keep(spec: Spec):
+    """Return `kernel(contacts, count)`: the impulses of now are the `best` so far."""
+    friction, spins = spec.has("friction"), resists_turning(spec)
+    keep_torques = make_keep_torques(spec)
 
     def keep(contacts, count):
-        # The best impulses so far.
         for c in range(count):
             contact = contacts[c]
             contact.best_n = contact.lambda_n
@@ -130,8 +131,20 @@ def make_newton(spec: Spec):
             if spins:
                 keep_torques(contact)
 
-    keep = kernel(keep, spec)
+    return kernel(keep, spec)
 
+
+def make_newton(spec: Spec):
+    """Return `kernel(system, workspace, tolerance, allowance, sticking_guess)`.
+
+    It returns the number of steps, none when the system is larger than its arrays and no more than
+    fit into `allowance` multiplications, and whether the sticking guess, that all contacts are at
+    rest, still holds. Impulses, torques and velocities leave consistent with each other.
+    """
+    residual, start = make_residual(spec), make_start(spec)
+    assemble_mass, minimise = make_assemble_mass(spec), make_minimise(spec)
+    set_impulse, keep = make_set_impulse(spec), make_keep(spec)
+    accept = make_accept(spec, set_impulse)
     restore_start = make_restore(spec, "start", set_impulse)
     restore_best = make_restore(spec, "best", set_impulse)
 

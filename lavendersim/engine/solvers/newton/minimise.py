@@ -9,13 +9,15 @@ or lengthened, to where the slope along it is nearly gone.
 
 from __future__ import annotations
 
+from typing import Any
+
 from ...compile import kernel
 from ...rotation import inertia_times
 from ...spec import Spec
 from ...spin_block import resists_turning
-from .envelope import DOF, factorise, solve_factorised
+from .envelope import DOF, OF_A, OF_B, T1, T2, WX, WY, WZ, factorise, solve_factorised
 from .matrix import make_assemble
-from .response import make_fill_rows, make_projected_impulse
+from .response import make_fill_rows, make_projected_impulse, make_stiffness
 from .torques import (
     make_advance_spin,
     make_directional_spin,
@@ -52,6 +54,54 @@ def make_assemble_mass(spec: Spec):
     return kernel(assemble_mass, spec)
 
 
+def make_body_of(spec: Spec):
+    """Return `kernel(contact, workspace, own)`: block row of the body whose rows begin at `own`.
+
+    own: OF_A or OF_B; -1 where it cannot move.
+    """
+
+    def body_of(contact, workspace, own):
+        if own == OF_A:
+            return workspace.position[contact.a] if contact.inv_m_a > 0.0 else -1
+        return workspace.position[contact.b] if contact.inv_m_b > 0.0 else -1
+
+    return kernel(body_of, spec)
+
+
+def make_directional_derivative(spec: Spec, torques: bool = True):
+    """Return `kernel(contacts, count, workspace)`: what a step adds to contacts' velocities.
+
+    torques: of what resists turning, too.
+    """
+    friction = spec.has("friction")
+    fill_rows, body_of = make_fill_rows(spec), make_body_of(spec)
+    spins, directional_spin = torques and resists_turning(spec), make_directional_spin(spec)
+
+    def directional_derivative(contacts, count, workspace):
+        rows, step = workspace.rows, workspace.step
+        for c in range(count):
+            contact = contacts[c]
+            fill_rows(contact, rows)
+            n, one, two = 0.0, 0.0, 0.0
+            for own in (OF_A, OF_B):
+                p = body_of(contact, workspace, own)
+                if p >= 0:
+                    for i in range(DOF):
+                        x = step[DOF * p + i]
+                        n += rows[own, i] * x
+                        if friction:
+                            one += rows[own + T1, i] * x
+                            two += rows[own + T2, i] * x
+            contact.step_n = n
+            if friction:
+                contact.step_1, contact.step_2 = one, two
+            if spins:
+                a, b = body_of(contact, workspace, OF_A), body_of(contact, workspace, OF_B)
+                directional_spin(contact, a, b, step)
+
+    return kernel(directional_derivative, spec)
+
+
 def make_minimise(spec: Spec):
     """Return `kernel(contacts, count, size, workspace, enough) -> (steps, found)`.
 
@@ -59,34 +109,51 @@ def make_minimise(spec: Spec):
     a further step need not gain more [J].
     """
     friction = spec.has("friction")
-    directions = 3 if friction else 1
-    projected_impulse, fill_rows = make_projected_impulse(spec), make_fill_rows(spec)
-    assemble = make_assemble(spec)
-    spins = resists_turning(spec)
-    gather_torque, directional_spin = make_gather_torque(spec), make_directional_spin(spec)
+    descend = make_descend(spec, make_projected_impulse(spec), make_stiffness(spec))
+
+    def minimise(contacts, count, size, workspace, enough):
+        for r in range(DOF * size):
+            workspace.change[r] = 0.0
+        for c in range(count):
+            contact = contacts[c]
+            contact.step_n = 0.0
+            if friction:
+                contact.step_1, contact.step_2 = 0.0, 0.0
+        return descend(contacts, count, size, workspace, enough, 0.0)
+
+    return kernel(minimise, spec)
+
+
+def make_descend(spec: Spec, projected_impulse: Any, stiffness: Any, torques: bool = True):
+    """Return `kernel(contacts, count, size, workspace, enough, first) -> (steps, found)`.
+
+    The same from a change of the velocities on, which the contacts' `velocity` has. first: slope of
+    the first step [J]; 0: it is to come.
+    projected_impulse, stiffness: kernels of a contact's response, see `response`. torques: they
+    respond, too.
+    """
+    friction = spec.has("friction")
+    fill_rows, body_of = make_fill_rows(spec), make_body_of(spec)
+    assemble = make_assemble(spec, stiffness, torques)
+    directional_derivative = make_directional_derivative(spec, torques)
+    spins = torques and resists_turning(spec)
+    gather_torque = make_gather_torque(spec)
     torque_slope, advance_spin = make_torque_slope(spec), make_advance_spin(spec)
 
     def multiply(workspace, x, p, i):
         # Row i of block p of M x.
         own = workspace.mass[p]
         at = DOF * p
-        if i < 3:
+        if i < WX:
             return own.m * x[at + i]
-        wx, wy, wz = x[at + 3], x[at + 4], x[at + 5]
-        if i == 3:
+        wx, wy, wz = x[at + WX], x[at + WY], x[at + WZ]
+        if i == WX:
             return own.xx * wx + own.xy * wy + own.xz * wz
-        if i == 4:
+        if i == WY:
             return own.xy * wx + own.yy * wy + own.yz * wz
         return own.xz * wx + own.yz * wy + own.zz * wz
 
     multiply = kernel(multiply, spec)
-
-    def body_of(contact, workspace, side):
-        if side == 0:
-            return workspace.position[contact.a] if contact.inv_m_a > 0.0 else -1
-        return workspace.position[contact.b] if contact.inv_m_b > 0.0 else -1
-
-    body_of = kernel(body_of, spec)
 
     def gather(contacts, count, size, workspace):
         # gradient = M change - J^T (lambda - lambda^k)
@@ -102,44 +169,19 @@ def make_minimise(spec: Spec):
                 one, two = one - contact.start_1, two - contact.start_2
             if n != 0.0 or one != 0.0 or two != 0.0:
                 fill_rows(contact, rows)
-                for side in range(2):
-                    p = body_of(contact, workspace, side)
+                for own in (OF_A, OF_B):
+                    p = body_of(contact, workspace, own)
                     if p >= 0:
                         for i in range(DOF):
-                            total = n * rows[3 * side, i]
+                            total = n * rows[own, i]
                             if friction:
-                                total += one * rows[3 * side + 1, i] + two * rows[3 * side + 2, i]
+                                total += one * rows[own + T1, i] + two * rows[own + T2, i]
                             gradient[DOF * p + i] -= total
             if spins:
-                a, b = body_of(contact, workspace, 0), body_of(contact, workspace, 1)
+                a, b = body_of(contact, workspace, OF_A), body_of(contact, workspace, OF_B)
                 gather_torque(contact, a, b, gradient)
 
     gather = kernel(gather, spec)
-
-    def directional_derivative(contacts, count, workspace):
-        # What the step adds to the velocities that contacts see.
-        rows, step = workspace.rows, workspace.step
-        for c in range(count):
-            contact = contacts[c]
-            fill_rows(contact, rows)
-            n, one, two = 0.0, 0.0, 0.0
-            for side in range(2):
-                p = body_of(contact, workspace, side)
-                if p >= 0:
-                    for i in range(DOF):
-                        x = step[DOF * p + i]
-                        n += rows[3 * side, i] * x
-                        if directions == 3:
-                            one += rows[3 * side + 1, i] * x
-                            two += rows[3 * side + 2, i] * x
-            contact.step_n = n
-            if friction:
-                contact.step_1, contact.step_2 = one, two
-            if spins:
-                a, b = body_of(contact, workspace, 0), body_of(contact, workspace, 1)
-                directional_spin(contact, a, b, step)
-
-    directional_derivative = kernel(directional_derivative, spec)
 
     def slope_at(contacts, count, length):
         # The contacts' part of the derivative along the step; it grows with the length.
@@ -179,16 +221,8 @@ def make_minimise(spec: Spec):
 
     choose_length = kernel(choose_length, spec)
 
-    def minimise(contacts, count, size, workspace, enough):
+    def descend(contacts, count, size, workspace, enough, first):
         rows = DOF * size
-        first = 0.0
-        for r in range(rows):
-            workspace.change[r] = 0.0
-        for c in range(count):
-            contact = contacts[c]
-            contact.step_n = 0.0
-            if friction:
-                contact.step_1, contact.step_2 = 0.0, 0.0
         for done in range(MOST_STEPS):
             gather(contacts, count, size, workspace)
             assemble(contacts, count, size, workspace)
@@ -200,7 +234,7 @@ def make_minimise(spec: Spec):
             slope = 0.0
             for r in range(rows):
                 slope += workspace.step[r] * workspace.gradient[r]
-            if done == 0:
+            if first == 0.0:
                 first = slope
             if not slope < min(ROUND_OFF * first, -enough):
                 return done + 1, slope == slope
@@ -223,4 +257,4 @@ def make_minimise(spec: Spec):
                     advance_spin(contact, length)
         return MOST_STEPS, False
 
-    return kernel(minimise, spec)
+    return kernel(descend, spec)

@@ -17,6 +17,7 @@ from ...contact import make_frictionless_velocity
 from ...effects.frictionless_contact import by_friction
 from ...spec import Spec
 from ...spin_block import resists_turning
+from .envelope import OF_A, OF_B, T1, T2, WX, WY, WZ, N, X, Y, Z
 from .torques import make_start_torques
 
 
@@ -199,27 +200,28 @@ def _make_frictional_stiffness(spec: Spec):
 
 
 def make_fill_rows(spec: Spec):
-    """Return `kernel(contact, rows)`: rows 0..2 of A (n, t1, t2) and 3..5 of B, as J has them."""
+    """Return `kernel(contact, rows)`: those of A and of B (n, t1, t2), as J has them."""
     return by_friction(spec, _make_fill_normal, _make_fill_block)
 
 
 def _make_fill_block(spec: Spec):
-    def fill(rows, k, x, y, z, contact):
-        rows[k, 0], rows[k, 1], rows[k, 2] = -x, -y, -z
-        rows[k, 3] = contact.raz * y - contact.ray * z
-        rows[k, 4] = contact.rax * z - contact.raz * x
-        rows[k, 5] = contact.ray * x - contact.rax * y
-        rows[k + 3, 0], rows[k + 3, 1], rows[k + 3, 2] = x, y, z
-        rows[k + 3, 3] = contact.rby * z - contact.rbz * y
-        rows[k + 3, 4] = contact.rbz * x - contact.rbx * z
-        rows[k + 3, 5] = contact.rbx * y - contact.rby * x
+    def fill(rows, along, x, y, z, contact):
+        a, b = OF_A + along, OF_B + along
+        rows[a, X], rows[a, Y], rows[a, Z] = -x, -y, -z
+        rows[a, WX] = contact.raz * y - contact.ray * z
+        rows[a, WY] = contact.rax * z - contact.raz * x
+        rows[a, WZ] = contact.ray * x - contact.rax * y
+        rows[b, X], rows[b, Y], rows[b, Z] = x, y, z
+        rows[b, WX] = contact.rby * z - contact.rbz * y
+        rows[b, WY] = contact.rbz * x - contact.rbx * z
+        rows[b, WZ] = contact.rbx * y - contact.rby * x
 
     fill = kernel(fill, spec)
 
     def fill_block(contact, rows):
-        fill(rows, 0, contact.nx, contact.ny, contact.nz, contact)
-        fill(rows, 1, contact.t1x, contact.t1y, contact.t1z, contact)
-        fill(rows, 2, contact.t2x, contact.t2y, contact.t2z, contact)
+        fill(rows, N, contact.nx, contact.ny, contact.nz, contact)
+        fill(rows, T1, contact.t1x, contact.t1y, contact.t1z, contact)
+        fill(rows, T2, contact.t2x, contact.t2y, contact.t2z, contact)
 
     return kernel(fill_block, spec)
 
@@ -228,12 +230,12 @@ def _make_fill_normal(spec: Spec):
     torque = spec.has("contact_torque")
 
     def fill_normal(contact, rows):
-        rows[0, 0], rows[0, 1], rows[0, 2] = -contact.nx, -contact.ny, -contact.nz
-        rows[3, 0], rows[3, 1], rows[3, 2] = contact.nx, contact.ny, contact.nz
+        rows[OF_A, X], rows[OF_A, Y], rows[OF_A, Z] = -contact.nx, -contact.ny, -contact.nz
+        rows[OF_B, X], rows[OF_B, Y], rows[OF_B, Z] = contact.nx, contact.ny, contact.nz
         if torque:
-            rows[0, 3], rows[0, 4] = -contact.lever_ax, -contact.lever_ay
-            rows[0, 5] = -contact.lever_az
-            rows[3, 3], rows[3, 4] = contact.lever_bx, contact.lever_by
-            rows[3, 5] = contact.lever_bz
+            rows[OF_A, WX], rows[OF_A, WY] = -contact.lever_ax, -contact.lever_ay
+            rows[OF_A, WZ] = -contact.lever_az
+            rows[OF_B, WX], rows[OF_B, WY] = contact.lever_bx, contact.lever_by
+            rows[OF_B, WZ] = contact.lever_bz
 
     return kernel(fill_normal, spec)

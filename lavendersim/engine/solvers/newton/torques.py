@@ -16,7 +16,7 @@ from ...compile import inner, kernel
 from ...effects import made_once
 from ...spec import Spec
 from ...spin_block import make_apply_spin, resists_turning
-from .envelope import DOF
+from .envelope import DOF, WX, WY, WZ
 
 
 def make_start_torques(spec: Spec) -> Any:
@@ -40,6 +40,21 @@ def make_start_torques(spec: Spec) -> Any:
             contact.limit_roll = contact.rolling * contact.lambda_n
 
     return kernel(start_torques, spec) if resists_turning(spec) else None
+
+
+def make_limits_torque(spec: Spec) -> Any:
+    """Return `kernel(contact) -> bool`: whether it resists turning at all."""
+    torsional, rolling = spec.has("torsional_friction"), spec.has("rolling_friction")
+
+    def limits_torque(contact):
+        limited = False
+        if torsional:
+            limited = contact.torsional > 0.0
+        if rolling:
+            limited = limited or contact.rolling > 0.0
+        return limited
+
+    return kernel(limits_torque, spec) if resists_turning(spec) else None
 
 
 def make_projected_torque(spec: Spec) -> Any:
@@ -79,13 +94,13 @@ def make_gather_torque(spec: Spec) -> Any:
             y = contact.ny * n + contact.t1y * one + contact.t2y * two
             z = contact.nz * n + contact.t1z * one + contact.t2z * two
             if a >= 0:
-                gradient[DOF * a + 3] += x
-                gradient[DOF * a + 4] += y
-                gradient[DOF * a + 5] += z
+                gradient[DOF * a + WX] += x
+                gradient[DOF * a + WY] += y
+                gradient[DOF * a + WZ] += z
             if b >= 0:
-                gradient[DOF * b + 3] -= x
-                gradient[DOF * b + 4] -= y
-                gradient[DOF * b + 5] -= z
+                gradient[DOF * b + WX] -= x
+                gradient[DOF * b + WY] -= y
+                gradient[DOF * b + WZ] -= z
 
     return kernel(gather_torque, spec) if resists_turning(spec) else None
 
@@ -97,9 +112,9 @@ def make_directional_spin(spec: Spec) -> Any:
     def directional_spin(contact, a, b, step):
         x, y, z = 0.0, 0.0, 0.0
         if a >= 0:
-            x, y, z = -step[DOF * a + 3], -step[DOF * a + 4], -step[DOF * a + 5]
+            x, y, z = -step[DOF * a + WX], -step[DOF * a + WY], -step[DOF * a + WZ]
         if b >= 0:
-            x, y, z = x + step[DOF * b + 3], y + step[DOF * b + 4], z + step[DOF * b + 5]
+            x, y, z = x + step[DOF * b + WX], y + step[DOF * b + WY], z + step[DOF * b + WZ]
         if torsional:
             contact.step_spin_n = contact.nx * x + contact.ny * y + contact.nz * z
         if rolling:
@@ -157,18 +172,20 @@ class Symmetric(NamedTuple):
 def _add(workspace, p, q, scale, t):
     # += scale T on the turning of block row p and block column q <= p; p = q: its lower half.
     values, start = workspace.values, workspace.start
-    offset = DOF * (q - workspace.first[p]) + 3
-    x, y, z = start[DOF * p + 3] + offset, start[DOF * p + 4] + offset, start[DOF * p + 5] + offset
-    values[x] += scale * t.xx
-    values[y] += scale * t.xy
-    values[y + 1] += scale * t.yy
-    values[z] += scale * t.xz
-    values[z + 1] += scale * t.yz
-    values[z + 2] += scale * t.zz
+    offset = DOF * (q - workspace.first[p])
+    x = start[DOF * p + WX] + offset
+    y = start[DOF * p + WY] + offset
+    z = start[DOF * p + WZ] + offset
+    values[x + WX] += scale * t.xx
+    values[y + WX] += scale * t.xy
+    values[y + WY] += scale * t.yy
+    values[z + WX] += scale * t.xz
+    values[z + WY] += scale * t.yz
+    values[z + WZ] += scale * t.zz
     if p != q:
-        values[x + 1] += scale * t.xy
-        values[x + 2] += scale * t.xz
-        values[y + 2] += scale * t.yz
+        values[x + WY] += scale * t.xy
+        values[x + WZ] += scale * t.xz
+        values[y + WZ] += scale * t.yz
 
 
 def make_add_torque_block(spec: Spec) -> Any:

@@ -35,6 +35,7 @@ LAWS = {
     "error_control": ("0.001", "null"),
     "speculative": ("true", "false"),
     "newton": ("adaptive", "projected_gauss_seidel"),
+    "least_norm": ("least_norm", "as_solved"),
 }
 # One ball and one plane need no order of impacts.
 SOFT = "surface: {compliance: 1e-4, "  # nor does what is rigid need a law of compliance

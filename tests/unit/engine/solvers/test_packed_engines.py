@@ -15,7 +15,7 @@ from packed_scenes import found
 
 from tests.benchmarks.prepared_contacts import Solve
 
-ROOT = Path(__file__).parents[5]
+ROOT = Path(__file__).parents[4]
 SPEEDS = np.linspace(0.5, 2.0, 13)  # [m/s] of so many balls: two groups of eight
 REMOTE = """
 import hashlib, pickle, sys

@@ -1,0 +1,179 @@
+"""Impulses of a contact that leave a solved step its laws, and their response to stiff dampers.
+
+They are a face of Coulomb's cone, by what the contact does at the velocities v* of the solve:
+    open     it parts:                     no impulse
+    sticks   closed, without slip:         the cone |lambda_t| <= mu lambda_n
+    slides   closed, with slip w_t:        lambda_n >= 0, and friction mu lambda_n against the slip
+Open and stuck ones respond as in `response`, by the point of the face nearest to x = lambda^k - e w
+in the metric 1/e. What slides responds along its normal alone, its friction is held for a round:
+compliance gives way to pressure, whatever slips. w are changes from v*, but for the slip.
+"""
+
+from __future__ import annotations
+
+from math import sqrt
+from typing import Any
+
+from ...block import make_slip_velocity
+from ...compile import kernel
+from ...contact import make_frictionless_velocity
+from ...effects.frictionless_contact import by_friction
+from ...spec import Spec
+from .response import Stiffness
+
+OPEN, STICKS, SLIDES = 0, 1, 2
+
+
+def make_find_face(spec: Spec) -> Any:
+    """Return `kernel(contact, va, vb, still)`: its face, and the impulses it starts with.
+
+    still: contacts that part or slip no faster are closed and stuck [m/s].
+    """
+    return by_friction(spec, _make_find_normal, _make_find_block)
+
+
+def _make_find_normal(spec: Spec) -> Any:
+    normal_velocity, compliant = make_frictionless_velocity(spec), spec.has("compliance")
+    tangents = spec.has("friction")
+
+    def find_normal(contact, va, vb, still):
+        parting = normal_velocity(contact, va, vb) + contact.target
+        if compliant:
+            parting += contact.gamma * contact.lambda_n
+        contact.face = STICKS if contact.lambda_n > 0.0 or parting <= still else OPEN
+        contact.start_n = contact.lambda_n
+        if tangents:
+            contact.start_1, contact.start_2 = 0.0, 0.0
+
+    return kernel(find_normal, spec)
+
+
+def _make_find_block(spec: Spec) -> Any:
+    slip_velocity, compliant = make_slip_velocity(spec), spec.has("compliance")
+
+    def find_block(contact, va, vb, still):
+        parting, one, two = slip_velocity(contact, va, vb)
+        parting += contact.target
+        if compliant:
+            parting += contact.gamma * contact.lambda_n
+        contact.face = OPEN
+        if contact.lambda_n > 0.0 or parting <= still:
+            contact.face = STICKS
+            slip = sqrt(one * one + two * two)
+            if slip > still:
+                contact.face = SLIDES
+                contact.slip_1, contact.slip_2 = one, two
+                contact.held_1, contact.held_2 = contact.lambda_1, contact.lambda_2
+        contact.start_n = contact.lambda_n
+        contact.start_1, contact.start_2 = contact.lambda_1, contact.lambda_2
+
+    return kernel(find_block, spec)
+
+
+def make_face_impulse(spec: Spec) -> Any:
+    """Return `kernel(contact, length) -> (lambda_n, lambda_1, lambda_2)` so far along the step."""
+    return by_friction(spec, _make_normal_impulse, _make_block_impulse)
+
+
+def _make_normal_impulse(spec: Spec) -> Any:
+    def normal_impulse(contact, length):
+        n = contact.scale * contact.start_n
+        n -= contact.stiff_n * (contact.velocity_n + length * contact.step_n)
+        return (max(n, 0.0) if contact.face != OPEN else 0.0), 0.0, 0.0
+
+    return kernel(normal_impulse, spec)
+
+
+def _make_block_impulse(spec: Spec) -> Any:
+    def block_impulse(contact, length):
+        if contact.face == OPEN:
+            return 0.0, 0.0, 0.0
+        n = contact.scale * contact.start_n
+        n -= contact.stiff_n * (contact.velocity_n + length * contact.step_n)
+        if contact.face == SLIDES:
+            return max(n, 0.0), contact.held_1, contact.held_2
+        one = contact.start_1 - contact.stiff_t * (contact.velocity_1 + length * contact.step_1)
+        two = contact.start_2 - contact.stiff_t * (contact.velocity_2 + length * contact.step_2)
+        mu = contact.mu
+        r = sqrt(one * one + two * two)
+        if r <= mu * n:
+            return n, one, two
+        weight = mu * contact.stiff_n / contact.stiff_t
+        n = (n + weight * r) / (1.0 + weight * mu)
+        if n <= 0.0:
+            return 0.0, 0.0, 0.0
+        scale = mu * n / r
+        return n, one * scale, two * scale
+
+    return kernel(block_impulse, spec)
+
+
+def make_turn_friction(spec: Spec) -> Any:
+    """Return `kernel(contact) -> change` [N s]: friction of what slides, at its pressure and slip.
+
+    None without friction.
+    """
+    if not spec.has("friction"):
+        return None
+
+    def turn_friction(contact):
+        # velocity_1, velocity_2: changes of the slip from v*
+        if contact.face != SLIDES:
+            return 0.0
+        n, _, _ = face_impulse(contact, 0.0)
+        x, y = contact.slip_1 + contact.velocity_1, contact.slip_2 + contact.velocity_2
+        scale = -contact.mu * n / sqrt(x * x + y * y)
+        change = max(abs(scale * x - contact.held_1), abs(scale * y - contact.held_2))
+        contact.held_1, contact.held_2 = scale * x, scale * y
+        return change
+
+    face_impulse = make_face_impulse(spec)
+    return kernel(turn_friction, spec)
+
+
+def make_face_stiffness(spec: Spec) -> Any:
+    """Return `kernel(contact) -> Stiffness`."""
+    return by_friction(spec, _make_normal_stiffness, _make_block_stiffness)
+
+
+def _make_normal_stiffness(spec: Spec) -> Any:
+    def normal_stiffness(contact):
+        n = contact.scale * contact.start_n - contact.stiff_n * contact.velocity_n
+        carries = contact.face != OPEN and n > 0.0
+        return Stiffness((contact.stiff_n if carries else 0.0), 0.0, 0.0, 0.0, 0.0, 0.0)
+
+    return kernel(normal_stiffness, spec)
+
+
+def _make_block_stiffness(spec: Spec) -> Any:
+    def block_stiffness(contact):
+        if contact.face == OPEN:
+            return Stiffness(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        e_n, e_t, mu = contact.stiff_n, contact.stiff_t, contact.mu
+        n = contact.scale * contact.start_n - e_n * contact.velocity_n
+        if contact.face == SLIDES:
+            return Stiffness((e_n if n > 0.0 else 0.0), 0.0, 0.0, 0.0, 0.0, 0.0)
+        one = contact.start_1 - e_t * contact.velocity_1
+        two = contact.start_2 - e_t * contact.velocity_2
+        r = sqrt(one * one + two * two)
+        if r <= mu * n:
+            return Stiffness(e_n, 0.0, 0.0, e_t, 0.0, e_t)
+        weight = mu * e_n / e_t
+        n = (n + weight * r) / (1.0 + weight * mu)
+        if n <= 0.0:
+            return Stiffness(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        # Along the ray of the cone's surface, and around it.
+        u, v = one / r, two / r
+        around = e_t * mu * n / r
+        ray = e_n / (1.0 + weight * mu)
+        along = mu * mu * ray - around
+        return Stiffness(
+            ray,
+            mu * ray * u,
+            mu * ray * v,
+            around + along * u * u,
+            along * u * v,
+            around + along * v * v,
+        )
+
+    return kernel(block_stiffness, spec)
