@@ -15,12 +15,14 @@ if TYPE_CHECKING:
     from lavendersim.trace.opening import open_trace
     from lavendersim.trace.reader import Trace
     from lavendersim.trace.recovery import RecoveryReport, recover
-    from lavendersim.trace.whole import check_closed
+    from lavendersim.trace.whole import ExpectedLog, LogDigest, check_closed
     from lavendersim.trace.writer import TraceWriter, Written
     from lavendersim.trace.written_trace import trace_of
 
 _HOME = {
     "Block": "blocks",
+    "ExpectedLog": "whole",
+    "LogDigest": "whole",
     "RecoveryReport": "recovery",
     "Trace": "reader",
     "TraceWriter": "writer",
@@ -33,6 +35,8 @@ _HOME = {
 
 __all__ = [
     "Block",
+    "ExpectedLog",
+    "LogDigest",
     "RecoveryReport",
     "Trace",
     "TraceWriter",

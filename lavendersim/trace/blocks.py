@@ -50,6 +50,7 @@ def _starts(steps: Rows, owners: Rows, what: str) -> NDArray[np.int64]:
     starts = np.zeros(len(steps) + 1, np.int64)
     if not len(owners):
         return starts
+    owners = np.ascontiguousarray(owners)  # of every row one number, read four times
     starts[1:] = np.searchsorted(owners, steps, "right")
     begins = np.searchsorted(owners, steps, "left")
     if starts[-1] != len(owners) or np.any(begins != starts[:-1]) or np.any(np.diff(owners) < 0):

@@ -1,14 +1,17 @@
 """Contacts of a group of steps, column by column: what `/contact_columns` holds of them.
 
 From step to step most contacts persist, and their numbers agree in their first digits. So contacts
-are put in the order of their keys (body_a, body_b, feature), those of one key by step; each number
-is written as its bits xor those of the contact before of the same key; and bytes of equal weight
-stand together, the first bytes of all numbers, then the second ones: what agrees is zero there, and
-what does not is noise that no compression shortens. Keys are differences from row to row, in the
-order of the steps, in which the engine finds contacts.
+are put in the order of their keys (body_a, body_b, feature), those of one key by step; of each
+number is written how its bits differ from what a predictor says, mostly by the contacts before of
+the same key (`predictors`); and bytes of equal weight stand together, the first bytes of all
+numbers, then the second ones: what agrees is zero there, and what does not is noise that no
+compression shortens. Keys are differences from row to row, in the order of the steps, in which the
+engine finds contacts.
 
-    keys     (k, n)     int64: key[i] - key[i - 1]
-    planes   (8, m, n)  bytes of m columns in the order of keys, the heaviest byte first
+    keys        (k, n)     int64: key[i] - key[i - 1]
+    planes      (8, m, n)  bytes of m columns in the order of keys, the heaviest byte first
+    predictors  (m,)       bytes; logs of older versions have none: 0 for every column
+    constants   (2,)       float64: what predictors need beside the columns
 
 The inverse needs no bit more: keys give the order back. A column that follows from others bit for
 bit (`Column.derived`) is not stored where they are; the channel's metadata has its rule.
@@ -16,7 +19,7 @@ bit (`Column.derived`) is not stored where they are; the channel's metadata has 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
 from typing import Any, Final, NamedTuple
 
@@ -24,7 +27,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lavendersim.engine.effects import EFFECTS, Derived
+from lavendersim.trace import predictors
 from lavendersim.trace.layout import bytes_field
+from lavendersim.trace.message_form import columns_of_words, words_of
+from lavendersim.trace.predictors import Constants
 
 DERIVED: dict[str, Derived] = {
     column.name: column.derived
@@ -84,9 +90,11 @@ class ContactGroup(NamedTuple):
     rows: NDArray[Any]  # of all, one step after the other
 
 
-def message_of(group: ContactGroup, form: ColumnForm) -> list[bytes | memoryview]:
+def message_of(
+    group: ContactGroup, form: ColumnForm, constants: Constants
+) -> list[bytes | memoryview]:
     """Return the lavender.ContactColumns of some steps, in pieces."""
-    packed = pack(group.rows, form.names)
+    packed = pack(group.rows, form.names, constants)
     numbers = [column.astype("<i8").tobytes() for column in group[:3]]
     fields: list[tuple[bytes | memoryview, ...]] = [
         *((one,) for one in numbers),
@@ -106,38 +114,74 @@ class Packed(NamedTuple):
 
     keys: bytes | memoryview
     planes: bytes | memoryview
+    predictors: bytes = b""  # none: as in older logs
+    constants: bytes = bytes(16)  # float64 each
 
 
-def pack(rows: NDArray[Any], names: tuple[str, ...]) -> Packed:
+def pack(rows: NDArray[Any], names: tuple[str, ...], constants: Constants) -> Packed:
     """Return contacts as bytes; names: of the columns that are stored, each of eight bytes."""
+    from lavendersim.engine.difference_kernel import gather_columns, pack_columns  # late: numba
+
     keys = _keys(rows, names)
     order, persists = _order(keys)
-    words = np.empty((len(names) - len(keys), len(rows)), np.uint64)
-    for number, name in enumerate(_numbers(names)):
-        words[number] = np.ascontiguousarray(rows[name]).view(np.uint64)[order]
-    before = np.where(persists[1:], words[:, :-1], np.uint64(0))
-    words[:, 1:] ^= before
-    planes = words[:, :, None].view(np.uint8)[:, :, ::-1].transpose(2, 0, 1)
-    differences = np.diff(keys, axis=1, prepend=0)
-    return Packed(differences.tobytes(), np.ascontiguousarray(planes).reshape(-1).data)
+    columns, places = _numbers(names), columns_of_words(rows.dtype)
+    words = np.empty((len(columns), len(rows)), np.uint64)
+    stored = np.array([places[name] for name in columns], np.int64)
+    gather_columns()(words_of(rows), order, stored, words)
+    named = dict(zip(columns, words, strict=True))
+    special = np.array([_special(name, columns) for name in columns], np.int64)
+    expected = np.empty((np.count_nonzero(special) + 1, len(rows)), np.uint64)
+    for place, predictor in enumerate(special[special > 0].tolist()):
+        expected[place] = predictors.expected(predictor, named, persists, constants)
+    chosen = np.zeros(len(columns), np.int64)
+    planes = np.empty((8, len(columns), len(rows)), np.uint8)
+    size = np.zeros(predictors.COUNT, np.int64)
+    pack_columns()(words, persists, special, expected, size, (chosen, planes))
+    return Packed(
+        np.diff(keys, axis=1, prepend=0).tobytes(),
+        planes.reshape(-1).data,
+        bytes(chosen.tolist()),
+        np.array(constants, "<f8").tobytes(),
+    )
+
+
+def _special(name: str, columns: Sequence[str]) -> int:
+    """Return the predictor that only this column has, 0 for none."""
+    predictor, sources = predictors.SPECIAL.get(name, (0, ()))
+    return predictor if all(source in columns for source in sources) else 0
 
 
 def unpack(packed: Packed, names: tuple[str, ...], table: NDArray[Any]) -> None:
     """Fill the columns of a table. ValueError where the bytes are not as many as it has rows."""
     count = len(table)
-    known, numbers = [name for name in KEY if name in names], _numbers(names)
+    known, columns = [name for name in KEY if name in names], _numbers(names)
     keys = np.frombuffer(packed.keys, np.int64).reshape(len(known), count).cumsum(axis=1)
     order, persists = _order(keys)
-    planes = np.frombuffer(packed.planes, np.uint8).reshape(8, len(numbers), count)
+    own = predictors.keys_of(persists)
+    planes = np.frombuffer(packed.planes, np.uint8).reshape(8, len(columns), count)
     heaviest_last = np.ascontiguousarray(planes[::-1].transpose(1, 2, 0))
-    words = np.bitwise_xor.accumulate(heaviest_last.view(np.uint64)[:, :, 0], axis=1)
-    # Each key begins anew: what went before it is taken out again.
-    begins = np.maximum.accumulate(np.where(persists, 0, np.arange(count)))
-    words ^= np.where(begins > 0, words[:, begins - 1], np.uint64(0))
+    stored = dict(zip(columns, heaviest_last.view(np.uint64)[:, :, 0], strict=True))
+    chosen = _chosen(packed.predictors, columns)
+    constants = Constants(*np.frombuffer(packed.constants, "<f8").tolist())
+    words: dict[str, predictors.Words] = {}
+    for name, predictor in sorted(chosen.items(), key=lambda one: one[1]):
+        expected = None
+        if predictor not in predictors.ALONE:
+            expected = predictors.expected(predictor, words, persists, constants)
+        words[name] = predictors.numbers(predictor, stored[name], expected, own)
     for name, key in zip(known, keys, strict=True):
         table[name] = key
-    for number, column in zip(numbers, words, strict=True):
-        table[number][order] = column.view(table.dtype[number])
+    for name, column in words.items():
+        table[name][order] = column.view(table.dtype[name])
+
+
+def _chosen(stored: bytes, columns: Sequence[str]) -> dict[str, int]:
+    """Return the predictor of each column. ValueError for one that this version does not know."""
+    chosen = dict(zip(columns, stored or bytes(len(columns)), strict=True))
+    for name, predictor in chosen.items():
+        if predictor not in (*predictors.ALONE, _special(name, columns)):
+            raise ValueError(f"column {name} has predictor {predictor}, none of this version")
+    return chosen
 
 
 def _numbers(names: tuple[str, ...]) -> list[str]:

@@ -10,6 +10,7 @@ DataEnd, carry their own under the key `crc32`.
 from __future__ import annotations
 
 import struct
+import threading
 import zlib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
@@ -19,7 +20,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import zstandard
-from mcap.data_stream import RecordBuilder
 from mcap.opcode import Opcode
 from mcap.records import (
     Attachment,
@@ -30,7 +30,6 @@ from mcap.records import (
     DataEnd,
     Footer,
     Header,
-    McapRecord,
     Metadata,
     MetadataIndex,
     Schema,
@@ -39,11 +38,15 @@ from mcap.records import (
 )
 from numpy.typing import NDArray
 
-from lavendersim.trace.whole import MAGIC
+from lavendersim.trace.file_digest import FileDigest
+from lavendersim.trace.record_bytes import to_bytes
+from lavendersim.trace.whole import MAGIC, LogDigest
 
 LIBRARY = "lavender"
 CRC_KEY = "crc32"
 COMPRESSION_LEVEL = 1
+
+_of_thread = threading.local()
 
 # one entry of a MessageIndex
 INDEX_ENTRY = np.dtype([("time", "<u8"), ("offset", "<u8")])
@@ -80,15 +83,6 @@ class FileIndex:
             metadata_count=len(self.metadata),
             schema_count=len(self.schemas),
         )
-
-
-def to_bytes(*records: McapRecord) -> bytes:
-    """Return records as bytes."""
-    builder = RecordBuilder()
-    for record in records:
-        record.write(builder)
-    data: bytes = builder.end()  # type: ignore[no-untyped-call]
-    return data
 
 
 def metadata_crc(name: str, values: Mapping[str, str]) -> str:
@@ -130,15 +124,22 @@ class Closed(NamedTuple):
     messages: list[Messages]
 
 
+def _compressor() -> zstandard.ZstdCompressor:
+    """Return the compressor of this thread; its tables are made once, and change no byte."""
+    own = getattr(_of_thread, "compressor", None)
+    if own is None:
+        own = _of_thread.compressor = zstandard.ZstdCompressor(level=COMPRESSION_LEVEL)
+    return own
+
+
 def closed(payload: bytes | memoryview, messages: Iterable[Messages]) -> Closed:
     """Return the compressed chunk of some messages; may be called from any thread."""
     messages = [group for group in messages if len(group.entries)]
-    times = np.concatenate([group.entries["time"] for group in messages])
     chunk = Chunk(
         compression="zstd",
-        data=zstandard.ZstdCompressor(level=COMPRESSION_LEVEL).compress(payload),
-        message_start_time=int(times.min()),
-        message_end_time=int(times.max()),
+        data=_compressor().compress(payload),
+        message_start_time=min(int(group.entries["time"][0]) for group in messages),
+        message_end_time=max(int(group.entries["time"][-1]) for group in messages),
         uncompressed_crc=zlib.crc32(payload),
         uncompressed_size=len(payload),
     )
@@ -160,6 +161,7 @@ class Container:
         self._stream = path.open("wb")
         self._registered: list[Registered] = []
         self._crc = 0
+        self._sha256 = FileDigest()
         self._offset = 0
         self._write(MAGIC + to_bytes(Header(profile="", library=LIBRARY)))
 
@@ -203,9 +205,10 @@ class Container:
         self._write(b"".join([record, *indexes]))
         self._stream.flush()
 
-    def finish(self) -> None:
-        """Write DataEnd, the summary and the footer, and close the file."""
-        self._write(to_bytes(DataEnd(self._crc)))
+    def finish(self) -> LogDigest:
+        """Write DataEnd, the summary and the footer, and close the file; returns what it is."""
+        records = self._crc
+        self._write(to_bytes(DataEnd(records)))
         start = self._offset
         index = self.index
         groups = [
@@ -227,6 +230,7 @@ class Container:
         crc = zlib.crc32(summary + footer[:-4])
         self._write(summary + to_bytes(Footer(start, offset_start, crc)) + MAGIC)
         self.abandon()
+        return LogDigest(self._offset, records, self._sha256.hexdigest())
 
     @property
     def crc(self) -> int:
@@ -239,6 +243,7 @@ class Container:
 
     def _write(self, data: bytes) -> None:
         self._crc = zlib.crc32(data, self._crc)
+        self._sha256.update(data)
         self._offset += len(data)
         self._stream.write(data)
 

@@ -18,6 +18,7 @@ from mcap.records import Schema
 from numpy.typing import NDArray
 
 from lavendersim.clock import Clock
+from lavendersim.record_tables import joined
 from lavendersim.trace import layout
 from lavendersim.trace.contact_columns import DERIVED, Packed, unpack
 from lavendersim.trace.index import ChunkContent
@@ -49,7 +50,7 @@ def _table(columns: Sequence[tuple[str, str]], count: int) -> Table:
 
 def join(parts: Iterable[Table], columns: Sequence[tuple[str, str]]) -> Table:
     """Return the parts of a table as one."""
-    return np.concatenate([_table(columns, 0), *parts])
+    return joined([_table(columns, 0), *parts])
 
 
 def _matching(template: Template, data: Bytes, offsets: Rows) -> Bytes:
@@ -198,16 +199,18 @@ def decode_columns(
     for offset in entries["offset"].astype(np.int64):
         message = message_class(schema.name, schema.data)()
         message.ParseFromString(body_of(chunk, int(offset)))
+        fields = message.DESCRIPTOR.fields_by_name  # older logs lack some
         numbers = (message.steps, message.times, message.counts)
         steps, times, counts = (np.frombuffer(one, "<i8") for one in numbers)
         names = tuple(message.names)
         columns = [("step", "i8"), *zip(names, message.kinds, strict=True)]
         table = _table([*columns, *((name, "f8") for name in (*derived, "time"))], counts.sum())
-        unpack(Packed(message.keys, message.planes), names, table)
+        packed = Packed(*(getattr(message, name) for name in Packed._fields if name in fields))
+        unpack(packed, names, table)
         table["step"] = np.repeat(steps, counts)
         table["time"] = np.repeat(seconds(times), counts)
         tables.append(_derived(table, derived, clock))
-    return np.concatenate(tables)
+    return joined(tables)
 
 
 def _derived(table: Table, derived: tuple[str, ...], clock: Clock) -> Table:

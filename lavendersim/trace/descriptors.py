@@ -54,7 +54,10 @@ def residuals_schema(columns: Iterable[Column]) -> bytes:
     return _bundle(file)
 
 
-CONTACT_COLUMNS: Final = ("steps", "times", "counts", "names", "kinds", "keys", "planes")
+CONTACT_COLUMNS: Final = (
+    *("steps", "times", "counts", "names", "kinds", "keys", "planes"),
+    *("predictors", "constants"),
+)
 
 
 def contact_columns_schema() -> bytes:

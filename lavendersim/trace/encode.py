@@ -17,8 +17,11 @@ from typing import Any, Generic, NamedTuple, Protocol, TypeVar
 
 import numpy as np
 
+from lavendersim.cell import CellConfig
+from lavendersim.cell.shapes.shape import Convex
 from lavendersim.trace import layout
 from lavendersim.trace.blocks import Block, Counted, counted
+from lavendersim.trace.points import grid_of
 from lavendersim.trace.streams import ContactColumns, Laid, Light, Points, Poses
 from lavendersim.trace.wire import Rows
 
@@ -60,6 +63,17 @@ def encoders(
         Poses(bodies) if "/tf" in topics else nothing,
         Light(step, residual, topics),
     )
+
+
+def encoders_of_cell(shared: Streams[Encoder], config: CellConfig) -> Streams[Encoder]:
+    """Return the encoders of one cell, from those that cells of equal bodies and columns share."""
+    columns, points = shared.columns, shared.points
+    if isinstance(columns, ContactColumns) and isinstance(points, Points):
+        shapes = [body.shape for body in config.scene.bodies.values()]
+        grid = grid_of(shape.thickness() for shape in shapes if isinstance(shape, Convex))
+        columns = columns.expecting(config.clock, config.numerics.slop)
+        return shared._replace(columns=columns, points=points.on_grid(grid))
+    return shared
 
 
 def checked(

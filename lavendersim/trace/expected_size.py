@@ -9,7 +9,7 @@ that churns most. The shares here lie between, as measured (level 1) on shipped 
     numbers of          at rest     falling     churning    taken
     /step, /plot        0.6         0.3         0.8         SHARE_OF_STEP
     /tf                 0.4         0.4         1.0         SHARE_OF_POSE
-    contacts            0.1         -           0.6         SHARE_OF_CONTACT
+    contacts            0.1         -           0.5         SHARE_OF_CONTACT
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from lavendersim.trace.points import point_form
 WORD: Final = 8  # [B] of a number
 SHARE_OF_STEP: Final = 0.5
 SHARE_OF_POSE: Final = 0.7
-SHARE_OF_CONTACT: Final = 0.27
+SHARE_OF_CONTACT: Final = 0.22
 # Resolved config, body by body, is written as it is: 920 B each in shipped scenes of 2 to 1005.
 BYTES_PER_BODY: Final = 920
 # Schemas, channels, the plan's reasons and versions, in each of the same scenes.

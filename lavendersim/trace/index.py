@@ -46,10 +46,10 @@ from lavendersim.trace.container import (
     index_of,
     message_index,
     metadata_crc,
-    to_bytes,
 )
 from lavendersim.trace.layout import RECORD_HEADER
-from lavendersim.trace.whole import read_end
+from lavendersim.trace.record_bytes import to_bytes
+from lavendersim.trace.whole import LogDigest, read_end
 from lavendersim.trace.wire import Bytes, gather
 
 PARSERS: dict[int, Any] = {
@@ -115,10 +115,10 @@ def spans(data: bytes, start: int = 0) -> Iterator[tuple[int, int, int]]:
         start = end
 
 
-def read_summary(path: Path) -> FileIndex:
-    """Return the index of a finished file. TraceError when it is unfinished or damaged."""
+def read_summary(path: Path, expected: LogDigest | None = None) -> FileIndex:
+    """Return the index of a finished file. TraceError when it is unfinished, damaged or another."""
     with damage(path, "the summary"), path.open("rb") as stream:
-        summary = read_end(path, stream).summary
+        summary = read_end(path, stream, expected).summary
         index = FileIndex()
         for opcode, start, end in spans(summary):
             note(index, parse(summary[start:end], PARSERS[opcode]))

@@ -90,7 +90,7 @@ def words_of(rows: Rows) -> Words:
     if not _is_of_words(rows.dtype):
         words = [np.ascontiguousarray(rows[name]).view(np.uint64) for name in names]
         return np.stack(words, axis=1) if words else np.zeros((len(rows), 0), np.uint64)
-    return np.ascontiguousarray(rows).view(np.uint64).reshape(len(rows), -1)
+    return np.ascontiguousarray(rows).view(np.uint64).reshape(len(rows), rows.itemsize // WORD)
 
 
 def _is_of_words(row: np.dtype[Any]) -> bool:

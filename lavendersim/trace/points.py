@@ -1,13 +1,15 @@
 """Points of `/contacts`, for viewers: where contacts are, their normals, force and penetration.
 
-    point | x y z, float32 | nx ny nz force_n penetration, cut float32 | red green blue alpha |
+    point | x y z, on a grid | nx ny nz force_n penetration, cut | red green blue alpha |
 
-Digits that nobody reads off a picture do not compress, so they are cut: what a contact is to the
-last bit stands in `/contact_columns`, column by column.
+Numbers are float32. Digits that nobody reads off a picture do not compress, so they are cut: what a
+contact is to the last bit stands in `/contact_columns`, column by column.
 """
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterable
 from functools import lru_cache
 from typing import Any, Final, NamedTuple
 
@@ -22,10 +24,12 @@ from lavendersim.trace.wire import Bytes
 LOADED = (213, 94, 0, 255)  # vermilion: the contact carries an impulse
 UNLOADED = (86, 180, 233, 255)  # sky blue: it does not
 
-POSITION: Final = ("x", "y", "z")  # in all digits of a float32: a scene may be far from the origin
-# Of a float32's 23 bits of mantissa these keep 11, to one in two thousand.
+# A grid [m], for a scene may be far from the origin: this share of the thinnest body.
+POSITION: Final = ("x", "y", "z")
+SHARE: Final = 1.0 / 1024.0
+# Of a float32's 23 bits of mantissa these keep 9, to one in five hundred.
 ROUGHLY: Final = ("nx", "ny", "nz", "force_n", "penetration")
-KEPT_BITS: Final = 11
+KEPT_BITS: Final = 9
 _KEPT = np.uint32(0xFFFFFFFF << (23 - KEPT_BITS) & 0xFFFFFFFF)
 
 
@@ -51,14 +55,27 @@ def point_form(row: np.dtype[Any]) -> PointForm:
     return PointForm(tuple(fields), names, end + len(COLOURS))
 
 
-def points_of(form: PointForm, contacts: NDArray[Any]) -> Bytes:
-    """Return contacts as points, (n, form.size)."""
+def grid_of(thicknesses: Iterable[float]) -> float:
+    """Return the grid of a scene [m], a power of two; of bodies' thicknesses [m].
+
+    0 where there is none: positions have the digits of a float32.
+    """
+    thin = min((one for one in thicknesses if one > 0.0), default=0.0) * SHARE
+    return 2.0 ** math.floor(math.log2(thin)) if thin > 0.0 else 0.0
+
+
+def points_of(form: PointForm, contacts: NDArray[Any], grid: float) -> Bytes:
+    """Return contacts as points, (n, form.size); grid: [m] of positions."""
     count = len(form.names)
     words = np.empty((len(contacts), count + 1), "<u4")
     numbers = words.view("<f4")
-    with np.errstate(over="ignore"):  # beyond float32 a number is shown as infinite
+    with np.errstate(
+        over="ignore", invalid="ignore"
+    ):  # beyond float32 a number is shown as infinite
         for column, name in enumerate(form.names):
-            numbers[:, column] = contacts[name]
+            exact = contacts[name]
+            on_grid = grid > 0.0 and name in POSITION
+            numbers[:, column] = np.rint(exact / grid) * grid if on_grid else exact
     words[:, len(POSITION) : count] &= _KEPT
     loaded = contacts["impulse_n"] > 0 if "impulse_n" in (contacts.dtype.names or ()) else True
     words[:, count] = np.where(loaded, _word(LOADED), _word(UNLOADED))

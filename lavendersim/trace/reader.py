@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from lavendersim.cell import CellConfig
 from lavendersim.clock import Clock
 from lavendersim.errors import TraceError, UsageError
+from lavendersim.record_tables import joined
 from lavendersim.trace import decode, layout
 from lavendersim.trace.absent import absent_table
 from lavendersim.trace.contact_columns import known_rules
@@ -27,6 +28,7 @@ from lavendersim.trace.recorded import KEYS, RECORDED, is_recorded, partly_recor
 from lavendersim.trace.schema import FORMAT, RESIDUAL_COLUMNS, STEP_COLUMNS, Column
 from lavendersim.trace.source import Source
 from lavendersim.trace.streams import COLUMNS
+from lavendersim.trace.whole import INTERRUPTED
 from lavendersim.trace.writer import ABSENT, DESCRIPTION, ENDING, TIMESTEP_CHANGES
 
 COMPLETE = "complete"
@@ -44,7 +46,8 @@ class RecordedPoses(NamedTuple):
 class Trace:
     """One run's log. The columns and their units stand in `schema`.
 
-    status: how the run ended, as its log says: `complete`, diverged, stopped by a bound.
+    status: how the run ended, as its log says: `complete`, diverged, stopped by a bound,
+        interrupted.
     damage: a sentence where this is not all that was written of it; empty where it is.
     """
 
@@ -73,7 +76,7 @@ class Trace:
             self.partly = {t: why for t, why in partly.items() if t not in self.absent}
             self.absent |= self.partly
             self.status = INCOMPLETE if damaged else self.metadata[ENDING]["status"]
-        if self.status.startswith(RECOVERED):
+        if self.status.startswith((RECOVERED, INTERRUPTED)):
             self.damage = f"{path}: {self.status}"
         self.complete = self.status == COMPLETE
 
@@ -172,9 +175,7 @@ class Trace:
         parts = list(self._contact_parts())
         if not parts:
             return decode.join((), [("step", "i8"), ("time", "f8")])
-        # As bytes: of records numpy would join column by column.
-        row = parts[0].dtype
-        return np.concatenate([part.view(f"V{row.itemsize}") for part in parts]).view(row)
+        return joined(parts)
 
     def contacts_in_parts(self) -> Iterator[NDArray[Any]]:
         """Yield the rows of `contact` in parts of whole steps, read as they are asked for.

@@ -8,7 +8,6 @@ marked by its status. One chunk is in memory at a time.
 from __future__ import annotations
 
 import contextlib
-import os
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Final, Literal, NamedTuple
@@ -16,6 +15,7 @@ from typing import Final, Literal, NamedTuple
 import numpy as np
 from mcap.records import Attachment
 
+from lavendersim.durable_files import written_aside
 from lavendersim.errors import TraceError, UsageError
 from lavendersim.trace.container import Closed, Container, Messages, Registered, closed
 from lavendersim.trace.groups import STEP
@@ -121,17 +121,11 @@ def _ending(path: Path, part: Remaining) -> str:
 @contextlib.contextmanager
 def _new_file(out: Path) -> Iterator[Path]:
     """Give the name of a file that becomes `out` when it is whole, unless there is one by then."""
-    unfinished = out.with_name(f".{out.name}.{os.getpid()}.unfinished")
     try:
-        yield unfinished
-        try:
-            os.link(unfinished, out)
-        except FileExistsError:
-            raise UsageError(f"{out}: exists already") from None
-        except OSError:  # a file system without links
-            os.replace(unfinished, out)
-    finally:
-        unfinished.unlink(missing_ok=True)
+        with written_aside(out, anew=True) as unfinished:
+            yield unfinished
+    except FileExistsError:
+        raise UsageError(f"{out}: exists already") from None
 
 
 def _write(path: Path, part: Remaining, status: str, out: Path) -> bool:

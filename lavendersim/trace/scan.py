@@ -18,11 +18,12 @@ from mcap.opcode import Opcode
 from mcap.records import AttachmentIndex, ChunkIndex, Header, MetadataIndex
 
 from lavendersim.errors import TraceError
-from lavendersim.trace.container import LIBRARY, FileIndex, to_bytes
+from lavendersim.trace.container import LIBRARY, FileIndex
 from lavendersim.trace.groups import GEOMETRY, STEP, Group, Groups
 from lavendersim.trace.index import read_at, read_summary
 from lavendersim.trace.layout import RECORD_HEADER
 from lavendersim.trace.rebuild import REFUSALS, rebuilt
+from lavendersim.trace.record_bytes import to_bytes
 from lavendersim.trace.source import FORMER_RESOLVED
 from lavendersim.trace.walk import NOTHING, Found, walk
 from lavendersim.trace.whole import MAGIC

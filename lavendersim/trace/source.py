@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 from collections.abc import Iterator
 from pathlib import Path
@@ -24,7 +25,7 @@ from lavendersim.trace.index import (
 )
 from lavendersim.trace.rebuild import description_of, rebuilt_at
 from lavendersim.trace.recorded import RECORDED, described
-from lavendersim.trace.whole import check_bytes
+from lavendersim.trace.whole import ExpectedLog, check_bytes
 from lavendersim.trace.writer import AS_WRITTEN, DESCRIPTION, RESOLVED, Written
 
 FORMER_RESOLVED = "resolved.yaml"  # of logs before the config was JSON
@@ -61,15 +62,30 @@ class LogFile:
     Its metadata have checks of their own, and are read without that.
     """
 
-    def __init__(self, path: Path, index: FileIndex) -> None:
+    def __init__(self, path: Path, index: FileIndex, expected: ExpectedLog | None = None) -> None:
+        """expected: what the run says of it, where it is read as that of a cell."""
         self._path, self._index = path, index
+        self._expected = expected or ExpectedLog()
         self._verified = False
 
     def verify(self) -> None:
-        """Raise TraceError unless every byte of the log is as it was written."""
+        """Raise TraceError unless every byte of the log is as it was written, of its cell."""
         if not self._verified:
-            check_bytes(self._path)
+            check_bytes(self._path, self._expected.digest)
             self._verified = True
+            if self._expected.digest is None:
+                self.check_config()
+
+    def check_config(self) -> None:
+        """Raise TraceError where the log has the config of another cell."""
+        if not self._expected.config:
+            return
+        try:
+            text = self._attachment(RESOLVED)
+        except TraceError:
+            return  # lost of a damaged log, which is called one
+        if hashlib.sha256(text).hexdigest() != self._expected.config:
+            raise TraceError(f"{self._path}: the log of another cell: it has another config")
 
     def metadata(self) -> dict[str, dict[str, str]]:
         """Return the metadata records by their names."""

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
+from copy import copy
+from fractions import Fraction
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from lavendersim.clock import Clock
+from lavendersim.record_tables import joined
 from lavendersim.trace import layout
 from lavendersim.trace.blocks import Counted, cumulative
 from lavendersim.trace.contact_columns import ContactGroup, column_form, message_of
@@ -23,6 +27,7 @@ from lavendersim.trace.message_form import (
     words_of,
 )
 from lavendersim.trace.points import point_form, points_of
+from lavendersim.trace.predictors import Constants
 from lavendersim.trace.schema import (
     LOG10_RESIDUAL_FLOOR,
     PLOTS,
@@ -166,10 +171,17 @@ class Points:
     """`/contacts`: a cloud of points in a message."""
 
     def __init__(self, bodies: Sequence[str], contact: np.dtype[Any]) -> None:
+        self._grid = 0.0
         self.form = point_form(contact)
         frame = layout.root_frame(bodies)
         cloud = layout.contact_layout(self.form.fields, self.form.size, frame)
         self._cloud = message_form(cloud, {}, {"length": [MORE], "data_length": [MORE + 1]})
+
+    def on_grid(self, grid: float) -> Points:
+        """Return the same for a scene whose positions are shown on a grid [m]."""
+        points = copy(self)
+        points._grid = grid
+        return points
 
     def sizes(self, counted: Counted) -> Rows:
         """Return the bytes of each step [B] (n,)."""
@@ -192,7 +204,7 @@ class Points:
             chunk.note("/contacts", heads, starts[:-1])
             if len(contacts):
                 offsets = _ranks(starts[:-1] + len(self._cloud), counts, self.form.size)
-                scatter(chunk.data, offsets, points_of(self.form, contacts))
+                scatter(chunk.data, offsets, points_of(self.form, contacts, self._grid))
             chunk.end = int(starts[-1])
         return chunk.filled()
 
@@ -202,6 +214,13 @@ class ContactColumns:
 
     def __init__(self, contact: np.dtype[Any]) -> None:
         self.form = column_form(contact)
+        self._clock, self._slop = Clock(Fraction(1)), 0.0
+
+    def expecting(self, clock: Clock, slop: float) -> ContactColumns:
+        """Return the same for a run with these timesteps, and this gap that counts as none [m]."""
+        columns = copy(self)
+        columns._clock, columns._slop = clock, slop
+        return columns
 
     def sizes(self, counted: Counted) -> Rows:
         """Return the bytes of each step before they are packed [B] (n,)."""
@@ -219,8 +238,9 @@ class ContactColumns:
         numbers = np.concatenate([step["step"] for step in steps])
         times = np.concatenate([step["time_ns"] for step in steps])
         counts = np.concatenate([counts for _, _, counts in parts])
-        rows = np.concatenate([contacts for _, contacts, _ in parts])
-        body = message_of(ContactGroup(numbers, times, counts, rows), self.form)
+        rows = joined([contacts for _, contacts, _ in parts])
+        constants = Constants(float(self._clock.lengths(numbers[:1])[0]), self._slop)
+        body = message_of(ContactGroup(numbers, times, counts, rows), self.form, constants)
         head = layout.message_head(COLUMNS, int(numbers[0]), int(times[0]), sum(map(len, body)))
         entries = np.array([(times[0], len(prologue))], INDEX_ENTRY)
         return b"".join([prologue, head, *body]), [Messages(layout.CHANNELS[COLUMNS], entries)]

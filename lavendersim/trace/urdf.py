@@ -7,6 +7,7 @@ top face is the plane; it is placed against the plane body's own pose, whatever 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import Any, Final
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
@@ -24,8 +25,27 @@ STATIC_COLOUR = (170, 170, 170)
 MOST_VISUALS = 20_000
 
 
+# The cells of a sweep look alike: descriptions by all that they show, the last few.
+MOST_KNOWN: Final = 8
+_known: dict[Any, str] = {}
+
+
 def robot_description(bodies: Mapping[str, CellBody], poses: Matrix) -> str:
     """Return the URDF of the bodies of a scene; poses: (bodies, 7), the first ones."""
+    looks = [
+        (name, body.model_dump_json(include={"shape"}), body.fixed, body.kinematic)
+        for name, body in bodies.items()
+    ]
+    shown = tuple(looks), poses.tobytes()
+    known = _known.get(shown)
+    if known is None:
+        if len(_known) >= MOST_KNOWN:
+            _known.clear()
+        known = _known[shown] = _described(bodies, poses)
+    return known
+
+
+def _described(bodies: Mapping[str, CellBody], poses: Matrix) -> str:
     world = root_frame(list(bodies))
     lines = ['<?xml version="1.0"?>', '<robot name="scene">', f"  <link name={quoteattr(world)}/>"]
     side = _plane_side(poses)

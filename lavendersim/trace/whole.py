@@ -4,12 +4,15 @@
     `---- CRC of DataEnd -----'          `- CRC of Footer -'
 
 What no CRC covers (DataEnd's own, the magics' ends) must be the one thing that can stand there, so
-not a bit of a log can change unnoticed, nor can a chunk stand in another's place. zlib's CRC reads
-4 GB/s, many times what decompressing and decoding take. No numpy here: runs are listed without.
+not a bit of a log can change unnoticed, nor can a chunk stand in another's place. That it is the
+log that was written, and not another that is whole, says the digest that the index of its run has.
+CRC and SHA-256 read more than a GB/s, many times what decompressing and decoding take. No numpy
+here: runs are listed without.
 """
 
 from __future__ import annotations
 
+import hashlib
 import struct
 import zlib
 from pathlib import Path
@@ -26,6 +29,24 @@ _DATA_END: Final = struct.Struct("<BQI")  # opcode and length; CRC
 _DATA_END_OPCODE, _DATA_END_LENGTH = 0x0F, 4
 
 
+INTERRUPTED: Final = "interrupted"  # how the status begins of a log that a signal ended
+
+
+class LogDigest(NamedTuple):
+    """What tells a closed log from every other; size and CRC stand at its end, cheap to compare."""
+
+    size: int  # [byte]
+    crc: int  # of all its bytes before DataEnd
+    sha256: str  # of all its bytes, hex
+
+
+class ExpectedLog(NamedTuple):
+    """What the index of a run says of the log of a cell; older ones say nothing."""
+
+    config: str = ""  # SHA-256 of the cell's resolved config, as the log has it attached
+    digest: LogDigest | None = None  # of a cell that ended
+
+
 class End(NamedTuple):
     """The end of a closed log."""
 
@@ -34,8 +55,11 @@ class End(NamedTuple):
     summary: bytes  # with the footer behind it
 
 
-def read_end(path: Path, stream: BinaryIO) -> End:
-    """Return the end of a log. TraceError where it was not closed, or the end fails a check."""
+def read_end(path: Path, stream: BinaryIO, expected: LogDigest | None = None) -> End:
+    """Return the end of a log. TraceError where it was not closed, or the end fails a check.
+
+    expected: it is no other log's.
+    """
     size = stream.seek(0, 2)
     tail = _read(stream, size - _FOOTER.size - len(MAGIC), size)
     if not tail.endswith(MAGIC):
@@ -52,24 +76,42 @@ def read_end(path: Path, stream: BinaryIO) -> End:
     if len(record) == _DATA_END.size:
         opcode, length, crc = _DATA_END.unpack(record)
         if (opcode, length) == (_DATA_END_OPCODE, _DATA_END_LENGTH):
+            if expected is not None and (size, crc) != (expected.size, expected.crc):
+                raise TraceError(_another(path, f"{size} bytes with the CRC {crc:08x}", expected))
             return End(data, crc, summary)
     raise TraceError(f"{path}: the end of its records is damaged")
 
 
-def check_closed(path: Path) -> None:
-    """Raise TraceError where a log is missing, was not closed or has been cut; reads its ends."""
+def _another(path: Path, found: str, expected: LogDigest) -> str:
+    wanted = f"{expected.size} bytes with the CRC {expected.crc:08x}, SHA-256 {expected.sha256}"
+    return f"{path}: not the log that its run wrote there: it has {found}, the index {wanted}"
+
+
+def check_closed(path: Path, expected: LogDigest | None = None) -> None:
+    """Raise TraceError where a log is missing, was not closed or has been cut; reads its ends.
+
+    expected: also where another one stands in its place.
+    """
     if not path.is_file():
         raise TraceError(f"{path}: no such log")
     with path.open("rb") as stream:
-        read_end(path, stream)
+        read_end(path, stream, expected)
 
 
-def check_bytes(path: Path) -> None:
+def check_bytes(path: Path, expected: LogDigest | None = None) -> None:
     """Raise TraceError unless every byte of a log is as it was written."""
     with path.open("rb") as stream:
-        end = read_end(path, stream)
+        end = read_end(path, stream, expected)
+        found = ""
+        if expected is not None:
+            stream.seek(0)
+            found = hashlib.file_digest(stream, "sha256").hexdigest()
+            if found == expected.sha256:
+                return
         if _crc_of_start(stream, end.data) != end.crc:
             raise TraceError(f"{path}: damaged, its records fail the CRC over all of them")
+        if expected is not None:
+            raise TraceError(_another(path, f"the SHA-256 {found}", expected))
 
 
 def _read(stream: BinaryIO, start: int, end: int) -> bytes:

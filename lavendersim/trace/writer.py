@@ -27,18 +27,19 @@ from lavendersim.cell import CellConfig
 from lavendersim.trace import layout
 from lavendersim.trace.blocks import Block, Counted, cumulative
 from lavendersim.trace.container import Closed, Container, FileIndex, closed
-from lavendersim.trace.encode import Encoder, Streams, checked
+from lavendersim.trace.encode import Encoder, Streams, checked, encoders_of_cell
 from lavendersim.trace.forms import Form, description_chunk, description_records, form_of
 from lavendersim.trace.recorded import RECORDED, described, is_recorded
 from lavendersim.trace.schema import FORMAT
 from lavendersim.trace.urdf import robot_description
+from lavendersim.trace.whole import LogDigest
 
 # Small, so that a killed run loses little and a plot of the force reads little.
-LIGHT_BYTES = 128 * 1024
+LIGHT_BYTES = 512 * 1024
 # Large enough to compress well, small enough that a viewer can hold a few.
-BULK_BYTES = 1024 * 1024
+BULK_BYTES = 4 * 1024 * 1024
 # Most of what a contact's numbers have in common they have with those of the step before.
-COLUMN_BYTES = 4 * 1024 * 1024
+COLUMN_BYTES = 16 * 1024 * 1024
 BEFORE: Final = ("columns", "points")  # may close before their group does
 CHUNK_BYTES = Streams(COLUMN_BYTES, BULK_BYTES, BULK_BYTES, LIGHT_BYTES)
 
@@ -89,6 +90,7 @@ class Written(NamedTuple):
     as_written: str
     config: CellConfig
     blocks: list[Block] | None  # None: too much to keep, they are read from the file
+    digest: LogDigest
 
 
 class TraceWriter:
@@ -161,8 +163,7 @@ class TraceWriter:
         )
         columns = self._form.columns
         counted = checked(block, posed, touched, columns, (self._topics, len(self._bodies)))
-        encoders = self._form.encoders
-        starts = Streams(*(cumulative(encoder.sizes(counted)) for encoder in encoders))
+        starts = Streams(*(cumulative(encoder.sizes(counted)) for encoder in self._encoders))
         self._last_step = int(step["step"][-1])
         self._keep(block)
         first = 0
@@ -187,9 +188,9 @@ class TraceWriter:
             if stream.size:
                 self._container.write_chunk(stream.close())
         self._describe(ENDING, {"status": status})
-        self._container.finish()
-        index, kept = self._container.index, self._kept
-        return Written(self._path, index, self._metadata, self._as_written, self._config, kept)
+        digest = self._container.finish()
+        index, described, written = self._container.index, self._metadata, self._as_written
+        return Written(self._path, index, described, written, self._config, self._kept, digest)
 
     def abandon(self) -> None:
         """Let the file go as a killed run would leave it."""
@@ -208,8 +209,9 @@ class TraceWriter:
             self._describe_geometry(block.pose[0].astype(np.float64))
         for registered in form.streams:
             self._container.register(registered)
+        self._encoders = encoders_of_cell(form.encoders, self._config)
         for name, encoder, registered in zip(
-            Streams._fields, form.encoders, form.streams, strict=True
+            Streams._fields, self._encoders, form.streams, strict=True
         ):
             self._open[name] = _Stream(encoder, registered.data)
 

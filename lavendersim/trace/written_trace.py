@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from lavendersim.record_tables import widened
 from lavendersim.trace import decode
 from lavendersim.trace.blocks import Block
 from lavendersim.trace.contact_columns import OF_THE_MESSAGE, column_form
@@ -75,10 +76,24 @@ class WrittenTrace(Trace):
                 continue
             if not recorded.all():
                 contacts = contacts[np.isin(contacts["step"], steps[recorded])]
-            table = _table([contacts], columns)
-            rows = np.searchsorted(steps, contacts["step"])
-            table["time"] = decode.seconds(block.step["time_ns"][rows])
+            table = widened(contacts, _with_time(contacts.dtype, columns))
+            counts = np.diff(np.searchsorted(contacts["step"], [*steps.tolist(), steps[-1] + 1]))
+            table["time"] = np.repeat(decode.seconds(block.step["time_ns"]), counts)
             yield table
+
+
+def _with_time(row: np.dtype[Any], columns: Sequence[tuple[str, str]]) -> np.dtype[Any]:
+    """Return a row with its time behind it, and its columns in this order."""
+    places = {name: place[1] for name, place in (row.fields or {}).items()}
+    names = [name for name, _ in columns]
+    return np.dtype(
+        {
+            "names": names,
+            "formats": ["=" + kind for _, kind in columns],
+            "offsets": [places.get(name, row.itemsize) for name in names],
+            "itemsize": row.itemsize + 8,
+        }
+    )
 
 
 def _table(parts: Sequence[NDArray[Any]], columns: Sequence[tuple[str, str]]) -> NDArray[Any]:

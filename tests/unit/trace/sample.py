@@ -56,6 +56,44 @@ def run(steps: int, seed: int = 0, extra: tuple[str, ...] = (), contacts: int = 
     return Block(step, contact, pose, residual)
 
 
+def moving(steps: int) -> Block:
+    """Return a run whose contacts persist: four on each step, which move, turn and slow down."""
+    block = run(steps)
+    number = np.repeat(np.arange(steps), 4)
+    rows = np.zeros(4 * steps, block.contact.dtype)
+    rows["step"], rows["body_b"], rows["feature"] = number, 1, np.tile(np.arange(4), steps)
+    random = np.random.default_rng(1)
+    rows["x"] = 1.0 + rows["feature"] + 0.001 * number  # a straight line within each power of two
+    turned = 0.3 + 0.002 * number + rows["feature"]
+    rows["nx"], rows["ny"] = 0.8 * np.cos(turned), 0.8 * np.sin(turned)
+    rows["nz"] = np.sqrt(1.0 - rows["nx"] ** 2 - rows["ny"] ** 2)
+    rows["y"] = 3.0 + 1e-6 * random.normal(size=len(rows))
+    rows["normal_velocity"] = random.normal(size=len(rows))
+    slop = CONFIG.numerics.slop
+    rows["separation"] = slop + 1e-6 * random.normal(size=len(rows))
+    gap = rows["separation"] - slop
+    rows["target"] = np.where(gap > 0.0, gap / float(TIMESTEP), 0.0)
+    rows["inverse_effective_mass"], rows["friction"] = 2.0, 0.5
+    rows["impulse_n"] = np.abs(random.normal(size=len(rows)))
+    for name in ("impulse_t1", "impulse_t2", "slip_t1", "slip_t2"):
+        rows[name] = 0.2 * random.normal(size=len(rows))
+    rows["residual"] = _natural_map(rows)
+    rows["approach_velocity"][4:] = rows["normal_velocity"][:-4] * (1.0 - 1e-9)
+    follow(rows, np.full(len(rows), float(TIMESTEP)))
+    return block._replace(contact=rows)
+
+
+def _natural_map(rows: Any) -> Any:
+    """Return the residual of rows [m/s], of balls; by vectors, not as an engine rounds it."""
+    k_n = rows["inverse_effective_mass"]
+    normal = np.minimum(rows["normal_velocity"] + rows["target"], k_n * rows["impulse_n"])
+    scaled = 3.5 * k_n * np.stack([rows["impulse_t1"], rows["impulse_t2"]])
+    moved = scaled - np.stack([rows["slip_t1"], rows["slip_t2"]])
+    limit, length = 3.5 * k_n * rows["friction"] * rows["impulse_n"], np.hypot(*moved)
+    off = moved * np.minimum(limit / length, 1.0) - scaled
+    return np.maximum(np.abs(normal), np.hypot(*off))
+
+
 def follow(contact: Any, timesteps: Any) -> None:
     """Give the columns that follow from others the values by which they do, as an engine has them.
 

@@ -13,6 +13,7 @@ from lavendersim.trace.contact_columns import (
     pack,
     unpack,
 )
+from lavendersim.trace.predictors import Constants
 
 FIELDS = [("body_a", "i8"), ("body_b", "i8"), ("feature", "i8"), ("x", "f8"), ("flags", "i8")]
 NAMES = tuple(name for name, _ in FIELDS)
@@ -31,7 +32,7 @@ def contacts(count: int, seed: int, keys: int) -> np.ndarray:
 
 def returned(rows: np.ndarray, names: tuple[str, ...]) -> np.ndarray:
     table = np.zeros(len(rows), rows.dtype)
-    unpack(pack(rows, names), names, table)
+    unpack(pack(rows, names, Constants()), names, table)
     return table
 
 
@@ -54,18 +55,40 @@ def test_what_persists_is_zero_but_for_its_first() -> None:
     rows = np.zeros(20, FIELDS)
     rows["body_b"] = np.tile([1, 2], 10)
     rows["x"] = np.tile([0.1, -7.0], 10)
-    planes = np.frombuffer(pack(rows, NAMES).planes, np.uint8).reshape(8, 2, 20)
+    planes = np.frombuffer(pack(rows, NAMES, Constants()).planes, np.uint8).reshape(8, 2, 20)
     of_x = planes[:, 0]
     assert (of_x[:, [*range(1, 10), *range(11, 20)]] == 0).all()
     for place, number in ((0, 0.1), (10, -7.0)):
         assert of_x[::-1, place].tobytes() == np.float64(number).tobytes()  # the heaviest first
 
 
+def test_a_log_of_an_older_version_has_its_bits_xor() -> None:
+    """Without predictors planes are xors with the row before: of 3, 5, 6 are 3, 6, 3."""
+    rows = np.zeros(3, FIELDS)
+    planes = np.zeros((8, 2, 3), np.uint8)
+    planes[7, 1] = [3, 3 ^ 5, 5 ^ 6]
+    unpack(Packed(bytes(3 * 3 * 8), planes.tobytes()), NAMES, rows)
+    assert rows["flags"].tolist() == [3, 5, 6]
+    assert (rows["x"] == 0.0).all()
+
+
+@pytest.mark.parametrize("predictor", [3, 4, 5, 6, 7, 255])
+def test_a_predictor_that_a_column_cannot_have_is_refused(predictor: int) -> None:
+    rows = contacts(10, 2, 3)
+    packed = pack(rows, NAMES, Constants())._replace(predictors=bytes([predictor, 0]))
+    with pytest.raises(
+        ValueError, match=f"column x has predictor {predictor}, none of this version"
+    ):
+        unpack(packed, NAMES, rows)
+    with pytest.raises(ValueError, match="zip"):
+        unpack(packed._replace(predictors=b"\0"), NAMES, rows)
+
+
 def test_planes_of_another_length_are_refused() -> None:
     rows = contacts(10, 2, 3)
-    packed = pack(rows, NAMES)
+    packed = pack(rows, NAMES, Constants())
     with pytest.raises(ValueError, match="reshape"):
-        unpack(Packed(packed.keys, packed.planes[:-1]), NAMES, np.zeros(10, rows.dtype))
+        unpack(packed._replace(planes=packed.planes[:-1]), NAMES, np.zeros(10, rows.dtype))
     with pytest.raises(ValueError, match="reshape"):
         unpack(packed, NAMES, np.zeros(9, rows.dtype))
 
@@ -75,7 +98,9 @@ def test_equal_contacts_are_equal_messages() -> None:
     steps = np.arange(10)
     group = ContactGroup(steps, steps * 4_166_666, np.full(10, 10), rows)
     form = column_form(rows.dtype)
-    assert b"".join(message_of(group, form)) == b"".join(message_of(group, form))
+    assert b"".join(message_of(group, form, Constants())) == b"".join(
+        message_of(group, form, Constants())
+    )
 
 
 def test_a_column_of_another_kind_is_refused() -> None:

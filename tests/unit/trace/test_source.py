@@ -27,8 +27,10 @@ def assert_equal(one: Trace, other: Trace) -> None:
     """Hold every column and every word of two logs against each other."""
     for column in ("step", "contact", "residual"):
         left, right = getattr(one, column), getattr(other, column)
-        assert left.dtype == right.dtype
-        assert left.tobytes() == right.tobytes()
+        assert left.dtype.names == right.dtype.names
+        for name in left.dtype.names:
+            assert left.dtype[name] == right.dtype[name]
+            assert left[name].tobytes() == right[name].tobytes()
     assert one.pose.tobytes() == other.pose.tobytes()
     assert (one.metadata, one.status, one.bodies) == (other.metadata, other.status, other.bodies)
     assert (one.config, one.as_written) == (other.config, other.as_written)

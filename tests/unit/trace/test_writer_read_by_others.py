@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import struct
 import xml.etree.ElementTree as ET
 from collections.abc import Iterator
@@ -12,26 +13,28 @@ import numpy as np
 import pytest
 from google.protobuf import descriptor_pb2, descriptor_pool, message_factory
 from mcap.reader import NonSeekingReader, make_reader
-from sample import BODIES, run, write
+from sample import BODIES, CONFIG, TIMESTEP, moving, run, write
 
 from lavendersim.trace import Block
 
 STEPS = 400
 KINDS = {5: "<u4", 6: "<i4", 7: "<f4", 8: "<f8", 1: "u1"}
-# Of a float32 points keep all 24 bits of positions, rounded to 2^-24 of the number, and eleven
-# behind the first of the others: cutting takes less than 2^-11, and rounding before it 2^-24.
-EXACTLY, ROUGHLY = 2.0**-24, 2.0**-11 + 2.0**-24
+# Points show positions to half of a grid, 2^-13 m: the power of two below 1/1024 of the 0.2 m that
+# the ball is thick, as the crate; then a float32 rounds to 2^-24 of the number. Of the others it
+# keeps nine bits behind the first: cutting takes less than 2^-9, and rounding before it 2^-24.
+GRID, ROUNDED, CUT = 2.0**-13, 2.0**-24, 2.0**-9 + 2.0**-24
 SHOWN = {
-    **dict.fromkeys(("x", "y", "z"), EXACTLY),
-    **dict.fromkeys(("nx", "ny", "nz", "force_n", "penetration"), ROUGHLY),
+    **dict.fromkeys(("x", "y", "z"), (ROUNDED, GRID / 2)),
+    **dict.fromkeys(("nx", "ny", "nz", "force_n", "penetration"), (CUT, 0.0)),
 }
 BULK = ("/tf", "/contacts", "/contact_columns")  # each in chunks of its own
+SLOP = CONFIG.numerics.slop
 LOADED = (213, 94, 0, 255)  # vermilion: the contact carries an impulse
 
 
-@pytest.fixture(scope="module")
-def block() -> Block:
-    return run(STEPS)
+@pytest.fixture(scope="module", params=["noise", "motion"])
+def block(request: pytest.FixtureRequest) -> Block:
+    return run(STEPS) if request.param == "noise" else moving(STEPS)
 
 
 @pytest.fixture(scope="module")
@@ -108,7 +111,11 @@ def test_points(path: Path, block: Block) -> None:
                 true = rows[field.name]
                 within = np.abs(true) > np.finfo(np.float32).tiny  # a float32 has all its digits
                 pairs = values[within], true[within]
-                assert np.allclose(*pairs, rtol=SHOWN[field.name], atol=0.0, equal_nan=True)
+                relative, absolute = SHOWN[field.name]
+                assert np.allclose(*pairs, rtol=relative, atol=absolute, equal_nan=True)
+                if absolute:
+                    grid = values[np.isfinite(values)] / GRID
+                    assert np.array_equal(grid, np.rint(grid))
                 assert np.all(values[true == 0.0] == 0.0)
             else:
                 loaded = LOADED[names.index(field.name) - len(SHOWN)]
@@ -118,6 +125,7 @@ def test_points(path: Path, block: Block) -> None:
 def test_contact_columns(path: Path, block: Block) -> None:
     """Number by number, as docs/architecture.md has it: keys summed up, planes put together."""
     rows = iter(block.contact)
+    seen: set[int] = set()
     for message, group in messages(path, "/contact_columns"):
         steps, times, counts = (
             np.frombuffer(one, "<i8").tolist() for one in (group.steps, group.times, group.counts)
@@ -131,16 +139,22 @@ def test_contact_columns(path: Path, block: Block) -> None:
         keys = list(zip(*(np.cumsum(one).tolist() for one in differences), strict=True))
         order = sorted(range(count), key=lambda row: (keys[row], row))
         found: list[dict[str, int]] = [dict(zip(known, key, strict=True)) for key in keys]
-        for m, name in enumerate(numbers):
-            before = None
+        used = dict(zip(numbers, group.predictors, strict=True))
+        constants = struct.unpack("<dd", group.constants)
+        assert constants == (float(TIMESTEP), SLOP)
+        for m, name in sorted(enumerate(numbers), key=lambda one: used[one[1]]):
+            before: list[int] = []  # the numbers before of the same key
+            last = None
             for place, row in enumerate(order):
                 size = len(numbers) * count
-                heaviest_first = group.planes[m * count + place :: size]
-                bits = int.from_bytes(heaviest_first, "big")
-                if before is not None and keys[before] == keys[row]:
-                    bits ^= found[before][name]
-                found[row][name] = bits
-                before = row
+                bits = int.from_bytes(group.planes[m * count + place :: size], "big")
+                if last is None or keys[last] != keys[row]:
+                    before, last = [], None
+                others = found[row], {} if last is None else found[last]
+                found[row][name] = number(used[name], bits, before, others)
+                before.append(found[row][name])
+                last = row
+        seen.update(used.values())
         for step, one in zip(of_step, found, strict=True):
             row = next(rows)
             assert step == row["step"]
@@ -151,6 +165,53 @@ def test_contact_columns(path: Path, block: Block) -> None:
                     assert kind == "f8"
                     assert one[name].to_bytes(8, "little") == row[name].tobytes()
     assert next(rows, None) is None
+    if not np.isnan(block.contact["x"]).any():
+        assert seen == {0, 1, 2, 3, 4, 5, 6}  # else this test says less than it should
+
+
+def number(
+    predictor: int, stored: int, before: list[int], others: tuple[dict[str, int], dict[str, int]]
+) -> int:
+    """Return the bits of a number; before: those of its key; others: of this row and the last."""
+    by_difference = (stored >> 1) ^ -(stored & 1)
+    if predictor == 0:
+        return stored ^ (before[-1] if before else 0)
+    if predictor == 1:
+        return ((before[-1] if before else 0) + by_difference) % 2**64
+    if predictor == 2:
+        rise = before[-1] - before[-2] if len(before) > 1 else 0
+        return ((before[-1] if before else 0) + rise + by_difference) % 2**64
+    if predictor == 4:
+        return (others[1].get("normal_velocity", 0) + by_difference) % 2**64
+    own = {
+        name: struct.unpack("<d", bits.to_bytes(8, "little"))[0] for name, bits in others[0].items()
+    }
+    expected = {3: third_of_unit, 5: target_of_gap, 6: residual}[predictor](own)
+    return stored ^ int.from_bytes(struct.pack("<d", expected), "little")
+
+
+def third_of_unit(row: dict[str, float]) -> float:
+    left = 1.0 - row["nx"] * row["nx"] - row["ny"] * row["ny"]
+    return math.sqrt(left if left >= 0.0 else 0.0)
+
+
+def target_of_gap(row: dict[str, float]) -> float:
+    gap = row["separation"] - SLOP
+    return gap / float(TIMESTEP) if gap > 0.0 else 0.0
+
+
+def residual(row: dict[str, float]) -> float:
+    k_n, impulse = row["inverse_effective_mass"], row["impulse_n"]
+    normal = abs(min(row["normal_velocity"] + row["target"], impulse / (1.0 / k_n)))
+    k_t = 3.5 * k_n
+    scaled = [k_t * row["impulse_t1"], k_t * row["impulse_t2"]]
+    moved = [scaled[0] - row["slip_t1"], scaled[1] - row["slip_t2"]]
+    limit, squared = k_t * row["friction"] * impulse, moved[0] * moved[0] + moved[1] * moved[1]
+    if squared > limit * limit:
+        scale = limit / math.sqrt(squared)
+        moved = [moved[0] * scale, moved[1] * scale]
+    off = [moved[0] - scaled[0], moved[1] - scaled[1]]
+    return max(normal, math.sqrt(off[0] * off[0] + off[1] * off[1]))
 
 
 def test_residuals(path: Path, block: Block) -> None:

@@ -1,0 +1,20 @@
+"""Logs of some hundred steps have several groups here: chunks close earlier than those of runs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+
+from lavendersim.trace import writer
+from lavendersim.trace.encode import Streams
+
+KIB = 1024
+
+
+@pytest.fixture(scope="package", autouse=True)
+def small_chunks() -> Iterator[None]:
+    shipped = writer.CHUNK_BYTES
+    writer.CHUNK_BYTES = Streams(4096 * KIB, 1024 * KIB, 1024 * KIB, 128 * KIB)
+    yield
+    writer.CHUNK_BYTES = shipped
