@@ -8,10 +8,8 @@ from typing import Any
 
 from lavendersim.cell.choices import NO_MISTAKE
 from lavendersim.experiment.cell import Cell
-from lavendersim.experiment.models.cost import CostSpec
 from lavendersim.experiment.models.experiment import ExperimentConfig
-from lavendersim.experiment.models.overhead import OverheadSpec
-from lavendersim.figures.specs.catalogue import FigureSpec
+from lavendersim.experiment.text.node import Node
 from lavendersim.measures.specs.always import Always
 from lavendersim.measures.specs.catalogue import MeasureSpec
 from lavendersim.measures.specs.expectation import ExpectSpec
@@ -26,24 +24,20 @@ class Experiment:
     text: str  # as written
     config: ExperimentConfig  # as written, with the first value of every axis
     axes: dict[str, tuple[Any, ...]]  # axis -> its values, over all products of the sweep
+    tree: Node = field(repr=False, compare=False)  # of the text, in this version's spelling
     _cells: tuple[Cell, ...] = field(repr=False)
     reduced: bool = False  # a slow one, at its reduced length
     solver: str | None = None  # of every cell, instead of what the config says
 
     @property
-    def question(self) -> str:
-        """What the experiment asks, in words."""
-        return self.config.question
-
-    @property
-    def expected(self) -> str:
-        """The expected result, in words."""
-        return self.config.expected
-
-    @property
     def measures(self) -> dict[str, MeasureSpec]:
         """What is taken from each log, by name."""
         return self.config.measure
+
+    @property
+    def always(self) -> Always | None:
+        """What every step of every cell must keep."""
+        return self.config.always
 
     @property
     def expectations(self) -> tuple[ExpectSpec, ...]:
@@ -56,35 +50,15 @@ class Experiment:
         return tuple(claim for claim in self.config.expect if claim.fails is not None)
 
     @property
-    def always(self) -> Always | None:
-        """What every step of every cell must keep."""
-        return self.config.always
-
-    @property
-    def figure(self) -> FigureSpec | None:
-        """What is drawn, if anything."""
-        return self.config.figure
-
-    @property
-    def overhead(self) -> OverheadSpec | None:
-        """How the overhead of every effect is measured, if it is."""
-        return self.config.overhead
-
-    @property
-    def cost(self) -> CostSpec | None:
-        """How it is found what accuracy costs, where it can be."""
-        return self.config.cost
-
-    @property
     def is_drawn(self) -> bool:
         """Whether there is anything to draw."""
-        return self.figure is not None or self.overhead is not None
+        return self.config.figure is not None or self.config.overhead is not None
 
     @property
     def switches_effects(self) -> bool:
         """Whether some cell switches an effect by hand, so that its plan may be refused."""
         return bool(self.config.effects.switches) or any(
-            path.startswith("effects.") for path in self._swept
+            path.startswith("effects.") for path in self.swept.values()
         )
 
     @property
@@ -99,14 +73,14 @@ class Experiment:
     @property
     def _may_be_wrong(self) -> bool:
         """Whether the file says anything of mistakes, so that not every cell need be looked at."""
-        return self.config.study.mistake != NO_MISTAKE or "study.mistake" in self._swept
+        return self.config.study.mistake != NO_MISTAKE or "study.mistake" in self.swept.values()
 
     @property
-    def _swept(self) -> set[str]:
-        """The paths of all axes."""
+    def swept(self) -> dict[str, str]:
+        """The path of every axis, by its name."""
         sweep = self.config.sweep
         products = (sweep,) if isinstance(sweep, dict) else sweep
-        return {axis.path for product in products for axis in product.values()}
+        return {name: axis.path for product in products for name, axis in product.items()}
 
     def refined(self, divisor: int) -> Experiment:
         """Return the same experiment with every cell at timesteps of 1/divisor of its own."""

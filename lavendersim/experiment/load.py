@@ -60,14 +60,15 @@ def load_experiment_text(
 def _load(
     raw: bytes, path: Path, name: str, size: int, reduced: bool, solver: str | None
 ) -> Experiment:
-    root, defects = parse(raw, name, size)
-    report = Report(name, defects)
+    report = Report(name)
+    root = parse(raw, report, size)
     if root is None:
         raise ConfigError(report.defects)
     if not isinstance(root.content, dict):
-        report.add(root.mark, f"expected a mapping with scene and duration, {_found(root)}")
+        sentence = f"expected a mapping with scene and duration, found {found(root.data)}"
+        report.add(root.mark, sentence)
         raise ConfigError(report.defects)
-    root = with_new_spellings(root, name)
+    root = tree = with_new_spellings(root, name)
     check_reduced_length(root, report)
     root, shortened = at_reduced_length(root) if reduced else (root, False)
     root = with_solver(root, solver) if solver is not None else root
@@ -86,7 +87,7 @@ def _load(
         axis: tuple(dict.fromkeys(sweep.swept_value(node.data) for node in nodes))
         for axis, nodes in swept_values(root).items()
     }
-    return Experiment(path.stem, path, decode(raw), config, values, made, shortened, solver)
+    return Experiment(path.stem, path, decode(raw), config, values, tree, made, shortened, solver)
 
 
 def _check_first(
@@ -121,7 +122,3 @@ def _check_others(
                 cell.__dict__["config"] = config  # fills the cached property
         cells.append(cell)
     return tuple(cells)
-
-
-def _found(node: Node) -> str:
-    return f"found {found(node.data)}"

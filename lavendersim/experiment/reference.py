@@ -25,13 +25,7 @@ from pydantic.fields import FieldInfo
 
 from lavendersim.cell.numerics import Numerics
 from lavendersim.engine.effects import SCENE_KEYS
-from lavendersim.experiment.checks.annotations import (
-    alternatives,
-    annotation_of,
-    fields,
-    is_model,
-    kinds,
-)
+from lavendersim.experiment.checks.annotations import alternatives, fields, is_model, kinds
 from lavendersim.experiment.models.experiment import ExperimentConfig
 from lavendersim.experiment.resolve.presets import PRESETS
 from lavendersim.quantities.scalars import label
@@ -63,15 +57,13 @@ def render(text: str) -> str:
 def models_below(annotation: Any) -> list[type[BaseModel]]:
     """Return every model that a config of this type may hold, each once."""
     found: dict[type[BaseModel], None] = {}
-    for member, _ in alternatives(annotation):
-        if is_model(member) and member not in found:
+    for member in alternatives(annotation):
+        parts = get_args(member)
+        if is_model(member):
             found[member] = None
-            for info in member.model_fields.values():
-                found |= dict.fromkeys(models_below(annotation_of(info)))
-        elif not is_model(member):
-            for inner in get_args(member):
-                if inner is not Ellipsis and not isinstance(inner, str):
-                    found |= dict.fromkeys(models_below(inner))
+            parts = tuple(info.annotation for info in member.model_fields.values())
+        for part in parts:
+            found |= dict.fromkeys(models_below(part))
     return list(found)
 
 
@@ -82,7 +74,7 @@ def keys_table(*models: type[BaseModel]) -> Iterator[list[str]]:
         for key, info in fields(model).items():
             yield [f"`{key}`", _default(info), _meaning(info)]
             if key in _OF_EFFECTS:
-                for inner in models_below(annotation_of(info)):
+                for inner in models_below(info.annotation):
                     for name, one in fields(inner).items():
                         yield [f"`{key}[].{name}`", _default(one), _meaning(one)]
 

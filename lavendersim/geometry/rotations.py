@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import numpy.typing as npt
 
@@ -56,7 +58,10 @@ def frame_along(direction: Floats) -> Floats:
 
     The first tangent stands across the coordinate axis that is farthest from the direction.
     """
-    farthest = np.eye(3)[int(np.argmin(np.abs(direction)))]
-    tangent = np.cross(farthest, direction)
-    tangent /= np.linalg.norm(tangent)
-    return np.column_stack([tangent, np.cross(direction, tangent), direction])
+    x, y, z = direction.tolist()
+    across = ((0.0, -z, y), (z, 0.0, -x), (-y, x, 0.0))  # each axis crossed with the direction
+    first = across[int(np.argmin(np.abs(direction)))]
+    length = math.hypot(*first)
+    u, v, w = (component / length for component in first)
+    second = (y * w - z * v, z * u - x * w, x * v - y * u)
+    return np.array(((u, v, w), second, (x, y, z))).T

@@ -9,7 +9,9 @@ from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
 from pydantic import GetCoreSchemaHandler, StringConstraints, ValidationInfo
-from pydantic_core import CoreSchema, PydanticCustomError, core_schema
+from pydantic_core import CoreSchema, core_schema
+
+from lavendersim.quantities.quantity import sentence_error
 
 NamedKind = Literal["body", "plane", "measure", "axis", "surface"]
 
@@ -24,7 +26,7 @@ class Refers:
         """Return the name; refuse one that the file does not define."""
         refusal = info.context.refusal_of(self.to, name) if info.context is not None else None
         if refusal:
-            raise PydanticCustomError("name", "{sentence}", {"sentence": refusal})
+            raise sentence_error(refusal)
         return name
 
     def __get_pydantic_core_schema__(

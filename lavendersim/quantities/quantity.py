@@ -6,12 +6,18 @@ numbers out of bounds with a sentence of its own, and describes itself to JSON S
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Annotated, Any
 
-from pydantic import Discriminator, GetCoreSchemaHandler, GetJsonSchemaHandler, ValidationInfo
+from pydantic import (
+    BaseModel,
+    Discriminator,
+    GetCoreSchemaHandler,
+    GetJsonSchemaHandler,
+    ValidationInfo,
+)
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from lavendersim.quantities.found import found
@@ -31,10 +37,19 @@ def sentence_error(sentence: str) -> PydanticCustomError:
     return PydanticCustomError("lavender", "{sentence}", {"sentence": sentence})
 
 
-def either(expected: str, form: Callable[[Any], str | None]) -> Discriminator:
-    """Return the discriminator of a field that has several forms; `form` names the tag of one."""
+def either(expected: str, form: Mapping[type, str] | Callable[[Any], str | None]) -> Discriminator:
+    """Return the discriminator of a field that has several forms; `form` names the tag of one.
+
+    form: the tags by the type of the value (a model is written as a dict), or what tells the tag.
+    """
+
+    def tag_of(value: Any) -> str | None:
+        if callable(form):
+            return form(value)
+        return form.get(dict if isinstance(value, BaseModel) else type(value))
+
     return Discriminator(
-        form,
+        tag_of,
         custom_error_type="form",
         custom_error_message=expected,
         custom_error_context={"expected": expected},

@@ -9,20 +9,15 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_typ
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from lavendersim.experiment.text.node import Node, Path
+from lavendersim.experiment.text.node import Node
 
 Model = type[BaseModel]
-
-
-def field_name(model: Model, name: str) -> str:
-    """Return the key under which a field stands in a file."""
-    return model.model_fields[name].alias or name
 
 
 @cache
 def fields(model: Model) -> dict[str, FieldInfo]:
     """Return the fields of a model by the keys under which they stand in a file."""
-    return {field_name(model, name): info for name, info in model.model_fields.items()}
+    return {info.alias or name: info for name, info in model.model_fields.items()}
 
 
 def names_of(model: Model) -> Any:
@@ -32,24 +27,13 @@ def names_of(model: Model) -> Any:
     return get_args(get_type_hints(model)["__pydantic_extra__"])[1]
 
 
-def annotation_of(info: FieldInfo) -> Any:
-    """Return the field's type with the metadata that pydantic split off."""
-    annotation: Any = info.annotation
-    for item in info.metadata:
-        annotation = Annotated[annotation, item]
-    return annotation
-
-
-def alternatives(annotation: Any) -> list[tuple[Any, tuple[Any, ...]]]:
-    """Return the members of a union (or the type alone), each with its metadata."""
-    metadata: tuple[Any, ...] = ()
+def alternatives(annotation: Any) -> list[Any]:
+    """Return the members of a union, or the type alone, without their metadata."""
     while get_origin(annotation) is Annotated:
-        annotation, *more = get_args(annotation)
-        metadata = (*more, *metadata)
+        annotation = get_args(annotation)[0]
     if isinstance(annotation, types.UnionType) or get_origin(annotation) is Union:
-        inner = [pair for member in get_args(annotation) for pair in alternatives(member)]
-        return [(member, (*metadata, *own)) for member, own in inner]
-    return [(annotation, metadata)]
+        return [one for member in get_args(annotation) for one in alternatives(member)]
+    return [annotation]
 
 
 def is_model(annotation: Any) -> bool:
@@ -57,13 +41,16 @@ def is_model(annotation: Any) -> bool:
     return isinstance(annotation, type) and issubclass(annotation, BaseModel)
 
 
-def model_for(annotation: Any, node: Node | None) -> Model | None:
+def models_of(annotation: Any) -> list[Model]:
+    """Return the models among the members of a union."""
+    return [member for member in alternatives(annotation) if is_model(member)]
+
+
+def model_for(annotation: Any, node: Node) -> Model | None:
     """Return the model that a mapping at this place follows: by its `kind`, or the only one."""
-    models = [member for member, _ in alternatives(annotation) if is_model(member)]
-    if len(models) > 1 and node is not None:
-        kind = node.get("kind")
-        text = kind.text if kind is not None else None
-        models = [model for model in models if text in kinds(model)]
+    models = models_of(annotation)
+    if len(models) > 1:
+        models = [model for model in models if node.get("kind").text in kinds(model)]
     return models[0] if len(models) == 1 else None
 
 
@@ -78,12 +65,17 @@ def kinds(model: Model) -> tuple[str, ...]:
     return literals(info.annotation) if info is not None else ()
 
 
-def below(annotation: Any, path: Path) -> Any:
-    """Return the type of what stands at a path through mappings of names and lists."""
-    for _ in path:
-        containers = [m for m, _ in alternatives(annotation) if get_origin(m) in (dict, tuple)]
-        if not containers:
-            return None
-        arguments = get_args(containers[0])
-        annotation = arguments[1] if get_origin(containers[0]) is dict else arguments[0]
-    return annotation
+def inside(annotation: Any, container: type) -> Any:
+    """Return the type of the values of a dict, or of the items of a tuple; None where it is none.
+
+    annotation: of the container, or a union with it.
+    """
+    for member in alternatives(annotation):
+        if get_origin(member) is container:
+            return get_args(member)[container is dict]
+    return None
+
+
+def is_vector(annotation: Any) -> bool:
+    """Tell whether the type is a tuple of fixed length."""
+    return get_origin(annotation) is tuple and Ellipsis not in get_args(annotation)

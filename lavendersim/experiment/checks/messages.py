@@ -16,12 +16,11 @@ from pydantic_core import ErrorDetails
 from lavendersim.experiment.checks.annotations import (
     Model,
     alternatives,
-    annotation_of,
-    below,
     fields,
-    is_model,
+    inside,
     kinds,
     literals,
+    models_of,
     names_of,
 )
 from lavendersim.experiment.text.node import BROKEN, Broken, Mark, Node, Path, key_mark
@@ -29,24 +28,18 @@ from lavendersim.experiment.text.place import missing_key, name_of, place_of
 from lavendersim.experiment.text.report import Report
 from lavendersim.quantities.found import found, near, nearest, quoted
 
-_TYPES = {
+# What pydantic expects, by the type of its error; in braces from the error's context.
+_EXPECTED = {
+    "form": "{expected}",
     "string_type": "text",
+    "string_too_short": "text",
     "bool_type": "true or false",
-    "int_type": "a whole number",
-    "int_from_float": "a whole number",
-    "float_type": "a number",
-    "finite_number": "a finite number",
     "dict_type": "a mapping",
     "model_type": "a mapping",
     "model_attributes_type": "a mapping",
-    "list_type": "a list",
     "tuple_type": "a list",
-}
-_BOUNDS = {
-    "greater_than": ("gt", "a number above {}"),
-    "greater_than_equal": ("ge", "a number of {} or more"),
-    "less_than": ("lt", "a number below {}"),
-    "less_than_equal": ("le", "a number of {} or less"),
+    "too_short": "{min_length} item{s} or more",
+    "too_long": "{max_length} item{s} or fewer",
 }
 _SWITCHED = ["on", "off"]  # plain texts in YAML 1.2
 _SWITCHES = {"yes": "true", "on": "true", "no": "false", "off": "false"}
@@ -80,8 +73,7 @@ def locate(root: Node, loc: tuple[str | int, ...]) -> tuple[Path, Node]:
     path: list[str | int] = []
     node = root
     for step in loc:
-        child = node.get(step)
-        if child is not None:
+        if child := node.get(step):
             path.append(step)
             node = child
     return tuple(path), node
@@ -104,27 +96,22 @@ def _replaced_keys(
 def _sentence(
     item: ErrorDetails, path: Path, node: Node, root: Node, models: Mapping[Path, Model]
 ) -> tuple[Mark, str]:
-    kind, context, value = item["type"], item.get("ctx", {}), item["input"]
-    name, step = name_of(path), item["loc"][-1]
-    if kind == "extra_forbidden":
-        parent = root.get(*path[:-1]) or root
-        hint = nearest(step, _keys_at(models, path[:-1]))
-        sentence = f"unknown key {quoted(step)} in {place_of(path[:-1])}{hint}"
-        return key_mark(parent, str(path[-1])), sentence
+    kind, context, step = item["type"], item.get("ctx", {}), item["loc"][-1]
+    name, holder = name_of(path), path[:-1]
+    if kind == "extra_forbidden" or step == "[key]":
+        mark = key_mark(root.get(*holder) or root, str(path[-1]))
+        if kind == "extra_forbidden":
+            hint = nearest(step, _keys_at(models, holder))
+            return mark, f"unknown key {quoted(step)} in {place_of(holder)}{hint}"
+        if kind == "lavender":
+            return mark, f"{name_of(holder)}: {context['sentence']}"
+        rule = 'use up to 64 letters, digits, "_" and "-", starting with a letter'
+        return mark, f"{quoted(path[-1])} cannot be a name; {rule}"
     if kind == "missing":
         if isinstance(step, int):
             return node.mark, f"{name}: expected at least {step + 1} items, {_count(node)}"
         info = _keys_at(models, path).get(step)
         return node.mark, missing_key(str(step), path, info.description if info else None)
-    if kind == "name":
-        if step != "[key]":
-            return node.mark, f"{name}: {context['sentence']}"
-        parent = root.get(*path[:-1]) or root
-        return key_mark(parent, str(path[-1])), f"{name_of(path[:-1])}: {context['sentence']}"
-    if step == "[key]":
-        parent = root.get(*path[:-1]) or root
-        rule = 'use up to 64 letters, digits, "_" and "-", starting with a letter'
-        return key_mark(parent, str(path[-1])), f"{quoted(path[-1])} cannot be a name; {rule}"
     if kind == "union_tag_not_found":
         return node.mark, missing_key("kind", path, f"one of {', '.join(_forms(models, path)[1])}")
     if kind == "union_tag_invalid":
@@ -133,9 +120,11 @@ def _sentence(
             return tag.mark, f"kind: expected one of {', '.join(valid)}, found {found(tag.data)}"
         hint = nearest(tag.text, valid)
         return tag.mark, f"unknown kind {quoted(tag.text)} in {place_of(path)}{hint}"
+    if kind == "lavender":
+        return node.mark, f"{name}: {context['sentence']}"
     if kind == "literal_error":
-        return node.mark, f"{name}: {_choice(_forms(models, path)[0], value)}"
-    return node.mark, _value_sentence(kind, context, value, name, node)
+        return node.mark, f"{name}: {_choice(_forms(models, path)[0], item['input'])}"
+    return node.mark, f"{name}: {_expected(item, node)}"
 
 
 def _choice(valid: list[str], value: Any) -> str:
@@ -146,30 +135,22 @@ def _choice(valid: list[str], value: Any) -> str:
     return f"expected {' or '.join(valid)}, found {found(value)}{hint}"
 
 
-def _value_sentence(kind: str, context: Mapping[str, Any], value: Any, name: str, at: Node) -> str:
-    if kind == "lavender":
-        return f"{name}: {context['sentence']}"
-    if kind == "form":
-        return f"{name}: expected {context['expected']}, found {found(value)}"
-    if kind in _TYPES:
-        sentence = f"{name}: expected {_TYPES[kind]}, found {found(value)}"
-        if kind == "string_type" and isinstance(value, int | float):
-            return f"{sentence}; put it in quotes"
-        if kind == "bool_type" and isinstance(value, str) and value.lower() in _SWITCHES:
-            return f"{sentence}; write {_SWITCHES[value.lower()]}"
-        return sentence
-    if kind in _BOUNDS:
-        bound, words = _BOUNDS[kind]
-        return f"{name}: expected {words.format(context[bound])}, found {found(value)}"
-    if kind == "too_short":
-        return f"{name}: expected {_items(context['min_length'])} or more, {_count(at)}"
-    if kind == "too_long":
-        return f"{name}: expected {_items(context['max_length'])} or fewer, {_count(at)}"
+def _expected(item: ErrorDetails, node: Node) -> str:
+    kind, context, value = item["type"], item.get("ctx", {}), item["input"]
+    if kind not in _EXPECTED:
+        return f"{item['msg']}, found {found(value)}"  # of a type that a plug-in brings
+    plural = "" if 1 in context.values() else "s"
+    expected = f"expected {_EXPECTED[kind].format(**context, s=plural)}"
+    if kind in ("too_short", "too_long"):
+        return f"{expected}, {_count(node)}"
     if kind == "string_too_short":
-        return f"{name}: expected text, found an empty one"
-    if kind == "value_error":
-        return f"{name}: {context['error']}"
-    return f"{name}: {kind.replace('_', ' ')}, found {found(value)}"
+        return f"{expected}, found an empty one"
+    sentence = f"{expected}, found {found(value)}"
+    if kind == "string_type" and isinstance(value, int | float):
+        return f"{sentence}; put it in quotes"
+    if kind == "bool_type" and isinstance(value, str) and value.lower() in _SWITCHES:
+        return f"{sentence}; write {_SWITCHES[value.lower()]}"
+    return sentence
 
 
 def _keys_at(models: Mapping[Path, Model], path: Path) -> dict[str, FieldInfo]:
@@ -181,14 +162,11 @@ def _forms(models: Mapping[Path, Model], path: Path) -> tuple[list[str], list[st
     holder = next(path[:k] for k in range(len(path) - 1, -1, -1) if path[:k] in models)
     key, *rest = path[len(holder) :]
     info = fields(models[holder]).get(str(key))
-    annotation = annotation_of(info) if info is not None else names_of(models[holder])
-    members = [member for member, _ in alternatives(below(annotation, tuple(rest)))]
-    texts = [text for member in members for text in literals(member)]
-    return texts, [kind for member in members if is_model(member) for kind in kinds(member)]
-
-
-def _items(count: int) -> str:
-    return "1 item" if count == 1 else f"{count} items"
+    annotation = info.annotation if info is not None else names_of(models[holder])
+    for step in rest:
+        annotation = inside(annotation, tuple if isinstance(step, int) else dict)
+    texts = [text for member in alternatives(annotation) for text in literals(member)]
+    return texts, [kind for model in models_of(annotation) for kind in kinds(model)]
 
 
 def _count(node: Node) -> str:

@@ -18,7 +18,7 @@ from pydantic import BaseModel, ValidationError
 from lavendersim.experiment.checks.messages import report_errors
 from lavendersim.experiment.models.shapes import SOLIDS
 from lavendersim.experiment.models.tree import BODIES, body_names, swept_values
-from lavendersim.experiment.text.node import Mark, Node, Path
+from lavendersim.experiment.text.node import ABSENT, Mark, Node, Path
 from lavendersim.experiment.text.place import Place
 from lavendersim.experiment.text.report import Report
 from lavendersim.measures.specs.selection import ANY
@@ -45,9 +45,9 @@ class Reading:
     def _names(self) -> dict[NamedKind, Collection[str]]:
         return {
             "body": dict.fromkeys(body_names(self.root)),
-            "plane": self.root.entries_at(*BODIES),
-            "measure": self.root.entries_at("measure"),
-            "surface": self.root.entries_at("scene", "surfaces"),
+            "plane": self.root.get(*BODIES).entries,
+            "measure": self.root.get("measure").entries,
+            "surface": self.root.get("scene", "surfaces").entries,
             "axis": self._axes,
         }
 
@@ -104,20 +104,20 @@ class Reading:
             names = self._planes() if kind == "plane" else known
             hint = nearest(name, names) or "; this file has none"
             return f"no {kind} is called {quoted(name)}{hint}"
-        shape = self.root.text_at(*BODIES, name, "shape", "kind") if kind == "plane" else None
+        shape = self.root.get(*BODIES, name, "shape", "kind").text if kind == "plane" else None
         if shape in SOLIDS:
             return f"{quoted(name)} is a {shape}, expected the name of a plane"
         return None
 
     def _planes(self) -> list[str]:
         """Return the bodies that are planes, or may have been meant as one."""
-        bodies = self.root.entries_at(*BODIES)
-        return [name for name, b in bodies.items() if b.text_at("shape", "kind") not in SOLIDS]
+        bodies = self.root.get(*BODIES).entries
+        return [name for name, b in bodies.items() if b.get("shape", "kind").text not in SOLIDS]
 
     def check_selection(self, data: object) -> None:
         """Refuse values that their axis does not take."""
-        node, _ = self._nodes.get(id(data), (self.root, ()))
-        for axis, chosen in node.entries.items() if node is not self.root else ():
+        node, _ = self._nodes.get(id(data), (ABSENT, ()))
+        for axis, chosen in node.entries.items():
             for value in chosen.items or (chosen,):
                 self._check_value(axis, value)
 

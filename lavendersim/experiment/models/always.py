@@ -28,21 +28,20 @@ class AlwaysSection(Always):
     @classmethod
     def rules(cls, at: Place) -> None:
         """What a check is taken from is in the log; half a balance cannot be judged."""
-        unlogged = {"energy": _unknown_work(at.root), "momentum": _unknown_impulse(at.root)}
         for check, default in DEFAULTS.items():
             bound = at.get(check)
-            if (default if bound is None else bound.text) == NONE:
+            if (bound.text if bound else default) == NONE:
                 continue
-            mark = bound.mark if bound is not None else key_mark(at.root, "always")
-            reasons = itertools.chain(unlogged.get(check, ()), _unrecorded(at.root, check))
-            for reason in itertools.islice(reasons, 1):
+            mark = bound.mark if bound else key_mark(at.root, "always")
+            reasons = itertools.chain(_unlogged(at.root, check), _unrecorded(at.root, check))
+            if reason := next(reasons, None):
                 at.refuse(mark, f"{check}: {reason}; specify {check}: none")
 
 
 def _unrecorded(root: Node, check: str) -> Iterator[str]:
     """Yield why the log has not of every step what a check takes."""
     taken = READS.get(check, SUMS)
-    acts = root.items_at("events") or root.items_at("scene", "forces")
+    acts = root.get("events").items or root.get("scene", "forces").items
     if check == "energy" and acts:  # what they do is counted by where the bodies are
         taken |= POSES
     reason = not_recorded(root, taken)
@@ -50,28 +49,18 @@ def _unrecorded(root: Node, check: str) -> Iterator[str]:
         yield f"it {reason}"
 
 
-def _unknown_work(root: Node) -> Iterator[str]:
-    for name, body in described(root):
-        yield from _unlogged(name, body, "energy")
-
-
-def _unknown_impulse(root: Node) -> Iterator[str]:
-    for name, body in described(root):
-        yield from _unlogged(name, body, "momentum")
-    if root.is_true("numerics", "sleeping"):
-        yield "what falling asleep takes is not in the log"
-
-
-def _unlogged(name: str, body: Node, check: str) -> Iterator[str]:
-    """Yield what effects that the body has a key of leave out of the log."""
-    for effect in EFFECTS:
+def _unlogged(root: Node, check: str) -> Iterator[str]:
+    """Yield what effects that a body has a key of leave out of the log, and falling asleep."""
+    for (name, body), effect in itertools.product(described(root), EFFECTS):
         unlogged = effect.balance.unlogged
         given = any(_is_given(body, key.name) for key in effect.body_keys)
         if given and unlogged is not None and unlogged.check == check:
             yield f"{unlogged.what.format(body=quoted(name))} is not in the log"
+    if check == "momentum" and root.get("numerics", "sleeping").is_true:
+        yield "what falling asleep takes is not in the log"
 
 
 def _is_given(body: Node, key: str) -> bool:
     """Tell whether a key is true, or one of its numbers is not zero."""
-    numbers = (*body.items_at(key), *body.entries_at(key).values())
-    return body.is_true(key) or any(bool(node.number) for node in numbers)
+    numbers = (*body.get(key).items, *body.get(key).entries.values())
+    return body.get(key).is_true or any(bool(node.number) for node in numbers)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated
 
 from pydantic import Field, Tag
 
@@ -32,14 +32,12 @@ _OF_PLACES = ("position", "release", "orientation")
 STATIC_HINT = "a body that never moves has fixed: true"
 
 
-def _surface_form(value: Any) -> str | None:
-    forms: dict[type, str] = {str: "name", dict: "properties"}
-    return forms.get(type(value))
-
-
 SurfaceOf = Annotated[
     Annotated[SurfaceName, Tag("name")] | Annotated[Surface, Tag("properties")],
-    either("the name of a surface or {restitution: ..., friction: ...}", _surface_form),
+    either(
+        "the name of a surface or {restitution: ..., friction: ...}",
+        {str: "name", dict: "properties"},
+    ),
 ]
 
 
@@ -83,12 +81,12 @@ class _Matter(declared("Matter", _MatterOwn, BODY_KEYS), _MatterOwn):  # type: i
     @classmethod
     def rules(cls, at: Place) -> None:
         """What moves has one of mass and density; what does not has neither, and no motion."""
-        kind = at.node.text_at("shape", "kind")
+        kind = at.get("shape", "kind").text
         if kind == "plane":
             _plane_rules(at)
         elif kind in SOLIDS:
             cls.start_rules(at)
-            constrained = [key for key in _CONSTRAIN if at.node.is_true(key)]
+            constrained = [key for key in _CONSTRAIN if at.get(key).is_true]
             if len(constrained) > 1:
                 one, other = constrained[:2]
                 later = max(at.key(one), at.key(other))
@@ -142,7 +140,7 @@ def _immovable_rules(at: Place, word: str) -> None:
 
 def _inertia_rules(at: Place, kind: str) -> None:
     inertia = at.get("inertia")
-    if inertia is None or inertia.content is None:
+    if inertia.content is None:
         return
     if kind in TURNED:
         at.refuse(at.key("inertia"), f"inertia: {at} is a {kind}; its shape says it, leave it out")
@@ -159,10 +157,10 @@ def _inertia_rules(at: Place, kind: str) -> None:
 def _plane_rules(at: Place) -> None:
     always = f"{at} is a plane; planes are always fixed"
     fixed = at.get("fixed")
-    if fixed is not None and fixed.content is False:
+    if fixed.content is False:
         at.refuse(fixed.mark, f"fixed: {always}")
     for key in PRESCRIBE_MOTION:
-        if at.node.is_true(key):
+        if at.get(key).is_true:
             at.refuse(at.key(key), f"{key}: {always}")
     for key in (*_OF_MOVABLE, *_OF_MOVING, *_OF_PLACES):
         if mark := at.written(key):

@@ -13,7 +13,7 @@ from typing import Annotated, Any, Final, Literal
 from pydantic import Field, Tag
 
 from lavendersim.cell.choices import Solver
-from lavendersim.experiment.models.overhead import refuse_what_interrupts
+from lavendersim.experiment.models.overhead import all_or_named, refuse_what_interrupts
 from lavendersim.experiment.models.tree import products
 from lavendersim.experiment.text.node import key_mark
 from lavendersim.experiment.text.place import Place
@@ -54,14 +54,10 @@ Truth = Annotated[
 ]
 
 
-def _solvers_form(value: Any) -> str | None:
-    return "all" if value == "all" else "named" if isinstance(value, list | tuple) else None
-
-
 SolverNames = Annotated[
     Annotated[Literal["all"], Tag("all")]
     | Annotated[tuple[Solver, ...], Field(min_length=1), Tag("named")],
-    either("all, or a list of solvers", _solvers_form),
+    either("all, or a list of solvers", all_or_named),
 ]
 
 
@@ -139,7 +135,7 @@ class CostSpec(ConfigModel):
         for product in products(at.root):
             for name, axis in product.entries.items():
                 path = axis.get("path")
-                if path is not None and (path.text or "").split(".")[0] == "numerics":
+                if (path.text or "").split(".")[0] == "numerics":
                     sentence = "numerics are varied by the section cost; leave them to that"
                     at.refuse(path.mark, f"path: {sentence}")
                 elif name in GRID_NAMES:

@@ -7,14 +7,15 @@ from typing import Annotated, Final, Literal
 
 from pydantic import Field
 
-from lavendersim.experiment.models.removals import Removal, removals
 from lavendersim.experiment.models.tree import (
+    Removal,
+    after_the_end,
     body_node,
-    duration_of,
     immovable,
     prescribes_motion,
+    removals,
 )
-from lavendersim.experiment.text.node import Mark
+from lavendersim.experiment.text.node import Node
 from lavendersim.experiment.text.place import Place
 from lavendersim.quantities.found import near
 from lavendersim.quantities.model import ConfigModel
@@ -63,38 +64,34 @@ class Event(ConfigModel):
     @classmethod
     def rules(cls, at: Place) -> None:
         """It happens in the run, to a body that is there and can take it, or to the timestep."""
-        time, name, length = at.node.number_at("at"), at.node.text_at("body"), duration_of(at.root)
-        if time is not None and length is not None and time > length > 0:
-            sentence = f"at: {time:g} s is after the end of the run, duration {length:g} s"
-            at.refuse(at.node.entries["at"].mark, sentence)
-        body = at.get("body")
+        body, time = at.get("body"), at.get("at").number
+        after_the_end(at, "at")
         if at.written("timestep"):
             reason = f"{at} changes the timestep; what happens to a body is an event of its own"
             _alone(at, ("body", *_EVERY_CHANGE), reason)
-        elif body is None or body.content is None:
+        elif body.content is None:
             _lacks_body(at)
-        elif at.node.is_true("remove"):
+        elif at.get("remove").is_true:
             _alone(at, _CHANGES, f"{at} removes the body; expected no change")
         else:
-            _change_rules(at, body.mark, name)
-        removal = removals(at.root).get(name or "")
-        late = removal is not None and time is not None and Removal(time, at.index) > removal
-        if late and removal is not None and body is not None:
-            at.refuse(body.mark, removal.sentence("body", name))
+            _change_rules(at, body)
+        removal = removals(at.root).get(body.text or "")
+        if removal is not None and time is not None and Removal(time, at.index) > removal:
+            at.refuse(body.mark, removal.sentence("body", body.text))
 
 
-def _change_rules(at: Place, mark: Mark, name: str | None) -> None:
-    target = body_node(at.root, name)
+def _change_rules(at: Place, body: Node) -> None:
+    target = body_node(at.root, body.text)
     if what := immovable(target, prescribed=False):
-        at.refuse(mark, f'body: "{name}" is {what}; expected a movable body')
-    elif target is not None and (key := prescribes_motion(target)) and at.get("scale_mass"):
-        sentence = f'scale_mass: "{name}" is {key}; a {key} body has no mass'
+        at.refuse(body.mark, f'body: "{body.text}" is {what}; expected a movable body')
+    elif (key := prescribes_motion(target)) and at.get("scale_mass"):
+        sentence = f'scale_mass: "{body.text}" is {key}; a {key} body has no mass'
         at.refuse(at.key("scale_mass"), sentence)
     if not any(at.get(key) for key in _CHANGES):
         changes = f"{', '.join(_CHANGES)} or remove"
         at.refuse(at.node.mark, f"{at} changes nothing; expected {changes}")
     cache = at.get("contact_cache")
-    if cache is not None and cache.text == "keep" and at.get("teleport"):
+    if cache.text == "keep" and at.get("teleport"):
         at.refuse(cache.mark, "contact_cache: a teleport always clears the body's cached contacts")
 
 

@@ -11,9 +11,9 @@ from lavendersim.quantities.found import nearest, quoted
 def expectation_rules(at: Place) -> None:
     """Refuse a name that stands twice, and what must fail but does not exist or is two things."""
     first: dict[str, Mark] = {}
-    for item in at.node.items_at("expect"):
+    for item in at.get("expect").items:
         name = item.get("name")
-        if name is None or name.text is None:
+        if name.text is None:
             continue
         if name.text in first:
             line = first[name.text].line
@@ -24,15 +24,15 @@ def expectation_rules(at: Place) -> None:
 
 
 def _control_rules(at: Place) -> None:
-    items, always = at.node.items_at("expect"), at.get("always")
-    names = [item.text_at("name") for item in items if item.get("fails") is None]
+    items, always = at.get("expect").items, at.get("always")
+    names = [item.get("name").text for item in items if not item.get("fails")]
     claims = [name for name in names if name is not None]
     checks = [COMPLETES, DIVERGES]
-    if always is not None:
-        checks += [check for check in CHECKS if always.text_at(check) != NONE]
+    if always:
+        checks += [check for check in CHECKS if always.get(check).text != NONE]
     for item in items:
         fails = item.get("fails")
-        if fails is None or fails.text is None:
+        if fails.text is None:
             continue
         called = quoted(fails.text)
         if fails.text in claims and fails.text in checks:

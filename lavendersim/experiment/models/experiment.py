@@ -8,7 +8,6 @@ from pydantic import ConfigDict, Field, Tag
 
 from lavendersim.cell.choices import Preset, Switch
 from lavendersim.cell.numerics import Numerics
-from lavendersim.experiment.models.accuracy import accuracy_rules
 from lavendersim.experiment.models.always import AlwaysSection
 from lavendersim.experiment.models.cost import CostSpec
 from lavendersim.experiment.models.events import Event
@@ -17,7 +16,7 @@ from lavendersim.experiment.models.overhead import OverheadSpec
 from lavendersim.experiment.models.record import Record
 from lavendersim.experiment.models.recorded import recording_rules
 from lavendersim.experiment.models.scene import Scene
-from lavendersim.experiment.models.steps import step_rules
+from lavendersim.experiment.models.steps import accuracy_rules, step_rules
 from lavendersim.experiment.models.study import Study
 from lavendersim.experiment.text.place import Place
 from lavendersim.figures.specs.catalogue import FigureSpec
@@ -25,10 +24,7 @@ from lavendersim.measures.specs.catalogue import MeasureSpec
 from lavendersim.measures.specs.expectation import ExpectSpec
 from lavendersim.quantities.model import ConfigModel
 from lavendersim.quantities.names import NewName
-from lavendersim.quantities.quantity import (
-    Quantity,
-    either,
-)
+from lavendersim.quantities.quantity import Quantity, either
 
 # Solvers that no sweep visits contact by contact.
 _WITHOUT_SWEEPS: Final = ("jacobi", "accelerated_projected_gradient")
@@ -40,14 +36,12 @@ class NumericsSource(Numerics):
     preset: Preset = Field(default="default", description="where the rest is from")
 
 
-def _numerics_form(value: Any) -> str | None:
-    forms: dict[type, str] = {str: "preset", dict: "values"}
-    return forms.get(type(value))
-
-
 NumericsOf = Annotated[
     Annotated[Preset, Tag("preset")] | Annotated[NumericsSource, Tag("values")],
-    either("the name of a preset (chapter, default) or a mapping of values", _numerics_form),
+    either(
+        "the name of a preset (chapter, default) or a mapping of values",
+        {str: "preset", dict: "values"},
+    ),
 ]
 
 
@@ -77,15 +71,13 @@ class Axis(ConfigModel):
     )
 
 
-def _sweep_form(value: Any) -> str | None:
-    forms: dict[type, str] = {dict: "product", tuple: "union", list: "union"}
-    return forms.get(type(value))
-
-
 Product = dict[NewName, Axis]
 SweepOf = Annotated[
     Annotated[Product, Tag("product")] | Annotated[tuple[Product, ...], Tag("union")],
-    either("a mapping of axes, or a list of such mappings", _sweep_form),
+    either(
+        "a mapping of axes, or a list of such mappings",
+        {dict: "product", tuple: "union", list: "union"},
+    ),
 ]
 
 
@@ -119,12 +111,11 @@ class CellSource(ConfigModel):
         solver = at.get("numerics", "solver")
         for key, idle in (("over_relaxation", "1"), ("order", "coloured")):
             value = at.get("numerics", key)
-            if solver is None or solver.text not in _WITHOUT_SWEEPS or value is None:
+            if solver.text not in _WITHOUT_SWEEPS or not value:
                 continue
             if value.text != idle and value.number != 1:
-                mark = max(solver.mark, value.mark)  # swept values stand below what they replace
                 sentence = f"{solver.text} treats all contacts at once; expected {idle}"
-                at.refuse(mark, f"{key}: {sentence}")
+                at.refuse_pair(solver, value, f"{key}: {sentence}")
 
 
 class Reduced(ConfigModel):

@@ -6,21 +6,21 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, Tag
 
-from lavendersim.experiment.models.tree import duration_of
 from lavendersim.experiment.text.node import Path, key_mark
 from lavendersim.experiment.text.place import Place
 from lavendersim.quantities.model import ConfigModel
 from lavendersim.quantities.quantity import Quantity, either
 
 
-def _effects_form(value: Any) -> str | None:
+def all_or_named(value: Any) -> str | None:
+    """Return the form of `all`, or of a list of names."""
     return "all" if value == "all" else "named" if isinstance(value, list | tuple) else None
 
 
 EffectNames = Annotated[
     Annotated[Literal["all"], Tag("all")]
     | Annotated[tuple[str, ...], Field(min_length=1), Tag("named")],
-    either("all, or a list of effects", _effects_form),
+    either("all, or a list of effects", all_or_named),
 ]
 
 
@@ -49,11 +49,11 @@ def refuse_what_interrupts(at: Place, expected: str, *others: Path) -> None:
     """Refuse what keeps a cell's steps from being timed in one go, and a beginning at its end."""
     for path in (*others, ("events",), ("scene", "forces")):
         other = at.root.get(*path)
-        if other is not None and (other.entries or other.items):
+        if other.entries or other.items:
             found = ".".join(map(str, path))
             sentence = f"{at}: expected {expected} without events and forces, found {found}"
             at.refuse(key_mark(at.root, str(at)), sentence)
-    start, length = at.node.number_at("from"), duration_of(at.root)
-    if start is not None and length is not None and start >= length > 0:
-        sentence = f"from: expected a time before the end (duration {length:g} s), found {start:g}"
-        at.refuse(at.node.entries["from"].mark, sentence)
+    start, length = at.get("from"), at.root.get("duration").number
+    if start.number is not None and length is not None and start.number >= length > 0:
+        sentence = f"expected a time before the end (duration {length:g} s), found {start.number:g}"
+        at.refuse(start.mark, f"from: {sentence}")

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Final, Literal
 
 from pydantic import Field, Tag
 
 from lavendersim.cell.record import ALL, NONE, EverySteps
-from lavendersim.experiment.models.tree import duration_of
+from lavendersim.experiment.models.tree import after_the_end, not_after
 from lavendersim.experiment.text.place import Place
 from lavendersim.quantities.model import ConfigModel
 from lavendersim.quantities.quantity import Quantity, either
@@ -22,38 +22,26 @@ class Window(ConfigModel):
     @classmethod
     def rules(cls, at: Place) -> None:
         """It ends after it begins, and begins in the run."""
-        begin, end = at.node.number_at("from"), at.node.number_at("to")
-        length = duration_of(at.root)
+        begin, end = at.get("from").number, at.get("to").number
         if begin is None or end is None:
             return
         if begin >= end:
-            sentence = f"to: expected a time after from ({begin:g} s), found {end:g}"
-            at.refuse(at.node.entries["to"].mark, sentence)
-        elif length is not None and begin > length:
-            sentence = f"from: {begin:g} s is after the end of the run, duration {length:g} s"
-            at.refuse(at.node.entries["from"].mark, sentence)
-
-
-def _residuals_form(value: Any) -> str | None:
-    forms: dict[type, str] = {str: "switch", dict: "window"}
-    return forms.get(type(value))
+            not_after(at, begin)
+        else:
+            after_the_end(at, "from")
 
 
 Residuals = Annotated[
     Annotated[Literal["none", "all"], Tag("switch")] | Annotated[Window, Tag("window")],
-    either("none, all or {from: seconds, to: seconds}", _residuals_form),
+    either("none, all or {from: seconds, to: seconds}", {str: "switch", dict: "window"}),
 ]
 
 
-def _steps_form(value: Any) -> str | None:
-    # a number is read as the text, which says how it would be right
-    forms: dict[type, str] = {str: "every", int: "every", dict: "window"}
-    return forms.get(type(value))
-
-
+# A number is read as the text, which says how it would be right.
+_STEPS_FORM: Final = {str: "every", int: "every", dict: "window"}
 Steps = Annotated[
     Annotated[str, EverySteps(ALL), Tag("every")] | Annotated[Window, Tag("window")],
-    either("all, every N or {from: seconds, to: seconds}", _steps_form),
+    either("all, every N or {from: seconds, to: seconds}", _STEPS_FORM),
 ]
 
 

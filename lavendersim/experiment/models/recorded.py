@@ -28,9 +28,9 @@ def not_recorded(root: Node, taken: Readings) -> str | None:
     """Return why a log has not of every step what is taken of it; None where it has."""
     for key in sorted(taken & EVERYTHING):
         recorded = root.get("record", key)
-        if recorded is None or recorded.text == ALL:
+        if not recorded or recorded.text == ALL:
             continue
-        begin, end = recorded.number_at("from"), recorded.number_at("to")
+        begin, end = recorded.get("from").number, recorded.get("to").number
         within = f"from {begin:g} to {end:g} s" if begin is not None and end is not None else ""
         if words := recorded.text or within:
             return f"takes the {key} of every step, and record.{key} is {words}"
@@ -39,15 +39,15 @@ def not_recorded(root: Node, taken: Readings) -> str | None:
 
 def recording_rules(at: Place) -> None:
     """Refuse measures and panels that take what is not recorded of every step."""
-    for measure in at.node.entries_at("measure").values():
+    for measure in at.get("measure").entries.values():
         _refuse(at, measure, MEASURES)
-    for panel in at.node.items_at("figure", "panels"):
+    for panel in at.get("figure", "panels").items:
         _refuse(at, panel, PANELS)
 
 
 def _refuse(at: Place, node: Node, kinds: Mapping[str, Reader]) -> None:
     kind = node.get("kind")
-    if kind is None or kind.text is None or kind.text not in kinds:
+    if kind.text is None or kind.text not in kinds:
         return
     given = {key: value.text for key, value in node.entries.items()}
     reason = not_recorded(at.root, kinds[kind.text].reads(given))

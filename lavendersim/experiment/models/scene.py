@@ -10,16 +10,17 @@ from lavendersim.cell.surface import Surface
 from lavendersim.engine.effects import SCENE_KEYS
 from lavendersim.experiment.models.arrangements import Arrangement
 from lavendersim.experiment.models.bodies import Body
-from lavendersim.experiment.models.removals import removals
 from lavendersim.experiment.models.tree import (
     MOST_BODIES,
+    after_the_end,
     body_node,
     described,
-    duration_of,
     immovable,
     is_static,
     member_name,
     members,
+    not_after,
+    removals,
 )
 from lavendersim.experiment.text.node import key_mark
 from lavendersim.experiment.text.place import Place
@@ -99,26 +100,20 @@ class Force(ConfigModel):
     def rules(cls, at: Place) -> None:
         """It acts on a body that can move, for a while of the run, before the body is removed."""
         body, begin, end = at.get("body"), at.get("from"), at.get("to")
-        name, length = at.node.text_at("body"), duration_of(at.root)
-        if body is not None and (what := immovable(body_node(at.root, name), prescribed=True)):
+        name = body.text
+        if what := immovable(body_node(at.root, name), prescribed=True):
             at.refuse(body.mark, f'body: "{name}" is {what}; expected a movable body')
         if not at.get("force") and not at.get("torque"):
             at.refuse(at.node.mark, f"{at} does nothing; expected force or torque")
-        start = 0.0 if begin is None else begin.number
-        stop = end.number if end is not None else None
-        if start is None:
-            pass
-        elif begin is not None and length is not None and start > length > 0:
-            sentence = f"from: {start:g} s is after the end of the run, duration {length:g} s"
-            at.refuse(begin.mark, sentence)
-        elif end is not None and stop is not None and stop <= start:
-            sentence = f"to: expected a time after from ({start:g} s), found {stop:g}"
-            at.refuse(end.mark, sentence)
+        start, stop = begin.number if begin else 0.0, end.number
+        late = after_the_end(at, "from")
+        if not late and start is not None and stop is not None and stop <= start:
+            not_after(at, start)
         removal = removals(at.root).get(name or "")
-        if removal is not None and body is not None and end is None:
+        if removal is not None and not end:
             sentence = removal.sentence("body", name)
             at.refuse(body.mark, f"{sentence}; expected to: {removal.at:g}")
-        elif removal is not None and end is not None and stop is not None and stop > removal.at:
+        elif removal is not None and stop is not None and stop > removal.at:
             at.refuse(end.mark, removal.sentence("to", name))
 
 
@@ -143,7 +138,7 @@ class Scene(declared("Scene", ConfigModel, SCENE_KEYS)):  # type: ignore[misc]
     def rules(cls, at: Place) -> None:
         """Something can move; the bodies of arrangements are not too many, with own names."""
         bodies = at.get("bodies")
-        if bodies is None or not isinstance(bodies.content, dict):
+        if not isinstance(bodies.content, dict):
             return
         _arrangement_rules(at)
         every = [body for _, body in described(at.root)]
@@ -155,10 +150,9 @@ class Scene(declared("Scene", ConfigModel, SCENE_KEYS)):  # type: ignore[misc]
 
 
 def _arrangement_rules(at: Place) -> None:
-    single, total = at.node.entries_at("bodies"), 0
+    single, total = at.get("bodies").entries, 0
     arrangements = at.get("arrangements")
-    for name, arrangement in at.node.entries_at("arrangements").items():
-        assert arrangements is not None
+    for name, arrangement in arrangements.entries.items():
         count = members(arrangement)
         total += count
         mark = key_mark(arrangements, name)
@@ -169,6 +163,3 @@ def _arrangement_rules(at: Place) -> None:
         names = (member_name(name, number) for number in range(1, count + 1))
         if clash := next((one for one in names if one in single), None):
             at.refuse(mark, f"{name}: its body {quoted(clash)} has a namesake in bodies")
-
-
-__all__ = ["GRAVITY", "Body", "Force", "Gravity", "Scene", "Surface", "TiltedGravity"]

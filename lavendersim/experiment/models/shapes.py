@@ -7,7 +7,7 @@ where its centre of mass stands.
 from __future__ import annotations
 
 from abc import abstractmethod
-from typing import TYPE_CHECKING, Annotated, Any, Final, Literal, Union
+from typing import TYPE_CHECKING, Annotated, Final, Literal, Union
 
 from pydantic import Field, Tag
 
@@ -73,17 +73,15 @@ class AxisAngle(ConfigModel):
     degrees: Annotated[float, Quantity("degree")] = Field(description="[degree] right-handed angle")
 
 
-def _orientation_form(value: Any) -> str | None:
-    forms: dict[type, str] = {tuple: "quaternion", list: "quaternion", dict: "rotation"}
-    return forms.get(type(value))
-
-
 Orientation = Annotated[
     Annotated[
         tuple[float, float, float, float], Vector(4, Quantity(), nonzero=True), Tag("quaternion")
     ]
     | Annotated[AxisAngle, Tag("rotation")],
-    either("a quaternion [w, x, y, z] or {axis: [x, y, z], degrees: angle}", _orientation_form),
+    either(
+        "a quaternion [w, x, y, z] or {axis: [x, y, z], degrees: angle}",
+        {tuple: "quaternion", list: "quaternion", dict: "rotation"},
+    ),
 ]
 
 

@@ -39,10 +39,9 @@ class Study(ConfigModel):
     def rules(cls, at: Place) -> None:
         """The numerics have a place for the mistake."""
         mistake = at.get("mistake")
-        for key, expected, why in _PLACES.get(at.node.text_at("mistake") or "", ()):
+        for key, expected, why in _PLACES.get(mistake.text or "", ()):
             value = at.root.get("numerics", key)
-            if mistake is None or value is None or value.text in (None, expected):
+            if value.text in (None, expected):
                 continue  # no text is refused elsewhere
             sentence = f"mistake: {mistake.text} {why}; expected {key}: {expected}"
-            later = max(mistake.mark, value.mark)  # swept values stand below what they replace
-            at.refuse(later, f"{sentence}, found {value.text}")
+            at.refuse_pair(mistake, value, f"{sentence}, found {value.text}")

@@ -1,4 +1,4 @@
-"""What rules read of the whole tree: its bodies by name, its axes, whether a body moves.
+"""What rules read of the whole tree: bodies by name, whether and how long they move; its axes.
 
 An arrangement `tower` of 30 has the bodies tower_1 to tower_30. Values of a wrong type, which are
 refused elsewhere, make an arrangement of none.
@@ -6,11 +6,13 @@ refused elsewhere, make an arrangement of none.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
-from typing import Final
+from typing import Final, NamedTuple
 
 from lavendersim.engine.effects import MOTION_KEYS
-from lavendersim.experiment.text.node import Node, Path
+from lavendersim.experiment.text.node import ABSENT, Node, Path
+from lavendersim.experiment.text.place import Place, place_of
 
 MOST_BODIES = 100_000  # of a scene; their names alone are some megabytes
 BODIES: Path = ("scene", "bodies")
@@ -21,21 +23,20 @@ PRESCRIBE_MOTION: Final = tuple(key.name for key in MOTION_KEYS)
 
 def members(arrangement: Node) -> int:
     """Return how many bodies an arrangement has."""
-    kind = arrangement.text_at("kind")
+    kind = arrangement.get("kind").text
     if kind == "tower":
         return _whole(arrangement.get("count"))
     if kind == "pyramid":
         rows = _whole(arrangement.get("base_count"))
         return rows * (rows + 1) // 2
-    counts = arrangement.get("counts")
-    if kind != "grid" or counts is None or len(counts.items) != 3:
+    counts = arrangement.get("counts").items
+    if kind != "grid" or len(counts) != 3:
         return 0
-    x, y, z = (_whole(item) for item in counts.items)
-    return x * y * z
+    return math.prod(map(_whole, counts))
 
 
-def _whole(node: Node | None) -> int:
-    number = node.number if node is not None else None
+def _whole(node: Node) -> int:
+    number = node.number
     return int(number) if number is not None and 0 < number <= MOST_BODIES else 0
 
 
@@ -46,67 +47,72 @@ def member_name(arrangement: str, number: int) -> str:
 
 def body_names(root: Node) -> Iterator[str]:
     """Yield the names of all bodies, in their order; no more than a scene may have."""
-    yield from root.entries_at(*BODIES)
+    yield from root.get(*BODIES).entries
     left = MOST_BODIES
-    for name, arrangement in root.entries_at(*ARRANGEMENTS).items():
+    for name, arrangement in root.get(*ARRANGEMENTS).entries.items():
         count = min(members(arrangement), left)
         left -= count
         yield from (member_name(name, number) for number in range(1, count + 1))
 
 
-def body_node(root: Node, name: str | None) -> Node | None:
-    """Return the node that describes the body of this name, None where there is none."""
+def body_node(root: Node, name: str | None) -> Node:
+    """Return the node that describes the body of this name, ABSENT where there is none."""
     if name is None:
-        return None
-    single = root.entries_at(*BODIES).get(name)
-    if single is not None:
+        return ABSENT
+    if single := root.get(*BODIES, name):
         return single
     arrangement, _, number = name.rpartition("_")
-    node = root.entries_at(*ARRANGEMENTS).get(arrangement)
-    if node is None or not (number.isascii() and number.isdigit()) or len(number) > 6:
-        return None
-    return node.get("body") if 1 <= int(number) <= members(node) else None
+    node = root.get(*ARRANGEMENTS, arrangement)
+    if not (number.isascii() and number.isdigit()) or len(number) > 6:
+        return ABSENT
+    return node.get("body") if 1 <= int(number) <= members(node) else ABSENT
 
 
 def described(root: Node) -> Iterator[tuple[str, Node]]:
     """Yield every node that describes bodies, with the name of the body or the arrangement."""
-    yield from root.entries_at(*BODIES).items()
-    for name, arrangement in root.entries_at(*ARRANGEMENTS).items():
-        body = arrangement.get("body")
-        if body is not None:
+    yield from root.get(*BODIES).entries.items()
+    for name, arrangement in root.get(*ARRANGEMENTS).entries.items():
+        if body := arrangement.get("body"):
             yield name, body
 
 
 def is_static(body: Node) -> bool:
     """Tell whether a body never moves: a plane, or fixed."""
-    return body.text_at("shape", "kind") == "plane" or body.is_true("fixed")
+    return body.get("shape", "kind").text == "plane" or body.get("fixed").is_true
 
 
 def prescribes_motion(body: Node) -> str | None:
     """Return the key by which a body moves whatever touches it, None where there is none."""
-    return next((key for key in PRESCRIBE_MOTION if body.is_true(key)), None)
+    return next((key for key in PRESCRIBE_MOTION if body.get(key).is_true), None)
 
 
-def immovable(body: Node | None, *, prescribed: bool) -> str | None:
+def immovable(body: Node, *, prescribed: bool) -> str | None:
     """Return in a word why nothing moves a body; a prescribed motion counts where it says so."""
-    if body is None:
-        return None
-    if body.text_at("shape", "kind") == "plane":
+    if body.get("shape", "kind").text == "plane":
         return "a plane"
     own = prescribes_motion(body) if prescribed else None
     return own or ("fixed" if is_static(body) else None)
 
 
-def duration_of(root: Node) -> float | None:
-    """Return the simulated time [s], None where it is no number."""
-    return root.number_at("duration")
+def after_the_end(at: Place, key: str) -> bool:
+    """Refuse a time [s] that comes after the run; tells whether it does."""
+    time, length = at.get(key), at.root.get("duration").number
+    late = time.number is not None and length is not None and time.number > length > 0
+    if late:
+        sentence = f"{time.number:g} s is after the end of the run, duration {length:g} s"
+        at.refuse(time.mark, f"{key}: {sentence}")
+    return late
+
+
+def not_after(at: Place, begin: float) -> None:
+    """Refuse an end that does not come after the beginning [s]."""
+    end = at.get("to")
+    at.refuse(end.mark, f"to: expected a time after from ({begin:g} s), found {end.number:g}")
 
 
 def products(root: Node) -> tuple[Node, ...]:
     """Return the mappings of axes whose products, one after the other, are the sweep."""
     sweep = root.get("sweep")
-    if sweep is None:
-        return ()
     return (sweep,) if sweep.entries else sweep.items
 
 
@@ -115,5 +121,28 @@ def swept_values(root: Node) -> dict[str, list[Node]]:
     values: dict[str, list[Node]] = {}
     for product in products(root):
         for axis, node in product.entries.items():
-            values.setdefault(axis, []).extend(node.items_at("values"))
+            values.setdefault(axis, []).extend(node.get("values").items)
     return values
+
+
+class Removal(NamedTuple):
+    """When a body is removed."""
+
+    at: float  # [s]
+    event: int  # its index
+
+    def sentence(self, key: str, name: str | None) -> str:
+        """Return why the value of this key comes too late for the body."""
+        event = place_of(("events", self.event))
+        return f'{key}: "{name}" is removed at {self.at:g} s by {event}'
+
+
+def removals(root: Node) -> dict[str, Removal]:
+    """Return the first removal of each body that is removed, by its name."""
+    gone: dict[str, Removal] = {}
+    for index, event in enumerate(root.get("events").items):
+        at, body = event.get("at").number, event.get("body").text
+        if event.get("remove").is_true and at is not None and body is not None:
+            one = Removal(at, index)
+            gone[body] = min(gone.get(body, one), one)
+    return gone

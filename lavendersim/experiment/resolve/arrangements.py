@@ -58,11 +58,8 @@ def _grid(grid: Grid) -> list[Vector3]:
     ]
     if not grid.jitter:
         return places
-    return [
-        (
-            place[0] + grid.jitter * (2.0 * draw() - 1.0),
-            place[1] + grid.jitter * (2.0 * draw() - 1.0),
-            place[2] + grid.jitter * (2.0 * draw() - 1.0),
-        )
-        for place in places
-    ]
+
+    def moved(coordinate: float) -> float:
+        return coordinate + grid.jitter * (2.0 * draw() - 1.0)
+
+    return [(moved(x), moved(y), moved(z)) for x, y, z in places]

@@ -6,6 +6,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 from types import MappingProxyType
 from typing import Any, Final
@@ -40,6 +41,7 @@ CHAPTER: Final = Numerics(
     simultaneous_impacts="together",
     integrator="semi_implicit_euler",
     compliance_law="regularised",
+    undetermined_forces="as_solved",
     friction_cone="disc",
     sleeping=False,
     sleep_speed=0.005,
@@ -53,17 +55,15 @@ PRESETS: Final[MappingProxyType[str, Numerics]] = MappingProxyType(
 def specified_numerics(root: Node) -> tuple[str, dict[str, Node]]:
     """Return the preset that a config names, and the values beside it, as written."""
     numerics = root.get("numerics")
-    if numerics is None or numerics.text is not None:
-        return (numerics and numerics.text) or "default", {}
     values = dict(numerics.entries)
-    preset = values.pop("preset", None)
-    return (preset and preset.text) or "default", values
+    preset = values.pop("preset", numerics)
+    return preset.text or "default", values
 
 
 def with_named_preset(root: Node) -> Node:
     """Return the tree with `numerics: chapter` written as {preset: chapter}."""
     numerics = root.get("numerics")
-    if numerics is None or numerics.text is None:
+    if numerics.text is None:
         return root
     opened = Node({"preset": numerics}, numerics.mark, {"preset": numerics.mark})
     return graft(root, ("numerics",), opened)
@@ -77,15 +77,15 @@ def with_preset(root: Node) -> Node:
     numerics = root.get("numerics")
     name, values = specified_numerics(root)
     named = PRESETS.get(name)
-    wrong = numerics is not None and numerics.text is None and not numerics.entries
+    wrong = numerics and numerics.text is None and not numerics.entries
     if named is None or wrong:
         return root  # refused by the model
     entries = {key: Node(_scalar(value), UNWRITTEN) for key, value in named}
     given = {k: v for k, v in values.items() if v.content is not None or k == "tolerance"}
-    mark, keys, torn = root.mark, {}, False
-    if numerics is not None:
-        mark, keys, torn = numerics.mark, dict(numerics.keys), numerics.torn
-    whole = Node(entries | {"preset": Node(name, UNWRITTEN)} | given, mark, keys, torn)
+    whole = replace(
+        numerics or Node({}, root.mark),
+        content=entries | {"preset": Node(name, UNWRITTEN)} | given,
+    )
     return graft(root, ("numerics",), whole)
 
 

@@ -143,12 +143,5 @@ def _matter(body: Body | ArrangedBody, scene: Scene) -> CellBody:
 
 
 def _force(force: Force, duration: float) -> CellForce:
-    return CellForce.model_validate(
-        {
-            "body": force.body,
-            "from": force.begin,
-            "to": duration if force.end is None else force.end,
-            "force": force.force,
-            "torque": force.torque,
-        }
-    )
+    written = force.model_dump(by_alias=True, exclude_none=True)
+    return CellForce.model_validate({"to": duration} | written)

@@ -7,7 +7,8 @@ with a cell is reported at the value that makes it wrong.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Mapping
+import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
@@ -46,18 +47,13 @@ class Point:
     @property
     def label(self) -> str:
         """The coordinates as text: `e=0.8, timestep=1/480`; empty without a sweep."""
-        return label_of(self.coordinates)
+        return ", ".join(f"{name}={label(value)}" for name, value in self.coordinates.items())
 
     def tree(self, root: Node) -> Node:
         """Return the config of this cell."""
         for axis, node in self.choices:
             root = graft(_opened(root, axis.path), axis.path, node)
         return with_preset(root)
-
-
-def label_of(coordinates: Mapping[str, Any]) -> str:
-    """Return coordinates as text: `e=0.8, timestep=1/480`."""
-    return ", ".join(f"{name}={label(value)}" for name, value in coordinates.items())
 
 
 def swept_value(value: Any) -> Any:
@@ -100,13 +96,7 @@ def points(axes: tuple[tuple[Axis, ...], ...]) -> Iterator[Point]:
 
 def count(axes: tuple[tuple[Axis, ...], ...]) -> int:
     """Return the number of cells without making them."""
-    total = 0
-    for product in axes or ((),):
-        cells = 1
-        for axis in product:
-            cells *= len(axis.values)
-        total += cells
-    return total
+    return sum(math.prod(len(axis.values) for axis in product) for product in axes or ((),))
 
 
 def telling_points(axes: tuple[tuple[Axis, ...], ...]) -> Iterator[Point]:
@@ -135,7 +125,7 @@ def check_distinct(axes: tuple[tuple[Axis, ...], ...], report: Report) -> None:
 
 def _axis(name: str, node: Node, root: Node, report: Report) -> Axis | None:
     path_node, values = node.get("path"), node.get("values")
-    if path_node is None or path_node.text is None or values is None or not values.items:
+    if path_node.text is None or not values.items:
         return None  # refused by the model
     path = find_path(path_node, root, report)
     usable = _usable(name, values, report, nullable=path == ("numerics", "tolerance"))
@@ -177,10 +167,10 @@ def _opened(root: Node, path: Path) -> Node:
     """
     for length in range(1, len(path)):
         node = root.get(*path[:length])
-        if node is None or node.text is None:
+        if node.text is None:
             continue
         if path[:length] == ("numerics",):
             root = with_named_preset(root)
-        elif (named := root.get("scene", "surfaces", node.text)) is not None:
+        elif named := root.get("scene", "surfaces", node.text):
             root = graft(root, path[:length], named)
     return root

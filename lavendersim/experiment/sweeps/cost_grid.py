@@ -23,11 +23,9 @@ import yaml
 from lavendersim.cell.choices import Solver
 from lavendersim.experiment.experiment import Experiment
 from lavendersim.experiment.load import load_experiment_text
-from lavendersim.experiment.models.accuracy import is_of_order_two
 from lavendersim.experiment.models.cost import CostSpec
+from lavendersim.experiment.models.steps import is_of_order_two
 from lavendersim.experiment.resolve.presets import DEFAULT, PRESETS, specified_numerics
-from lavendersim.experiment.text.former import with_new_spellings
-from lavendersim.experiment.text.parse import parse
 from lavendersim.quantities.scalars import Ratio, label
 
 KNOBS: Final = ("timestep", "solver", "sweeps", "tolerance", "warm_start")
@@ -64,9 +62,8 @@ class Setting(NamedTuple):
     @property
     def curve(self) -> tuple[Any, ...]:
         """What settings share that differ in their timestep alone."""
-        own = (
-            self.role == "chapter"
-        )  # whatever else the config specifies, it has the preset's numbers
+        # whatever else the config specifies, the chapter's has the preset's numbers
+        own = self.role == "chapter"
         effort = self.sweeps, self.tolerance, self.warm_start, self.accuracy
         return (own, self.preset, self.solver, *effort)
 
@@ -80,7 +77,7 @@ class Setting(NamedTuple):
 
 def settings_of(experiment: Experiment) -> list[Setting]:
     """Return the settings: the config's own, the grid, the chapter's, the truth's if any."""
-    spec = experiment.cost
+    spec = experiment.config.cost
     assert spec is not None
     preset, others = _specified(experiment)
     numerics = experiment.cells()[0].config.numerics
@@ -121,9 +118,7 @@ def _grid(spec: CostSpec, specified: Setting, others: Mapping[str, Any]) -> Iter
 
 def _specified(experiment: Experiment) -> tuple[str, dict[str, Any]]:
     """Return the preset of a config, and what else its numerics specify, beside the knobs."""
-    root, _ = parse(experiment.text.encode(), experiment.name)
-    assert root is not None
-    preset, values = specified_numerics(root)
+    preset, values = specified_numerics(experiment.tree)
     return preset, {
         key: node.data for key, node in values.items() if key not in (*KNOBS, "accuracy")
     }
@@ -131,10 +126,7 @@ def _specified(experiment: Experiment) -> tuple[str, dict[str, Any]]:
 
 def over_the_grid(experiment: Experiment, settings: list[Setting]) -> Experiment:
     """Return the experiment with every setting as a product of its sweep."""
-    root, _ = parse(experiment.text.encode(), experiment.name)
-    assert root is not None
-    root = with_new_spellings(root, experiment.name)
-    data = {key: value for key, value in root.data.items() if key not in _LEFT_OUT}
+    data = {key: value for key, value in experiment.tree.data.items() if key not in _LEFT_OUT}
     data.setdefault("numerics", "default")
     if isinstance(data["numerics"], Mapping):  # an axis gives it back to the config's own setting
         data["numerics"] = {k: v for k, v in data["numerics"].items() if k != "accuracy"}
@@ -144,7 +136,9 @@ def over_the_grid(experiment: Experiment, settings: list[Setting]) -> Experiment
         {**_axes(setting.coordinates), **axes} for setting in settings for axes in products
     ]
     head = f"# {experiment.name}: the settings of its section `cost`, as a sweep.\n"
-    swept = load_experiment_text(head + yaml_of(data), str(experiment.path))
+    swept = load_experiment_text(
+        head + _yaml(data, width=100, default_flow_style=None), str(experiment.path)
+    )
     return replace(swept, name=experiment.name)
 
 
@@ -164,42 +158,19 @@ def fragment_of(experiment: Experiment, setting: Setting) -> str:
     chosen |= _specified(experiment)[1]
     chosen |= {key: value for key, value in setting.knobs.items() if value != defaults[key]}
     whole = list(chosen) in ([], ["preset"])
-    return yaml_of({"numerics": setting.preset if whole else chosen}, flow=True)
+    numerics = {"numerics": setting.preset if whole else chosen}
+    return _yaml(numerics, width=4096, default_flow_style=True).strip()[1:-1] + "\n"
 
 
-def yaml_of(data: Mapping[str, Any], *, flow: bool | None = None) -> str:
-    """Return plain data as YAML that lavender reads back as the same; flow: each key on a line."""
-    if not flow:
-        text: str = yaml.dump(
-            data,
-            Dumper=_Dumper,
-            sort_keys=False,
-            allow_unicode=True,
-            width=100,
-            default_flow_style=None,
-        )
-        return text
-    lines = (
-        yaml.dump(
-            {key: value}, Dumper=_Dumper, sort_keys=False, default_flow_style=True, width=4096
-        )
-        for key, value in data.items()
-    )
-    return "".join(f"{line.strip()[1:-1]}\n" for line in lines)
+def _yaml(data: Mapping[str, Any], **layout: Any) -> str:
+    """Return plain data as YAML that lavender reads back as the same."""
+    return str(yaml.safe_dump(_plain(data), sort_keys=False, allow_unicode=True, **layout))
 
 
-class _Dumper(yaml.SafeDumper):
-    """Writes what a config's tree holds: ratios as `1/480`, sequences as lists."""
-
-    def ignore_aliases(self, data: Any) -> bool:
-        """Write everything out: a config has no aliases."""
-        return True
-
-
-def _ratio(dumper: _Dumper, value: Ratio | Fraction) -> yaml.ScalarNode:
-    return dumper.represent_scalar("tag:yaml.org,2002:str", label(value))
-
-
-_Dumper.add_representer(Ratio, _ratio)
-_Dumper.add_representer(Fraction, _ratio)
-_Dumper.add_representer(tuple, _Dumper.represent_list)
+def _plain(value: Any) -> Any:
+    """Return a value with ratios as `1/480` and sequences as lists, nothing of it shared."""
+    if isinstance(value, Mapping):
+        return {key: _plain(inner) for key, inner in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(inner) for inner in value]
+    return label(value) if isinstance(value, Ratio | Fraction) else value

@@ -14,32 +14,27 @@ from lavendersim.experiment.text.report import Report
 def check_reduced_length(root: Node, report: Report) -> None:
     """Note a slow experiment without a shorter length, and a shorter length of one not slow."""
     reduced = root.get("reduced")
-    if _is_slow(root) != (reduced is not None):
-        given, lacks = ("slow", "reduced: {duration: ...}") if _is_slow(root) else ("reduced", "")
+    is_slow = root.get("slow").is_true
+    if is_slow != bool(reduced):
+        given, lacks = ("slow", "reduced: {duration: ...}") if is_slow else ("reduced", "")
         sentence = f"{given}: expected {lacks or 'slow: true'} beside it"
         report.add(key_mark(root, given), sentence)
-    shorter, duration = root.get("reduced", "duration"), root.get("duration")
-    if shorter is None or shorter.number is None:
+    shorter, whole = reduced.get("duration"), root.get("duration").number
+    if shorter.number is None:
         return
-    whole = duration.number if duration is not None else None
     if whole is not None and shorter.number >= whole:
         sentence = f"duration: expected less than the {whole:g} s in full, found {shorter.number:g}"
         report.add(shorter.mark, sentence)
     for product in products(root):
         for axis, node in product.entries.items():
             path = node.get("path")
-            if path is not None and path.text == "duration":
+            if path.text == "duration":
                 report.add(path.mark, f"{axis}: a reduced length and a swept one; keep one")
 
 
 def at_reduced_length(root: Node) -> tuple[Node, bool]:
     """Return the tree to run where time is short, and whether that is less than all of it."""
     shorter = root.get("reduced", "duration")
-    if not _is_slow(root) or shorter is None:
+    if not root.get("slow").is_true or not shorter:
         return root, False
     return graft(root, ("duration",), shorter), True
-
-
-def _is_slow(root: Node) -> bool:
-    slow = root.get("slow")
-    return slow is not None and slow.content is True

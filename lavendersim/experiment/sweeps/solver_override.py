@@ -12,7 +12,6 @@ from typing import Final
 from lavendersim.experiment.experiment import Experiment
 from lavendersim.experiment.resolve.presets import specified_numerics, with_named_preset
 from lavendersim.experiment.text.node import Node, graft
-from lavendersim.experiment.text.parse import parse
 
 # What a case may specify of its numerics and still be one of the default's: the timestep belongs to
 # the scene, as its size and its speeds do.
@@ -39,17 +38,12 @@ def about_something_else(experiment: Experiment) -> str:
         return f"makes a deliberate error ({', '.join(experiment.mistakes)})"
     if not experiment.expectations and experiment.always is None:
         return "judges nothing"
-    sweep = experiment.config.sweep
-    products = (sweep,) if isinstance(sweep, dict) else sweep
-    paths = dict.fromkeys(axis.path for product in products for axis in product.values())
-    swept = [path for path in paths if path.split(".")[0] == "numerics"]
+    swept = [path for path in experiment.swept.values() if path.startswith("numerics")]
     if own := [path for path in swept if path != "numerics.timestep"]:
         return f"varies {', '.join(own)}"
-    root, _ = parse(experiment.text.encode(), experiment.name)
-    assert root is not None
-    preset, specified = specified_numerics(root)
+    preset, specified = specified_numerics(experiment.tree)
     own = sorted(specified.keys() - OF_THE_SCENE)
-    if not specified and root.get("numerics", "preset") is None:
+    if not specified and not experiment.tree.get("numerics", "preset"):
         return "" if preset == "default" else f"is about the numerics {preset}"
     if preset != "default":
         own.insert(0, preset)

@@ -26,12 +26,12 @@ def with_new_spellings(root: Node, name: str) -> Node:
     """Return the tree in this version's spelling; warns of each former one. name: of the file."""
     for path, new in KEYS.items():
         section = root.get(*path[:-1])
-        if section is not None and path[-1] in section.entries and new not in section.entries:
+        if path[-1] in section.entries and new not in section.entries:
             _warn(name, key_mark(section, str(path[-1])), "key", str(path[-1]), new)
             root = graft(root, path[:-1], _renamed(section, str(path[-1]), new))
-    for measure, node in root.entries_at("measure").items():
+    for measure, node in root.get("measure").entries.items():
         kind = node.get("kind")
-        if kind is not None and kind.text in KINDS:
+        if kind.text in KINDS:
             _warn(name, kind.mark, "kind", kind.text, KINDS[kind.text])
             root = graft(root, ("measure", measure, "kind"), Node(KINDS[kind.text], kind.mark))
     return root

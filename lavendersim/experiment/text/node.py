@@ -39,19 +39,18 @@ class Node:
     keys: Mapping[str, Mark] = field(default_factory=dict)  # of a mapping: where each key stands
     torn: bool = False  # one of its keys was refused, so that what it lacks is not known
 
-    def get(self, *path: str | int) -> Node | None:
-        """Return the node at the path below this one, or None where there is none."""
-        node: Node | None = self
+    def get(self, *path: str | int) -> Node:
+        """Return the node at the path below this one, or ABSENT, which is false, without one."""
+        node = self
         for step in path:
-            node = node._child(step) if node is not None else None
+            if isinstance(step, str):
+                node = node.entries.get(step, ABSENT)
+            else:
+                node = node.items[step] if 0 <= step < len(node.items) else ABSENT
         return node
 
-    def _child(self, step: str | int) -> Node | None:
-        if isinstance(self.content, dict) and isinstance(step, str):
-            return self.content.get(step)
-        if isinstance(self.content, tuple) and isinstance(step, int):
-            return self.content[step] if 0 <= step < len(self.content) else None
-        return None
+    def __bool__(self) -> bool:
+        return self is not ABSENT
 
     @property
     def entries(self) -> dict[str, Node]:
@@ -76,30 +75,10 @@ class Node:
             return None
         return content
 
-    def entries_at(self, *path: str | int) -> dict[str, Node]:
-        """Return the entries of the mapping at a path; nothing where there is none."""
-        node = self.get(*path)
-        return node.entries if node is not None else {}
-
-    def items_at(self, *path: str | int) -> tuple[Node, ...]:
-        """Return the items of the list at a path; nothing where there is none."""
-        node = self.get(*path)
-        return node.items if node is not None else ()
-
-    def text_at(self, *path: str | int) -> str | None:
-        """Return the text at a path; None where there is none."""
-        node = self.get(*path)
-        return node.text if node is not None else None
-
-    def number_at(self, *path: str | int) -> float | None:
-        """Return the number at a path; None where there is none."""
-        node = self.get(*path)
-        return node.number if node is not None else None
-
-    def is_true(self, *path: str | int) -> bool:
-        """Tell whether `true` stands at a path."""
-        node = self.get(*path)
-        return node is not None and node.content is True
+    @property
+    def is_true(self) -> bool:
+        """Whether it is `true`."""
+        return self.content is True
 
     @property
     def data(self) -> Any:
@@ -109,6 +88,9 @@ class Node:
         if isinstance(self.content, dict):
             return {key: node.data for key, node in self.content.items()}
         return self.content
+
+
+ABSENT = Node(None, UNWRITTEN)  # has no text, number, entries or items
 
 
 def key_mark(parent: Node, key: str) -> Mark:

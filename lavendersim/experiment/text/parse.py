@@ -15,8 +15,8 @@ from typing import Any
 
 import yaml
 
-from lavendersim.errors import Defect
 from lavendersim.experiment.text.node import BROKEN, Mark, Node
+from lavendersim.experiment.text.report import Report
 from lavendersim.experiment.text.syntax import describe
 from lavendersim.quantities.found import quoted
 from lavendersim.quantities.scalars import ScalarError, resolve
@@ -49,22 +49,22 @@ class _Open:
         self.torn = False
 
 
-def parse(raw: bytes, name: str, size: int | None = None) -> tuple[Node | None, list[Defect]]:
-    """Return the tree (None where there is none to speak of) and what is wrong with the text.
+def parse(raw: bytes, report: Report, size: int | None = None) -> Node | None:
+    """Return the tree, None where there is none to speak of; notes what is wrong with the text.
 
     `size` is the length of the file [byte] when `raw` is only its beginning.
     """
-    reading = _Reading(name)
+    reading = _Reading(report)
     # The tree has no circles, and at most MOST_VALUES nodes: looking for some while it grows takes
     # as long as reading it.
     collects = gc.isenabled()
     gc.disable()
     try:
-        text = reading.decode(raw, size or len(raw))
-        return reading.compose(text), reading.defects
+        return reading.compose(reading.decode(raw, size or len(raw)))
     except _Stop:
-        return None, reading.defects
+        return None
     finally:
+        report.close_round()
         if collects:
             gc.enable()
 
@@ -75,19 +75,15 @@ def decode(raw: bytes) -> str:
 
 
 class _Reading:
-    def __init__(self, name: str) -> None:
-        self.name = name
-        self.defects: list[Defect] = []
+    def __init__(self, report: Report) -> None:
+        self.report = report
         self.stack: list[_Open] = []
         self.root: Node | None = None
         self.anchors: set[str] = set()
         self.values = 0
 
-    def refuse(self, mark: Mark, message: str) -> None:
-        self.defects.append(Defect(self.name, mark.line, mark.column, message))
-
     def stop(self, mark: Mark, message: str) -> _Stop:
-        self.refuse(mark, message)
+        self.report.add(mark, message)
         return _Stop()
 
     def decode(self, raw: bytes, size: int) -> str:
@@ -111,7 +107,8 @@ class _Reading:
         try:
             self._read(yaml.parse(text, _LOADER))
         except yaml.MarkedYAMLError as error:
-            self.defects += describe(error, text, self.name)
+            for mark, sentence in describe(error, text):
+                self.report.add(mark, sentence)
             return None
         if self.root is None or self.root.content is None:
             raise self.stop(Mark(1, 1), "the file is empty; an experiment has a scene, a duration")
@@ -139,7 +136,7 @@ class _Reading:
             raise self.stop(mark, f"more than {MOST_VALUES} values in one file")
         if event.__class__ is yaml.AliasEvent:
             if event.anchor not in self.anchors:
-                self.refuse(mark, f"alias *{event.anchor}: there is no such anchor")
+                self.report.add(mark, f"alias *{event.anchor}: there is no such anchor")
             self._place(Node(BROKEN, mark), mark)
             return
         refused = False
@@ -149,7 +146,7 @@ class _Reading:
             # as an escape such as "\\x1b"; most texts are plain, which is seen at once
             plain = event.value.isascii() and event.value.isprintable()
             if not plain and (match := _UNPRINTABLE.search(event.value)):
-                self.refuse(mark, f"control character U+{ord(match[0]):04X}; remove it")
+                self.report.add(mark, f"control character U+{ord(match[0]):04X}; remove it")
             self._place(self._scalar(event, mark, refused), mark, event.value)
             return
         if len(self.stack) >= DEEPEST:
@@ -159,10 +156,10 @@ class _Reading:
     def _refuse_properties(self, event: Any, mark: Mark) -> bool:
         if event.tag is not None:
             tag = event.tag.replace("tag:yaml.org,2002:", "!!")
-            self.refuse(mark, f"tag {quoted(tag)}: a config has no tags, only plain values")
+            self.report.add(mark, f"tag {quoted(tag)}: a config has no tags, only plain values")
         if event.anchor is not None:
             message = f"anchor &{event.anchor}: anchors and aliases are not read"
-            self.refuse(mark, f"{message}; write the value out where it is used")
+            self.report.add(mark, f"{message}; write the value out where it is used")
             self.anchors.add(event.anchor)
         return event.tag is not None
 
@@ -176,7 +173,7 @@ class _Reading:
         try:
             return Node(resolve(event.value), mark)
         except ScalarError as error:
-            self.refuse(mark, str(error))
+            self.report.add(mark, str(error))
             return Node(BROKEN, mark)
 
     def _place(self, node: Node, mark: Mark, text: str | None = None) -> None:
@@ -196,11 +193,11 @@ class _Reading:
     def _key(self, into: _Open, mark: Mark, text: str | None) -> None:
         into.drops_value = False
         if text is None:
-            self.refuse(mark, "a key is a list, a mapping or an alias; a key is a name")
+            self.report.add(mark, "a key is a list, a mapping or an alias; a key is a name")
             into.drops_value = into.torn = True
         elif text in into.keys:
             first = into.keys[text].line
-            self.refuse(mark, f"key {quoted(text)} stands twice, first in line {first}")
+            self.report.add(mark, f"key {quoted(text)} stands twice, first in line {first}")
             into.drops_value = True
         else:
             into.keys[text] = mark

@@ -50,8 +50,8 @@ class Place:
         assert isinstance(self.path[-1], int)
         return self.path[-1]
 
-    def get(self, *path: str | int) -> Node | None:
-        """Return the node at the path below."""
+    def get(self, *path: str | int) -> Node:
+        """Return the node at the path below, ABSENT without one."""
         return self.node.get(*path)
 
     def key(self, key: str) -> Mark:
@@ -60,8 +60,11 @@ class Place:
 
     def written(self, key: str) -> Mark | None:
         """Return where a key stands that is written; null writes nothing."""
-        child = self.node.get(key)
-        return None if child is None or child.content is None else self.key(key)
+        return None if self.get(key).content is None else self.key(key)
+
+    def refuse_pair(self, one: Node, other: Node, sentence: str) -> None:
+        """Refuse values that exclude each other at the later: what is swept stands below."""
+        self.refuse(max(one.mark, other.mark), sentence)
 
     def lacks(self, key: str, meaning: str) -> None:
         """Refuse the mapping for a key that it lacks."""

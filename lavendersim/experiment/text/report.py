@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
 from lavendersim.errors import Defect
 from lavendersim.experiment.text.node import Mark
 
@@ -13,14 +11,14 @@ MOST_DEFECTS = 200  # nobody reads further, and printing more takes longer than 
 class Report:
     """Collects defects in rounds; a place that an earlier round refused is not refused again.
 
-    One round is the file as written, or one cell of its sweep: cells share most of their nodes, so
-    the same mistake is found in each of them.
+    One round is the text, the file as written, or one cell of its sweep: cells share most of their
+    nodes, so the same mistake is found in each of them.
     """
 
-    def __init__(self, name: str, defects: Iterable[Defect] = ()) -> None:
+    def __init__(self, name: str) -> None:
         self.name = name
-        self._defects = list(dict.fromkeys(defects))
-        self._reported = {(defect.line, defect.column) for defect in self._defects}
+        self._defects: list[Defect] = []
+        self._reported: set[Mark] = set()
         self._round: dict[tuple[Mark, str], None] = {}
         self._sound = True  # nothing found in this round, new or reported before
 

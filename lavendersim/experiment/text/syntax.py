@@ -7,10 +7,11 @@ often a line below the mistake: sentences and places are chosen here by the kind
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 
 import yaml
 
-from lavendersim.errors import Defect
+from lavendersim.experiment.text.node import Mark
 
 _TAB = re.compile(r"^ *\t[ \t]*(?=[^\s#])", re.MULTILINE)
 MOST_TABS = 50
@@ -34,31 +35,27 @@ _KINDS: tuple[tuple[str, str, str, bool], ...] = (
 )  # fmt: skip
 
 
-def describe(error: yaml.MarkedYAMLError, text: str, name: str) -> list[Defect]:
-    """Return the defects behind one syntax error; lines indented with tabs are all named."""
+def describe(error: yaml.MarkedYAMLError, text: str) -> Iterator[tuple[Mark, str]]:
+    """Yield the defects behind one syntax error; lines indented with tabs are all named."""
     if tabs := list(_TAB.finditer(text)):
-        return [
-            Defect(
-                name,
-                text.count("\n", 0, tab.start()) + 1,
-                tab[0].index("\t") + 1,
-                "indented with a tab; YAML is indented with spaces",
-            )
-            for tab in tabs[:MOST_TABS]
-        ]
+        for tab in tabs[:MOST_TABS]:
+            place = Mark(text.count("\n", 0, tab.start()) + 1, tab[0].index("\t") + 1)
+            yield place, "indented with a tab; YAML is indented with spaces"
+        return
     problem, context = error.problem or "", error.context or ""
     for words, context_words, sentence, at_start in _KINDS:
         if words in problem and context_words in context:
             mark = error.context_mark if at_start else error.problem_mark
-            return [_defect(name, text, mark or error.problem_mark, sentence)]
-    return [_defect(name, text, error.problem_mark, f"not YAML: {problem or context}")]
+            yield _defect(text, mark or error.problem_mark, sentence)
+            return
+    yield _defect(text, error.problem_mark, f"not YAML: {problem or context}")
 
 
-def _defect(name: str, text: str, mark: object, sentence: str) -> Defect:
+def _defect(text: str, mark: object, sentence: str) -> tuple[Mark, str]:
     """Return the defect, moved to the end of the text where the parsers point behind it."""
     lines = _LINE_BREAK.split(text)
     line, column = getattr(mark, "line", 0), getattr(mark, "column", 0)
     if line >= len(lines):
         line, column = len(lines) - 1, len(lines[-1])
         sentence = "the text ends too early; is a bracket or a quote not closed?"
-    return Defect(name, line + 1, min(column, len(lines[line])) + 1, sentence)
+    return Mark(line + 1, min(column, len(lines[line])) + 1), sentence

@@ -13,6 +13,7 @@ from jsonschema import Draft7Validator
 from lavendersim.experiment import load_experiment
 from lavendersim.experiment.schema import json_schema
 from lavendersim.experiment.text.parse import parse
+from lavendersim.experiment.text.report import Report
 from lavendersim.quantities.scalars import Ratio
 
 ROOT = Path(__file__).parents[3]
@@ -36,9 +37,10 @@ def plain(value: Any) -> Any:
 
 
 def read(path: Path) -> Any:
-    root, defects = parse(path.read_bytes(), path.name)
+    report = Report(path.name)
+    root = parse(path.read_bytes(), report)
     assert root is not None
-    assert not defects
+    assert not report.defects
     return plain(root.data)
 
 
@@ -114,6 +116,6 @@ def test_good_config_loads_and_fits_the_schema(path: Path) -> None:
     ],
 )
 def test_bad_config_does_not_fit_the_schema(case: str) -> None:
-    root, _ = parse(next(BAD.rglob(f"{case}.yaml")).read_bytes(), case)
+    root = parse(next(BAD.rglob(f"{case}.yaml")).read_bytes(), Report(case))
     assert root is not None
     assert not VALIDATOR.is_valid(plain(root.data))

@@ -32,6 +32,7 @@ def test_chapter_is_frozen() -> None:
         "simultaneous_impacts": "together",
         "integrator": "semi_implicit_euler",
         "compliance_law": "regularised",
+        "undetermined_forces": "as_solved",
         "accuracy": None,
         "smallest_timestep": 1e-9,
         "friction_cone": "disc",

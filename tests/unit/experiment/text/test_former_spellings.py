@@ -33,8 +33,8 @@ def test_a_former_key_is_read_and_its_new_name_is_said_at_its_place() -> None:
     ]
     with pytest.warns(ConfigWarning):
         experiment = load_experiment_text(BALL + DURATION + "price: {repeats: 3}\n", "old.yaml")
-    assert experiment.overhead is not None
-    assert experiment.overhead.repeats == 3
+    assert experiment.config.overhead is not None
+    assert experiment.config.overhead.repeats == 3
 
 
 def test_a_former_key_in_a_section_and_a_former_kind_are_read() -> None:

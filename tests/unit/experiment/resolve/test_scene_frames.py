@@ -9,8 +9,7 @@ from lavendersim.cell.shapes import Box, Cylinder
 from lavendersim.experiment import load_experiment_text
 from lavendersim.geometry.convex_hull import Polyhedron
 from lavendersim.geometry.mass_properties import Placed, Solid, homogeneous, polyhedron, together
-from lavendersim.geometry.principal_axes import principal
-from lavendersim.geometry.quaternions import axes, inverse, product, to_body, to_world
+from lavendersim.geometry.quaternions import axes, product, to_world
 from lavendersim.geometry.vectors import unit
 
 ONE = (1.0, 0.0, 0.0, 0.0)
@@ -43,24 +42,6 @@ def thing(shape: str, start: str = "position: [1, 2, 3]") -> dict:
 
 def matrix(q) -> np.ndarray:
     return np.array(axes(tuple(q))).T
-
-
-def test_eigenvectors_are_those_of_lapack() -> None:
-    rng = np.random.default_rng(5)
-    for _ in range(50):
-        half = rng.normal(size=(3, 3))
-        tensor = half @ half.T
-        moments, turn = principal(tuple(map(tuple, tensor.tolist())))
-        # Jacobi's and LAPACK's errors are a few roundings of the largest element
-        limit = 1e-14 * np.abs(tensor).max()
-        np.testing.assert_allclose(sorted(moments), np.linalg.eigvalsh(tensor), atol=limit)
-        columns = matrix(turn)
-        np.testing.assert_allclose(columns @ np.diag(moments) @ columns.T, tensor, atol=10 * limit)
-
-
-def test_diagonal_tensor_keeps_its_axes_and_their_order() -> None:
-    tensor = ((3.0, 1e-16, 0.0), (1e-16, 1.0, 0.0), (0.0, 0.0, 2.0))
-    assert principal(tensor) == ((3.0, 1.0, 2.0), (1.0, 0.0, 0.0, 0.0))
 
 
 def test_points_of_a_hull_stand_where_the_file_puts_them() -> None:
@@ -149,12 +130,6 @@ def lowest(shape: dict, turn: np.ndarray) -> float:
         half = 0.5 * shape["length"]
         points = np.vstack([np.column_stack([ring, np.full(len(ring), z)]) for z in (-half, half)])
     return float((points @ turn.T)[:, 2].min())
-
-
-def test_rotations_undo_each_other() -> None:
-    vector = (0.3, -2.0, 0.7)
-    assert to_body(Q, to_world(Q, vector)) == pytest.approx(vector, abs=1e-15)
-    assert product(Q, inverse(Q)) == pytest.approx((1.0, 0.0, 0.0, 0.0), abs=1e-15)
 
 
 def test_ends_of_springs_stand_where_the_file_puts_them() -> None:
