@@ -43,7 +43,9 @@ def cost(
 
     sought = [percentage(target) for target in targets or ()]
     # In a folder those with a section `cost` are meant; a file that is named must have one.
-    experiments = [one for one in load_all(configs) if one.cost is not None or one.path in configs]
+    experiments = [
+        one for one in load_all(configs) if one.config.cost is not None or one.path in configs
+    ]
     if not experiments:
         raise UsageError(f"{configs[0]}: no config in this folder has a section cost")
     for experiment in experiments:

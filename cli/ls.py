@@ -15,16 +15,10 @@ def ls(
     runs: Runs = Path("runs"),
     as_json: Annotated[bool, typer.Option("--json", help="Print the runs as JSON.")] = False,
 ) -> None:
-    """List runs, oldest first. Exits 3 when a finished one has a log that was cut."""
+    """List runs, oldest first. Exits 3 when a finished one has a damaged table or a cut log."""
     from lavendersim.runner import list_runs
 
-    rows: list[dict[str, Any]] = []
-    for run in list_runs(runs):
-        passed = run.results()["passed"] if run.finished else None
-        # An unfinished one is listed as such; its logs are as they were left.
-        cut = run.cut() if run.finished else []
-        row = {"path": run.path, "finished": run.finished, "passed": passed, "damaged": cut}
-        rows.append(row)
+    rows = [_row(run) for run in list_runs(runs)]
     if as_json:
         printing.as_json(rows)
         _end(rows)
@@ -34,13 +28,29 @@ def ls(
     for row in rows:
         state = printing.mark(bool(row["passed"])) if row["finished"] else "----"
         if row["damaged"]:
-            state = typer.style("CUT ", fg=typer.colors.RED, bold=True)
+            word = "BAD " if row["passed"] is None else "CUT "
+            state = typer.style(word, fg=typer.colors.RED, bold=True)
         typer.echo(f"{state}  {row['path']}")
     _end(rows)
 
 
+def _row(run: Any) -> dict[str, Any]:
+    """Return what there is to say of a run; one with a damaged table is not in the others' way."""
+    from lavendersim.errors import TraceError
+
+    passed: bool | None = None
+    damaged: list[str] = []
+    if run.finished:  # another is listed as such; its logs are as they were left
+        try:
+            passed = run.results()["passed"]
+            damaged = run.cut()
+        except TraceError as error:
+            damaged = [str(error)]
+    return {"path": run.path, "finished": run.finished, "passed": passed, "damaged": damaged}
+
+
 def _end(rows: list[dict[str, Any]]) -> None:
-    """Say which logs were cut, and exit 3 where one was."""
+    """Say which logs were cut and which tables are damaged, and exit 3 where one is."""
     damaged = [sentence for row in rows for sentence in row["damaged"]]
     printing.report_damage(damaged)
     if damaged:

@@ -17,6 +17,7 @@ from lavender_cli import (
     check,
     cost,
     doctor,
+    judge,
     ls,
     plan,
     plot,
@@ -26,6 +27,7 @@ from lavender_cli import (
     schema,
     show,
     solve,
+    verify,
 )
 
 INTERRUPTED = 130  # typer ends with it after Ctrl-C
@@ -43,7 +45,15 @@ app = typer.Typer(
 )
 VERBS: tuple[Callable[..., None], ...] = (
     *(run.run, plot.plot, replay.replay, check.check, plan.plan, ls.ls, show.show),
-    *(cost.cost, solve.solve, recover.recover, schema.schema, doctor.doctor),
+    *(
+        judge.judge,
+        verify.verify,
+        cost.cost,
+        solve.solve,
+        recover.recover,
+        schema.schema,
+        doctor.doctor,
+    ),
 )
 for verb in VERBS:
     app.command()(verb)

@@ -124,7 +124,7 @@ def report_damage(sentences: list[str], refused: str = "") -> None:
     for sentence in sentences[:FAILURES_SHOWN]:
         typer.echo(sentence, err=True)
     if len(sentences) > FAILURES_SHOWN:
-        typer.echo(f"and {len(sentences) - FAILURES_SHOWN} more damaged logs", err=True)
+        typer.echo(f"and {len(sentences) - FAILURES_SHOWN} more that are damaged", err=True)
     if sentences and refused:
         allow = "--allow-incomplete takes what is whole, and marks it"
         typer.echo(f"{refused}; {allow}", err=True)

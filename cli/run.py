@@ -45,8 +45,13 @@ def run(
     good, tables, with_overheads = True, [], []
     for experiment in experiments:
         printing.warn_of_mistakes(experiment)
-        with progress.reporting(experiment.name) as shown:
-            finished = run(experiment, runs, jobs, shown)
+        try:
+            with progress.reporting(experiment.name) as shown:
+                finished = run(experiment, runs, jobs, shown)
+        except KeyboardInterrupt as end:  # `run` says by what, and where what was simulated is
+            if str(end):
+                typer.echo(str(end), err=True)
+            raise
         good = good and finished.good
         printing.warn_of_not_converged(finished)
         figures = []
@@ -54,7 +59,7 @@ def run(
             from lavendersim.figures import draw
 
             figures = draw(finished.run, finished.run.path / "figures")
-        if experiment.overhead is not None:
+        if experiment.config.overhead is not None:
             with_overheads.append(finished.run)
         refined = time_errors.refine(finished, jobs) if refine else []
         if as_json:

@@ -41,7 +41,10 @@ def show(
         return
     experiment = opened.experiment
     typer.echo(f"{typer.style(opened.name, bold=True)}  {opened.path}")
-    for name, text in (("question", experiment.question), ("expected", experiment.expected)):
+    for name, text in (
+        ("question", experiment.config.question),
+        ("expected", experiment.config.expected),
+    ):
         if text:
             typer.echo(f"{name}  {text}")
     if experiment.solver is not None:

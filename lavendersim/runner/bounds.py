@@ -20,6 +20,7 @@ from lavendersim.measures.interfaces import Floats, Rows, Trace
 from lavendersim.measures.sections import Section
 from lavendersim.measures.specs.always import BEYOND_BOUNDS, STOPPING, Always
 from lavendersim.measures.step_checks import CheckedSteps, StepChecks
+from lavendersim.record_tables import joined
 from lavendersim.trace import Block
 
 from .contact_sums_kernel import RunningSums
@@ -59,7 +60,7 @@ class Bounds:
         again = 0
         if self._last is not None:
             again = 1
-            step = np.concatenate([self._last[0], step])
+            step = joined([self._last[0], step])
             pose = np.concatenate([self._last[1], pose])
         part = Section(step, block.contact, pose, *self._cell)
         self._last = step[-1:].copy(), pose[-1:].copy()

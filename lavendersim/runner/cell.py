@@ -17,21 +17,29 @@ from lavendersim.engine.compile_options import source_hash
 from lavendersim.engine.effects import EFFECTS
 from lavendersim.engine.engine import Engine, Rows
 from lavendersim.engine.records import DIVERGED, INACCURATE, NOT_FINITE, RUNNING, TURNS_TOO_FAST
+from lavendersim.measures import applies
 from lavendersim.measures.always import WorstStates
 from lavendersim.measures.specs.always import Always
 from lavendersim.measures.specs.catalogue import MeasureSpec
+from lavendersim.measures.step_checks import checks_of
+from lavendersim.measures.verdict import failure
+from lavendersim.record_tables import widened
 from lavendersim.scene.build import Scene, build
 from lavendersim.scene.events import EventQueue
 from lavendersim.scene.plan import Plan
-from lavendersim.trace import Block, TraceWriter, Written, trace_of
+from lavendersim.trace import Block, LogDigest, TraceWriter, Written, trace_of
 from lavendersim.trace.recorded import described, partly_recorded
+from lavendersim.trace.whole import INTERRUPTED
 
 from .accuracy import Accuracy
 from .bounds import Bounds
+from .call_length import CallLength, block_steps
 from .environment import versions
+from .interruption import deferred, raise_noted
 from .measured import Measured, measure_cell
 from .problem_dump import ProblemDump
 from .run_directory import RunCell
+from .run_index import note_ended
 
 # Called when the kernel of a cell is there, with what reads how many steps are done.
 Began = Callable[[Callable[[], int]], None]
@@ -78,6 +86,7 @@ class CellOutcome(NamedTuple):
     physics_ns: int  # inside the kernel
     logging_ns: int  # encoding and writing
     accuracy: Accuracy
+    log: LogDigest | None = None  # of its log as it was written
 
 
 @cache
@@ -87,8 +96,7 @@ def _with_time(row: np.dtype[Any]) -> np.dtype[Any]:
 
 def block_of(rows: Rows, clock: Clock) -> Block:
     """Return the rows of some steps as the log takes them, with their time."""
-    step = np.empty(len(rows.step), _with_time(rows.step.dtype))
-    step[list(rows.step.dtype.names or ())] = rows.step
+    step = widened(rows.step, _with_time(rows.step.dtype))
     step["time_ns"] = clock.nanoseconds(rows.step["step"])
     return Block(step=step, contact=rows.contact, pose=rows.pose, residual=rows.residual)
 
@@ -149,17 +157,26 @@ def divergence(scene: Scene, engine: Engine) -> str:
     return f"diverged: body {name} {what} after step {step} (t = {time:.9g} s)"
 
 
-def started(scene: Scene, plan: Plan) -> tuple[Engine, int]:
-    """Return the engine of a scene at its initial state, and what its kernel took [ns]."""
+def interrupted(scene: Scene, signal: str, step: int) -> str:
+    """Return one sentence naming the signal, the step and the time."""
+    time = float(scene.clock.time(step))
+    return f"{INTERRUPTED} by {signal} after step {step} (t = {time:.9g} s)"
+
+
+def started(scene: Scene, plan: Plan, steps: int) -> tuple[Engine, int]:
+    """Return the engine of a scene at its initial state, and what its kernel took [ns].
+
+    steps: of the run.
+    """
     start = perf_counter_ns()
-    engine = scene.engine(plan.spec)
+    engine = scene.engine(plan.spec, block_steps(steps, len(scene.names)))
     engine.advance(0)  # compiles or loads the kernel, and records the initial state
     return engine, perf_counter_ns() - start
 
 
 def compile_kernel(job: CellJob) -> int:
     """Leave the kernel of a cell where other processes find it; returns what it took [ns]."""
-    return started(build(job.config, job.plan.spec), job.plan)[1]
+    return started(build(job.config, job.plan.spec), job.plan, 0)[1]
 
 
 def run_and_measure(
@@ -167,12 +184,30 @@ def run_and_measure(
 ) -> tuple[CellOutcome, dict[int, Measured]]:
     """Simulate one cell, write its log, and measure it for each cell of the sweep that it is of."""
     outcome, written, worst = simulate(job, began)
+    note_ended(job.path, outcome.status, written.digest)
+    raise_noted()
     trace = trace_of(written)
     measured = {}
     for index, label, coordinates in job.cells:
         cell = RunCell(index, label, coordinates, job.path, outcome.status, job.config, [trace])
         measured[index] = measure_cell(cell, job.measures, worst)
     return outcome, measured
+
+
+def failed(job: CellJob, how: str) -> tuple[CellOutcome, dict[int, Measured]]:
+    """Return the outcome of a cell whose process died each time: nothing is measured of it."""
+    status = f"failed: its process {how}, both times"
+    accuracy = Accuracy(tolerance=job.config.numerics.tolerance)
+    why = failure("a complete run", status)
+    always = dict.fromkeys(checks_of(job.always), why)
+    measured = {
+        index: Measured(
+            {name: status for name, spec in job.measures.items() if applies(spec, coordinates)},
+            always,
+        )
+        for index, _, coordinates in job.cells
+    }
+    return CellOutcome(job.cell, status, 0, 0, 0, 0, accuracy), measured
 
 
 def simulate(
@@ -185,7 +220,7 @@ def simulate(
     """
     physics_ns = logging_ns = 0
     scene = build(job.config, job.plan.spec)
-    engine, compile_ns = started(scene, job.plan)
+    engine, compile_ns = started(scene, job.plan, job.config.steps)
     if began is not None:
         began(lambda: int(engine.counters["step"][0]))
     absent = absent_topics(job.plan)
@@ -203,36 +238,43 @@ def simulate(
     dump = ProblemDump(job.path, job.config.record)
     accuracy = Accuracy(tolerance=job.config.numerics.tolerance)
     status, steps = "complete", job.config.steps
+    call = CallLength(len(scene.names))
     done = stop = 0
-    while True:
-        events.apply_due(done)
+    with deferred() as signalled:
+        while True:
+            events.apply_due(done)
+            start = perf_counter_ns()
+            result = RUNNING
+            if done < steps:
+                stop = dump.next_stop(done, events.next_stop(min(steps, done + call.steps)))
+                result = engine.advance(stop - done)
+            spent = perf_counter_ns() - start
+            made, done = -done, int(engine.counters["step"][0])
+            call.after(made + done, spent * 1e-9)
+            if result == DIVERGED:
+                status = divergence(scene, engine)
+            start = perf_counter_ns()
+            rows = engine.take_rows()
+            if len(rows.step):
+                block, broken = bounds.within(block_of(rows, scene.clock), result == DIVERGED)
+                if broken:
+                    spent = spent * len(block.step) // len(rows.step)
+                    last = int(block.step["step"][-1])
+                    if last < done or result != DIVERGED:
+                        result, status, done = STOPPED, broken, last
+                writer.append(block)
+                accuracy = accuracy.after(block.step, block.contact, scene.names)
+            dump.take(engine, done, stop)
+            physics_ns += spent
+            logging_ns += perf_counter_ns() - start
+            if result in (DIVERGED, STOPPED) or (result == RUNNING and done >= steps):
+                break
+            if name := signalled():
+                status = interrupted(scene, name, done)
+                break
         start = perf_counter_ns()
-        result = RUNNING
-        if done < steps:
-            stop = dump.next_stop(done, events.next_stop(steps))
-            result = engine.advance(stop - done)
-        spent = perf_counter_ns() - start
-        done = int(engine.counters["step"][0])
-        if result == DIVERGED:
-            status = divergence(scene, engine)
-        start = perf_counter_ns()
-        rows = engine.take_rows()
-        if len(rows.step):
-            block, broken = bounds.within(block_of(rows, scene.clock), result == DIVERGED)
-            if broken:
-                spent = spent * len(block.step) // len(rows.step)
-                last = int(block.step["step"][-1])
-                if last < done or result != DIVERGED:
-                    result, status, done = STOPPED, broken, last
-            writer.append(block)
-            accuracy = accuracy.after(block.step, block.contact, scene.names)
-        dump.take(engine, done, stop)
-        physics_ns += spent
+        written = writer.close(status)
         logging_ns += perf_counter_ns() - start
-        if result in (DIVERGED, STOPPED) or (result == RUNNING and done >= steps):
-            break
-    start = perf_counter_ns()
-    written = writer.close(status)
-    logging_ns += perf_counter_ns() - start
-    outcome = CellOutcome(job.cell, status, done, compile_ns, physics_ns, logging_ns, accuracy)
+    times = compile_ns, physics_ns, logging_ns
+    outcome = CellOutcome(job.cell, status, done, *times, accuracy, written.digest)
     return outcome, written, bounds.worst

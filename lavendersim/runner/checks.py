@@ -29,7 +29,7 @@ def check(experiment: Experiment) -> None:
 
 def _checks_of(experiment: Experiment) -> Iterator[Check]:
     """Yield the checks that an experiment requires; late, as others are checked without numba."""
-    if experiment.overhead is not None:
+    if experiment.config.overhead is not None:
         from .overheads import check_overheads
 
         yield check_overheads

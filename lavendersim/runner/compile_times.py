@@ -16,6 +16,8 @@ from lavendersim.engine.spec import Spec
 from lavendersim.engine.step import advance_for, is_compiled
 from lavendersim.scene.build import build
 
+from .workers import end_with_parent
+
 
 def compile_times(
     config: CellConfig,
@@ -33,7 +35,10 @@ def compile_times(
         progress(0, len(missing))
         # Spawned, never forked; and never a second kernel in a process that has the parts of one.
         with ProcessPoolExecutor(
-            min(workers, len(missing)), get_context("spawn"), max_tasks_per_child=1
+            min(workers, len(missing)),
+            get_context("spawn"),
+            initializer=end_with_parent,
+            max_tasks_per_child=1,
         ) as pool:
             waiting = {pool.submit(compile_anew, config, spec): spec for spec in missing}
             for done, future in enumerate(as_completed(waiting), start=1):

@@ -23,14 +23,14 @@ from lavendersim.measures.contact_sums import ContactSums, nothing
 from lavendersim.measures.interfaces import Rows
 
 COLUMNS: Final = (
-    *("body_a", "body_b", "nx", "ny", "nz", "t1x", "t1y", "t1z"),
+    *("step", "body_a", "body_b", "nx", "ny", "nz", "t1x", "t1y", "t1z"),
     *("separation", "penetration", "normal_velocity", "impulse_n", "impulse_t1", "impulse_t2"),
     *("friction", "torsional_friction", "angular_impulse_n"),
     *("rolling_friction", "angular_impulse_t1", "angular_impulse_t2"),
 )
-A, B, NX, NY, NZ, T1X, T1Y, T1Z = range(8)
-SEPARATION, PENETRATION, NORMAL_VELOCITY, IMPULSE_N, IMPULSE_T1, IMPULSE_T2 = range(8, 14)
-FRICTION, TORSIONAL, ANGULAR_N, ROLLING, ANGULAR_T1, ANGULAR_T2 = range(14, 20)
+STEP, A, B, NX, NY, NZ, T1X, T1Y, T1Z = range(9)
+SEPARATION, PENETRATION, NORMAL_VELOCITY, IMPULSE_N, IMPULSE_T1, IMPULSE_T2 = range(9, 15)
+FRICTION, TORSIONAL, ANGULAR_N, ROLLING, ANGULAR_T1, ANGULAR_T2 = range(15, 21)
 # Columns of what the kernel fills for each step.
 NOT_FINITE, DEEPEST, EXCESS, OUTER_X, OUTER_Y, OUTER_Z, SIZE, OPENED, PULLED = range(9)
 VARIES: Final = -1.0  # in place of a coefficient that changes with the motion
@@ -54,20 +54,24 @@ def _make_sum(spec: Spec) -> Any:
     larger, length = inner(_larger), inner(_length)
 
     def sum_contacts(rows, places, scene, sums):
-        numbers, bodies, start = rows
+        steps, numbers, integers = rows
         columns, floats, pulls = places
         of_body, mu, choices = scene
         projection, slop, pyramid = choices[0], choices[1], choices[2] == 1.0
-        for i in range(start.shape[0] - 1):
+        begin, end, count = 0, 0, numbers.shape[0]
+        for i in range(steps.shape[0]):
+            begin = end
+            while end < count and integers[end, columns[STEP]] <= steps[i]:
+                end += 1
             out, dt, pushed = sums[i], sums[i, OPENED], 0.0
             out[:] = 0.0
-            for c in range(start[i], start[i + 1]):
+            for c in range(begin, end):
                 row = numbers[c]
                 for k in floats:
                     number = row[k]
                     if number - number != 0.0:
                         out[NOT_FINITE] += 1.0
-                a, b = bodies[c, columns[A]], bodies[c, columns[B]]
+                a, b = integers[c, columns[A]], integers[c, columns[B]]
                 n, v_n = row[columns[IMPULSE_N]], row[columns[NORMAL_VELOCITY]]
                 pull = 0.0
                 for k in pulls:
@@ -149,15 +153,13 @@ class RunningSums:
         columns = np.array([places.get(name, -1) for name in COLUMNS])
         floats = np.array([places[name] for name in places if row[name].kind == "f"])
         pulls = np.array([places[name] for name in shares.PULLS if name in places], np.int64)
-        start = np.zeros(len(step) + 1, np.int64)
-        start[1:] = np.searchsorted(contacts["step"], step["step"], "right")
         sums = np.zeros((len(step), 9))
         sums[:, OPENED] = self._clock.lengths(step["step"])  # where the kernel finds it
         words = np.ascontiguousarray(contacts)
         numbers, integers = (words.view(kind).reshape(len(words), -1) for kind in ("f8", "i8"))
         with compiling():
             _kernel()(
-                (numbers, integers, start),
+                (np.ascontiguousarray(step["step"]), numbers, integers),
                 (columns, floats, pulls),
                 (self._of_body, self._mu, self._choices),
                 sums,

@@ -8,10 +8,12 @@ sample, `cost.csv` a row a setting.
 from __future__ import annotations
 
 import csv
+import io
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
+from lavendersim.durable_files import write_whole
 from lavendersim.errors import ConfigError, UsageError
 from lavendersim.experiment import Experiment
 from lavendersim.experiment.models.cost import FEW, FEWEST_REPEATS
@@ -38,7 +40,7 @@ class Costed(NamedTuple):
 
 def check_cost(experiment: Experiment, repeats: int | None = None) -> None:
     """Raise ConfigError without a section `cost`, UsageError for too few repeats."""
-    if experiment.cost is None:
+    if experiment.config.cost is None:
         sentence = "no section cost: it says which measure is held against which truth"
         raise ConfigError([experiment.cells()[0].defect(("cost",), sentence)])
     if repeats is not None and repeats < FEWEST_REPEATS:
@@ -59,7 +61,7 @@ def take_cost(
     those of the config. The run is finished, and `latest`, when all of it is.
     """
     check_cost(experiment, repeats)
-    assert experiment.cost is not None
+    assert experiment.config.cost is not None
     settings = settings_of(experiment)
     grid = over_the_grid(experiment, settings)
     tables: list[dict[str, Any]] = []
@@ -76,7 +78,7 @@ def take_cost(
             for place, one in enumerate(runs)
             if one.setting.role != "truth"
         ]
-        spec = experiment.cost
+        spec = experiment.config.cost
         assert spec is not None
         rounds = repeats or spec.repeats
         times = times_of(clocked, spec.begin, rounds, jobs, progress.timing)
@@ -85,7 +87,7 @@ def take_cost(
         table = {
             "experiment": experiment.name,
             "config": str(experiment.path),
-            "question": experiment.question,
+            "question": experiment.config.question,
             "error": spec.error.model_dump(mode="json"),
             "axes": list(experiment.axes),
             "cells_per_setting": each,
@@ -100,7 +102,7 @@ def take_cost(
         }
         # Not a text, as in `results.json` for people: what reads `cost.json` calculates with it.
         tables.append(finite(table, lambda _: None))
-        (finished.run.path / COST).write_text(text_of(tables[0]), encoding="utf-8")
+        write_whole(finished.run.path / COST, text_of(tables[0]), flush=False)
         _write_csv(finished.run.path / COST_TABLE, tables[0]["rows"])
 
     finished = run(grid, root, jobs, progress, overheads=False, closing=closing)
@@ -169,8 +171,9 @@ COLUMNS: Final = (
 
 def _write_csv(path: Path, rows: Sequence[dict[str, Any]]) -> None:
     """Write a row a setting; times in ns per simulated second."""
-    with path.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, COLUMNS, restval="", extrasaction="ignore")
-        writer.writeheader()
-        for row in rows:
-            writer.writerow({**row, **(row["ns_per_second"] or {})})
+    text = io.StringIO()
+    writer = csv.DictWriter(text, COLUMNS, restval="", extrasaction="ignore")
+    writer.writeheader()
+    for row in rows:
+        writer.writerow({**row, **(row["ns_per_second"] or {})})
+    write_whole(path, text.getvalue(), flush=False)

@@ -109,8 +109,8 @@ def _cell_error(
     experiment: Experiment, run: SettingRun, place: int, truth: SettingRun | None
 ) -> float | None:
     """Return the relative error of one cell; None where the measure is not taken, NaN without."""
-    assert experiment.cost is not None
-    spec = experiment.cost.error
+    assert experiment.config.cost is not None
+    spec = experiment.config.cost.error
     value = run.measured[place].get(spec.measure)
     if value is None:
         return None
@@ -141,10 +141,10 @@ def _failure(experiment: Experiment, run: SettingRun, errors: Sequence[float]) -
     for cell, outcome in zip(experiment.cells(), run.outcomes, strict=True):
         if outcome.status != "complete":
             return f"{cell.label}: {outcome.status}" if cell.label else outcome.status
-    assert experiment.cost is not None
+    assert experiment.config.cost is not None
     not_converged = sum(outcome.accuracy.not_converged for outcome in run.outcomes)
     steps = sum(outcome.steps for outcome in run.outcomes)
-    if not_converged > experiment.cost.not_converged * steps:
+    if not_converged > experiment.config.cost.not_converged * steps:
         return not_converged_steps(not_converged, steps, run.setting.tolerance)
     if not errors or any(math.isnan(error) for error in errors):
         return "its log has no answer"
@@ -165,8 +165,8 @@ def _taken(experiment: Experiment, measured: Mapping[str, Any]) -> dict[str, Any
 
 def _unmet(experiment: Experiment, run: SettingRun) -> list[str]:
     """Return the claims a setting does not keep, but for those on the error itself."""
-    assert experiment.cost is not None
-    error = experiment.cost.error.measure
+    assert experiment.config.cost is not None
+    error = experiment.config.cost.error.measure
     claims = [each for each in experiment.expectations if each.measure != error]
     # as the experiment's expectations know them: without the axes of the grid
     own = [

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor
-from multiprocessing import get_context
+from functools import partial
 from pathlib import Path
 from time import perf_counter
 from typing import Any, NamedTuple
@@ -15,9 +14,10 @@ from lavendersim.engine.spec import Spec
 from lavendersim.engine.step import is_compiled
 from lavendersim.errors import UsageError
 
-from .cell import CellJob, CellOutcome, compile_kernel, run_and_measure
+from .cell import CellJob, CellOutcome, compile_kernel, failed, run_and_measure
 from .measured import Measured
 from .progress import Compilation, Progress, Tally
+from .workers import Death, Retried, work
 
 # Cells that would take less [s] than this one after the other are run in this process: each other
 # process imports numba and loads kernels for 1 to 2 s of processor time before its first step.
@@ -60,17 +60,15 @@ def outcomes_of(
     if not rest:
         return
     tally.begin_in_others()
-    with _pool(workers, len(rest)) as pool:
-        chunk = max(1, len(rest) // (4 * workers))
-        found = pool.map(run_and_measure, rest, chunksize=chunk)
-        for job, (outcome, measured) in zip(rest, found, strict=True):
-            tally.end(job)
-            yield job, outcome, measured
+    for job, found in work(run_and_measure, rest, workers, partial(_run_again, progress)):
+        tally.end(job)
+        yield (job, *(failed(job, found.how) if isinstance(found, Death) else found))
 
 
-def _pool(workers: int, tasks: int) -> ProcessPoolExecutor:
-    # Spawned, never forked: numba's threads do not survive a fork.
-    return ProcessPoolExecutor(min(workers, tasks), get_context("spawn"))
+def _run_again(progress: Progress, one: Retried[CellJob]) -> None:
+    cell = one.task.cells[0].label if one.task.cells else ""
+    what = f"the process of cell {cell or one.task.cell} {one.death.how}"
+    progress.warning(f"{what}; the cell is run once more")
 
 
 class _Missing(NamedTuple):
@@ -122,9 +120,9 @@ def _compile_together(
     times: dict[Path, int] = {}
     for one in missing.values():
         progress.compiling(one.compilation)
-    with _pool(workers, len(missing)) as pool:
-        spent = pool.map(compile_kernel, [one.job for one in missing.values()])
-        for one, nanoseconds in zip(missing.values(), spent, strict=True):
-            times[one.job.path] = nanoseconds
-            progress.compiled(one.compilation)
+    compilations = {one.job.path: one.compilation for one in missing.values()}
+    for job, spent in work(compile_kernel, [one.job for one in missing.values()], workers):
+        if not isinstance(spent, Death):  # else its cell compiles it
+            times[job.path] = spent
+        progress.compiled(compilations[job.path])
     return times

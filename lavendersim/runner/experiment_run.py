@@ -7,13 +7,13 @@ from __future__ import annotations
 
 import hashlib
 import json
-import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from lavendersim.durable_files import flush_tree, write_whole, written_aside
 from lavendersim.errors import UsageError
 from lavendersim.experiment import Experiment, load_experiment
 from lavendersim.experiment.cell import Cell
@@ -21,21 +21,24 @@ from lavendersim.measures import Values, Verdict, judge, meant_to_end_early
 
 from .checks import check
 from .environment import environment
+from .interruption import Interrupted, handled
 from .json_table import text_of
 from .progress import Progress
 from .results import compile_seconds, convergence_notices, write_results
 from .run_directory import (
     CELLS,
     CONFIG,
-    DONE,
     ENVIRONMENT,
     OVERHEADS,
     RESOLVED,
     RUNS,
+    SEALED,
     Run,
     RunCell,
     point_latest,
 )
+from .run_index import ENDED, PENDING, as_row
+from .run_seal import DONE, seal_of
 from .seeds import Seeds
 
 if TYPE_CHECKING:
@@ -134,8 +137,8 @@ def run(
         progress.warning(sentence)
     directory = make_directory(experiment, root)
     (directory / "cells").mkdir()
-    (directory / CONFIG).write_bytes(experiment.text.encode())
-    _write_resolved(directory / RESOLVED, cells)
+    write_whole(directory / CONFIG, experiment.text, flush=False)
+    configs = _write_resolved(directory / RESOLVED, cells)
     pending = [
         CellJob(
             cell.index,
@@ -158,16 +161,26 @@ def run(
     ended: dict[Path, CellOutcome] = {}
     taken: dict[int, Measured] = {}
     # The index stands from the start, so that an interrupted run can be listed and replayed.
-    _write_index(directory, experiment, pending, ended)
-    try:
-        for job, outcome, found in outcomes_of([*different.values()], jobs, progress):
-            ended[job.path] = outcome
-            taken |= found
-            progress.cell_done(len(ended), len(different))
+    _write_index(directory, experiment, zip(pending, configs, strict=True), ended)
+    try:  # what ends meanwhile is noted beside it: see `run_index`
+        with handled():
+            for job, outcome, found in outcomes_of([*different.values()], jobs, progress):
+                ended[job.path] = outcome
+                taken |= found
+                progress.cell_done(len(ended), len(different))
+    except Interrupted as end:
+        whole = f"{len(ended)} of {len(different)} cells are whole"
+        raise Interrupted(f"{experiment.name}: {end}: {whole}, {directory}") from None
     finally:
-        _write_index(directory, experiment, pending, ended)
+        _write_index(directory, experiment, zip(pending, configs, strict=True), ended)
+    (directory / ENDED).unlink(missing_ok=True)
     outcomes = [ended[job.path]._replace(cell=job.cell) for job in pending]
-    finished = Run(directory, experiment, {index: one.values for index, one in taken.items()})
+    # A cell whose process died has no measures to draw, nor a log to take them from.
+    lost = {
+        name.number for job in different.values() for name in job.cells if not ended[job.path].log
+    }
+    drawn = {index: one.values for index, one in taken.items() if index not in lost}
+    finished = Run(directory, experiment, drawn)
     values = Values(experiment.measures, finished.taken)
     always = {index: one.always for index, one in taken.items()}
     claims = (experiment.measures, experiment.expectations, finished.cells, values)
@@ -176,32 +189,45 @@ def run(
     raw = judged() if experiment.controls else verdicts
     result = Finished(finished, outcomes, verdicts, raw)
     table = None
-    if overheads and experiment.overhead is not None:
+    if overheads and experiment.config.overhead is not None:
         table = take_overheads(experiment, jobs, progress.timing)
         write_overheads(directory / OVERHEADS, table)
     measured = [taken[cell.index].values for cell in finished.cells]
     write_results(result, measured, table)
-    _write_json(directory / ENVIRONMENT, environment(*(plan.spec for plan in distinct(plans))))
+    known = environment(*(plan.spec for plan in distinct(plans)))
+    write_whole(directory / ENVIRONMENT, text_of(known), flush=False)
     closing(result, measured)
-    (directory / DONE).write_text("")
+    # Nothing of the run counts before this stands, so logs and tables are flushed once, together.
+    flush_tree(directory)
+    write_whole(directory / DONE, seal_of(directory, SEALED))
     point_latest(directory, root)
     return result
 
 
 def _write_index(
-    directory: Path, experiment: Experiment, jobs: list[CellJob], ended: dict[Path, CellOutcome]
+    directory: Path,
+    experiment: Experiment,
+    jobs: Iterable[tuple[CellJob, str]],
+    ended: dict[Path, CellOutcome],
 ) -> None:
-    """Write which cell is in which file and how it ended; `pending` for those that did not."""
-    rows = [
-        {
-            "index": cell.index,
-            "label": cell.label,
-            "coordinates": {axis: _plain(value) for axis, value in cell.coordinates.items()},
-            "file": f"cells/{job.path.name}",
-            "status": ended[job.path].status if job.path in ended else "pending",
-        }
-        for cell, job in zip(experiment.cells(), jobs, strict=True)
-    ]
+    """Write which cell is in which file and how it ended; `pending` for those that did not.
+
+    jobs: with the digest of the config of each.
+    """
+    rows = []
+    for cell, (job, config) in zip(experiment.cells(), jobs, strict=True):
+        outcome = ended.get(job.path)
+        rows.append(
+            {
+                "index": cell.index,
+                "label": cell.label,
+                "coordinates": {axis: _plain(value) for axis, value in cell.coordinates.items()},
+                "file": f"cells/{job.path.name}",
+                "status": outcome.status if outcome else PENDING,
+                "config": config,
+                "log": as_row(outcome.log if outcome else None),
+            }
+        )
     table = {
         "experiment": experiment.name,
         "reduced": experiment.reduced,
@@ -209,25 +235,25 @@ def _write_index(
         "timestep_divisor": experiment.divisor,
         "cells": rows,
     }
-    _write_json(directory / CELLS, table)
+    write_whole(directory / CELLS, text_of(table), flush=False)
 
 
-def _write_resolved(path: Path, cells: Sequence[Cell]) -> None:
-    """Write the configs of all cells with every default filled in, one a line."""
-    with path.open("w", encoding="utf-8") as file:
+def _write_resolved(path: Path, cells: Sequence[Cell]) -> list[str]:
+    """Write the configs of all cells with every default filled in, one a line.
+
+    Returns the SHA-256 of each, which is that of the log's attachment, too.
+    """
+    digests = []
+    with written_aside(path, flush=False) as unfinished, unfinished.open("wb") as file:
         for number, cell in enumerate(cells):
             label = json.dumps(cell.label, ensure_ascii=False)
-            file.write(",\n" if number else "[\n")
-            file.write(f' {{"index": {cell.index}, "label": {label}, "config": ')
-            file.write(f"{cell.config.as_json()}}}")
-        file.write("\n]\n")
-
-
-def _write_json(path: Path, table: dict[str, Any]) -> None:
-    """Write a table in one move: a reader sees the old or the new one, never half."""
-    unfinished = path.with_suffix(".unfinished")
-    unfinished.write_text(text_of(table), encoding="utf-8")
-    os.replace(unfinished, path)
+            opening = ",\n" if number else "[\n"
+            text = f'{opening} {{"index": {cell.index}, "label": {label}, "config": '
+            config = cell.config.as_json().encode()
+            digests.append(hashlib.sha256(config).hexdigest())
+            file.write(text.encode() + config + b"}")
+        file.write(b"\n]\n")
+    return digests
 
 
 def _plain(value: Any) -> Any:

@@ -8,6 +8,7 @@ the median of their differences: a slow minute of the machine falls on both.
 from __future__ import annotations
 
 import csv
+import io
 from collections.abc import Callable, Sequence
 from math import ceil, comb
 from pathlib import Path
@@ -15,6 +16,7 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
+from lavendersim.durable_files import write_whole
 from lavendersim.engine.spec import Spec
 from lavendersim.errors import ConfigError
 from lavendersim.experiment import Experiment
@@ -85,7 +87,7 @@ def check_overheads(experiment: Experiment) -> None:
 
 
 def _named(experiment: Experiment) -> tuple[str, ...]:
-    spec = experiment.overhead
+    spec = experiment.config.overhead
     return () if spec is None or spec.effects == "all" else tuple(spec.effects)
 
 
@@ -96,7 +98,7 @@ def take_overheads(
 
     workers: processes that compile. report: called with what is done, how far, and of how many.
     """
-    spec = experiment.overhead
+    spec = experiment.config.overhead
     assert spec is not None
     (cell,) = experiment.cells()
     pairs = pairs_of(cell.config, _named(experiment))
@@ -238,12 +240,13 @@ COLUMNS: Final = (
 
 def write_overheads(path: Path, overheads: dict[str, Any]) -> None:
     """Write a table of overheads as CSV: medians and ends of intervals, ns per unit and step."""
-    with path.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, COLUMNS, restval="", extrasaction="ignore")
-        writer.writeheader()
-        for row in overheads["rows"]:
-            overhead = row.get("overhead", {})
-            spreads = {name: row[name] for name in ("off", "on", "overhead") if name in row}
-            medians = {name: spread["median"] for name, spread in spreads.items()}
-            ends = {name: overhead[name] for name in ("low", "high") if name in overhead}
-            writer.writerow({**row, "on_top_of": " ".join(row["on_top_of"]), **ends, **medians})
+    text = io.StringIO()
+    writer = csv.DictWriter(text, COLUMNS, restval="", extrasaction="ignore")
+    writer.writeheader()
+    for row in overheads["rows"]:
+        overhead = row.get("overhead", {})
+        spreads = {name: row[name] for name in ("off", "on", "overhead") if name in row}
+        medians = {name: spread["median"] for name, spread in spreads.items()}
+        ends = {name: overhead[name] for name in ("low", "high") if name in overhead}
+        writer.writerow({**row, "on_top_of": " ".join(row["on_top_of"]), **ends, **medians})
+    write_whole(path, text.getvalue(), flush=False)

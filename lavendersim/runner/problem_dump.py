@@ -7,7 +7,6 @@ well they solve the problem is for the residual to say. A step without contacts 
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator
 from importlib.util import find_spec
 from pathlib import Path
@@ -16,6 +15,7 @@ import numpy as np
 
 from lavendersim.cell import CellRecord
 from lavendersim.cell.record import NONE, steps_between
+from lavendersim.durable_files import written_aside
 from lavendersim.engine.assemble import StepProblem
 from lavendersim.engine.engine import Engine
 from lavendersim.errors import ConfigError
@@ -52,11 +52,9 @@ class ProblemDump:
             return
         from lavendersim.problems.fclib import write_fclib  # late: h5py
 
-        self._folder.mkdir(parents=True, exist_ok=True)
         path = self._folder / f"step_{done:06d}.hdf5"
-        unfinished = path.with_suffix(".unfinished")
-        write_fclib(unfinished, found.problem, title=f"step {done}", guess=found.impulses)
-        os.replace(unfinished, path)
+        with written_aside(path, flush=False) as unfinished:  # as all of the run, when it is done
+            write_fclib(unfinished, found.problem, title=f"step {done}", guess=found.impulses)
 
 
 def _is_finite(found: StepProblem) -> bool:

@@ -6,10 +6,12 @@ The finer runs lie in the run's directory under `refined`; what they show, in `t
 from __future__ import annotations
 
 import csv
+import io
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
 from typing import Any, NamedTuple
 
+from lavendersim.durable_files import write_whole
 from lavendersim.errors import LavenderError
 from lavendersim.measures import applies
 from lavendersim.measures.cell_judgements import room
@@ -101,13 +103,14 @@ def _room(finished: Finished, name: str, cell: RunCell, value: Any) -> tuple[flo
 
 
 def _write(finished: Finished, rows: list[Refined]) -> None:
-    with (finished.run.path / TIME_ERRORS).open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow([*COLUMNS, *ESTIMATES])
-        for row in rows:
-            found = row.found
-            values = found.values or ("",) * len(DIVISORS)
-            estimates = (found.change, found.order, found.extrapolated, found.bar, found.error)
-            tolerance = "" if row.tolerance is None else row.tolerance
-            where = row.measure, row.cell.label, row.cell.config.numerics.timestep
-            writer.writerow([*where, *values, *estimates, tolerance, int(row.exceeds), found.note])
+    text = io.StringIO()
+    writer = csv.writer(text)
+    writer.writerow([*COLUMNS, *ESTIMATES])
+    for row in rows:
+        found = row.found
+        values = found.values or ("",) * len(DIVISORS)
+        estimates = (found.change, found.order, found.extrapolated, found.bar, found.error)
+        tolerance = "" if row.tolerance is None else row.tolerance
+        where = row.measure, row.cell.label, row.cell.config.numerics.timestep
+        writer.writerow([*where, *values, *estimates, tolerance, int(row.exceeds), found.note])
+    write_whole(finished.run.path / TIME_ERRORS, text.getvalue())

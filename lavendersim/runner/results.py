@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import csv
+import io
 from typing import TYPE_CHECKING, Any
+
+from lavendersim.durable_files import write_whole
 
 from .accuracy import PARTS, Accuracy
 from .json_table import finite, text_of
@@ -55,7 +58,7 @@ def write_results(
         "passed": finished.good,
         **({} if overheads is None else {"overheads": overheads}),
     }
-    (run.path / RESULTS).write_text(text_of(finite(table, str)), encoding="utf-8")
+    write_whole(run.path / RESULTS, text_of(finite(table, str)), flush=False)
     _write_csv(run, rows)
 
 
@@ -97,13 +100,14 @@ def convergence_notices(finished: Finished) -> list[str]:
 
 def _write_csv(run: Run, rows: list[dict[str, Any]]) -> None:
     names, axes = list(run.experiment.measures), list(run.experiment.axes)
-    with (run.path / TABLE).open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(["cell", *axes, "status", "steps", *names, *COSTS, *ACCURACY, *VIOLATIONS])
-        for cell, row in zip(run.cells, rows, strict=True):
-            coordinates = [str(cell.coordinates.get(axis, "")) for axis in axes]
-            values = [row["measures"].get(name, "") for name in names]
-            writer.writerow(
-                [cell.label, *coordinates, row["status"], row["steps"], *values]
-                + [row[name] for name in (*COSTS, *ACCURACY, *VIOLATIONS)]
-            )
+    text = io.StringIO()
+    writer = csv.writer(text)
+    writer.writerow(["cell", *axes, "status", "steps", *names, *COSTS, *ACCURACY, *VIOLATIONS])
+    for cell, row in zip(run.cells, rows, strict=True):
+        coordinates = [str(cell.coordinates.get(axis, "")) for axis in axes]
+        values = [row["measures"].get(name, "") for name in names]
+        writer.writerow(
+            [cell.label, *coordinates, row["status"], row["steps"], *values]
+            + [row[name] for name in (*COSTS, *ACCURACY, *VIOLATIONS)]
+        )
+    write_whole(run.path / TABLE, text.getvalue(), flush=False)

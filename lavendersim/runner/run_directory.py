@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import json
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -11,27 +10,27 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from lavendersim.durable_files import flush_folder, write_whole
 from lavendersim.errors import TraceError, UsageError
+
+from .run_index import PENDING, add_ended, expected_of
+from .run_seal import DONE, read_sealed, sealed
+from .run_tables import read_table, renamed
 
 if TYPE_CHECKING:
     from lavendersim.cell import CellConfig
     from lavendersim.experiment import Experiment
-    from lavendersim.trace import Trace
+    from lavendersim.trace import ExpectedLog, Trace
 
 CONFIG, RESOLVED = "config.yaml", "resolved.json"
 CELLS, RESULTS, TABLE = "cells.json", "results.json", "results.csv"
 OVERHEADS = "overheads.csv"
 COST, COST_TABLE = "cost.json", "cost.csv"
 REFINED, TIME_ERRORS = "refined", "time_errors.csv"
-ENVIRONMENT, DONE, LATEST = "env.json", "DONE", "latest"
+ENVIRONMENT, LATEST = "env.json", "latest"
+# What the seal of a finished run is on.
+SEALED = (CELLS, RESULTS, TABLE, CONFIG, RESOLVED, ENVIRONMENT, OVERHEADS, COST, COST_TABLE)
 RUNS = Path("runs")
-# Keys of the tables of older runs, and their names now.
-FORMER_NAMES = {
-    "unsolved_steps": "not_converged_steps",
-    "prices": "overheads",
-    "price": "overhead",
-    "called_for": "required",
-}
 
 
 @dataclass(frozen=True)
@@ -47,16 +46,19 @@ class RunCell:
     _open: list[Trace] = field(default_factory=list, repr=False, compare=False)
     _damage: list[str] = field(default_factory=list, repr=False, compare=False)  # once looked for
     allow_incomplete: bool = False  # read what is whole of a damaged log
+    expected: ExpectedLog | None = field(default=None, repr=False, compare=False)
 
     def trace(self) -> Trace:
         """Open the cell's log; its columns are read when they are first asked for.
 
-        TraceError where it is not whole, unless what is whole of it is allowed.
+        TraceError where it is not whole, unless what is whole of it is allowed, and where it is not
+        the log that was written of this cell.
         """
         from lavendersim.trace import open_trace  # late: runs are listed without numpy
 
         if not self._open:
-            self._open.append(open_trace(self.path, self.allow_incomplete, self._config))
+            asked = self.allow_incomplete, self._config, self.expected
+            self._open.append(open_trace(self.path, *asked))
         return self._open[0]
 
     def damage(self) -> str:
@@ -104,7 +106,7 @@ class Run:
             return self.ran
         from lavendersim.experiment import load_experiment_text  # late: see `RunCell.trace`
 
-        text = (self.path / CONFIG).read_bytes()
+        text = read_sealed(self.path / CONFIG)
         reduced = bool(self._index.get("reduced", False))
         solver = self._index.get("solver")
         experiment = load_experiment_text(text, str(self.path / CONFIG), reduced, solver)
@@ -118,7 +120,11 @@ class Run:
 
     @cached_property
     def _index(self) -> dict[str, Any]:
-        return _read_json(self.path / CELLS)
+        index = read_table(self.path / CELLS, "cells", ("index", "label", "file", "status"))
+        if self.finished and not sealed(self.path) and any("log" in row for row in index["cells"]):
+            raise TraceError(f"{self.path / DONE}: damaged: it has lost the digests of the tables")
+        add_ended(index["cells"], self.path)
+        return index
 
     @cached_property
     def cells(self) -> tuple[RunCell, ...]:
@@ -133,6 +139,7 @@ class Run:
                 row["status"],
                 cells[row["index"]].config if self.ran is not None else None,
                 allow_incomplete=self.allow_incomplete,
+                expected=expected_of(row),
             )
             for row in self._index["cells"]
         )
@@ -143,23 +150,23 @@ class Run:
         return [sentence for sentence in found.values() if sentence]
 
     def cut(self) -> list[str]:
-        """Return a sentence of every log whose end is not that of a closed one; cheap."""
+        """Return a sentence of every log whose end is not that of the one written; cheap."""
         from lavendersim.trace import check_closed
 
         found = []
-        for log in self.logs():
+        for log, row in self.logs().items():
             try:
-                check_closed(log)
+                check_closed(log, expected_of(row).digest)
             except TraceError as error:
                 found.append(str(error))
         return found
 
-    def logs(self) -> list[Path]:
-        """Return the logs of the cells; of cells that never began there is none."""
-        rows = self._index["cells"]
-        files = dict.fromkeys(self.path / row["file"] for row in rows)
-        begun = {self.path / row["file"] for row in rows if row["status"] != "pending"}
-        return [file for file in files if file in begun or file.exists()]
+    def logs(self) -> dict[Path, dict[str, Any]]:
+        """Return the logs of the cells, with their rows of the index; of cells not begun none."""
+        files = {self.path / row["file"]: row for row in self._index["cells"]}
+        return {
+            file: row for file, row in files.items() if row["status"] != PENDING or file.exists()
+        }
 
     @property
     def finished(self) -> bool:
@@ -167,43 +174,28 @@ class Run:
         return (self.path / DONE).exists()
 
     def results(self) -> dict[str, Any]:
-        """Return the table of results as it was written. UsageError while there is none."""
+        """Return the table of results as it was written. UsageError while there is none.
+
+        TraceError where it, or the index of the run, is not as it was written.
+        """
         if not self.finished:
             raise UsageError(f"{self.path}: this run did not finish; its logs are in cells/")
-        return _renamed(_read_json(self.path / RESULTS), "cells")
+        keys = ("index", "label", "status")
+        path = self.path / RESULTS
+        table = renamed(read_table(path, "cells", (*keys, "measures")), "cells")
+        found, known = (
+            [[row[key] for key in keys] for row in one["cells"]] for one in (table, self._index)
+        )
+        if found != known or not isinstance(table.get("passed"), bool):
+            raise TraceError(f"{path}: damaged: it has other cells than {CELLS}, or no verdict")
+        return table
 
     def cost(self) -> dict[str, Any] | None:
         """Return what accuracy costs, where it was taken; UsageError while it is not finished."""
         self.results()
         if not (self.path / COST).exists():
             return None
-        return _renamed(_read_json(self.path / COST), "rows")
-
-
-def _read_json(path: Path) -> dict[str, Any]:
-    """Return a table that lavender wrote; TraceError where the file is damaged."""
-    try:
-        table: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
-    except ValueError as error:
-        raise TraceError(f"{path}: damaged: {error}") from None
-    return table
-
-
-def _renamed(table: dict[str, Any], rows: str) -> dict[str, Any]:
-    """Return a table with the columns of older runs under the names that they have now."""
-    _rename(table)
-    overheads = table.get("overheads") or {"rows": []}
-    for row in (*table[rows], *overheads["rows"], table.get("truth") or {}):
-        _rename(row)
-    return table
-
-
-def _rename(row: dict[str, Any]) -> None:
-    for former, name in FORMER_NAMES.items():
-        if former in row:
-            row[name] = row.pop(former)
-    if row.get("role") == "stated":
-        row["role"] = "specified"
+        return renamed(read_table(self.path / COST, "rows"), "rows")
 
 
 def is_run_directory(path: Path) -> bool:
@@ -251,5 +243,10 @@ def point_latest(directory: Path, root: Path) -> None:
     try:
         temporary.symlink_to(directory.name, target_is_directory=True)
     except OSError:  # where links need a privilege, a file holds the name
-        temporary.write_text(directory.name + "\n", encoding="utf-8")
-    os.replace(temporary, root / LATEST)
+        write_whole(root / LATEST, directory.name + "\n")
+        return
+    try:
+        os.replace(temporary, root / LATEST)
+    finally:
+        temporary.unlink(missing_ok=True)
+    flush_folder(root)

@@ -9,8 +9,6 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from lavendersim.experiment import Experiment
-from lavendersim.experiment.text.node import Node
-from lavendersim.experiment.text.parse import parse
 
 NONE = "none, nothing is drawn at random"
 
@@ -19,15 +17,10 @@ class Seeds:
     """The seeds of an experiment, cell by cell."""
 
     def __init__(self, experiment: Experiment) -> None:
-        raw = experiment.text.encode()
         # Of the text: `experiment.config` holds the first value of every axis, which is not that of
         # cells whose product leaves the axis alone.
-        root, _ = parse(raw, experiment.name, len(raw))
-        node = root.get("scene", "arrangements") if root is not None else None
-        self._arrangements = node.entries if node is not None else {}
-        sweep = experiment.config.sweep
-        products = (sweep,) if isinstance(sweep, Mapping) else sweep
-        self._paths = {axis: one.path for product in products for axis, one in product.items()}
+        self._arrangements = experiment.tree.get("scene", "arrangements").entries
+        self._paths = experiment.swept
 
     def of(self, coordinates: Mapping[str, Any]) -> str:
         """Return `ball: 1, rod: 7` for the arrangements that are jittered, or that none is."""
@@ -39,13 +32,8 @@ class Seeds:
     def _drawn(self, swept: Mapping[str, Any]) -> Iterator[str]:
         for name, arrangement in self._arrangements.items():
             jitter, seed = (
-                swept.get(f"scene.arrangements.{name}.{key}", _number(arrangement.get(key)))
+                swept.get(f"scene.arrangements.{name}.{key}", arrangement.get(key).number or 0)
                 for key in ("jitter", "seed")
             )
             if jitter:
                 yield f"{name}: {int(seed)}"
-
-
-def _number(node: Node | None) -> Any:
-    """Return the number at a node; 0, which is the default of both, where there is none."""
-    return node.number if node is not None else 0

@@ -24,6 +24,7 @@ from lavendersim.quantities.found import nearest, quoted
 from .experiment_run import run
 from .matrix_entry import DIED, REFUSED, Entry, entry_of, without_run
 from .run_directory import RUNS
+from .workers import end_with_parent
 
 ALL = "all"
 
@@ -70,7 +71,7 @@ def cases_of(experiments: Sequence[Experiment]) -> tuple[list[Case], dict[str, s
             continue
         if any(case.name == name for case in cases):
             name = str(experiment.path)
-        cases.append(Case(name, experiment.path, experiment.reduced, experiment.question))
+        cases.append(Case(name, experiment.path, experiment.reduced, experiment.config.question))
     return cases, left_out
 
 
@@ -107,9 +108,13 @@ def entries(
         yield from _made([Pair(case, solver, root) for case in cases], jobs, make)
 
 
+def _pool(jobs: int) -> ProcessPoolExecutor:
+    return ProcessPoolExecutor(jobs, get_context("spawn"), initializer=end_with_parent)
+
+
 def _made(pairs: list[Pair], jobs: int, make: Callable[[Pair], Entry]) -> Iterator[Entry]:
     lost: list[Pair] = []
-    with ProcessPoolExecutor(jobs, get_context("spawn")) as pool:
+    with _pool(jobs) as pool:
         waiting = list(reversed(pairs))
         running: dict[Future[Entry], Pair] = {}
         while waiting or running:
@@ -136,7 +141,7 @@ def _made(pairs: list[Pair], jobs: int, make: Callable[[Pair], Entry]) -> Iterat
 
 
 def _made_alone(pair: Pair, make: Callable[[Pair], Entry]) -> Iterator[Entry]:
-    with ProcessPoolExecutor(1, get_context("spawn")) as pool:
+    with _pool(1) as pool:
         try:
             yield pool.submit(make, pair).result()
         except BrokenProcessPool:

@@ -13,6 +13,8 @@ from unittest import mock
 
 from lavender_cli.main import main
 from lavendersim import open_run
+from lavendersim.trace import writer
+from lavendersim.trace.encode import Streams
 from tests.drop_config import DROP
 
 FIGURE = """\
@@ -30,7 +32,9 @@ SWEEP = """\
 sweep:
   e: {path: scene.bodies.ball.surface.restitution, values: [0.5, 0.52]}
 """
-# Long enough for three groups of steps, of which a damaged log may keep some.
+# With these chunks long enough for three groups of steps, of which a damaged log may keep some.
+KIB = 1024
+CHUNK_BYTES = Streams(4096 * KIB, 1024 * KIB, 1024 * KIB, 128 * KIB)
 DRAWN = DROP.replace("duration: 0.5\nmeasure:\n", f"duration: 4\n{SWEEP}measure:\n") + FIGURE
 
 
@@ -66,7 +70,8 @@ def made(text: str, folder: Path) -> Path:
     """Run a config and draw its figure; returns the directory of the run."""
     config = folder / "drop.yaml"
     config.write_text(text)
-    done = verb("run", config, "--runs", folder / "runs", "--plot")
+    with mock.patch.object(writer, "CHUNK_BYTES", CHUNK_BYTES):
+        done = verb("run", config, "--runs", folder / "runs", "--plot")
     assert done.code in (0, 1), done.stderr
     return open_run(None, folder / "runs").path
 

@@ -88,7 +88,7 @@ def python(code: str, *arguments: Any, **environment: str) -> str:
         env=os.environ | environment,
         capture_output=True,
         text=True,
-        timeout=120,
+        timeout=600,  # where no kernel is kept, two plans take a minute each to compile
         check=False,
     )
     assert done.returncode == 0, done.stderr

@@ -9,7 +9,7 @@ import pytest
 from small_configs import DROPS, write
 
 import lavendersim
-from lavendersim.runner import Finished
+from lavendersim.runner import Finished, call_length
 
 
 def logs(finished: Finished) -> dict[str, str]:
@@ -35,6 +35,14 @@ def test_two_processes_give_the_same_bytes_as_one(once: Finished, tmp_path: Path
     pooled = lavendersim.run(write(tmp_path), root=tmp_path, jobs=2)
     assert logs(pooled) == logs(once)
     assert [cell.label for cell in pooled.run.cells] == [cell.label for cell in once.run.cells]
+
+
+@pytest.mark.parametrize("seconds", [1e-9, 1e3])
+def test_the_length_of_calls_is_in_no_byte(
+    seconds: float, once: Finished, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(call_length, "CALL", seconds)
+    assert logs(lavendersim.run(write(tmp_path), root=tmp_path)) == logs(once)
 
 
 def test_cells_differ_from_each_other(once: Finished) -> None:

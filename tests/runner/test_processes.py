@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
+from typing import Any
 
 import pytest
 from small_configs import write
@@ -16,16 +17,16 @@ Processes = list[int]
 
 @pytest.fixture
 def started(monkeypatch: pytest.MonkeyPatch) -> Processes:
-    """Keep how many cells each pool of processes is given."""
-    tasks: Processes = []
-    real = executor._pool
+    """Keep how many cells other processes are given at a time."""
+    counts: Processes = []
+    real = executor.work
 
-    def pool(workers: int, count: int):
-        tasks.append(count)
-        return real(workers, count)
+    def work(function: Any, tasks: Any, *arguments: Any) -> Any:
+        counts.append(len(tasks))
+        return real(function, tasks, *arguments)
 
-    monkeypatch.setattr(executor, "_pool", pool)
-    return tasks
+    monkeypatch.setattr(executor, "work", work)
+    return counts
 
 
 def test_a_small_sweep_starts_no_process(

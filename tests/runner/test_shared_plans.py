@@ -23,6 +23,7 @@ VALUES = {
     "simultaneous_impacts": "[together, pairwise]",
     "integrator": "[semi_implicit_euler, midpoint]",
     "compliance_law": "[spring, regularised]",
+    "undetermined_forces": "[least_norm, as_solved]",
     "friction_cone": "[disc, convex]",
     "order": "[coloured, random]",
     "sleeping": "[false, true]",

@@ -1,0 +1,48 @@
+"""Tables of records, moved as bytes: numpy itself copies and joins records field by field.
+
+Of 26 columns that takes nine times as long as the bytes do.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+
+def copied(table: NDArray[Any]) -> NDArray[Any]:
+    """Return a copy of a structured table (n,)."""
+    return _as_bytes(table).copy().view(table.dtype)
+
+
+def joined(tables: Sequence[NDArray[Any]]) -> NDArray[Any]:
+    """Return the rows of tables of one dtype, one after the other; one table as it is."""
+    import numpy as np
+
+    if len(tables) == 1:
+        return tables[0]
+    row = tables[0].dtype
+    if any(table.dtype != row for table in tables):
+        raise TypeError("tables of different columns")
+    return np.concatenate([_as_bytes(table) for table in tables]).view(row)
+
+
+def widened(table: NDArray[Any], row: np.dtype[Any]) -> NDArray[Any]:
+    """Return a table of a dtype that begins with the fields of this one; the others are not set."""
+    import numpy as np
+
+    wide, size = np.empty(len(table), row), table.dtype.itemsize
+    for name, place in (table.dtype.fields or {}).items():
+        if row.fields is None or row.fields[name][:2] != place[:2]:
+            raise TypeError(f"column {name} has another place")
+    wide.view(np.uint8).reshape(len(table), row.itemsize)[:, :size] = (
+        np.ascontiguousarray(_as_bytes(table)).view(np.uint8).reshape(len(table), size)
+    )
+    return wide
+
+
+def _as_bytes(table: NDArray[Any]) -> NDArray[Any]:
+    return table.view(f"V{table.dtype.itemsize}")

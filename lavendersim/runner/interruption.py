@@ -1,0 +1,80 @@
+"""Signals that end a run: what was simulated is in the log, and the log is closed, before it ends.
+
+While a log is open a signal is only noted, and the cell asks for it between two calls of the
+engine. Elsewhere it ends at once what goes on, and so does a second one.
+"""
+
+from __future__ import annotations
+
+import signal
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any, Final
+
+from lavendersim.trace.whole import INTERRUPTED
+
+SIGNALS: Final = ("SIGINT", "SIGTERM", "SIGHUP")  # those of them that a system has
+
+
+class Interrupted(KeyboardInterrupt):
+    """A signal ended a run; the argument says which."""
+
+
+class _Noted:
+    """Of this process: signals come to its main thread."""
+
+    open = False  # whether a log is
+    signal = ""  # that came meanwhile
+
+
+def _take(number: int, frame: Any) -> None:
+    name = signal.Signals(number).name
+    if _Noted.open and not _Noted.signal:
+        _Noted.signal = name
+        return
+    raise Interrupted(f"{INTERRUPTED} by {name}")
+
+
+def _is_main() -> bool:
+    return threading.current_thread() is threading.main_thread()
+
+
+@contextmanager
+def handled() -> Iterator[None]:
+    """Let signals end what is run meanwhile in this way.
+
+    In another than the main thread, and of signals that somebody else handles or ignores, nothing
+    changes.
+    """
+    numbers = [getattr(signal, name) for name in SIGNALS if hasattr(signal, name)]
+    defaults = (signal.SIG_DFL, signal.default_int_handler)
+    before = {one: signal.getsignal(one) for one in numbers if _is_main()}
+    taken = {number: handler for number, handler in before.items() if handler in defaults}
+    for number in taken:
+        signal.signal(number, _take)
+    try:
+        yield
+    finally:
+        for number, handler in taken.items():
+            signal.signal(number, handler)
+
+
+@contextmanager
+def deferred() -> Iterator[Callable[[], str]]:
+    """Note signals while a log is open; yields what returns the name of one that came, or ""."""
+    if not _is_main():
+        yield str
+        return
+    _Noted.open, _Noted.signal = True, ""
+    try:
+        yield lambda: _Noted.signal
+    finally:
+        _Noted.open = False
+
+
+def raise_noted() -> None:
+    """Raise Interrupted where a signal came while the last log was open."""
+    if _is_main() and _Noted.signal:
+        name, _Noted.signal = _Noted.signal, ""
+        raise Interrupted(f"{INTERRUPTED} by {name}")

@@ -1,0 +1,124 @@
+"""A signal ends a run cleanly: logs are closed with what was simulated, and no process is left."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from small_configs import write
+
+from lavendersim import open_run, open_trace
+from lavendersim.errors import TraceError
+
+# Fifty million steps: minutes on any machine.
+ENDLESS = """\
+scene:
+  bodies:
+    floor: {{shape: {{kind: plane}}}}
+    ball:
+      shape: {{kind: sphere, radius: 0.1}}
+      mass: 1.0
+      position: [0, 0, 0.5]
+      surface: {{restitution: 0.9}}
+numerics: {{timestep: 1/100000}}
+duration: 500
+sweep:
+  duration: {{path: duration, values: {durations}}}
+"""
+SIGNALS = [name for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
+WAIT = 120.0  # [s] for what takes some
+
+pytestmark = pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
+
+
+def logs_with_steps(runs: Path, count: int) -> list[Path]:
+    """Wait until so many logs have steps in them; kernels may have to be compiled before."""
+    until = time.monotonic() + WAIT
+    while time.monotonic() < until:
+        found = [log for log in runs.glob("*/cells/*.mcap") if log.stat().st_size > 200_000]
+        if len(found) >= count:
+            return found
+        time.sleep(0.02)
+    raise AssertionError(f"no {count} logs have steps after {WAIT} s")
+
+
+def assert_nobody_is_left(group: int) -> None:
+    """Python's own tracker of resources ends a moment after those that it tracks for."""
+    until = time.monotonic() + 2.0
+    while time.monotonic() < until:
+        try:
+            os.killpg(group, 0)
+        except ProcessLookupError:
+            return
+        time.sleep(0.02)
+    raise AssertionError("a process is left after 2 s")
+
+
+def interrupted(runs: Path, name: str, command: list[str], logs: int) -> tuple[Path, str]:
+    """Interrupt a run when so many logs have steps; returns its directory and what it says."""
+    process = subprocess.Popen(
+        [sys.executable, *command],
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,  # its process group has nothing of this one
+    )
+    try:
+        logs_with_steps(runs, logs)
+        process.send_signal(getattr(signal, name))
+        _, said = process.communicate(timeout=WAIT)
+    finally:
+        process.kill()
+    assert process.returncode == 130, said
+    assert_nobody_is_left(process.pid)
+    (directory,) = (path for path in runs.iterdir() if path.name != "latest")
+    return directory, said
+
+
+@pytest.mark.parametrize("name", SIGNALS)
+def test_a_run_that_is_interrupted_closes_its_log_and_says_so(tmp_path: Path, name: str) -> None:
+    runs, config = tmp_path / "runs", write(tmp_path, ENDLESS.format(durations="[500, 501]"))
+    command = ["-m", "lavender_cli.main", "run", str(config), "--runs", str(runs)]
+    directory, said = interrupted(runs, name, command, logs=1)
+    assert f"interrupted by {name}: 0 of 2 cells are whole, {directory}\n" in said
+    (log,) = (directory / "cells").glob("*.mcap")
+    with pytest.raises(TraceError, match=f"interrupted by {name} after step"):
+        open_trace(log)
+    trace = open_trace(log, allow_incomplete=True)
+    # The last step that was made is in the log, none is missing before it.
+    last = int(trace.step["step"][-1])
+    assert trace.status.startswith(f"interrupted by {name} after step {last} (t = ")
+    assert trace.step["step"].tolist() == list(range(last + 1))
+    cells = open_run(directory).cells
+    assert [cell.status == "pending" for cell in cells] == [False, True]
+    assert cells[0].status == trace.status
+
+
+# The first cell of a plan runs in the process that asks, the others in processes of their own.
+IN_PROCESSES = """
+import sys
+import lavendersim
+from lavendersim.runner import executor
+executor.WORTH_PROCESSES = 0.0
+try:
+    lavendersim.run(sys.argv[1], root=sys.argv[2], jobs=2)
+except KeyboardInterrupt as end:
+    sys.exit(130)
+"""
+
+
+def test_other_processes_close_their_logs(tmp_path: Path) -> None:
+    runs = tmp_path / "runs"
+    config = write(tmp_path, ENDLESS.format(durations="[0.001, 500, 501]"))
+    command = ["-c", IN_PROCESSES, str(config), str(runs)]
+    directory, _ = interrupted(runs, "SIGTERM", command, logs=2)
+    short, *long = (cell.status for cell in open_run(directory).cells)
+    assert short == "complete"
+    assert all(status.startswith("interrupted by SIGTERM after step ") for status in long)
+    logs = [open_trace(log, allow_incomplete=True) for log in directory.glob("cells/*.mcap")]
+    assert sorted(trace.status for trace in logs) == sorted([short, *long])

@@ -1,0 +1,96 @@
+"""A process that dies is replaced, and its task done once more; the other tasks go on."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import psutil
+import pytest
+from deadly_tasks import Task, dies_at_one_half, dies_once_at_one_half, exits, meets, squared
+from small_configs import write
+
+import lavendersim
+from lavendersim.figures.config_figure import compose
+from lavendersim.runner import Progress, executor
+from lavendersim.runner.workers import AHEAD, Death, Retried, work
+
+
+def test_every_task_is_done_once_by_any_number_of_processes(tmp_path: Path) -> None:
+    for workers in (1, 3):
+        notes = tmp_path / str(workers)
+        notes.mkdir()
+        tasks = [Task(number, notes) for number in range(5 * AHEAD)]
+        found = list(work(squared, tasks, workers))
+        assert sorted(task.number for task, _ in found) == [*range(5 * AHEAD)]
+        assert all(result == task.number**2 for task, result in found)
+        assert len(list(notes.iterdir())) == len(tasks)
+    assert psutil.Process().children() == [] or all(
+        "resource_tracker" in " ".join(child.cmdline()) for child in psutil.Process().children()
+    )
+
+
+def test_no_task_waits_behind_another_while_a_process_has_none(tmp_path: Path) -> None:
+    tasks = [Task(number, tmp_path) for number in range(3)]
+    assert sorted(number for _, number in work(meets, tasks, 3)) == [0, 1, 2]
+
+
+def test_a_task_whose_process_dies_is_done_once_more(tmp_path: Path) -> None:
+    again: list[Retried[Task]] = []
+    tasks = [Task(number, tmp_path, deaths=number == 2) for number in range(6)]
+    found = dict(work(squared, tasks, 2, again.append))
+    assert found == {task: task.number**2 for task in tasks}
+    assert again == [Retried(tasks[2], Death("was killed by SIGKILL"))]
+    # what its process had before it was not done twice, nor what was waiting
+    assert len(list(tmp_path.iterdir())) == len(tasks) + 1
+
+
+def test_a_second_death_is_the_result_and_the_others_go_on(tmp_path: Path) -> None:
+    tasks = [Task(number, tmp_path, deaths=2 * (number in (0, 3))) for number in range(6)]
+    found = dict(work(squared, tasks, 2))
+    assert found.keys() == set(tasks)
+    died = [task.number for task, one in found.items() if one == Death("was killed by SIGKILL")]
+    assert sorted(died) == [0, 3]
+    assert all(found[task] == task.number**2 for task in tasks if not task.deaths)
+
+
+def test_an_exit_within_a_task_is_a_death_too() -> None:
+    assert list(work(exits, [7], 1)) == [(7, Death("ended with exit code 7"))]
+
+
+def test_an_exception_of_a_task_is_raised_here_with_where_it_came_from(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match="-1 is negative") as raised:
+        list(work(squared, [Task(-1, tmp_path)], 2))
+    assert "deadly_tasks.py" in raised.value.__notes__[0]
+
+
+@pytest.mark.parametrize(("function", "times"), [(dies_once_at_one_half, 1), (dies_at_one_half, 2)])
+def test_a_sweep_goes_on_when_the_process_of_a_cell_is_killed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, function: Callable[[Any], Any], times: int
+) -> None:
+    config = write(tmp_path)
+    lavendersim.run(config, root=tmp_path / "warm")  # the first cell is run in this process
+    monkeypatch.setattr(executor, "run_and_measure", function)
+    said: list[str] = []
+    finished = lavendersim.run(
+        config, root=tmp_path / "runs", jobs=2, progress=Progress(warning=said.append)
+    )
+    assert said == ["the process of cell e=0.5 was killed by SIGKILL; the cell is run once more"]
+    sentence = "failed: its process was killed by SIGKILL, both times"
+    ended = {cell.label: cell.status for cell in finished.run.cells}
+    died = {"e=0.5": sentence} if times == 2 else {}
+    assert ended == {"e=0.2": "complete", "e=0.5": "complete", "e=0.8": "complete"} | died
+    assert finished.good == (times == 1)
+    assert [cell.label for cell in finished.ended_early] == [*died]
+    assert finished.run.finished
+    results = json.loads((finished.run.path / "results.json").read_text())
+    assert [row["status"] for row in results["cells"]] == list(ended.values())
+    if died:
+        assert results["cells"][1]["measures"] == {"rebound": sentence}
+        (said_of_cell,) = {check["message"] for check in results["checks"]}
+        assert f"e=0.5: {sentence}" in said_of_cell
+    figure = compose(finished.run.experiment, finished.run.cells, finished.run.taken)
+    caption = " ".join(" ".join(text.get_text() for text in figure.texts).split())
+    assert ("Left out: 1 of 3 cells have no readable log" in caption) == bool(died)
