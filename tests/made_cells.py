@@ -31,6 +31,7 @@ NUMERICS: dict[str, Any] = {
     "impacts": "captured",
     "integrator": "semi_implicit_euler",
     "compliance_law": "regularised",
+    "undetermined_forces": "as_solved",
     "simultaneous_impacts": "together",
     "accuracy": None,
     "smallest_timestep": 1e-9,

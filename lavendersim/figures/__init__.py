@@ -20,7 +20,7 @@ def draw(run: Any, directory: Path) -> list[Path]:
 
     _refuse_damaged(run)
     paths = draw_page(run, directory)
-    if getattr(run.experiment, "overhead", None) is not None:
+    if run.experiment.config.overhead is not None:
         paths += draw_overheads([run], directory)
     if callable(getattr(run, "cost", None)) and run.cost() is not None:
         from lavendersim.figures.work_precision import draw_work_precision

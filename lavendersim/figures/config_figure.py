@@ -41,7 +41,7 @@ def draw(run: Any, directory: Path) -> list[Path]:
     out and counted in the caption; where damaged logs are drawn it says of which cells.
     """
     experiment = run.experiment
-    if experiment.figure is None:
+    if experiment.config.figure is None:
         return []
     name = getattr(run, "name", experiment.name)  # a run kept its file as config.yaml
     taken = getattr(run, "taken", {})
@@ -50,7 +50,7 @@ def draw(run: Any, directory: Path) -> list[Path]:
 
 def compose(experiment: Any, cells: Sequence[Cell], taken: Taken = MappingProxyType({})) -> Figure:
     """Return the page as a matplotlib Figure; taken: measures of the cells, by their index."""
-    spec: FigureSpec = experiment.figure
+    spec: FigureSpec = experiment.config.figure
     readable = [cell for cell in cells if (taken and cell.index in taken) or _is_readable(cell)]
     missing = len(cells) - len(readable)
     note = f" Left out: {missing} of {len(cells)} cells have no readable log." if missing else ""
@@ -60,7 +60,7 @@ def compose(experiment: Any, cells: Sequence[Cell], taken: Taken = MappingProxyT
         caption=_incomplete(known, len(cells)) + spec.caption + note,
         width=max(NARROWEST, PANEL_WIDTH * columns),
         height=PANEL_HEIGHT * rows,
-        question=experiment.question,
+        question=experiment.config.question,
         legend_below=_shared_entries(spec, readable),
     )
     figure = blank(page)
@@ -92,7 +92,7 @@ def _grid(panels: int) -> tuple[int, int]:
 def _draw_panels(
     figure: Figure, experiment: Any, cells: Sequence[Cell], values: Values, shared: bool
 ) -> None:
-    shown_panels = experiment.figure.panels
+    shown_panels = experiment.config.figure.panels
     places = figure.subplots(*_grid(len(shown_panels)), squeeze=False).ravel()
     for axes in places[len(shown_panels) :]:
         axes.set_axis_off()

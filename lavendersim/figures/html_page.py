@@ -64,17 +64,6 @@ def check_page_path(path: Path) -> None:
         raise UsageError(f"{path}: nothing may be written into its folder")
 
 
-def write_whole(text: str, path: Path) -> None:
-    """Write a page in one move: a reader sees the old or the new one, never half."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    unfinished = path.with_name(f".{path.name}.{os.getpid()}.unfinished")
-    try:
-        unfinished.write_text(text, encoding="utf-8")
-        os.replace(unfinished, path)
-    finally:
-        unfinished.unlink(missing_ok=True)
-
-
 def picture(cell: Any, scale: float = 1.0) -> Picture:
     """Return the image of where the bodies of a cell ended, at a share of its size."""
     try:

@@ -11,6 +11,7 @@ state and starts faster. Equal numbers give equal bytes: no date, fixed ids, a f
 
 from __future__ import annotations
 
+import io
 from collections.abc import Callable, Sequence
 from functools import cache
 from pathlib import Path
@@ -24,6 +25,7 @@ from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties
 from matplotlib.textpath import TextPath
 
+from lavendersim.durable_files import write_together
 from lavendersim.figures.style import DPI, LINE_HEIGHT, STYLE
 
 POINTS_PER_INCH: Final = 72.0
@@ -57,9 +59,9 @@ class Page(NamedTuple):
 def write(stem: Path, compose: Callable[..., Figure], *values: Any) -> list[Path]:
     """Compose a page in the common style and write it as PNG and SVG; returns the files.
 
-    The directory is made where it is missing.
+    The directory is made where it is missing. Where they cannot be written, on a full disk for
+    example, earlier ones stay as they were.
     """
-    stem.parent.mkdir(parents=True, exist_ok=True)
     paths = [stem.with_name(f"{stem.name}.{suffix}") for suffix in ("png", "svg")]
     with style.context(STYLE, after_reset=True):
         figure = compose(*values)
@@ -67,11 +69,13 @@ def write(stem: Path, compose: Callable[..., Figure], *values: Any) -> list[Path
         usual = figure.dpi
         figure.dpi = DPI
         raster: Any = FigureCanvasAgg(figure)
-        raster.print_png(paths[0], metadata={"Software": None})
+        dots, text = io.BytesIO(), io.StringIO()
+        raster.print_png(dots, metadata={"Software": None})
         figure.dpi = usual
         figure.set_layout_engine("none")  # panels stay where they are: that took a third of it
         vector: Any = FigureCanvasSVG(figure)
-        vector.print_svg(paths[1], metadata={"Date": None, "Creator": "lavender"})
+        vector.print_svg(text, metadata={"Date": None, "Creator": "lavender"})
+    write_together({paths[0]: dots.getvalue(), paths[1]: text.getvalue()})
     return paths
 
 

@@ -7,7 +7,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from lavendersim.figures.html_page import address, picture, render, write_whole
+from lavendersim.durable_files import write_whole
+from lavendersim.figures.html_page import address, picture, render
 
 
 def write_report(results: Sequence[Any], path: Path) -> list[str]:
@@ -15,7 +16,7 @@ def write_report(results: Sequence[Any], path: Path) -> list[str]:
 
     Returns a sentence of each log that is damaged; they stand in the page as well.
     """
-    write_whole(report(results, path.parent), path)
+    write_whole(path, report(results, path.parent))
     return [sentence for result in results for sentence in _damaged(result)]
 
 
@@ -43,7 +44,7 @@ def _case(result: Any, folder: Path) -> dict[str, Any]:
     return {
         "name": run.name,
         "reduced": run.experiment.reduced,
-        "question": run.experiment.question,
+        "question": run.experiment.config.question,
         "picture": picture(shown),
         "log": address(shown.path, folder),
         "good": result.good,

@@ -11,7 +11,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
-from lavendersim.figures.html_page import address, count_of, picture, render, write_whole
+from lavendersim.durable_files import write_whole
+from lavendersim.figures.html_page import address, count_of, picture, render
 
 
 class Matrix(NamedTuple):
@@ -50,7 +51,7 @@ SMALLER: Final = 0.6  # of a picture's size: rows low enough to see a family at 
 
 def write_matrix(matrix: Matrix, path: Path) -> None:
     """Write the page, whole or not."""
-    write_whole(page(matrix, path.parent), path)
+    write_whole(path, page(matrix, path.parent))
 
 
 def page(matrix: Matrix, folder: Path) -> str:

@@ -1,7 +1,7 @@
 """The solids of a scene at their logged poses: their extents, and which may overlap.
 
-A body's size is three numbers: sphere (radius, 0, 0), box its half edges, capsule and cylinder
-(radius, 0, half length along the body's z).
+A body's size is three numbers, as kernels have them (`Primitive.row`): sphere (radius, 0, 0), box
+its half edges, capsule and cylinder (radius, 0, half length along the body's z).
 """
 
 from __future__ import annotations
@@ -11,7 +11,8 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from lavendersim.cell import Box, Capsule, CellScene, CellShape, Cylinder, Plane, Sphere
+from lavendersim.cell import CellScene, Plane
+from lavendersim.cell.shapes import Primitive
 from lavendersim.geometry.bodies import is_movable
 from lavendersim.geometry.rotations import rotation_matrices
 from lavendersim.geometry.shapes import HalfSpace, half_space
@@ -59,21 +60,11 @@ def solids_of(scene: CellScene, names: list[str]) -> tuple[Solids, list[HalfSpac
             continue
         columns.append(column)
         kinds.append(KINDS.get(body.shape.kind, OTHER))
-        sizes.append(_size(body.shape))
+        row = body.shape.row() if isinstance(body.shape, Primitive) else {}
+        sizes.append([row.get(name, 0.0) for name in ("hx", "hy", "hz")])
         movable.append(is_movable(body))
     table = np.array(sizes, dtype=np.float64).reshape(-1, 3)
     return Solids(np.array(columns, int), np.array(kinds, int), table, np.array(movable)), grounds
-
-
-def _size(shape: CellShape) -> tuple[float, ...]:
-    match shape:
-        case Sphere():
-            return shape.radius, 0.0, 0.0
-        case Box():
-            return tuple(0.5 * edge for edge in shape.size)
-        case Capsule() | Cylinder():
-            return shape.radius, 0.0, 0.5 * shape.length
-    return 0.0, 0.0, 0.0
 
 
 def extents(kind: np.ndarray, placed: Placed, direction: Floats) -> Floats:

@@ -28,7 +28,7 @@ class Values:
 
     def row(self, measure: str, cell: Cell) -> Floats:
         """Return the measure of one cell; a single number is a row of one."""
-        known = self._taken[cell.index].get(measure) if self._taken else None
+        known = self._taken.get(cell.index, {}).get(measure) if self._taken else None
         if isinstance(known, str):
             raise LavenderError(known)
         if known is not None:

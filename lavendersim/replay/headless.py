@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 from rerun.experimental import ViewerClient
 
+from lavendersim.durable_files import write_whole
 from lavendersim.errors import LavenderError, MissingDriverError
 from lavendersim.replay.drivers import (
     NO_DRIVER,
@@ -57,7 +58,7 @@ def take_screenshot(trace: Trace, path: Path, title: str, at: float | None = Non
         with _headless_viewer(program, recording, Path(folder) / "stderr.txt") as viewer:
             viewer.wait_for(_is_loaded, "load the recording")
             picture, complaints = viewer.ask(lambda client: _shoot(client, moment))
-    _replace(path, picture)
+    write_whole(path, picture)
     return complaints
 
 
@@ -160,13 +161,3 @@ def _shoot(client: ViewerClient, moment: np.timedelta64) -> tuple[bytes, list[st
         if entry.level in ("WARN", "ERROR") and not entry.message.startswith(HARMLESS)
     ]
     return picture, reports + logged
-
-
-def _replace(path: Path, content: bytes) -> None:
-    path.parent.mkdir(parents=True, exist_ok=True)
-    unfinished = path.with_name(f".{path.name}.{os.getpid()}.unfinished")
-    try:
-        unfinished.write_bytes(content)
-        os.replace(unfinished, path)
-    finally:
-        unfinished.unlink(missing_ok=True)

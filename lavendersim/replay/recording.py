@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -10,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import rerun as rr
 
+from lavendersim.durable_files import written_aside
 from lavendersim.errors import UsageError
 from lavendersim.replay import columns, scene
 from lavendersim.replay.blueprint import blueprint
@@ -46,18 +46,15 @@ def record(trace: Trace, stream: rr.RecordingStream, title: str) -> None:
 
 def write_rrd(trace: Trace, path: Path, title: str) -> None:
     """Write the recording beside `path` and move it there when it is whole."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    unfinished = path.with_name(f".{path.name}.{os.getpid()}.unfinished")
     stream = new_stream(title)
     try:
-        stream.save(unfinished)
-        record(trace, stream, title)
-        stream.flush()
-        stream.disconnect()  # writes the footer that readers look for
-        os.replace(unfinished, path)
+        with written_aside(path) as unfinished:
+            stream.save(unfinished)
+            record(trace, stream, title)
+            stream.flush()
+            stream.disconnect()  # writes the footer that readers look for
     finally:
         stream.disconnect()
-        unfinished.unlink(missing_ok=True)
 
 
 def moment_to_show(trace: Trace, at: float | None = None) -> np.timedelta64:

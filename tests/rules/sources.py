@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
@@ -60,9 +61,12 @@ def modules(node: ast.AST, package: list[str]) -> list[str]:
 
 def imports() -> list[Import]:
     """Return every import of every file: at the top, in functions, and for type checkers."""
-    return [
-        Import(file.relative_to(ROOT), room_of(file), module)
-        for file in files()
-        for node in ast.walk(ast.parse(file.read_text()))
-        for module in modules(node, module_of(file)[:-1])
-    ]
+    return [found for file in files() for found in imports_of(file)]
+
+
+def imports_of(file: Path) -> Iterator[Import]:
+    """Yield every import of one file."""
+    where, room, package = file.relative_to(ROOT), room_of(file), module_of(file)[:-1]
+    for node in ast.walk(ast.parse(file.read_text())):
+        for module in modules(node, package):
+            yield Import(where, room, module)

@@ -34,6 +34,7 @@ SECTIONS = {
     "torques-at-a-contact": ("torsional_friction", "rolling_friction"),
     "warm-start": ("warm_start",),
     "newtons-method": ("newton",),
+    "undetermined-forces": ("least_norm",),
     "projection": ("projection",),
     "integrate": ("rotation", "gyroscopic", "midpoint"),
     "sleeping": ("sleeping",),

@@ -55,6 +55,8 @@ ELSEWHERE = {
         "engine/residual.py": ROW,
         "engine/solvers/row_update.py": ROW,
         "engine/solvers/newton/response.py": ROW,
+        "engine/solvers/newton/faces.py": ROW,
+        "engine/solvers/newton/least_norm.py": ROW,
         "engine/solvers/packed/packing.py": ROW,
         "engine/solvers/packed/sweep.py": ROW,
         "engine/solvers/jacobi.py": ROW,

@@ -45,15 +45,6 @@ def test_a_config_says_what_every_step_keeps() -> None:
     assert silent == []
 
 
-def test_the_folders_of_unit_tests_mirror_the_packages() -> None:
-    """A module's tests stand in its package's folder, most of them under its name."""
-    unit = ROOT / "tests/unit"
-    tested = {file.parent.relative_to(unit) for file in unit.rglob("test_*.py")}
-    source = ROOT / "lavendersim"
-    packages = {file.parent.relative_to(source) for file in source.rglob("*.py")}
-    assert tested <= packages
-
-
 def test_no_two_test_files_share_a_name() -> None:
     """Pytest imports test files by their bare name."""
     names = [path.stem for path in (ROOT / "tests").rglob("test_*.py")]

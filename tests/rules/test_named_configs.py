@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -45,6 +46,16 @@ def test_every_folder_of_configs_is_described() -> None:
     folders = {file.parent for file in CONFIGS.rglob("*.yaml")} | {CONFIGS / "hard"}
     described = sorted(path for _, path in links)
     assert described == sorted(folder.relative_to(CONFIGS).as_posix() for folder in folders)
+
+
+@pytest.mark.parametrize(
+    "folder", [CONFIGS / "hard", ROOT / "tests/configs/bad"], ids=["hard", "bad"]
+)
+def test_a_folder_groups_configs(folder: Path) -> None:
+    """A folder of one file is a longer name; a file beside the folders is in no group."""
+    groups = Counter(file.parent for file in folder.rglob("*.yaml"))
+    assert folder not in groups
+    assert [group.name for group, count in groups.items() if count == 1] == []
 
 
 def test_the_links_of_the_description_lead_somewhere() -> None:

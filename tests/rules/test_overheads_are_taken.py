@@ -42,6 +42,7 @@ IDLE = {  # in effects/sphere.yaml, with the reason why no config has it at work
     "impact_energy": SWEPT,
     "stabilisation": "the default numerics, which all timed scenes have, project instead",
     "compliance": "where a scene requires it, its law needs it",
+    "least_norm": "another law where a scene requires it; of one ball on a plane it is idle",
     "newton": "where a scene requires it, solves without it are another solver's",
     "sleeping": NONE,
     "residual_log": SWEPT,
@@ -67,7 +68,7 @@ SCENE_OF = {name: config for config, names in AT_WORK.items() for name in names}
 def timed(config: str) -> dict[str, Pair]:
     """Return the pairs of engines that a shipped config times, by effect."""
     experiment = load_experiment(ROOT / "configs" / config)
-    section = experiment.overhead
+    section = experiment.config.overhead
     assert section is not None, config
     named = () if section.effects == "all" else section.effects
     return {pair.effect: pair for pair in pairs_of(experiment.cells()[0].config, named)}

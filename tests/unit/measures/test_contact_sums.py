@@ -33,7 +33,9 @@ def section(names: list[str], cone: str, wrong: float, seed: int = 0) -> Section
     counts = random.integers(0, 6, STEPS)
     counts[0] = 0
     integers = ("step", "body_a", "body_b")
-    fields = [(name, "i8" if name in integers else "f8") for name in ("step", *names)]
+    fields = [
+        (name, "i8" if name in integers else "f8") for name in dict.fromkeys(("step", *names))
+    ]
     rows = np.zeros(counts.sum(), fields)
     for name, kind in fields:
         if kind == "f8":

@@ -49,10 +49,13 @@ def column(mass: int, *outcomes: tuple[float, str]) -> list[SyntheticCell]:
 def page(panel: dict[str, Any], cells: list[SyntheticCell], *more: dict[str, Any]) -> Any:
     experiment = SimpleNamespace(
         name="some_experiment",
-        question="What is asked?",
         measures={"impulse": ImpactImpulse(kind="impact_impulse", body="ball")},
-        figure=FigureSpec.model_validate({"caption": "See.", "panels": (panel, *more)}),
-        config=SimpleNamespace(sweep={}),
+        config=SimpleNamespace(
+            question="What is asked?",
+            figure=FigureSpec.model_validate({"caption": "See.", "panels": (panel, *more)}),
+            overhead=None,
+            sweep={},
+        ),
     )
     with style.context(STYLE, after_reset=True):
         return compose(experiment, cells)

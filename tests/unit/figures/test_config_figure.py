@@ -69,10 +69,13 @@ def experiment(*panels: dict[str, Any]) -> Any:
     sweep = {"speed": SimpleNamespace(path="scene.bodies.ball.velocity.2")}
     return SimpleNamespace(
         name="some_experiment",
-        question="What is asked?",
         measures=MEASURES,
-        figure=FigureSpec.model_validate({"caption": "What to see.", "panels": panels}),
-        config=SimpleNamespace(sweep=sweep),
+        config=SimpleNamespace(
+            question="What is asked?",
+            figure=FigureSpec.model_validate({"caption": "What to see.", "panels": panels}),
+            overhead=None,
+            sweep=sweep,
+        ),
     )
 
 
@@ -205,14 +208,17 @@ def test_files_are_png_and_svg_and_equal_logs_give_equal_bytes(tmp_path: Path) -
 
 
 def test_an_experiment_without_a_figure_draws_nothing(tmp_path: Path) -> None:
-    run = SimpleNamespace(experiment=SimpleNamespace(figure=None, name="x"), cells=[])
+    run = SimpleNamespace(
+        experiment=SimpleNamespace(config=SimpleNamespace(figure=None, overhead=None), name="x"),
+        cells=[],
+    )
     assert draw(run, tmp_path) == []
     assert not list(tmp_path.iterdir())
 
 
 def test_the_text_stays_inside_the_page() -> None:
     made = experiment(ROW)
-    made.question = "Which of these many words will illuminate millimetres? " * 20
+    made.config.question = "Which of these many words will illuminate millimetres? " * 20
     with style.context(STYLE, after_reset=True):
         figure = compose(made, cells())
         figure.canvas.draw()

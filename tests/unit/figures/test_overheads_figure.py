@@ -60,7 +60,9 @@ def run_of(name: str, overheads: dict[str, Any] | None) -> Any:
         name=name,
         results=lambda: results,
         cells=(),
-        experiment=SimpleNamespace(name=name, figure=None, overhead=object()),
+        experiment=SimpleNamespace(
+            name=name, config=SimpleNamespace(figure=None, overhead=object())
+        ),
     )
 
 

@@ -1,0 +1,117 @@
+"""A pruned engine has the very instructions of one whose sources never had the effect.
+
+From a copy of the engine an effect is cut out: its file, its name in the list, and every
+`if flag:` that its flag guards elsewhere. A new process compiles the same plan from it, and the
+instructions, in their order, are those of the plan compiled from the sources as they are.
+"""
+
+from __future__ import annotations
+
+import ast
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+# Prints the instructions of a scene's engine, compiled anew; a cached one has no text. Operands
+# are left out: they hold names, and names a counter of the process.
+COMPILE = """
+import json, sys
+sys.path.insert(0, sys.argv[1])
+from idle_scenes import SCENES
+from laboratory import Bench
+from lavendersim.engine import __file__ as where
+from lavendersim.engine.step import make_advance
+
+engine = Bench(SCENES["plastic balls"](), None).engine
+engine._kernel = make_advance(engine.spec)
+engine.advance(1)
+(compiled,) = engine._kernel.overloads.values()
+lines = compiled.library.get_asm_str().splitlines()
+words = [line.split()[0] for line in lines if line.startswith("\\t") and line[1:2].isalpha()]
+print(json.dumps({"where": where, "spec": engine.spec, "instructions": words}))
+"""
+
+
+class Cut(ast.NodeTransformer):
+    """Take out the branches of an effect's flags, and the flags."""
+
+    def __init__(self, effect: str) -> None:
+        self.effect = effect
+        self.flags: set[str] = set()
+        self.branches = 0
+
+    def visit_Assign(self, node: ast.Assign) -> ast.AST | None:
+        if ast.unparse(node.value) == f"spec.has('{self.effect}')":
+            (target,) = node.targets
+            self.flags.add(target.id)
+            return None
+        return node
+
+    def visit_If(self, node: ast.If) -> ast.AST | None:
+        if isinstance(node.test, ast.Name) and node.test.id in self.flags:
+            assert not node.orelse
+            self.branches += 1
+            return None
+        return self.generic_visit(node)
+
+
+def cut_out(folder: Path, effect: str) -> int:
+    """Cut an effect out of a copy of the engine; return how many branches it had."""
+    (folder / f"effects/{effect}.py").unlink()
+    listed = folder / "effects/__init__.py"
+    text = listed.read_text()
+    line = f'    "{effect}",\n'
+    assert text.count(line) == 1
+    listed.write_text(text.replace(line, ""))
+    branches = 0
+    for path in folder.rglob("*.py"):
+        if f'spec.has("{effect}")' in path.read_text():
+            cut = Cut(effect)
+            path.write_text(ast.unparse(cut.visit(ast.parse(path.read_text()))) + "\n")
+            branches += cut.branches
+        assert f'"{effect}"' not in path.read_text()
+    return branches
+
+
+def instructions(package: Path) -> list[str]:
+    """Return the instructions of a frictionless scene's engine, compiled from a package."""
+    done = subprocess.run(
+        [sys.executable, "-P", "-c", COMPILE, str(ROOT / "tests/oracle")],
+        env=os.environ | {"PYTHONPATH": os.pathsep.join([str(package), str(ROOT)])},
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    found = json.loads(done.stdout.splitlines()[-1])
+    assert found["where"].startswith(str(package))
+    return list(found["instructions"])
+
+
+@pytest.fixture(scope="module")
+def as_it_is() -> list[str]:
+    found = instructions(ROOT)
+    assert len(found) > 1000
+    return found
+
+
+@pytest.mark.parametrize(
+    ("effects", "elsewhere"),
+    [(("drag",), False), (("contact_spring", "compliance"), True)],
+    ids=["drag", "compliance"],
+)
+def test_a_pruned_effect_leaves_no_instruction(
+    effects: tuple[str, ...], elsewhere: bool, as_it_is: list[str], tmp_path: Path
+) -> None:
+    without = shutil.ignore_patterns("__pycache__")
+    shutil.copytree(ROOT / "lavendersim", tmp_path / "lavendersim", ignore=without)
+    for effect in effects:
+        assert (cut_out(tmp_path / "lavendersim/engine", effect) > 0) == elsewhere
+    assert instructions(tmp_path) == as_it_is
