@@ -83,12 +83,17 @@ class KernelObject(_Linking):
         super().finalize()
 
     def _optimize_final_module(self) -> None:
-        """Optimise: parts are called from here alone, so what is called once is merged in whole."""
+        """Optimise once: parts are called from here alone, so what is called once is merged whole.
+
+        Numba would do it twice, so that counts of references meet in one function. Kernels count
+        none, and are as fast after the first time.
+        """
         for function in self._final_module.functions:
             merged = function.name in self._symbols or function.linkage == Linkage.linkonce_odr
             if merged and not function.is_declaration:
                 function.linkage = Linkage.internal
-        super()._optimize_final_module()
+        passes, builder = self._codegen._module_pass_manager()
+        passes.run(self._final_module, builder)
 
 
 def _prepare(state: Any, function: Any, symbol: str) -> None:
