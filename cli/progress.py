@@ -59,7 +59,11 @@ def _lines(name: str) -> Iterator[Any]:
     Thread(target=show, daemon=True).start()
     try:
         yield Progress(
-            compiling=compiling, running=state.running, timing=timing, warning=_warn(name)
+            compiling=compiling,
+            running=state.running,
+            timing=timing,
+            warning=_warn(name),
+            note=_note(name),
         )
     finally:
         stopped.set()
@@ -85,6 +89,7 @@ def _terminal(name: str) -> Iterator[Any]:
             running=state.running,
             timing=state.timing,
             warning=_warn(name),
+            note=_note(name),
         )
 
 
@@ -93,6 +98,13 @@ def _warn(name: str) -> Callable[[str], None]:
         typer.echo(f"{name}: {typer.style(sentence, fg=typer.colors.YELLOW)}", err=True)
 
     return warn
+
+
+def _note(name: str) -> Callable[[str], None]:
+    def note(sentence: str) -> None:
+        typer.echo(f"{name}: {sentence}", err=True)
+
+    return note
 
 
 class State:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 from typing import Annotated
 
@@ -35,22 +36,37 @@ def run(
     jobs: Jobs = 1,
     runs: Runs = Path("runs"),
     refine: Refine = False,
+    resume: Annotated[
+        bool, typer.Option("--resume", help="Go on with the newest run where it did not finish.")
+    ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print the results as JSON.")] = False,
 ) -> None:
     """Run experiments, log every step, judge what was expected. Exits 1 when a check fails."""
-    from lavendersim.runner import load_all, run
+    from lavendersim.runner import finished_run, load_all, run
 
     # Every file is read before the first run, so a defect anywhere leaves nothing half done.
     experiments = load_all(configs)
     good, tables, with_overheads = True, [], []
     for experiment in experiments:
+        whole = finished_run(experiment, runs) if resume else None
+        if whole is not None:
+            typer.echo(f"{experiment.name}: finished, nothing to resume: {whole.path}", err=True)
+            results = whole.results()
+            good = good and bool(results["passed"])
+            if as_json:
+                tables.append({**results, "run": whole.path, "figures": []})
+            continue
         printing.warn_of_mistakes(experiment)
         try:
             with progress.reporting(experiment.name) as shown:
-                finished = run(experiment, runs, jobs, shown)
+                finished = run(experiment, runs, jobs, shown, resume=resume)
         except KeyboardInterrupt as end:  # `run` says by what, and where what was simulated is
             if str(end):
                 typer.echo(str(end), err=True)
+            _say_how_to_resume(configs, runs)
+            raise
+        except OSError:  # a full disk
+            _say_how_to_resume(configs, runs)
             raise
         good = good and finished.good
         printing.warn_of_not_converged(finished)
@@ -83,3 +99,10 @@ def run(
         printing.as_json(tables)
     if not good:
         raise typer.Exit(1)
+
+
+def _say_how_to_resume(configs: list[Path], runs: Path) -> None:
+    """Print the command that goes on where a run was interrupted."""
+    where = [] if runs == Path("runs") else ["--runs", str(runs)]
+    command = ["lavender", "run", *map(str, configs), "--resume", *where]
+    typer.echo(f"go on with: {shlex.join(command)}", err=True)

@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from .configs import find_configs, load_all
     from .experiment_run import Finished, run
     from .progress import Progress
+    from .resume import finished_run
     from .run_directory import RUNS, Run, RunCell, list_runs, open_run
 
 _HOME = {
@@ -21,6 +22,7 @@ _HOME = {
     "Run": "run_directory",
     "RunCell": "run_directory",
     "find_configs": "configs",
+    "finished_run": "resume",
     "list_runs": "run_directory",
     "load_all": "configs",
     "open_run": "run_directory",
@@ -34,6 +36,7 @@ __all__ = [
     "Run",
     "RunCell",
     "find_configs",
+    "finished_run",
     "list_runs",
     "load_all",
     "open_run",

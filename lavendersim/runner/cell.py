@@ -27,13 +27,14 @@ from lavendersim.record_tables import widened
 from lavendersim.scene.build import Scene, build
 from lavendersim.scene.events import EventQueue
 from lavendersim.scene.plan import Plan
-from lavendersim.trace import Block, LogDigest, TraceWriter, Written, trace_of
+from lavendersim.trace import Block, TraceWriter, Written, trace_of
 from lavendersim.trace.recorded import described, partly_recorded
 from lavendersim.trace.whole import INTERRUPTED
 
 from .accuracy import Accuracy
 from .bounds import Bounds
 from .call_length import CallLength, block_steps
+from .cell_outcome import CellOutcome, note_measured
 from .environment import versions
 from .interruption import deferred, raise_noted
 from .measured import Measured, measure_cell
@@ -74,19 +75,6 @@ class CellJob(NamedTuple):
     always: Always | None = None  # what every step must keep; its bounds end the cell
     measures: Mapping[str, MeasureSpec] = MappingProxyType({})
     cells: tuple[CellOfLog, ...] = ()  # that the log is measured for
-
-
-class CellOutcome(NamedTuple):
-    """How a cell ended and what it cost. Times never enter the log."""
-
-    cell: int  # index in the sweep
-    status: str  # `complete`, `diverged: ...` or `beyond bounds: ...`
-    steps: int
-    compile_ns: int  # composing, compiling or loading the kernel
-    physics_ns: int  # inside the kernel
-    logging_ns: int  # encoding and writing
-    accuracy: Accuracy
-    log: LogDigest | None = None  # of its log as it was written
 
 
 @cache
@@ -191,6 +179,7 @@ def run_and_measure(
     for index, label, coordinates in job.cells:
         cell = RunCell(index, label, coordinates, job.path, outcome.status, job.config, [trace])
         measured[index] = measure_cell(cell, job.measures, worst)
+    note_measured(job.path, outcome, measured)
     return outcome, measured
 
 

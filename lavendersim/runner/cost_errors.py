@@ -23,7 +23,7 @@ from lavendersim.measures import Values, judge
 from lavendersim.measures.closed_forms import evaluate_form
 from lavendersim.measures.specs.base import ClosedForm
 
-from .cell import CellOutcome
+from .cell_outcome import CellOutcome
 from .cost_targets import ROUND_OFF
 from .run_directory import RunCell
 

@@ -14,7 +14,8 @@ from lavendersim.engine.spec import Spec
 from lavendersim.engine.step import is_compiled
 from lavendersim.errors import UsageError
 
-from .cell import CellJob, CellOutcome, compile_kernel, failed, run_and_measure
+from .cell import CellJob, compile_kernel, failed, run_and_measure
+from .cell_outcome import CellOutcome
 from .measured import Measured
 from .progress import Compilation, Progress, Tally
 from .workers import Death, Retried, work
@@ -33,6 +34,8 @@ def outcomes_of(
     """
     if compiler_is_off():
         raise UsageError("NUMBA_DISABLE_JIT is set: lavender runs compiled kernels only, unset it")
+    if not jobs:
+        return
     first: dict[tuple[Any, ...], CellJob] = {}
     for job in jobs:
         first.setdefault(job.plan.choices, job)

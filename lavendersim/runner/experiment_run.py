@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
@@ -25,6 +25,7 @@ from .interruption import Interrupted, handled
 from .json_table import text_of
 from .progress import Progress
 from .results import compile_seconds, convergence_notices, write_results
+from .resume import take_over, unfinished_run
 from .run_directory import (
     CELLS,
     CONFIG,
@@ -38,11 +39,13 @@ from .run_directory import (
     point_latest,
 )
 from .run_index import ENDED, PENDING, as_row
+from .run_lock import run_lock
 from .run_seal import DONE, seal_of
 from .seeds import Seeds
 
 if TYPE_CHECKING:
-    from .cell import CellJob, CellOutcome
+    from .cell import CellJob
+    from .cell_outcome import CellOutcome, EndedCell
     from .measured import Measured
 
 
@@ -110,18 +113,20 @@ def run(
     progress: Progress = Progress(),  # noqa: B008 - immutable
     overheads: bool = True,
     closing: Closing = lambda finished, measured: None,
+    *,
+    resume: bool = False,
 ) -> Finished:
     """Run every cell of an experiment and judge its expectations; take overheads where it asks.
 
     root: where run directories are made. jobs: processes; the logs are the same for any number.
     overheads: false leaves out what a section `overhead` asks for. closing: called with the results
-    before the run counts as finished. A cell that diverges or breaks a bound of `always` ends
-    there, with a readable log; the others go on.
+    before the run counts as finished. resume: go on with the newest run of the experiment where it
+    did not finish; see `resume`. A cell that diverges or breaks a bound of `always` ends there,
+    with a readable log; the others go on.
     """
     from lavendersim.engine.compile_options import source_hash
 
     from .cell import CellJob, CellOfLog
-    from .executor import outcomes_of
     from .log_size import size_warning
     from .overheads import take_overheads, write_overheads
     from .plans import distinct, shared_plans
@@ -135,36 +140,83 @@ def run(
     root = Path(root)
     if sentence := size_warning(cells, plans, experiment.text, root):
         progress.warning(sentence)
-    directory = make_directory(experiment, root)
-    (directory / "cells").mkdir()
-    write_whole(directory / CONFIG, experiment.text, flush=False)
-    configs = _write_resolved(directory / RESOLVED, cells)
-    pending = [
-        CellJob(
-            cell.index,
-            cell.config,
-            experiment.text,
-            directory / "cells" / _file_of(cell, source_hash()),
-            plan,
-            seeds.of(cell.coordinates),
-            experiment.always,
-            experiment.measures,
-            (CellOfLog(cell.index, cell.label, cell.coordinates),),
-        )
-        for cell, plan in zip(cells, plans, strict=True)
-    ]
+    names = {cell.index: _file_of(cell, source_hash()) for cell in cells}
+    logs = set(names.values())
+    before = unfinished_run(experiment, root, logs, progress.note) if resume else None
+    directory = before.path if before else make_directory(experiment, root)
+    with run_lock(directory):
+        done = take_over(before, logs, progress.note) if before else {}
+        (directory / "cells").mkdir(exist_ok=True)
+        write_whole(directory / CONFIG, experiment.text, flush=False)
+        configs = _write_resolved(directory / RESOLVED, cells)
+        pending = [
+            CellJob(
+                cell.index,
+                cell.config,
+                experiment.text,
+                directory / "cells" / names[cell.index],
+                plan,
+                seeds.of(cell.coordinates),
+                experiment.always,
+                experiment.measures,
+                (CellOfLog(cell.index, cell.label, cell.coordinates),),
+            )
+            for cell, plan in zip(cells, plans, strict=True)
+        ]
+        ended, taken = _run_cells(experiment, pending, configs, done, (jobs, progress))
+        outcomes = [ended[job.path]._replace(cell=job.cell) for job in pending]
+        # A cell whose process died has no measures to draw, nor a log to take them from.
+        lost = {outcome.cell for outcome in outcomes if not outcome.log}
+        drawn = {index: one.values for index, one in taken.items() if index not in lost}
+        result = _judged(Run(directory, experiment, drawn), outcomes, taken)
+        table = None
+        if overheads and experiment.config.overhead is not None:
+            table = take_overheads(experiment, jobs, progress.timing)
+            write_overheads(directory / OVERHEADS, table)
+        measured = [taken[cell.index].values for cell in result.run.cells]
+        write_results(result, measured, table)
+        known = environment(*(plan.spec for plan in distinct(plans)))
+        write_whole(directory / ENVIRONMENT, text_of(known), flush=False)
+        closing(result, measured)
+        (directory / ENDED).unlink(missing_ok=True)
+        # Nothing of the run counts before this stands: logs and tables are flushed once, together.
+        flush_tree(directory)
+        write_whole(directory / DONE, seal_of(directory, SEALED))
+    point_latest(directory, root)
+    return result
+
+
+def _run_cells(
+    experiment: Experiment,
+    pending: list[CellJob],
+    configs: list[str],
+    done: Mapping[str, EndedCell],
+    how: tuple[int, Progress],
+) -> tuple[dict[Path, CellOutcome], dict[int, Measured]]:
+    """Return how cells ended by their logs, and what was measured by the cells' indices.
+
+    configs: the digests of theirs. done: those that ended before, by the names of their logs.
+    how: in how many processes, and who is shown it.
+    """
+    from .executor import outcomes_of
+
+    jobs, progress = how
     # Cells of several products may be the same simulation: it has one log and is run once.
     different: dict[Path, CellJob] = {}
     for job in pending:
         same = different.get(job.path)
         different[job.path] = same._replace(cells=same.cells + job.cells) if same else job
-    ended: dict[Path, CellOutcome] = {}
+    ended = {path: done[path.name].outcome for path in different if path.name in done}
     taken: dict[int, Measured] = {}
+    for one in done.values():
+        taken |= one.measured
+    directory = pending[0].path.parent.parent
     # The index stands from the start, so that an interrupted run can be listed and replayed.
     _write_index(directory, experiment, zip(pending, configs, strict=True), ended)
+    left = [job for path, job in different.items() if path not in ended]
     try:  # what ends meanwhile is noted beside it: see `run_index`
         with handled():
-            for job, outcome, found in outcomes_of([*different.values()], jobs, progress):
+            for job, outcome, found in outcomes_of(left, jobs, progress):
                 ended[job.path] = outcome
                 taken |= found
                 progress.cell_done(len(ended), len(different))
@@ -173,35 +225,19 @@ def run(
         raise Interrupted(f"{experiment.name}: {end}: {whole}, {directory}") from None
     finally:
         _write_index(directory, experiment, zip(pending, configs, strict=True), ended)
-    (directory / ENDED).unlink(missing_ok=True)
-    outcomes = [ended[job.path]._replace(cell=job.cell) for job in pending]
-    # A cell whose process died has no measures to draw, nor a log to take them from.
-    lost = {
-        name.number for job in different.values() for name in job.cells if not ended[job.path].log
-    }
-    drawn = {index: one.values for index, one in taken.items() if index not in lost}
-    finished = Run(directory, experiment, drawn)
-    values = Values(experiment.measures, finished.taken)
+    return ended, taken
+
+
+def _judged(run: Run, outcomes: list[CellOutcome], taken: Mapping[int, Measured]) -> Finished:
+    """Return a run with the verdicts on what was measured of its cells."""
+    experiment = run.experiment
+    values = Values(experiment.measures, run.taken)
     always = {index: one.always for index, one in taken.items()}
-    claims = (experiment.measures, experiment.expectations, finished.cells, values)
+    claims = (experiment.measures, experiment.expectations, run.cells, values)
     judged = partial(judge, *claims, always=experiment.always, outcomes=always)
     verdicts = judged(meant_to_fail=experiment.controls)
     raw = judged() if experiment.controls else verdicts
-    result = Finished(finished, outcomes, verdicts, raw)
-    table = None
-    if overheads and experiment.config.overhead is not None:
-        table = take_overheads(experiment, jobs, progress.timing)
-        write_overheads(directory / OVERHEADS, table)
-    measured = [taken[cell.index].values for cell in finished.cells]
-    write_results(result, measured, table)
-    known = environment(*(plan.spec for plan in distinct(plans)))
-    write_whole(directory / ENVIRONMENT, text_of(known), flush=False)
-    closing(result, measured)
-    # Nothing of the run counts before this stands, so logs and tables are flushed once, together.
-    flush_tree(directory)
-    write_whole(directory / DONE, seal_of(directory, SEALED))
-    point_latest(directory, root)
-    return result
+    return Finished(run, outcomes, verdicts, raw)
 
 
 def _write_index(

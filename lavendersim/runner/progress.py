@@ -133,6 +133,7 @@ class Progress(NamedTuple):
     cell_done: Callable[[int, int], None] = lambda done, total: None
     timing: Callable[[str, int, int], None] = lambda what, done, total: None
     warning: Callable[[str], None] = lambda sentence: None
+    note: Callable[[str], None] = lambda sentence: None
 
 
 def _duration(job: CellJob) -> float:

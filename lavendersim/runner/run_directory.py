@@ -31,6 +31,7 @@ ENVIRONMENT, LATEST = "env.json", "latest"
 # What the seal of a finished run is on.
 SEALED = (CELLS, RESULTS, TABLE, CONFIG, RESOLVED, ENVIRONMENT, OVERHEADS, COST, COST_TABLE)
 RUNS = Path("runs")
+RESUME = "lavender run CONFIG --resume"
 
 
 @dataclass(frozen=True)
@@ -107,11 +108,9 @@ class Run:
         from lavendersim.experiment import load_experiment_text  # late: see `RunCell.trace`
 
         text = read_sealed(self.path / CONFIG)
-        reduced = bool(self._index.get("reduced", False))
-        solver = self._index.get("solver")
+        reduced, solver, divisor = self.options
         experiment = load_experiment_text(text, str(self.path / CONFIG), reduced, solver)
-        experiment = experiment.refined(self._index.get("timestep_divisor", 1))
-        return replace(experiment, name=self.name)
+        return replace(experiment.refined(divisor), name=self.name)
 
     @cached_property
     def name(self) -> str:
@@ -163,10 +162,21 @@ class Run:
 
     def logs(self) -> dict[Path, dict[str, Any]]:
         """Return the logs of the cells, with their rows of the index; of cells not begun none."""
-        files = {self.path / row["file"]: row for row in self._index["cells"]}
         return {
-            file: row for file, row in files.items() if row["status"] != PENDING or file.exists()
+            file: row
+            for file, row in self.rows().items()
+            if row["status"] != PENDING or file.exists()
         }
+
+    def rows(self) -> dict[Path, dict[str, Any]]:
+        """Return the rows of the index by the logs, begun or not."""
+        return {self.path / row["file"]: row for row in self._index["cells"]}
+
+    @property
+    def options(self) -> tuple[bool, str | None, int]:
+        """What it was run with beside its config: reduced, another solver, timestep's divisor."""
+        index = self._index
+        return bool(index.get("reduced")), index.get("solver"), index.get("timestep_divisor", 1)
 
     @property
     def finished(self) -> bool:
@@ -179,7 +189,10 @@ class Run:
         TraceError where it, or the index of the run, is not as it was written.
         """
         if not self.finished:
-            raise UsageError(f"{self.path}: this run did not finish; its logs are in cells/")
+            raise UsageError(
+                f"{self.path}: this run did not finish; its logs are in cells/, and "
+                f"`{RESUME}` goes on with it"
+            )
         keys = ("index", "label", "status")
         path = self.path / RESULTS
         table = renamed(read_table(path, "cells", (*keys, "measures")), "cells")

@@ -1,17 +1,17 @@
 """Rows of the index of a run, `cells.json`: which log is whose, by digests; how cells ended.
 
-While cells run, the index has them as pending, and a line is appended to `ended.jsonl` for each
-that ends: to write all of the index every time would take, of a sweep, the square of its cells. Who
-reads the index reads both. The line is one write by the process that ran the cell, so it is whole
-after a kill or is not counted. It is not flushed to the disk: after a power loss it may speak of a
-log that is cut, which its digest shows.
+While cells run, the index has them as pending, and two lines are appended to `ended.jsonl` for each
+that ends, the second with what was measured (`cell_outcome`): to write all of the index every time
+would take, of a sweep, the square of its cells. Who reads the index reads both. A line is one write
+by the process that ran the cell, so it is whole after a kill or is not counted. It is not flushed
+to the disk: after a power loss it may speak of a log that is cut, which its digest shows.
 """
 
 from __future__ import annotations
 
 import json
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -31,37 +31,60 @@ def as_row(digest: LogDigest | None) -> dict[str, Any] | None:
     return {"bytes": digest.size, "crc32": f"{digest.crc:08x}", "sha256": digest.sha256}
 
 
+def digest_of(row: Mapping[str, Any] | None) -> LogDigest | None:
+    """Return the digest of a log from what the index says of it."""
+    from lavendersim.trace import LogDigest  # late, as is all of the trace
+
+    return LogDigest(row["bytes"], int(row["crc32"], 16), row["sha256"]) if row else None
+
+
 def expected_of(row: Mapping[str, Any]) -> ExpectedLog:
     """Return what a row of the index says of its log; nothing where an older version wrote it."""
-    from lavendersim.trace import ExpectedLog, LogDigest  # late, as is all of the trace
+    from lavendersim.trace import ExpectedLog
 
-    log = row.get("log")
-    digest = LogDigest(log["bytes"], int(log["crc32"], 16), log["sha256"]) if log else None
-    return ExpectedLog(row.get("config", ""), digest)
+    return ExpectedLog(row.get("config", ""), digest_of(row.get("log")))
 
 
 def note_ended(log: Path, status: str, digest: LogDigest) -> None:
     """Append how the cell of a log ended, when the log is closed."""
-    line = json.dumps({"file": log.name, "status": status, "log": as_row(digest)}) + "\n"
+    row = {"file": log.name, "status": status, "log": as_row(digest)}
+    append_line(log.parent.parent / ENDED, row)
+
+
+def append_line(path: Path, row: Mapping[str, Any]) -> None:
+    """Append a row in one write, so that it is whole or cut by its end after a kill."""
     flags = os.O_WRONLY | os.O_APPEND | os.O_CREAT
-    handle = os.open(log.parent.parent / ENDED, flags, 0o666)
+    handle = os.open(path, flags, 0o666)
     try:
-        os.write(handle, line.encode())
+        os.write(handle, (json.dumps(row) + "\n").encode())
     finally:
         os.close(handle)
 
 
+def ended_rows(directory: Path) -> dict[str, dict[str, Any]]:
+    """Return the last row about each log that was closed, by its name; the last line may be cut.
+
+    ValueError, KeyError or TypeError where the file is damaged.
+    """
+    try:
+        lines = (directory / ENDED).read_bytes().split(b"\n")[:-1]  # what follows is cut
+    except FileNotFoundError:
+        return {}
+    return {one["file"]: one for one in map(json.loads, lines)}
+
+
+def kept_lines(directory: Path, names: Collection[str]) -> str:
+    """Return the lines about the logs of these names, each whole."""
+    rows = ended_rows(directory)
+    return "".join(json.dumps(row) + "\n" for name, row in rows.items() if name in names)
+
+
 def add_ended(rows: Sequence[dict[str, Any]], directory: Path) -> None:
     """Enter how cells of a run that goes on, or was killed, have ended so far."""
-    path = directory / ENDED
     try:
-        lines = path.read_bytes().split(b"\n")[:-1]  # what follows the last end of a line is cut
-    except FileNotFoundError:
-        return
-    try:
-        ended = {one["file"]: one for one in map(json.loads, lines)}
+        ended = ended_rows(directory)
         for row in rows:
             if (one := ended.get(Path(row["file"]).name)) is not None:
                 row |= {"status": one["status"], "log": one["log"]}
     except (ValueError, KeyError, TypeError) as error:
-        raise TraceError(f"{path}: damaged: {error}") from None
+        raise TraceError(f"{directory / ENDED}: damaged: {error}") from None

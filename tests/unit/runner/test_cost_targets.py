@@ -13,7 +13,8 @@ import pytest
 from lavendersim.experiment import load_experiment_text
 from lavendersim.experiment.sweeps.cost_grid import settings_of
 from lavendersim.figures.cost_looks import curves_of
-from lavendersim.runner.cell import Accuracy, CellOutcome
+from lavendersim.runner.accuracy import Accuracy
+from lavendersim.runner.cell_outcome import CellOutcome
 from lavendersim.runner.cost_errors import SettingRun, errors_of, orders_of, relative_error
 from lavendersim.runner.cost_targets import answers, front_of
 from lavendersim.runner.run_directory import RunCell

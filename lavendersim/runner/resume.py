@@ -1,0 +1,125 @@
+"""A run that did not finish, continued: which of its cells are done, and why others run again.
+
+    newest run of the experiment -> its cells that ended -> logs that are whole -> done
+
+A cell is done when it completed, was measured, and its log is byte for byte the one that its run
+wrote, with the versions that are installed. All else is run again into the same directory, so that
+in the end it holds what a run holds that was never interrupted.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Collection
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+from lavendersim.durable_files import write_whole
+from lavendersim.errors import TraceError
+from lavendersim.experiment import Experiment
+from lavendersim.trace.whole import INTERRUPTED
+
+from .run_directory import CONFIG, Run, list_runs
+from .run_index import ENDED, PENDING, kept_lines
+
+if TYPE_CHECKING:
+    from .cell_outcome import EndedCell
+
+COMPLETE: Final = "complete"
+
+
+def newest_run(experiment: Experiment, root: Path) -> Run | None:
+    """Return the newest run of an experiment with the same options, finished or not."""
+    found = [run for run in list_runs(root) if _is_of(run, experiment)]
+    return found[-1] if found else None
+
+
+def _is_of(run: Run, experiment: Experiment) -> bool:
+    options = experiment.reduced, experiment.solver, experiment.divisor
+    try:
+        return run.name == experiment.name and run.options == options
+    except (TraceError, KeyError):  # a damaged index is nothing to go on from
+        return False
+
+
+def finished_run(experiment: Experiment, root: Path) -> Run | None:
+    """Return the newest run of an experiment where it is of the same config and came to its end."""
+    run = newest_run(experiment, root)
+    return run if run is not None and run.finished and _same_text(run, experiment) else None
+
+
+def unfinished_run(
+    experiment: Experiment, root: Path, logs: Collection[str], note: Callable[[str], None]
+) -> Run | None:
+    """Return the run to go on with, None where a new one has to begin; note: receives why.
+
+    logs: the names of the logs that the experiment makes, which say its engine.
+    """
+    run = newest_run(experiment, root)
+    if run is None or run.finished:
+        why = f"no run of it in {root}" if run is None else f"{run.path} is finished"
+        note(f"nothing to resume, {why}: a new run begins")
+        return None
+    changed = ""
+    if not _same_text(run, experiment):
+        changed = "the config"
+    elif {log.name for log in run.rows()} != set(logs):
+        changed = "the engine"
+    if changed:
+        note(f"{changed} has changed since {run.path}: all {len(logs)} cells are run again")
+        return None
+    return run
+
+
+def take_over(run: Run, logs: Collection[str], note: Callable[[str], None]) -> dict[str, EndedCell]:
+    """Return the cells that are done by the names of their logs; what else a kill left is removed.
+
+    For who holds the run's directory. note: receives how many are run again, and why.
+    """
+    from .cell_outcome import ended_cells  # late: it needs numpy
+
+    rows = {path.name: row for path, row in run.rows().items()}
+    ended = ended_cells(run.path)
+    done: dict[str, EndedCell] = {}
+    again = Counter[str]()
+    for name in sorted(logs):
+        why = _why_again(run.path / "cells" / name, rows[name]["status"], ended.get(name))
+        if why:
+            again[why] += 1
+        else:
+            done[name] = ended[name]
+    # Lines are appended to it: none may stand behind one that a kill has cut.
+    write_whole(run.path / ENDED, kept_lines(run.path, done), flush=False)
+    for left in run.path.rglob(".*.unfinished*"):
+        left.unlink()
+    note(f"goes on with {run.path}: {len(done)} of {len(logs)} cells are done")
+    for why, count in again.items():
+        note(f"{count} run again: {why}")
+    return done
+
+
+def _same_text(run: Run, experiment: Experiment) -> bool:
+    try:
+        return (run.path / CONFIG).read_bytes() == experiment.text.encode()
+    except FileNotFoundError:  # killed before it was written
+        return False
+
+
+def _why_again(log: Path, status: str, ended: EndedCell | None) -> str:
+    """Say why a cell is to be run again; nothing where it is done."""
+    from lavendersim.trace import ExpectedLog, open_trace
+
+    from .environment import versions
+
+    if status == PENDING or status.startswith(INTERRUPTED):
+        return "did not end"
+    if status != COMPLETE:
+        return "failed: diverged, broke a bound or lost its process"
+    if ended is None:
+        return "not measured yet"
+    try:
+        trace = open_trace(log, expected=ExpectedLog(digest=ended.outcome.log))
+        trace.verify()
+    except (TraceError, OSError):
+        return "its log is cut, damaged or missing"
+    return "" if trace.metadata.get("versions") == versions() else "other versions are installed"

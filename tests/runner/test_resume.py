@@ -1,0 +1,270 @@
+"""A run that was killed goes on where it was, and ends as one that was never interrupted.
+
+`LAVENDER_TEST_KILLS` kills more often than 2 times for each config and number of processes.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, NoReturn
+
+import pytest
+from small_configs import DROPS, write
+
+from lavendersim import open_run
+from lavendersim.errors import TraceError, UsageError
+from lavendersim.experiment import load_experiment
+from lavendersim.runner import Progress, Run, finished_run, list_runs, run
+from lavendersim.runner.run_directory import RESULTS
+from lavendersim.runner.run_lock import run_lock
+
+KILLS = int(os.environ.get("LAVENDER_TEST_KILLS", "2"))
+TIMES = ("physics_us_per_step", "logging_us_per_step", "compile_s")
+MANY = DROPS.replace("[0.2, 0.5, 0.8]", str([round(0.1 + i / 100, 2) for i in range(60)]))
+# Cells that break a bound have to end as they did: at their first contact, 30 um deep.
+BOUNDED = MANY + "always: {penetration: 1.0e-9}\n"
+SPREAD = """\
+scene:
+  bodies: {floor: {shape: {kind: plane}}}
+  arrangements:
+    ball:
+      kind: grid
+      counts: [2, 2, 1]
+      origin: [0, 0, 0.3]
+      jitter: 0.01
+      seed: 3
+      spacing: [0.3, 0.3, 0.3]
+      body: {shape: {kind: sphere, radius: 0.1}, mass: 1.0}
+numerics: {preset: chapter, timestep: 1/60}
+duration: 0.5
+sweep: {h: {path: numerics.timestep, values: [1/60, 1/120, 1/240, 1/480, 1/960, 1/1920]}}
+measure: {drift: {kind: drift}}
+"""
+CONFIGS = {"many": MANY, "bounded": BOUNDED, "spread": SPREAD}
+SCRIPT = """
+import sys
+import lavendersim.runner.executor as executor
+import lavendersim
+if __name__ == "__main__":
+    executor.WORTH_PROCESSES = -1.0
+    print(flush=True)
+    lavendersim.run(sys.argv[1], root=sys.argv[2], jobs=int(sys.argv[3]))
+"""
+
+
+def contents(found: Run) -> dict[str, Any]:
+    """Return all that a run holds, but for times, dates and where it is."""
+    files: dict[str, Any] = {log.name: log.read_bytes() for log in found.path.glob("cells/*")}
+    for name in ("cells.json", "config.yaml", "resolved.json"):
+        files[name] = (found.path / name).read_bytes()
+    text = (found.path / RESULTS).read_text().replace(str(found.path), "RUN")
+    table = json.loads(text)
+    for row in (table, *table["cells"]):
+        for name in TIMES:
+            row.pop(name, None)
+    left = {path.name for path in found.path.iterdir()}
+    return files | {RESULTS: table, "names": left - {"figures"}}
+
+
+def killed(folder: Path, config: Path, jobs: int, wait: float) -> Path:
+    """Kill a run so long after its first cell began; returns the folder of its runs."""
+    script, runs = folder / "script.py", folder / "runs"
+    script.write_text(SCRIPT)
+    arguments = [sys.executable, script, config, runs, jobs]
+    process = subprocess.Popen([str(one) for one in arguments], stdout=subprocess.PIPE)
+    while process.poll() is None and not list(runs.glob("*/cells.json")):
+        time.sleep(0.001)
+    time.sleep(wait)
+    process.send_signal(signal.SIGKILL)
+    process.communicate()
+    return runs
+
+
+@pytest.mark.skipif(os.name != "posix", reason="kills as POSIX does")
+@pytest.mark.parametrize("jobs", [1, 2])
+@pytest.mark.parametrize("name", CONFIGS)
+def test_a_killed_run_that_is_resumed_is_one_that_never_was(
+    tmp_path: Path, name: str, jobs: int
+) -> None:
+    config = write(tmp_path, CONFIGS[name])
+    whole = contents(run(config, tmp_path / "whole").run)
+    begin = time.perf_counter()
+    run(config, tmp_path / "kernels_are_there")
+    taken = time.perf_counter() - begin
+    draw = random.Random(f"{name} {jobs}")
+    for kill in range(KILLS):
+        folder = tmp_path / f"{kill}"
+        folder.mkdir()
+        runs = killed(folder, config, jobs, draw.uniform(0.0, 1.2 * taken))
+        again = run(config, runs, jobs, resume=True)
+        assert contents(again.run) == whole
+
+
+@pytest.fixture
+def drops(tmp_path: Path) -> Path:
+    return write(tmp_path)
+
+
+class StopError(Exception):
+    """What ends a run when all of its cells have ended, but before it is finished."""
+
+
+def unfinished(config: Path, runs: Path) -> Run:
+    """Return a run whose cells have all ended, and which did not finish."""
+
+    def stop(*arguments: object) -> NoReturn:
+        raise StopError
+
+    with pytest.raises(StopError):
+        run(config, runs, closing=stop)
+    return list_runs(runs)[-1]
+
+
+def resumed(config: Path, runs: Path) -> tuple[Run, list[str]]:
+    """Resume a run; returns it and what was said about it, without where it is."""
+    said: list[str] = []
+    found = run(config, runs, progress=Progress(note=said.append), resume=True).run
+    return found, [sentence.replace(str(runs), "RUNS") for sentence in said]
+
+
+def test_cells_that_are_done_are_not_run_again(
+    drops: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    whole = contents(run(drops, tmp_path / "whole").run)
+    left = unfinished(drops, tmp_path / "runs")
+    (left.path / ".results.1-1.unfinished.json").write_text("{")
+    monkeypatch.setattr("lavendersim.runner.executor.run_and_measure", None)
+    found, said = resumed(drops, tmp_path / "runs")
+    assert found.path == left.path
+    assert said == [f"goes on with RUNS/{left.path.name}: 3 of 3 cells are done"]
+    assert contents(found) == whole
+
+
+def cut(log: Path) -> None:
+    log.write_bytes(log.read_bytes()[:-10])
+
+
+def flip(log: Path) -> None:
+    data = bytearray(log.read_bytes())
+    data[len(data) // 2] ^= 1
+    log.write_bytes(data)
+
+
+@pytest.mark.parametrize("harm", [cut, flip, Path.unlink])
+def test_a_log_that_is_not_whole_is_made_again(
+    drops: Path, tmp_path: Path, harm: Callable[[Path], None]
+) -> None:
+    whole = contents(run(drops, tmp_path / "whole").run)
+    left = unfinished(drops, tmp_path / "runs")
+    harm(left.cells[1].path)
+    found, said = resumed(drops, tmp_path / "runs")
+    assert said[1:] == ["1 run again: its log is cut, damaged or missing"]
+    assert contents(found) == whole
+
+
+def test_a_line_that_a_kill_has_cut_hides_none_behind_it(drops: Path, tmp_path: Path) -> None:
+    whole = contents(run(drops, tmp_path / "whole").run)
+    left = unfinished(drops, tmp_path / "runs")
+    lines = (left.path / "ended.jsonl").read_text()
+    (left.path / "ended.jsonl").write_text(lines[: lines.rindex('"measured"')])
+    unfinished_again = tmp_path / "runs"
+    found, said = resumed(drops, unfinished_again)
+    assert said[1:] == ["1 run again: not measured yet"]
+    assert contents(found) == whole
+
+
+def test_logs_of_other_versions_are_made_again(
+    drops: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    unfinished(drops, tmp_path / "runs")
+    monkeypatch.setattr("lavendersim.runner.environment.versions", lambda: {"lavender": "9"})
+    _, said = resumed(drops, tmp_path / "runs")
+    assert said[1:] == ["3 run again: other versions are installed"]
+
+
+def test_a_config_or_an_engine_that_has_changed_begins_a_new_run(
+    drops: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    left = unfinished(drops, tmp_path / "runs")
+    begins = f"has changed since RUNS/{left.path.name}: all 3 cells are run again"
+    drops.write_text(DROPS + "# another\n")
+    found, said = resumed(drops, tmp_path / "runs")
+    assert (found.path != left.path, said) == (True, [f"the config {begins}"])
+    drops.write_text(DROPS)
+    left = unfinished(drops, tmp_path / "more")
+    begins = begins.replace(begins.split()[3], f"RUNS/{left.path.name}:")
+    hashes = "lavendersim.engine.compile_options.source_hash"
+    monkeypatch.setattr(hashes, lambda: "another")
+    found, said = resumed(drops, tmp_path / "more")
+    assert (found.path != left.path, said) == (True, [f"the engine {begins}"])
+
+
+def test_there_is_nothing_to_resume_of_what_is_finished(drops: Path, tmp_path: Path) -> None:
+    runs, experiment = tmp_path / "runs", load_experiment(drops)
+    assert finished_run(experiment, runs) is None
+    first, said = resumed(drops, runs)
+    assert said == ["nothing to resume, no run of it in RUNS: a new run begins"]
+    found = finished_run(experiment, runs)
+    assert found is not None
+    assert found.path == first.path
+    second, _ = resumed(drops, runs)
+    assert second.path != first.path
+
+
+def test_a_directory_that_another_process_runs_in_is_left_alone(
+    drops: Path, tmp_path: Path
+) -> None:
+    left = unfinished(drops, tmp_path / "runs")
+    before = {path: path.read_bytes() for path in left.path.rglob("*") if path.is_file()}
+    with run_lock(left.path), pytest.raises(UsageError, match="another process runs its cells"):
+        resumed(drops, tmp_path / "runs")
+    assert before == {path: path.read_bytes() for path in left.path.rglob("*") if path.is_file()}
+
+
+def test_a_damaged_note_of_what_ended_is_refused(drops: Path, tmp_path: Path) -> None:
+    left = unfinished(drops, tmp_path / "runs")
+    text = (left.path / "ended.jsonl").read_text()
+    (left.path / "ended.jsonl").write_text(text.replace('"outcome"', '"outcame"'))
+    with pytest.raises(TraceError, match=r"ended\.jsonl: damaged"):
+        resumed(drops, tmp_path / "runs")
+
+
+@pytest.mark.skipif(os.name != "posix", reason="limits of POSIX")
+def test_after_a_full_disk_a_run_goes_on(drops: Path, tmp_path: Path) -> None:
+    """A limit of the size of files stands for the disk: the system refuses to write as it does."""
+    import resource
+
+    whole = contents(run(drops, tmp_path / "whole").run)
+    sizes = [log.stat().st_size for log in (tmp_path / "whole").glob("latest/cells/*")]
+    limit = min(sizes) - 1
+
+    def small() -> None:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
+
+    runs = tmp_path / "runs"
+    command = [sys.executable, "-m", "lavender_cli.main", "run", drops, "--runs", runs]
+    done = subprocess.run(command, preexec_fn=small, capture_output=True, text=True, check=False)
+    assert done.returncode == 2
+    assert f"go on with: lavender run {drops} --resume --runs {runs}" in done.stderr
+    assert contents(resumed(drops, runs)[0]) == whole
+
+
+def test_the_command_goes_on_and_says_so(drops: Path, tmp_path: Path) -> None:
+    left = unfinished(drops, tmp_path / "runs")
+    command = [sys.executable, "-m", "lavender_cli.main", "run", drops, "--resume"]
+    for sentence in ("goes on with", "finished, nothing to resume: "):
+        done = subprocess.run(
+            [*command, "--runs", tmp_path / "runs"], capture_output=True, text=True, check=False
+        )
+        assert done.returncode == 0, done.stderr
+        assert f"drops: {sentence}" in done.stderr
+    assert open_run(left.path).finished
+    assert list_runs(tmp_path / "runs")[-1].path == left.path
