@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from lavender_cli import printing, progress, solver_matrix, time_errors
-from lavender_cli.run import Configs, Jobs, Refine, Runs
+from lavender_cli.run import Configs, Jobs, Refine, Runs, Set, Sweep, overrides_of
 
 
 def check(
@@ -32,6 +32,8 @@ def check(
         ),
     ] = None,
     refine: Refine = False,
+    values: Set = None,
+    axes: Sweep = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the verdicts as JSON.")] = False,
 ) -> None:
     """Run experiments and print every verdict, cell by cell. Exits 1 when one fails.
@@ -44,13 +46,16 @@ def check(
     from lavendersim.figures import check_page_path, write_report
     from lavendersim.runner import load_all, run
 
+    overrides = overrides_of(values, axes)
     if solver:
         from lavendersim.runner.solver_matrix import chosen
 
+        if overrides:
+            raise UsageError("a matrix is of cases as they stand: leave out --set and --sweep")
         if refine:
             raise UsageError("--refine tells time errors of one solver: leave out --solver")
         chosen(solver)  # a wrong name is refused before any file is read
-    experiments = load_all(configs, reduced=not full)
+    experiments = load_all(configs, not full, overrides)
     if report is not None:
         check_page_path(report)  # not after an hour of runs
     if solver:

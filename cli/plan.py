@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from lavender_cli import printing
+from lavender_cli.run import Set, Sweep, overrides_of
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -28,6 +29,8 @@ ROWS = {
 
 def plan(
     config: Annotated[Path, typer.Argument(help="Config file.")],
+    values: Set = None,
+    axes: Sweep = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the plan as JSON.")] = False,
 ) -> None:
     """Show which effects a scene requires, why, and what each brings: arrays, log, kernels.
@@ -40,7 +43,7 @@ def plan(
     from lavendersim.runner.plans import distinct, shared_plans
     from lavendersim.scene.explanation import explain_all
 
-    (experiment,) = load_all([config])
+    (experiment,) = load_all([config], overrides=overrides_of(values, axes))
     cells = experiment.cells()
     plans = shared_plans(cells)
     explained = explain_all(distinct(plans))

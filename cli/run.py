@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import shlex
 from pathlib import Path
 from typing import Annotated
@@ -9,6 +10,9 @@ from typing import Annotated
 import typer
 
 from lavender_cli import overheads, printing, progress, time_errors
+
+# A disk or a quota is full, a file as large as may be, or the disk fails.
+DISK = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)
 
 Configs = Annotated[
     list[Path], typer.Argument(metavar="CONFIG...", help="Config files, or folders of them.")
@@ -27,6 +31,14 @@ AllowIncomplete = Annotated[
         help="Of damaged logs take what is whole, marked; exits 3 all the same.",
     ),
 ]
+Set = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="PATH=VALUE", help="Instead of the config's value; repeatable."),
+]
+Sweep = Annotated[
+    list[str] | None,
+    typer.Option("--sweep", metavar="NAME=PATH:[VALUES]", help="Another axis; repeatable."),
+]
 Runs = Annotated[Path, typer.Option("--runs", metavar="DIR", help="Where runs are kept.")]
 
 
@@ -36,6 +48,8 @@ def run(
     jobs: Jobs = 1,
     runs: Runs = Path("runs"),
     refine: Refine = False,
+    values: Set = None,
+    axes: Sweep = None,
     resume: Annotated[
         bool, typer.Option("--resume", help="Go on with the newest run where it did not finish.")
     ] = False,
@@ -45,7 +59,8 @@ def run(
     from lavendersim.runner import finished_run, load_all, run
 
     # Every file is read before the first run, so a defect anywhere leaves nothing half done.
-    experiments = load_all(configs)
+    overrides = overrides_of(values, axes)
+    experiments = load_all(configs, overrides=overrides)
     good, tables, with_overheads = True, [], []
     for experiment in experiments:
         whole = finished_run(experiment, runs) if resume else None
@@ -63,10 +78,11 @@ def run(
         except KeyboardInterrupt as end:  # `run` says by what, and where what was simulated is
             if str(end):
                 typer.echo(str(end), err=True)
-            _say_how_to_resume(configs, runs)
+            _say_how_to_resume(configs, overrides, runs)
             raise
-        except OSError:  # a full disk
-            _say_how_to_resume(configs, runs)
+        except OSError as error:
+            if error.errno in DISK:
+                _say_how_to_resume(configs, overrides, runs)
             raise
         good = good and finished.good
         printing.warn_of_not_converged(finished)
@@ -101,8 +117,14 @@ def run(
         raise typer.Exit(1)
 
 
-def _say_how_to_resume(configs: list[Path], runs: Path) -> None:
+def overrides_of(values: list[str] | None, axes: list[str] | None) -> list[str]:
+    """Return the options as `load_experiment` takes them."""
+    return [*(f"set {one}" for one in values or ()), *(f"sweep {one}" for one in axes or ())]
+
+
+def _say_how_to_resume(configs: list[Path], overrides: list[str], runs: Path) -> None:
     """Print the command that goes on where a run was interrupted."""
     where = [] if runs == Path("runs") else ["--runs", str(runs)]
-    command = ["lavender", "run", *map(str, configs), "--resume", *where]
+    options = [part for one in overrides for part in f"--{one}".split(" ", 1)]
+    command = ["lavender", "run", *map(str, configs), *options, "--resume", *where]
     typer.echo(f"go on with: {shlex.join(command)}", err=True)

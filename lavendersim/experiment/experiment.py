@@ -24,10 +24,11 @@ class Experiment:
     text: str  # as written
     config: ExperimentConfig  # as written, with the first value of every axis
     axes: dict[str, tuple[Any, ...]]  # axis -> its values, over all products of the sweep
-    tree: Node = field(repr=False, compare=False)  # of the text, in this version's spelling
+    tree: Node = field(repr=False, compare=False)  # with overrides, in this version's spelling
     _cells: tuple[Cell, ...] = field(repr=False)
     reduced: bool = False  # a slow one, at its reduced length
     solver: str | None = None  # of every cell, instead of what the config says
+    overrides: tuple[str, ...] = ()  # other values instead of the file's: `sweeps.option_overrides`
 
     @property
     def measures(self) -> dict[str, MeasureSpec]:

@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import itertools
 import os
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from lavendersim.errors import ConfigError, UsageError
@@ -17,6 +19,7 @@ from lavendersim.experiment.experiment import Experiment
 from lavendersim.experiment.models.experiment import ExperimentConfig
 from lavendersim.experiment.models.tree import swept_values
 from lavendersim.experiment.sweeps import axes as sweep
+from lavendersim.experiment.sweeps.option_overrides import check_untouched, with_overrides
 from lavendersim.experiment.sweeps.reduced_length import at_reduced_length, check_reduced_length
 from lavendersim.experiment.sweeps.solver_override import with_solver
 from lavendersim.experiment.text.former import with_new_spellings
@@ -31,11 +34,15 @@ MOST_CELLS_CHECKED = 1000
 
 
 def load_experiment(
-    path: str | os.PathLike[str], reduced: bool = False, solver: str | None = None
+    path: str | os.PathLike[str],
+    reduced: bool = False,
+    solver: str | None = None,
+    overrides: Sequence[str] = (),
 ) -> Experiment:
     """Read and validate one config file; reduced: a slow experiment at its reduced length.
 
     solver: in every cell, instead of what the config says; None leaves it as it stands.
+    overrides: values instead of those of the file, see `sweeps.option_overrides`.
 
     Raises ConfigError with all defects of the file, UsageError when it cannot be read.
     """
@@ -46,20 +53,25 @@ def load_experiment(
             size = os.fstat(stream.fileno()).st_size
     except OSError as error:
         raise UsageError(f"{file}: {(error.strerror or str(error)).lower()}") from None
-    return _load(raw, file, str(file), max(size, len(raw)), reduced, solver)
+    return _load(raw, file, str(file), max(size, len(raw)), (reduced, solver, tuple(overrides)))
 
 
 def load_experiment_text(
-    text: str | bytes, name: str, reduced: bool = False, solver: str | None = None
+    text: str | bytes,
+    name: str,
+    reduced: bool = False,
+    solver: str | None = None,
+    overrides: Sequence[str] = (),
 ) -> Experiment:
     """Validate a config given as text; `name` stands for the file in messages."""
     raw = text.encode("utf-8", "surrogatepass") if isinstance(text, str) else text
-    return _load(raw, Path(name), name, len(raw), reduced, solver)
+    return _load(raw, Path(name), name, len(raw), (reduced, solver, tuple(overrides)))
 
 
 def _load(
-    raw: bytes, path: Path, name: str, size: int, reduced: bool, solver: str | None
+    raw: bytes, path: Path, name: str, size: int, options: tuple[bool, str | None, tuple[str, ...]]
 ) -> Experiment:
+    reduced, solver, overrides = options
     report = Report(name)
     root = parse(raw, report, size)
     if root is None:
@@ -68,11 +80,14 @@ def _load(
         sentence = f"expected a mapping with scene and duration, found {found(root.data)}"
         report.add(root.mark, sentence)
         raise ConfigError(report.defects)
-    root = tree = with_new_spellings(root, name)
+    root = tree = with_overrides(with_new_spellings(root, name), overrides, report)
+    if not report.close_round():
+        raise ConfigError(report.defects)
     check_reduced_length(root, report)
     root, shortened = at_reduced_length(root) if reduced else (root, False)
     root = with_solver(root, solver) if solver is not None else root
     axes = sweep.axes_of(root, report)
+    check_untouched(root, axes, report)
     config = _check_first(root, axes, report)
     cells = sweep.count(axes)
     if cells > sweep.MOST_CELLS:
@@ -87,7 +102,8 @@ def _load(
         axis: tuple(dict.fromkeys(sweep.swept_value(node.data) for node in nodes))
         for axis, nodes in swept_values(root).items()
     }
-    return Experiment(path.stem, path, decode(raw), config, values, tree, made, shortened, solver)
+    whole = Experiment(path.stem, path, decode(raw), config, values, tree, made, shortened, solver)
+    return replace(whole, overrides=overrides)
 
 
 def _check_first(

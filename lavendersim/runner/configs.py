@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 from lavendersim.errors import ConfigError, Defect, UsageError
@@ -34,10 +35,12 @@ def find_configs(paths: list[Path]) -> list[Path]:
     return list(dict.fromkeys(found))
 
 
-def load_all(paths: list[Path], reduced: bool = False) -> list[Experiment]:
+def load_all(
+    paths: list[Path], reduced: bool = False, overrides: Sequence[str] = ()
+) -> list[Experiment]:
     """Load every config among `paths`; raises ConfigError with the defects of all files.
 
-    reduced: slow experiments at their reduced length.
+    reduced: slow experiments at their reduced length. overrides: see `load_experiment`.
 
     Among them are effects switched by hand that cannot be: the plan of the scene decides.
     """
@@ -45,7 +48,7 @@ def load_all(paths: list[Path], reduced: bool = False) -> list[Experiment]:
     defects: list[Defect] = []
     for path in find_configs(paths):
         try:
-            experiment = load_experiment(path, reduced)
+            experiment = load_experiment(path, reduced, overrides=overrides)
             check(experiment)
             experiments.append(experiment)
         except ConfigError as error:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from datetime import UTC, datetime
 from functools import partial
@@ -80,6 +81,9 @@ class Finished(NamedTuple):
         return convergence_notices(self)
 
 
+MOST_NAME, MOST_OVERRIDE = 150, 40  # characters of a directory's name, for what runs in it
+
+
 # What adds to a run's directory: it is given the run and the measures of its cells.
 Closing = Callable[[Finished, list[dict[str, Any]]], None]
 
@@ -87,8 +91,10 @@ Closing = Callable[[Finished, list[dict[str, Any]]], None]
 def make_directory(experiment: Experiment, root: Path) -> Path:
     """Make a new directory for a run; never an existing one."""
     now = datetime.now(UTC).strftime("%Y%m%dT%H%M%SZ")
-    digest = hashlib.sha256(experiment.text.encode()).hexdigest()[:8]
-    name = "-".join(filter(None, (experiment.name, experiment.solver)))
+    read = "\n".join((experiment.text, *experiment.overrides))
+    digest = hashlib.sha256(read.encode("utf-8", "surrogatepass")).hexdigest()[:8]
+    changed = map(_short, experiment.overrides)
+    name = "-".join(filter(None, (experiment.name, experiment.solver, *changed)))[:MOST_NAME]
     root.mkdir(parents=True, exist_ok=True)
     # A name that sorts by age even when several runs start within one second.
     for attempt in range(1000):
@@ -100,6 +106,12 @@ def make_directory(experiment: Experiment, root: Path) -> Path:
             continue
         return path
     raise UsageError(f"{root}: a thousand runs started within one second")
+
+
+def _short(override: str) -> str:
+    """Return an override as part of a directory's name: the end of its path, and its value."""
+    path, _, value = override.partition("=")
+    return re.sub(r"[^\w.=+]+", "_", f"{re.split('[. ]', path)[-1]}={value}")[:MOST_OVERRIDE]
 
 
 def _file_of(cell: Cell, source: str) -> str:
@@ -269,6 +281,7 @@ def _write_index(
         "reduced": experiment.reduced,
         "solver": experiment.solver,
         "timestep_divisor": experiment.divisor,
+        **({"overrides": list(experiment.overrides)} if experiment.overrides else {}),
         "cells": rows,
     }
     write_whole(directory / CELLS, text_of(table), flush=False)

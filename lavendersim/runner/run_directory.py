@@ -108,8 +108,8 @@ class Run:
         from lavendersim.experiment import load_experiment_text  # late: see `RunCell.trace`
 
         text = read_sealed(self.path / CONFIG)
-        reduced, solver, divisor = self.options
-        experiment = load_experiment_text(text, str(self.path / CONFIG), reduced, solver)
+        reduced, solver, divisor, overrides = self.options
+        experiment = load_experiment_text(text, str(self.path / CONFIG), reduced, solver, overrides)
         return replace(experiment.refined(divisor), name=self.name)
 
     @cached_property
@@ -173,10 +173,11 @@ class Run:
         return {self.path / row["file"]: row for row in self._index["cells"]}
 
     @property
-    def options(self) -> tuple[bool, str | None, int]:
-        """What it was run with beside its config: reduced, another solver, timestep's divisor."""
+    def options(self) -> tuple[bool, str | None, int, tuple[str, ...]]:
+        """What it was run with beside its config, by the names of `Experiment`."""
         index = self._index
-        return bool(index.get("reduced")), index.get("solver"), index.get("timestep_divisor", 1)
+        reduced, divisor = bool(index.get("reduced")), index.get("timestep_divisor", 1)
+        return reduced, index.get("solver"), divisor, tuple(index.get("overrides", ()))
 
     @property
     def finished(self) -> bool:

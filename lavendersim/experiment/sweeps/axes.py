@@ -52,7 +52,7 @@ class Point:
     def tree(self, root: Node) -> Node:
         """Return the config of this cell."""
         for axis, node in self.choices:
-            root = graft(_opened(root, axis.path), axis.path, node)
+            root = graft(opened(root, axis.path), axis.path, node)
         return with_preset(root)
 
 
@@ -160,7 +160,7 @@ def _overlap(one: Path, other: Path) -> bool:
     return one[:shorter] == other[:shorter]
 
 
-def _opened(root: Node, path: Path) -> Node:
+def opened(root: Node, path: Path) -> Node:
     """Return the tree with a name that the path enters replaced by what it names.
 
     `numerics: chapter` becomes {preset: chapter}, `surface: rubber` this body's own copy of rubber.

@@ -17,6 +17,7 @@ class Report:
 
     def __init__(self, name: str) -> None:
         self.name = name
+        self._beside: dict[int, str] = {}  # what else has values, by lines below 0
         self._defects: list[Defect] = []
         self._reported: set[Mark] = set()
         self._round: dict[tuple[Mark, str], None] = {}
@@ -28,15 +29,23 @@ class Report:
         if mark not in self._reported:
             self._round[mark, message] = None
 
+    def beside(self, name: str, number: int) -> int:
+        """Return the line that stands for a text of one line beside the file, number 1, 2, ..."""
+        self._beside[-number] = name
+        return -number
+
+    def _defect(self, mark: Mark, said: str) -> Defect:
+        if mark.line in self._beside:
+            return Defect(self._beside[mark.line], 1, mark.column, said)
+        return Defect(self.name, mark.line, mark.column, said)
+
     def doubt(self) -> None:
         """Note that something is wrong that was reported already, perhaps at another place."""
         self._sound = False
 
     def close_round(self) -> bool:
         """End the round; tells whether nothing was found in it, be it new or reported before."""
-        self._defects += [
-            Defect(self.name, mark.line, mark.column, said) for mark, said in self._round
-        ]
+        self._defects += [self._defect(mark, said) for mark, said in self._round]
         self._reported |= {mark for mark, _ in self._round}
         self._round.clear()
         sound, self._sound = self._sound, True
