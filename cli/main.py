@@ -17,6 +17,7 @@ from lavender_cli import (
     check,
     cost,
     doctor,
+    export,
     judge,
     ls,
     plan,
@@ -48,6 +49,7 @@ VERBS: tuple[Callable[..., None], ...] = (
     *(
         judge.judge,
         verify.verify,
+        export.export,
         cost.cost,
         solve.solve,
         recover.recover,
