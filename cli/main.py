@@ -16,6 +16,7 @@ import typer
 from lavender_cli import (
     check,
     cost,
+    diff,
     doctor,
     export,
     judge,
@@ -50,6 +51,7 @@ VERBS: tuple[Callable[..., None], ...] = (
         judge.judge,
         verify.verify,
         export.export,
+        diff.diff,
         cost.cost,
         solve.solve,
         recover.recover,

@@ -42,10 +42,11 @@ ROOMS = {
         *("errors", "clock", "quantities", "cell", "experiment", "scene", "engine", "problems"),
         *("trace", "measures", "geometry", "record_tables", "durable_files", "arrow"),
     },
+    "comparison": {"errors", "trace", "measures", "runner"},
     "pytest_plugin": {"errors", "experiment", "trace", "measures", "runner"},
     "cli": {
         *("errors", "quantities", "experiment", "scene", "trace", "measures", "figures"),
-        *("replay", "runner", "problems"),
+        *("replay", "runner", "problems", "comparison"),
     },
 }
 # Modules of the engine that list what it has, without numba: what configs may name.
@@ -61,7 +62,7 @@ LIBRARIES = {
     "llvmlite": {"engine"},
     "numpy": {
         *("scene", "engine", "trace", "measures", "figures", "replay", "simulator", "runner"),
-        *("problems", "clock", "geometry", "record_tables", "arrow"),
+        *("problems", "clock", "geometry", "record_tables", "arrow", "comparison"),
     },
     "scipy": {"geometry", "problems"},  # hulls, where a scene has one; sparse matrices
     "h5py": {"problems"},
