@@ -9,8 +9,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from lavendersim.errors import UsageError
 from lavendersim.measures.selection import coordinates_text
-from lavendersim.runner import RunCell
+from lavendersim.runner import Run, RunCell
 
 
 class Pair(NamedTuple):
@@ -41,6 +42,15 @@ def paired(a: Sequence[RunCell], b: Sequence[RunCell]) -> Pairing:
     ]
     found = {pair.label for pair in pairs}
     return Pairing(tuple(axes), pairs, _left(mine, found), _left(others, found))
+
+
+def partner(a: Run, cell: RunCell, b: Run) -> int:
+    """Return the place in `b` of the cell that one of `a` is compared with. UsageError without."""
+    for pair in paired(a.cells, b.cells).pairs:
+        if pair.a is cell:
+            return b.cells.index(pair.b)
+    label = cell.label or "the cell"
+    raise UsageError(f"{b.path}: no one cell at the coordinates of {label} of {a.path}")
 
 
 def _left(side: dict[str, list[RunCell]], found: set[str]) -> list[str]:

@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from lavendersim.geometry.poses import distances, turns
 from lavendersim.trace import Trace
 
 Rows = NDArray[np.intp]
@@ -112,21 +113,3 @@ def _first_pose(a: Trace, b: Trace) -> tuple[int | None, tuple[Apart, ...], Apar
     row, body = np.unravel_index(int(np.argmax(known)), metres.shape)
     angle = float(turns(left[row, body], right[row, body]))
     return int(times[first]), tuple(bodies), Apart(names[body], float(metres[row, body]), angle)
-
-
-def distances(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the distances [m] of centres; a, b: poses (..., 7)."""
-    found: NDArray[np.float64] = np.linalg.norm(a[..., :3] - b[..., :3], axis=-1)
-    return found
-
-
-def turns(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the angles [rad] between orientations; a, b: poses (..., 7).
-
-    By the chord between unit quaternions, 2 sin(angle/4), which keeps its digits near 0; q and -q
-    are one orientation.
-    """
-    p, q = a[..., 3:], b[..., 3:]
-    chord = np.minimum(np.linalg.norm(p - q, axis=-1), np.linalg.norm(p + q, axis=-1))
-    found: NDArray[np.float64] = 4.0 * np.arcsin(np.minimum(0.5 * chord, 1.0))
-    return found

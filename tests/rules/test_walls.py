@@ -42,7 +42,7 @@ ROOMS = {
         *("errors", "clock", "quantities", "cell", "experiment", "scene", "engine", "problems"),
         *("trace", "measures", "geometry", "record_tables", "durable_files", "arrow"),
     },
-    "comparison": {"errors", "trace", "measures", "runner"},
+    "comparison": {"errors", "geometry", "trace", "measures", "runner"},
     "pytest_plugin": {"errors", "experiment", "trace", "measures", "runner"},
     "cli": {
         *("errors", "quantities", "experiment", "scene", "trace", "measures", "figures"),
