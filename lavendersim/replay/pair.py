@@ -17,7 +17,7 @@ from lavendersim.geometry.poses import distances
 if TYPE_CHECKING:
     from lavendersim.trace import Trace
 
-MOST_CURVES: Final = 8  # of the bodies that come farthest: more lines than this cannot be distinguished
+MOST_CURVES: Final = 8  # of the bodies that come farthest: more cannot be distinguished
 
 
 class Pair(NamedTuple):
