@@ -16,9 +16,12 @@ import typer
 from lavender_cli import (
     check,
     cost,
+    diff,
     doctor,
+    export,
     judge,
     ls,
+    measures,
     plan,
     plot,
     recover,
@@ -48,6 +51,9 @@ VERBS: tuple[Callable[..., None], ...] = (
     *(
         judge.judge,
         verify.verify,
+        export.export,
+        diff.diff,
+        measures.measures,
         cost.cost,
         solve.solve,
         recover.recover,

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from lavender_cli import printing
 from lavender_cli.run import AllowIncomplete, Runs
+
+if TYPE_CHECKING:
+    from lavendersim.runner import Run, RunCell
 
 
 def replay(
@@ -16,10 +19,26 @@ def replay(
         Path | None,
         typer.Argument(metavar="[RUN]", help="Run directory; the latest finished run by default."),
     ] = None,
+    other: Annotated[
+        Path | None,
+        typer.Argument(metavar="[OTHER]", help="Another run, to be shown beside it."),
+    ] = None,
     cell: Annotated[
         int | None,
         typer.Option("--cell", metavar="K", help="Which cell of the sweep, counted from 0."),
     ] = None,
+    other_cell: Annotated[
+        int | None,
+        typer.Option(
+            "--other-cell",
+            metavar="K",
+            help="Which cell of the other run; that at the same coordinates by default.",
+        ),
+    ] = None,
+    overlay: Annotated[
+        bool,
+        typer.Option("--overlay", help="Show the other run's bodies as pale lines over the first."),
+    ] = False,
     at: Annotated[
         float | None,
         typer.Option("--at", metavar="SECONDS", help="Stop at this simulated time."),
@@ -41,7 +60,8 @@ def replay(
 ) -> None:
     """Replay a run in rerun: bodies, contact forces and their plots over simulated time.
 
-    Exits 3 when its log is damaged.
+    Two runs are shown side by side, or overlaid, with the distance of each body from itself in the
+    other. Exits 3 when a log is damaged.
     """
     from lavendersim import replay as viewer
     from lavendersim.errors import UsageError
@@ -52,28 +72,52 @@ def replay(
             raise UsageError(f"{path}: the name of this file ends in {suffix}")
     if save_to is not None and at is not None and screenshot_to is None:
         raise UsageError("--at: an .rrd file has no place for it; leave out --save or --at")
+    if other is None and (overlay or other_cell is not None):
+        option = "--overlay" if overlay else "--other-cell"
+        raise UsageError(f"{option}: name another run beside it")
     opened = open_run(run, runs, allow_incomplete)
-    cells = opened.cells
-    if not 0 <= (cell or 0) < len(cells):
-        raise UsageError(f"{opened.path} has cells 0 to {len(cells) - 1}; there is no cell {cell}")
-    chosen = cells[cell or 0]
-    if cell is None and len(cells) > 1:
-        others = f"0 to {len(cells) - 1}"
-        typer.echo(f"replaying cell 0 ({chosen.label}); --cell K shows another, {others}", err=True)
+    chosen = [_cell_of(opened, cell or 0)]
+    if other is not None:
+        from lavendersim.comparison.pairing import partner
 
-    damaged = list(filter(None, [chosen.damage()]))
+        beside = open_run(other, runs, allow_incomplete)
+        found = other_cell if other_cell is not None else partner(opened, chosen[0], beside)
+        chosen.append(_cell_of(beside, found))
+    if cell is None and len(opened.cells) > 1:
+        others = f"0 to {len(opened.cells) - 1}"
+        shown = f"replaying cell 0 ({chosen[0].label}); --cell K shows another, {others}"
+        typer.echo(shown, err=True)
+
+    damaged = list(filter(None, [one.damage() for one in chosen]))
     printing.report_damage(damaged, "nothing is shown" if not allow_incomplete else "")
-    trace = chosen.trace()
-    part = f"(INCOMPLETE: {len(trace.step)} steps are whole)" if damaged else ""
-    title = " ".join(filter(None, [opened.path.name, chosen.label, part]))
+    traces = [one.trace() for one in chosen]
+    whole = ", ".join(str(len(one.step)) for one in traces) if damaged else ""
+    part = f"(INCOMPLETE: {whole} steps are whole)" if damaged else ""
+    title = " ".join(filter(None, [opened.path.name, chosen[0].label, part]))
+    shown_trace: Any = traces[0]
+    if other is not None:
+        names = [" ".join(filter(None, [one.path.parent.parent.name, one.label])) for one in chosen]
+        title = " ".join(filter(None, [names[0], "and", names[1], part]))
+        shown_trace = viewer.pair_of(traces[0], traces[1], (names[0], names[1]), overlay)
     if save_to is not None:
-        viewer.save(trace, save_to, title)
+        viewer.save(shown_trace, save_to, title)
         typer.echo(save_to)
     if screenshot_to is not None:
-        for complaint in viewer.screenshot(trace, screenshot_to, title, at):
+        for complaint in viewer.screenshot(shown_trace, screenshot_to, title, at):
             typer.echo(f"rerun's viewer: {complaint}", err=True)
         typer.echo(screenshot_to)
     if save_to is None and screenshot_to is None:
-        viewer.open_viewer(trace, title, at)
+        viewer.open_viewer(shown_trace, title, at)
     if damaged:
         raise typer.Exit(printing.DAMAGED)
+
+
+def _cell_of(run: Run, number: int) -> RunCell:
+    """Return a cell of a run by its number; UsageError where there is none."""
+    from lavendersim.errors import UsageError
+
+    if not 0 <= number < len(run.cells):
+        raise UsageError(
+            f"{run.path} has cells 0 to {len(run.cells) - 1}; there is no cell {number}"
+        )
+    return run.cells[number]

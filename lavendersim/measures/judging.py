@@ -63,6 +63,17 @@ def judge_nodes(experiment: _Planned) -> list[str]:
     return [claim.node for claim in left] + [trial.node for trial in judged]
 
 
+def cells_of_claims(experiment: _Planned) -> dict[str, int]:
+    """Return the cell of each claim that is on one cell alone, by its node."""
+    cells = experiment.cells()
+    claims = _claims(experiment.measures, experiment.expectations, cells)
+    claims += _checks(experiment.always, cells)
+    stops = experiment.always is not None and experiment.always.stop
+    left = controls.uncontrolled(claims, experiment.controls, cells, stops)
+    trials = controls.trials(claims, experiment.controls, cells)
+    return {one.node: one.cells[0].index for one in (*left, *trials) if len(one.cells) == 1}
+
+
 def judge(
     measures: Measures,
     expectations: Sequence[ExpectSpec],

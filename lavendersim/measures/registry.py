@@ -22,7 +22,11 @@ def evaluate(spec: MeasureSpec, trace: Trace) -> Value:
 
     NaN where the log cannot answer, or a closed form to divide by is 0.
     """
-    value = FUNCTIONS[type(spec)](spec, trace)
+    return beside_form(spec, FUNCTIONS[type(spec)](spec, trace), trace)
+
+
+def beside_form(spec: MeasureSpec, value: Value, trace: Trace) -> Value:
+    """Return the value of a measure beside its closed form, where it has one."""
     form = spec.over or spec.against
     if form is None:
         return value

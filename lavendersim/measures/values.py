@@ -8,8 +8,10 @@ from typing import Any
 import numpy as np
 
 from lavendersim.errors import LavenderError
-from lavendersim.measures.interfaces import Cell, Floats
-from lavendersim.measures.registry import evaluate
+from lavendersim.measures.interfaces import Cell, Floats, Value
+from lavendersim.measures.kinds.arithmetic import derived
+from lavendersim.measures.registry import beside_form, evaluate
+from lavendersim.measures.specs.arithmetic import Derived
 from lavendersim.measures.specs.catalogue import MeasureSpec
 
 
@@ -35,10 +37,16 @@ class Values:
             return np.atleast_1d(np.asarray(known, dtype=np.float64))
         key = (measure, id(cell))
         if key not in self._rows:
-            value = evaluate(self.measures[measure], cell.trace())
+            value = self._value(self.measures[measure], cell)
             # the cell is kept beside its row, so that no other cell can get its id
             self._rows[key] = (cell, np.atleast_1d(np.asarray(value, dtype=np.float64)))
         return self._rows[key][1]
+
+    def _value(self, spec: MeasureSpec, cell: Cell) -> Value:
+        if not isinstance(spec, Derived):
+            return evaluate(spec, cell.trace())
+        rows = [self.row(name, cell) for name in spec.operands]
+        return beside_form(spec, derived(spec, rows), cell.trace())
 
     def of(self, measure: str) -> Callable[[Cell], Floats]:
         """Return the function from a cell to its row of one measure."""

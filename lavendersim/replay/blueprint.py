@@ -19,16 +19,17 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
+import numpy.typing as npt
 import rerun as rr
 import rerun.blueprint as rrb
 
 from lavendersim.replay.columns import (
-    Plot,
     plots_of,
     time_in_nanoseconds,
     values_of,
 )
 from lavendersim.replay.force_scale import ForceScale
+from lavendersim.replay.layer import ALONE, Layer
 from lavendersim.replay.scene import WORLD, Extent, Shape, Vector, grid_spacing
 from lavendersim.replay.timeline import TIMELINE
 
@@ -54,13 +55,29 @@ def blueprint(
     grounded = any(shape.kind == "plane" for shape in bodies)
     rulers = [scale.label if scale is not None else "bodies"]
     rulers += [f"grid {grid_spacing(room):g} m"] if grounded else []
-    scene = rrb.Spatial3DView(
+    scene = scene_view("; ".join(rulers), contents_of(ALONE, scale is not None), bodies, room)
+    curves = [
+        curves_view(plot.entity, plot.title, values_of(trace, plot), seconds)
+        for plot in plots_of(trace)
+    ]
+    beside = rrb.Horizontal(scene, rrb.Vertical(*curves), column_shares=[3, 2])
+    return laid_out(beside if curves else scene, seconds)
+
+
+def contents_of(layer: Layer, contacts: bool) -> list[str]:
+    """The entities of a log that a view of its scene has."""
+    folders = ("bodies", "paths", "grid", *(["contacts"] if contacts else []))
+    return [f"{layer.path(folder)}/**" for folder in folders]
+
+
+def scene_view(
+    name: str, contents: list[str], bodies: Sequence[Shape], room: Extent
+) -> rrb.Spatial3DView:
+    """The view of a scene."""
+    return rrb.Spatial3DView(
         origin="/",
-        contents=[
-            *("/bodies/**", "/paths/**", "/grid/**"),
-            *(["/contacts/**"] if scale is not None else []),
-        ],
-        name="; ".join(rulers),
+        contents=contents,
+        name=name,
         background=rrb.Background(color=BACKGROUND),
         eye_controls=rrb.EyeControls3D(
             kind=rrb.Eye3DKind.Orbital,
@@ -71,10 +88,12 @@ def blueprint(
         line_grid=rrb.LineGrid3D(visible=False),
         spatial_information=rrb.SpatialInformation(target_frame=WORLD),
     )
-    curves = [_curve(trace, plot, seconds) for plot in plots_of(trace)]
-    beside = rrb.Horizontal(scene, rrb.Vertical(*curves), column_shares=[3, 2])
+
+
+def laid_out(views: rrb.Container | rrb.View, seconds: float) -> rrb.Blueprint:
+    """The viewer with these views and nothing else; seconds: of the recording."""
     return rrb.Blueprint(
-        beside if curves else scene,
+        views,
         rrb.TopPanel(state="collapsed"),
         rrb.BlueprintPanel(state="collapsed"),
         rrb.SelectionPanel(state="collapsed"),
@@ -99,9 +118,17 @@ def eye_position(bodies: Sequence[Shape], room: Extent) -> Vector:
     return np.asarray(room.centre + VIEW_DISTANCE * room.diagonal * direction)
 
 
-def _curve(trace: Trace, plot: Plot, seconds: float) -> rrb.TimeSeriesView:
-    """One plot, the whole recording in view: first and last step must not lie on the frame."""
-    values = values_of(trace, plot)
+def curves_view(
+    entity: str,
+    title: str,
+    values: npt.NDArray[np.float64],
+    seconds: float,
+    legend: rrb.Corner2D | None = None,
+) -> rrb.TimeSeriesView:
+    """One plot, the whole recording in view: first and last step must not lie on the frame.
+
+    values: all that are drawn in it; not finite where there is nothing to draw.
+    """
     values = values[np.isfinite(values)]
     low, high = (float(values.min()), float(values.max())) if len(values) else (0.0, 1.0)
     margin = MARGIN * (high - low) or 1.0
@@ -110,9 +137,9 @@ def _curve(trace: Trace, plot: Plot, seconds: float) -> rrb.TimeSeriesView:
         end=rrb.TimeRangeBoundary.absolute(seconds=(1 + MARGIN) * seconds),
     )
     return rrb.TimeSeriesView(
-        origin=plot.entity,
-        name=plot.title,
+        origin=entity,
+        name=title,
         axis_x=rrb.TimeAxis(view_range=shown),
         axis_y=rrb.ScalarAxis(range=(low - margin, high + margin)),
-        plot_legend=rrb.PlotLegend(visible=False),
+        plot_legend=rrb.PlotLegend(legend, visible=legend is not None),
     )

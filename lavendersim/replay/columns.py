@@ -16,6 +16,7 @@ import rerun as rr
 
 from lavendersim.cell import Plane
 from lavendersim.replay.force_scale import CONTACT_KEY, ForceScale
+from lavendersim.replay.layer import ALONE, Layer
 from lavendersim.replay.removal import clear_removed
 from lavendersim.replay.scene import BODIES, GRIDS, WORLD, Extent, entity
 from lavendersim.replay.timeline import TIMELINE
@@ -23,8 +24,8 @@ from lavendersim.replay.timeline import TIMELINE
 if TYPE_CHECKING:
     from lavendersim.trace import Trace
 
-CONTACT_POINTS = "contacts/points"
-CONTACT_FORCES = "contacts/forces"
+CONTACT_POINTS = ("contacts", "points")
+CONTACT_FORCES = ("contacts", "forces")
 
 # Small enough for the viewer to fetch what it shows, large enough to make the calls' cost vanish.
 STEPS_PER_BLOCK = 200
@@ -123,15 +124,28 @@ def time_in_nanoseconds(trace: Trace) -> npt.NDArray[np.int64]:
 
 def send(stream: rr.RecordingStream, trace: Trace, room: Extent, scale: ForceScale | None) -> None:
     """Send everything that changes from step to step; contacts where there is a scale for them."""
+    send_scene(stream, trace, room, scale)
+    _send_plots(stream, trace, time_in_nanoseconds(trace).astype("timedelta64[ns]"))
+
+
+def send_scene(
+    stream: rr.RecordingStream,
+    trace: Trace,
+    room: Extent,
+    scale: ForceScale | None,
+    layer: Layer = ALONE,
+) -> None:
+    """Send what changes in the scene: poses, contacts, and what is removed."""
     times = time_in_nanoseconds(trace).astype("timedelta64[ns]")
-    _send_poses(stream, trace, times)
+    _send_poses(stream, trace, times, layer)
     if scale is not None:
-        _send_contacts(stream, trace, times, room, scale)
-    _send_plots(stream, trace, times)
-    clear_removed(stream, trace, time_in_nanoseconds(trace), [BODIES, GRIDS])
+        _send_contacts(stream, trace, room, scale, layer)
+    clear_removed(stream, trace, time_in_nanoseconds(trace), [BODIES, GRIDS], layer)
 
 
-def _send_poses(stream: rr.RecordingStream, trace: Trace, times: npt.NDArray[Any]) -> None:
+def _send_poses(
+    stream: rr.RecordingStream, trace: Trace, times: npt.NDArray[Any], layer: Layer
+) -> None:
     given = trace.config.scene.bodies
     recorded, pose = trace.recorded_pose
     for body, name in enumerate(trace.bodies):
@@ -146,24 +160,25 @@ def _send_poses(stream: rr.RecordingStream, trace: Trace, times: npt.NDArray[Any
             columns = rr.Transform3D.columns(
                 translation=pose[here, body, :3],
                 quaternion=pose[here, body][:, [4, 5, 6, 3]],  # ours is w x y z, rerun's x y z w
-                child_frame=[name] * len(here),
+                child_frame=[layer.frame(name)] * len(here),
                 parent_frame=[WORLD] * len(here),
             )
-            _send(stream, entity(name), times[recorded[here]], columns)
+            send_columns(stream, entity(name, layer), times[recorded[here]], columns)
 
 
 def _send_contacts(
     stream: rr.RecordingStream,
     trace: Trace,
-    times: npt.NDArray[Any],
     room: Extent,
     scale: ForceScale,
+    layer: Layer,
 ) -> None:
+    times = time_in_nanoseconds(trace).astype("timedelta64[ns]")
     thickness = 0.006 * room.diagonal
     points = rr.Points3D.from_fields(colors=[POINT_COLOUR], radii=[1.5 * thickness])
-    stream.log(CONTACT_POINTS, rr.CoordinateFrame(WORLD), points, static=True)
+    stream.log(layer.path(*CONTACT_POINTS), rr.CoordinateFrame(WORLD), points, static=True)
     arrows = rr.Arrows3D.from_fields(radii=[thickness])
-    stream.log(CONTACT_FORCES, rr.CoordinateFrame(WORLD), arrows, static=True)
+    stream.log(layer.path(*CONTACT_FORCES), rr.CoordinateFrame(WORLD), arrows, static=True)
 
     contact = contacts_of(trace)
     recorded = trace.recorded_rows("/contacts")
@@ -177,9 +192,9 @@ def _send_contacts(
         vectors, cut = scale.arrows(_vectors(rows, "nx", "ny", "nz"), rows["force_n"])
         colours = np.where(cut, CUT_FORCE_COLOUR, FORCE_COLOUR).astype(np.uint32)
         forces = rr.Arrows3D.columns(origins=origins, vectors=vectors, colors=colours)
-        _send(stream, CONTACT_FORCES, times[block], forces.partition(lengths))
+        send_columns(stream, layer.path(*CONTACT_FORCES), times[block], forces.partition(lengths))
         spots = rr.Points3D.columns(positions=origins)
-        _send(stream, CONTACT_POINTS, times[block], spots.partition(lengths))
+        send_columns(stream, layer.path(*CONTACT_POINTS), times[block], spots.partition(lengths))
 
 
 def _vectors(rows: npt.NDArray[Any], x: str, y: str, z: str) -> npt.NDArray[np.float64]:
@@ -200,15 +215,16 @@ def _send_plots(stream: rr.RecordingStream, trace: Trace, times: npt.NDArray[Any
         for block in blocks(len(times)):
             known = np.isfinite(values[block])
             curve = rr.Scalars.columns(scalars=values[block][known])
-            _send(stream, plot.entity, times[block], curve.partition(known.astype(np.int64)))
+            send_columns(stream, plot.entity, times[block], curve.partition(known.astype(np.int64)))
 
 
-def _send(
+def send_columns(
     stream: rr.RecordingStream,
     path: str,
     times: npt.NDArray[Any],
     columns: rr.ComponentColumnList,
 ) -> None:
+    """Send columns of an entity at these times."""
     # strict: rerun otherwise turns a mistake of ours into a warning and drops the data
     index = rr.TimeColumn(TIMELINE, duration=times)
     stream.send_columns(path, indexes=[index], columns=columns, strict=True)

@@ -33,6 +33,7 @@ from lavendersim.replay.timeline import TIMELINE
 if TYPE_CHECKING:
     from rerun.experimental import ViewerState
 
+    from lavendersim.replay.pair import Pair
     from lavendersim.trace import Trace
 
 Answer = TypeVar("Answer")
@@ -47,7 +48,9 @@ NOTICE_SECONDS = 4.5  # for 4 s after the start the viewer's notices lie over th
 HARMLESS = ("Software rasterizer detected",)
 
 
-def take_screenshot(trace: Trace, path: Path, title: str, at: float | None = None) -> list[str]:
+def take_screenshot(
+    trace: Trace | Pair, path: Path, title: str, at: float | None = None
+) -> list[str]:
     """Write the picture to `path`; return the viewer's complaints."""
     moment = moment_to_show(trace, at)
     require_vulkan()

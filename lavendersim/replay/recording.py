@@ -14,6 +14,8 @@ from lavendersim.errors import UsageError
 from lavendersim.replay import columns, scene
 from lavendersim.replay.blueprint import blueprint
 from lavendersim.replay.force_scale import force_scale
+from lavendersim.replay.pair import Pair
+from lavendersim.replay.pair_recording import record_pair
 
 if TYPE_CHECKING:
     from lavendersim.trace import Trace
@@ -30,8 +32,11 @@ def new_stream(title: str) -> rr.RecordingStream:
     return rr.RecordingStream(name)
 
 
-def record(trace: Trace, stream: rr.RecordingStream, title: str) -> None:
-    """Send the whole trace and the layout of the viewer to `stream`."""
+def record(trace: Trace | Pair, stream: rr.RecordingStream, title: str) -> None:
+    """Send the whole trace, or two, and the layout of the viewer to `stream`."""
+    if isinstance(trace, Pair):
+        record_pair(trace, stream, title)
+        return
     bodies = scene.shapes(trace.config)
     room = scene.extent(trace, bodies)
     # Where nothing can touch there are no contacts to place and no forces to scale.
@@ -44,7 +49,7 @@ def record(trace: Trace, stream: rr.RecordingStream, title: str) -> None:
     columns.send(stream, trace, room, scale)
 
 
-def write_rrd(trace: Trace, path: Path, title: str) -> None:
+def write_rrd(trace: Trace | Pair, path: Path, title: str) -> None:
     """Write the recording beside `path` and move it there when it is whole."""
     stream = new_stream(title)
     try:
@@ -57,11 +62,15 @@ def write_rrd(trace: Trace, path: Path, title: str) -> None:
         stream.disconnect()
 
 
-def moment_to_show(trace: Trace, at: float | None = None) -> np.timedelta64:
+def moment_to_show(trace: Trace | Pair, at: float | None = None) -> np.timedelta64:
     """The step nearest to `at` [s]; without one the last with a contact force, or the middle.
+
+    Of two logs those of the first.
 
     Raises UsageError for a time that the log does not reach.
     """
+    if isinstance(trace, Pair):
+        trace = trace.a
     times = columns.time_in_nanoseconds(trace)
     if at is not None:
         first, last = (float(times[row]) * 1e-9 for row in (0, -1))

@@ -12,6 +12,7 @@ import numpy.typing as npt
 import rerun as rr
 
 from lavendersim.measures.changes import removals
+from lavendersim.replay.layer import ALONE, Layer
 from lavendersim.replay.timeline import at_time
 
 if TYPE_CHECKING:
@@ -24,10 +25,14 @@ def removed(trace: Trace) -> dict[str, int]:
 
 
 def clear_removed(
-    stream: rr.RecordingStream, trace: Trace, times: npt.NDArray[np.int64], folders: list[str]
+    stream: rr.RecordingStream,
+    trace: Trace,
+    times: npt.NDArray[np.int64],
+    folders: list[str],
+    layer: Layer = ALONE,
 ) -> None:
     """Let bodies vanish, with all that is drawn of them in these folders; times: of rows [ns]."""
     for name, row in removed(trace).items():
         with at_time(stream, int(times[row])):
             for folder in folders:
-                stream.log(rr.new_entity_path([folder, name]), rr.Clear(recursive=True))
+                stream.log(layer.path(folder, name), rr.Clear(recursive=True))

@@ -14,6 +14,7 @@ import numpy as np
 import rerun as rr
 
 from lavendersim.geometry.rotations import rotated, shortest_turn
+from lavendersim.replay.layer import ALONE, Layer
 from lavendersim.replay.removal import removed
 from lavendersim.replay.shapes import XYZW, Shape, Vector, shapes
 from lavendersim.replay.solids import Look, archetypes
@@ -31,6 +32,7 @@ WORLD = "tf#/"  # rerun's name of the root frame, which no body can have
 # and vermillion are kept for forces (columns.py).
 MOVABLE_COLOURS = ((86, 180, 233), (204, 121, 167), (0, 158, 115), (0, 114, 178), (230, 159, 0))
 FIXED_COLOUR = (150, 150, 150)
+GHOST_COLOUR = (225, 225, 230)
 GROUND_COLOUR = (74, 78, 86)
 GRID_COLOUR = (112, 118, 128)
 
@@ -55,9 +57,9 @@ class Extent(NamedTuple):
         return float(np.linalg.norm(self.high - self.low)) or 1.0
 
 
-def entity(name: str) -> str:
+def entity(name: str, layer: Layer = ALONE) -> str:
     """Entity path of a body; its last part is the body's name, escaped as rerun requires."""
-    return rr.new_entity_path([BODIES, name])
+    return layer.path(BODIES, name)
 
 
 def extent(trace: Trace, bodies: Iterable[Shape]) -> Extent:
@@ -77,8 +79,17 @@ def extent(trace: Trace, bodies: Iterable[Shape]) -> Extent:
     return Extent(np.min(lows, axis=0), np.max(highs, axis=0))
 
 
-def draw(stream: rr.RecordingStream, trace: Trace, bodies: Sequence[Shape], room: Extent) -> None:
+def draw(
+    stream: rr.RecordingStream,
+    trace: Trace,
+    bodies: Sequence[Shape],
+    room: Extent,
+    layer: Layer = ALONE,
+    ghost: bool = False,
+) -> None:
     """Log every body's geometry, and the path its centre takes, once.
+
+    ghost: movable bodies alone, as pale lines, to lie over those of another log.
 
     As static data, but for what is removed during the run: that can be cleared (`clear_removed`).
     """
@@ -89,27 +100,34 @@ def draw(stream: rr.RecordingStream, trace: Trace, bodies: Sequence[Shape], room
     colours = iter(MOVABLE_COLOURS * (movable // len(MOVABLE_COLOURS) + 1))
     for shape in bodies:
         stays = shape.name not in gone
+        if ghost and shape.fixed:
+            continue
         if shape.kind == "plane":
             with at_time(stream, begin):
-                _draw_plane(stream, shape, room, stays)
+                _draw_plane(stream, shape, room, stays, layer)
             continue
-        colour = FIXED_COLOUR if shape.fixed else next(colours)
-        _draw_path(stream, trace, shape, colour)
+        colour = FIXED_COLOUR if shape.fixed else GHOST_COLOUR if ghost else next(colours)
+        _draw_path(stream, trace, shape, colour, layer)
+        labelled = len(bodies) <= LABELLED_BODIES and not ghost
         # Forces act at surfaces and point into bodies: solid bodies would hide them.
-        look = Look(colour, shape.fixed, shape.name, len(bodies) <= LABELLED_BODIES)
+        look = Look(colour, shape.fixed, shape.name, labelled)
         drawn = archetypes(shape.pieces, look)
-        frame = rr.CoordinateFrame(shape.name)
+        frame = rr.CoordinateFrame(layer.frame(shape.name))
         for kind, forms in drawn.items():
             within = [] if len(drawn) == 1 else [kind]
             for form in forms:
                 edges = ["edges"] if isinstance(form, rr.LineStrips3D) else []
-                place = rr.new_entity_path([BODIES, shape.name, *within, *edges])
+                place = layer.path(BODIES, shape.name, *within, *edges)
                 with at_time(stream, begin):
                     stream.log(place, frame, form, static=stays)
 
 
 def _draw_path(
-    stream: rr.RecordingStream, trace: Trace, shape: Shape, colour: tuple[int, int, int]
+    stream: rr.RecordingStream,
+    trace: Trace,
+    shape: Shape,
+    colour: tuple[int, int, int],
+    layer: Layer,
 ) -> None:
     """A thin line through the body's recorded positions: a still picture then tells its story."""
     path = trace.recorded_pose.pose[:, trace.bodies.index(shape.name), :3]
@@ -117,11 +135,13 @@ def _draw_path(
     if len(path) and np.ptp(path, axis=0).max() > 0:
         path = path[:: 1 + len(path) // PATH_POINTS]
         line = rr.LineStrips3D([path], colors=[(*colour, 120)], radii=rr.Radius.ui_points(1.0))
-        place = rr.new_entity_path(["paths", shape.name])
+        place = layer.path("paths", shape.name)
         stream.log(place, rr.CoordinateFrame(WORLD), line, static=True)
 
 
-def _draw_plane(stream: rr.RecordingStream, plane: Shape, room: Extent, stays: bool) -> None:
+def _draw_plane(
+    stream: rr.RecordingStream, plane: Shape, room: Extent, stays: bool, layer: Layer
+) -> None:
     """A thin box whose upper face lies in the plane, below (or beside) the scene, with a grid.
 
     The viewer's own grid is endless and flickers where it coincides with a face.
@@ -139,7 +159,7 @@ def _draw_plane(stream: rr.RecordingStream, plane: Shape, room: Extent, stays: b
         colors=[GROUND_COLOUR],
         fill_mode="Solid",
     )
-    stream.log(entity(plane.name), rr.CoordinateFrame(WORLD), slab, static=stays)
+    stream.log(entity(plane.name, layer), rr.CoordinateFrame(WORLD), slab, static=stays)
 
     ticks = np.linspace(-across, across, 2 * cells + 1)
     ends = np.array([-across, across])
@@ -149,7 +169,7 @@ def _draw_plane(stream: rr.RecordingStream, plane: Shape, room: Extent, stays: b
     lines = foot + rotated(turn, corners)
     radius = rr.Radius.ui_points(0.5)
     grid = rr.LineStrips3D(list(lines), colors=[GRID_COLOUR], radii=radius)
-    place = rr.new_entity_path([GRIDS, plane.name])
+    place = layer.path(GRIDS, plane.name)
     stream.log(place, rr.CoordinateFrame(WORLD), grid, static=stays)
 
 

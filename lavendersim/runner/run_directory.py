@@ -18,6 +18,7 @@ from .run_seal import DONE, read_sealed, sealed
 from .run_tables import read_table, renamed
 
 if TYPE_CHECKING:
+    from lavendersim.arrow import Table
     from lavendersim.cell import CellConfig
     from lavendersim.experiment import Experiment
     from lavendersim.trace import ExpectedLog, Trace
@@ -203,6 +204,22 @@ class Run:
         if found != known or not isinstance(table.get("passed"), bool):
             raise TraceError(f"{path}: damaged: it has other cells than {CELLS}, or no verdict")
         return table
+
+    def table(self, name: str) -> Table:
+        """Return `cells`, `verdicts`, or of all logs `step`, `pose` or `contact`, as a table.
+
+        Arrow, pandas, polars and DuckDB read it. UsageError for another name, or where there is
+        none.
+        """
+        from .export import table_of  # late: see `RunCell.trace`
+
+        return table_of(self, name)
+
+    def _repr_html_(self) -> str:
+        """Return the run as a notebook shows it."""
+        from .notebook import html_of  # late: see `RunCell.trace`
+
+        return html_of(self)
 
     def cost(self) -> dict[str, Any] | None:
         """Return what accuracy costs, where it was taken; UsageError while it is not finished."""

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from fractions import Fraction
 from functools import cached_property
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,6 +30,9 @@ from lavendersim.trace.source import Source
 from lavendersim.trace.streams import COLUMNS
 from lavendersim.trace.whole import INTERRUPTED
 from lavendersim.trace.writer import ABSENT, DESCRIPTION, ENDING, TIMESTEP_CHANGES
+
+if TYPE_CHECKING:
+    from lavendersim.arrow import Table
 
 COMPLETE = "complete"
 INCOMPLETE = "incomplete"
@@ -101,9 +104,19 @@ class Trace:
     def step(self) -> NDArray[Any]:
         """One row per logged step: the file's columns, and `time` [s]."""
         with damage(self.path, "/step"):
-            columns = self._columns("/step", "Step", STEP_COLUMNS)
-            parts = [decode.decode_steps(c, columns) for c in self._chunks("/step")]
-            return decode.join(parts, decode.step_columns(columns))
+            return decode.join(self.steps_in_parts(), decode.step_columns(self.step_columns))
+
+    @property
+    def step_columns(self) -> tuple[Column, ...]:
+        """The columns of `step` that the file has; `time` [s] follows from them."""
+        return self._columns("/step", "Step", STEP_COLUMNS)
+
+    def steps_in_parts(self) -> Iterator[NDArray[Any]]:
+        """Yield the rows of `step` in parts, read as they are asked for and not kept."""
+        with damage(self.path, "/step"):
+            columns = self.step_columns
+            for chunk in self._chunks("/step"):
+                yield decode.decode_steps(chunk, columns)
 
     @cached_property
     def residual(self) -> NDArray[Any]:
@@ -134,14 +147,22 @@ class Trace:
         if not self.has("/tf"):
             raise UsageError(self.why_not("/tf"))
         with damage(self.path, "/tf"):
-            form, count = layout.transforms_layout(self.bodies), len(self.bodies)
-            parts = [decode.decode_poses(c, form, count) for c in self._chunks("/tf")]
+            parts = list(self.poses_in_parts())
             steps = np.concatenate([np.empty(0, np.int64), *(steps for steps, _ in parts)])
             rows = self.recorded_rows("/tf")
             if not np.array_equal(steps, self.step["step"][rows]):
                 raise ValueError("it has other steps than it should")
             empty = np.empty((0, len(self.bodies), layout.POSE))
             return RecordedPoses(rows, np.concatenate([empty, *(poses for _, poses in parts)]))
+
+    def poses_in_parts(self) -> Iterator[tuple[NDArray[np.int64], NDArray[np.float64]]]:
+        """Yield recorded poses (rows, bodies, 7) with the numbers of their steps, and keep none."""
+        if not self.has("/tf"):
+            raise UsageError(self.why_not("/tf"))
+        with damage(self.path, "/tf"):
+            form, count = layout.transforms_layout(self.bodies), len(self.bodies)
+            for chunk in self._chunks("/tf"):
+                yield decode.decode_poses(chunk, form, count)
 
     def recorded_rows(self, topic: str) -> NDArray[np.intp]:
         """Return the rows of `step` of which the log has a topic, /tf or /contacts."""
@@ -172,7 +193,7 @@ class Trace:
         """Like `contact`, of the steps of which the log has them; see `recorded_rows`."""
         if not self.has("/contacts"):
             return absent_table(self.why_not("/contacts"))
-        parts = list(self._contact_parts())
+        parts = list(self.recorded_contacts_in_parts())
         if not parts:
             return decode.join((), [("step", "i8"), ("time", "f8")])
         return joined(parts)
@@ -188,9 +209,12 @@ class Trace:
         if "recorded_contact" in self.__dict__:  # read already
             yield self.recorded_contact
             return
-        yield from self._contact_parts()
+        yield from self.recorded_contacts_in_parts()
 
-    def _contact_parts(self) -> Iterator[NDArray[Any]]:
+    def recorded_contacts_in_parts(self) -> Iterator[NDArray[Any]]:
+        """Yield the rows of `recorded_contact` in parts of whole steps, and keep none."""
+        if not self.has("/contacts"):
+            raise UsageError(self.why_not("/contacts"))
         schema = self._source.schema(layout.CHANNELS[COLUMNS])
         if schema is None:
             yield from self._contacts_of_points()
@@ -211,6 +235,15 @@ class Trace:
                 if not fields and schema is not None:
                     fields, stride = decode.packed_fields(schema, chunk)
                 yield decode.decode_contacts(chunk, fields, stride, frame)
+
+    def table(self, name: str) -> Table:
+        """Return `step`, `pose` or `contact` as a table for Arrow, pandas, polars or DuckDB.
+
+        UsageError for another name, and where the log has no such topic.
+        """
+        from lavendersim.trace.tables import table_of  # late: reading needs no Arrow
+
+        return table_of(self, name)
 
     def why_not(self, topic: str) -> str:
         """Return the reason why this log has no such topic, or not all of it, as a sentence."""

@@ -87,3 +87,67 @@ def test_a_recording_that_cannot_hold_a_moment_is_refused(calls):
     result = invoke("--at", "1.234", "--save", "a.rrd")
     assert isinstance(result.exception, UsageError)
     assert calls == []
+
+
+@dataclass(frozen=True)
+class PlacedCell:
+    index: int
+    label: str
+    coordinates: dict[str, float]
+    path: Path
+
+    def trace(self):
+        return f"{self.path.parent.parent.name} {self.label}"
+
+    def damage(self):
+        return ""
+
+
+def sweep(name, values):
+    folder = Path("runs") / name
+    cells = tuple(
+        PlacedCell(index, f"e={e}", {"e": e}, folder / "cells" / f"{index}.mcap")
+        for index, e in enumerate(values)
+    )
+    return Run(cells, folder)
+
+
+@pytest.fixture
+def pairs(monkeypatch):
+    """What the room is asked to show of two runs."""
+    made = []
+    runs = {"one": sweep("one", [0.1, 0.8]), "two": sweep("two", [0.8, 0.9])}
+    monkeypatch.setattr(
+        "lavendersim.runner.open_run", lambda path, root, allowed: runs[str(path)], raising=False
+    )
+    monkeypatch.setattr("lavendersim.replay.pair_of", lambda *a: a)
+    monkeypatch.setattr("lavendersim.replay.open_viewer", lambda *a: made.append(a))
+    return made
+
+
+def test_of_another_run_the_cell_at_the_same_coordinates_is_shown(pairs):
+    assert invoke("one", "two", "--cell", "1", "--overlay").exit_code == 0
+    ((shown, title, at),) = pairs
+    assert shown == ("one e=0.8", "two e=0.8", ("one e=0.8", "two e=0.8"), True)
+    assert (title, at) == ("one e=0.8 and two e=0.8", None)
+
+
+def test_another_cell_may_be_named_also_of_the_same_run(pairs):
+    assert invoke("one", "one", "--cell", "0", "--other-cell", "1").exit_code == 0
+    assert pairs[0][0] == ("one e=0.1", "one e=0.8", ("one e=0.1", "one e=0.8"), False)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        (("one", "two", "--cell", "0"), "no one cell at the coordinates of e=0.1"),
+        (("one", "two", "--other-cell", "7"), "two has cells 0 to 1; there is no cell 7"),
+        (("one", "--overlay"), "--overlay: name another run beside it"),
+        (("one", "--other-cell", "1"), "--other-cell: name another run beside it"),
+    ],
+)
+def test_what_has_no_partner_is_refused(pairs, arguments, sentence):
+    result = invoke(*arguments)
+    assert isinstance(result.exception, UsageError)
+    assert sentence in str(result.exception)
+    assert pairs == []

@@ -151,3 +151,13 @@ def test_a_recipe_works(recipe: Recipe, tmp_path: Path) -> None:
     if recipe.is_known:
         plan = copy.lavender("plan", config).stdout
         assert [module for module in recipe.modules() if module not in plan] == []
+
+
+def test_a_measure_of_another_package_is_listed_with_its_unit(tmp_path: Path) -> None:
+    (recipe,) = (one for one in RECIPES if one.name == "A measure of another package")
+    copy = Copy(tmp_path)
+    copy.install(recipe.blocks["toml"], recipe.blocks["python"])
+    line = copy.lavender("measures").stdout.splitlines()[-1]
+    name, unit, meaning = line.split(maxsplit=2)
+    assert (name, unit) == ("path_length", "m")
+    assert meaning.endswith("over the whole run  (of contact_lab_path)")

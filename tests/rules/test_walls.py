@@ -16,6 +16,7 @@ ROOMS = {
     "clock": set(),
     "record_tables": set(),
     "durable_files": set(),
+    "arrow": {"errors", "durable_files"},
     "geometry": {"quantities", "cell"},
     "quantities": {"errors", "clock"},
     "cell": {"errors", "clock", "quantities", "engine"},  # of the engine: DECLARATIONS
@@ -26,7 +27,7 @@ ROOMS = {
     "scene": {"errors", "clock", "geometry", "quantities", "cell", "experiment", "engine"},
     "trace": {
         *("errors", "clock", "record_tables", "durable_files", "geometry", "quantities", "cell"),
-        "engine",
+        *("engine", "arrow"),
     },
     "problems": {"errors", "engine"},
     "measures": {"errors", "clock", "geometry", "quantities", "cell", "engine", "trace"},
@@ -39,12 +40,13 @@ ROOMS = {
     "simulator": {"errors", "quantities", "cell", "experiment", "scene", "engine"},
     "runner": {
         *("errors", "clock", "quantities", "cell", "experiment", "scene", "engine", "problems"),
-        *("trace", "measures", "geometry", "record_tables", "durable_files"),
+        *("trace", "measures", "geometry", "record_tables", "durable_files", "arrow"),
     },
+    "comparison": {"errors", "geometry", "trace", "measures", "runner"},
     "pytest_plugin": {"errors", "experiment", "trace", "measures", "runner"},
     "cli": {
         *("errors", "quantities", "experiment", "scene", "trace", "measures", "figures"),
-        *("replay", "runner", "problems"),
+        *("replay", "runner", "problems", "comparison"),
     },
 }
 # Modules of the engine that list what it has, without numba: what configs may name.
@@ -60,10 +62,11 @@ LIBRARIES = {
     "llvmlite": {"engine"},
     "numpy": {
         *("scene", "engine", "trace", "measures", "figures", "replay", "simulator", "runner"),
-        *("problems", "clock", "geometry", "record_tables"),
+        *("problems", "clock", "geometry", "record_tables", "arrow", "comparison"),
     },
     "scipy": {"geometry", "problems"},  # hulls, where a scene has one; sparse matrices
     "h5py": {"problems"},
+    "pyarrow": {"arrow"},
     "mcap": {"trace"},
     "google": {"trace"},  # google.protobuf
     "zstandard": {"trace"},

@@ -12,6 +12,7 @@ from lavendersim.experiment.models.always import AlwaysSection
 from lavendersim.experiment.models.cost import CostSpec
 from lavendersim.experiment.models.events import Event
 from lavendersim.experiment.models.expectation_names import expectation_rules
+from lavendersim.experiment.models.measure_names import measure_rules
 from lavendersim.experiment.models.overhead import OverheadSpec
 from lavendersim.experiment.models.record import Record
 from lavendersim.experiment.models.recorded import recording_rules
@@ -162,3 +163,4 @@ class ExperimentConfig(CellSource):
         super().rules(at)
         expectation_rules(at)
         recording_rules(at)
+        measure_rules(at)

@@ -1,0 +1,141 @@
+"""The rerun recording of two logs on one timeline, with the distances of their bodies.
+
+    side by side                          overlaid
+    +-----------+-----------+             +---------------+-----------+
+    |  A        |  B        |             |  A, B's bodies| distance  |
+    +-----------+-----------+             |  as pale lines+-----------+
+    |  distance | log10     |             |               | log10     |
+    +-----------+-----------+             +---------------+-----------+
+
+Both are seen from one place, in one scale of forces, so that what looks different is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+import numpy as np
+import rerun as rr
+import rerun.blueprint as rrb
+
+from lavendersim.replay import columns, scene
+from lavendersim.replay.blueprint import contents_of, curves_view, laid_out, scene_view
+from lavendersim.replay.force_scale import ForceScale, force_scale
+from lavendersim.replay.layer import Layer
+from lavendersim.replay.pair import Distances, Pair, distances_of
+
+if TYPE_CHECKING:
+    from lavendersim.trace import Trace
+
+A, B = Layer("A"), Layer("B")
+Curve = np.ndarray[Any, np.dtype[np.float64]]
+
+
+class _Plot(NamedTuple):
+    """Distances as they are drawn."""
+
+    folder: str
+    title: str
+    shown: Callable[[Curve], Curve]
+    legend: rrb.Corner2D  # where curves that grow are not
+
+
+def _millimetres(metres: Curve) -> Curve:
+    return 1e3 * metres
+
+
+def _log10(metres: Curve) -> Curve:
+    """Base-10 logarithm; NaN (a gap in the curve) where both are equal to the bit."""
+    logarithm = np.full(len(metres), np.nan)
+    np.log10(metres, out=logarithm, where=metres > 0)
+    return logarithm
+
+
+_PLOTS: Final = (
+    _Plot("distance", "distance between A and B [mm]", _millimetres, rrb.Corner2D.LeftTop),
+    _Plot("log10_distance", "log10 distance between A and B [m]", _log10, rrb.Corner2D.RightBottom),
+)
+
+
+def record_pair(pair: Pair, stream: rr.RecordingStream, title: str) -> None:
+    """Send two logs and the layout of the viewer to `stream`."""
+    bodies = {layer: scene.shapes(trace.config) for layer, trace in _layers(pair)}
+    rooms = [scene.extent(trace, bodies[layer]) for layer, trace in _layers(pair)]
+    room = scene.Extent(
+        np.min([one.low for one in rooms], axis=0), np.max([one.high for one in rooms], axis=0)
+    )
+    scale = _common_scale(pair, room.diagonal)
+    found = distances_of(pair)
+    stream.send_recording_name(title)
+    stream.send_blueprint(_blueprint(pair, bodies[A], room, scale, found))
+    for layer, trace in _layers(pair):
+        ghost = pair.overlay and layer == B
+        scene.draw(stream, trace, bodies[layer], room, layer, ghost)
+        touching = trace.has("/contacts") and not ghost
+        columns.send_scene(stream, trace, room, scale if touching else None, layer)
+    _send_distances(stream, found)
+
+
+def _layers(pair: Pair) -> list[tuple[Layer, Trace]]:
+    return [(A, pair.a), (B, pair.b)]
+
+
+def _common_scale(pair: Pair, diagonal: float) -> ForceScale | None:
+    """Return the scale of the log with the larger forces; None where nothing can touch."""
+    scales = [
+        force_scale(columns.contacts_of(trace), diagonal)
+        for _, trace in _layers(pair)
+        if trace.has("/contacts")
+    ]
+    return max(scales, key=lambda one: one.newtons_per_metre, default=None)
+
+
+def _blueprint(
+    pair: Pair,
+    bodies: Sequence[scene.Shape],
+    room: scene.Extent,
+    scale: ForceScale | None,
+    found: Distances,
+) -> rrb.Blueprint:
+    seconds = float(max(columns.time_in_nanoseconds(t)[-1] for _, t in _layers(pair))) * 1e-9
+    curves = [
+        curves_view(
+            f"plot/{plot.folder}",
+            plot.title,
+            np.concatenate([np.empty(0), *(plot.shown(one.metres) for one in found.bodies)]),
+            seconds,
+            legend=plot.legend,
+        )
+        for plot in _PLOTS
+    ]
+    ruler = f"; {scale.label}" if scale is not None else ""
+    if pair.overlay:
+        name = f"A: {pair.name_a}, B as pale lines: {pair.name_b}{ruler}"
+        seen = [*contents_of(A, scale is not None), *contents_of(B, False)]
+        view = scene_view(name, seen, bodies, room)
+        return laid_out(rrb.Horizontal(view, rrb.Vertical(*curves), column_shares=[3, 2]), seconds)
+    views = [
+        scene_view(f"{layer.name}: {name}{ruler}", contents_of(layer, True), bodies, room)
+        for layer, name in ((A, pair.name_a), (B, pair.name_b))
+    ]
+    rows = rrb.Vertical(rrb.Horizontal(*views), rrb.Horizontal(*curves), row_shares=[3, 2])
+    return laid_out(rows, seconds)
+
+
+def _send_distances(stream: rr.RecordingStream, found: Distances) -> None:
+    times = found.times.astype("timedelta64[ns]")
+    for plot in _PLOTS:
+        for one in found.bodies:
+            colour = scene.MOVABLE_COLOURS[one.place % len(scene.MOVABLE_COLOURS)]
+            path = rr.new_entity_path(["plot", plot.folder, one.body])
+            look = rr.SeriesLines(
+                colors=[colour], names=[one.body], widths=[1.5], aggregation_policy="MinMax"
+            )
+            stream.log(path, look, static=True)
+            values = plot.shown(one.metres)
+            for block in columns.blocks(len(times)):
+                known = np.isfinite(values[block])
+                curve = rr.Scalars.columns(scalars=values[block][known])
+                parts = curve.partition(known.astype(np.int64))
+                columns.send_columns(stream, path, times[block], parts)

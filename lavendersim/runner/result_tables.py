@@ -1,0 +1,185 @@
+"""The tables `cells` and `verdicts` of a run, from its results: a row for each cell, each claim.
+
+    cells      cell  label  <axes>  status  steps  passed  failed  <measures>  not_measured  <costs>
+    verdicts   cell  label  name  node  passed  measured  expected  ...
+
+Numbers are numbers: a ratio of the sweep is one, NaN and infinities stay. What could not be
+measured is null, and `not_measured` says why.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any, Final
+
+from lavendersim.arrow import Batch, Field, Kind, Table
+from lavendersim.arrow.fields import distinct
+from lavendersim.measures.judging import cells_of_claims
+from lavendersim.measures.meanings import meaning_of
+
+from .log_tables import key_fields
+
+if TYPE_CHECKING:
+    from .run_directory import Run
+
+# What the tables of results write for numbers that JSON does not have.
+NOT_FINITE: Final = {"nan": math.nan, "inf": math.inf, "-inf": -math.inf}
+ROWS_AT_ONCE: Final = 4096
+
+_STATE: Final = (
+    Field("status", "text", "how the cell ended: `complete`, or why not"),
+    Field("steps", "i8", "steps that were simulated"),
+    Field("passed", "bool", "whether every claim on this cell alone was met; null without one"),
+    Field("failed", "texts", "the claims on this cell alone that were not met"),
+)
+_NOT_MEASURED: Final = Field("not_measured", "texts", "measures without a number, and why")
+_COSTS: Final = (
+    Field("physics_us_per_step", "f8", "time that the physics of a step takes", "us"),
+    Field("logging_us_per_step", "f8", "time that the log of a step takes", "us"),
+    Field("compile_s", "f8", "time of composing, compiling and loading the kernel", "s"),
+    Field("tolerance", "f8", "residual that a step may leave", "m/s"),
+    Field("worst_residual", "f8", "largest residual of any step", "m/s"),
+    Field("not_converged_steps", "i8", "steps whose residual stayed above the tolerance"),
+    Field("worst_signorini", "f8", "largest violation of Signorini's law in any step", "m/s"),
+    Field("worst_cone", "f8", "largest distance from the friction cone in any step", "N s"),
+    Field("worst_dissipation", "f8", "largest violation of maximum dissipation", "J"),
+)
+_VERDICT: Final = (
+    Field("name", "text", "name of the expectation, check or control"),
+    Field("node", "text", "the claim: its name, and where it is judged"),
+    Field("passed", "bool", "whether the claim was met"),
+    Field("measured", "f8", "the decisive number: of several, the worst"),
+    Field("expected", "text", "what was expected"),
+    Field("tolerance", "text", "by how much it may be off"),
+    Field("follows", "bool", "failed because the cell did not complete"),
+    Field("margin", "f8", "share of the bound that is left; below 0 outside", "-"),
+    Field("message", "text", "the verdict in full"),
+)
+
+
+def cells_table(run: Run) -> Table:
+    """Return the table of cells. UsageError where the run did not finish."""
+    rows = run.results()["cells"]
+    experiment = run.experiment
+    places, checks = cells_of_claims(experiment), run.results()["checks"]
+    judged: dict[int, list[dict[str, Any]]] = {}
+    for check in checks:
+        if (index := places.get(check["node"])) is not None:
+            judged.setdefault(index, []).append(check)
+    axes = {
+        axis: _typed([cell.coordinates.get(axis) for cell in run.cells]) for axis in experiment.axes
+    }
+    measures = {
+        name: _typed([_number(row["measures"].get(name)) for row in rows])
+        for name in experiment.measures
+    }
+    fields = distinct(
+        {
+            "key": key_fields(run),
+            "axis": [Field(axis, kind, f"axis {axis!r}") for axis, (kind, _) in axes.items()],
+            "cell": list(_STATE),
+            "measure": [
+                Field(name, kind, *meaning_of(experiment.measures[name]))
+                for name, (kind, _) in measures.items()
+            ],
+            "of_measures": [_NOT_MEASURED],
+            "cost": [field for field in _COSTS if all(field.name in row for row in rows)],
+        }
+    )
+    columns: list[Sequence[Any]] = [
+        [cell.index for cell in run.cells],
+        range(len(rows)),
+        *(values for _, values in axes.values()),
+        [row["status"] for row in rows],
+        [row["steps"] for row in rows],
+        [_all_passed(judged.get(cell.index, [])) for cell in run.cells],
+        [[one["node"] for one in judged.get(c.index, []) if not one["passed"]] for c in run.cells],
+        *(values for _, values in measures.values()),
+        [_reasons(row["measures"]) for row in rows],
+    ]
+    costs = fields[len(columns) :]
+    columns += [[_number(row[_plain(field.name, rows)]) for row in rows] for field in costs]
+    return Table("cells", fields, _batches(fields, columns, len(rows)))
+
+
+def verdicts_table(run: Run) -> Table:
+    """Return the table of verdicts; those on several cells have no cell."""
+    checks = run.results()["checks"]
+    places = cells_of_claims(run.experiment)
+    found = [places.get(check["node"]) for check in checks]
+    order = {cell.index: place for place, cell in enumerate(run.cells)}
+    fields = [*key_fields(run), *(field for field in _VERDICT)]
+    columns: list[Sequence[Any]] = [
+        found,
+        [-1 if index is None else order[index] for index in found],
+        *(
+            [
+                _number(one.get(field.name)) if field.kind == "f8" else one.get(field.name)
+                for one in checks
+            ]
+            for field in _VERDICT
+        ),
+    ]
+    return Table("verdicts", fields, _batches(fields, columns, len(checks)))
+
+
+def _batches(
+    fields: Sequence[Field], columns: Sequence[Sequence[Any]], rows: int
+) -> Callable[[], Iterator[Batch]]:
+    def batches() -> Iterator[Batch]:
+        for start in range(0, rows, ROWS_AT_ONCE):
+            part = slice(start, start + ROWS_AT_ONCE)
+            yield {f.name: list(c[part]) for f, c in zip(fields, columns, strict=True)}
+
+    return batches
+
+
+def _typed(values: Sequence[Any]) -> tuple[Kind, Sequence[Any]]:
+    """Return the narrowest kind that has all of the values, and them as it has them."""
+    there = [value for value in values if value is not None]
+    if there and all(isinstance(value, bool) for value in there):
+        return "bool", values
+    if there and all(type(value) is int and abs(value) < 2**63 for value in there):
+        return "i8", values
+    if all(isinstance(v, int | float | Fraction) and not isinstance(v, bool) for v in there):
+        return "f8", [None if value is None else float(value) for value in values]
+    if all(_is_row(value) for value in there):
+        return "numbers", [None if v is None else list(map(float, v)) for v in values]
+    if all(_is_row(v) or isinstance(v, int | float) for v in there):  # a row of one is a number
+        rows = [v if v is None or _is_row(v) else [v] for v in values]
+        return "numbers", [None if v is None else list(map(float, v)) for v in rows]
+    return "text", [None if value is None else str(value) for value in values]
+
+
+def _is_row(value: Any) -> bool:
+    return isinstance(value, list | tuple) and all(
+        isinstance(item, int | float | Fraction) and not isinstance(item, bool) for item in value
+    )
+
+
+def _number(value: Any) -> Any:
+    """Return a number of the results; None for a sentence that says why there is none."""
+    if isinstance(value, list):
+        return [_number(item) for item in value]
+    if isinstance(value, str):
+        return NOT_FINITE.get(value)
+    return value
+
+
+def _reasons(measures: Mapping[str, Any]) -> list[str]:
+    return [
+        f"{name}: {value}"
+        for name, value in measures.items()
+        if isinstance(value, str) and value not in NOT_FINITE
+    ]
+
+
+def _all_passed(checks: Sequence[Mapping[str, Any]]) -> bool | None:
+    return all(check["passed"] for check in checks) if checks else None
+
+
+def _plain(name: str, rows: Sequence[Mapping[str, Any]]) -> str:
+    """Return the key of results that a column of costs is of, whose name may have been taken."""
+    return name if name in rows[0] else name.removeprefix("cost_")
