@@ -15,7 +15,7 @@ from .compile import kernel
 from .effects import made_once
 from .effects.gyroscopic import make_turn_by_mean
 from .records import NOT_FINITE, TURNS_TOO_FAST
-from .rotation import inertia_times, is_round, turn
+from .rotation import inertia_times, inverse_inertia_times, is_round, turn
 from .spec import Spec
 
 # MOTION.carried: a contact carries the body from its impact on, or through the whole step.
@@ -167,6 +167,7 @@ def make_displace(spec: Spec) -> Any:
     midpoint = spec.has("midpoint")
     at_surface = spec.has("impact_time")
     uneven, centred = spec.has("gyroscopic"), spec.has("contact_midpoint")
+    twists = turns and midpoint  # torques of forces and springs; none: the same bits
     integrate_rotation: Any = make_turn(spec)
     turn_by_mean: Any = make_turn_by_mean(spec) if centred and uneven else None
     _, jump = made_once(spec, "add_spin")
@@ -230,6 +231,21 @@ def make_displace(spec: Spec) -> Any:
         body.x += x
         body.y += y
         body.z += z
+        if twists:
+            gained_x, gained_y, gained_z = v.wx - m.wx, v.wy - m.wy, v.wz - m.wz
+            twisted = gained_x != 0.0 or gained_y != 0.0 or gained_z != 0.0
+            if m.carried == 0 and twisted:
+                # Half of what torques give before the turn and half after it: of order 2.
+                x, y, z = inertia_times(body, gained_x, gained_y, gained_z)
+                v.wx, v.wy, v.wz = (
+                    m.wx + 0.5 * gained_x,
+                    m.wy + 0.5 * gained_y,
+                    m.wz + 0.5 * gained_z,
+                )
+                solved = integrate_rotation(body, v, dt)
+                x, y, z = inverse_inertia_times(body, x, y, z)
+                v.wx, v.wy, v.wz = v.wx + 0.5 * x, v.wy + 0.5 * y, v.wz + 0.5 * z
+                return solved
         if turns:
             return integrate_rotation(body, v, dt)
         return True

@@ -18,6 +18,9 @@ from .decision import Decision, Facts, PairFacts, by_pair
 from .effect import Balance, Choice, Column, Effect, Fields, Hooks, kernel
 from .keys import COEFFICIENT, SurfaceKey, larger
 
+# dt^2/(m c) above which steps do not resolve a swing, as in `spring_midpoint`.
+FAST = 4.0
+
 
 def _described(pair: PairFacts) -> str:
     c = pair.surface.compliance
@@ -43,7 +46,14 @@ def make_row(spec):
         dt, c = params.dt, contact.spring_compliance
         damping = 2.0 * contact.damping_ratio / sqrt(contact.k_n * c)
         contact.spring_v = v
-        if mean:
+        if mean and damping > 0.0 and dt * dt * contact.k_n > FAST * c:
+            # See `spring_midpoint`: a damper more where the step does not resolve the spring.
+            more = min(1.0, 0.25 * damping * contact.k_n * dt) * dt * dt / c
+            both = 0.25 * dt * dt / c + 0.5 * damping * dt
+            contact.gamma = 1.0 / (both + 0.75 * more)
+            contact.target = (both + 0.25 * more) * contact.gamma * v
+            contact.target += contact.gamma * dt * contact.phi / c
+        elif mean:
             contact.gamma = 4.0 * c / (dt * (dt + 2.0 * c * damping))
             contact.target = v + contact.gamma * dt * contact.phi / c
         else:

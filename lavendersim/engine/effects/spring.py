@@ -1,15 +1,13 @@
 """Springs: a damped spring between a point of one body and a point of another.
 
     F = k (l - l_0) + c l',   along d, the unit vector from A's point to B's; l their distance
-Each spring takes F at the end of the step (implicit Euler), where bodies move with their new
-velocity, and in the middle of it (implicit midpoint), where they move with the mean of old and new;
-l is followed to first order in dt along d:
-    J = dt (k (l - l_0) + s v) / (1 + dt w s K),   s = w k dt + c,   w = 1 or 1/2
+Where bodies move by the mean of old and new velocity, F is that of `spring_midpoint`, which keeps
+the energy of springs without damping. Where they move with their new velocity each takes F at the
+end of the step (implicit Euler), l followed to first order in dt along d:
+    J = dt (k (l - l_0) + s v) / (1 + dt s K),   s = k dt + c
     K = 1/m_A + 1/m_B + (r_A x d) . I_A^-1 (r_A x d) + (r_B x d) . I_B^-1 (r_B x d)
-v: rate of l once other forces have acted, for w = 1/2 its mean with the rate at the step's start.
-A gets J d, B the opposite. Both are stable for any k, c and dt; the midpoint rule keeps the energy
-of a spring that keeps its direction, Euler's takes from it. Springs act one after the other, after
-other forces; what they join does not sleep.
+v: rate of l once other forces have acted. A gets J d, B the opposite. It is stable for any k, c and
+dt, and takes from the energy. Springs act after other forces; what they join does not sleep.
 """
 
 from __future__ import annotations
@@ -115,10 +113,12 @@ def make_place(spec: Spec) -> Kernel:
 def make_act(spec: Spec) -> Kernel:
     """Return `kernel(links, bodies, velocities, motion, params)`: springs change velocities."""
     from ..rotation import inverse_inertia_times
+    from ..spring_midpoint import make_act_midway
 
     place = make_place(spec)
-    turns, midpoint = spec.has("rotation"), spec.has("midpoint")
-    w = 0.5 if midpoint else 1.0
+    if spec.has("midpoint"):
+        return make_act_midway(spec, place)
+    turns = spec.has("rotation")
 
     def act(links, bodies, velocities, motion, params):
         dt = params.dt
@@ -149,17 +149,10 @@ def make_act(spec: Spec) -> Kernel:
                 response += lax * tax + lay * tay + laz * taz + lbx * tbx + lby * tby + lbz * tbz
                 rate += lbx * vb.wx + lby * vb.wy + lbz * vb.wz
                 rate -= lax * va.wx + lay * va.wy + laz * va.wz
-            if midpoint:
-                ma, mb = motion[link.a], motion[link.b]
-                first = dx * (mb.vx - ma.vx) + dy * (mb.vy - ma.vy) + dz * (mb.vz - ma.vz)
-                if turns:
-                    first += lbx * mb.wx + lby * mb.wy + lbz * mb.wz
-                    first -= lax * ma.wx + lay * ma.wy + laz * ma.wz
-                rate = 0.5 * (rate + first)
             if response > 0.0:
-                s = w * link.stiffness * dt + link.damping
+                s = link.stiffness * dt + link.damping
                 force = link.stiffness * (length - link.rest_length) + s * rate
-                force /= 1.0 + dt * w * s * response
+                force /= 1.0 + dt * s * response
                 link.force = force
                 j = dt * force
                 px, py, pz = j * dx, j * dy, j * dz
@@ -234,6 +227,8 @@ EFFECT = Effect(
             *[(f"{end}{axis}", "f8") for end in "ab" for axis in "xyz"],  # points, body frame [m]
             ("force", "f8"),  # of this step, positive where it pulls [N]
             *[(f"p{axis}", "f8") for axis in "xyz"],  # impulse on A in this step, world [N s]
+            # Angular impulse on each end's body, about its centre; on B its opposite [N m s].
+            *[(f"l{end}{axis}", "f8") for end in "ab" for axis in "xyz"],
         ],
     ),
     step_columns=(
