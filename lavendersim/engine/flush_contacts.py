@@ -14,11 +14,11 @@ from __future__ import annotations
 
 from typing import Any
 
-from .approach import CREEP, FAR, make_rate, make_slowest
+from .approach import CREEP, make_rate, make_slowest
 from .collide.shapes import make_radius, make_support
 from .compile import kernel
 from .impact_rows import make_keep_present
-from .records import PLANE, SPHERE, TOUCHING
+from .records import PLANE, TOUCHING
 from .spec import Spec
 from .vectors import Vec3, dot, minus, plus, position
 
@@ -88,13 +88,11 @@ def make_drop_flush(spec: Spec) -> Any:
             contact = contacts[c]
             row = state.pairs[contact.pair]
             flush = False
-            ajar = contact.phi > params.slop and contact.located != FAR
-            ajar = ajar and not (bodies[row.a].shape == SPHERE and bodies[row.b].shape == SPHERE)
-            if contact.rate >= -CREEP and not ajar:
+            if contact.rate >= -CREEP:
                 continue
             if bodies[row.a].shape != PLANE and bodies[row.b].shape != PLANE:
                 least = slowest(contact, bodies, motion)
-                if contact.rate < -least or ajar:
+                if contact.rate < -least:
                     for o in range(count):
                         other = contacts[o]
                         if other.pair == contact.pair or other.phi > params.slop + TOUCHING:

@@ -25,10 +25,8 @@ from .spec import Spec
 
 # Shortest flight after an impact, in timesteps: shorter ones are contact.
 FLIGHT = 1.0 / 64.0
-# Slowest impact without a rebound, in what forces change in a step: of what they bring together.
+# Slowest impact without a rebound, in what forces change in a step.
 SLOW = 1.0
-# And of what something else holds against them, as it comes from aside.
-HELD = 1.0 / 64.0
 LAST = 1.0 - 1e-9  # first guess, in what is left of the step, where only shapes tell
 
 
@@ -52,10 +50,9 @@ def make_is_impact(spec: Spec) -> Any:
 
 
 def make_foresee(spec: Spec) -> Any:
-    """Return `kernel(contact, pair, bodies, motion, params, met) -> whether it is an impact now`.
+    """Return `kernel(contact, pair, bodies, motion, params) -> whether an impact happens now`.
 
     Fills waits and due of a row whose `rate` is known. params.dt: what is left of the step.
-    met: the last part of the step ended because these surfaces meet.
     """
     forced, slowest = make_forced(spec), make_slowest(spec)
     change_ahead = make_change_ahead(spec)
@@ -64,7 +61,7 @@ def make_foresee(spec: Spec) -> Any:
     restitution, compliance = spec.has("restitution"), spec.has("compliance")
     springs = spec.has("contact_spring")
 
-    def foresee(contact, pair, bodies, motion, params, met):
+    def foresee(contact, pair, bodies, motion, params):
         left = params.dt
         soft = False  # its impulse takes time: none at an instant
         if compliance:
@@ -82,7 +79,7 @@ def make_foresee(spec: Spec) -> Any:
         if soft and gap == 0.0:
             return False
         if gap == 0.0 and v < 0.0:
-            return is_impact(-v, least, dv, 0.0 if met else most, e, params)
+            return is_impact(-v, least, dv, most, e, params)
         # What leaves a gap, whatever holds its bodies, is no contact of this part.
         if v > least + most and contact.phi + left * (v - 0.5 * most) > params.slop:
             contact.waits = 1
@@ -90,10 +87,7 @@ def make_foresee(spec: Spec) -> Any:
         squared = v * v - 2.0 * a * gap
         if squared > 0.0 and (v < 0.0 or a < 0.0):
             speed = sqrt(squared)
-            slow = most
-            if gap > params.slop:
-                slow = max(min(abs(a) * left, most), HELD * most)
-            if is_impact(speed, least, dv, slow, e, params):
+            if is_impact(speed, least, dv, most, e, params):
                 # The root that comes first, in the form that does not cancel.
                 due = (v + speed) / -a if v > 0.0 else 2.0 * gap / (speed - v)
                 ahead = gap > 0.0 or due >= FLIGHT * params.timestep
@@ -129,10 +123,8 @@ def make_follow(spec: Spec) -> Any:
             pair, last, waits, least, soonest = contacts[first].pair, first, True, first, left
             while last < count and contacts[last].pair == pair:
                 contact = contacts[last]
-                dv, most = forced(contact, motion)
-                # An impact that this step does not bring by itself lasts as little.
-                meets = contact.phi > TOUCHING and contact.rate < -most
-                waits = waits and (contact.waits == 1 or meets)
+                waits = waits and contact.waits == 1
+                dv, _ = forced(contact, motion)
                 rate = abs(dv) - nearest_rate(contact, bodies, motion)
                 gap = max(contact.phi, 0.0)
                 if rate * soonest > gap:

@@ -75,8 +75,7 @@ def make_locate(spec: Spec) -> Any:
         ma, mb = motion[owner_i], motion[owner_j]
         margin = TOUCHING + ma.reach + mb.reach
         t, when, late = ahead.due, NEVER, False
-        marches, own = ahead.located == ELSEWHERE, ahead.located == GUESSED
-        first = marches  # what overlaps as the part begins, and parts, has not met yet
+        marches = ahead.located == ELSEWHERE
         low, high = 0.0, NEVER  # apart, overlapping
         contact = trial.contact[0]
         contact.a, contact.b = owner_i, owner_j
@@ -95,15 +94,11 @@ def make_locate(spec: Spec) -> Any:
             for k in range(1, count):
                 if points[k].phi < points[least].phi:
                     least = k
-            seen = least
-            if own:
+            if ahead.located == GUESSED:
                 for k in range(count):
                     if points[k].feature == ahead.feature:
-                        seen = k
-                if abs(points[seen].phi) <= 0.25 * TOUCHING and points[least].phi < -TOUCHING:
-                    # Its feature meets when another of the pair has met already.
-                    own, seen, low = False, least, 0.0
-            point = points[seen]
+                        least = k
+            point = points[least]
             contact.x, contact.y, contact.z = point.x, point.y, point.z
             contact.nx, contact.ny, contact.nz = normal[0], normal[1], normal[2]
             phi = point.phi
@@ -114,11 +109,10 @@ def make_locate(spec: Spec) -> Any:
                 when = t - phi / v if v < 0.0 else NEVER
                 if when < NEVER or not marches:
                     break
-            if phi < -0.25 * TOUCHING and not (first and v >= 0.0):
+            if phi < -0.25 * TOUCHING:
                 high = t
             else:
                 low = t
-            first = first and phi < -0.25 * TOUCHING
             if marches and high == NEVER:
                 when = NEVER
                 if t >= left:

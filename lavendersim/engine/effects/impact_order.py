@@ -130,9 +130,7 @@ def make_order(spec: Spec) -> Any:
                 if deep:
                     counters.unordered = 1
                     return count, left
-            met = contact.a == counters.met_a and contact.b == counters.met_b
-            met = met and counters.met_at == counters.elapsed
-            if foresee(contact, state.pairs[contact.pair], bodies, motion, params, met):
+            if foresee(contact, state.pairs[contact.pair], bodies, motion, params):
                 contact.located, meets = MEETS, True
             if contact.waits == 1:
                 waiting = True
@@ -157,8 +155,6 @@ def make_order(spec: Spec) -> Any:
             contact = contacts[first]
             if contact.located == LOCATED:
                 length = due
-                counters.met_a, counters.met_b = contact.a, contact.b
-                counters.met_at = counters.elapsed + due
                 break
             due = locate(state, contact, workspace, params)
             contact.located, contact.due = LOCATED, due
