@@ -234,6 +234,10 @@ def make_displace(spec: Spec) -> Any:
         if twists:
             gained_x, gained_y, gained_z = v.wx - m.wx, v.wy - m.wy, v.wz - m.wz
             twisted = gained_x != 0.0 or gained_y != 0.0 or gained_z != 0.0
+            # A spin that a step all but stops would cancel to its last digits, and turns nothing.
+            last = v.wx * v.wx + v.wy * v.wy + v.wz * v.wz
+            before = m.wx * m.wx + m.wy * m.wy + m.wz * m.wz
+            twisted = twisted and 4096.0 * last >= before
             if m.carried == 0 and twisted:
                 # Half of what torques give before the turn and half after it: of order 2.
                 x, y, z = inertia_times(body, gained_x, gained_y, gained_z)
