@@ -12,7 +12,8 @@ from lavendersim.trace.encode import Streams
 KIB = 1024
 
 
-@pytest.fixture(scope="package", autouse=True)
+# Of a module: one of the package would last until the process ends, and cut the logs of others.
+@pytest.fixture(scope="module", autouse=True)
 def small_chunks() -> Iterator[None]:
     shipped = writer.CHUNK_BYTES
     writer.CHUNK_BYTES = Streams(4096 * KIB, 1024 * KIB, 1024 * KIB, 128 * KIB)
