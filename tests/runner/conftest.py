@@ -9,7 +9,8 @@ import pytest
 from lavendersim.runner import executor
 
 
-@pytest.fixture(autouse=True, scope="session")
+# Of a module: one of the session would last until the process ends, in the tests of other folders.
+@pytest.fixture(autouse=True, scope="module")
 def processes_at_once() -> Iterator[None]:
     """Let no sweep be too small for the processes that it asks for."""
     with pytest.MonkeyPatch.context() as patch:

@@ -15,7 +15,7 @@ KIB = 1024
 # Of a module: one of the package would last until the process ends, and cut the logs of others.
 @pytest.fixture(scope="module", autouse=True)
 def small_chunks() -> Iterator[None]:
-    shipped = writer.CHUNK_BYTES
-    writer.CHUNK_BYTES = Streams(4096 * KIB, 1024 * KIB, 1024 * KIB, 128 * KIB)
-    yield
-    writer.CHUNK_BYTES = shipped
+    with pytest.MonkeyPatch.context() as patch:
+        small = Streams(4096 * KIB, 1024 * KIB, 1024 * KIB, 128 * KIB)
+        patch.setattr(writer, "CHUNK_BYTES", small)
+        yield
