@@ -37,6 +37,10 @@ MADE: dict[str, tuple[bytes, tuple[str, ...]]] = {
     "null_byte": (b"a: 1\nb: \x00\n", ("2:4: control character U+0000; remove it",)),
     "escape_sequence": (b"a: \x1b[31m\n", ("1:4: control character U+001B; remove it",)),
     "deep_lists": (b"a: " + b"[" * 100_000, (f"1:35: {TOO_DEEP}",)),
+    "deep_lists_behind_another_defect": (
+        "é: *x\nb: ".encode() + b"[" * 100_000,
+        ("1:4: alias *x: there is no such anchor", f"2:35: {TOO_DEEP}"),
+    ),
     "deep_mappings": (b"{a: " * 100_000, (f"1:129: {TOO_DEEP}",)),
     "deep_dashes": (b"- " * 100_000, (f"1:65: {TOO_DEEP}",)),
     "deep_keys": (b"? " * 100_000, (f"1:65: {TOO_DEEP}",)),

@@ -11,6 +11,7 @@ import codecs
 import gc
 import re
 from collections.abc import Iterator
+from itertools import islice
 from typing import Any
 
 import yaml
@@ -24,6 +25,7 @@ from lavendersim.quantities.scalars import ScalarError, resolve
 LARGEST_FILE = 1 << 20  # [byte]
 DEEPEST = 32  # a config needs about six levels
 MOST_VALUES = 100_000
+_DEEPEST_OF_LIBYAML = "exceeded maximum nesting depth"  # 1000 levels, from libyaml 0.2.6 on
 
 _UNPRINTABLE = re.compile(
     "[^\t\n\r\x20-\x7e\x85\xa0-\u2027\u202a-\ud7ff\ue000-\ufefe\uff00-\ufffd\U00010000-\U0010ffff]"
@@ -105,7 +107,7 @@ class _Reading:
 
     def compose(self, text: str) -> Node | None:
         try:
-            self._read(yaml.parse(text, _LOADER))
+            self._read(_events(text))
         except yaml.MarkedYAMLError as error:
             for mark, sentence in describe(error, text):
                 self.report.add(mark, sentence)
@@ -202,6 +204,23 @@ class _Reading:
         else:
             into.keys[text] = mark
         into.key = text or ""
+
+
+def _events(text: str) -> Iterator[Any]:
+    """Yield the events of a text, of what is nested too deep for libyaml those before that.
+
+    libyaml scans the rest of a line for a key, so it may complain before the level beyond DEEPEST.
+    """
+    count = 0
+    try:
+        for event in yaml.parse(text, _LOADER):
+            count += 1
+            yield event
+    except yaml.MarkedYAMLError as error:
+        mark = error.problem_mark
+        if error.problem != _DEEPEST_OF_LIBYAML or mark is None:
+            raise
+        yield from islice(yaml.parse(text[: mark.index], _LOADER), count, None)
 
 
 def _mark_after(text: str) -> Mark:
