@@ -22,6 +22,7 @@ from lavender_cli import (
     judge,
     ls,
     measures,
+    merge,
     plan,
     plot,
     recover,
@@ -47,7 +48,7 @@ app = typer.Typer(
     },
 )
 VERBS: tuple[Callable[..., None], ...] = (
-    *(run.run, plot.plot, replay.replay, check.check, plan.plan, ls.ls, show.show),
+    *(run.run, merge.merge, plot.plot, replay.replay, check.check, plan.plan, ls.ls, show.show),
     *(
         judge.judge,
         verify.verify,

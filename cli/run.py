@@ -54,9 +54,21 @@ def run(
         bool, typer.Option("--resume", help="Go on with the newest run where it did not finish.")
     ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print the results as JSON.")] = False,
+    into: Annotated[
+        Path | None,
+        typer.Option("--into", metavar="DIR", help="Cells alone, beside others; see `merge`."),
+    ] = None,
+    shard: Annotated[
+        str | None, typer.Option("--shard", metavar="K/N", help="With --into: part K of N.")
+    ] = None,
 ) -> None:
     """Run experiments, log every step, judge what was expected. Exits 1 when a check fails."""
     from lavendersim.runner import finished_run, load_all, run
+
+    if into is not None or shard is not None:
+        asked = {"--plot": plot, "--refine": refine, "--resume": resume, "--json": as_json}
+        _run_shard(configs, overrides_of(values, axes), (into, shard), jobs, asked)
+        return
 
     # Every file is read before the first run, so a defect anywhere leaves nothing half done.
     overrides = overrides_of(values, axes)
@@ -114,6 +126,52 @@ def run(
     if as_json:
         printing.as_json(tables)
     if not good:
+        raise typer.Exit(1)
+
+
+def _run_shard(
+    configs: list[Path],
+    overrides: list[str],
+    where: tuple[Path | None, str | None],
+    jobs: int,
+    asked: dict[str, bool],
+) -> None:
+    """Run cells into a folder that other workers share; nothing is judged before the merge."""
+    from lavendersim.errors import UsageError
+    from lavendersim.runner import load_all
+    from lavendersim.runner.shards import part_of, run_shard
+
+    into, shard = where
+    if into is None:
+        raise UsageError("--shard: expected --into DIR, the folder that its cells are run into")
+    if refused := [option for option, given in asked.items() if given]:
+        raise UsageError(f"{refused[0]} with --into: cells are not judged before `lavender merge`")
+    part = part_of(shard) if shard is not None else None
+    experiments = load_all(configs, overrides=overrides)
+    if len(experiments) > 1:
+        raise UsageError(f"--into {into}: expected one config, not {len(experiments)}")
+    experiment = experiments[0]
+    printing.warn_of_mistakes(experiment)
+    try:
+        with progress.reporting(experiment.name) as shown:
+            done = run_shard(experiment, into, part, jobs, shown)
+    except KeyboardInterrupt as end:
+        if str(end):
+            typer.echo(str(end), err=True)
+        options = [word for one in overrides for word in f"--{one}".split(" ", 1)]
+        given = ["--into", str(into), *(["--shard", shard] if shard is not None else [])]
+        command = shlex.join(["lavender", "run", *map(str, configs), *options, *given])
+        typer.echo(f"go on with: {command}", err=True)
+        raise
+    for sentence in done.lost:
+        typer.echo(f"{experiment.name}: {sentence}", err=True)
+    of = "" if shard is None else f" of part {shard}"
+    typer.echo(
+        f"{typer.style(experiment.name, bold=True)}: {done.ran} cells run here, "
+        f"{done.ended} of {done.cells}{of} have ended; {done.shard}"
+    )
+    typer.echo(f"  judge and draw all with: lavender merge {shlex.quote(str(into))}")
+    if done.lost:
         raise typer.Exit(1)
 
 

@@ -20,7 +20,6 @@ from lavendersim.experiment import Experiment, load_experiment
 from lavendersim.experiment.cell import Cell
 from lavendersim.measures import Values, Verdict, judge, meant_to_end_early
 
-from .checks import check
 from .environment import environment
 from .interruption import Interrupted, handled
 from .json_table import text_of
@@ -42,10 +41,10 @@ from .run_directory import (
 from .run_index import ENDED, PENDING, as_row
 from .run_lock import run_lock
 from .run_seal import DONE, seal_of
-from .seeds import Seeds
 
 if TYPE_CHECKING:
     from .cell import CellJob
+    from .cell_jobs import Prepared
     from .cell_outcome import CellOutcome, EndedCell
     from .measured import Measured
 
@@ -114,10 +113,6 @@ def _short(override: str) -> str:
     return re.sub(r"[^\w.=+]+", "_", f"{re.split('[. ]', path)[-1]}={value}")[:MOST_OVERRIDE]
 
 
-def _file_of(cell: Cell, source: str) -> str:
-    return hashlib.sha256(f"{cell.digest} {source}".encode()).hexdigest()[:16] + ".mcap"
-
-
 def run(
     experiment: Experiment | Path | str,
     root: Path | str = RUNS,
@@ -136,65 +131,74 @@ def run(
     did not finish; see `resume`. A cell that diverges or breaks a bound of `always` ends there,
     with a readable log; the others go on.
     """
-    from lavendersim.engine.compile_options import source_hash
-
-    from .cell import CellJob, CellOfLog
+    from .cell_jobs import prepare
     from .log_size import size_warning
-    from .overheads import take_overheads, write_overheads
-    from .plans import distinct, shared_plans
 
     if not isinstance(experiment, Experiment):
         experiment = load_experiment(experiment)
-    check(experiment)
-    cells = experiment.cells()
-    plans = shared_plans(cells)
-    seeds = Seeds(experiment)
+    prepared = prepare(experiment)
     root = Path(root)
-    if sentence := size_warning(cells, plans, experiment.text, root):
+    if sentence := size_warning(prepared.cells, prepared.plans, experiment.text, root):
         progress.warning(sentence)
-    names = {cell.index: _file_of(cell, source_hash()) for cell in cells}
-    logs = set(names.values())
+    logs = set(prepared.logs)
     before = unfinished_run(experiment, root, logs, progress.note) if resume else None
     directory = before.path if before else make_directory(experiment, root)
     with run_lock(directory):
         done = take_over(before, logs, progress.note) if before else {}
-        (directory / "cells").mkdir(exist_ok=True)
-        write_whole(directory / CONFIG, experiment.text, flush=False)
-        configs = _write_resolved(directory / RESOLVED, cells)
-        pending = [
-            CellJob(
-                cell.index,
-                cell.config,
-                experiment.text,
-                directory / "cells" / names[cell.index],
-                plan,
-                seeds.of(cell.coordinates),
-                experiment.always,
-                experiment.measures,
-                (CellOfLog(cell.index, cell.label, cell.coordinates),),
-            )
-            for cell, plan in zip(cells, plans, strict=True)
-        ]
-        ended, taken = _run_cells(experiment, pending, configs, done, (jobs, progress))
-        outcomes = [ended[job.path]._replace(cell=job.cell) for job in pending]
-        # A cell whose process died has no measures to draw, nor a log to take them from.
-        lost = {outcome.cell for outcome in outcomes if not outcome.log}
-        drawn = {index: one.values for index, one in taken.items() if index not in lost}
-        result = _judged(Run(directory, experiment, drawn), outcomes, taken)
-        table = None
-        if overheads and experiment.config.overhead is not None:
-            table = take_overheads(experiment, jobs, progress.timing)
-            write_overheads(directory / OVERHEADS, table)
-        measured = [taken[cell.index].values for cell in result.run.cells]
-        write_results(result, measured, table)
-        known = environment(*(plan.spec for plan in distinct(plans)))
-        write_whole(directory / ENVIRONMENT, text_of(known), flush=False)
-        closing(result, measured)
-        (directory / ENDED).unlink(missing_ok=True)
-        # Nothing of the run counts before this stands: logs and tables are flushed once, together.
-        flush_tree(directory)
-        write_whole(directory / DONE, seal_of(directory, SEALED))
+        result = complete(
+            prepared,
+            directory,
+            done,
+            jobs=jobs,
+            progress=progress,
+            overheads=overheads,
+            closing=closing,
+        )
     point_latest(directory, root)
+    return result
+
+
+def complete(
+    prepared: Prepared,
+    directory: Path,
+    done: Mapping[str, EndedCell],
+    *,
+    jobs: int,
+    progress: Progress,
+    overheads: bool = True,
+    closing: Closing = lambda finished, measured: None,
+) -> Finished:
+    """Run the cells that are not done into a directory, judge all of them, and seal the run.
+
+    done: those that ended before, by the names of their logs. For who holds the directory.
+    """
+    from .overheads import take_overheads, write_overheads
+    from .plans import distinct
+
+    experiment, cells = prepared.experiment, prepared.cells
+    (directory / "cells").mkdir(exist_ok=True)
+    write_whole(directory / CONFIG, experiment.text, flush=False)
+    configs = _write_resolved(directory / RESOLVED, cells)
+    pending = prepared.jobs(directory)
+    ended, taken = _run_cells(experiment, pending, configs, done, (jobs, progress))
+    outcomes = [ended[job.path]._replace(cell=job.cell) for job in pending]
+    # A cell whose process died has no measures to draw, nor a log to take them from.
+    lost = {outcome.cell for outcome in outcomes if not outcome.log}
+    drawn = {index: one.values for index, one in taken.items() if index not in lost}
+    result = _judged(Run(directory, experiment, drawn), outcomes, taken)
+    table = None
+    if overheads and experiment.config.overhead is not None:
+        table = take_overheads(experiment, jobs, progress.timing)
+        write_overheads(directory / OVERHEADS, table)
+    measured = [taken[cell.index].values for cell in result.run.cells]
+    write_results(result, measured, table)
+    known = environment(*(plan.spec for plan in distinct(prepared.plans)))
+    write_whole(directory / ENVIRONMENT, text_of(known), flush=False)
+    closing(result, measured)
+    (directory / ENDED).unlink(missing_ok=True)
+    # Nothing of the run counts before this stands: logs and tables are flushed once, together.
+    flush_tree(directory)
+    write_whole(directory / DONE, seal_of(directory, SEALED))
     return result
 
 
@@ -210,30 +214,27 @@ def _run_cells(
     configs: the digests of theirs. done: those that ended before, by the names of their logs.
     how: in how many processes, and who is shown it.
     """
+    from .cell_jobs import different
     from .executor import outcomes_of
 
     jobs, progress = how
-    # Cells of several products may be the same simulation: it has one log and is run once.
-    different: dict[Path, CellJob] = {}
-    for job in pending:
-        same = different.get(job.path)
-        different[job.path] = same._replace(cells=same.cells + job.cells) if same else job
-    ended = {path: done[path.name].outcome for path in different if path.name in done}
+    by_log = different(pending)
+    ended = {path: done[path.name].outcome for path in by_log if path.name in done}
     taken: dict[int, Measured] = {}
     for one in done.values():
         taken |= one.measured
     directory = pending[0].path.parent.parent
     # The index stands from the start, so that an interrupted run can be listed and replayed.
     _write_index(directory, experiment, zip(pending, configs, strict=True), ended)
-    left = [job for path, job in different.items() if path not in ended]
+    left = [job for path, job in by_log.items() if path not in ended]
     try:  # what ends meanwhile is noted beside it: see `run_index`
         with handled():
             for job, outcome, found in outcomes_of(left, jobs, progress):
                 ended[job.path] = outcome
                 taken |= found
-                progress.cell_done(len(ended), len(different))
+                progress.cell_done(len(ended), len(by_log))
     except Interrupted as end:
-        whole = f"{len(ended)} of {len(different)} cells are whole"
+        whole = f"{len(ended)} of {len(by_log)} cells are whole"
         raise Interrupted(f"{experiment.name}: {end}: {whole}, {directory}") from None
     finally:
         _write_index(directory, experiment, zip(pending, configs, strict=True), ended)

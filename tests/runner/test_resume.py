@@ -5,7 +5,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import random
 import signal
@@ -14,20 +13,19 @@ import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import NoReturn
 
 import pytest
+from run_contents import contents
 from small_configs import DROPS, write
 
 from lavendersim import open_run
 from lavendersim.errors import TraceError, UsageError
 from lavendersim.experiment import load_experiment
 from lavendersim.runner import Progress, Run, finished_run, list_runs, run
-from lavendersim.runner.run_directory import RESULTS
 from lavendersim.runner.run_lock import run_lock
 
 KILLS = int(os.environ.get("LAVENDER_TEST_KILLS", "2"))
-TIMES = ("physics_us_per_step", "logging_us_per_step", "compile_s")
 MANY = DROPS.replace("[0.2, 0.5, 0.8]", str([round(0.1 + i / 100, 2) for i in range(60)]))
 # Cells that break a bound have to end as they did: at their first contact, 30 um deep.
 BOUNDED = MANY + "always: {penetration: 1.0e-9}\n"
@@ -58,20 +56,6 @@ if __name__ == "__main__":
     print(flush=True)
     lavendersim.run(sys.argv[1], root=sys.argv[2], jobs=int(sys.argv[3]))
 """
-
-
-def contents(found: Run) -> dict[str, Any]:
-    """Return all that a run holds, but for times, dates and where it is."""
-    files: dict[str, Any] = {log.name: log.read_bytes() for log in found.path.glob("cells/*")}
-    for name in ("cells.json", "config.yaml", "resolved.json"):
-        files[name] = (found.path / name).read_bytes()
-    text = (found.path / RESULTS).read_text().replace(str(found.path), "RUN")
-    table = json.loads(text)
-    for row in (table, *table["cells"]):
-        for name in TIMES:
-            row.pop(name, None)
-    left = {path.name for path in found.path.iterdir()}
-    return files | {RESULTS: table, "names": left - {"figures"}}
 
 
 def killed(folder: Path, config: Path, jobs: int, wait: float) -> Path:
