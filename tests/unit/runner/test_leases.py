@@ -78,3 +78,21 @@ def test_a_shard_has_one_worker_at_a_time(leases: Leases, tmp_path: Path) -> Non
         alive(tmp_path / "shards/mine").__enter__()
     with alive(tmp_path / "shards/mine"):
         pass
+
+
+def test_who_takes_a_dead_ones_place_meanwhile_keeps_it(
+    leases: Leases, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert leases.take("a", "other", set())
+    (tmp_path / "shards/third").mkdir()
+    rename = os.rename
+
+    def late(source: Path, target: Path) -> None:
+        monkeypatch.undo()
+        assert leases.take("a", "third", set())
+        rename(source, target)
+
+    monkeypatch.setattr(os, "rename", late)
+    with alive(tmp_path / "shards/third"):
+        assert not leases.take("a", "mine", set())
+    assert (tmp_path / "leases/a").read_text() == "third"
