@@ -3,55 +3,95 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from lavender_cli import printing
 from lavender_cli.run import Runs
 
+if TYPE_CHECKING:
+    from lavendersim.runner.listing import Listed, Wanted
+
+Name = Annotated[
+    list[str] | None,
+    typer.Option("--name", metavar="NAME", help="Of these experiments; * and ? as in a shell."),
+]
+VerdictOption = Annotated[
+    str | None,
+    typer.Option("--verdict", metavar="WORD", help="pass, fail, unfinished or damaged."),
+]
+Tag = Annotated[str | None, typer.Option("--tag", metavar="TAG", help="That have this tag.")]
+Older = Annotated[
+    str | None,
+    typer.Option("--older", metavar="TIME", help="Begun before: 12h, 30d, 2w ago, or a date."),
+]
+Newer = Annotated[
+    str | None, typer.Option("--newer", metavar="TIME", help="Begun since: the same.")
+]
+
 
 def ls(
     runs: Runs = Path("runs"),
+    name: Name = None,
+    verdict: VerdictOption = None,
+    tag: Tag = None,
+    older: Older = None,
+    newer: Newer = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the runs as JSON.")] = False,
 ) -> None:
     """List runs, oldest first. Exits 3 when a finished one has a damaged table or a cut log."""
-    from lavendersim.runner import list_runs
+    from lavendersim.runner.listing import listed
 
-    rows = [_row(run) for run in list_runs(runs)]
+    wanted = wanted_of(name, verdict, tag, older, newer)
+    found = list(listed(runs, wanted))
     if as_json:
-        printing.as_json(rows)
-        _end(rows)
-        return
-    if not rows:
-        typer.echo(f"{runs} holds no run", err=True)
-    for row in rows:
-        state = printing.mark(bool(row["passed"])) if row["finished"] else "----"
-        if row["damaged"]:
-            word = "BAD " if row["passed"] is None else "CUT "
-            state = typer.style(word, fg=typer.colors.RED, bold=True)
-        typer.echo(f"{state}  {row['path']}")
-    _end(rows)
-
-
-def _row(run: Any) -> dict[str, Any]:
-    """Return what there is to say of a run; one with a damaged table is not in the others' way."""
-    from lavendersim.errors import TraceError
-
-    passed: bool | None = None
-    damaged: list[str] = []
-    if run.finished:  # another is listed as such; its logs are as they were left
-        try:
-            passed = run.results()["passed"]
-            damaged = run.cut()
-        except TraceError as error:
-            damaged = [str(error)]
-    return {"path": run.path, "finished": run.finished, "passed": passed, "damaged": damaged}
-
-
-def _end(rows: list[dict[str, Any]]) -> None:
-    """Say which logs were cut and which tables are damaged, and exit 3 where one is."""
-    damaged = [sentence for row in rows for sentence in row["damaged"]]
+        printing.as_json([one.as_row() for one in found])
+    else:
+        if not found:
+            such = "such " if any(wanted) else ""
+            typer.echo(f"{runs} holds no {such}run", err=True)
+        for one in found:
+            typer.echo(line_of(one))
+    damaged = [sentence for one in found for sentence in one.damaged]
     printing.report_damage(damaged)
     if damaged:
         raise typer.Exit(printing.DAMAGED)
+
+
+def line_of(one: Listed) -> str:
+    """Return the line of a run: how it ended, when it began, its cells, its size, where it is."""
+    if one.damaged:
+        word = "BAD " if one.passed is None else "CUT "
+        state = typer.style(word, fg=typer.colors.RED, bold=True)
+    else:
+        state = "----" if one.passed is None else printing.mark(one.passed)
+    cells = f"{one.cells} cell{' ' if one.cells == 1 else 's'}"
+    tags = f"  [{' '.join(one.tags)}]" if one.tags else ""
+    size = printing.byte_size(one.size)
+    return f"{state}  {one.run.path}  {one.date:%Y-%m-%d %H:%M}  {cells:>10}  {size:>8}{tags}"
+
+
+def wanted_of(
+    name: list[str] | None,
+    verdict: str | None,
+    tag: str | None,
+    older: str | None,
+    newer: str | None,
+    larger: str | None = None,
+) -> Wanted:
+    """Return which runs the options mean. UsageError where one cannot be read."""
+    from lavendersim.errors import UsageError
+    from lavendersim.runner.listing import VERDICTS, Wanted, size_from, time_before
+
+    if verdict is not None and verdict not in VERDICTS:
+        expected = " or ".join((", ".join(VERDICTS[:-1]), VERDICTS[-1]))
+        raise UsageError(f"--verdict {verdict}: expected {expected}")
+    return Wanted(
+        tuple(name or ()),
+        verdict,
+        tag,
+        before=time_before("--older", older) if older is not None else None,
+        since=time_before("--newer", newer) if newer is not None else None,
+        larger=size_from("--larger", larger) if larger is not None else None,
+    )

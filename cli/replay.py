@@ -76,13 +76,13 @@ def replay(
         option = "--overlay" if overlay else "--other-cell"
         raise UsageError(f"{option}: name another run beside it")
     opened = open_run(run, runs, allow_incomplete)
-    chosen = [_cell_of(opened, cell or 0)]
+    chosen = [cell_of(opened, cell or 0)]
     if other is not None:
         from lavendersim.comparison.pairing import partner
 
         beside = open_run(other, runs, allow_incomplete)
         found = other_cell if other_cell is not None else partner(opened, chosen[0], beside)
-        chosen.append(_cell_of(beside, found))
+        chosen.append(cell_of(beside, found))
     if cell is None and len(opened.cells) > 1:
         others = f"0 to {len(opened.cells) - 1}"
         shown = f"replaying cell 0 ({chosen[0].label}); --cell K shows another, {others}"
@@ -112,7 +112,7 @@ def replay(
         raise typer.Exit(printing.DAMAGED)
 
 
-def _cell_of(run: Run, number: int) -> RunCell:
+def cell_of(run: Run, number: int) -> RunCell:
     """Return a cell of a run by its number; UsageError where there is none."""
     from lavendersim.errors import UsageError
 

@@ -53,6 +53,10 @@ def run(
     resume: Annotated[
         bool, typer.Option("--resume", help="Go on with the newest run where it did not finish.")
     ] = False,
+    tags: Annotated[
+        list[str] | None,
+        typer.Option("--tag", metavar="TAG", help="A word to find it by; repeatable."),
+    ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the results as JSON.")] = False,
     into: Annotated[
         Path | None,
@@ -67,6 +71,7 @@ def run(
 
     if into is not None or shard is not None:
         asked = {"--plot": plot, "--refine": refine, "--resume": resume, "--json": as_json}
+        asked["--tag"] = bool(tags)
         _run_shard(configs, overrides_of(values, axes), (into, shard), jobs, asked)
         return
 
@@ -86,7 +91,7 @@ def run(
         printing.warn_of_mistakes(experiment)
         try:
             with progress.reporting(experiment.name) as shown:
-                finished = run(experiment, runs, jobs, shown, resume=resume)
+                finished = run(experiment, runs, jobs, shown, resume=resume, tags=tags or ())
         except KeyboardInterrupt as end:  # `run` says by what, and where what was simulated is
             if str(end):
                 typer.echo(str(end), err=True)

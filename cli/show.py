@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from lavender_cli import printing
+from lavender_cli.replay import cell_of
 from lavender_cli.run import Runs
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from lavendersim.runner import RunCell
+    from lavendersim.runner import Run, RunCell
 
 Metadata = dict[str, dict[str, str]]
 # of a log's metadata
@@ -25,6 +27,10 @@ def show(
         Path | None, typer.Argument(metavar="[RUN]", help="Run directory; the latest by default.")
     ] = None,
     runs: Runs = Path("runs"),
+    cell: Annotated[
+        int | None,
+        typer.Option("--cell", metavar="K", help="One cell, counted from 0: its log, its numbers."),
+    ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the results as JSON.")] = False,
 ) -> None:
     """Show a run: its question, the effects it simulated, what it measured and its verdicts.
@@ -34,6 +40,9 @@ def show(
     from lavendersim.runner import open_run
 
     opened = open_run(run, runs)
+    if cell is not None:
+        _show_cell(opened, cell, as_json)
+        return
     results = opened.results()
     if as_json:
         printing.as_json(results)
@@ -70,6 +79,24 @@ def show(
     for verdict in results["checks"]:
         typer.echo(f"  {printing.mark(verdict['passed'])}  {verdict['node']}")
     _end(damaged)
+
+
+def _show_cell(opened: Run, number: int, as_json: bool) -> None:
+    """Print where the log of a cell is, what replays it, and what was measured of it."""
+    cell = cell_of(opened, number)
+    row = next(row for row in opened.results()["cells"] if row["index"] == cell.index)
+    command = f"lavender replay {shlex.quote(str(opened.path))} --cell {number}"
+    if as_json:
+        printing.as_json({**row, "log": cell.path, "replay": command})
+    else:
+        typer.echo(f"{typer.style(cell.label or opened.name, bold=True)}  {cell.status}")
+        typer.echo(f"log     {cell.path}")
+        typer.echo(f"replay  {command}")
+        for name, value in row["measures"].items():
+            shown = printing.digits(value) if isinstance(value, float | int) else value
+            typer.echo(f"  {name}  {shown}")
+    damage = cell.damage()
+    _end([damage] if damage else [])
 
 
 def _end(damaged: list[str]) -> None:

@@ -23,6 +23,7 @@ from lavendersim.measures import Values, Verdict, judge, meant_to_end_early
 from .environment import environment
 from .interruption import Interrupted, handled
 from .json_table import text_of
+from .listing import TAGS, checked_tags
 from .progress import Progress
 from .results import compile_seconds, convergence_notices, write_results
 from .resume import take_over, unfinished_run
@@ -122,20 +123,22 @@ def run(
     closing: Closing = lambda finished, measured: None,
     *,
     resume: bool = False,
+    tags: Sequence[str] = (),
 ) -> Finished:
     """Run every cell of an experiment and judge its expectations; take overheads where it asks.
 
     root: where run directories are made. jobs: processes; the logs are the same for any number.
     overheads: false leaves out what a section `overhead` asks for. closing: called with the results
     before the run counts as finished. resume: go on with the newest run of the experiment where it
-    did not finish; see `resume`. A cell that diverges or breaks a bound of `always` ends there,
-    with a readable log; the others go on.
+    did not finish; see `resume`. tags: words to find it by. A cell that diverges or breaks a bound
+    of `always` ends there, with a readable log; the others go on.
     """
     from .cell_jobs import prepare
     from .log_size import size_warning
 
     if not isinstance(experiment, Experiment):
         experiment = load_experiment(experiment)
+    tags = checked_tags(tags)
     prepared = prepare(experiment)
     root = Path(root)
     if sentence := size_warning(prepared.cells, prepared.plans, experiment.text, root):
@@ -145,6 +148,8 @@ def run(
     directory = before.path if before else make_directory(experiment, root)
     with run_lock(directory):
         done = take_over(before, logs, progress.note) if before else {}
+        if tags:
+            write_whole(directory / TAGS, "\n".join(tags) + "\n", flush=False)
         result = complete(
             prepared,
             directory,

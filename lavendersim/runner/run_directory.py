@@ -171,7 +171,11 @@ class Run:
 
     def rows(self) -> dict[Path, dict[str, Any]]:
         """Return the rows of the index by the logs, begun or not."""
-        return {self.path / row["file"]: row for row in self._index["cells"]}
+        return {self.path / row["file"]: row for row in self.index_rows()}
+
+    def index_rows(self) -> list[dict[str, Any]]:
+        """Return the rows of the index, one a cell."""
+        return list(self._index["cells"])
 
     @property
     def options(self) -> tuple[bool, str | None, int, tuple[str, ...]]:
@@ -238,8 +242,12 @@ def list_runs(root: Path = RUNS) -> list[Run]:
     """Return the runs below `root`, oldest first."""
     if not root.is_dir():
         return []
-    found = [Run(path.parent) for path in root.glob(f"*/{CELLS}") if not path.parent.is_symlink()]
-    return sorted(found, key=lambda run: run.path.name)
+    folders = (path.parent for path in root.glob(f"[!.]*/{CELLS}"))  # a hidden one is being removed
+    return sorted(map(Run, (one for one in folders if not one.is_symlink())), key=_name)
+
+
+def _name(run: Run) -> str:
+    return run.path.name
 
 
 def open_run(
