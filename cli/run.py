@@ -4,15 +4,21 @@ from __future__ import annotations
 
 import errno
 import shlex
+from contextlib import ExitStack
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from lavender_cli import overheads, printing, progress, time_errors
 
+if TYPE_CHECKING:
+    from concurrent.futures import Executor
+
 # A disk or a quota is full, a file as large as may be, or the disk fails.
 DISK = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)
+
+DASK = "dask"
 
 Configs = Annotated[
     list[Path], typer.Argument(metavar="CONFIG...", help="Config files, or folders of them.")
@@ -57,6 +63,13 @@ def run(
         list[str] | None,
         typer.Option("--tag", metavar="TAG", help="A word to find it by; repeatable."),
     ] = None,
+    executor: Annotated[
+        str | None, typer.Option("--executor", metavar="dask", help="Whose workers run the cells.")
+    ] = None,
+    dask: Annotated[
+        str | None,
+        typer.Option("--dask", metavar="ADDRESS", help="Of Dask's scheduler: tcp://host:8786."),
+    ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the results as JSON.")] = False,
     into: Annotated[
         Path | None,
@@ -71,10 +84,16 @@ def run(
 
     if into is not None or shard is not None:
         asked = {"--plot": plot, "--refine": refine, "--resume": resume, "--json": as_json}
-        asked["--tag"] = bool(tags)
+        asked |= {
+            "--tag": bool(tags),
+            "--executor": executor is not None,
+            "--dask": dask is not None,
+        }
         _run_shard(configs, overrides_of(values, axes), (into, shard), jobs, asked)
         return
 
+    if executor not in (None, DASK):
+        raise typer.BadParameter(f"{executor!r}, expected {DASK!r}", param_hint="--executor")
     # Every file is read before the first run, so a defect anywhere leaves nothing half done.
     overrides = overrides_of(values, axes)
     experiments = load_all(configs, overrides=overrides)
@@ -90,8 +109,15 @@ def run(
             continue
         printing.warn_of_mistakes(experiment)
         try:
-            with progress.reporting(experiment.name) as shown:
-                finished = run(experiment, runs, jobs, shown, resume=resume, tags=tags or ())
+            with ExitStack() as open_now:
+                shown = open_now.enter_context(progress.reporting(experiment.name))
+                workers: Executor | None = None
+                if executor is not None or dask is not None:
+                    from lavendersim.runner.dask_cluster import dask_workers
+
+                    workers = open_now.enter_context(dask_workers(dask, jobs))
+                options = {"resume": resume, "tags": tags or (), "executor": workers}
+                finished = run(experiment, runs, jobs, shown, **options)
         except KeyboardInterrupt as end:  # `run` says by what, and where what was simulated is
             if str(end):
                 typer.echo(str(end), err=True)

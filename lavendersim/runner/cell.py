@@ -170,16 +170,37 @@ def compile_kernel(job: CellJob) -> int:
 def run_and_measure(
     job: CellJob, began: Began | None = None
 ) -> tuple[CellOutcome, dict[int, Measured]]:
-    """Simulate one cell, write its log, and measure it for each cell of the sweep that it is of."""
+    """Simulate one cell, write its log, and measure it for each cell of the sweep that it is of.
+
+    What ended is noted in the directory of its run.
+    """
+
+    def closed(outcome: CellOutcome) -> None:
+        assert outcome.log is not None
+        note_ended(job.path, outcome.status, outcome.log)
+        raise_noted()
+
+    outcome, measured = measured_run(job, began, closed)
+    note_measured(job.path, outcome, measured)
+    return outcome, measured
+
+
+def measured_run(
+    job: CellJob,
+    began: Began | None = None,
+    closed: Callable[[CellOutcome], None] = lambda outcome: None,
+) -> tuple[CellOutcome, dict[int, Measured]]:
+    """Simulate one cell, write its log, and measure it; nothing is noted.
+
+    closed: called when the log is, before it is measured.
+    """
     outcome, written, worst = simulate(job, began)
-    note_ended(job.path, outcome.status, written.digest)
-    raise_noted()
+    closed(outcome)
     trace = trace_of(written)
     measured = {}
     for index, label, coordinates in job.cells:
         cell = RunCell(index, label, coordinates, job.path, outcome.status, job.config, [trace])
         measured[index] = measure_cell(cell, job.measures, worst)
-    note_measured(job.path, outcome, measured)
     return outcome, measured
 
 

@@ -14,6 +14,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from lavendersim.cell.record import NONE
 from lavendersim.durable_files import flush_tree, write_whole, written_aside
 from lavendersim.errors import UsageError
 from lavendersim.experiment import Experiment, load_experiment
@@ -44,6 +45,8 @@ from .run_lock import run_lock
 from .run_seal import DONE, seal_of
 
 if TYPE_CHECKING:
+    from concurrent.futures import Executor
+
     from .cell import CellJob
     from .cell_jobs import Prepared
     from .cell_outcome import CellOutcome, EndedCell
@@ -124,6 +127,7 @@ def run(
     *,
     resume: bool = False,
     tags: Sequence[str] = (),
+    executor: Executor | None = None,
 ) -> Finished:
     """Run every cell of an experiment and judge its expectations; take overheads where it asks.
 
@@ -131,7 +135,8 @@ def run(
     overheads: false leaves out what a section `overhead` asks for. closing: called with the results
     before the run counts as finished. resume: go on with the newest run of the experiment where it
     did not finish; see `resume`. tags: words to find it by. A cell that diverges or breaks a bound
-    of `always` ends there, with a readable log; the others go on.
+    of `always` ends there, with a readable log; the others go on. executor: runs the cells in place
+    of `jobs` processes, anything with the interface of `concurrent.futures`; see `remote`.
     """
     from .cell_jobs import prepare
     from .log_size import size_warning
@@ -139,6 +144,8 @@ def run(
     if not isinstance(experiment, Experiment):
         experiment = load_experiment(experiment)
     tags = checked_tags(tags)
+    if executor is not None and experiment.config.record.problems != NONE:
+        raise UsageError(f"{experiment.name}: record.problems is written by processes alone")
     prepared = prepare(experiment)
     root = Path(root)
     if sentence := size_warning(prepared.cells, prepared.plans, experiment.text, root):
@@ -158,6 +165,7 @@ def run(
             progress=progress,
             overheads=overheads,
             closing=closing,
+            executor=executor,
         )
     point_latest(directory, root)
     return result
@@ -172,6 +180,7 @@ def complete(
     progress: Progress,
     overheads: bool = True,
     closing: Closing = lambda finished, measured: None,
+    executor: Executor | None = None,
 ) -> Finished:
     """Run the cells that are not done into a directory, judge all of them, and seal the run.
 
@@ -185,7 +194,7 @@ def complete(
     write_whole(directory / CONFIG, experiment.text, flush=False)
     configs = _write_resolved(directory / RESOLVED, cells)
     pending = prepared.jobs(directory)
-    ended, taken = _run_cells(experiment, pending, configs, done, (jobs, progress))
+    ended, taken = _run_cells(experiment, pending, configs, done, (executor or jobs, progress))
     outcomes = [ended[job.path]._replace(cell=job.cell) for job in pending]
     # A cell whose process died has no measures to draw, nor a log to take them from.
     lost = {outcome.cell for outcome in outcomes if not outcome.log}
@@ -212,17 +221,18 @@ def _run_cells(
     pending: list[CellJob],
     configs: list[str],
     done: Mapping[str, EndedCell],
-    how: tuple[int, Progress],
+    how: tuple[int | Executor, Progress],
 ) -> tuple[dict[Path, CellOutcome], dict[int, Measured]]:
     """Return how cells ended by their logs, and what was measured by the cells' indices.
 
     configs: the digests of theirs. done: those that ended before, by the names of their logs.
-    how: in how many processes, and who is shown it.
+    how: in how many processes or by which executor, and who is shown it.
     """
     from .cell_jobs import different
     from .executor import outcomes_of
+    from .remote import run_by
 
-    jobs, progress = how
+    workers, progress = how
     by_log = different(pending)
     ended = {path: done[path.name].outcome for path in by_log if path.name in done}
     taken: dict[int, Measured] = {}
@@ -234,7 +244,12 @@ def _run_cells(
     left = [job for path, job in by_log.items() if path not in ended]
     try:  # what ends meanwhile is noted beside it: see `run_index`
         with handled():
-            for job, outcome, found in outcomes_of(left, jobs, progress):
+            results = (
+                outcomes_of(left, workers, progress)
+                if isinstance(workers, int)
+                else run_by(workers, left, progress)
+            )
+            for job, outcome, found in results:
                 ended[job.path] = outcome
                 taken |= found
                 progress.cell_done(len(ended), len(by_log))

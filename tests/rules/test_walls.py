@@ -67,6 +67,7 @@ LIBRARIES = {
     "scipy": {"geometry", "problems"},  # hulls, where a scene has one; sparse matrices
     "h5py": {"problems"},
     "pyarrow": {"arrow"},
+    **{library: {"runner"} for library in ("dask", "distributed", "dask_jobqueue")},
     "mcap": {"trace"},
     "google": {"trace"},  # google.protobuf
     "zstandard": {"trace"},
@@ -137,6 +138,12 @@ def test_one_file_knows_the_format_of_fclib() -> None:
     """h5py is an extra: without it every other file must still work."""
     files = {str(found.file) for found in IMPORTS if found.target == "h5py"}
     assert files == {"lavendersim/problems/fclib.py"}
+
+
+def test_one_file_knows_dask() -> None:
+    names = {"dask", "distributed", "dask_jobqueue"}
+    files = {str(found.file) for found in IMPORTS if found.target in names}
+    assert files == {"lavendersim/runner/dask_cluster.py"}
 
 
 def test_no_other_library_is_imported() -> None:

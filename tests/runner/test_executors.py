@@ -1,0 +1,188 @@
+"""Cells run by other executors than our own: the same run, whoever dies, shared folder or none."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor, Future, ProcessPoolExecutor
+from multiprocessing import get_context
+from pathlib import Path
+from threading import Thread
+from typing import Any
+
+import pytest
+from run_contents import contents
+from small_configs import DROPS, write
+
+from lavendersim.errors import ConfigError, UsageError
+from lavendersim.experiment import load_experiment
+from lavendersim.runner import Progress, Run, remote, run
+
+MANY = DROPS.replace("[0.2, 0.5, 0.8]", str([round(0.1 + i / 100, 2) for i in range(40)]))
+
+
+@pytest.fixture
+def drops(tmp_path: Path) -> Path:
+    return write(tmp_path)
+
+
+class Here(Executor):
+    """Does everything at once, in this process; the first tasks are lost."""
+
+    def __init__(self, lost: int = 0, function: Callable[..., Any] | None = None) -> None:
+        self._lost, self._function = lost, function
+        self.given = 0
+
+    def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Future[Any]:
+        self.given += 1
+        future: Future[Any] = Future()
+        try:
+            if self.given <= self._lost:
+                raise RuntimeError("gone")
+            future.set_result((self._function or fn)(*args, **kwargs))
+        except Exception as error:
+            future.set_exception(error)
+        return future
+
+
+def elsewhere(task: remote.RemoteTask) -> remote.RemoteResult:
+    """Run a cell as on a machine that does not see the folder of the run."""
+    return remote.run_there(task._replace(sign=".another.sign"))
+
+
+@pytest.mark.parametrize("function", [None, elsewhere], ids=["shared folder", "no shared folder"])
+def test_an_executor_leaves_the_run_that_processes_leave(
+    drops: Path, tmp_path: Path, function: Callable[..., Any] | None
+) -> None:
+    whole = run(drops, tmp_path / "whole")
+    found = run(drops, tmp_path / "runs", executor=Here(function=function))
+    assert contents(found.run) == contents(whole.run)
+    assert found.good
+
+
+def test_with_a_shared_folder_no_log_travels(drops: Path, tmp_path: Path) -> None:
+    came: list[remote.RemoteResult] = []
+
+    def noted(task: remote.RemoteTask) -> remote.RemoteResult:
+        came.append(remote.run_there(task))
+        return came[-1]
+
+    run(drops, tmp_path / "runs", executor=Here(function=noted))
+    assert [one.log for one in came] == [None] * 3
+
+
+def test_a_cell_whose_worker_is_lost_is_run_once_more(drops: Path, tmp_path: Path) -> None:
+    said: list[str] = []
+    executor = Here(lost=1)
+    found = run(drops, tmp_path / "runs", progress=Progress(warning=said.append), executor=executor)
+    assert executor.given == 4
+    assert said == [
+        "the worker of cell e=0.2 was lost (RuntimeError); the cell is run once more",
+    ]
+    assert contents(found.run) == contents(run(drops, tmp_path / "whole").run)
+
+
+def test_a_cell_whose_workers_are_lost_both_times_has_failed(drops: Path, tmp_path: Path) -> None:
+    found = run(drops, tmp_path / "runs", executor=Here(lost=100))
+    status = "failed: its process was lost (RuntimeError), both times"
+    assert [cell.status for cell in found.run.cells] == [status] * 3
+    assert not found.good
+
+
+def test_an_executor_that_takes_no_more_is_said_and_the_run_goes_on_later(
+    drops: Path, tmp_path: Path
+) -> None:
+    pool = ProcessPoolExecutor(1)
+    pool.shutdown()
+    with pytest.raises(UsageError, match="the executor takes no more cells: cannot schedule"):
+        run(drops, tmp_path / "runs", executor=pool)
+    found = run(drops, tmp_path / "runs", resume=True)
+    assert contents(found.run) == contents(run(drops, tmp_path / "whole").run)
+
+
+def test_problems_are_written_by_processes_alone(drops: Path, tmp_path: Path) -> None:
+    drops.write_text(DROPS + "record: {problems: every 10}\n")
+    with pytest.raises((UsageError, ConfigError), match=r"record\.problems"):
+        run(drops, tmp_path / "runs", executor=Here())
+    assert not (tmp_path / "runs").exists()
+
+
+def test_a_pool_of_pythons_own_runs_cells(drops: Path, tmp_path: Path) -> None:
+    with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as pool:
+        found = run(drops, tmp_path / "runs", executor=pool)
+    assert contents(found.run) == contents(run(drops, tmp_path / "whole").run)
+
+
+@pytest.fixture
+def cluster() -> Iterator[Any]:
+    distributed = pytest.importorskip("distributed")
+    with distributed.LocalCluster(
+        n_workers=2, threads_per_worker=1, dashboard_address=None, processes=True
+    ) as started:
+        yield started
+
+
+@pytest.mark.skipif(os.name != "posix", reason="kills as POSIX does")
+def test_dask_gives_the_cells_of_a_killed_worker_to_others(cluster: Any, tmp_path: Path) -> None:
+    from distributed import Client
+
+    config = write(tmp_path, MANY)
+    whole = contents(run(config, tmp_path / "whole").run)
+    runs = tmp_path / "runs"
+    worker = next(iter(cluster.workers.values()))
+
+    def kill() -> None:
+        while len(list(runs.glob("*/cells/[!.]*"))) < 3:
+            time.sleep(0.005)
+        os.kill(worker.pid, signal.SIGKILL)
+
+    killer = Thread(target=kill, daemon=True)
+    killer.start()
+    with Client(cluster, set_as_default=False) as client:
+        found = run(config, runs, executor=client.get_executor(pure=False))
+    killer.join()
+    assert contents(found.run) == whole
+
+
+def test_the_command_uses_the_workers_at_an_address(cluster: Any, tmp_path: Path) -> None:
+    drops = write(tmp_path)
+    command = [sys.executable, "-m", "lavender_cli.main", "run", drops, "--runs", tmp_path / "runs"]
+    done = subprocess.run(
+        [*command, "--dask", cluster.scheduler_address], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    found = Run((tmp_path / "runs" / "latest").resolve())
+    assert contents(found) == contents(run(drops, tmp_path / "whole").run)
+
+
+def test_a_scheduler_that_is_not_there_is_said(drops: Path, tmp_path: Path) -> None:
+    pytest.importorskip("distributed")
+    from lavendersim.runner import dask_cluster
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(dask_cluster, "TIMEOUT", "0.5s")
+        refused = pytest.raises(UsageError, match=r"--dask tcp://127\.0\.0\.1:9")
+        with refused, dask_cluster.dask_workers("tcp://127.0.0.1:9", 1):
+            pass
+
+
+def test_the_queue_of_dasks_configuration_has_to_be_known() -> None:
+    dask = pytest.importorskip("dask")
+    from lavendersim.runner.dask_cluster import dask_workers
+
+    refused = pytest.raises(UsageError, match=r"lavender\.queue: 'slrum'.*expected slurm, pbs")
+    with dask.config.set({"lavender.queue": "slrum"}), refused, dask_workers(None, 1):
+        pass
+
+
+def test_an_experiment_is_run_by_dask_of_this_machine(drops: Path, tmp_path: Path) -> None:
+    pytest.importorskip("distributed")
+    from lavendersim.runner.dask_cluster import dask_workers
+
+    with dask_workers(None, 1) as workers:
+        found = run(load_experiment(drops), tmp_path / "runs", executor=workers)
+    assert contents(found.run) == contents(run(drops, tmp_path / "whole").run)
