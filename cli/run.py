@@ -116,8 +116,15 @@ def run(
                     from lavendersim.runner.dask_cluster import dask_workers
 
                     workers = open_now.enter_context(dask_workers(dask, jobs))
-                options = {"resume": resume, "tags": tags or (), "executor": workers}
-                finished = run(experiment, runs, jobs, shown, **options)
+                finished = run(
+                    experiment,
+                    runs,
+                    jobs,
+                    shown,
+                    resume=resume,
+                    tags=tags or (),
+                    executor=workers,
+                )
         except KeyboardInterrupt as end:  # `run` says by what, and where what was simulated is
             if str(end):
                 typer.echo(str(end), err=True)

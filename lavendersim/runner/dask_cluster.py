@@ -62,9 +62,7 @@ def _cluster(jobs: int) -> Any:
     if queue is None:
         from distributed import LocalCluster
 
-        return LocalCluster(  # type: ignore[no-untyped-call]
-            n_workers=jobs, threads_per_worker=1, dashboard_address=None
-        )
+        return LocalCluster(n_workers=jobs, threads_per_worker=1, dashboard_address=None)
     if queue not in QUEUES:
         expected = ", ".join(QUEUES)
         raise UsageError(f"lavender.queue: {queue!r} in Dask's configuration, expected {expected}")

@@ -15,9 +15,10 @@ import os
 import tempfile
 import uuid
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, CancelledError, Executor, Future, wait
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
 from contextlib import contextmanager
 from pathlib import Path
+from time import sleep
 from typing import Final, NamedTuple
 
 from lavendersim.durable_files import write_whole
@@ -30,6 +31,8 @@ from .progress import Progress, Tally
 
 AHEAD: Final = 256  # cells that workers are given before one of them has ended
 TRIES: Final = 2  # of a cell whose worker was lost
+RESTARTS: Final = 5  # of a scheduler
+SETTLED: Final = 2.0  # [s] after which a client has noticed that its scheduler is gone
 
 
 class RemoteTask(NamedTuple):
@@ -99,12 +102,27 @@ def _results(
     """Yield every job with what came back, or how its worker was lost both times."""
     waiting = [(job, 1) for job in reversed(jobs)]
     running: dict[Future[RemoteResult], tuple[CellJob, int]] = {}
+    restarts = 0
     try:
         while waiting or running:
             while waiting and len(running) < AHEAD:
                 job, number = waiting.pop()
                 running[_submit(executor, RemoteTask(job, sign))] = job, number
-            for future in wait(running, return_when=FIRST_COMPLETED).done:
+            ended = wait(running, return_when=FIRST_COMPLETED).done
+            if any(future.cancelled() for future in ended):
+                # Nobody here cancels: a scheduler was lost, and with it all it was given. What is
+                # given to its client before that has noticed is lost, too, and results that were on
+                # their way never come.
+                restarts += 1
+                if restarts > RESTARTS:
+                    raise UsageError(f"the executor lost its scheduler {restarts} times")
+                sleep(SETTLED)
+                left = [one for future, one in running.items() if not _has_result(future)]
+                ended = {future for future in running if _has_result(future)}
+                running = {future: running[future] for future in ended}
+                waiting += left
+                warning(f"the executor lost its scheduler; {len(left)} cells are given to it again")
+            for future in ended:
                 job, number = running.pop(future)
                 lost = _lost(future)
                 if lost is None:
@@ -127,15 +145,16 @@ def _submit(executor: Executor, task: RemoteTask) -> Future[RemoteResult]:
         raise UsageError(f"the executor takes no more cells: {error}") from error
 
 
+def _has_result(future: Future[RemoteResult]) -> bool:
+    return future.done() and not future.cancelled()
+
+
 def _lost(future: Future[RemoteResult]) -> str | None:
     """Say how the worker of a cell was lost; None where there is a result.
 
     What is wrong with the cell, or with the disk, is raised.
     """
-    try:
-        error = future.exception()
-    except CancelledError:
-        return "was lost (cancelled)"
+    error = future.exception()
     if isinstance(error, LavenderError | OSError):
         raise error
     return f"was lost ({type(error).__name__})" if error is not None else None

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+import socket
 import subprocess
 import sys
 import time
@@ -93,6 +94,37 @@ def test_a_cell_whose_workers_are_lost_both_times_has_failed(drops: Path, tmp_pa
     assert not found.good
 
 
+class Restarted(Here):
+    """Its scheduler is lost so often: two cells are cancelled by that, of one nothing is heard."""
+
+    def __init__(self, restarts: int) -> None:
+        super().__init__()
+        self._silent = 3 * restarts
+
+    def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Future[Any]:
+        if self.given >= self._silent:
+            return super().submit(fn, *args, **kwargs)
+        self.given += 1
+        future: Future[Any] = Future()
+        if self.given % 3:
+            future.cancel()
+            future.set_running_or_notify_cancel()
+        return future
+
+
+def test_what_a_lost_scheduler_had_is_given_to_it_again(
+    drops: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(remote, "SETTLED", 0.0)
+    said: list[str] = []
+    progress = Progress(warning=said.append)
+    found = run(drops, tmp_path / "runs", progress=progress, executor=Restarted(2))
+    assert said == ["the executor lost its scheduler; 3 cells are given to it again"] * 2
+    assert contents(found.run) == contents(run(drops, tmp_path / "whole").run)
+    with pytest.raises(UsageError, match="lost its scheduler 6 times"):
+        run(drops, tmp_path / "runs", executor=Restarted(100))
+
+
 def test_an_executor_that_takes_no_more_is_said_and_the_run_goes_on_later(
     drops: Path, tmp_path: Path
 ) -> None:
@@ -145,6 +177,51 @@ def test_dask_gives_the_cells_of_a_killed_worker_to_others(cluster: Any, tmp_pat
     with Client(cluster, set_as_default=False) as client:
         found = run(config, runs, executor=client.get_executor(pure=False))
     killer.join()
+    assert contents(found.run) == whole
+
+
+def part_of_dask(*words: object) -> subprocess.Popen[bytes]:
+    """Start a scheduler or a worker of Dask in a process of its own."""
+    command = [sys.executable, "-m", *map(str, words), "--no-dashboard"]
+    return subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+
+
+@pytest.mark.skipif(os.name != "posix", reason="kills as POSIX does")
+def test_a_scheduler_of_dask_that_is_restarted_loses_no_cell(tmp_path: Path) -> None:
+    distributed = pytest.importorskip("distributed")
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    scheduler = ("distributed.cli.dask_scheduler", "--host", "127.0.0.1", "--port", port)
+    worker = ("distributed.cli.dask_worker", f"tcp://127.0.0.1:{port}", "--nthreads", 1)
+    config, runs = write(tmp_path, MANY), tmp_path / "runs"
+    whole = contents(run(config, tmp_path / "whole").run)
+    started = [part_of_dask(*scheduler), *(part_of_dask(*worker) for _ in range(2))]
+
+    def restart() -> None:
+        while len(list(runs.glob("*/cells/[!.]*"))) < 3:
+            time.sleep(0.005)
+        started[0].kill()
+        started[0].wait()
+        started.append(part_of_dask(*scheduler))
+        started.extend(part_of_dask(*worker) for _ in range(2))  # the first ones may have ended
+
+    said: list[str] = []
+    restarter = Thread(target=restart, daemon=True)
+    restarter.start()
+    try:
+        with distributed.Client(
+            f"tcp://127.0.0.1:{port}", set_as_default=False, timeout="60s"
+        ) as client:
+            executor = client.get_executor(pure=False)
+            found = run(config, runs, progress=Progress(warning=said.append), executor=executor)
+        restarter.join()
+    finally:
+        for process in started:
+            process.terminate()
+        for process in started:
+            process.wait()
+    assert "the executor lost its scheduler" in said[0]
     assert contents(found.run) == whole
 
 
