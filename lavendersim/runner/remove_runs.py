@@ -56,7 +56,7 @@ def remove(runs: Iterable[Run], root: Path) -> int:
             shutil.rmtree(aside)
             count += 1
     finally:
-        _mend_latest(root)
+        _repoint_latest(root)
     return count
 
 
@@ -66,7 +66,7 @@ def remove_leftovers(root: Path) -> None:
         shutil.rmtree(left, ignore_errors=True)
 
 
-def _mend_latest(root: Path) -> None:
+def _repoint_latest(root: Path) -> None:
     """Make `latest` name a run that there is."""
     latest = root / LATEST
     if latest.is_symlink():
