@@ -73,6 +73,15 @@ def ended_rows(directory: Path) -> dict[str, dict[str, Any]]:
     return {one["file"]: one for one in map(json.loads, lines)}
 
 
+def drop_cut_line(directory: Path) -> None:
+    """Remove the end of a line that a kill has cut: none may stand behind it."""
+    try:
+        with (directory / ENDED).open("r+b") as file:
+            file.truncate(file.read().rfind(b"\n") + 1)
+    except FileNotFoundError:
+        pass
+
+
 def kept_lines(directory: Path, names: Collection[str]) -> str:
     """Return the lines about the logs of these names, each whole."""
     rows = ended_rows(directory)

@@ -31,7 +31,7 @@ from .interruption import Interrupted, handled
 from .leases import SHARDS, Leases, alive
 from .progress import Progress
 from .run_directory import CONFIG
-from .run_index import ENDED
+from .run_index import ENDED, drop_cut_line
 
 if TYPE_CHECKING:
     from .cell import CellJob
@@ -86,6 +86,7 @@ def run_shard(
     with alive(shard):
         for left in shard.rglob(".*.unfinished*"):
             left.unlink()
+        drop_cut_line(shard)
         write_whole(shard / CONFIG, experiment.text, flush=False)
         write_whole(shard / SHARD, json.dumps(identity, indent=1) + "\n")
         by_log = {path.name: job for path, job in different(prepared.jobs(shard)).items()}

@@ -98,6 +98,17 @@ def test_a_log_that_was_damaged_is_named_and_run_again_once_it_is_deleted(
     assert contents(merged(into)) == contents(run(drops, tmp_path / "whole").run)
 
 
+def test_a_part_whose_last_note_was_cut_is_gone_on_with(drops: Path, tmp_path: Path) -> None:
+    into = tmp_path / "shared"
+    first = shard(drops, into, (1, 1)).shard
+    notes = first / "ended.jsonl"
+    notes.write_bytes(notes.read_bytes()[:-20])
+    assert isinstance(merge(into, tmp_path / "runs"), Missing)
+    again = shard(drops, into, (1, 1))
+    assert (again.ran, again.ended) == (1, 3)
+    assert contents(merged(into)) == contents(run(drops, tmp_path / "whole").run)
+
+
 def test_two_logs_of_one_cell_that_differ_are_refused(drops: Path, tmp_path: Path) -> None:
     """As a machine would leave that computes otherwise: its log is whole, and another."""
     into = tmp_path / "shared"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import socket
 from pathlib import Path
@@ -60,6 +61,20 @@ def test_on_another_machine_the_last_touch_tells(
     assert leases.take("a", "other", set())
     says(tmp_path, "other", f"not-{socket.gethostname()}", age)
     assert leases.take("a", "mine", set()) == taken
+
+
+def test_where_files_cannot_be_locked_the_last_touch_tells(
+    leases: Leases, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def none(*_: object) -> None:
+        raise OSError(errno.ENOLCK, os.strerror(errno.ENOLCK))
+
+    monkeypatch.setattr("fcntl.flock", none)
+    with alive(tmp_path / "shards/other"):
+        assert leases.take("a", "other", set())
+        assert not leases.take("a", "mine", set())
+    says(tmp_path, "other", socket.gethostname(), 2 * DEAD_AFTER)
+    assert leases.take("a", "mine", set())
 
 
 def test_a_lease_without_a_name_is_being_made(leases: Leases, tmp_path: Path) -> None:
