@@ -10,7 +10,13 @@ import pytest
 from scipy.spatial import ConvexHull
 from synthetic import contacts, log_of, scene_of
 
+from lavendersim.cell.shapes import PRIMITIVES, Primitive
+from lavendersim.cell.shapes.box import Box
+from lavendersim.cell.shapes.capsule import Capsule
+from lavendersim.cell.shapes.cylinder import Cylinder
+from lavendersim.cell.shapes.sphere import Sphere
 from lavendersim.geometry.rotations import rotation_matrices as rotations
+from lavendersim.geometry.shapes import extent
 from lavendersim.measures import evaluate
 from lavendersim.measures.penetration import (
     box_box,
@@ -19,14 +25,7 @@ from lavendersim.measures.penetration import (
     sphere_capsule,
     sphere_sphere,
 )
-from lavendersim.measures.solids import (
-    BOX,
-    CAPSULE,
-    CYLINDER,
-    SPHERE,
-    Placed,
-    near_pairs,
-)
+from lavendersim.measures.solids import Placed, extents, near_pairs, sums_of
 from lavendersim.measures.specs.overlap import Overlap
 
 SEED = 20
@@ -143,15 +142,42 @@ def test_parallel_and_crossing_capsules() -> None:
     np.testing.assert_allclose(sphere_capsule(ball, a), [0.05, 0.05, -0.3], atol=1e-15)
 
 
+def shape_of(kind: int, size: np.ndarray) -> Primitive:
+    """Return one of four solids that holds a ball as thick as the least of three half lengths."""
+    x, y, z = size.tolist()
+    return (
+        Sphere(kind="sphere", radius=x),
+        Box(kind="box", size=(2 * x, 2 * y, 2 * z)),
+        Capsule(kind="capsule", radius=x, length=2 * z),
+        Cylinder(kind="cylinder", radius=x, length=2 * z),
+    )[kind]
+
+
+def test_a_solid_reaches_as_far_as_its_shape_says() -> None:
+    """The shape's own extent is of one direction; here it is a Minkowski sum, many at once."""
+    rng = np.random.default_rng(SEED)
+    scene = placed(rng, 80, 1.0)
+    shapes = [shape_of(k % 4, size) for k, size in enumerate(scene.size)]
+    assert {type(shape) for shape in shapes} == set(PRIMITIVES)
+    for direction in rotations(rng.normal(size=(5, 4)))[:, 0]:
+        expected = [
+            extent(shape, turn, direction)
+            for shape, turn in zip(shapes, scene.rotation, strict=True)
+        ]
+        # sums of a few numbers below 1 m; sqrt(1 - n_z^2) loses digits where a cylinder stands,
+        # by eps / sqrt(1 - n_z^2), 1e-14 for the nearest of these directions
+        np.testing.assert_allclose(extents(sums_of(shapes), scene, direction), expected, atol=1e-14)
+
+
 @pytest.mark.parametrize("stretch", [(1, 1, 1), (0.1, 0.1, 8), (9, 0.2, 0.2)])
 def test_the_cull_loses_no_pair_that_overlaps(stretch: tuple[float, float, float]) -> None:
     rng = np.random.default_rng(SEED)
     count = 120
     scene = placed(rng, count, 1.0)
     scene = scene._replace(position=scene.position * stretch, size=0.4 * scene.size)
-    kind = rng.choice([SPHERE, BOX, CAPSULE, CYLINDER], count)
+    shapes = [shape_of(int(rng.integers(4)), size) for size in scene.size]
     movable = rng.random(count) < 0.8
-    first, second = near_pairs(kind, scene, movable)
+    first, second = near_pairs(sums_of(shapes), scene, movable)
     assert len(set(zip(first, second, strict=True))) == len(first)
     kept = {frozenset(pair) for pair in zip(first.tolist(), second.tolist(), strict=True)}
     everyone = [pair for pair in itertools.combinations(range(count), 2) if any(movable[[*pair]])]
