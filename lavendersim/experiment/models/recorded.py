@@ -1,4 +1,4 @@
-"""What is not recorded of every step cannot be measured, drawn or held over every step.
+"""What is not recorded of every step cannot be measured, drawn or checked in every step.
 
 record: {contacts: every 4}
 measure: {force: {kind: peak_force, body: ball}}   # refused: it takes the contacts of every step

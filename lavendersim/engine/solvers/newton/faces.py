@@ -5,7 +5,7 @@ They are a face of Coulomb's cone, by what the contact does at the velocities v*
     sticks   closed, without slip:         the cone |lambda_t| <= mu lambda_n
     slides   closed, with slip w_t:        lambda_n >= 0, and friction mu lambda_n against the slip
 Open and stuck ones respond as in `response`, by the point of the face nearest to x = lambda^k - e w
-in the metric 1/e. What slides responds along its normal alone, its friction is held for a round:
+in the metric 1/e. What slides responds along its normal alone, its friction is given for a round:
 compliance gives way to pressure, whatever slips. w are changes from v*, but for the slip.
 """
 
@@ -69,7 +69,7 @@ def _make_find_block(spec: Spec) -> Any:
             if slip > still:
                 contact.face = SLIDES
                 contact.slip_1, contact.slip_2 = one, two
-                contact.held_1, contact.held_2 = contact.lambda_1, contact.lambda_2
+                contact.given_1, contact.given_2 = contact.lambda_1, contact.lambda_2
         contact.start_n = contact.lambda_n
         contact.start_1, contact.start_2 = contact.lambda_1, contact.lambda_2
 
@@ -101,7 +101,7 @@ def _make_block_impulse(spec: Spec) -> Any:
             return 0.0, 0.0, 0.0
         if contact.face == SLIDES:
             n, _, _ = projected_normal(contact, length)
-            return n, contact.held_1, contact.held_2
+            return n, contact.given_1, contact.given_2
         return projected_block(contact, length)
 
     return kernel(block_impulse, spec)
@@ -122,8 +122,8 @@ def make_turn_friction(spec: Spec) -> Any:
         n, _, _ = face_impulse(contact, 0.0)
         x, y = contact.slip_1 + contact.velocity_1, contact.slip_2 + contact.velocity_2
         scale = -contact.mu * n / sqrt(x * x + y * y)
-        change = max(abs(scale * x - contact.held_1), abs(scale * y - contact.held_2))
-        contact.held_1, contact.held_2 = scale * x, scale * y
+        change = max(abs(scale * x - contact.given_1), abs(scale * y - contact.given_2))
+        contact.given_1, contact.given_2 = scale * x, scale * y
         return change
 
     face_impulse = make_face_impulse(spec)
