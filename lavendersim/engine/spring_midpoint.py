@@ -31,7 +31,7 @@ FOUND = 1e-14
 FAST = 4.0
 
 
-class Placed(NamedTuple):
+class SpringPose(NamedTuple):
     """A spring between two bodies as they stand, world frame."""
 
     length: float  # [m]

@@ -27,16 +27,16 @@ KINDS: Final = {"sphere": SPHERE, "box": BOX, "capsule": CAPSULE, "cylinder": CY
 X, Y, Z = np.eye(3)
 
 
-class Placed(NamedTuple):
+class PlacedSolids(NamedTuple):
     """Several solids of one kind, in the world."""
 
     position: Floats  # (n, 3) [m]
     rotation: Floats  # (n, 3, 3) body to world
     size: Floats  # (n, 3) [m]
 
-    def take(self, rows: Any) -> Placed:
+    def take(self, rows: Any) -> PlacedSolids:
         """Return some of them."""
-        return Placed(self.position[rows], self.rotation[rows], self.size[rows])
+        return PlacedSolids(self.position[rows], self.rotation[rows], self.size[rows])
 
 
 class Sums(NamedTuple):
@@ -57,10 +57,10 @@ class Solids:
     sums: Sums
     movable: np.ndarray  # (n,)
 
-    def placed(self, poses: Floats) -> Placed:
+    def placed(self, poses: Floats) -> PlacedSolids:
         """Return the solids at one row of the pose table (bodies, 7)."""
         chosen = poses[self.columns]
-        return Placed(chosen[:, :3], rotation_matrices(chosen[:, 3:]), self.size)
+        return PlacedSolids(chosen[:, :3], rotation_matrices(chosen[:, 3:]), self.size)
 
 
 def solids_of(scene: CellScene, names: list[str]) -> tuple[Solids, list[HalfSpace]]:
@@ -99,7 +99,7 @@ def sums_of(shapes: Sequence[CellShape]) -> Sums:
     )
 
 
-def extents(sums: Sums, placed: Placed, direction: Floats) -> Floats:
+def extents(sums: Sums, placed: PlacedSolids, direction: Floats) -> Floats:
     """Return the extent of each solid along a unit direction [m]; inf where that is unknown."""
     along = np.abs(np.einsum("nij,i->nj", placed.rotation, direction))  # in body axes
     across = np.sqrt(np.maximum(0.0, 1.0 - along[:, 2] * along[:, 2]))
@@ -107,7 +107,7 @@ def extents(sums: Sums, placed: Placed, direction: Floats) -> Floats:
     return reach
 
 
-def near_pairs(sums: Sums, placed: Placed, movable: np.ndarray) -> tuple[Any, Any]:
+def near_pairs(sums: Sums, placed: PlacedSolids, movable: np.ndarray) -> tuple[Any, Any]:
     """Return the two columns of pairs whose boxes along the world's axes meet (sweep and prune).
 
     Sorted by their lower ends along the axis on which the scene is longest, a solid can meet only

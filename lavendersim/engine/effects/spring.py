@@ -93,8 +93,8 @@ def decide(facts: Facts) -> Decision:
 
 
 def make_place(spec: Spec) -> Kernel:
-    """Return `kernel(link, body_a, body_b) -> Placed`; its direction is 0 at length 0."""
-    from ..spring_midpoint import Placed
+    """Return `kernel(link, body_a, body_b) -> SpringPose`; its direction is 0 at length 0."""
+    from ..spring_midpoint import SpringPose
     from ..vectors import Vec3, from_body, length, scaled
 
     def place(link, body_a, body_b):
@@ -106,7 +106,7 @@ def make_place(spec: Spec) -> Kernel:
             body_b.z + r_b.z - body_a.z - r_a.z,
         )
         size = length(between)
-        return Placed(size, scaled(1.0 / size if size > 0.0 else 0.0, between), r_a, r_b)
+        return SpringPose(size, scaled(1.0 / size if size > 0.0 else 0.0, between), r_a, r_b)
 
     return kernel(place, spec)
 

@@ -11,7 +11,7 @@ from lavendersim.measures.columns import last_window
 from lavendersim.measures.interfaces import Floats, Trace
 from lavendersim.measures.penetration import depths
 from lavendersim.measures.registration import measure
-from lavendersim.measures.solids import Placed, Solids, extents, near_pairs, solids_of
+from lavendersim.measures.solids import PlacedSolids, Solids, extents, near_pairs, solids_of
 from lavendersim.measures.specs.overlap import Overlap
 
 NAN = float("nan")
@@ -45,7 +45,7 @@ def overlap_of_rows(trace: Trace, rows: Any) -> Floats:
     return deepest
 
 
-def _with_planes(solids: Solids, placed: Placed, grounds: list[HalfSpace]) -> list[float]:
+def _with_planes(solids: Solids, placed: PlacedSolids, grounds: list[HalfSpace]) -> list[float]:
     found = [0.0]
     for normal, offset in grounds:
         inside = offset - placed.position @ normal + extents(solids.sums, placed, -normal)
@@ -54,7 +54,7 @@ def _with_planes(solids: Solids, placed: Placed, grounds: list[HalfSpace]) -> li
     return found
 
 
-def _among_solids(solids: Solids, placed: Placed) -> list[float]:
+def _among_solids(solids: Solids, placed: PlacedSolids) -> list[float]:
     first, second = near_pairs(solids.sums, placed, solids.movable)
     found = [0.0]
     kinds = np.stack([solids.kind[first], solids.kind[second]], axis=1)
