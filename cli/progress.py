@@ -39,7 +39,7 @@ def reporting(name: str) -> Iterator[Any]:
 def _lines(name: str) -> Iterator[Any]:
     from lavendersim.runner import Progress
 
-    state = State(name)
+    state = ShownState(name)
 
     def compiling(begun: Compilation) -> None:
         typer.echo(f"{name}: {compilation_line(begun)}", err=True)
@@ -76,7 +76,7 @@ def _terminal(name: str) -> Iterator[Any]:
 
     from lavendersim.runner import Progress
 
-    state, console = State(name), Console(stderr=True)
+    state, console = ShownState(name), Console(stderr=True)
     with Live(
         get_renderable=lambda: state.drawn(console),
         console=console,
@@ -107,7 +107,7 @@ def _note(name: str) -> Callable[[str], None]:
     return note
 
 
-class State:
+class ShownState:
     """What a run said of itself last; read by the thread that shows it."""
 
     def __init__(self, name: str, now: Callable[[], float] = monotonic) -> None:

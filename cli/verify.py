@@ -39,7 +39,9 @@ def verify(
         logs = f"{len(run.logs())} log{'s' * (len(run.logs()) != 1)}, {size}"
         typer.echo(f"{run.path}: whole: {logs}")
         if not has_digests(run):
-            older = "an older version wrote it, without digests: logs were held to their CRCs"
+            older = (
+                "an older version wrote it, without digests: logs were checked against their CRCs"
+            )
             typer.echo(f"{run.path}: {older}", err=True)
     if not whole:
         raise typer.Exit(printing.DAMAGED)

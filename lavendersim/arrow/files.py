@@ -101,14 +101,14 @@ def _opened(file: Path) -> Any:
 def _groups(reader: Iterable[Any], rows: int) -> Iterator[Any]:
     """Yield the batches as tables of at least so many rows, but for the last."""
     pa = require_pyarrow()
-    held: list[Any] = []
+    waiting: list[Any] = []
     for batch in reader:
-        held.append(batch)
-        if sum(one.num_rows for one in held) >= rows:
-            yield pa.Table.from_batches(held)
-            held = []
-    if held:
-        yield pa.Table.from_batches(held)
+        waiting.append(batch)
+        if sum(one.num_rows for one in waiting) >= rows:
+            yield pa.Table.from_batches(waiting)
+            waiting = []
+    if waiting:
+        yield pa.Table.from_batches(waiting)
 
 
 def _text_of(pa: Any, field: Field, column: Any) -> Any:

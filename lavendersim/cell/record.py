@@ -3,49 +3,39 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
-from typing import Any, Literal
+from functools import partial
+from typing import Annotated, Any, Final, Literal
 
-from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler
-from pydantic_core import CoreSchema, core_schema
+from pydantic import Field, PlainValidator, WithJsonSchema
 
 from lavendersim.quantities.model import ResolvedModel
 from lavendersim.quantities.quantity import refusal
 
-NONE, ALL = "none", "all"
+NONE: Final = "none"
+ALL: Final = "all"
 # Up to a billion, ten times the steps that a run may have.
 _EVERY = re.compile(r"every ([1-9][0-9]{0,8})")
 
 
-@dataclass(frozen=True)
-class EverySteps:
-    """The text `every N`, or the one that stands beside it: of no step, or of all of them."""
+def _every(beside: str, value: object) -> str:
+    """Return the text `every N`, or the one that stands beside it; or raise the refusal."""
+    if isinstance(value, str) and (value == beside or _EVERY.fullmatch(value)):
+        return value
+    hint = ""
+    if isinstance(value, int) and not isinstance(value, bool) and value > 0:
+        hint = f'; did you mean "every {value}"?'
+    elif value == ALL:
+        hint = '; did you mean "every 1"?'
+    expected = f"{beside} or every N with a whole number of steps N of 1 or more"
+    raise refusal(expected, value, hint)
 
-    beside: str = NONE
 
-    def check(self, value: object) -> str:
-        """Return the text, or raise the refusal."""
-        if isinstance(value, str) and (value == self.beside or _EVERY.fullmatch(value)):
-            return value
-        hint = ""
-        if isinstance(value, int) and not isinstance(value, bool) and value > 0:
-            hint = f'; did you mean "every {value}"?'
-        elif value == ALL:
-            hint = '; did you mean "every 1"?'
-        expected = f"{self.beside} or every N with a whole number of steps N of 1 or more"
-        raise refusal(expected, value, hint)
+def _schema(beside: str) -> dict[str, Any]:
+    return {"type": "string", "pattern": f"^({beside}|{_EVERY.pattern})$"}
 
-    def __get_pydantic_core_schema__(
-        self, source: Any, handler: GetCoreSchemaHandler
-    ) -> CoreSchema:
-        """Validate with `check`."""
-        return core_schema.no_info_plain_validator_function(self.check)
 
-    def __get_pydantic_json_schema__(
-        self, schema: CoreSchema, handler: GetJsonSchemaHandler
-    ) -> dict[str, Any]:
-        """Describe the text by its pattern."""
-        return {"type": "string", "pattern": f"^({self.beside}|{_EVERY.pattern})$"}
+EveryOrNone = Annotated[str, PlainValidator(partial(_every, NONE)), WithJsonSchema(_schema(NONE))]
+EveryOrAll = Annotated[str, PlainValidator(partial(_every, ALL)), WithJsonSchema(_schema(ALL))]
 
 
 def steps_between(every: str) -> int:

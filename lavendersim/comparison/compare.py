@@ -6,7 +6,7 @@ import json
 from collections.abc import Mapping
 from typing import Any, Final, NamedTuple
 
-from lavendersim.comparison.pairing import Pair, Pairing, paired
+from lavendersim.comparison.pairing import CellPair, Pairing, paired
 from lavendersim.comparison.states import NOTHING, Parting, parting
 from lavendersim.comparison.trees import ABSENT, Difference, differences, equal
 from lavendersim.errors import TraceError
@@ -132,7 +132,7 @@ def differs(one: CellStates) -> bool:
     return one.parting.differs != NOTHING or one.statuses[0] != one.statuses[1]
 
 
-def _states_of(pair: Pair) -> CellStates:
+def _states_of(pair: CellPair) -> CellStates:
     """Return where a pair parts; logs that are the same bytes are not read for it."""
     statuses = pair.a.status, pair.b.status
     traces = pair.a.trace(), pair.b.trace()

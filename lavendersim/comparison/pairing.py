@@ -14,7 +14,7 @@ from lavendersim.measures.selection import coordinates_text
 from lavendersim.runner import Run, RunCell
 
 
-class Pair(NamedTuple):
+class CellPair(NamedTuple):
     """A cell of each run; label: the coordinates by which they are paired."""
 
     label: str
@@ -26,7 +26,7 @@ class Pairing(NamedTuple):
     """The pairs, and the labels of cells that have none."""
 
     axes: tuple[str, ...]  # by which cells are paired
-    pairs: list[Pair]
+    pairs: list[CellPair]
     only_a: list[str]
     only_b: list[str]
 
@@ -36,7 +36,7 @@ def paired(a: Sequence[RunCell], b: Sequence[RunCell]) -> Pairing:
     axes = [axis for axis in _axes(a) if axis in _axes(b)]
     mine, others = _by_coordinates(a, axes), _by_coordinates(b, axes)
     pairs = [
-        Pair(key, cells[0], others[key][0])
+        CellPair(key, cells[0], others[key][0])
         for key, cells in mine.items()
         if len(cells) == 1 and len(others.get(key, ())) == 1
     ]

@@ -1,1 +1,1 @@
-"""Arrays in, arrays out: the kernels of contact dynamics, composed from what a scene requires."""
+"""The engine: kernels of contact dynamics over arrays, composed from what a scene requires."""

@@ -49,8 +49,8 @@ def ahead(m):
 def make_expect(spec: Spec) -> Any:
     """Return `kernel(contacts, count, bodies, motion, left)`: what changes velocities ahead.
 
-    Forces do, of what is free. What touches and neither approaches nor parts is held against them
-    by its contacts: it is reckoned to accelerate as in the last part of a step.
+    Forces do, of what is free. What touches and neither approaches nor parts is kept from it by its
+    contacts: it is reckoned to accelerate as in the last part of a step.
     """
     slowest = make_slowest(spec)
 

@@ -27,7 +27,7 @@ from .records import CONTACTS_FULL, PAIRS_FULL, ROWS_FULL, WOKEN
 from .spec import Spec
 from .step import advance_for
 
-# Steps whose rows are held before they must be handed on; several hundred amortise a kernel call.
+# Steps whose rows are kept before they must be handed on; several hundred amortise a kernel call.
 BLOCK_STEPS = 512
 
 

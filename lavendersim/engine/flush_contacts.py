@@ -26,7 +26,7 @@ from .vectors import Vec3, dot, minus, plus, position
 FLUSH = 10.0
 # Normals whose cosine is larger are one.
 ALONG = 1.0 - 1e-12
-# Contacts of a part of which each is held against each.
+# Contacts of a part of which each is compared with each.
 MOST = 512
 
 

@@ -18,7 +18,7 @@ and at beta = 1 leaves no stretch after two steps, whatever k. None is added to 
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 from .compile import kernel
 from .spec import Spec
@@ -29,6 +29,15 @@ PASSES = 50
 FOUND = 1e-14
 # k K dt^2 above which steps do not resolve a swing.
 FAST = 4.0
+
+
+class SpringPose(NamedTuple):
+    """A spring between two bodies as they stand, world frame."""
+
+    length: float  # [m]
+    d: Vec3  # unit vector from the point of A to that of B
+    r_a: Vec3  # lever of A's point [m]
+    r_b: Vec3  # lever of B's [m]
 
 
 def make_act_midway(spec: Spec, place: Any) -> Any:
@@ -82,11 +91,11 @@ def make_act_midway(spec: Spec, place: Any) -> Any:
         # One Newton step on the impulse of a spring; returns the change of its size and its size.
         body_a, body_b = bodies[link.a], bodies[link.b]
         va, vb, ma, mb = velocities[link.a], velocities[link.b], motion[link.a], motion[link.b]
-        length_0, d0, ra, rb = place(link, body_a, body_b)
-        start_a, start_b = Vec3(ra[0], ra[1], ra[2]), Vec3(rb[0], rb[1], rb[2])
-        arm_a, arm_b = mean_lever(start_a, va, ma, dt), mean_lever(start_b, vb, mb, dt)
+        start = place(link, body_a, body_b)
+        length_0 = start.length
+        arm_a, arm_b = mean_lever(start.r_a, va, ma, dt), mean_lever(start.r_b, vb, mb, dt)
         between = Vec3(body_b.x - body_a.x, body_b.y - body_a.y, body_b.z - body_a.z)
-        before = minus(plus(between, start_b), start_a)
+        before = minus(plus(between, start.r_b), start.r_a)
         moved = Vec3(
             mb.vx + vb.vx - ma.vx - va.vx,
             mb.vy + vb.vy - ma.vy - va.vy,
@@ -95,14 +104,14 @@ def make_act_midway(spec: Spec, place: Any) -> Any:
         middle = minus(plus(plus(between, scaled(0.25 * dt, moved)), arm_b), arm_a)
         length_1 = length(minus(scaled(2.0, middle), before))
         if linear and length_0 > 0.0:
-            length_1 = 2.0 * dot(Vec3(d0[0], d0[1], d0[2]), middle) - length_0
+            length_1 = 2.0 * dot(start.d, middle) - length_0
         sum_of = length_0 + length_1
         size = length(middle)
         if sum_of == 0.0 or size == 0.0:
             return 0.0, 0.0
         u, d = scaled(2.0 / sum_of, middle), scaled(1.0 / size, middle)
         if linear and length_0 > 0.0:
-            u = d = Vec3(d0[0], d0[1], d0[2])
+            u = d = start.d
         k = response_of(body_a, arm_a, d) + response_of(body_b, arm_b, d)
         force = link.stiffness * (0.5 * sum_of - link.rest_length)
         force += link.damping * (length_1 - length_0) / dt

@@ -17,7 +17,7 @@ from lavendersim.experiment.models.experiment import CellSource
 from lavendersim.experiment.models.overhead import OverheadSpec
 from lavendersim.experiment.resolve.cell import resolve_cell
 from lavendersim.experiment.resolve.placement import SceneError
-from lavendersim.experiment.sweeps.axes import Point
+from lavendersim.experiment.sweeps.axes import SweepPoint
 from lavendersim.experiment.text.node import Node, Path, key_mark
 from lavendersim.experiment.text.report import Report
 from lavendersim.quantities.model import ConfigModel
@@ -30,7 +30,7 @@ _BESIDE: Final[dict[str, type[ConfigModel]]] = {
 }
 
 
-def build_cell(root: Node, point: Point, report: Report) -> CellConfig | None:
+def build_cell(root: Node, point: SweepPoint, report: Report) -> CellConfig | None:
     """Return the resolved config of one cell of the sweep, or None when something is wrong."""
     tree = point.tree(root)
     reading = Reading(tree, (), report)
@@ -63,7 +63,7 @@ class Cell:
     coordinates: dict[str, Any]  # axis -> swept value (ratios as Fractions)
     label: str  # "e=0.8, timestep=1/480"; "" without a sweep
     _root: Node = field(repr=False, compare=False)
-    _point: Point = field(repr=False, compare=False)
+    _point: SweepPoint = field(repr=False, compare=False)
     _name: str = field(repr=False, compare=False)  # of the file, for messages
     divisor: int = 1  # of the timestep that the file gives it
 

@@ -107,10 +107,10 @@ def _load(
 
 
 def _check_first(
-    root: Node, axes: tuple[tuple[sweep.Axis, ...], ...], report: Report
+    root: Node, axes: tuple[tuple[sweep.SweptAxis, ...], ...], report: Report
 ) -> ExperimentConfig | None:
     """Check the whole file, with the first value of every axis in its place."""
-    tree = next(sweep.points(axes), sweep.Point(())).tree(root)
+    tree = next(sweep.points(axes), sweep.SweepPoint(())).tree(root)
     config = Reading(tree, swept_values(root), report).read(ExperimentConfig)
     report.close_round()
     return config
@@ -118,7 +118,7 @@ def _check_first(
 
 def _check_others(
     root: Node,
-    axes: tuple[tuple[sweep.Axis, ...], ...],
+    axes: tuple[tuple[sweep.SweptAxis, ...], ...],
     count: int,
     report: Report,
     name: str,

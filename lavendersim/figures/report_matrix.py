@@ -26,7 +26,7 @@ class Matrix(NamedTuple):
     processor: str
 
 
-class Look(NamedTuple):
+class EntryLook(NamedTuple):
     """How a verdict is shown."""
 
     sign: str
@@ -36,15 +36,15 @@ class Look(NamedTuple):
 
 # Blue-green against vermilion, as Okabe and Ito's for colour-blind readers; signs differ as well.
 LOOKS: Final = {
-    "passes": Look("\u2713", "passes", "passes"),
-    "known failure": Look("~", "known", "known failure: the case declares it; no pass"),
-    "fails": Look("\u2717", "fails", "fails"),
-    "beyond bounds": Look("\u25a0", "fails", "stopped at the first step beyond a bound"),
-    "diverged": Look("\u221e", "fails", "diverged: its numbers ended"),
-    "refused": Look("\u2205", "other", "refused: the case cannot be put to this solver"),
-    "died": Look("\u2020", "fails", "the run broke off: a defect of lavender"),
+    "passes": EntryLook("\u2713", "passes", "passes"),
+    "known failure": EntryLook("~", "known", "known failure: the case declares it; no pass"),
+    "fails": EntryLook("\u2717", "fails", "fails"),
+    "beyond bounds": EntryLook("\u25a0", "fails", "stopped at the first step beyond a bound"),
+    "diverged": EntryLook("\u221e", "fails", "diverged: its numbers ended"),
+    "refused": EntryLook("\u2205", "other", "refused: the case cannot be put to this solver"),
+    "died": EntryLook("\u2020", "fails", "the run broke off: a defect of lavender"),
 }
-NOT_RUN: Final = Look("\u2013", "other", "not run")
+NOT_RUN: Final = EntryLook("\u2013", "other", "not run")
 ALWAYS_IN_KEY: Final = ("passes", "known failure", "fails", "beyond bounds")
 SMALLER: Final = 0.6  # of a picture's size: rows low enough to see a family at once
 

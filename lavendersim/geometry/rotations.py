@@ -38,6 +38,19 @@ def quaternion_product(one: Floats, other: Floats) -> Floats:
     return np.array([real, *(w * other[1:] + other[0] * v + np.cross(v, other[1:]))])
 
 
+def turns_between(before: Floats, after: Floats) -> tuple[Floats, Floats]:
+    """Return scalar (n,) and vector (n, 3) of after before^-1, world frame, the shorter way round.
+
+    Cosine of half the angle, and sine of half the angle along the axis. Of unit quaternions (n, 4).
+    """
+    w0, u0 = before[:, 0], before[:, 1:]
+    w1, u1 = after[:, 0], after[:, 1:]
+    w = w0 * w1 + (u0 * u1).sum(axis=1)
+    vector = w0[:, None] * u1 - w1[:, None] * u0 - np.cross(u1, u0)
+    sign = np.where(w < 0.0, -1.0, 1.0)
+    return sign * w, sign[:, None] * vector
+
+
 def rotated(quaternion: Floats, vectors: Floats) -> Floats:
     """Return vectors (..., 3) turned by a unit quaternion: v + 2 w u x v + 2 u x (u x v)."""
     turn = np.cross(quaternion[1:], vectors) * 2

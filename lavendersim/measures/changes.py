@@ -10,6 +10,7 @@ import numpy as np
 
 from lavendersim.cell import CellEvent, CellForce
 from lavendersim.geometry.bodies import is_movable, mass_of, principal_inertia, vector
+from lavendersim.geometry.rotations import turns_between
 from lavendersim.measures.interfaces import Floats, Trace
 from lavendersim.quantities.scalars import exact
 
@@ -139,13 +140,8 @@ def _turns(quaternions: Floats) -> Floats:
 
     A step turns by Cayley's map: the tangent of half the angle is half of what is returned.
     """
-    old, new = quaternions[:-1], quaternions[1:]
-    real = (old * new).sum(axis=1)
-    # the vector part of new * conj(old)
-    vector = (
-        old[:, :1] * new[:, 1:] - new[:, :1] * old[:, 1:] - np.cross(new[:, 1:], old[:, 1:])
-    ) * np.where(real < 0.0, -1.0, 1.0)[:, None]
+    real, vector = turns_between(quaternions[:-1], quaternions[1:])
     turns = np.zeros((len(quaternions), 3))
     with np.errstate(invalid="ignore", divide="ignore"):
-        turns[1:] = 2.0 * vector / np.abs(real)[:, None]
+        turns[1:] = 2.0 * vector / real[:, None]
     return turns

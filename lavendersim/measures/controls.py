@@ -19,7 +19,7 @@ from lavendersim.measures.specs.expectation import ExpectSpec
 from lavendersim.measures.verdict import Verdict
 
 
-class Trial(NamedTuple):
+class ControlTrial(NamedTuple):
     """A control in one cell, or once where what it names is judged across cells."""
 
     control: ExpectSpec
@@ -64,26 +64,26 @@ def _takes(control: ExpectSpec, indices: frozenset[int], claim: Any, stops: bool
 
 def trials(
     claims: Sequence[Any], controls: Sequence[ExpectSpec], cells: Sequence[Any]
-) -> list[Trial]:
+) -> list[ControlTrial]:
     """Return what is judged of each control; one that selects no cell is one that fails."""
-    made: list[Trial] = []
+    made: list[ControlTrial] = []
     for control in controls:
         named = [claim for claim in claims if claim.name == control.fails]
         across = any(len(claim.cells) > 1 for claim in named)
         chosen = select(cells, control.at)
         if across or not chosen:
-            made.append(Trial(control, control.name, tuple(chosen)))
+            made.append(ControlTrial(control, control.name, tuple(chosen)))
             continue
         axes = telling_axes(chosen, control.at)
         for cell in chosen:
             shown = [axis for axis in cell.coordinates if axis in axes]
             where = coordinates_text(cell.coordinates, shown)
             node = f"{control.name} at {where}" if where else control.name
-            made.append(Trial(control, node, (cell,)))
+            made.append(ControlTrial(control, node, (cell,)))
     return made
 
 
-def verdict_of(trial: Trial, claims: Sequence[Any], raw: Mapping[str, Verdict]) -> Verdict:
+def verdict_of(trial: ControlTrial, claims: Sequence[Any], raw: Mapping[str, Verdict]) -> Verdict:
     """Return the verdict on a control in its cells."""
     failed = trial.control.fails or ""
     here = _indices(trial.cells)

@@ -19,14 +19,14 @@ from typing import Final
 import numpy as np
 
 from lavendersim.measures.interfaces import Floats
-from lavendersim.measures.solids import BOX, CAPSULE, SPHERE, Placed
+from lavendersim.measures.solids import BOX, CAPSULE, SPHERE, PlacedSolids
 
 PARALLEL: Final = 1e-8
 AHEAD = np.array([1, 2, 0])  # the next axis, cyclically
 BEHIND = np.array([2, 0, 1])
 
 
-def depths(kind_a: int, kind_b: int, a: Placed, b: Placed) -> Floats:
+def depths(kind_a: int, kind_b: int, a: PlacedSolids, b: PlacedSolids) -> Floats:
     """Return the depth [m] of each pair; NaN for shapes without a closed form here."""
     if kind_a > kind_b:
         kind_a, kind_b, a, b = kind_b, kind_a, b, a
@@ -34,12 +34,12 @@ def depths(kind_a: int, kind_b: int, a: Placed, b: Placed) -> Floats:
     return np.full(len(a.position), np.nan) if known is None else known(a, b)
 
 
-def sphere_sphere(a: Placed, b: Placed) -> Floats:
+def sphere_sphere(a: PlacedSolids, b: PlacedSolids) -> Floats:
     """Radii less the distance of the centres."""
     return a.size[:, 0] + b.size[:, 0] - _length(b.position - a.position)
 
 
-def sphere_box(sphere: Placed, box: Placed) -> Floats:
+def sphere_box(sphere: PlacedSolids, box: PlacedSolids) -> Floats:
     """From the nearest point of the box; inside it, from its nearest face."""
     local = np.einsum("pji,pj->pi", box.rotation, sphere.position - box.position)
     outside = _length(local - np.clip(local, -box.size, box.size))
@@ -47,7 +47,7 @@ def sphere_box(sphere: Placed, box: Placed) -> Floats:
     return sphere.size[:, 0] + np.where(outside > 0.0, -outside, inside)
 
 
-def sphere_capsule(sphere: Placed, capsule: Placed) -> Floats:
+def sphere_capsule(sphere: PlacedSolids, capsule: PlacedSolids) -> Floats:
     """From the nearest point of the capsule's axis."""
     axis, half = capsule.rotation[:, :, 2], capsule.size[:, 2]
     apart = sphere.position - capsule.position
@@ -55,7 +55,7 @@ def sphere_capsule(sphere: Placed, capsule: Placed) -> Floats:
     return sphere.size[:, 0] + capsule.size[:, 0] - _length(apart - along[:, None] * axis)
 
 
-def capsule_capsule(a: Placed, b: Placed) -> Floats:
+def capsule_capsule(a: PlacedSolids, b: PlacedSolids) -> Floats:
     """From the nearest points of both axes: inside both, or at one of the four ends."""
     u, v = a.rotation[:, :, 2], b.rotation[:, :, 2]
     half_a, half_b = a.size[:, 2], b.size[:, 2]
@@ -76,7 +76,7 @@ def capsule_capsule(a: Placed, b: Placed) -> Floats:
     return depth
 
 
-def box_box(a: Placed, b: Placed) -> Floats:
+def box_box(a: PlacedSolids, b: PlacedSolids) -> Floats:
     """Least overlap over the fifteen separating axes."""
     turn = np.einsum("pji,pjk->pik", a.rotation, b.rotation)  # axes of B in the frame of A
     apart = np.einsum("pji,pj->pi", a.rotation, b.position - a.position)
@@ -114,7 +114,7 @@ def _length(vectors: Floats) -> Floats:
     return lengths
 
 
-DEPTHS: Final[dict[tuple[int, int], Callable[[Placed, Placed], Floats]]] = {
+DEPTHS: Final[dict[tuple[int, int], Callable[[PlacedSolids, PlacedSolids], Floats]]] = {
     (SPHERE, SPHERE): sphere_sphere,
     (SPHERE, BOX): sphere_box,
     (SPHERE, CAPSULE): sphere_capsule,

@@ -11,7 +11,7 @@ from lavendersim.errors import LavenderError
 from lavendersim.measures.interfaces import Cell, Floats, Value
 from lavendersim.measures.kinds.arithmetic import derived
 from lavendersim.measures.registry import beside_form, evaluate
-from lavendersim.measures.specs.arithmetic import Derived
+from lavendersim.measures.specs.arithmetic import OfMeasures
 from lavendersim.measures.specs.catalogue import MeasureSpec
 
 
@@ -43,7 +43,7 @@ class Values:
         return self._rows[key][1]
 
     def _value(self, spec: MeasureSpec, cell: Cell) -> Value:
-        if not isinstance(spec, Derived):
+        if not isinstance(spec, OfMeasures):
             return evaluate(spec, cell.trace())
         rows = [self.row(name, cell) for name in spec.operands]
         return beside_form(spec, derived(spec, rows), cell.trace())

@@ -73,7 +73,7 @@ class Attempt(NamedTuple):
     points: tuple[Point, ...]
 
 
-class Comparison(NamedTuple):
+class SolverComparison(NamedTuple):
     """One problem and what each solver made of it."""
 
     name: str
@@ -108,7 +108,7 @@ def compare(
     now: Clock = time.perf_counter,
     busy: Clock = time.process_time,
     referenced: bool = False,
-) -> Iterator[Comparison]:
+) -> Iterator[SolverComparison]:
     """Yield a comparison per named problem, as soon as it is there.
 
     `solve(problem, solver, tolerance, sweeps)` is `problems.solve.solve` unless another is given;
@@ -198,7 +198,7 @@ def _compare(
     asked: _Asked,
     watch: _Stopwatch,
     truth: Reference | None,
-) -> Comparison:
+) -> SolverComparison:
     """Call each solver once to compile it, then timed, then again in turns."""
     solvers, tolerance = asked.solvers, asked.tolerance
     first = {solver: _Call(problem, solver, tolerance, 1) for solver in solvers}
@@ -220,7 +220,7 @@ def _compare(
         for solver in solvers
     )
     status = ("", "") if truth is None else (truth.status, truth.kind)
-    return Comparison(name, problem.contacts, tuple(attempts), *status)
+    return SolverComparison(name, problem.contacts, tuple(attempts), *status)
 
 
 def _steps(problem: ContactProblem, solver: str, watch: _Stopwatch) -> list[_Call]:
@@ -267,7 +267,7 @@ def _judge(
     )
 
 
-def ratios(comparisons: Sequence[Comparison]) -> dict[str, list[float]]:
+def ratios(comparisons: Sequence[SolverComparison]) -> dict[str, list[float]]:
     """Return per solver its time over the best time, per problem; infinite where not solved.
 
     What performance profiles are made of (Dolan and More, 2002). A problem that nobody solved

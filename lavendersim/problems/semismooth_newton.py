@@ -32,7 +32,7 @@ ENOUGH = 1e-3
 LOOK_BACK, LOOKED_FOR = 5, 0.5
 
 
-class Place(NamedTuple):
+class Iterate(NamedTuple):
     """Impulses and what follows from them."""
 
     x: np.ndarray
@@ -43,14 +43,14 @@ class Place(NamedTuple):
     size: float  # |F|
 
 
-def look(p: ScaledProblem, x: np.ndarray) -> Place:
+def look(p: ScaledProblem, x: np.ndarray) -> Iterate:
     """Evaluate the natural map at x."""
     v = velocities(p, x)
     side = np.hypot(v[:, 1], v[:, 2])
     y = x - v
     y[:, 0] -= p.mu * side
     missed = x - project(y, p.mu)
-    return Place(x, v, side, y, missed, float(np.linalg.norm(missed)))
+    return Iterate(x, v, side, y, missed, float(np.linalg.norm(missed)))
 
 
 def newton_steps(
@@ -82,7 +82,7 @@ def newton_steps(
     return here.x, residual
 
 
-def _direction(p: ScaledProblem, here: Place, eps: float) -> tuple[np.ndarray, float]:
+def _direction(p: ScaledProblem, here: Iterate, eps: float) -> tuple[np.ndarray, float]:
     root = derivative_root(here.y, p.mu)
     blocks = p.blocks.copy()
     away = p.mu / np.where(here.side > 0.0, here.side, 1.0)

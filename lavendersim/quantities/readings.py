@@ -2,10 +2,25 @@
 
 from __future__ import annotations
 
-from typing import Final
+from collections.abc import Mapping
+from typing import ClassVar, Final
+
+from lavendersim.quantities.model import ConfigModel
 
 Readings = frozenset[str]  # keys of the section `record`
 CONTACTS: Final = frozenset({"contacts"})
 POSES: Final = frozenset({"poses"})
 SUMS: Final[Readings] = frozenset()  # what `/step` has, which every log has of every step
 EVERYTHING: Final = CONTACTS | POSES
+
+
+class Reader(ConfigModel):
+    """A measure or a panel of a config."""
+
+    # What it takes of every step of a log; of a kind that does not say, anything.
+    READS: ClassVar[Readings] = EVERYTHING
+
+    @classmethod
+    def reads(cls, given: Mapping[str, str | None]) -> Readings:
+        """Return what it takes of every step; given: the keys of a config, with their texts."""
+        return cls.READS

@@ -11,20 +11,20 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from lavendersim.replay.pair import Pair
+    from lavendersim.replay.pair import LogPair
     from lavendersim.trace import Trace
 
 __all__ = ["open_viewer", "pair_of", "save", "screenshot"]
 
 
-def pair_of(a: Trace, b: Trace, names: tuple[str, str], overlay: bool = False) -> Pair:
+def pair_of(a: Trace, b: Trace, names: tuple[str, str], overlay: bool = False) -> LogPair:
     """Two logs to be shown together, side by side or the second as a ghost over the first."""
-    from lavendersim.replay.pair import Pair
+    from lavendersim.replay.pair import LogPair
 
-    return Pair(a, b, *names, overlay=overlay)
+    return LogPair(a, b, *names, overlay=overlay)
 
 
-def open_viewer(trace: Trace | Pair, title: str | None = None, at: float | None = None) -> None:
+def open_viewer(trace: Trace | LogPair, title: str | None = None, at: float | None = None) -> None:
     """Show `trace` in a rerun window, which stays open after this process ends.
 
     A viewer that is already open is used. `title` names the recording; by default the log's name.
@@ -37,7 +37,7 @@ def open_viewer(trace: Trace | Pair, title: str | None = None, at: float | None 
     show_in_window(trace, title or Path(trace.path).stem, at)
 
 
-def save(trace: Trace | Pair, path: str | Path, title: str | None = None) -> None:
+def save(trace: Trace | LogPair, path: str | Path, title: str | None = None) -> None:
     """Write `trace` with its blueprint to `path` (.rrd), whole or not at all."""
     from lavendersim.replay.recording import write_rrd
 
@@ -45,7 +45,7 @@ def save(trace: Trace | Pair, path: str | Path, title: str | None = None) -> Non
 
 
 def screenshot(
-    trace: Trace | Pair, path: str | Path, title: str | None = None, at: float | None = None
+    trace: Trace | LogPair, path: str | Path, title: str | None = None, at: float | None = None
 ) -> list[str]:
     """Write a picture (.png) of the viewer; needs no display.
 

@@ -30,7 +30,7 @@ from lavendersim.replay.columns import (
 )
 from lavendersim.replay.force_scale import ForceScale
 from lavendersim.replay.layer import ALONE, Layer
-from lavendersim.replay.scene import WORLD, Extent, Shape, Vector, grid_spacing
+from lavendersim.replay.scene import WORLD, DrawnBody, Extent, Vector, grid_spacing
 from lavendersim.replay.timeline import TIMELINE
 
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ SHOWN_SECONDS = 8.0  # contacts are short: play slowly enough to be seen, never 
 
 
 def blueprint(
-    trace: Trace, bodies: Sequence[Shape], room: Extent, scale: ForceScale | None
+    trace: Trace, bodies: Sequence[DrawnBody], room: Extent, scale: ForceScale | None
 ) -> rrb.Blueprint:
     """Lay out the 3D view and the plots of a recording; scale: None where nothing can touch."""
     times = time_in_nanoseconds(trace)
@@ -71,7 +71,7 @@ def contents_of(layer: Layer, contacts: bool) -> list[str]:
 
 
 def scene_view(
-    name: str, contents: list[str], bodies: Sequence[Shape], room: Extent
+    name: str, contents: list[str], bodies: Sequence[DrawnBody], room: Extent
 ) -> rrb.Spatial3DView:
     """The view of a scene."""
     return rrb.Spatial3DView(
@@ -109,7 +109,7 @@ def laid_out(views: rrb.Container | rrb.View, seconds: float) -> rrb.Blueprint:
     )
 
 
-def eye_position(bodies: Sequence[Shape], room: Extent) -> Vector:
+def eye_position(bodies: Sequence[DrawnBody], room: Extent) -> Vector:
     """Where the camera stands [m]: far enough to see everything, on the open side of each plane."""
     direction = VIEW_DIRECTION / np.linalg.norm(VIEW_DIRECTION)
     for plane in (shape for shape in bodies if shape.kind == "plane"):

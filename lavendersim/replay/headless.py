@@ -33,7 +33,7 @@ from lavendersim.replay.timeline import TIMELINE
 if TYPE_CHECKING:
     from rerun.experimental import ViewerState
 
-    from lavendersim.replay.pair import Pair
+    from lavendersim.replay.pair import LogPair
     from lavendersim.trace import Trace
 
 Answer = TypeVar("Answer")
@@ -49,7 +49,7 @@ HARMLESS = ("Software rasterizer detected",)
 
 
 def take_screenshot(
-    trace: Trace | Pair, path: Path, title: str, at: float | None = None
+    trace: Trace | LogPair, path: Path, title: str, at: float | None = None
 ) -> list[str]:
     """Write the picture to `path`; return the viewer's complaints."""
     moment = moment_to_show(trace, at)

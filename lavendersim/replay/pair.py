@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 MOST_CURVES: Final = 8  # of the bodies that come farthest: more cannot be distinguished
 
 
-class Pair(NamedTuple):
+class LogPair(NamedTuple):
     """Two logs. overlay: the second as a ghost over the first; otherwise side by side."""
 
     a: Trace
@@ -50,7 +50,7 @@ class Distances(NamedTuple):
     bodies: list[Distance]
 
 
-def distances_of(pair: Pair) -> Distances:
+def distances_of(pair: LogPair) -> Distances:
     """Return the distances of the bodies that both logs have and that can move."""
     given = pair.a.config.scene.bodies
     movable = [name for name in pair.a.bodies if is_movable(given[name])]

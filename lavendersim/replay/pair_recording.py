@@ -23,7 +23,7 @@ from lavendersim.replay import columns, scene
 from lavendersim.replay.blueprint import contents_of, curves_view, laid_out, scene_view
 from lavendersim.replay.force_scale import ForceScale, force_scale
 from lavendersim.replay.layer import Layer
-from lavendersim.replay.pair import Distances, Pair, distances_of
+from lavendersim.replay.pair import Distances, LogPair, distances_of
 
 if TYPE_CHECKING:
     from lavendersim.trace import Trace
@@ -58,7 +58,7 @@ _PLOTS: Final = (
 )
 
 
-def record_pair(pair: Pair, stream: rr.RecordingStream, title: str) -> None:
+def record_pair(pair: LogPair, stream: rr.RecordingStream, title: str) -> None:
     """Send two logs and the layout of the viewer to `stream`."""
     bodies = {layer: scene.shapes(trace.config) for layer, trace in _layers(pair)}
     rooms = [scene.extent(trace, bodies[layer]) for layer, trace in _layers(pair)]
@@ -77,11 +77,11 @@ def record_pair(pair: Pair, stream: rr.RecordingStream, title: str) -> None:
     _send_distances(stream, found)
 
 
-def _layers(pair: Pair) -> list[tuple[Layer, Trace]]:
+def _layers(pair: LogPair) -> list[tuple[Layer, Trace]]:
     return [(A, pair.a), (B, pair.b)]
 
 
-def _common_scale(pair: Pair, diagonal: float) -> ForceScale | None:
+def _common_scale(pair: LogPair, diagonal: float) -> ForceScale | None:
     """Return the scale of the log with the larger forces; None where nothing can touch."""
     scales = [
         force_scale(columns.contacts_of(trace), diagonal)
@@ -92,8 +92,8 @@ def _common_scale(pair: Pair, diagonal: float) -> ForceScale | None:
 
 
 def _blueprint(
-    pair: Pair,
-    bodies: Sequence[scene.Shape],
+    pair: LogPair,
+    bodies: Sequence[scene.DrawnBody],
     room: scene.Extent,
     scale: ForceScale | None,
     found: Distances,

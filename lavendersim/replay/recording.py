@@ -14,7 +14,7 @@ from lavendersim.errors import UsageError
 from lavendersim.replay import columns, scene
 from lavendersim.replay.blueprint import blueprint
 from lavendersim.replay.force_scale import force_scale
-from lavendersim.replay.pair import Pair
+from lavendersim.replay.pair import LogPair
 from lavendersim.replay.pair_recording import record_pair
 
 if TYPE_CHECKING:
@@ -32,9 +32,9 @@ def new_stream(title: str) -> rr.RecordingStream:
     return rr.RecordingStream(name)
 
 
-def record(trace: Trace | Pair, stream: rr.RecordingStream, title: str) -> None:
+def record(trace: Trace | LogPair, stream: rr.RecordingStream, title: str) -> None:
     """Send the whole trace, or two, and the layout of the viewer to `stream`."""
-    if isinstance(trace, Pair):
+    if isinstance(trace, LogPair):
         record_pair(trace, stream, title)
         return
     bodies = scene.shapes(trace.config)
@@ -49,7 +49,7 @@ def record(trace: Trace | Pair, stream: rr.RecordingStream, title: str) -> None:
     columns.send(stream, trace, room, scale)
 
 
-def write_rrd(trace: Trace | Pair, path: Path, title: str) -> None:
+def write_rrd(trace: Trace | LogPair, path: Path, title: str) -> None:
     """Write the recording beside `path` and move it there when it is whole."""
     stream = new_stream(title)
     try:
@@ -62,14 +62,14 @@ def write_rrd(trace: Trace | Pair, path: Path, title: str) -> None:
         stream.disconnect()
 
 
-def moment_to_show(trace: Trace | Pair, at: float | None = None) -> np.timedelta64:
+def moment_to_show(trace: Trace | LogPair, at: float | None = None) -> np.timedelta64:
     """The step nearest to `at` [s]; without one the last with a contact force, or the middle.
 
     Of two logs those of the first.
 
     Raises UsageError for a time that the log does not reach.
     """
-    if isinstance(trace, Pair):
+    if isinstance(trace, LogPair):
         trace = trace.a
     times = columns.time_in_nanoseconds(trace)
     if at is not None:

@@ -16,14 +16,14 @@ import rerun as rr
 from lavendersim.geometry.rotations import rotated, shortest_turn
 from lavendersim.replay.layer import ALONE, Layer
 from lavendersim.replay.removal import removed
-from lavendersim.replay.shapes import XYZW, Shape, Vector, shapes
-from lavendersim.replay.solids import Look, archetypes
+from lavendersim.replay.shapes import XYZW, DrawnBody, Vector, shapes
+from lavendersim.replay.solids import BodyLook, archetypes
 from lavendersim.replay.timeline import at_time
 
 if TYPE_CHECKING:
     from lavendersim.trace import Trace
 
-__all__ = ["WORLD", "Extent", "Shape", "Vector", "draw", "entity", "extent", "shapes"]
+__all__ = ["WORLD", "DrawnBody", "Extent", "Vector", "draw", "entity", "extent", "shapes"]
 
 BODIES, GRIDS = "bodies", "grid"  # where bodies are drawn, and the grids of planes
 WORLD = "tf#/"  # rerun's name of the root frame, which no body can have
@@ -62,7 +62,7 @@ def entity(name: str, layer: Layer = ALONE) -> str:
     return layer.path(BODIES, name)
 
 
-def extent(trace: Trace, bodies: Iterable[Shape]) -> Extent:
+def extent(trace: Trace, bodies: Iterable[DrawnBody]) -> Extent:
     """The room that the bodies take over the whole trace, planes left out."""
     row_of = {name: row for row, name in enumerate(trace.bodies)}
     lows, highs = [], []
@@ -82,7 +82,7 @@ def extent(trace: Trace, bodies: Iterable[Shape]) -> Extent:
 def draw(
     stream: rr.RecordingStream,
     trace: Trace,
-    bodies: Sequence[Shape],
+    bodies: Sequence[DrawnBody],
     room: Extent,
     layer: Layer = ALONE,
     ghost: bool = False,
@@ -110,7 +110,7 @@ def draw(
         _draw_path(stream, trace, shape, colour, layer)
         labelled = len(bodies) <= LABELLED_BODIES and not ghost
         # Forces act at surfaces and point into bodies: solid bodies would hide them.
-        look = Look(colour, shape.fixed, shape.name, labelled)
+        look = BodyLook(colour, shape.fixed, shape.name, labelled)
         drawn = archetypes(shape.pieces, look)
         frame = rr.CoordinateFrame(layer.frame(shape.name))
         for kind, forms in drawn.items():
@@ -125,7 +125,7 @@ def draw(
 def _draw_path(
     stream: rr.RecordingStream,
     trace: Trace,
-    shape: Shape,
+    shape: DrawnBody,
     colour: tuple[int, int, int],
     layer: Layer,
 ) -> None:
@@ -140,7 +140,7 @@ def _draw_path(
 
 
 def _draw_plane(
-    stream: rr.RecordingStream, plane: Shape, room: Extent, stays: bool, layer: Layer
+    stream: rr.RecordingStream, plane: DrawnBody, room: Extent, stays: bool, layer: Layer
 ) -> None:
     """A thin box whose upper face lies in the plane, below (or beside) the scene, with a grid.
 

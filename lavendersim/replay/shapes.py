@@ -17,7 +17,7 @@ UP = np.array([0.0, 0.0, 1.0])
 XYZW = [1, 2, 3, 0]  # of a quaternion w x y z: the order that rerun takes
 
 
-class Shape(NamedTuple):
+class DrawnBody(NamedTuple):
     """One body's geometry: a plane, or pieces."""
 
     name: str
@@ -29,14 +29,14 @@ class Shape(NamedTuple):
     bounding_radius: float  # [m] about the centre of mass; 0 for a plane
 
 
-def shapes(cell: CellConfig) -> list[Shape]:
+def shapes(cell: CellConfig) -> list[DrawnBody]:
     """Return the geometry of every body of a cell, in its order."""
     return [_shape(name, body) for name, body in cell.scene.bodies.items()]
 
 
-def _shape(name: str, body: CellBody) -> Shape:
+def _shape(name: str, body: CellBody) -> DrawnBody:
     shape, fixed = body.shape, not is_movable(body)
     if isinstance(shape, Plane):
         normal, offset = half_space(shape)
-        return Shape(name, shape.kind, fixed, (), normal, offset, 0.0)
-    return Shape(name, shape.kind, fixed, pieces(shape), UP, 0.0, bounding_radius(shape))
+        return DrawnBody(name, shape.kind, fixed, (), normal, offset, 0.0)
+    return DrawnBody(name, shape.kind, fixed, pieces(shape), UP, 0.0, bounding_radius(shape))

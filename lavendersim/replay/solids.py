@@ -20,7 +20,7 @@ from lavendersim.replay.shapes import XYZW, Vector
 VEIL = 60
 
 
-class Look(NamedTuple):
+class BodyLook(NamedTuple):
     """How one body is drawn."""
 
     colour: tuple[int, int, int]
@@ -39,13 +39,13 @@ class Look(NamedTuple):
         }
 
 
-def archetypes(pieces: Sequence[Piece], look: Look) -> dict[str, list[Any]]:
+def archetypes(pieces: Sequence[Piece], look: BodyLook) -> dict[str, list[Any]]:
     """Return by kind what draws all pieces of that kind, in the body's frame."""
     kinds = dict.fromkeys(piece.shape.kind for piece in pieces)
     return {kind: _draw([p for p in pieces if p.shape.kind == kind], look) for kind in kinds}
 
 
-def _draw(pieces: Sequence[Piece], look: Look) -> list[Any]:
+def _draw(pieces: Sequence[Piece], look: BodyLook) -> list[Any]:
     """Return what draws pieces of one kind."""
     shapes = [piece.shape for piece in pieces]
     centres = np.array([piece.position for piece in pieces])
@@ -80,7 +80,9 @@ def _polyhedron(shape: Convex) -> Polyhedron:
     return convex_hull(shape.corners())
 
 
-def _polyhedra(pieces: Sequence[Piece], polyhedra: Sequence[Polyhedron], look: Look) -> list[Any]:
+def _polyhedra(
+    pieces: Sequence[Piece], polyhedra: Sequence[Polyhedron], look: BodyLook
+) -> list[Any]:
     """Return the faces of all polyhedra as one mesh, and their edges as lines."""
     corners: list[Vector] = []
     triangles: list[tuple[int, int, int]] = []

@@ -20,7 +20,7 @@ from lavendersim.replay.timeline import TIMELINE
 if TYPE_CHECKING:
     import numpy as np
 
-    from lavendersim.replay.pair import Pair
+    from lavendersim.replay.pair import LogPair
     from lavendersim.trace import Trace
 
 LOADED_SECONDS = 30.0  # a viewer that is not open yet starts in 1-5 s, and then takes the recording
@@ -28,7 +28,7 @@ POLL_SECONDS = 0.1
 VIEWER = "rerun+http://127.0.0.1:9876/proxy"  # where rr.spawn opens one, or finds an open one
 
 
-def show_in_window(trace: Trace | Pair, title: str, at: float | None = None) -> None:
+def show_in_window(trace: Trace | LogPair, title: str, at: float | None = None) -> None:
     """Open the viewer (or use the open one), send it the trace, and stop it at a moment [s]."""
     require_display()
     moment = None if at is None else moment_to_show(trace, at)

@@ -41,7 +41,7 @@ class Costed(NamedTuple):
 def check_cost(experiment: Experiment, repeats: int | None = None) -> None:
     """Raise ConfigError without a section `cost`, UsageError for too few repeats."""
     if experiment.config.cost is None:
-        sentence = "no section cost: it says which measure is held against which truth"
+        sentence = "no section cost: it says which measure is compared with which truth"
         raise ConfigError([experiment.cells()[0].defect(("cost",), sentence)])
     if repeats is not None and repeats < FEWEST_REPEATS:
         raise UsageError(f"--repeats: expected {FEWEST_REPEATS} or more, found {repeats}; {FEW}")

@@ -1,6 +1,6 @@
 """One entry of the solver matrix: what became of a case by one solver.
 
-passes         every claim is met, declared failures too: what fails elsewhere is held here
+passes         every claim is met, declared failures too: what fails elsewhere is met here
 known failure  nothing fails but what the case declares; it is no pass
 fails          something else does; the first is named, in the order of the file
 beyond bounds  a cell was stopped at the first step that broke a bound of `always`

@@ -22,7 +22,7 @@ ALL: Final = "all effects"
 ALL_RECORDED: Final = "all effects, recorded"
 
 
-class Pair(NamedTuple):
+class EnginePair(NamedTuple):
     """Two engines that differ in an effect; without them, why there are none."""
 
     effect: str
@@ -48,7 +48,7 @@ def names_of_effects() -> tuple[str, ...]:
     return tuple(BY_NAME)
 
 
-def pairs_of(config: CellConfig, names: Iterable[str] = ()) -> list[Pair]:
+def pairs_of(config: CellConfig, names: Iterable[str] = ()) -> list[EnginePair]:
     """Return a pair for each named effect, for all without names, and for all effects at once."""
     logged = plan_of(config)
     plans = Plans(facts_of(config), plan_of(config, record=False).spec, logged.spec)
@@ -63,10 +63,10 @@ def pairs_of(config: CellConfig, names: Iterable[str] = ()) -> list[Pair]:
     return [*pairs, *_everything(plans)]
 
 
-def _pair(effect: Effect, reason: str, plans: Plans) -> Pair:
+def _pair(effect: Effect, reason: str, plans: Plans) -> EnginePair:
     name = effect.name
     on = plans.logged.has(name)
-    pair = Pair(name, on, reason, of_contacts(effect))
+    pair = EnginePair(name, on, reason, of_contacts(effect))
     if effect.overhead_with:
         return pair._replace(why_not=f"timed with {effect.overhead_with}: see there")
     chosen = [each for each in (name, *needs(name)) if not has_law(each, plans.facts)]
@@ -92,7 +92,7 @@ def _pair(effect: Effect, reason: str, plans: Plans) -> Pair:
     return pair._replace(off=base.without(*together), on=base)
 
 
-def _everything(plans: Plans) -> list[Pair]:
+def _everything(plans: Plans) -> list[EnginePair]:
     """Return the plan against an engine with all effects that the numerics' laws agree with."""
     agreeing = [
         effect
@@ -104,8 +104,8 @@ def _everything(plans: Plans) -> list[Pair]:
     whole = plans.silent.including(*physics)
     reason = "every effect whose law the numerics have, idle where the scene does not require it"
     return [
-        Pair(ALL, False, reason, False, plans.silent, whole),
-        Pair(ALL_RECORDED, False, reason, False, plans.silent, whole.including(*logs)),
+        EnginePair(ALL, False, reason, False, plans.silent, whole),
+        EnginePair(ALL_RECORDED, False, reason, False, plans.silent, whole.including(*logs)),
     ]
 
 

@@ -27,7 +27,7 @@ from lavendersim.quantities.scalars import exact
 
 from .compile_times import compile_times
 from .environment import processor
-from .overhead_pairs import Pair, names_of_effects, pairs_of
+from .overhead_pairs import EnginePair, names_of_effects, pairs_of
 from .timed_engine import Diverged, Timed, clock
 
 Report = Callable[[str, int, int], None]
@@ -132,7 +132,7 @@ def _timed(
     return timed, diverged
 
 
-def _without_diverged(pair: Pair, diverged: set[Spec]) -> Pair:
+def _without_diverged(pair: EnginePair, diverged: set[Spec]) -> EnginePair:
     for which, spec in (("without", pair.off), ("with", pair.on)):
         if spec in diverged:
             return pair._replace(off=None, on=None, why_not=f"the scene flies apart {which} it")
@@ -140,7 +140,7 @@ def _without_diverged(pair: Pair, diverged: set[Spec]) -> Pair:
 
 
 def _rounds(
-    pairs: Sequence[Pair], timed: dict[Spec, Timed], repeats: int, report: Report
+    pairs: Sequence[EnginePair], timed: dict[Spec, Timed], repeats: int, report: Report
 ) -> dict[str, list[tuple[float, float]]]:
     """Return (off, on) of every repeat, by effect [ns/step]."""
     samples: dict[str, list[tuple[float, float]]] = {pair.effect: [] for pair in pairs}
@@ -162,7 +162,7 @@ def _rounds(
 
 def _table(
     cell: Cell,
-    pairs: Sequence[Pair],
+    pairs: Sequence[EnginePair],
     timed: dict[Spec, Timed],
     samples: dict[str, list[tuple[float, float]]],
     seconds: dict[Spec, float],
@@ -193,7 +193,7 @@ def _table(
 
 
 def _row(
-    pair: Pair,
+    pair: EnginePair,
     timed: dict[Spec, Timed],
     samples: list[tuple[float, float]],
     seconds: dict[Spec, float],

@@ -221,7 +221,7 @@ class Run:
 
     def _repr_html_(self) -> str:
         """Return the run as a notebook shows it."""
-        from .notebook import html_of  # late: see `RunCell.trace`
+        from lavendersim.figures.notebook import html_of  # late: see `RunCell.trace`
 
         return html_of(self)
 

@@ -38,7 +38,7 @@ class Case(NamedTuple):
     question: str
 
 
-class Pair(NamedTuple):
+class CaseAndSolver(NamedTuple):
     """What one process does at a time."""
 
     case: Case
@@ -75,7 +75,7 @@ def cases_of(experiments: Sequence[Experiment]) -> tuple[list[Case], dict[str, s
     return cases, left_out
 
 
-def make_entry(pair: Pair) -> Entry:
+def make_entry(pair: CaseAndSolver) -> Entry:
     """Run a case by a solver and return its entry; whatever happens there is its verdict."""
     case, solver = pair.case.name, pair.solver
     try:
@@ -96,7 +96,7 @@ def entries(
     solvers: Sequence[str],
     root: Path = RUNS,
     jobs: int = 1,
-    make: Callable[[Pair], Entry] = make_entry,
+    make: Callable[[CaseAndSolver], Entry] = make_entry,
 ) -> Iterator[Entry]:
     """Yield the entry of every case and solver when it is done, solver by solver.
 
@@ -105,18 +105,20 @@ def entries(
     """
     for solver in solvers:
         # a process for each solver holds its kernels and no others
-        yield from _made([Pair(case, solver, root) for case in cases], jobs, make)
+        yield from _made([CaseAndSolver(case, solver, root) for case in cases], jobs, make)
 
 
 def _pool(jobs: int) -> ProcessPoolExecutor:
     return ProcessPoolExecutor(jobs, get_context("spawn"), initializer=end_with_parent)
 
 
-def _made(pairs: list[Pair], jobs: int, make: Callable[[Pair], Entry]) -> Iterator[Entry]:
-    lost: list[Pair] = []
+def _made(
+    pairs: list[CaseAndSolver], jobs: int, make: Callable[[CaseAndSolver], Entry]
+) -> Iterator[Entry]:
+    lost: list[CaseAndSolver] = []
     with _pool(jobs) as pool:
         waiting = list(reversed(pairs))
-        running: dict[Future[Entry], Pair] = {}
+        running: dict[Future[Entry], CaseAndSolver] = {}
         while waiting or running:
             while waiting and len(running) < jobs:
                 pair = waiting.pop()
@@ -140,7 +142,7 @@ def _made(pairs: list[Pair], jobs: int, make: Callable[[Pair], Entry]) -> Iterat
     yield from _made(list(reversed(waiting)), jobs, make)
 
 
-def _made_alone(pair: Pair, make: Callable[[Pair], Entry]) -> Iterator[Entry]:
+def _made_alone(pair: CaseAndSolver, make: Callable[[CaseAndSolver], Entry]) -> Iterator[Entry]:
     with _pool(1) as pool:
         try:
             yield pool.submit(make, pair).result()

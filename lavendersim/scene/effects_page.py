@@ -17,9 +17,9 @@ from lavendersim.engine.effects.keys import Key
 INTRODUCTION = """\
 # Effects
 
-Every term of the physics and of the log is one file in `lavendersim/engine/effects`, and a line of
-the list there. A scene's plan has the effects that the scene requires (`lavender plan`); the others
-leave no code, no array and no column. This page is written from the declarations
+Every term of the physics and of the log is declared in one file of `lavendersim/engine/effects`,
+and is a line of the list there. A scene's plan has the effects that the scene requires (`lavender
+plan`); the others leave no code, no array and no column. This page is written from the declarations
 (`python -m lavendersim.scene.effects_page docs/effects.md`).
 """
 

@@ -34,7 +34,7 @@ class Group(NamedTuple):
     end: int
 
 
-class Held(NamedTuple):
+class Waiting(NamedTuple):
     """A whole chunk whose group is not yet at its end: where it stands, and how much it has."""
 
     entry: ChunkIndex
@@ -48,21 +48,21 @@ class Groups:
     def __init__(self, path: Path, entries: FileIndex) -> None:
         self.whole: list[Group] = []
         self._path, self._entries = path, entries
-        self._held: list[Held] = []
+        self._waiting: list[Waiting] = []
         self._spoilt = False  # the group that is not yet at its end
         self._config: tuple[Clock | None, dict[str, Recorded]] | None = None  # once read
 
     @property
     def unfinished(self) -> bool:
         """Whether chunks wait for the end of their group, or some of it are lost."""
-        return self._spoilt or bool(self._held)
+        return self._spoilt or bool(self._waiting)
 
     def lose(self, channels: frozenset[int]) -> None:
         """Note that a chunk is lost; channels: its own, none where they are not known."""
         if channels != GEOMETRY:
             self._spoilt = True
         if STEP in channels:  # it was the last of its group
-            self._held, self._spoilt = [], False
+            self._waiting, self._spoilt = [], False
 
     def take(self, entry: ChunkIndex, content: ChunkContent) -> None:
         """Take a whole chunk."""
@@ -74,42 +74,43 @@ class Groups:
             for channel in (POINTS, COLUMNS)
             if channel in counts and channel in self._entries.channels
         }
-        held = Held(entry, counts, contacts)
-        if held.counts.keys() == GEOMETRY:
-            self._commit(held)
+        chunk = Waiting(entry, counts, contacts)
+        if chunk.counts.keys() == GEOMETRY:
+            self._commit(chunk)
             return
-        self._held.append(held)
-        if STEP in held.counts:
+        self._waiting.append(chunk)
+        if STEP in chunk.counts:
             steps = sequences_of(content, STEP)
-            begin, end = held.entry.message_start_time, held.entry.message_end_time
+            begin, end = chunk.entry.message_start_time, chunk.entry.message_end_time
             group = Group(int(steps[0]), int(steps[-1]), begin, end)
             if not self._spoilt and self._is_whole(group, steps):
-                for one in self._held:
+                for one in self._waiting:
                     self._commit(one)
                 self.whole.append(group)
-            self._held, self._spoilt = [], False
+            self._waiting, self._spoilt = [], False
 
     def _schema(self, channel: int) -> Schema:
         return self._entries.schemas[self._entries.channels[channel].schema_id]
 
     def _is_whole(self, group: Group, steps: NDArray[Any]) -> bool:
         """Whether the chunks are of the steps of the light one, and all of them are there."""
-        entries = [one.entry for one in self._held]
+        entries = [one.entry for one in self._waiting]
         inside = all(
             group.begin <= one.message_start_time and one.message_end_time <= group.end
             for one in entries
         )
-        known = all(one.counts.keys() <= self._entries.channels.keys() for one in self._held)
+        known = all(one.counts.keys() <= self._entries.channels.keys() for one in self._waiting)
         after = self.whole[-1].last if self.whole else -1
         if not (inside and known and group.first > after):
             return False
         points, columns = (
-            sum(one.contacts.get(channel, 0) for one in self._held) for channel in (POINTS, COLUMNS)
+            sum(one.contacts.get(channel, 0) for one in self._waiting)
+            for channel in (POINTS, COLUMNS)
         )
         if points != columns and COLUMNS in self._entries.channels:  # not in older logs
             return False
         for topic, expected in self._expected(steps).items():
-            if sum(one.counts.get(CHANNELS[topic], 0) for one in self._held) != expected:
+            if sum(one.counts.get(CHANNELS[topic], 0) for one in self._waiting) != expected:
                 return False
         return True
 
@@ -133,7 +134,7 @@ class Groups:
         kept = {topic: getattr(config.record, key) for topic, key in KEYS.items()}
         return config.clock, {topic: kept[topic] for topic in kept if topic not in absent}
 
-    def _commit(self, held: Held) -> None:
-        self._entries.chunks.append(held.entry)
-        for channel, count in held.counts.items():
+    def _commit(self, chunk: Waiting) -> None:
+        self._entries.chunks.append(chunk.entry)
+        for channel, count in chunk.counts.items():
             self._entries.counts[channel] = self._entries.counts.get(channel, 0) + count

@@ -127,7 +127,7 @@ def test_what_cannot_be_asked_is_refused_with_a_sentence(
     text = costed.read_text().replace(*change)
     if said is None:
         text = text.partition("#")[0]
-        said = "{file}:1:1: no section cost: it says which measure is held against which truth"
+        said = "{file}:1:1: no section cost: it says which measure is compared with which truth"
     costed.write_text(text)
     done = lavender("cost", costed, *arguments, where=tmp_path)
     assert (done.returncode, done.stdout) == (2, "")

@@ -58,6 +58,11 @@ RETIRED = {
     "on purpose": Retired(
         r"\bmistakes? (made )?on purpose\b|\bknown mistake\b", "deliberate error"
     ),
+    "held": Retired(
+        r"\bheld\b",
+        "compared with, checked against; kept, given for a round; waiting; met",
+        tuple(place for place in EVERYWHERE if place not in ("configs", "tests")),
+    ),
     "square": Retired(r"\bmatrix square\b|\ba square (for|per)\b", "entry of the matrix"),
 }
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import re
+from collections import defaultdict
 from functools import cache
 from pathlib import Path
 
@@ -74,6 +75,29 @@ def test_a_module_says_what_it_is_first() -> None:
         if re.search(r"\b(enters?|in)\b.*(\bleaves?\b|, out\.)", first):
             found.append(str(file.relative_to(ROOT)))
     assert found == []
+
+
+# Classes of one name that mean one thing in two forms, or that a library or a config names so.
+NAMESAKES = {
+    "Cell": "in measures.interfaces the type of it alone",
+    "Trace": "in measures.interfaces the type of it alone",
+    "Column": "of a record, as an effect declares it and as a log numbers it",
+    "FreeRotation": "the closed form, and the panel that draws it",
+    "Ratio": "a number of a config, a kind of measure, a kind of judgement",
+    "Scene": "as written, and as the engine takes it",
+}
+
+
+def test_no_two_classes_share_a_name() -> None:
+    """Five classes were once called Part: who reads a name must not ask which."""
+    places: dict[str, list[str]] = defaultdict(list)
+    for file in files():
+        for node in ast.parse(file.read_text()).body:
+            if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
+                places[node.name].append(f"{file.relative_to(ROOT)}:{node.lineno}")
+    shared = {name: found for name, found in places.items() if len(found) > 1}
+    assert {name: found for name, found in shared.items() if name not in NAMESAKES} == {}
+    assert shared.keys() == NAMESAKES.keys()
 
 
 def test_a_part_is_that_of_a_compound() -> None:

@@ -13,7 +13,7 @@ from sources import ROOT
 
 from lavendersim.engine.effects import EFFECTS
 from lavendersim.experiment import load_experiment
-from lavendersim.runner.overhead_pairs import Pair, pairs_of
+from lavendersim.runner.overhead_pairs import EnginePair, pairs_of
 
 AT_WORK = {
     "effects/carried.yaml": (
@@ -65,7 +65,7 @@ SCENE_OF = {name: config for config, names in AT_WORK.items() for name in names}
 
 
 @cache
-def timed(config: str) -> dict[str, Pair]:
+def timed(config: str) -> dict[str, EnginePair]:
     """Return the pairs of engines that a shipped config times, by effect."""
     experiment = load_experiment(ROOT / "configs" / config)
     section = experiment.config.overhead

@@ -41,6 +41,7 @@ ROOMS = {
     "runner": {
         *("errors", "clock", "quantities", "cell", "experiment", "scene", "engine", "problems"),
         *("trace", "measures", "geometry", "record_tables", "durable_files", "arrow"),
+        "figures",  # a run in a notebook
     },
     "comparison": {"errors", "geometry", "trace", "measures", "runner"},
     "pytest_plugin": {"errors", "experiment", "trace", "measures", "runner"},

@@ -8,7 +8,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from lavendersim.cell.shapes.shape import Homogeneous, Primitive
+from lavendersim.cell.shapes.shape import Homogeneous, MinkowskiSum, Primitive
 from lavendersim.quantities.quantity import BoxSize, Vector3
 
 
@@ -47,6 +47,11 @@ class Box(Primitive):
         x, y, z = (edge * edge for edge in self.size)
         moments = ((y + z) / 12.0, (x + z) / 12.0, (x + y) / 12.0)
         return Homogeneous(math.prod(self.size), moments)
+
+    def minkowski_sum(self) -> MinkowskiSum:
+        """Return itself."""
+        x, y, z = (0.5 * edge for edge in self.size)
+        return MinkowskiSum(half=(x, y, z))
 
     def row(self) -> dict[str, float]:
         """Return its half edges."""

@@ -11,7 +11,7 @@ from typing import ClassVar, Literal
 
 from pydantic import Field
 
-from lavendersim.cell.shapes.shape import Homogeneous, Length, Primitive, ball
+from lavendersim.cell.shapes.shape import Homogeneous, Length, MinkowskiSum, Primitive, ball
 from lavendersim.quantities.quantity import Vector3
 
 
@@ -60,6 +60,10 @@ class Capsule(Primitive):
         across = (bar * across + balls * ends) / volume
         along = (bar * (square / 2.0) + balls * 0.4 * square) / volume
         return Homogeneous(volume, (across, across, along))
+
+    def minkowski_sum(self) -> MinkowskiSum:
+        """Return its axis and a ball."""
+        return MinkowskiSum(half=(0.0, 0.0, 0.5 * self.length), ball=self.radius)
 
     def row(self) -> dict[str, float]:
         """Return radius and half length."""

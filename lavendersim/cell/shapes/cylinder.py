@@ -10,7 +10,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from lavendersim.cell.shapes.shape import Homogeneous, Length, Primitive, circle
+from lavendersim.cell.shapes.shape import Homogeneous, Length, MinkowskiSum, Primitive, circle
 from lavendersim.quantities.quantity import Vector3
 
 
@@ -55,6 +55,10 @@ class Cylinder(Primitive):
         square = self.radius * self.radius
         across = square / 4.0 + self.length * self.length / 12.0
         return Homogeneous(math.pi * square * self.length, (across, across, square / 2.0))
+
+    def minkowski_sum(self) -> MinkowskiSum:
+        """Return its axis and a disc."""
+        return MinkowskiSum(half=(0.0, 0.0, 0.5 * self.length), disc=self.radius)
 
     def row(self) -> dict[str, float]:
         """Return radius and half length."""

@@ -26,6 +26,17 @@ class Homogeneous(NamedTuple):
     moments: Vector3  # [m^2] principal moments of inertia over the mass
 
 
+class MinkowskiSum(NamedTuple):
+    """A solid as the sum of a box, a disc across its z and a ball, all about its centre.
+
+    h(n) = sum_i half_i |n_i| + disc sqrt(1 - n_z^2) + ball, which is one formula for many solids.
+    """
+
+    half: Vector3 = (0.0, 0.0, 0.0)  # edges of the box [m]
+    disc: float = 0.0  # radius [m]
+    ball: float = 0.0  # radius [m]
+
+
 class Convex(ABC):
     """A convex solid in its principal frame."""
 
@@ -67,6 +78,10 @@ class Primitive(ConfigModel, Convex):
     @abstractmethod
     def homogeneous(self) -> Homogeneous:
         """Return volume and moments of inertia of one density."""
+
+    def minkowski_sum(self) -> MinkowskiSum | None:
+        """Return what it is the sum of; None where it is no such sum."""
+        return None
 
 
 def circle(radius: float, height: float) -> tuple[Vector3, ...]:

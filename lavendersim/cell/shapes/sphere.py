@@ -7,7 +7,7 @@ from typing import ClassVar, Literal
 
 from pydantic import Field
 
-from lavendersim.cell.shapes.shape import Homogeneous, Length, Primitive, ball
+from lavendersim.cell.shapes.shape import Homogeneous, Length, MinkowskiSum, Primitive, ball
 from lavendersim.quantities.quantity import Vector3
 
 
@@ -44,6 +44,10 @@ class Sphere(Primitive):
         """Return volume and moments of inertia."""
         moment = 0.4 * (self.radius * self.radius)
         return Homogeneous(4.0 / 3.0 * math.pi * self.radius**3, (moment, moment, moment))
+
+    def minkowski_sum(self) -> MinkowskiSum:
+        """Return itself."""
+        return MinkowskiSum(ball=self.radius)
 
     def row(self) -> dict[str, float]:
         """Return its radius."""

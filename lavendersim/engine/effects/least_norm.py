@@ -51,7 +51,7 @@ def contact_fields(spec: Spec) -> list[Field]:
     """Return the columns of the face of Coulomb's cone that a contact's impulse is on."""
     sliding = [
         *[("slip_1", "f8"), ("slip_2", "f8")],  # of the solve [m/s]
-        *[("held_1", "f8"), ("held_2", "f8")],  # friction, for a round [N s]
+        *[("given_1", "f8"), ("given_2", "f8")],  # friction of what slides, given for a round [N s]
     ]
     # See `solvers.newton.faces`.
     return [("face", "i8"), *(sliding if spec.has("friction") else ())]

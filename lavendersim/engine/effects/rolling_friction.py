@@ -66,10 +66,10 @@ def make_residual(spec):
     from ..cone import project_disc
 
     def rolling_residual(contact, w1, w2):
-        held_1, held_2 = contact.k_roll * contact.psi_1, contact.k_roll * contact.psi_2
+        scaled_1, scaled_2 = contact.k_roll * contact.psi_1, contact.k_roll * contact.psi_2
         limit = contact.k_roll * contact.rolling * contact.lambda_n
-        new_1, new_2 = project_disc(held_1 - w1, held_2 - w2, limit)
-        new_1, new_2 = new_1 - held_1, new_2 - held_2
+        new_1, new_2 = project_disc(scaled_1 - w1, scaled_2 - w2, limit)
+        new_1, new_2 = new_1 - scaled_1, new_2 - scaled_2
         return sqrt(new_1 * new_1 + new_2 * new_2)
 
     return kernel(rolling_residual, spec)

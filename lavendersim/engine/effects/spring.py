@@ -13,7 +13,6 @@ dt, and takes from the energy. Springs act after other forces; what they join do
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import sqrt
 from typing import Annotated, Any
 
 from pydantic import Field as ModelField
@@ -94,18 +93,20 @@ def decide(facts: Facts) -> Decision:
 
 
 def make_place(spec: Spec) -> Kernel:
-    """Return `kernel(link, body_a, body_b) -> (length, d, r_a, r_b)`; d 0 at length 0."""
-    from ..rotation import to_world
+    """Return `kernel(link, body_a, body_b) -> SpringPose`; its direction is 0 at length 0."""
+    from ..spring_midpoint import SpringPose
+    from ..vectors import Vec3, from_body, length, scaled
 
     def place(link, body_a, body_b):
-        rax, ray, raz = to_world(body_a, link.ax, link.ay, link.az)
-        rbx, rby, rbz = to_world(body_b, link.bx, link.by, link.bz)
-        x = body_b.x + rbx - body_a.x - rax
-        y = body_b.y + rby - body_a.y - ray
-        z = body_b.z + rbz - body_a.z - raz
-        length = sqrt(x * x + y * y + z * z)
-        scale = 1.0 / length if length > 0.0 else 0.0
-        return length, (x * scale, y * scale, z * scale), (rax, ray, raz), (rbx, rby, rbz)
+        r_a = from_body(body_a, Vec3(link.ax, link.ay, link.az))
+        r_b = from_body(body_b, Vec3(link.bx, link.by, link.bz))
+        between = Vec3(
+            body_b.x + r_b.x - body_a.x - r_a.x,
+            body_b.y + r_b.y - body_a.y - r_a.y,
+            body_b.z + r_b.z - body_a.z - r_a.z,
+        )
+        size = length(between)
+        return SpringPose(size, scaled(1.0 / size if size > 0.0 else 0.0, between), r_a, r_b)
 
     return kernel(place, spec)
 
@@ -114,6 +115,7 @@ def make_act(spec: Spec) -> Kernel:
     """Return `kernel(links, bodies, velocities, motion, params)`: springs change velocities."""
     from ..rotation import inverse_inertia_times
     from ..spring_midpoint import make_act_midway
+    from ..vectors import cross
 
     place = make_place(spec)
     if spec.has("midpoint"):
@@ -129,33 +131,26 @@ def make_act(spec: Spec) -> Kernel:
                 continue
             body_a, body_b = bodies[link.a], bodies[link.b]
             va, vb = velocities[link.a], velocities[link.b]
-            length, d, ra, rb = place(link, body_a, body_b)
-            dx, dy, dz = d
+            now = place(link, body_a, body_b)
+            d = now.d
             response = body_a.inv_m + body_b.inv_m
-            rate = dx * (vb.vx - va.vx) + dy * (vb.vy - va.vy) + dz * (vb.vz - va.vz)
+            rate = d.x * (vb.vx - va.vx) + d.y * (vb.vy - va.vy) + d.z * (vb.vz - va.vz)
             if turns:
-                lax, lay, laz = (
-                    ra[1] * dz - ra[2] * dy,
-                    ra[2] * dx - ra[0] * dz,
-                    ra[0] * dy - ra[1] * dx,
+                la, lb = cross(now.r_a, d), cross(now.r_b, d)
+                tax, tay, taz = inverse_inertia_times(body_a, la.x, la.y, la.z)
+                tbx, tby, tbz = inverse_inertia_times(body_b, lb.x, lb.y, lb.z)
+                response += (
+                    la.x * tax + la.y * tay + la.z * taz + lb.x * tbx + lb.y * tby + lb.z * tbz
                 )
-                lbx, lby, lbz = (
-                    rb[1] * dz - rb[2] * dy,
-                    rb[2] * dx - rb[0] * dz,
-                    rb[0] * dy - rb[1] * dx,
-                )
-                tax, tay, taz = inverse_inertia_times(body_a, lax, lay, laz)
-                tbx, tby, tbz = inverse_inertia_times(body_b, lbx, lby, lbz)
-                response += lax * tax + lay * tay + laz * taz + lbx * tbx + lby * tby + lbz * tbz
-                rate += lbx * vb.wx + lby * vb.wy + lbz * vb.wz
-                rate -= lax * va.wx + lay * va.wy + laz * va.wz
+                rate += lb.x * vb.wx + lb.y * vb.wy + lb.z * vb.wz
+                rate -= la.x * va.wx + la.y * va.wy + la.z * va.wz
             if response > 0.0:
                 s = link.stiffness * dt + link.damping
-                force = link.stiffness * (length - link.rest_length) + s * rate
+                force = link.stiffness * (now.length - link.rest_length) + s * rate
                 force /= 1.0 + dt * s * response
                 link.force = force
                 j = dt * force
-                px, py, pz = j * dx, j * dy, j * dz
+                px, py, pz = j * d.x, j * d.y, j * d.z
                 link.px, link.py, link.pz = px, py, pz
                 va.vx += px * body_a.inv_m
                 va.vy += py * body_a.inv_m
@@ -182,8 +177,7 @@ def make_link_row(spec: Spec) -> Kernel:
             if link.active == 0:
                 continue
             body_a, body_b = bodies[link.a], bodies[link.b]
-            length, _, _, _ = place(link, body_a, body_b)
-            stretch = length - link.rest_length
+            stretch = place(link, body_a, body_b).length - link.rest_length
             energy += 0.5 * link.stiffness * stretch * stretch
             if abs(stretch) > abs(stretched):
                 stretched = stretch

@@ -99,7 +99,7 @@ EFFECT = Effect(
             name="stribeck_velocity",
             type=Annotated[float, Quantity("m/s", above=0)],
             default=0.001,
-            doc="[m/s] slip at which half of what is held more at rest is left; the larger of two",
+            doc="[m/s] slip at which half of what static friction adds is left; the larger of two",
             mix=larger,
         ),
     ),

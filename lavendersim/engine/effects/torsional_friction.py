@@ -55,9 +55,9 @@ def make_residual(spec):
     """Return `kernel(contact, spin) -> r` [rad/s]: |k psi_n - clamp(k psi_n - omega_n)|."""
 
     def torsion_residual(contact, spin):
-        held = contact.k_torsion * contact.psi_n
+        scaled = contact.k_torsion * contact.psi_n
         limit = contact.k_torsion * contact.torsional * contact.lambda_n
-        return abs(min(max(held - spin, -limit), limit) - held)
+        return abs(min(max(scaled - spin, -limit), limit) - scaled)
 
     return kernel(torsion_residual, spec)
 

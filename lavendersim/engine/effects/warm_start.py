@@ -59,7 +59,7 @@ def make(spec):
                     contact.matched = 1
                     contact.lambda_n = cache[chosen].lambda_n * scale
                     if friction:
-                        # What the old tangent plane held, seen in the new one; the first sweep
+                        # The impulse in the old tangent plane, in the new one; the first sweep
                         # brings it back into the disc.
                         old = cache[chosen]
                         contact.lambda_1 = scale * (

@@ -46,7 +46,7 @@ ROUND_OFF = 1e-9
 LOOK = 8
 
 
-class Progress(NamedTuple):
+class StepSums(NamedTuple):
     """What one contact's step, or the sum over contacts, says of the next step."""
 
     uphill: float  # gradient times change: above 0 the momentum is dropped
@@ -57,7 +57,7 @@ class Progress(NamedTuple):
 
 
 def make_advance(spec: Spec) -> Any:
-    """Return `kernel(contact, velocities, beta, theta) -> Progress`: one contact's step."""
+    """Return `kernel(contact, velocities, beta, theta) -> StepSums`: one contact's step."""
     friction, compliant = spec.has("friction"), spec.has("compliance")
     shifts = spec.friction_cone != "convex"
     contact_velocity = make_contact_velocity(spec)
@@ -108,7 +108,7 @@ def make_advance(spec: Spec) -> Any:
         if friction:
             contact.lambda_1, contact.lambda_2 = one + y, two + z
         uphill = (base_n - n - x) * x + (base_1 - one - y) * y + (base_2 - two - z) * z
-        return Progress(bound * uphill, curvature, bound_curvature, natural_map, shift_defect)
+        return StepSums(bound * uphill, curvature, bound_curvature, natural_map, shift_defect)
 
     return kernel(advance, spec)
 

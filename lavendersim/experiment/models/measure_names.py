@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from lavendersim.experiment.text.place import Place
-from lavendersim.measures.specs.arithmetic import OPERANDS, Derived
+from lavendersim.measures.specs.arithmetic import OPERANDS, OfMeasures
 from lavendersim.measures.specs.catalogue import KINDS
 from lavendersim.quantities.found import quoted
 
@@ -14,7 +14,7 @@ def measure_rules(at: Place) -> None:
     above: list[str] = []
     for name, node in measures.items():
         kind = node.get("kind").text
-        if kind in KINDS and issubclass(KINDS[kind], Derived):
+        if kind in KINDS and issubclass(KINDS[kind], OfMeasures):
             for key in OPERANDS:
                 operand = node.get(key)
                 if operand.text in measures and operand.text not in above:

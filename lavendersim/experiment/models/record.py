@@ -6,7 +6,7 @@ from typing import Annotated, Final, Literal
 
 from pydantic import Field, Tag
 
-from lavendersim.cell.record import ALL, NONE, EverySteps
+from lavendersim.cell.record import ALL, NONE, EveryOrAll, EveryOrNone
 from lavendersim.experiment.models.tree import after_the_end, not_after
 from lavendersim.experiment.text.place import Place
 from lavendersim.quantities.model import ConfigModel
@@ -40,7 +40,7 @@ Residuals = Annotated[
 # A number is read as the text, which says how it would be right.
 _STEPS_FORM: Final = {str: "every", int: "every", dict: "window"}
 Steps = Annotated[
-    Annotated[str, EverySteps(ALL), Tag("every")] | Annotated[Window, Tag("window")],
+    Annotated[EveryOrAll, Tag("every")] | Annotated[Window, Tag("window")],
     either("all, every N or {from: seconds, to: seconds}", _STEPS_FORM),
 ]
 
@@ -53,7 +53,7 @@ class Record(ConfigModel):
     )
     poses: Steps = Field(default=ALL, description="of which steps: all, every N, or {from, to} [s]")
     residuals: Residuals = Field(default="none", description="[m/s] residual of every sweep")
-    problems: Annotated[str, EverySteps()] = Field(
+    problems: EveryOrNone = Field(
         default=NONE,
         description="none, or every N: the contact problems of steps N, 2 N, ... as FCLIB files",
     )

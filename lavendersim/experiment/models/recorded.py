@@ -1,4 +1,4 @@
-"""What is not recorded of every step cannot be measured, drawn or held over every step.
+"""What is not recorded of every step cannot be measured, drawn or checked in every step.
 
 record: {contacts: every 4}
 measure: {force: {kind: peak_force, body: ball}}   # refused: it takes the contacts of every step
@@ -7,21 +7,13 @@ measure: {force: {kind: peak_force, body: ball}}   # refused: it takes the conta
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Protocol
 
 from lavendersim.cell.record import ALL
 from lavendersim.experiment.text.node import Node
 from lavendersim.experiment.text.place import Place
 from lavendersim.figures.specs.catalogue import KINDS as PANELS
 from lavendersim.measures.specs.catalogue import KINDS as MEASURES
-from lavendersim.quantities.readings import EVERYTHING, Readings
-
-
-class Reader(Protocol):
-    """A kind of measure or panel."""
-
-    def reads(self, given: Mapping[str, str | None]) -> Readings:
-        """Return what it takes of every step."""
+from lavendersim.quantities.readings import EVERYTHING, Reader, Readings
 
 
 def not_recorded(root: Node, taken: Readings) -> str | None:
@@ -45,7 +37,7 @@ def recording_rules(at: Place) -> None:
         _refuse(at, panel, PANELS)
 
 
-def _refuse(at: Place, node: Node, kinds: Mapping[str, Reader]) -> None:
+def _refuse(at: Place, node: Node, kinds: Mapping[str, type[Reader]]) -> None:
     kind = node.get("kind")
     if kind.text is None or kind.text not in kinds:
         return

@@ -25,7 +25,7 @@ MOST_CELLS = 100_000
 
 
 @dataclass(frozen=True)
-class Axis:
+class SweptAxis:
     """One swept value: its name, where it stands in the config, and the nodes of its values."""
 
     name: str
@@ -34,10 +34,10 @@ class Axis:
 
 
 @dataclass(frozen=True)
-class Point:
+class SweepPoint:
     """One cell of the sweep before it is resolved: the nodes to graft in, axis by axis."""
 
-    choices: tuple[tuple[Axis, Node], ...]
+    choices: tuple[tuple[SweptAxis, Node], ...]
 
     @property
     def coordinates(self) -> dict[str, Any]:
@@ -65,12 +65,12 @@ def swept_value(value: Any) -> Any:
     return value
 
 
-def axes_of(root: Node, report: Report) -> tuple[tuple[Axis, ...], ...]:
+def axes_of(root: Node, report: Report) -> tuple[tuple[SweptAxis, ...], ...]:
     """Return the axes of each product, without those that are refused here."""
-    read: list[tuple[Axis, ...]] = []
+    read: list[tuple[SweptAxis, ...]] = []
     paths: dict[str, Path] = {}
     for product in products(root):
-        axes: list[Axis] = []
+        axes: list[SweptAxis] = []
         for name, node in product.entries.items():
             axis = _axis(name, node, root, report)
             if axis is None:
@@ -87,30 +87,30 @@ def axes_of(root: Node, report: Report) -> tuple[tuple[Axis, ...], ...]:
     return tuple(read)
 
 
-def points(axes: tuple[tuple[Axis, ...], ...]) -> Iterator[Point]:
+def points(axes: tuple[tuple[SweptAxis, ...], ...]) -> Iterator[SweepPoint]:
     """Yield all cells: product after product, the first axis slowest; one without a sweep."""
     for product in axes or ((),):
         for nodes in itertools.product(*(axis.values for axis in product)):
-            yield Point(tuple(zip(product, nodes, strict=True)))
+            yield SweepPoint(tuple(zip(product, nodes, strict=True)))
 
 
-def count(axes: tuple[tuple[Axis, ...], ...]) -> int:
+def count(axes: tuple[tuple[SweptAxis, ...], ...]) -> int:
     """Return the number of cells without making them."""
     return sum(math.prod(len(axis.values) for axis in product) for product in axes or ((),))
 
 
-def telling_points(axes: tuple[tuple[Axis, ...], ...]) -> Iterator[Point]:
+def telling_points(axes: tuple[tuple[SweptAxis, ...], ...]) -> Iterator[SweepPoint]:
     """Yield a few cells in which every value of every axis stands once, for large sweeps."""
     for product in axes or ((),):
         if not product:
-            yield Point(())
+            yield SweepPoint(())
         first = [(axis, axis.values[0]) for axis in product]
         for index, axis in enumerate(product):
             for node in axis.values:
-                yield Point((*first[:index], (axis, node), *first[index + 1 :]))
+                yield SweepPoint((*first[:index], (axis, node), *first[index + 1 :]))
 
 
-def check_distinct(axes: tuple[tuple[Axis, ...], ...], report: Report) -> None:
+def check_distinct(axes: tuple[tuple[SweptAxis, ...], ...], report: Report) -> None:
     """Note cells that stand twice in a union of products."""
     seen: set[str] = set()
     for product in axes if len(axes) > 1 else ():
@@ -123,13 +123,13 @@ def check_distinct(axes: tuple[tuple[Axis, ...], ...], report: Report) -> None:
             seen.add(label)
 
 
-def _axis(name: str, node: Node, root: Node, report: Report) -> Axis | None:
+def _axis(name: str, node: Node, root: Node, report: Report) -> SweptAxis | None:
     path_node, values = node.get("path"), node.get("values")
     if path_node.text is None or not values.items:
         return None  # refused by the model
     path = find_path(path_node, root, report)
     usable = _usable(name, values, report, nullable=path == ("numerics", "tolerance"))
-    return Axis(name, path, usable) if path is not None and usable else None
+    return SweptAxis(name, path, usable) if path is not None and usable else None
 
 
 def _usable(name: str, values: Node, report: Report, nullable: bool) -> tuple[Node, ...]:

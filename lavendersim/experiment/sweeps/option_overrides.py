@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Final
 
-from lavendersim.experiment.sweeps.axes import Axis, opened
+from lavendersim.experiment.sweeps.axes import SweptAxis, opened
 from lavendersim.experiment.sweeps.paths import find_path
 from lavendersim.experiment.text.node import Mark, Node, graft
 from lavendersim.experiment.text.parse import parse
@@ -48,7 +48,7 @@ def with_overrides(root: Node, overrides: Sequence[str], report: Report) -> Node
     return root
 
 
-def check_untouched(root: Node, axes: Sequence[Sequence[Axis]], report: Report) -> None:
+def check_untouched(root: Node, axes: Sequence[Sequence[SweptAxis]], report: Report) -> None:
     """Note values that were set where an axis varies them."""
     varied = {axis.path: axis.name for product in axes for axis in product}
     for path, name in varied.items():

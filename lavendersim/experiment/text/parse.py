@@ -56,13 +56,13 @@ def parse(raw: bytes, report: Report, size: int | None = None) -> Node | None:
 
     `size` is the length of the file [byte] when `raw` is only its beginning.
     """
-    reading = _Reading(report)
+    composer = _Composer(report)
     # The tree has no circles, and at most MOST_VALUES nodes: looking for some while it grows takes
     # as long as reading it.
     collects = gc.isenabled()
     gc.disable()
     try:
-        return reading.compose(reading.decode(raw, size or len(raw)))
+        return composer.compose(composer.decode(raw, size or len(raw)))
     except _Stop:
         return None
     finally:
@@ -76,7 +76,7 @@ def decode(raw: bytes) -> str:
     return raw.removeprefix(codecs.BOM_UTF8).decode("utf-8")
 
 
-class _Reading:
+class _Composer:
     def __init__(self, report: Report) -> None:
         self.report = report
         self.stack: list[_Open] = []

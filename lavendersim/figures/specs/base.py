@@ -5,8 +5,7 @@ A kind is a subclass of `Panel` with a field `kind: Literal["its_name"]`.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from pydantic import Field
 
@@ -15,7 +14,7 @@ from lavendersim.measures.specs.selection import Selection
 from lavendersim.quantities.model import ConfigModel
 from lavendersim.quantities.names import AxisName
 from lavendersim.quantities.quantity import Quantity
-from lavendersim.quantities.readings import EVERYTHING, Readings
+from lavendersim.quantities.readings import Reader
 
 Scale = Literal["linear", "log"]
 Number = Annotated[float, Quantity()]
@@ -35,19 +34,11 @@ class Level(ConfigModel):
     label: str = Field(min_length=1, description="its entry in the legend")
 
 
-class Panel(ConfigModel):
+class Panel(Reader):
     """What every kind of panel may carry."""
 
     if TYPE_CHECKING:
         kind: str  # of each subclass a Literal of its own
-
-    # What it draws of every step of a log itself; of a kind that does not say, anything.
-    READS: ClassVar[Readings] = EVERYTHING
-
-    @classmethod
-    def reads(cls, given: Mapping[str, str | None]) -> Readings:
-        """Return what it draws of every step; given: the keys of a config, with their texts."""
-        return cls.READS
 
     title: str = Field(default="", description="one idea, above the panel")
     x_label: str = Field(min_length=1, description="x axis, with its unit in brackets")

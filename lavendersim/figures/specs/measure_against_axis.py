@@ -29,7 +29,7 @@ class MeasureAgainstAxis(Panel):
     kind: Literal["measure_against_axis"]
     measure: MeasureName = Field(description="the measure on the y axis")
     axis: AxisName = Field(description="the swept axis on the x axis")
-    ideal: Ideal | None = Field(default=None, description="the closed form it is held against")
+    ideal: Ideal | None = Field(default=None, description="the closed form it is compared with")
     factor: Number = Field(
         default=1.0, description="multiplies measure and ideal for display (1000: m as mm)"
     )

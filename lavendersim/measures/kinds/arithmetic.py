@@ -21,7 +21,7 @@ STATISTICS: Final[dict[str, Callable[[Floats], Any]]] = {
 }
 
 
-def derived(spec: specs.Derived, rows: Sequence[Floats]) -> Floats:
+def derived(spec: specs.OfMeasures, rows: Sequence[Floats]) -> Floats:
     """Return a measure of measures; rows: the numbers of its operands, in their order.
 
     LavenderError for rows of different lengths, unless one is a single number.

@@ -10,7 +10,7 @@ import math
 import numpy as np
 
 from lavendersim.geometry.bodies import is_movable
-from lavendersim.geometry.rotations import rotation_matrix, unit_quaternion
+from lavendersim.geometry.rotations import rotation_matrix, turns_between, unit_quaternion
 from lavendersim.measures.interfaces import Floats, Trace
 from lavendersim.measures.registration import measure
 from lavendersim.measures.specs import kinematics as specs
@@ -43,7 +43,7 @@ def mean_angular_velocity(spec: specs.MeanAngularVelocity, trace: Trace) -> floa
     if not rows:
         return NAN
     turns = trace.pose[rows[0] : rows[1] + 1, list(trace.bodies).index(spec.body), 3:]
-    w, vector = _between(turns[:-1], turns[1:])
+    w, vector = turns_between(turns[:-1], turns[1:])
     size = np.sqrt((vector**2).sum(axis=1))
     # sin(a/2) -> a/2, so a/sin(a/2) -> 2 as the turn goes to zero
     angle = 2.0 * np.arctan2(size, w)
@@ -108,16 +108,6 @@ def _speeds(trace: Trace, bodies: tuple[str, ...]) -> tuple[Floats, Floats]:
     seconds = trace.clock.elapsed(steps[:-1], steps[1:])
     speeds: Floats = np.sqrt((displacements**2).sum(axis=2)).max(axis=1) / seconds
     return speeds, np.asarray(trace.step["time"])[1:]
-
-
-def _between(before: Floats, after: Floats) -> tuple[Floats, Floats]:
-    """Return the scalar and the vector of after * before^-1, the shorter way round."""
-    w0, u0 = before[:, 0], before[:, 1:]
-    w1, u1 = after[:, 0], after[:, 1:]
-    w = w0 * w1 + (u0 * u1).sum(axis=1)
-    vector = w0[:, None] * u1 - w1[:, None] * u0 - np.cross(u1, u0)
-    sign = np.where(w < 0.0, -1.0, 1.0)
-    return sign * w, sign[:, None] * vector
 
 
 def _unit(direction: tuple[float, float, float]) -> Floats:

@@ -11,7 +11,7 @@ from lavendersim.measures.columns import last_window
 from lavendersim.measures.interfaces import Floats, Trace
 from lavendersim.measures.penetration import depths
 from lavendersim.measures.registration import measure
-from lavendersim.measures.solids import Placed, extents, near_pairs, solids_of
+from lavendersim.measures.solids import PlacedSolids, Solids, extents, near_pairs, solids_of
 from lavendersim.measures.specs.overlap import Overlap
 
 NAN = float("nan")
@@ -37,29 +37,27 @@ def overlap_of_rows(trace: Trace, rows: Any) -> Floats:
     for index, row in enumerate(rows):
         placed = solids.placed(poses[row])
         found = [
-            *_with_planes(solids.kind, placed, solids.movable, grounds),
-            *_among_solids(solids.kind, placed, solids.movable),
+            *_with_planes(solids, placed, grounds),
+            *_among_solids(solids, placed),
         ]
         # np.max, not fmax: one depth that is unknown leaves the deepest unknown
         deepest[index] = max(0.0, np.max(found)) if not np.isnan(found).any() else NAN
     return deepest
 
 
-def _with_planes(
-    kind: np.ndarray, placed: Placed, movable: np.ndarray, grounds: list[HalfSpace]
-) -> list[float]:
+def _with_planes(solids: Solids, placed: PlacedSolids, grounds: list[HalfSpace]) -> list[float]:
     found = [0.0]
     for normal, offset in grounds:
-        inside = offset - placed.position @ normal + extents(kind, placed, -normal)
-        inside = inside[movable]
+        inside = offset - placed.position @ normal + extents(solids.sums, placed, -normal)
+        inside = inside[solids.movable]
         found += [float(np.max(np.where(np.isinf(inside), NAN, inside)))] if len(inside) else []
     return found
 
 
-def _among_solids(kind: np.ndarray, placed: Placed, movable: np.ndarray) -> list[float]:
-    first, second = near_pairs(kind, placed, movable)
+def _among_solids(solids: Solids, placed: PlacedSolids) -> list[float]:
+    first, second = near_pairs(solids.sums, placed, solids.movable)
     found = [0.0]
-    kinds = np.stack([kind[first], kind[second]], axis=1)
+    kinds = np.stack([solids.kind[first], solids.kind[second]], axis=1)
     for kind_a, kind_b in np.unique(kinds, axis=0):
         alike = (kinds == (kind_a, kind_b)).all(axis=1)
         a, b = placed.take(first[alike]), placed.take(second[alike])

@@ -20,7 +20,7 @@ OPERANDS: Final = ("measure", "to", "minus")  # keys that name a measure
 Statistic = Literal["max", "min", "mean", "sum", "first", "last"]
 
 
-class Derived(Measure):
+class OfMeasures(Measure):
     """A measure of measures that stand above it in the file."""
 
     READS = SUMS  # those it is of take what they need
@@ -33,7 +33,7 @@ class Derived(Measure):
         return (self.measure,)
 
 
-class Ratio(Derived):
+class Ratio(OfMeasures):
     """A measure over another; NaN where that is 0. Of rows number by number."""
 
     kind: Literal["ratio"]
@@ -45,7 +45,7 @@ class Ratio(Derived):
         return (self.measure, self.to)
 
 
-class DifferenceOf(Derived):
+class DifferenceOf(OfMeasures):
     """A measure less another, in their unit. Of rows number by number."""
 
     kind: Literal["difference"]
@@ -57,7 +57,7 @@ class DifferenceOf(Derived):
         return (self.measure, self.minus)
 
 
-class OfRow(Derived):
+class OfRow(OfMeasures):
     """One number of a row of numbers, in its unit; NaN where the row has a NaN."""
 
     kind: Literal["of_row"]

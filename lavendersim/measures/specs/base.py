@@ -9,8 +9,7 @@ A kind is a subclass of `Measure` with a field `kind: Literal["its_name"]`. Ever
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Annotated, ClassVar, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
@@ -18,7 +17,7 @@ from lavendersim.measures.specs.selection import Selection
 from lavendersim.quantities.model import ConfigModel
 from lavendersim.quantities.names import BodyName
 from lavendersim.quantities.quantity import Quantity, sentence_error
-from lavendersim.quantities.readings import CONTACTS, EVERYTHING, Readings
+from lavendersim.quantities.readings import CONTACTS, Reader
 
 FormName = Literal[
     "newton_impulse",
@@ -44,19 +43,11 @@ class ClosedForm(ConfigModel):
     )
 
 
-class Measure(ConfigModel):
+class Measure(Reader):
     """What every kind of measure may carry."""
 
     if TYPE_CHECKING:
         kind: str  # of each subclass a Literal of its own
-
-    # What it takes of every step of a log; of a kind that does not say, anything.
-    READS: ClassVar[Readings] = EVERYTHING
-
-    @classmethod
-    def reads(cls, given: Mapping[str, str | None]) -> Readings:
-        """Return what it takes of every step; given: the keys of a config, with their texts."""
-        return cls.READS
 
     at: Selection = Field(
         default_factory=dict, description="the cells it is taken in; all when absent"

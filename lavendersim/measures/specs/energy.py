@@ -11,23 +11,23 @@ from lavendersim.quantities.names import BodyName, PlaneName
 from lavendersim.quantities.quantity import Quantity
 
 
-class EnergyByBounce(Measure):
+class _OverBounces(Measure):
+    """A body that bounces on a plane, so many times."""
+
+    body: BodyName = Field(description="the bouncing body; the only movable one")
+    above: PlaneName = Field(description="the plane it bounces on; energy is zero at rest on it")
+    bounces: Annotated[int, Quantity("", minimum=1, whole=True)] = Field(
+        description="how many bounces [-]"
+    )
+
+
+class EnergyByBounce(_OverBounces):
     """Relative change of mechanical energy at the apex after bounce 1, 2, ... (a row)."""
 
     kind: Literal["energy_by_bounce"]
-    body: BodyName = Field(description="the bouncing body; the only movable one")
-    above: PlaneName = Field(description="the plane it bounces on; energy is zero at rest on it")
-    bounces: Annotated[int, Quantity("", minimum=1, whole=True)] = Field(
-        description="how many bounces [-]"
-    )
 
 
-class EnergyAfterBounces(Measure):
+class EnergyAfterBounces(_OverBounces):
     """The last number of `energy_by_bounce`."""
 
     kind: Literal["energy_after_bounces"]
-    body: BodyName = Field(description="the bouncing body; the only movable one")
-    above: PlaneName = Field(description="the plane it bounces on; energy is zero at rest on it")
-    bounces: Annotated[int, Quantity("", minimum=1, whole=True)] = Field(
-        description="how many bounces [-]"
-    )

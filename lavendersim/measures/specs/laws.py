@@ -28,38 +28,32 @@ class ForceError(Measure):
     last: Seconds = Field(default=1.0, description="length of the window at the end [s]")
 
 
-class EnergyDrift(Measure):
+class _EnergyChange(Measure):
+    """What the measures of the energy of a scene that keeps it have in common."""
+
+    body: BodyName | None = Field(
+        default=None, description="with `above`: the only movable body; it is at rest on the plane"
+    )
+    above: PlaneName | None = Field(
+        default=None, description="where its potential energy is zero; the world's origin if absent"
+    )
+
+    @classmethod
+    def reads(cls, given: Mapping[str, str | None]) -> Readings:
+        """Its height above the plane, where it is given one."""
+        return POSES if "above" in given else SUMS
+
+
+class EnergyDrift(_EnergyChange):
     """Largest |E/E0 - 1| [-] of the scene's kinetic and potential energy over the run."""
 
     kind: Literal["energy_drift"]
-    body: BodyName | None = Field(
-        default=None, description="with `above`: the only movable body; it is at rest on the plane"
-    )
-    above: PlaneName | None = Field(
-        default=None, description="where its potential energy is zero; the world's origin if absent"
-    )
-
-    @classmethod
-    def reads(cls, given: Mapping[str, str | None]) -> Readings:
-        """Its height above the plane, where it is given one."""
-        return POSES if "above" in given else SUMS
 
 
-class EnergyGain(Measure):
+class EnergyGain(_EnergyChange):
     """Largest E/E0 - 1 [-] over the run: above 0 where energy was gained."""
 
     kind: Literal["energy_gain"]
-    body: BodyName | None = Field(
-        default=None, description="with `above`: the only movable body; it is at rest on the plane"
-    )
-    above: PlaneName | None = Field(
-        default=None, description="where its potential energy is zero; the world's origin if absent"
-    )
-
-    @classmethod
-    def reads(cls, given: Mapping[str, str | None]) -> Readings:
-        """Its height above the plane, where it is given one."""
-        return POSES if "above" in given else SUMS
 
 
 class AngularMomentumDrift(Measure):

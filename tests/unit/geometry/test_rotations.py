@@ -13,6 +13,7 @@ from lavendersim.geometry.rotations import (
     rotation_matrices,
     rotation_matrix,
     shortest_turn,
+    turns_between,
     unit_quaternion,
 )
 from lavendersim.geometry.vectors import unit
@@ -48,6 +49,20 @@ def test_a_quarter_turn_about_z_takes_x_to_y() -> None:
 def test_a_third_of_a_turn_about_the_diagonal_permutes_the_axes() -> None:
     turned = rotated(np.full(4, 0.5), np.eye(3))
     np.testing.assert_allclose(turned, np.eye(3)[[1, 2, 0]], atol=1e-16)
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_the_turn_between_two_orientations_leads_from_one_to_the_other(sign: float) -> None:
+    """And by no more than half a turn: q and -q are one orientation."""
+    before = RANDOM[:10] / np.linalg.norm(RANDOM[:10], axis=1)[:, None]
+    after = sign * RANDOM[10:] / np.linalg.norm(RANDOM[10:], axis=1)[:, None]
+    cosine, sine = turns_between(before, after)
+    assert np.all(cosine >= 0.0)
+    for k in range(10):
+        turn = np.array([cosine[k], *sine[k]])
+        turned = rotation_matrix(turn) @ rotation_matrix(before[k])
+        # a few dozen products of numbers below 1
+        np.testing.assert_allclose(turned, rotation_matrix(after[k]), atol=3e-15)
 
 
 def test_vectors_turn_as_by_the_matrix() -> None:

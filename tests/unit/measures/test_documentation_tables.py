@@ -11,7 +11,7 @@ from lavendersim.measures.closed_forms import FORMS
 from lavendersim.measures.documentation import TABLES, with_tables
 from lavendersim.measures.registration import FUNCTIONS
 from lavendersim.measures.registry import evaluate
-from lavendersim.measures.specs.arithmetic import Derived
+from lavendersim.measures.specs.arithmetic import OfMeasures
 from lavendersim.measures.specs.base import FormName
 from lavendersim.measures.specs.catalogue import KINDS
 
@@ -31,7 +31,7 @@ def test_every_table_stands_in_the_document_once(name: str) -> None:
 
 def test_every_kind_has_a_function_and_every_function_a_kind() -> None:
     assert callable(evaluate)  # importing it has registered the functions
-    of_logs = {model for model in KINDS.values() if not issubclass(model, Derived)}
+    of_logs = {model for model in KINDS.values() if not issubclass(model, OfMeasures)}
     assert set(FUNCTIONS) == of_logs  # the others are of measures, and `derived` has them
 
 

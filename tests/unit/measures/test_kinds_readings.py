@@ -12,7 +12,7 @@ from synthetic import SyntheticTrace, ball_and_floor, trace_of
 from lavendersim.figures.panels.time_series import window_of
 from lavendersim.figures.specs.time_series import Column, TimeSeries
 from lavendersim.measures.registry import evaluate
-from lavendersim.measures.specs.arithmetic import Derived
+from lavendersim.measures.specs.arithmetic import OfMeasures
 from lavendersim.measures.specs.base import Measure
 from lavendersim.measures.specs.catalogue import KINDS
 from lavendersim.quantities.readings import CONTACTS, EVERYTHING, POSES
@@ -90,7 +90,7 @@ def spec_of(model: type[Measure], *optional: str) -> Measure:
     return model.model_validate({"kind": kind, **given})
 
 
-OF_LOGS = [kind for kind, model in KINDS.items() if not issubclass(model, Derived)]
+OF_LOGS = [kind for kind, model in KINDS.items() if not issubclass(model, OfMeasures)]
 
 
 @pytest.mark.parametrize("kind", OF_LOGS)

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 from synthetic_trace import ball_and_box
 
-from lavendersim.replay.pair import Pair, distances_of
+from lavendersim.replay.pair import LogPair, distances_of
 
 
 def moved(metres, body="ball", first=0):
@@ -18,14 +18,14 @@ def moved(metres, body="ball", first=0):
 
 
 def test_a_log_is_nowhere_apart_from_itself(two_bodies):
-    found = distances_of(Pair(two_bodies, ball_and_box(), "a", "b"))
+    found = distances_of(LogPair(two_bodies, ball_and_box(), "a", "b"))
     assert {one.body for one in found.bodies} == {"ball", "box"}
     assert all((one.metres == 0.0).all() for one in found.bodies)
     assert (found.times == two_bodies.step["time_ns"]).all()
 
 
 def test_the_farthest_body_comes_first_from_the_step_where_it_parts(two_bodies):
-    found = distances_of(Pair(two_bodies, moved(0.25, first=100), "a", "b"))
+    found = distances_of(LogPair(two_bodies, moved(0.25, first=100), "a", "b"))
     ball = found.bodies[0]
     assert ball.body == "ball"
     # y of the ball is 0, so 0.25 is added without round-off
@@ -35,7 +35,7 @@ def test_the_farthest_body_comes_first_from_the_step_where_it_parts(two_bodies):
 def test_of_another_timestep_the_common_times_count(two_bodies):
     other = moved(0.5)
     half = replace(other, step=other.step[::2], pose=other.pose[::2])
-    found = distances_of(Pair(two_bodies, half, "a", "b"))
+    found = distances_of(LogPair(two_bodies, half, "a", "b"))
     assert (found.times == other.step["time_ns"][::2]).all()
     assert (found.bodies[0].metres == 0.5).all()
 
@@ -45,4 +45,6 @@ def test_a_body_of_one_log_alone_has_no_distance(two_bodies):
     ball = other.bodies.index("ball")
     bodies = [name for name in other.bodies if name != "ball"]
     without = replace(other, bodies=bodies, pose=np.delete(other.pose, ball, axis=1))
-    assert [one.body for one in distances_of(Pair(two_bodies, without, "a", "b")).bodies] == ["box"]
+    assert [one.body for one in distances_of(LogPair(two_bodies, without, "a", "b")).bodies] == [
+        "box"
+    ]

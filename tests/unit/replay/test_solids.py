@@ -9,12 +9,12 @@ import pytest
 import rerun as rr
 
 from lavendersim.geometry.shapes import Piece
-from lavendersim.replay.shapes import Shape, shapes
-from lavendersim.replay.solids import Look, archetypes
+from lavendersim.replay.shapes import DrawnBody, shapes
+from lavendersim.replay.solids import BodyLook, archetypes
 from tests.made_cells import MadeShape
 from tests.oracle.cells import cell
 
-LOOK = Look((1, 2, 3), False, "thing", True)
+LOOK = BodyLook((1, 2, 3), False, "thing", True)
 TURN = [0.5, 0.5, 0.5, 0.5]  # w x y z: x to y, y to z, z to x
 TETRA = {
     "kind": "hull",
@@ -28,12 +28,12 @@ TETRA = {
 }
 
 
-def shape_of(shape: dict[str, Any]) -> Shape:
+def shape_of(shape: dict[str, Any]) -> DrawnBody:
     bodies = {"thing": {"shape": shape, "mass": 1.0}}
     return shapes(cell({"scene": {"bodies": bodies}}))[0]
 
 
-def placed(*of: dict[str, Any]) -> Shape:
+def placed(*of: dict[str, Any]) -> DrawnBody:
     parts = [{"shape": one, "position": [0, 0, 1], "orientation": TURN} for one in of]
     return shape_of({"kind": "compound", "parts": parts})
 

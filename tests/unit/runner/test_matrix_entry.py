@@ -18,7 +18,14 @@ from lavendersim.errors import UsageError
 from lavendersim.experiment import load_experiment_text
 from lavendersim.measures import Verdict
 from lavendersim.runner.matrix_entry import Entry, entry_of, passed
-from lavendersim.runner.solver_matrix import Case, Pair, cases_of, chosen, entries, make_entry
+from lavendersim.runner.solver_matrix import (
+    Case,
+    CaseAndSolver,
+    cases_of,
+    chosen,
+    entries,
+    make_entry,
+)
 
 BEYOND = "beyond bounds: residual 0.1 m/s, at most 1e-06, ball, in step 3 (t = 0.0125 s)"
 SCENE = """\
@@ -133,7 +140,7 @@ def case(name: str, path: Path = Path("none.yaml")) -> Case:
     return Case(name, path, False, "")
 
 
-def dies_of_two(pair: Pair) -> Entry:
+def dies_of_two(pair: CaseAndSolver) -> Entry:
     """Stand in for `make_entry`: the second case kills its process, as memory that is full may."""
     if pair.case.name == "two":
         os._exit(3)
@@ -155,7 +162,7 @@ def test_a_case_whose_process_dies_loses_no_other(jobs: int) -> None:
 def test_a_case_that_a_solver_cannot_take_is_refused_with_the_reason(tmp_path: Path) -> None:
     config = tmp_path / "relaxed.yaml"
     config.write_text(f"{SCENE}duration: 0.1\nalways: {{}}\nnumerics: {{over_relaxation: 1.5}}\n")
-    one = make_entry(Pair(case("relaxed", config), "jacobi", tmp_path / "runs"))
+    one = make_entry(CaseAndSolver(case("relaxed", config), "jacobi", tmp_path / "runs"))
     assert (one.verdict, one.run, one.fine) == ("refused", None, False)
     assert one.why == "over_relaxation: jacobi treats all contacts at once; expected 1"
     assert not (tmp_path / "runs").exists()

@@ -5,7 +5,7 @@ They are a face of Coulomb's cone, by what the contact does at the velocities v*
     sticks   closed, without slip:         the cone |lambda_t| <= mu lambda_n
     slides   closed, with slip w_t:        lambda_n >= 0, and friction mu lambda_n against the slip
 Open and stuck ones respond as in `response`, by the point of the face nearest to x = lambda^k - e w
-in the metric 1/e. What slides responds along its normal alone, its friction is held for a round:
+in the metric 1/e. What slides responds along its normal alone, its friction is given for a round:
 compliance gives way to pressure, whatever slips. w are changes from v*, but for the slip.
 """
 
@@ -19,7 +19,13 @@ from ...compile import kernel
 from ...contact import make_frictionless_velocity
 from ...effects.frictionless_contact import by_friction
 from ...spec import Spec
-from .response import Stiffness
+from .response import (
+    Stiffness,
+    make_frictional_stiffness,
+    make_frictionless_stiffness,
+    make_projected_block,
+    make_projected_normal,
+)
 
 OPEN, STICKS, SLIDES = 0, 1, 2
 
@@ -63,7 +69,7 @@ def _make_find_block(spec: Spec) -> Any:
             if slip > still:
                 contact.face = SLIDES
                 contact.slip_1, contact.slip_2 = one, two
-                contact.held_1, contact.held_2 = contact.lambda_1, contact.lambda_2
+                contact.given_1, contact.given_2 = contact.lambda_1, contact.lambda_2
         contact.start_n = contact.lambda_n
         contact.start_1, contact.start_2 = contact.lambda_1, contact.lambda_2
 
@@ -76,34 +82,27 @@ def make_face_impulse(spec: Spec) -> Any:
 
 
 def _make_normal_impulse(spec: Spec) -> Any:
+    projected_normal = make_projected_normal(spec)
+
     def normal_impulse(contact, length):
-        n = contact.scale * contact.start_n
-        n -= contact.stiff_n * (contact.velocity_n + length * contact.step_n)
-        return (max(n, 0.0) if contact.face != OPEN else 0.0), 0.0, 0.0
+        if contact.face == OPEN:
+            return 0.0, 0.0, 0.0
+        return projected_normal(contact, length)
 
     return kernel(normal_impulse, spec)
 
 
 def _make_block_impulse(spec: Spec) -> Any:
+    projected_normal = make_projected_normal(spec)
+    projected_block = make_projected_block(spec)
+
     def block_impulse(contact, length):
         if contact.face == OPEN:
             return 0.0, 0.0, 0.0
-        n = contact.scale * contact.start_n
-        n -= contact.stiff_n * (contact.velocity_n + length * contact.step_n)
         if contact.face == SLIDES:
-            return max(n, 0.0), contact.held_1, contact.held_2
-        one = contact.start_1 - contact.stiff_t * (contact.velocity_1 + length * contact.step_1)
-        two = contact.start_2 - contact.stiff_t * (contact.velocity_2 + length * contact.step_2)
-        mu = contact.mu
-        r = sqrt(one * one + two * two)
-        if r <= mu * n:
-            return n, one, two
-        weight = mu * contact.stiff_n / contact.stiff_t
-        n = (n + weight * r) / (1.0 + weight * mu)
-        if n <= 0.0:
-            return 0.0, 0.0, 0.0
-        scale = mu * n / r
-        return n, one * scale, two * scale
+            n, _, _ = projected_normal(contact, length)
+            return n, contact.given_1, contact.given_2
+        return projected_block(contact, length)
 
     return kernel(block_impulse, spec)
 
@@ -123,8 +122,8 @@ def make_turn_friction(spec: Spec) -> Any:
         n, _, _ = face_impulse(contact, 0.0)
         x, y = contact.slip_1 + contact.velocity_1, contact.slip_2 + contact.velocity_2
         scale = -contact.mu * n / sqrt(x * x + y * y)
-        change = max(abs(scale * x - contact.held_1), abs(scale * y - contact.held_2))
-        contact.held_1, contact.held_2 = scale * x, scale * y
+        change = max(abs(scale * x - contact.given_1), abs(scale * y - contact.given_2))
+        contact.given_1, contact.given_2 = scale * x, scale * y
         return change
 
     face_impulse = make_face_impulse(spec)
@@ -137,43 +136,25 @@ def make_face_stiffness(spec: Spec) -> Any:
 
 
 def _make_normal_stiffness(spec: Spec) -> Any:
+    frictionless_stiffness = make_frictionless_stiffness(spec)
+
     def normal_stiffness(contact):
-        n = contact.scale * contact.start_n - contact.stiff_n * contact.velocity_n
-        carries = contact.face != OPEN and n > 0.0
-        return Stiffness((contact.stiff_n if carries else 0.0), 0.0, 0.0, 0.0, 0.0, 0.0)
+        if contact.face == OPEN:
+            return Stiffness(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        return frictionless_stiffness(contact)
 
     return kernel(normal_stiffness, spec)
 
 
 def _make_block_stiffness(spec: Spec) -> Any:
+    frictionless_stiffness = make_frictionless_stiffness(spec)
+    frictional_stiffness = make_frictional_stiffness(spec)
+
     def block_stiffness(contact):
         if contact.face == OPEN:
             return Stiffness(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-        e_n, e_t, mu = contact.stiff_n, contact.stiff_t, contact.mu
-        n = contact.scale * contact.start_n - e_n * contact.velocity_n
         if contact.face == SLIDES:
-            return Stiffness((e_n if n > 0.0 else 0.0), 0.0, 0.0, 0.0, 0.0, 0.0)
-        one = contact.start_1 - e_t * contact.velocity_1
-        two = contact.start_2 - e_t * contact.velocity_2
-        r = sqrt(one * one + two * two)
-        if r <= mu * n:
-            return Stiffness(e_n, 0.0, 0.0, e_t, 0.0, e_t)
-        weight = mu * e_n / e_t
-        n = (n + weight * r) / (1.0 + weight * mu)
-        if n <= 0.0:
-            return Stiffness(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-        # Along the ray of the cone's surface, and around it.
-        u, v = one / r, two / r
-        around = e_t * mu * n / r
-        ray = e_n / (1.0 + weight * mu)
-        along = mu * mu * ray - around
-        return Stiffness(
-            ray,
-            mu * ray * u,
-            mu * ray * v,
-            around + along * u * u,
-            along * u * v,
-            around + along * v * v,
-        )
+            return frictionless_stiffness(contact)
+        return frictional_stiffness(contact)
 
     return kernel(block_stiffness, spec)

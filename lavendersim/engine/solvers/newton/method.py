@@ -3,7 +3,7 @@
 Around impulses lambda^k the next ones respond to velocities v as stiff dampers do (`response`),
     lambda(v) = proj(lambda^k - E (J v + b + s)),    E = 1/(softness k) per row,
 onto Coulomb's cone, with De Saxce's shift s = mu |v_t^k| along the normal, without which the
-projection onto the cone would lift what slides. Held for a round, it leaves a convex problem
+projection onto the cone would lift what slides. Kept for a round, it leaves a convex problem
 (`minimise`). At rest s = 0, and a round shrinks the error by softness over the least
 eigenvalue of the scaled Delassus operator; where that is not what a round leaves, the shifts are,
 and the next ones go by their secants. A round must end exactly: what it leaves undone comes back in

@@ -112,10 +112,12 @@ def _make_start_block(spec: Spec):
 
 def make_projected_impulse(spec: Spec):
     """Return `kernel(contact, length) -> (lambda_n, lambda_1, lambda_2)` so far along the step."""
-    return by_friction(spec, _make_frictionless_impulse, _make_frictional_impulse)
+    return by_friction(spec, make_projected_normal, make_projected_block)
 
 
-def _make_frictionless_impulse(spec: Spec):
+def make_projected_normal(spec: Spec):
+    """Return the same kernel for contacts without friction."""
+
     def frictionless_impulse(contact, length):
         n = contact.scale * contact.start_n
         n -= contact.stiff_n * (contact.velocity_n + length * contact.step_n)
@@ -124,7 +126,9 @@ def _make_frictionless_impulse(spec: Spec):
     return kernel(frictionless_impulse, spec)
 
 
-def _make_frictional_impulse(spec: Spec):
+def make_projected_block(spec: Spec):
+    """Return the same kernel for contacts with friction."""
+
     def projected_impulse(contact, length):
         n = contact.scale * contact.start_n
         n -= contact.stiff_n * (contact.velocity_n + length * contact.step_n)
@@ -157,10 +161,12 @@ class Stiffness(NamedTuple):
 
 def make_stiffness(spec: Spec):
     """Return `kernel(contact) -> Stiffness`."""
-    return by_friction(spec, _make_frictionless_stiffness, _make_frictional_stiffness)
+    return by_friction(spec, make_frictionless_stiffness, make_frictional_stiffness)
 
 
-def _make_frictionless_stiffness(spec: Spec):
+def make_frictionless_stiffness(spec: Spec):
+    """Return the same kernel for contacts without friction."""
+
     def frictionless_stiffness(contact):
         n = contact.scale * contact.start_n - contact.stiff_n * contact.velocity_n
         return Stiffness((contact.stiff_n if n > 0.0 else 0.0), 0.0, 0.0, 0.0, 0.0, 0.0)
@@ -168,7 +174,9 @@ def _make_frictionless_stiffness(spec: Spec):
     return kernel(frictionless_stiffness, spec)
 
 
-def _make_frictional_stiffness(spec: Spec):
+def make_frictional_stiffness(spec: Spec):
+    """Return the same kernel for contacts with friction."""
+
     def stiffness(contact):
         n = contact.scale * contact.start_n - contact.stiff_n * contact.velocity_n
         e_n = contact.stiff_n

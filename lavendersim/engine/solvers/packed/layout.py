@@ -46,7 +46,7 @@ START: Final[list[Field]] = [*VELOCITY, *ANGULAR_VELOCITY]
 FACTOR: Final[list[Field]] = [(name, F8) for name in ("xx", "yx", "yy", "zx", "zy", "zz")]
 
 
-class Packed(NamedTuple):
+class PackedContacts(NamedTuple):
     """Arrays of one solve."""
 
     rows: np.ndarray  # the fields of every contact or group
@@ -59,10 +59,10 @@ class Packed(NamedTuple):
     group_of: np.ndarray  # (bodies,) int64, last group with a contact of the body
 
 
-def allocate_packed(bodies: int, contacts: int, eight: bool) -> Packed:
+def allocate_packed(bodies: int, contacts: int, eight: bool) -> PackedContacts:
     """Return the arrays for so many bodies and contacts; memory is taken when it is used."""
     slots = WIDTH * contacts if eight else contacts  # at worst each contact has its own group
-    return Packed(
+    return PackedContacts(
         _lines(contacts * (GROUP if eight else ALONE)),
         np.zeros(slots, np.int64),
         np.zeros(slots, np.int64),

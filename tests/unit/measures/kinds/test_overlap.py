@@ -10,7 +10,13 @@ import pytest
 from scipy.spatial import ConvexHull
 from synthetic import contacts, log_of, scene_of
 
+from lavendersim.cell.shapes import PRIMITIVES, Primitive
+from lavendersim.cell.shapes.box import Box
+from lavendersim.cell.shapes.capsule import Capsule
+from lavendersim.cell.shapes.cylinder import Cylinder
+from lavendersim.cell.shapes.sphere import Sphere
 from lavendersim.geometry.rotations import rotation_matrices as rotations
+from lavendersim.geometry.shapes import extent
 from lavendersim.measures import evaluate
 from lavendersim.measures.penetration import (
     box_box,
@@ -19,14 +25,7 @@ from lavendersim.measures.penetration import (
     sphere_capsule,
     sphere_sphere,
 )
-from lavendersim.measures.solids import (
-    BOX,
-    CAPSULE,
-    CYLINDER,
-    SPHERE,
-    Placed,
-    near_pairs,
-)
+from lavendersim.measures.solids import PlacedSolids, extents, near_pairs, sums_of
 from lavendersim.measures.specs.overlap import Overlap
 
 SEED = 20
@@ -36,15 +35,15 @@ CUBE = {"shape": {"kind": "box", "size": [0.2, 0.2, 0.2]}, "mass": 1.0}
 FLOOR = {"shape": {"kind": "plane", "normal": [0.0, 0.0, 1.0], "offset": 0.0}}
 
 
-def placed(rng: np.random.Generator, count: int, spread: float) -> Placed:
-    return Placed(
+def placed(rng: np.random.Generator, count: int, spread: float) -> PlacedSolids:
+    return PlacedSolids(
         rng.uniform(-spread, spread, (count, 3)),
         rotations(rng.normal(size=(count, 4))),
         rng.uniform(0.1, 0.5, (count, 3)),
     )
 
 
-def hull_depth(a: Placed, b: Placed, index: int) -> float:
+def hull_depth(a: PlacedSolids, b: PlacedSolids, index: int) -> float:
     """Least distance from the origin to a face of the hull of all differences of corners."""
     one, other = (
         (CORNERS * box.size[index]) @ box.rotation[index].T + box.position[index] for box in (a, b)
@@ -70,8 +69,10 @@ def test_boxes_nearly_face_to_face_overlap_by_the_depth_of_the_deepest_corner(ti
     # half edges 0.1 m, centres 0.2 m - 1 um apart, the upper box turned by `tilt` about x: its
     # lowest edge lies 0.1 (cos + sin - 1) lower
     turn = np.array([[math.cos(tilt / 2), math.sin(tilt / 2), 0.0, 0.0]])
-    lower = Placed(np.zeros((1, 3)), rotations(np.array([[1.0, 0, 0, 0]])), np.full((1, 3), 0.1))
-    upper = Placed(np.array([[0.0, 0.0, 0.2 - 1e-6]]), rotations(turn), np.full((1, 3), 0.1))
+    lower = PlacedSolids(
+        np.zeros((1, 3)), rotations(np.array([[1.0, 0, 0, 0]])), np.full((1, 3), 0.1)
+    )
+    upper = PlacedSolids(np.array([[0.0, 0.0, 0.2 - 1e-6]]), rotations(turn), np.full((1, 3), 0.1))
     depth = 1e-6 + 0.1 * (math.cos(tilt) + math.sin(tilt) - 1.0)
     # an edge product of length 1e-9 to 1e-4 divides round-off of 1e-17 m; below 1e-8 it is left out
     assert box_box(lower, upper)[0] == pytest.approx(depth, abs=2e-9)
@@ -82,9 +83,9 @@ def test_boxes_edge_to_edge_need_the_product_of_their_edges() -> None:
     reach = 0.1 * math.sqrt(2.0)
     half = math.pi / 8.0
     quaternions = np.array([[math.cos(half), math.sin(half), 0.0, 0.0]])
-    lower = Placed(np.zeros((1, 3)), rotations(quaternions), np.full((1, 3), 0.1))
+    lower = PlacedSolids(np.zeros((1, 3)), rotations(quaternions), np.full((1, 3), 0.1))
     crossed = np.array([[math.cos(half), 0.0, math.sin(half), 0.0]])
-    upper = Placed(
+    upper = PlacedSolids(
         np.array([[0.0, 0.0, 2.0 * reach - 0.01]]), rotations(crossed), np.full((1, 3), 0.1)
     )
     assert box_box(lower, upper)[0] == pytest.approx(0.01, abs=1e-15)
@@ -97,17 +98,21 @@ def test_edges_that_cross_at_a_small_angle_still_decide_the_depth(angle: float) 
     across = np.array([0.0, 1.0, 1.0]) * math.sqrt(0.5)
     depth = 0.01 * angle
     turned = np.array([[math.cos(angle / 2), *(math.sin(angle / 2) * across)]])
-    lower = Placed(np.zeros((1, 3)), rotations(np.array([[1.0, 0, 0, 0]])), np.full((1, 3), 0.1))
+    lower = PlacedSolids(
+        np.zeros((1, 3)), rotations(np.array([[1.0, 0, 0, 0]])), np.full((1, 3), 0.1)
+    )
     place = np.array([[0.0, 0.2, 0.2]]) - depth * across
-    upper = Placed(place, rotations(turned), np.full((1, 3), 0.1))
+    upper = PlacedSolids(place, rotations(turned), np.full((1, 3), 0.1))
     # sums of some 0.3 m with round-off of 1e-16 m, over a product of edges as long as the angle
     assert box_box(lower, upper)[0] == pytest.approx(depth, abs=1e-15 + 3e-16 / angle)
 
 
 def test_a_sphere_inside_a_box_leaves_by_the_nearest_face() -> None:
-    box = Placed(np.zeros((3, 3)), rotations(np.tile([1.0, 0, 0, 0], (3, 1))), np.full((3, 3), 0.5))
+    box = PlacedSolids(
+        np.zeros((3, 3)), rotations(np.tile([1.0, 0, 0, 0], (3, 1))), np.full((3, 3), 0.5)
+    )
     centres = np.array([[0.0, 0.0, 0.45], [0.0, 0.6, 0.0], [0.8, 0.9, 0.0]])
-    sphere = Placed(centres, box.rotation, np.full((3, 3), 0.2))
+    sphere = PlacedSolids(centres, box.rotation, np.full((3, 3), 0.2))
     # 0.05 m from a face inside; 0.1 m outside; 0.5 m from an edge
     np.testing.assert_allclose(sphere_box(sphere, box), [0.25, 0.1, -0.3], atol=1e-15)
 
@@ -132,15 +137,42 @@ def test_parallel_and_crossing_capsules() -> None:
     upright = rotations(np.tile([1.0, 0, 0, 0], (3, 1)))
     lying = rotations(np.tile([math.sqrt(0.5), 0.0, math.sqrt(0.5), 0.0], (3, 1)))
     size = np.tile([0.1, 0.0, 0.5], (3, 1))
-    a = Placed(np.zeros((3, 3)), upright, size)
-    beside = Placed(np.array([[0.15, 0, 0.3], [0.0, 0, 1.1], [0.3, 0, 1.4]]), upright, size)
+    a = PlacedSolids(np.zeros((3, 3)), upright, size)
+    beside = PlacedSolids(np.array([[0.15, 0, 0.3], [0.0, 0, 1.1], [0.3, 0, 1.4]]), upright, size)
     # side by side; end to end; ends 0.3 m across and 0.4 m apart along
     np.testing.assert_allclose(capsule_capsule(a, beside), [0.05, 0.1, -0.3], atol=1e-15)
-    across = Placed(np.array([[0, 0.15, 0.2], [0.6, 0.1, 0.0], [0, 0, 0.65]]), lying, size)
+    across = PlacedSolids(np.array([[0, 0.15, 0.2], [0.6, 0.1, 0.0], [0, 0, 0.65]]), lying, size)
     expected = [0.05, 0.2 - math.hypot(0.1, 0.1), 0.05]
     np.testing.assert_allclose(capsule_capsule(a, across), expected, atol=1e-15)
-    ball = Placed(np.array([[0.15, 0, 0.4], [0, 0, 0.65], [0.4, 0, 0.8]]), upright, size)
+    ball = PlacedSolids(np.array([[0.15, 0, 0.4], [0, 0, 0.65], [0.4, 0, 0.8]]), upright, size)
     np.testing.assert_allclose(sphere_capsule(ball, a), [0.05, 0.05, -0.3], atol=1e-15)
+
+
+def shape_of(kind: int, size: np.ndarray) -> Primitive:
+    """Return one of four solids that holds a ball as thick as the least of three half lengths."""
+    x, y, z = size.tolist()
+    return (
+        Sphere(kind="sphere", radius=x),
+        Box(kind="box", size=(2 * x, 2 * y, 2 * z)),
+        Capsule(kind="capsule", radius=x, length=2 * z),
+        Cylinder(kind="cylinder", radius=x, length=2 * z),
+    )[kind]
+
+
+def test_a_solid_reaches_as_far_as_its_shape_says() -> None:
+    """The shape's own extent is of one direction; here it is a Minkowski sum, many at once."""
+    rng = np.random.default_rng(SEED)
+    scene = placed(rng, 80, 1.0)
+    shapes = [shape_of(k % 4, size) for k, size in enumerate(scene.size)]
+    assert {type(shape) for shape in shapes} == set(PRIMITIVES)
+    for direction in rotations(rng.normal(size=(5, 4)))[:, 0]:
+        expected = [
+            extent(shape, turn, direction)
+            for shape, turn in zip(shapes, scene.rotation, strict=True)
+        ]
+        # sums of a few numbers below 1 m; sqrt(1 - n_z^2) loses digits where a cylinder stands,
+        # by eps / sqrt(1 - n_z^2), 1e-14 for the nearest of these directions
+        np.testing.assert_allclose(extents(sums_of(shapes), scene, direction), expected, atol=1e-14)
 
 
 @pytest.mark.parametrize("stretch", [(1, 1, 1), (0.1, 0.1, 8), (9, 0.2, 0.2)])
@@ -149,9 +181,9 @@ def test_the_cull_loses_no_pair_that_overlaps(stretch: tuple[float, float, float
     count = 120
     scene = placed(rng, count, 1.0)
     scene = scene._replace(position=scene.position * stretch, size=0.4 * scene.size)
-    kind = rng.choice([SPHERE, BOX, CAPSULE, CYLINDER], count)
+    shapes = [shape_of(int(rng.integers(4)), size) for size in scene.size]
     movable = rng.random(count) < 0.8
-    first, second = near_pairs(kind, scene, movable)
+    first, second = near_pairs(sums_of(shapes), scene, movable)
     assert len(set(zip(first, second, strict=True))) == len(first)
     kept = {frozenset(pair) for pair in zip(first.tolist(), second.tolist(), strict=True)}
     everyone = [pair for pair in itertools.combinations(range(count), 2) if any(movable[[*pair]])]
