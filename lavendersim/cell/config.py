@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from fractions import Fraction
+from functools import lru_cache
 from typing import Any
 
 from lavendersim.cell.choices import Mistake, Switch
@@ -18,6 +20,11 @@ from lavendersim.cell.scene import CellScene
 from lavendersim.clock import Clock
 from lavendersim.quantities.model import ResolvedModel
 from lavendersim.quantities.scalars import exact
+
+
+@lru_cache(maxsize=256)  # it never changes, and the cells of most sweeps have one
+def _clock(timestep: Fraction, changes: tuple[tuple[Fraction, Fraction], ...]) -> Clock:
+    return Clock(timestep, changes)
 
 
 class CellEffects(ResolvedModel):
@@ -79,7 +86,8 @@ class CellConfig(ResolvedModel):
     def clock(self) -> Clock:
         """The times of its steps."""
         changes = [one for one in self.events if isinstance(one, CellTimestep)]
-        return Clock(self.numerics.timestep, [(exact(one.at), one.timestep) for one in changes])
+        timed = tuple((exact(one.at), one.timestep) for one in changes)
+        return _clock(self.numerics.timestep, timed)
 
     @property
     def steps(self) -> int:

@@ -10,6 +10,7 @@ of no rows, or (): it takes part in no kernel.
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -31,6 +32,8 @@ from .records import COUNTERS, MOTION, dtype
 from .solvers.catalogue import SOLVERS
 from .spec import Spec
 from .step_doubling import allocate_control, with_capacity
+
+_MOTION = dtype(MOTION)
 
 
 class State(NamedTuple):
@@ -105,7 +108,7 @@ def allocate_state(
         pairs=pairs,
         contacts=np.zeros(capacity, contact_dtype(spec)),
         cache=np.zeros(capacity if spec.has("warm_start") else 0, cache_dtype(spec)),
-        motion=np.zeros(moving, dtype(MOTION)),
+        motion=np.zeros(moving, _MOTION),
         pseudo=np.zeros(projected, velocities.dtype),
         links=allocate_links(spec, 0) if links is None else links,
         control=allocate_control(spec, bodies, velocities, capacity),
@@ -183,6 +186,11 @@ def allocate_log(spec: Spec, state: State, poses: np.ndarray, steps: int, sweeps
 
 def allocate_counters() -> np.ndarray:
     """Return the counters of an engine that has made no step, shape (1,)."""
+    return _new_counters().copy()
+
+
+@cache
+def _new_counters() -> np.ndarray:
     counters = np.zeros(1, dtype(COUNTERS))
     for name in ("residual_contact", "signorini_contact", "cone_contact", "dissipation_contact"):
         counters[name] = -1

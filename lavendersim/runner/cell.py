@@ -229,8 +229,8 @@ def simulate(
     Returns beside the outcome the log as this process may read it, and its states by `always`.
     """
     physics_ns = logging_ns = 0
-    scene = build(job.config, job.plan.spec)
-    engine, compile_ns = started(scene, job.plan, job.config.steps)
+    scene, steps = build(job.config, job.plan.spec), job.config.steps
+    engine, compile_ns = started(scene, job.plan, steps)
     if began is not None:
         began(lambda: int(engine.counters["step"][0]))
     absent = absent_topics(job.plan)
@@ -247,7 +247,7 @@ def simulate(
     events = EventQueue(engine, scene, job.config.events)
     dump = ProblemDump(job.path, job.config.record)
     accuracy = Accuracy(tolerance=job.config.numerics.tolerance)
-    status, steps = "complete", job.config.steps
+    status = "complete"
     call = CallLength(len(scene.names))
     done = stop = 0
     with deferred() as signalled:

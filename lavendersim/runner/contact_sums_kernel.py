@@ -135,10 +135,10 @@ class RunningSums:
         self._of_body = np.array(rows, np.float64).reshape(-1, 2)
         self._mu = np.zeros((len(different), len(different)))
         for i, one in enumerate(different):
-            for j, other in enumerate(different):
+            for j, other in enumerate(different[: i + 1]):  # mixed alike in either order
                 between = mixed(one, other)
                 varies = shares.varies_friction(between)
-                self._mu[i, j] = VARIES if varies else between.friction
+                self._mu[i, j] = self._mu[j, i] = VARIES if varies else between.friction
         numerics = config.numerics
         pyramid = numerics.friction_cone == "pyramid"
         self._choices = np.array([numerics.projection, numerics.slop, float(pyramid)])

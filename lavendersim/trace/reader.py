@@ -8,7 +8,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator
 from fractions import Fraction
-from functools import cached_property
+from functools import cached_property, lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -71,7 +71,7 @@ class Trace:
                     f"{path}: log format {description['format']}, this version reads {FORMAT}"
                 )
             self.bodies: list[str] = json.loads(description["bodies"])
-            self.clock = _clock(description)
+            self.clock = _clock(description["timestep"], description.get(TIMESTEP_CHANGES, "[]"))
             # topic -> why this log does without it; logs before there was a choice have them all
             self.absent: dict[str, str] = json.loads(description.get(ABSENT, "{}"))
             # topic -> of which steps alone it has it; those are in `recorded_pose` and so on
@@ -282,8 +282,8 @@ class Trace:
         return self._source.chunks(layout.CHANNELS[topic])
 
 
-def _clock(description: dict[str, str]) -> Clock:
+@lru_cache(maxsize=64)  # the logs of a sweep mostly have the same
+def _clock(timestep: str, changes: str) -> Clock:
     """Return the times of the steps of a log; logs before timesteps could change have none."""
-    changes = json.loads(description.get(TIMESTEP_CHANGES, "[]"))
-    first = Fraction(description["timestep"])
-    return Clock.counted(first, [(done, Fraction(timestep)) for done, timestep in changes])
+    changed = [(done, Fraction(length)) for done, length in json.loads(changes)]
+    return Clock.counted(Fraction(timestep), changed)

@@ -65,7 +65,11 @@ class WrittenTrace(Trace):
         rows = self.recorded_rows("/tf")
         return RecordedPoses(rows, poses if len(rows) == len(poses) else poses[rows])
 
-    def _contact_parts(self) -> Iterator[NDArray[Any]]:
+    def recorded_contacts_in_parts(self) -> Iterator[NDArray[Any]]:
+        """Yield the rows of `recorded_contact` block by block."""
+        if not self.has("/contacts"):
+            yield from super().recorded_contacts_in_parts()
+            return
         form = column_form(self._blocks[0].contact.dtype)
         kinds = zip(form.names, form.kinds, strict=True)
         columns = [("step", "i8"), *kinds, *((name, "f8") for name in (*form.derived, "time"))]

@@ -5,6 +5,7 @@ Kernels allocate nothing: every array they need lies here, under its name.
 
 from __future__ import annotations
 
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -24,6 +25,12 @@ NEW_VERTEX = 4
 # 2 v - 4 triangles; faces that were cut off keep their rows.
 EPA_VERTICES = 128
 EPA_FACES = 1024
+
+
+# Looked up for each scene they would take half of what its scratch takes.
+_POINT, _VECTOR, _VERTEX, _PLANE, _SEPARATION, _FACE = map(
+    dtype, (POINT, VECTOR, VERTEX, PLANE_OF_FEATURE, SEPARATION, FACE)
+)
 
 
 class Manifold(NamedTuple):
@@ -79,11 +86,21 @@ class Scratch(NamedTuple):
     polygon: np.ndarray  # POINT rows: two polygons being cut
 
 
+def _longest_and_most(hulls: HullGeometry) -> tuple[int, int]:
+    """Return the most corners of a face, or of a cap, and the most vertices of a hull."""
+    longest = max(int(np.diff(hulls.loop_start).max()), CAP_CORNERS)
+    return longest, int(np.diff(hulls.vertex_start).max())
+
+
+@cache
+def _of_the_box() -> tuple[int, int]:
+    return _longest_and_most(hull_geometry())
+
+
 def allocate_scratch(geometry: HullGeometry | None = None) -> Scratch:
     """Return scratch for one thread, around the tables of a scene's hulls."""
     hulls = hull_geometry() if geometry is None else geometry
-    longest = max(int(np.diff(hulls.loop_start).max()), CAP_CORNERS)
-    most = int(np.diff(hulls.vertex_start).max())
+    longest, most = _longest_and_most(hulls) if len(hulls.vertex_start) > 2 else _of_the_box()
 
     def box() -> BoxFrame:
         return BoxFrame(
@@ -94,24 +111,24 @@ def allocate_scratch(geometry: HullGeometry | None = None) -> Scratch:
 
     def outline() -> Outline:
         return Outline(
-            corners=np.zeros(longest, dtype(VECTOR)),
-            plane=np.zeros(1, dtype(PLANE_OF_FEATURE)),
+            corners=np.zeros(longest, _VECTOR),
+            plane=np.zeros(1, _PLANE),
             pull=pull,
         )
 
     return Scratch(
-        manifold=Manifold(points=np.zeros(MANIFOLD_POINTS, dtype(POINT)), normal=np.zeros(3)),
+        manifold=Manifold(points=np.zeros(MANIFOLD_POINTS, _POINT), normal=np.zeros(3)),
         box_a=box(),
         box_b=box(),
         cosines=np.zeros((3, 3)),
         hulls=hulls,
-        simplex=np.zeros(SIMPLEX_VERTICES + 1, dtype(VERTEX)),
+        simplex=np.zeros(SIMPLEX_VERTICES + 1, _VERTEX),
         weights=np.zeros(SIMPLEX_VERTICES),
-        separation=np.zeros(1, dtype(SEPARATION)),
-        best=np.zeros(1, dtype(SEPARATION)),
+        separation=np.zeros(1, _SEPARATION),
+        best=np.zeros(1, _SEPARATION),
         polytope=Polytope(
-            vertices=np.zeros(EPA_VERTICES, dtype(VERTEX)),
-            faces=np.zeros(EPA_FACES, dtype(FACE)),
+            vertices=np.zeros(EPA_VERTICES, _VERTEX),
+            faces=np.zeros(EPA_FACES, _FACE),
             corners=np.zeros((EPA_FACES, 3), np.int64),
             neighbours=np.zeros((EPA_FACES, 3), np.int64),
             queue=np.zeros(EPA_FACES, np.int64),
@@ -120,5 +137,5 @@ def allocate_scratch(geometry: HullGeometry | None = None) -> Scratch:
         outline_a=outline(),
         outline_b=outline(),
         # A polygon of n corners cut by m sides has at most n + m; one more for the nearest point.
-        polygon=np.zeros(max(2 * (2 * longest + 2), most), dtype(POINT)),
+        polygon=np.zeros(max(2 * (2 * longest + 2), most), _POINT),
     )

@@ -46,11 +46,13 @@ def test_a_log_in_memory_is_the_log_on_disk(tmp_path: Path, steps: int) -> None:
 def test_a_log_in_memory_needs_no_file(tmp_path: Path) -> None:
     log = written(tmp_path / "run.mcap", 40)
     truth = open_trace(log.path)
-    step, pose = truth.step, truth.pose
+    step, pose, contact = truth.step, truth.pose, truth.contact
     log.path.unlink()
     kept = trace_of(log)
     assert kept.step.tobytes() == step.tobytes()
     assert kept.pose.tobytes() == pose.tobytes()
+    for name in contact.dtype.names or ():
+        assert kept.contact[name].tobytes() == contact[name].tobytes()
 
 
 def test_a_log_too_large_to_keep_is_read_from_its_file(
