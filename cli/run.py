@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import errno
 import shlex
-from contextlib import ExitStack
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from lavender_cli import overheads, printing, progress, time_errors
+from lavender_cli.drawing import Drawing
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
@@ -98,18 +101,19 @@ def run(
     overrides = overrides_of(values, axes)
     experiments = load_all(configs, overrides=overrides)
     good, tables, with_overheads = True, [], []
-    for experiment in experiments:
-        whole = finished_run(experiment, runs) if resume else None
-        if whole is not None:
-            typer.echo(f"{experiment.name}: finished, nothing to resume: {whole.path}", err=True)
-            results = whole.results()
-            good = good and bool(results["passed"])
-            if as_json:
-                tables.append({**results, "run": whole.path, "figures": []})
-            continue
-        printing.warn_of_mistakes(experiment)
-        try:
-            with ExitStack() as open_now:
+    with Drawing(experiments if plot else ()) as drawing:
+        for number, experiment in enumerate(experiments):
+            whole = finished_run(experiment, runs) if resume else None
+            if whole is not None:
+                name = experiment.name
+                typer.echo(f"{name}: finished, nothing to resume: {whole.path}", err=True)
+                results = whole.results()
+                good = good and bool(results["passed"])
+                if as_json:
+                    tables.append({**results, "run": whole.path, "figures": []})
+                continue
+            printing.warn_of_mistakes(experiment)
+            with _resumable(configs, overrides, runs), ExitStack() as open_now:
                 shown = open_now.enter_context(progress.reporting(experiment.name))
                 workers: Executor | None = None
                 if executor is not None or dask is not None:
@@ -125,37 +129,26 @@ def run(
                     tags=tags or (),
                     executor=workers,
                 )
-        except KeyboardInterrupt as end:  # `run` says by what, and where what was simulated is
-            if str(end):
-                typer.echo(str(end), err=True)
-            _say_how_to_resume(configs, overrides, runs)
-            raise
-        except OSError as error:
-            if error.errno in DISK:
-                _say_how_to_resume(configs, overrides, runs)
-            raise
-        good = good and finished.good
-        printing.warn_of_not_converged(finished)
-        figures = []
-        if plot and experiment.is_drawn:
-            from lavendersim.figures import draw
-
-            figures = draw(finished.run, finished.run.path / "figures")
-        if experiment.config.overhead is not None:
-            with_overheads.append(finished.run)
-        refined = time_errors.refine(finished, jobs) if refine else []
-        if as_json:
-            table = {**finished.run.results(), "run": finished.run.path, "figures": figures}
-            if refine:
-                table["time_errors"] = time_errors.as_table(refined)
-            tables.append(table)
-            continue
-        printing.print_summary(finished)
-        if refine:
-            time_errors.print_table(refined)
-        overheads.print_table(finished.run)
-        for figure in figures:
-            typer.echo(f"  figure {figure}")
+            good = good and finished.good
+            printing.warn_of_not_converged(finished)
+            drawn = plot and experiment.is_drawn
+            if drawn:
+                drawing.draw(number, finished.run)
+            if experiment.config.overhead is not None:
+                with_overheads.append(finished.run)
+            refined = time_errors.refine(finished, jobs) if refine else []
+            take: Callable[[list[Path]], None] = _print_figures
+            if as_json:
+                figures: list[Path] = []
+                table = {**finished.run.results(), "run": finished.run.path, "figures": figures}
+                if refine:
+                    table["time_errors"] = time_errors.as_table(refined)
+                tables.append(table)
+                take = figures.extend
+            else:
+                drawing.say(partial(_print, finished, refined if refine else None))
+            if drawn:
+                drawing.take(take)
     if plot and len(with_overheads) > 1:
         from lavendersim.figures import draw_overheads
 
@@ -165,6 +158,35 @@ def run(
         printing.as_json(tables)
     if not good:
         raise typer.Exit(1)
+
+
+def _print(finished: Any, refined: Any) -> None:
+    """Print what became of a run, and its time errors where they were taken."""
+    printing.print_summary(finished)
+    if refined is not None:
+        time_errors.print_table(refined)
+    overheads.print_table(finished.run)
+
+
+def _print_figures(figures: list[Path]) -> None:
+    for figure in figures:
+        typer.echo(f"  figure {figure}")
+
+
+@contextmanager
+def _resumable(configs: list[Path], overrides: list[str], runs: Path) -> Iterator[None]:
+    """Say how to go on with what is run where it ends too early, and can be resumed."""
+    try:
+        yield
+    except KeyboardInterrupt as end:  # `run` says by what, and where what was simulated is
+        if str(end):
+            typer.echo(str(end), err=True)
+        _say_how_to_resume(configs, overrides, runs)
+        raise
+    except OSError as error:
+        if error.errno in DISK:
+            _say_how_to_resume(configs, overrides, runs)
+        raise
 
 
 def _run_shard(

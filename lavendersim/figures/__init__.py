@@ -29,6 +29,11 @@ def draw(run: Any, directory: Path) -> list[Path]:
     return paths
 
 
+def prepare() -> None:
+    """Import what draws a figure, before there is one to be drawn."""
+    from lavendersim.figures import config_figure  # noqa: F401
+
+
 def _refuse_damaged(run: Any) -> None:
     """Raise TraceError where a log is damaged and may not be; one just written is read strictly."""
     if getattr(run, "allow_incomplete", True) or getattr(run, "ran", None) is not None:

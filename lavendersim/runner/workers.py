@@ -95,7 +95,7 @@ class _Worker:
         # Spawned, never forked: numba's threads do not survive a fork.
         context = get_context("spawn")
         self.pipe, other = context.Pipe()
-        self.process = context.Process(target=_serve, args=(other, function), daemon=True)
+        self.process = context.Process(target=serve, args=(other, function), daemon=True)
         self.process.start()
         other.close()  # so that the pipe ends with the process
         self.given: deque[int] = deque()
@@ -198,7 +198,7 @@ class _Crew(Generic[Task, Result]):
             worker.pipe.close()
 
 
-def _serve(pipe: Connection, function: Callable[[Any], Any]) -> None:
+def serve(pipe: Connection, function: Callable[[Any], Any]) -> None:
     """Do what comes through the pipe, until it ends."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the process that asks
     end_with_parent()
