@@ -63,6 +63,13 @@ class CellOfLog(NamedTuple):
     coordinates: Mapping[str, Any]
 
 
+class PlanInLog(NamedTuple):
+    """What a log says of the plan of its engine, in words."""
+
+    metadata: dict[str, dict[str, str]]
+    absent: dict[str, str]  # topics that the log does without, each with the plan's reason
+
+
 class CellJob(NamedTuple):
     """Everything a worker needs to run one cell; plain data, so that it can cross processes."""
 
@@ -75,6 +82,12 @@ class CellJob(NamedTuple):
     always: Always | None = None  # what every step must keep; its bounds end the cell
     measures: Mapping[str, MeasureSpec] = MappingProxyType({})
     cells: tuple[CellOfLog, ...] = ()  # that the log is measured for
+    in_log: PlanInLog | None = None  # of the plan, where it is known; it is the same for many cells
+
+    def alone(self) -> CellJob:
+        """Return this job without what its plan says of the other cells: they may be many."""
+        plan = self.plan._replace(cells=(), required_by={}, reasons={})
+        return self._replace(plan=plan, in_log=self.in_log or plan_in_log(self.plan))
 
 
 @cache
@@ -89,8 +102,8 @@ def block_of(rows: Rows, clock: Clock) -> Block:
     return Block(step=step, contact=rows.contact, pose=rows.pose, residual=rows.residual)
 
 
-def metadata_of(plan: Plan, seeds: str) -> dict[str, dict[str, str]]:
-    """Return the log's metadata about the engine that made it, and where it was overridden."""
+def plan_in_log(plan: Plan) -> PlanInLog:
+    """Return what logs say of a plan: what is on or off, and why, and where it was overridden."""
     forced: dict[str, dict[str, str]] = {"forced": {**plan.forced}} if plan.forced else {}
     errors = {
         effect.name: f"a deliberate error: {effect.study_only}"
@@ -98,14 +111,7 @@ def metadata_of(plan: Plan, seeds: str) -> dict[str, dict[str, str]]:
         if plan.spec.has(effect.name) and effect.study_only
     }
     study: dict[str, dict[str, str]] = {"study-only": errors} if errors else {}
-    return {
-        "versions": versions(),
-        "engine": {
-            "source": source_hash(),
-            "plan": plan.spec.digest(),
-            "solver": plan.spec.solver,
-            "seed": seeds,
-        },
+    metadata = {
         "plan": {
             name: f"{'on' if decision.on else 'off'}: {plan.described(name)}"
             for name, decision in plan.decisions.items()
@@ -114,16 +120,24 @@ def metadata_of(plan: Plan, seeds: str) -> dict[str, dict[str, str]]:
         **forced,
         **study,
     }
-
-
-def absent_topics(plan: Plan) -> dict[str, str]:
-    """Return the topics that the log does without, each with the plan's reason."""
-    return {
+    absent = {
         topic: f"{plan.decisions[effect.name].reason} (plan: {effect.name} off)"
         for effect in EFFECTS
         if not plan.spec.has(effect.name)
         for topic in effect.channels or ()
     }
+    return PlanInLog(metadata, absent)
+
+
+def metadata_of(job: CellJob, in_log: PlanInLog) -> dict[str, dict[str, str]]:
+    """Return the log's metadata about the engine that made it."""
+    engine = {
+        "source": source_hash(),
+        "plan": job.plan.spec.digest(),
+        "solver": job.plan.spec.solver,
+        "seed": job.seeds,
+    }
+    return {"versions": versions(), "engine": engine, **in_log.metadata}
 
 
 def divergence(scene: Scene, engine: Engine) -> str:
@@ -233,14 +247,9 @@ def simulate(
     engine, compile_ns = started(scene, job.plan, steps)
     if began is not None:
         began(lambda: int(engine.counters["step"][0]))
-    absent = absent_topics(job.plan)
-    writer = TraceWriter(
-        job.path,
-        job.config,
-        job.as_written,
-        metadata_of(job.plan, job.seeds),
-        absent,
-    )
+    in_log = job.in_log or plan_in_log(job.plan)
+    absent, metadata = in_log.absent, metadata_of(job, in_log)
+    writer = TraceWriter(job.path, job.config, job.as_written, metadata, absent)
     # A check finds in a run what it finds in its log.
     unseen = absent | partly_recorded(described(job.config.record))
     bounds = Bounds(job.always, scene.names, job.config, scene.clock, unseen)

@@ -15,9 +15,9 @@ from lavendersim.experiment import Experiment
 from lavendersim.experiment.cell import Cell
 from lavendersim.scene.plan import Plan
 
-from .cell import CellJob, CellOfLog
+from .cell import CellJob, CellOfLog, plan_in_log
 from .checks import check
-from .plans import shared_plans
+from .plans import distinct, shared_plans
 from .seeds import Seeds
 
 
@@ -32,6 +32,7 @@ class Prepared(NamedTuple):
     def jobs(self, directory: Path) -> list[CellJob]:
         """Return a job for every cell, whose log is written into a directory."""
         experiment, seeds = self.experiment, Seeds(self.experiment)
+        in_logs = {plan.choices: plan_in_log(plan) for plan in distinct(self.plans)}
         return [
             CellJob(
                 cell.index,
@@ -43,6 +44,7 @@ class Prepared(NamedTuple):
                 experiment.always,
                 experiment.measures,
                 (CellOfLog(cell.index, cell.label, cell.coordinates),),
+                in_logs[plan.choices],
             )
             for cell, plan, log in zip(self.cells, self.plans, self.logs, strict=True)
         ]

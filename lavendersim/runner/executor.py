@@ -59,7 +59,7 @@ def outcomes_of(
         done, taken = done + 1, taken + perf_counter() - begin - outcome.compile_ns / 1e9
         spent = outcome.compile_ns + apart.pop(job.path, 0)
         yield job, outcome._replace(compile_ns=spent), measured
-    rest = ordered[done:]
+    rest = [job.alone() for job in ordered[done:]]
     if not rest:
         return
     tally.begin_in_others()

@@ -63,8 +63,9 @@ def run_by(
     tally = Tally(jobs)
     progress.running(tally)
     tally.begin_in_others()
+    alone = [job.alone() for job in jobs]
     with _signed(jobs[0].path.parent) as sign:
-        for job, found in _results(executor, jobs, sign, progress.warning):
+        for job, found in _results(executor, alone, sign, progress.warning):
             tally.end(job)
             if isinstance(found, str):
                 yield (job, *failed(job, found))

@@ -14,7 +14,7 @@ import lavendersim
 from lavendersim.errors import ConfigError
 from lavendersim.experiment import load_experiment_text
 from lavendersim.runner import load_all
-from lavendersim.runner.cell import metadata_of
+from lavendersim.runner.cell import plan_in_log
 from lavendersim.runner.plans import distinct, shared_plans
 from lavendersim.scene.explanation import explain_all
 from lavendersim.scene.plan import Plan
@@ -54,7 +54,7 @@ def test_a_union_says_which_cells_require_what() -> None:
     assert list(by_name["restitution"].reasons.values()) == [[1], [2]]
     assert by_name["gravity"].required_by == [0, 1, 2]
     assert by_name["friction"].required_by == []
-    logged = metadata_of(plan, "none")["plan"]["restitution"]
+    logged = plan_in_log(plan).metadata["plan"]["restitution"]
     assert logged.startswith("on: floor and ball: coefficient 0.5")
     assert logged.endswith("required by 2 of 3 cells: e=0.5; e=0.8")
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import pickle
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,44 @@ import lavendersim
 from lavendersim.runner import executor
 
 Processes = list[int]
+
+
+class Given(Exception):  # noqa: N818 - it is no error
+    """What other processes would have been given, before any of them is started."""
+
+
+def given(config: Path, root: Path, monkeypatch: pytest.MonkeyPatch) -> list[int]:
+    """Return the bytes of each task that other processes are given of a sweep."""
+
+    def work(function: Any, tasks: Any, *arguments: Any) -> Any:
+        raise Given([len(pickle.dumps(task)) for task in tasks])
+
+    monkeypatch.setattr(executor, "work", work)
+    monkeypatch.setattr(executor, "WORTH_PROCESSES", 0.0)
+    with pytest.raises(Given) as end:
+        lavendersim.run(config, root=root, jobs=2)
+    sizes: list[int] = end.value.args[0]
+    return sizes
+
+
+def test_a_task_of_another_process_is_no_larger_in_a_larger_sweep(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Else to hand out all of a sweep would take the square of its cells."""
+    sizes = {}
+    for count in (4, 64):
+        values = ", ".join(f"{0.1 + k / 100:.2f}" for k in range(count))
+        folder = tmp_path / str(count)
+        folder.mkdir()
+        config = write(folder)
+        text = config.read_text()
+        assert "[0.2, 0.5, 0.8]" in text
+        config.write_text(text.replace("[0.2, 0.5, 0.8]", f"[{values}]"))
+        found = given(config, folder / "runs", monkeypatch)
+        assert len(found) == count - 1
+        sizes[count] = max(found) - len(config.read_text())  # which every log has attached
+    # Of the cells a log names at most three; their labels may be longer by some digits.
+    assert sizes[64] <= sizes[4] + 1000
 
 
 @pytest.fixture
