@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from lavendersim.cell.record import NONE
-from lavendersim.durable_files import flush_tree, write_whole, written_aside
+from lavendersim.durable_files import flush_tree, write_in_pieces, write_whole, written_aside
 from lavendersim.errors import UsageError
 from lavendersim.experiment import Experiment, load_experiment
 from lavendersim.experiment.cell import Cell
@@ -23,7 +23,7 @@ from lavendersim.measures import Values, Verdict, judge, meant_to_end_early
 
 from .environment import environment
 from .interruption import Interrupted, handled
-from .json_table import text_of
+from .json_table import pieces_of, text_of
 from .listing import TAGS, checked_tags
 from .progress import Progress
 from .results import compile_seconds, convergence_notices, write_results
@@ -283,29 +283,29 @@ def _write_index(
 
     jobs: with the digest of the config of each.
     """
-    rows = []
-    for cell, (job, config) in zip(experiment.cells(), jobs, strict=True):
+
+    def row_of(cell: Cell, job: CellJob, config: str) -> dict[str, Any]:
         outcome = ended.get(job.path)
-        rows.append(
-            {
-                "index": cell.index,
-                "label": cell.label,
-                "coordinates": {axis: _plain(value) for axis, value in cell.coordinates.items()},
-                "file": f"cells/{job.path.name}",
-                "status": outcome.status if outcome else PENDING,
-                "config": config,
-                "log": as_row(outcome.log if outcome else None),
-            }
-        )
+        return {
+            "index": cell.index,
+            "label": cell.label,
+            "coordinates": {axis: _plain(value) for axis, value in cell.coordinates.items()},
+            "file": f"cells/{job.path.name}",
+            "status": outcome.status if outcome else PENDING,
+            "config": config,
+            "log": as_row(outcome.log if outcome else None),
+        }
+
+    cells = zip(experiment.cells(), jobs, strict=True)
     table = {
         "experiment": experiment.name,
         "reduced": experiment.reduced,
         "solver": experiment.solver,
         "timestep_divisor": experiment.divisor,
         **({"overrides": list(experiment.overrides)} if experiment.overrides else {}),
-        "cells": rows,
+        "cells": (row_of(cell, *job) for cell, job in cells),
     }
-    write_whole(directory / CELLS, text_of(table), flush=False)
+    write_in_pieces(directory / CELLS, pieces_of(table), flush=False)
 
 
 def _write_resolved(path: Path, cells: Sequence[Cell]) -> list[str]:

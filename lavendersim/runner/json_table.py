@@ -7,15 +7,27 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any
 
 
 def text_of(table: Mapping[str, Any]) -> str:
     """Return a table as text. ValueError for a number that JSON does not have."""
-    return (
-        "{\n" + ",\n".join(f" {_text(key)}: {_rows(one)}" for key, one in table.items()) + "\n}\n"
-    )
+    return "".join(pieces_of(table))
+
+
+def pieces_of(table: Mapping[str, Any]) -> Iterator[str]:
+    """Yield the same text in pieces: of many cells the whole is larger than what it is made of.
+
+    A list of rows may be an iterator, whose rows are made as they are written.
+    """
+    yield "{\n"
+    between = ""
+    for key, value in table.items():
+        yield f"{between} {_text(key)}: "
+        yield from _rows(value) if _is_of_rows(value) else (_text(value),)
+        between = ",\n"
+    yield "\n}\n"
 
 
 def finite(value: Any, instead: Callable[[float], Any]) -> Any:
@@ -29,10 +41,18 @@ def finite(value: Any, instead: Callable[[float], Any]) -> Any:
     return value
 
 
-def _rows(value: Any) -> str:
-    if isinstance(value, list) and value and all(isinstance(row, dict) for row in value):
-        return "[\n" + ",\n".join(f"  {_text(row)}" for row in value) + "\n ]"
-    return _text(value)
+def _is_of_rows(value: Any) -> bool:
+    if isinstance(value, list):
+        return bool(value) and all(isinstance(row, dict) for row in value)
+    return isinstance(value, Iterator)
+
+
+def _rows(rows: Iterable[Mapping[str, Any]]) -> Iterator[str]:
+    between = "[\n"
+    for row in rows:
+        yield f"{between}  {_text(row)}"
+        between = ",\n"
+    yield "\n ]" if between == ",\n" else "[]"
 
 
 def _text(value: Any) -> str:

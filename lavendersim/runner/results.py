@@ -6,10 +6,10 @@ import csv
 import io
 from typing import TYPE_CHECKING, Any
 
-from lavendersim.durable_files import write_whole
+from lavendersim.durable_files import write_in_pieces, write_whole
 
 from .accuracy import PARTS, Accuracy
-from .json_table import finite, text_of
+from .json_table import finite, pieces_of
 from .run_directory import RESULTS, TABLE, Run
 
 if TYPE_CHECKING:
@@ -51,14 +51,14 @@ def write_results(
         "experiment": run.name,
         "reduced": run.experiment.reduced,
         "solver": run.experiment.solver,  # instead of the config's; none where it is that
-        "cells": rows,
+        "cells": (finite(row, str) for row in rows),
         # Cells share kernels, so what compiling costs is a number of the run.
         "compile_s": compile_seconds(finished),
-        "checks": [verdict._asdict() for verdict in finished.verdicts],
+        "checks": (finite(verdict._asdict(), str) for verdict in finished.verdicts),
         "passed": finished.good,
-        **({} if overheads is None else {"overheads": overheads}),
+        **({} if overheads is None else {"overheads": finite(overheads, str)}),
     }
-    write_whole(run.path / RESULTS, text_of(finite(table, str)), flush=False)
+    write_in_pieces(run.path / RESULTS, pieces_of(table), flush=False)
     _write_csv(run, rows)
 
 

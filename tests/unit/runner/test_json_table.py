@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
 
 import pytest
 
-from lavendersim.runner.json_table import text_of
+from lavendersim.runner.json_table import pieces_of, text_of
 
 TABLE = {
     "name": 'sweep "é"\n',
@@ -32,3 +33,23 @@ def test_each_row_stands_on_a_line_of_its_own() -> None:
 def test_what_json_has_no_number_for_is_refused() -> None:
     with pytest.raises(ValueError, match="JSON"):
         text_of({"worst": float("nan")})
+
+
+@pytest.mark.parametrize("count", [0, 1, 3])
+def test_rows_may_be_made_as_they_are_written(count: int) -> None:
+    rows = [{"index": index} for index in range(count)]
+    made = []
+
+    def making() -> Iterator[dict[str, int]]:
+        for row in rows:
+            made.append(row)
+            yield row
+
+    table = {"cells": making(), "passed": True}
+    pieces = pieces_of(table)
+    text = ""
+    for piece in pieces:
+        text += piece
+        assert len(made) - text.count("index") in (0, 1)  # one is made, the others are written
+    assert text == text_of({"cells": rows, "passed": True})
+    assert made == rows
