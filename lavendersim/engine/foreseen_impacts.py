@@ -131,8 +131,10 @@ def make_follow(spec: Spec) -> Any:
             pair, last, waits, least, soonest = contacts[first].pair, first, True, first, left
             while last < count and contacts[last].pair == pair:
                 contact = contacts[last]
-                waits = waits and contact.waits == 1
-                dv, _ = forced(contact, motion)
+                dv, most = forced(contact, motion)
+                # An impact that this step does not bring by itself lasts as little.
+                meets = contact.phi > TOUCHING and contact.rate < -most
+                waits = waits and (contact.waits == 1 or meets)
                 rate = abs(dv) - nearest_rate(contact, bodies, motion)
                 gap = max(contact.phi, 0.0)
                 if rate * soonest > gap:
