@@ -201,3 +201,22 @@ def make_slowest(spec: Spec) -> Any:
         return CREEP + ROUND_OFF * relative_speed(contact, bodies, motion)
 
     return kernel(slowest, spec)
+
+
+def make_bend(spec: Spec) -> Any:
+    """Return `kernel(contact, bodies, motion) -> a`, at most, by which its gap bends [m/s^2].
+
+    A normal turns with its bodies, and as they go round each other.
+    """
+    relative_speed, turns = make_relative_speed(spec), spec.has("rotation")
+
+    def bend(contact, bodies, motion):
+        ma, mb = motion[contact.a], motion[contact.b]
+        one, other, rate = bodies[contact.a], bodies[contact.b], 0.0
+        if one.shape != PLANE and other.shape != PLANE:
+            rate = length(relative_velocity(ma, mb)) / min(one.bound, other.bound)
+        if turns:
+            rate += length(Vec3(ma.wx, ma.wy, ma.wz)) + length(Vec3(mb.wx, mb.wy, mb.wz))
+        return rate * relative_speed(contact, bodies, motion)
+
+    return kernel(bend, spec)

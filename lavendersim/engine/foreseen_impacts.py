@@ -13,6 +13,7 @@ from .approach import (
     CREEP,
     ELSEWHERE,
     NEVER,
+    make_bend,
     make_change_ahead,
     make_forced,
     make_nearest_rate,
@@ -27,6 +28,9 @@ from .spec import Spec
 FLIGHT = 1.0 / 64.0
 # Slowest impact without a rebound, in what forces change in a step.
 SLOW = 1.0
+# Where the path of a contact bends by more than this share of what forces change, it is the motion
+# that brings surfaces together: they meet at a slower speed, in the same measure.
+BENDS, GLANCING = 0.05, 1.0 / 64.0
 LAST = 1.0 - 1e-9  # first guess, in what is left of the step, where only shapes tell
 
 
@@ -57,11 +61,11 @@ def make_foresee(spec: Spec) -> Any:
     forced, slowest = make_forced(spec), make_slowest(spec)
     change_ahead = make_change_ahead(spec)
     relative_speed, is_impact = make_relative_speed(spec), make_is_impact(spec)
-    turns = spec.has("rotation")
+    turns, bend = spec.has("rotation"), make_bend(spec)
     restitution, compliance = spec.has("restitution"), spec.has("compliance")
     springs = spec.has("contact_spring")
 
-    def foresee(contact, pair, bodies, motion, params):
+    def foresee(contact, pair, bodies, motion, params, met):
         left = params.dt
         soft = False  # its impulse takes time: none at an instant
         if compliance:
@@ -79,15 +83,19 @@ def make_foresee(spec: Spec) -> Any:
         if soft and gap == 0.0:
             return False
         if gap == 0.0 and v < 0.0:
-            return is_impact(-v, least, dv, most, e, params)
+            return is_impact(-v, least, dv, 0.0 if met else most, e, params)
         # What leaves a gap, whatever holds its bodies, is no contact of this part.
         if v > least + most and contact.phi + left * (v - 0.5 * most) > params.slop:
             contact.waits = 1
         ahead = False
         squared = v * v - 2.0 * a * gap
+        slow = most
+        if gap > params.slop:
+            if bend(contact, bodies, motion) * left > BENDS * most:
+                slow = GLANCING * most
         if squared > 0.0 and (v < 0.0 or a < 0.0):
             speed = sqrt(squared)
-            if is_impact(speed, least, dv, most, e, params):
+            if is_impact(speed, least, dv, slow, e, params):
                 # The root that comes first, in the form that does not cancel.
                 due = (v + speed) / -a if v > 0.0 else 2.0 * gap / (speed - v)
                 ahead = gap > 0.0 or due >= FLIGHT * params.timestep
@@ -123,8 +131,10 @@ def make_follow(spec: Spec) -> Any:
             pair, last, waits, least, soonest = contacts[first].pair, first, True, first, left
             while last < count and contacts[last].pair == pair:
                 contact = contacts[last]
-                waits = waits and contact.waits == 1
-                dv, _ = forced(contact, motion)
+                dv, most = forced(contact, motion)
+                # An impact that this step does not bring by itself lasts as little.
+                meets = contact.phi > TOUCHING and contact.rate < -most
+                waits = waits and (contact.waits == 1 or meets)
                 rate = abs(dv) - nearest_rate(contact, bodies, motion)
                 gap = max(contact.phi, 0.0)
                 if rate * soonest > gap:

@@ -26,12 +26,14 @@ from .collide.narrow_phase import make_manifold
 from .compile import kernel
 from .effects import made_once
 from .integrate import make_turn
-from .records import TOUCHING
+from .records import INSTANT, TOUCHING
 from .spec import Spec
 
 PASSES = 80
 # Shortest, of what is left of the step, in which bodies that part are looked at again.
 STRIDE = 1.0 / 32.0
+# Earliest meeting [s]: a part of the step before it takes time, or what forces do in it is lost.
+SOONEST = 2.0 * INSTANT
 # Rows of `memory.Trial`: the two bodies that move, and the rows that collide (parts of them).
 A, B, PART_A, PART_B = range(4)
 
@@ -75,7 +77,8 @@ def make_locate(spec: Spec) -> Any:
         ma, mb = motion[owner_i], motion[owner_j]
         margin = TOUCHING + ma.reach + mb.reach
         t, when, late = ahead.due, NEVER, False
-        marches = ahead.located == ELSEWHERE
+        marches, own = ahead.located == ELSEWHERE, ahead.located == GUESSED
+        first = marches  # what overlaps as the part begins, and parts, has not met yet
         low, high = 0.0, NEVER  # apart, overlapping
         contact = trial.contact[0]
         contact.a, contact.b = owner_i, owner_j
@@ -94,11 +97,15 @@ def make_locate(spec: Spec) -> Any:
             for k in range(1, count):
                 if points[k].phi < points[least].phi:
                     least = k
-            if ahead.located == GUESSED:
+            seen = least
+            if own:
                 for k in range(count):
                     if points[k].feature == ahead.feature:
-                        least = k
-            point = points[least]
+                        seen = k
+                if abs(points[seen].phi) <= 0.25 * TOUCHING and points[least].phi < -TOUCHING:
+                    # Its feature meets when another of the pair has met already.
+                    own, seen, low = False, least, 0.0
+            point = points[seen]
             contact.x, contact.y, contact.z = point.x, point.y, point.z
             contact.nx, contact.ny, contact.nz = normal[0], normal[1], normal[2]
             phi = point.phi
@@ -109,10 +116,11 @@ def make_locate(spec: Spec) -> Any:
                 when = t - phi / v if v < 0.0 else NEVER
                 if when < NEVER or not marches:
                     break
-            if phi < -0.25 * TOUCHING:
+            if phi < -0.25 * TOUCHING and not (first and v >= 0.0):
                 high = t
             else:
                 low = t
+            first = first and phi < -0.25 * TOUCHING
             if marches and high == NEVER:
                 when = NEVER
                 if t >= left:
@@ -141,6 +149,6 @@ def make_locate(spec: Spec) -> Any:
                 break
         bodies[owner_i], bodies[owner_j] = kept[A], kept[B]
         bodies[i], bodies[j] = kept[PART_A], kept[PART_B]
-        return when
+        return max(when, SOONEST)
 
     return kernel(locate, spec)

@@ -23,6 +23,7 @@ from .midpoint_rows import (
     make_stand_midway,
     make_stay,
     make_take_kept,
+    make_widen,
 )
 from .parts import make_forget_history
 from .residual import make_residual
@@ -44,6 +45,7 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
     lasting = make_lasting(spec)
     keep_start, stay = make_keep_start(spec), make_stay(spec)
     stand_midway, look, shift = make_stand_midway(spec), make_look(spec), make_shift(spec)
+    widen = make_widen(spec)
     carries_inertia, refresh_inertia = made_once(spec, "refresh_inertia")
     warms, match_contacts = made_once(spec, "match")
     _, store_contacts = made_once(spec, "store")
@@ -112,6 +114,7 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
                 if contact.lasts == 0:  # it has no middle: what is met there may be elsewhere
                     stay(contact, bodies, poses)
                     append_contact(contact, bodies, velocities, motion, pairs[contact.pair], params)
+                    widen(contact, params)
             if loaded:
                 for c in range(count):
                     preload(contacts[c], velocities, motion)

@@ -346,3 +346,21 @@ def make_shift(spec: Spec) -> Any:
                 contact.surface_2 += two
 
     return kernel(shift, spec)
+
+
+def make_widen(spec: Spec) -> Any:
+    """Return `kernel(contact, params)`, of a row at the start with a gap: by what turning opens it.
+
+    The gap at the end is phi + dt (n . J(q_0) v + b), v: v_1, or of what flies the mean. Surfaces
+    that curve away from each other may come nearer by their rate at the start and yet not meet.
+    """
+
+    def widen(contact, params):
+        opens = contact.middle_n - contact.begin_n
+        if contact.phi > params.slop and opens > 0.0:
+            mean = contact.v_n_pre - 0.5 * contact.dv_n
+            if contact.phi + (mean + opens) * params.dt > -params.slop:
+                contact.target = max(contact.target, -contact.v_n_pre)
+            contact.target += opens
+
+    return kernel(widen, spec)

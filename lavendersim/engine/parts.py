@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from .approach import NEVER
 from .compile import kernel
 from .spec import Spec
 
@@ -46,7 +47,7 @@ def make_end_step(spec: Spec) -> Any:
     """Return `kernel(counters)`: the next part is the first of a step."""
 
     def end_step(counters):
-        counters.elapsed = 0.0
+        counters.elapsed, counters.met_at = 0.0, NEVER
         counters.substeps, counters.rejected, counters.part_unordered = 0, 0, 0
         counters.shortest, counters.estimated_error = 0.0, 0.0
         counters.parts, counters.spent, counters.unordered = 0, 0, 0

@@ -177,6 +177,9 @@ COUNTERS: Final[list[Field]] = [
     ("parts", I8),  # made of it so far
     ("spent", I8),  # rows of contacts that they had
     ("unordered", I8),  # 1 when its impacts are no longer made in order
+    ("met_a", I8),  # the two bodies whose meeting ended the last of them before its time,
+    ("met_b", I8),
+    ("met_at", F8),  # and when, of the step [s]
     ("part_sweeps", I8),  # sums over its parts: of sweeps,
     ("part_not_converged", I8),  # whether one did not converge,
     ("part_unordered", I8),  # whether impacts of one were left without order,

@@ -17,6 +17,7 @@ from lavendersim.engine.compile_options import source_hash
 from lavendersim.engine.effects import EFFECTS
 from lavendersim.engine.engine import Engine, Rows
 from lavendersim.engine.records import DIVERGED, INACCURATE, NOT_FINITE, RUNNING, TURNS_TOO_FAST
+from lavendersim.engine.step_doubling import MOST_SUBSTEPS
 from lavendersim.measures import applies
 from lavendersim.measures.always import WorstStates
 from lavendersim.measures.specs.always import Always
@@ -51,7 +52,7 @@ CAUSES = {
 }
 NO_SUBSTEP: Final = (
     "cannot be made as accurate as asked for ({accuracy:g}): the estimated error of a substep of "
-    "{length:.3g} s is {error:.3g}, and none may be shorter than {smallest:g} s,"
+    "{length:.3g} s is {error:.3g}, and {bound},"
 )
 
 
@@ -153,7 +154,11 @@ def divergence(scene: Scene, engine: Engine) -> str:
             accuracy=params["accuracy"],
             length=missed["length"],
             error=missed["error"],
-            smallest=params["smallest_timestep"],
+            bound=(
+                f"its step has had {MOST_SUBSTEPS} substeps"
+                if int(counters["substeps"]) >= MOST_SUBSTEPS
+                else f"none may be shorter than {params['smallest_timestep']:g} s"
+            ),
         )
         time += float(missed["start"])
     return f"diverged: body {name} {what} after step {step} (t = {time:.9g} s)"

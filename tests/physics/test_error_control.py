@@ -19,6 +19,7 @@ from test_rolling_discs_at_second_order import DISC, UP, WHEEL
 
 from lavendersim.engine.engine import Rows
 from lavendersim.engine.records import DIVERGED
+from lavendersim.engine.step_doubling import MOST_SUBSTEPS
 from lavendersim.experiment import load_experiment_text
 from lavendersim.runner.cell import divergence
 from lavendersim.scene.build import build
@@ -285,5 +286,26 @@ def test_a_run_that_cannot_be_so_accurate_ends_with_a_sentence() -> None:
         sentence,
     )
     # It stands where the substep began, and is there again.
+    assert engine.advance(cell.config.steps) == DIVERGED
+    assert engine.bodies[1].tobytes() == begin.tobytes()
+
+
+def test_a_step_of_too_many_substeps_ends_with_a_sentence() -> None:
+    """At 1e-6 the wheel takes 2000 substeps a second; at 1e-9, by order 2, 30 times as many."""
+    text = asking(WHEEL.text(1, 1.0, 1.0, "midpoint_contact"), 1e-9)
+    text = text.replace(f"timestep: {LONGEST}", "timestep: 1")
+    (cell,) = load_experiment_text(text, "x.yaml").cells()
+    scene = build(cell.config, plan_of(cell.config).spec)
+    engine = scene.engine(plan_of(cell.config).spec)
+    assert engine.advance(cell.config.steps) == DIVERGED
+    assert engine.counters["substeps"][0] == MOST_SUBSTEPS
+    begin = engine.bodies[1].copy()
+    sentence = divergence(scene, engine)
+    assert re.fullmatch(
+        r"diverged: body disc cannot be made as accurate as asked for \(1e-09\): the estimated "
+        r"error of a substep of \S+ s is \d\.\d+e-\d+, and its step has had 4096 substeps, "
+        r"after step 0 \(t = 0\.\d+ s\)",
+        sentence,
+    )
     assert engine.advance(cell.config.steps) == DIVERGED
     assert engine.bodies[1].tobytes() == begin.tobytes()

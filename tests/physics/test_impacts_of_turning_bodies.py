@@ -202,16 +202,7 @@ def test_riser_of_a_nanometre_is_not_felt(ran: dict[str, States]) -> None:
     np.testing.assert_allclose(place, expected, atol=1e-6)
 
 
-@pytest.mark.parametrize(
-    "rate",
-    [
-        # Low by 2 to 12 mm/s in each of eight phases of release: the edge pushes once more after
-        # the impact, along a normal that is tilted further, though the ball flies off it.
-        pytest.param(60, marks=pytest.mark.xfail(strict=True, reason="the edge pushes twice")),
-        240,
-        1000,
-    ],
-)
+@pytest.mark.parametrize("rate", RATES)
 def test_ball_meets_a_riser_of_a_tenth_of_a_millimetre(ran: dict[str, States], rate: int) -> None:
     """At e = 0 the velocity along the normal of the edge goes: v cos^2 of it is left along x."""
     place, velocity, _ = ran[f"ball {rate}"].of("body")

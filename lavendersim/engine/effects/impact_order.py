@@ -9,8 +9,9 @@ have not met take no part in it, nor do those that part; what they do to each ot
 a contact ahead acts only when it is met, along the normal that it then has.
 
 Slow meetings are no impacts (`foreseen_impacts`): with a rebound that would end within FLIGHT
-steps, or without rebound below SLOW times what forces change in a step. They are contacts of the
-motion (`impact_time`). An impact takes along what touches and does not part (`impact_rows`), and
+steps, or without rebound below SLOW times what forces change in a step (GLANCING of that across a
+gap, where the path of the contact bends). They are contacts of the motion (`impact_time`). An
+impact takes along what touches and does not part (`impact_rows`), and
 nothing else. One may have CROWD rows of contacts, and a step has WORK of them to spend on its
 parts. The rest of one that has spent them or meets a larger impact, or whose bodies overlap, is
 made in one part: its impacts at their times but without their order (/step: unordered).
@@ -130,7 +131,9 @@ def make_order(spec: Spec) -> Any:
                 if deep:
                     counters.unordered = 1
                     return count, left
-            if foresee(contact, state.pairs[contact.pair], bodies, motion, params):
+            met = contact.a == counters.met_a and contact.b == counters.met_b
+            met = met and counters.met_at == counters.elapsed
+            if foresee(contact, state.pairs[contact.pair], bodies, motion, params, met):
                 contact.located, meets = MEETS, True
             if contact.waits == 1:
                 waiting = True
@@ -155,6 +158,8 @@ def make_order(spec: Spec) -> Any:
             contact = contacts[first]
             if contact.located == LOCATED:
                 length = due
+                counters.met_a, counters.met_b = contact.a, contact.b
+                counters.met_at = counters.elapsed + due
                 break
             due = locate(state, contact, workspace, params)
             contact.located, contact.due = LOCATED, due
