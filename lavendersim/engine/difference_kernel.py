@@ -15,8 +15,8 @@ from .kernel_cache import cached
 from .spec import Spec
 
 U = np.uint64
-COUNT = 7
-XOR, DELTA, LINEAR, UNIT, AFTER, GAP, LAW = range(COUNT)  # as in `trace.predictors`
+COUNT = 8
+XOR, DELTA, LINEAR, UNIT, AFTER, GAP, LAW, SPHERES = range(COUNT)  # as in `trace.predictors`
 ALONE = 3  # predictors that need no other column
 TRIED, SAMPLE = 256, 4  # rows on which predictors are tried: so many, once in so many times that
 
@@ -48,7 +48,9 @@ def _make_difference(spec: Spec):
             return fold(own - before)
         if predictor == LINEAR:
             return fold(own - before - rise)
-        return fold(own - expected) if predictor == AFTER else own ^ expected
+        if predictor in (AFTER, SPHERES):
+            return fold(own - expected)
+        return own ^ expected
 
     return inner(difference)
 
@@ -56,8 +58,9 @@ def _make_difference(spec: Spec):
 def _make_sizes(spec: Spec):
     difference, bytes_of = _make_difference(spec), inner(_bytes_of)
 
-    def sizes(words, persists, expected, special, size):
+    def sizes(words, rows, expected, special, size):
         """Count the bytes that a column takes by each predictor, of some of its rows."""
+        persists, known = rows
         for first in range(0, words.shape[0], TRIED * SAMPLE):
             before, rise = U(0), U(0)
             for i in range(first, min(first + TRIED, words.shape[0])):
@@ -69,7 +72,8 @@ def _make_sizes(spec: Spec):
                 size[DELTA] += bytes_of(difference(DELTA, own, before, rise, U(0)))
                 size[LINEAR] += bytes_of(difference(LINEAR, own, before, rise, U(0)))
                 if special >= ALONE:
-                    size[special] += bytes_of(difference(special, own, before, rise, expected[i]))
+                    hope = LINEAR if special == SPHERES and not known[i] else special
+                    size[special] += bytes_of(difference(hope, own, before, rise, expected[i]))
                 before, rise = own, own - before
 
     return inner(sizes)
@@ -78,15 +82,15 @@ def _make_sizes(spec: Spec):
 def _make_pack(spec: Spec):
     difference, sizes = _make_difference(spec), _make_sizes(spec)
 
-    def pack(words, persists, special, expected, size, packed):
-        chosen, planes = packed
+    def pack(words, rows, special, expected, size, packed):
+        (persists, known), (chosen, planes) = rows, packed
         other_of = 0
         for j in range(words.shape[0]):
             size[:] = 0
             hopes = expected[other_of]
             if special[j] >= ALONE:
                 other_of += 1
-            sizes(words[j], persists, hopes, special[j], size)
+            sizes(words[j], rows, hopes, special[j], size)
             choice = XOR
             for other in range(DELTA, COUNT):
                 if (other < ALONE or other == special[j]) and size[other] < size[choice]:
@@ -97,7 +101,8 @@ def _make_pack(spec: Spec):
                 own = words[j, i]
                 if not persists[i]:
                     before, rise = U(0), U(0)
-                word = difference(choice, own, before, rise, hopes[i])
+                guess = LINEAR if choice == SPHERES and not known[i] else choice
+                word = difference(guess, own, before, rise, hopes[i])
                 for k in range(8):
                     planes[7 - k, j, i] = np.uint8(word >> U(8 * k))
                 # The first of a key has no rise: the second is expected to be as it was.
@@ -131,11 +136,12 @@ def gather_columns():
 
 @cache
 def pack_columns():
-    """Return `kernel(words, persists, special, expected, size, packed)`.
+    """Return `kernel(words, rows, special, expected, size, packed)`.
 
-    words: (m, n) of columns, rows in the order of their keys. persists: (n,) bool, whether a row
-    follows one of its key. special: (m,) predictor beside those that need no other column, 0 for
-    none. expected: (k + 1, n) what the k of these expect, in their order; the last is not read.
+    words: (m, n) of columns, rows in the order of their keys. rows: persists and known, (n,) bool,
+    whether a row follows one of its key, and whether SPHERES expects it. special: (m,) predictor
+    beside those that need no other column, 0 for none. expected: (k + 1, n) what the k of these
+    expect, in their order; the last is not read.
     size: (COUNT,) to work in. packed: predictors (m,) and uint8 planes (8, m, n), to be filled.
     Words are uint64, else int64.
     """
@@ -143,5 +149,5 @@ def pack_columns():
     words, ints = np.zeros((0, 0), np.uint64), np.zeros(0, np.int64)
     packed = ints, np.zeros((8, 0, 0), np.uint8)
     with compiling():  # here, and not in one of the threads that close chunks
-        kernel(words, np.zeros(0, np.bool_), ints, words, ints, packed)
+        kernel(words, (np.zeros(0, np.bool_),) * 2, ints, words, ints, packed)
     return kernel

@@ -31,6 +31,7 @@ class Counted(NamedTuple):
     touched: Rows  # whether contacts are, (n,)
     contact_start: NDArray[np.int64]  # where the rows of each step begin, (n + 1,)
     residual_start: NDArray[np.int64]
+    before: NDArray[np.float64] | None = None  # poses of the state before, (bodies, 7)
 
 
 def counted(block: Block, posed: Rows, touched: Rows) -> Counted:

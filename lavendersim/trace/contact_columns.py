@@ -12,6 +12,8 @@ engine finds contacts.
     planes      (8, m, n)  bytes of m columns in the order of keys, the heaviest byte first
     predictors  (m,)       bytes; logs of older versions have none: 0 for every column
     constants   (2,)       float64: what predictors need beside the columns
+    bodies      (b, 8)     float64: shapes and places of the bodies, where contacts of spheres are
+                           expected by them (`sphere_contacts`); empty where they are not
 
 The inverse needs no bit more: keys give the order back. A column that follows from others bit for
 bit (`Column.derived`) is not stored where they are; the channel's metadata has its rule.
@@ -19,7 +21,7 @@ bit (`Column.derived`) is not stored where they are; the channel's metadata has 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import lru_cache
 from typing import Any, Final, NamedTuple
 
@@ -30,7 +32,16 @@ from lavendersim.engine.effects import EFFECTS, Derived
 from lavendersim.trace import predictors
 from lavendersim.trace.layout import bytes_field
 from lavendersim.trace.message_form import columns_of_words, words_of
-from lavendersim.trace.predictors import Constants
+from lavendersim.trace.predictors import ALONE, SPECIAL, SPHERES, Constants
+from lavendersim.trace.sphere_contacts import COLUMNS as OF_SPHERES
+from lavendersim.trace.sphere_contacts import (
+    FIELDS,
+    POSITION,
+    Expected,
+    Floats,
+    Starts,
+    expected_contacts,
+)
 
 DERIVED: dict[str, Derived] = {
     column.name: column.derived
@@ -88,13 +99,14 @@ class ContactGroup(NamedTuple):
     times: Integers  # of each [ns]
     counts: Integers  # contacts of each
     rows: NDArray[Any]  # of all, one step after the other
+    starts: Starts | None = None  # of spheres, by which their contacts are expected
 
 
 def message_of(
     group: ContactGroup, form: ColumnForm, constants: Constants
 ) -> list[bytes | memoryview]:
     """Return the lavender.ContactColumns of some steps, in pieces."""
-    packed = pack(group.rows, form.names, constants)
+    packed = pack(group.rows, form.names, constants, group.starts)
     numbers = [column.astype("<i8").tobytes() for column in group[:3]]
     fields: list[tuple[bytes | memoryview, ...]] = [
         *((one,) for one in numbers),
@@ -116,9 +128,15 @@ class Packed(NamedTuple):
     planes: bytes | memoryview
     predictors: bytes = b""  # none: as in older logs
     constants: bytes = bytes(16)  # float64 each
+    bodies: bytes = b""  # none: no contact is expected by them
 
 
-def pack(rows: NDArray[Any], names: tuple[str, ...], constants: Constants) -> Packed:
+def pack(
+    rows: NDArray[Any],
+    names: tuple[str, ...],
+    constants: Constants,
+    starts: Starts | None = None,
+) -> Packed:
     """Return contacts as bytes; names: of the columns that are stored, each of eight bytes."""
     from lavendersim.engine.difference_kernel import gather_columns, pack_columns  # late: numba
 
@@ -129,30 +147,77 @@ def pack(rows: NDArray[Any], names: tuple[str, ...], constants: Constants) -> Pa
     stored = np.array([places[name] for name in columns], np.int64)
     gather_columns()(words_of(rows), order, stored, words)
     named = dict(zip(columns, words, strict=True))
-    special = np.array([_special(name, columns) for name in columns], np.int64)
+    spheres = _expected_by(starts, keys, names, order)
+    if spheres is not None and not _is_of_spheres(spheres, named):
+        spheres = None  # others have predictors of their own
+    special = np.array([_special(name, columns, spheres is not None) for name in columns], np.int64)
     expected = np.empty((np.count_nonzero(special) + 1, len(rows)), np.uint64)
-    for place, predictor in enumerate(special[special > 0].tolist()):
-        expected[place] = predictors.expected(predictor, named, persists, constants)
+    asked = [(name, code) for name, code in zip(columns, special.tolist(), strict=True) if code]
+    for place, (name, predictor) in enumerate(asked):
+        if predictor == SPHERES and spheres is not None:
+            expected[place] = spheres.columns[name].view(np.uint64)
+        else:
+            expected[place] = predictors.expected(predictor, named, persists, constants)
+    known = np.zeros(len(rows), bool) if spheres is None else spheres.known
     chosen = np.zeros(len(columns), np.int64)
     planes = np.empty((8, len(columns), len(rows)), np.uint8)
     size = np.zeros(predictors.COUNT, np.int64)
-    pack_columns()(words, persists, special, expected, size, (chosen, planes))
+    pack_columns()(words, (persists, known), special, expected, size, (chosen, planes))
+    bodies = b""
+    if starts is not None and SPHERES in chosen:
+        bodies = _with_positions(starts).astype("<f8").tobytes()
     return Packed(
         np.diff(keys, axis=1, prepend=0).tobytes(),
         planes.reshape(-1).data,
         bytes(chosen.tolist()),
         np.array(constants, "<f8").tobytes(),
+        bodies,
     )
 
 
-def _special(name: str, columns: Sequence[str]) -> int:
+def _expected_by(
+    starts: Starts | None, keys: Integers, names: Sequence[str], order: NDArray[np.intp]
+) -> Expected | None:
+    """Return contacts of spheres as they are expected, in the order of keys."""
+    if starts is None or not {"body_a", "body_b"} <= {*names}:
+        return None
+    starts = starts._replace(step=starts.step[order])
+    return expected_contacts(keys[0, order], keys[1, order], starts)
+
+
+def _is_of_spheres(spheres: Expected, columns: Mapping[str, predictors.Words]) -> bool:
+    """Whether at least half of the contacts are as far apart as is expected, to the last bit."""
+    if "separation" not in columns:
+        return False
+    exact = spheres.columns["separation"].view(np.uint64) == columns["separation"]
+    return bool(2 * np.count_nonzero(exact & spheres.known) >= len(exact) > 0)
+
+
+def _with_positions(starts: Starts) -> Floats:
+    """Return the bodies, each with its place at the start of the first step."""
+    bodies = starts.bodies.copy()
+    bodies[:, POSITION] = starts.positions[0]
+    return bodies
+
+
+def _special(name: str, columns: Sequence[str], of_spheres: bool) -> int:
     """Return the predictor that only this column has, 0 for none."""
-    predictor, sources = predictors.SPECIAL.get(name, (0, ()))
+    if of_spheres and name in OF_SPHERES:
+        return SPHERES
+    predictor, sources = SPECIAL.get(name, (0, ()))
     return predictor if all(source in columns for source in sources) else 0
 
 
-def unpack(packed: Packed, names: tuple[str, ...], table: NDArray[Any]) -> None:
-    """Fill the columns of a table. ValueError where the bytes are not as many as it has rows."""
+def unpack(
+    packed: Packed,
+    names: tuple[str, ...],
+    table: NDArray[Any],
+    starts: Callable[[Floats], Starts] | None = None,
+) -> None:
+    """Fill the columns of a table. ValueError where the bytes are not as many as it has rows.
+
+    starts: where the bodies of the rows are, by the table of bodies that the log has.
+    """
     count = len(table)
     known, columns = [name for name in KEY if name in names], _numbers(names)
     keys = np.frombuffer(packed.keys, np.int64).reshape(len(known), count).cumsum(axis=1)
@@ -161,25 +226,43 @@ def unpack(packed: Packed, names: tuple[str, ...], table: NDArray[Any]) -> None:
     planes = np.frombuffer(packed.planes, np.uint8).reshape(8, len(columns), count)
     heaviest_last = np.ascontiguousarray(planes[::-1].transpose(1, 2, 0))
     stored = dict(zip(columns, heaviest_last.view(np.uint64)[:, :, 0], strict=True))
-    chosen = _chosen(packed.predictors, columns)
+    chosen = _chosen(packed, columns)
     constants = Constants(*np.frombuffer(packed.constants, "<f8").tolist())
+    spheres = None
+    if SPHERES in chosen.values() and starts is not None:
+        bodies = np.frombuffer(packed.bodies, "<f8").reshape(-1, FIELDS)
+        spheres = _expected_by(starts(bodies), keys, names, order)
     words: dict[str, predictors.Words] = {}
-    for name, predictor in sorted(chosen.items(), key=lambda one: one[1]):
-        expected = None
-        if predictor not in predictors.ALONE:
-            expected = predictors.expected(predictor, words, persists, constants)
-        words[name] = predictors.numbers(predictor, stored[name], expected, own)
+    for name, predictor in sorted(chosen.items(), key=_when):
+        if predictor != SPHERES:
+            expected = None
+            if predictor not in ALONE:
+                expected = predictors.expected(predictor, words, persists, constants)
+            words[name] = predictors.numbers(predictor, stored[name], expected, own)
+            continue
+        if spheres is None:
+            raise ValueError(f"column {name} has predictor {predictor} without bodies")
+        expected = spheres.columns[name].view(np.uint64)
+        of_spheres = predictors.numbers(SPHERES, stored[name], expected, own)
+        others = predictors.numbers(predictors.LINEAR, stored[name], None, own)
+        words[name] = np.where(spheres.known, of_spheres, others)
     for name, key in zip(known, keys, strict=True):
         table[name] = key
     for name, column in words.items():
         table[name][order] = column.view(table.dtype[name])
 
 
-def _chosen(stored: bytes, columns: Sequence[str]) -> dict[str, int]:
+def _when(column: tuple[str, int]) -> tuple[bool, int]:
+    """Return what orders columns so that those come first of which others are expected."""
+    _, predictor = column
+    return predictor not in (*ALONE, SPHERES), predictor
+
+
+def _chosen(packed: Packed, columns: Sequence[str]) -> dict[str, int]:
     """Return the predictor of each column. ValueError for one that this version does not know."""
-    chosen = dict(zip(columns, stored or bytes(len(columns)), strict=True))
+    chosen = dict(zip(columns, packed.predictors or bytes(len(columns)), strict=True))
     for name, predictor in chosen.items():
-        if predictor not in (*predictors.ALONE, _special(name, columns)):
+        if predictor not in (*ALONE, _special(name, columns, bool(packed.bodies))):
             raise ValueError(f"column {name} has predictor {predictor}, none of this version")
     return chosen
 

@@ -8,9 +8,9 @@ in another layout than lavender writes is refused, not misread.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable, Sequence
-from functools import lru_cache
-from typing import Any
+from collections.abc import Callable, Iterable, Sequence
+from functools import lru_cache, partial
+from typing import Any, NamedTuple
 
 import numpy as np
 from google.protobuf import descriptor_pb2, descriptor_pool, message_factory
@@ -24,6 +24,7 @@ from lavendersim.trace.contact_columns import DERIVED, Packed, unpack
 from lavendersim.trace.index import ChunkContent
 from lavendersim.trace.layout import PackedField
 from lavendersim.trace.schema import FORMER_NAMES, HIGH_WORD, KINDS, NUMERIC_TYPES, Column
+from lavendersim.trace.sphere_contacts import POSITION, Floats, Starts
 from lavendersim.trace.wire import NANOSECONDS, Bytes, Rows, Template, gather, padded_varints
 
 Table = NDArray[Any]
@@ -190,10 +191,17 @@ def decode_contacts(
     return table
 
 
+class AroundContacts(NamedTuple):
+    """What contacts of a log are given back by, beside their chunk."""
+
+    clock: Clock
+    positions: Callable[[Rows], Floats]  # of all bodies after some steps (n, bodies, 3) [m]
+
+
 def decode_columns(
-    chunk: ChunkContent, schema: Schema, derived: tuple[str, ...], clock: Clock
+    chunk: ChunkContent, schema: Schema, derived: tuple[str, ...], log: AroundContacts
 ) -> Table:
-    """Return the contact table of a chunk of columns."""
+    """Return the contact table of a chunk of columns; log: what else of it that may take."""
     entries = chunk.messages[layout.CHANNELS["/contact_columns"]]
     tables = []
     for offset in entries["offset"].astype(np.int64):
@@ -206,11 +214,19 @@ def decode_columns(
         columns = [("step", "i8"), *zip(names, message.kinds, strict=True)]
         table = _table([*columns, *((name, "f8") for name in (*derived, "time"))], counts.sum())
         packed = Packed(*(getattr(message, name) for name in Packed._fields if name in fields))
-        unpack(packed, names, table)
+        unpack(packed, names, table, partial(_starts, log, steps, counts))
         table["step"] = np.repeat(steps, counts)
         table["time"] = np.repeat(seconds(times), counts)
-        tables.append(_derived(table, derived, clock))
+        tables.append(_derived(table, derived, log.clock))
     return joined(tables)
+
+
+def _starts(log: AroundContacts, steps: Rows, counts: Rows, bodies: Floats) -> Starts:
+    """Return where bodies are at the start of each of some steps: where they were before it."""
+    positions = bodies[None, :, POSITION]
+    if len(steps) > 1:
+        positions = np.concatenate([positions, log.positions(steps[:-1])])
+    return Starts(bodies, positions, np.repeat(np.arange(len(steps)), counts))
 
 
 def _derived(table: Table, derived: tuple[str, ...], clock: Clock) -> Table:

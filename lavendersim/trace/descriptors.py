@@ -56,7 +56,7 @@ def residuals_schema(columns: Iterable[Column]) -> bytes:
 
 CONTACT_COLUMNS: Final = (
     *("steps", "times", "counts", "names", "kinds", "keys", "planes"),
-    *("predictors", "constants"),
+    *("predictors", "constants", "bodies"),
 )
 
 

@@ -18,10 +18,12 @@ from typing import Any, Generic, NamedTuple, Protocol, TypeVar
 import numpy as np
 
 from lavendersim.cell import CellConfig
+from lavendersim.cell.record import ALL
 from lavendersim.cell.shapes.shape import Convex
 from lavendersim.trace import layout
 from lavendersim.trace.blocks import Block, Counted, counted
 from lavendersim.trace.points import grid_of
+from lavendersim.trace.sphere_contacts import body_table
 from lavendersim.trace.streams import ContactColumns, Laid, Light, Points, Poses
 from lavendersim.trace.wire import Rows
 
@@ -69,9 +71,12 @@ def encoders_of_cell(shared: Streams[Encoder], config: CellConfig) -> Streams[En
     """Return the encoders of one cell, from those that cells of equal bodies and columns share."""
     columns, points = shared.columns, shared.points
     if isinstance(columns, ContactColumns) and isinstance(points, Points):
-        shapes = [body.shape for body in config.scene.bodies.values()]
-        grid = grid_of(shape.thickness() for shape in shapes if isinstance(shape, Convex))
-        columns = columns.expecting(config.clock, config.numerics.slop)
+        every_shape = [body.shape for body in config.scene.bodies.values()]
+        grid = grid_of(shape.thickness() for shape in every_shape if isinstance(shape, Convex))
+        record, posed = config.record, isinstance(shared.poses, Poses)
+        every = posed and record.poses == record.contacts == ALL
+        bodies = body_table(every_shape) if every else None
+        columns = columns.expecting(config.clock, config.numerics.slop, bodies)
         return shared._replace(columns=columns, points=points.on_grid(grid))
     return shared
 

@@ -12,6 +12,8 @@ modulo 2^64, or operations that IEEE 754 rounds in one way alone: logs are read 
     4  of the velocity before the solve: that of the contact before, after its solve
     5  of the target: that of a gap beyond the slop, to be closed within the timestep; by xor
     6  of the residual: Signorini's and Coulomb's natural maps of the row, by xor (see there)
+    7  of point, normal and separation: those of two spheres, and of a plane and a sphere, where
+       these are at the start of the step (`sphere_contacts`), by subtraction; of others as 2
 
 Differences by subtraction have their sign in the lowest bit: small ones of either sign begin with
 zeros.
@@ -27,8 +29,8 @@ from numpy.typing import NDArray
 
 Words = NDArray[np.uint64]
 Floats = NDArray[np.float64]
-COUNT: Final = 7
-XOR, DELTA, LINEAR, UNIT, AFTER, GAP, LAW = range(COUNT)
+COUNT: Final = 8
+XOR, DELTA, LINEAR, UNIT, AFTER, GAP, LAW, SPHERES = range(COUNT)
 ALONE: Final = (XOR, DELTA, LINEAR)  # need no other column
 # Of these columns what is expected follows from others, here in the order in which they are read.
 SPECIAL: Final[dict[str, tuple[int, tuple[str, ...]]]] = {
@@ -72,7 +74,8 @@ def keys_of(persists: NDArray[np.bool_]) -> Keys:
 def numbers(predictor: int, stored: Words, expected: Words | None, keys: Keys) -> Words:
     """Return a column from what is stored of it; expected: of predictors that need others."""
     if expected is not None:
-        return expected + _unfolded(stored) if predictor == AFTER else stored ^ expected
+        by_subtraction = predictor in (AFTER, SPHERES)
+        return expected + _unfolded(stored) if by_subtraction else stored ^ expected
     if predictor == XOR:
         running = np.bitwise_xor.accumulate(stored)
         return running ^ _before(running, keys)

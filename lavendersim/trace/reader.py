@@ -1,6 +1,7 @@
 """The reader of logs: columns, each loaded when it is first asked for.
 
-Reading `step` or `residual` touches the light chunks only, `contact` and `pose` each their own.
+Reading `step` or `residual` touches the light chunks only, `pose` its own, and `contact` its own;
+but of a log whose contacts are expected by where its spheres are, those of poses as well.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ from lavendersim.trace.absent import absent_table
 from lavendersim.trace.contact_columns import known_rules
 from lavendersim.trace.forms import RULES
 from lavendersim.trace.index import ChunkContent, damage
+from lavendersim.trace.positions import Positions
 from lavendersim.trace.recorded import KEYS, RECORDED, is_recorded, partly_recorded
 from lavendersim.trace.schema import FORMAT, RESIDUAL_COLUMNS, STEP_COLUMNS, Column
 from lavendersim.trace.source import Source
@@ -221,8 +223,17 @@ class Trace:
             return
         with damage(self.path, COLUMNS):
             derived = self._derived()
+            around = decode.AroundContacts(self.clock, Positions(self._poses_at_hand()))
             for chunk in self._chunks(COLUMNS):
-                yield decode.decode_columns(chunk, schema, derived, self.clock)
+                yield decode.decode_columns(chunk, schema, derived, around)
+
+    def _poses_at_hand(self) -> Iterator[tuple[NDArray[np.int64], NDArray[np.float64]]]:
+        """Yield poses as `poses_in_parts`; what was read already is not read again."""
+        if "recorded_pose" in self.__dict__:
+            rows, pose = self.recorded_pose
+            yield self.step["step"][rows], pose
+            return
+        yield from self.poses_in_parts()
 
     def _contacts_of_points(self) -> Iterator[NDArray[Any]]:
         """Yield the contacts of a log whose points are all that it has of them, as older ones."""

@@ -35,6 +35,7 @@ from lavendersim.trace.schema import (
     STEP_COLUMNS,
     columns_of,
 )
+from lavendersim.trace.sphere_contacts import Starts
 from lavendersim.trace.wire import Rows, Template, scatter
 
 STEP_OF_COLUMNS: Final = 3 * WORD  # its number, its time, how many contacts it has
@@ -215,11 +216,17 @@ class ContactColumns:
     def __init__(self, contact: np.dtype[Any]) -> None:
         self.form = column_form(contact)
         self._clock, self._slop = Clock(Fraction(1)), 0.0
+        self._bodies: NDArray[np.float64] | None = None
 
-    def expecting(self, clock: Clock, slop: float) -> ContactColumns:
-        """Return the same for a run with these timesteps, and this gap that counts as none [m]."""
+    def expecting(
+        self, clock: Clock, slop: float, bodies: NDArray[np.float64] | None
+    ) -> ContactColumns:
+        """Return the same for a run with these timesteps, and this gap that counts as none [m].
+
+        bodies: see `sphere_contacts`; None where nothing is expected by them.
+        """
         columns = copy(self)
-        columns._clock, columns._slop = clock, slop
+        columns._clock, columns._slop, columns._bodies = clock, slop, bodies
         return columns
 
     def sizes(self, counted: Counted) -> Rows:
@@ -229,21 +236,40 @@ class ContactColumns:
         return sizes
 
     def part(self, counted: Counted, first: int, last: int) -> Any:
-        """Return the rows and contacts of the steps that have them recorded."""
-        return _touched(counted, first, last)
+        """Return the rows and contacts of the steps that have them recorded.
+
+        And the poses of the state before, and those of the steps, where contacts are expected by
+        them.
+        """
+        if self._bodies is None:
+            return *_touched(counted, first, last), None
+        pose = counted.block.pose
+        before = pose[first - 1] if first else counted.before
+        poses = pose[0] if before is None else before, pose[first : last - 1]
+        return *_touched(counted, first, last), poses
 
     def encode(self, prologue: bytes, parts: Sequence[Any], size: int) -> Laid:
         """Return the bytes of a chunk and its index."""
-        steps = [step for step, _, _ in parts if len(step)]
+        steps = [step for step, _, _, _ in parts if len(step)]
         numbers = np.concatenate([step["step"] for step in steps])
         times = np.concatenate([step["time_ns"] for step in steps])
-        counts = np.concatenate([counts for _, _, counts in parts])
-        rows = joined([contacts for _, contacts, _ in parts])
+        counts = np.concatenate([counts for _, _, counts, _ in parts])
+        rows = joined([contacts for _, contacts, _, _ in parts])
         constants = Constants(float(self._clock.lengths(numbers[:1])[0]), self._slop)
-        body = message_of(ContactGroup(numbers, times, counts, rows), self.form, constants)
+        group = ContactGroup(numbers, times, counts, rows, self._starts(parts, counts))
+        body = message_of(group, self.form, constants)
         head = layout.message_head(COLUMNS, int(numbers[0]), int(times[0]), sum(map(len, body)))
         entries = np.array([(times[0], len(prologue))], INDEX_ENTRY)
         return b"".join([prologue, head, *body]), [Messages(layout.CHANNELS[COLUMNS], entries)]
+
+    def _starts(self, parts: Sequence[Any], counts: Rows) -> Starts | None:
+        """Return where bodies are at the start of each step of some parts."""
+        if self._bodies is None:
+            return None
+        poses = [(before[None], following) for _, _, _, (before, following) in parts]
+        positions = [pose[:, :, :3] for part in poses for pose in part]
+        rows = np.repeat(np.arange(len(counts)), counts)
+        return Starts(self._bodies, np.concatenate(positions).astype(np.float64), rows)
 
 
 def _touched(counted: Counted, first: int, last: int) -> tuple[Rows, Rows, Rows]:

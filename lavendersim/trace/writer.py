@@ -114,6 +114,7 @@ class TraceWriter:
         self._clock = clock = config.clock
         self._form: Form | None = None
         self._last_step = -1
+        self._last_pose: NDArray[np.float64] | None = None
         self._container = Container(self._path)
         self._container.attach(AS_WRITTEN, "application/yaml", as_written.encode())
         self._container.attach(RESOLVED, "application/json", config.as_json().encode())
@@ -163,6 +164,8 @@ class TraceWriter:
         )
         columns = self._form.columns
         counted = checked(block, posed, touched, columns, (self._topics, len(self._bodies)))
+        counted = counted._replace(before=self._last_pose)
+        self._last_pose = block.pose[-1]
         starts = Streams(*(cumulative(encoder.sizes(counted)) for encoder in self._encoders))
         self._last_step = int(step["step"][-1])
         self._keep(block)

@@ -71,8 +71,7 @@ def moving(steps: int) -> Block:
     rows["normal_velocity"] = random.normal(size=len(rows))
     slop = CONFIG.numerics.slop
     rows["separation"] = slop + 1e-6 * random.normal(size=len(rows))
-    gap = rows["separation"] - slop
-    rows["target"] = np.where(gap > 0.0, gap / float(TIMESTEP), 0.0)
+    rows["target"] = _target(rows["separation"])
     rows["inverse_effective_mass"], rows["friction"] = 2.0, 0.5
     rows["impulse_n"] = np.abs(random.normal(size=len(rows)))
     for name in ("impulse_t1", "impulse_t2", "slip_t1", "slip_t2"):
@@ -81,6 +80,34 @@ def moving(steps: int) -> Block:
     rows["approach_velocity"][4:] = rows["normal_velocity"][:-4] * (1.0 - 1e-9)
     follow(rows, np.full(len(rows), float(TIMESTEP)))
     return block._replace(contact=rows)
+
+
+def rolling(steps: int) -> Block:
+    """Return a run in which a ball rolls over the floor: two contacts of it, and one of the crate.
+
+    Where the ball is at the start of a step follows from its pose after the one before.
+    """
+    block = moving(steps)
+    random = np.random.default_rng(2)
+    pose = np.zeros((steps, len(BODIES), 7))
+    pose[:, :, :3] = np.cumsum(random.normal(size=(steps, len(BODIES), 3)), axis=0)
+    rows = block.contact[block.contact["feature"] < 3].copy()
+    rows["body_b"] = 1 + (rows["feature"] == 2)
+    of_ball = rows["body_b"] == 1
+    x, y, z = (pose[np.maximum(rows["step"] - 1, 0), 1, axis] for axis in range(3))
+    separation = z - 0.1  # its radius; the floor is z = 0
+    where = {"x": x, "y": y, "z": z - (0.1 + 0.5 * separation), "nx": 0.0, "ny": 0.0, "nz": 1.0}
+    for name, numbers in {**where, "separation": separation}.items():
+        rows[name] = np.where(of_ball, numbers, rows[name])
+    rows["target"] = _target(rows["separation"])
+    follow(rows, np.full(len(rows), float(TIMESTEP)))
+    return block._replace(contact=rows, pose=pose)
+
+
+def _target(separation: Any) -> Any:
+    """Return what rows ask for that close a gap beyond the slop within the timestep [m/s]."""
+    gap = separation - CONFIG.numerics.slop
+    return np.where(gap > 0.0, gap / float(TIMESTEP), 0.0)
 
 
 def _natural_map(rows: Any) -> Any:

@@ -72,7 +72,7 @@ def test_a_log_of_an_older_version_has_its_bits_xor() -> None:
     assert (rows["x"] == 0.0).all()
 
 
-@pytest.mark.parametrize("predictor", [3, 4, 5, 6, 7, 255])
+@pytest.mark.parametrize("predictor", [3, 4, 5, 6, 7, 8, 255])
 def test_a_predictor_that_a_column_cannot_have_is_refused(predictor: int) -> None:
     rows = contacts(10, 2, 3)
     packed = pack(rows, NAMES, Constants())._replace(predictors=bytes([predictor, 0]))

@@ -46,7 +46,7 @@ def heavy_bytes(rows: np.ndarray, name: str) -> int:
 
 
 def test_the_kernel_and_its_inverse_number_predictors_alike() -> None:
-    for name in ("XOR", "DELTA", "LINEAR", "UNIT", "AFTER", "GAP", "LAW", "COUNT"):
+    for name in ("XOR", "DELTA", "LINEAR", "UNIT", "AFTER", "GAP", "LAW", "SPHERES", "COUNT"):
         assert getattr(predictors, name) == getattr(difference_kernel, name)
     assert max(predictors.ALONE) + 1 == difference_kernel.ALONE == predictors.UNIT
 

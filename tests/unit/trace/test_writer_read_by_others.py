@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from google.protobuf import descriptor_pb2, descriptor_pool, message_factory
 from mcap.reader import NonSeekingReader, make_reader
-from sample import BODIES, CONFIG, TIMESTEP, moving, run, write
+from sample import BODIES, CONFIG, TIMESTEP, moving, rolling, run, write
 
 from lavendersim.trace import Block
 
@@ -32,9 +32,9 @@ SLOP = CONFIG.numerics.slop
 LOADED = (213, 94, 0, 255)  # vermilion: the contact carries an impulse
 
 
-@pytest.fixture(scope="module", params=["noise", "motion"])
+@pytest.fixture(scope="module", params=["noise", "motion", "spheres"])
 def block(request: pytest.FixtureRequest) -> Block:
-    return run(STEPS) if request.param == "noise" else moving(STEPS)
+    return {"noise": run, "motion": moving, "spheres": rolling}[request.param](STEPS)
 
 
 @pytest.fixture(scope="module")
@@ -126,11 +126,13 @@ def test_contact_columns(path: Path, block: Block) -> None:
     """Number by number, as docs/architecture.md has it: keys summed up, planes put together."""
     rows = iter(block.contact)
     seen: set[int] = set()
+    poses = {m.sequence: [t.translation for t in tf.transforms] for m, tf in messages(path, "/tf")}
     for message, group in messages(path, "/contact_columns"):
         steps, times, counts = (
             np.frombuffer(one, "<i8").tolist() for one in (group.steps, group.times, group.counts)
         )
         assert (message.sequence, message.log_time) == (steps[0], times[0])
+        bodies = list(struct.iter_unpack("<8d", group.bodies))
         of_step = [step for step, count in zip(steps, counts, strict=True) for _ in range(count)]
         count, names = len(of_step), list(group.names)
         known = [name for name in names if name in ("body_a", "body_b", "feature")]
@@ -142,7 +144,9 @@ def test_contact_columns(path: Path, block: Block) -> None:
         used = dict(zip(numbers, group.predictors, strict=True))
         constants = struct.unpack("<dd", group.constants)
         assert constants == (float(TIMESTEP), SLOP)
-        for m, name in sorted(enumerate(numbers), key=lambda one: used[one[1]]):
+        # those of which others are expected come first
+        when = {name: (code in (3, 4, 5, 6), code) for name, code in used.items()}
+        for m, name in sorted(enumerate(numbers), key=lambda one: when[one[1]]):
             before: list[int] = []  # the numbers before of the same key
             last = None
             for place, row in enumerate(order):
@@ -151,7 +155,13 @@ def test_contact_columns(path: Path, block: Block) -> None:
                 if last is None or keys[last] != keys[row]:
                     before, last = [], None
                 others = found[row], {} if last is None else found[last]
-                found[row][name] = number(used[name], bits, before, others)
+                code = used[name]
+                if code == 7:
+                    places = poses.get(of_step[row] - 1) if of_step[row] > steps[0] else None
+                    number_expected = on_floor(found[row], bodies, places).get(name)
+                    code = 2 if number_expected is None else 7
+                    others = {}, {} if number_expected is None else {"expected": number_expected}
+                found[row][name] = number(code, bits, before, others)
                 before.append(found[row][name])
                 last = row
         seen.update(used.values())
@@ -165,8 +175,9 @@ def test_contact_columns(path: Path, block: Block) -> None:
                     assert kind == "f8"
                     assert one[name].to_bytes(8, "little") == row[name].tobytes()
     assert next(rows, None) is None
-    if not np.isnan(block.contact["x"]).any():
-        assert seen == {0, 1, 2, 3, 4, 5, 6}  # else this test says less than it should
+    if not np.isnan(block.contact["x"]).any():  # else this test says less than it should
+        of_balls = {7} if block.contact["body_b"].max() == 2 else {3}
+        assert seen == {0, 1, 2, 4, 5, 6} | of_balls
 
 
 def number(
@@ -181,6 +192,8 @@ def number(
     if predictor == 2:
         rise = before[-1] - before[-2] if len(before) > 1 else 0
         return ((before[-1] if before else 0) + rise + by_difference) % 2**64
+    if predictor == 7:
+        return (others[1]["expected"] + by_difference) % 2**64
     if predictor == 4:
         return (others[1].get("normal_velocity", 0) + by_difference) % 2**64
     own = {
@@ -188,6 +201,27 @@ def number(
     }
     expected = {3: third_of_unit, 5: target_of_gap, 6: residual}[predictor](own)
     return stored ^ int.from_bytes(struct.pack("<d", expected), "little")
+
+
+def on_floor(
+    row: dict[str, int], bodies: list[tuple[float, ...]], places: list[Any] | None
+) -> dict[str, int]:
+    """Return the bits of the contact of a ball on a plane; nothing of other bodies.
+
+    bodies: radius, normal, offset, and position at the start of the first step; places: positions
+    at the start of this one, where it is another.
+    """
+    plane, ball = bodies[row["body_a"]], bodies[row["body_b"]]
+    if ball[0] == 0.0:
+        return {}
+    normal, radius = plane[1:4], ball[0]
+    at = ball[5:] if places is None else [getattr(places[row["body_b"]], axis) for axis in "xyz"]
+    gap = normal[0] * at[0] + normal[1] * at[1] + normal[2] * at[2] - plane[4] - radius
+    reach = radius + 0.5 * gap
+    point = [x - n * reach for x, n in zip(at, normal, strict=True)]
+    names = ("x", "y", "z", "nx", "ny", "nz", "separation")
+    numbers = zip(names, [*point, *normal, gap], strict=True)
+    return {n: int.from_bytes(struct.pack("<d", one), "little") for n, one in numbers}
 
 
 def third_of_unit(row: dict[str, float]) -> float:
