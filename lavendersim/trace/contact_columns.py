@@ -21,6 +21,7 @@ bit (`Column.derived`) is not stored where they are; the channel's metadata has 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import lru_cache
 from typing import Any, Final, NamedTuple
@@ -166,8 +167,10 @@ def pack(
     bodies = b""
     if starts is not None and SPHERES in chosen:
         bodies = _with_positions(starts).astype("<f8").tobytes()
+    differences = keys.copy()
+    differences[:, 1:] -= keys[:, :-1]
     return Packed(
-        np.diff(keys, axis=1, prepend=0).tobytes(),
+        differences.view(np.uint8).reshape(-1).data,
         planes.reshape(-1).data,
         bytes(chosen.tolist()),
         np.array(constants, "<f8").tobytes(),
@@ -279,8 +282,33 @@ def _keys(rows: NDArray[Any], names: tuple[str, ...]) -> Integers:
 def _order(keys: Integers) -> tuple[NDArray[np.intp], NDArray[np.bool_]]:
     """Return the rows in the order of keys, by step in each, and which follow one of their key."""
     count = keys.shape[1]
-    order = np.lexsort(keys[::-1]) if len(keys) else np.arange(count)
-    ordered, persists = keys[:, order], np.zeros(count, bool)
-    if len(keys):
+    if not (len(keys) and count):
+        return np.arange(count), np.zeros(count, bool)
+    persists = np.zeros(count, bool)
+    one = _as_one(keys)
+    if one is None:
+        order = np.lexsort(keys[::-1])
+        ordered = keys[:, order]
         persists[1:] = (ordered[:, 1:] == ordered[:, :-1]).all(axis=0)
+    else:
+        order = one.argsort(kind="stable")
+        ordered = one[order]
+        persists[1:] = ordered[1:] == ordered[:-1]
     return order, persists
+
+
+def _as_one(keys: Integers) -> Integers | None:
+    """Return keys (k, n) as one number each (n,), in the same order; None where none is as large.
+
+    Sorting one number takes half the time of sorting three.
+    """
+    lows, highs = keys.min(axis=1).tolist(), keys.max(axis=1).tolist()
+    spans = [high - low + 1 for low, high in zip(lows, highs, strict=True)]
+    if math.prod(spans) >= 2**63:
+        return None
+    one: Integers = keys[0] - lows[0]
+    for key, low, span in zip(keys[1:], lows[1:], spans[1:], strict=True):
+        one *= span
+        one += key
+        one -= low
+    return one

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 import pytest
 
 from lavendersim.trace.contact_columns import (
     ContactGroup,
     Packed,
+    _order,
     column_form,
     message_of,
     pack,
@@ -91,6 +94,19 @@ def test_planes_of_another_length_are_refused() -> None:
         unpack(packed._replace(planes=packed.planes[:-1]), NAMES, np.zeros(10, rows.dtype))
     with pytest.raises(ValueError, match="reshape"):
         unpack(packed, NAMES, np.zeros(9, rows.dtype))
+
+
+@pytest.mark.parametrize("largest", [0, 1, 5, 2**20, 2**21, 2**62, 2**63 - 1])
+def test_keys_are_ordered_one_by_one_whatever_their_size(largest: int) -> None:
+    """As Python sorts tuples; keys of 2^21 and more each do not fit into one number of 64 bits."""
+    random = np.random.default_rng(largest % 1000)
+    keys = random.integers(-largest, largest, (3, 300), np.int64, endpoint=True)
+    keys = np.concatenate([keys, keys[:, ::2], [[-largest], [largest], [-largest]]], axis=1)
+    rows = list(zip(*keys.tolist(), strict=True))
+    order, persists = _order(keys)
+    assert order.tolist() == sorted(range(len(rows)), key=lambda row: (rows[row], row))
+    again = [rows[one] == rows[other] for one, other in itertools.pairwise(order)]
+    assert persists.tolist() == [False, *again]
 
 
 def test_equal_contacts_are_equal_messages() -> None:
