@@ -34,14 +34,22 @@ def widened(table: NDArray[Any], row: np.dtype[Any]) -> NDArray[Any]:
     """Return a table of a dtype that begins with the fields of this one; the others are not set."""
     import numpy as np
 
-    wide, size = np.empty(len(table), row), table.dtype.itemsize
+    wide = np.empty(len(table), row)
+    widen(table, wide)
+    return wide
+
+
+def widen(table: NDArray[Any], wide: NDArray[Any]) -> None:
+    """Copy a table into one of as many rows, of a dtype that begins with its fields."""
+    import numpy as np
+
+    row, size = wide.dtype, table.dtype.itemsize
     for name, place in (table.dtype.fields or {}).items():
         if row.fields is None or row.fields[name][:2] != place[:2]:
             raise TypeError(f"column {name} has another place")
     wide.view(np.uint8).reshape(len(table), row.itemsize)[:, :size] = (
         np.ascontiguousarray(_as_bytes(table)).view(np.uint8).reshape(len(table), size)
     )
-    return wide
 
 
 def _as_bytes(table: NDArray[Any]) -> NDArray[Any]:

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lavendersim.record_tables import widened
+from lavendersim.record_tables import widen, widened
 from lavendersim.trace import decode
 from lavendersim.trace.blocks import Block
 from lavendersim.trace.contact_columns import OF_THE_MESSAGE, column_form
@@ -65,14 +65,38 @@ class WrittenTrace(Trace):
         rows = self.recorded_rows("/tf")
         return RecordedPoses(rows, poses if len(rows) == len(poses) else poses[rows])
 
+    @cached_property
+    def recorded_contact(self) -> NDArray[Any]:
+        """Like `contact`, of the steps of which the log has them; in one piece at once."""
+        parts = list(self._recorded_rows()) if self.has("/contacts") else []
+        if not parts:
+            return super().recorded_contact
+        ends = np.cumsum([0, *(len(contacts) for contacts, _ in parts)])
+        table = np.empty(ends[-1], self._contact_row())
+        for (contacts, times), begin, end in zip(parts, ends[:-1], ends[1:], strict=True):
+            widen(contacts, table[begin:end])
+            table["time"][begin:end] = times
+        return table
+
     def recorded_contacts_in_parts(self) -> Iterator[NDArray[Any]]:
         """Yield the rows of `recorded_contact` block by block."""
         if not self.has("/contacts"):
             yield from super().recorded_contacts_in_parts()
             return
-        form = column_form(self._blocks[0].contact.dtype)
+        for contacts, times in self._recorded_rows():
+            table = widened(contacts, self._contact_row())
+            table["time"] = times
+            yield table
+
+    def _contact_row(self) -> np.dtype[Any]:
+        row = self._blocks[0].contact.dtype
+        form = column_form(row)
         kinds = zip(form.names, form.kinds, strict=True)
         columns = [("step", "i8"), *kinds, *((name, "f8") for name in (*form.derived, "time"))]
+        return _with_time(row, columns)
+
+    def _recorded_rows(self) -> Iterator[tuple[NDArray[Any], NDArray[np.float64]]]:
+        """Yield contacts of each block, and the time of each [s]."""
         for block in self._blocks:
             contacts, steps = block.contact, block.step["step"]
             recorded = is_recorded(self.config.record.contacts, self.clock, steps)
@@ -80,10 +104,8 @@ class WrittenTrace(Trace):
                 continue
             if not recorded.all():
                 contacts = contacts[np.isin(contacts["step"], steps[recorded])]
-            table = widened(contacts, _with_time(contacts.dtype, columns))
             counts = np.diff(np.searchsorted(contacts["step"], [*steps.tolist(), steps[-1] + 1]))
-            table["time"] = np.repeat(decode.seconds(block.step["time_ns"]), counts)
-            yield table
+            yield contacts, np.repeat(decode.seconds(block.step["time_ns"]), counts)
 
 
 def _with_time(row: np.dtype[Any], columns: Sequence[tuple[str, str]]) -> np.dtype[Any]:
