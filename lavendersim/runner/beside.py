@@ -8,6 +8,7 @@ single core, a thread that runs), or where it has died, tasks are done here when
 from __future__ import annotations
 
 import os
+import signal
 import sys
 import threading
 import warnings
@@ -17,7 +18,7 @@ from contextlib import suppress
 from multiprocessing import get_context
 from typing import Any, Generic, TypeVar
 
-from .workers import PATIENCE, serve
+from .workers import PATIENCE, end_with_parent, serve
 
 Task = TypeVar("Task")
 Result = TypeVar("Result")
@@ -107,6 +108,8 @@ class Beside(Generic[Task, Result]):
 
 
 def _begin(pipe: Any, others: Any, function: Callable[[Any], Any], prepare: Any) -> None:
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the process that asks
+    end_with_parent()  # while it prepares, too
     others.close()  # the parent's end: else the pipe would not end with the parent
     with suppress(Exception):  # raised again by the first task
         prepare()
