@@ -2,7 +2,9 @@
 
 Numba translates a kernel's bytecode to statements of its own, drops dead branches, and only then
 infers types and hands over to LLVM. Counted are these statements, those of every kernel that they
-still call once. Inlining, layout of loops and vectors come later and change nothing here.
+still call once. Inlining, layout of loops and vectors come later and change nothing here. Engines
+have most of their kernels in common: one that is the same in its bytecode, its flags and all that
+it calls (`identity`) is read once.
 """
 
 from __future__ import annotations
@@ -16,19 +18,27 @@ from numba.core.analysis import dead_branch_prune, rewrite_semantic_constants
 from numba.core.compiler import run_frontend
 
 from lavendersim.engine.compile import Kernel
+from lavendersim.engine.identity import identity
+
+_read: dict[str, tuple[int, list[Kernel]]] = {}  # by identity: statements, and kernels they name
 
 
 def live_statements(whole: Kernel) -> dict[Kernel, int]:
-    """Return the number of statements of a kernel, and of every one that it calls."""
-    found: dict[Kernel, int] = {}
+    """Return the number of statements of a kernel, and of every one that it calls, each once."""
+    found: dict[str, tuple[Kernel, int]] = {}
     waiting = [whole]
     while waiting:
         kernel = waiting.pop()
-        if kernel not in found:
-            statements = list(_pruned(kernel.py_func))
-            found[kernel] = len(statements)
-            waiting += [called for one in statements for called in _named_in(one)]
-    return found
+        key = identity(kernel).digest
+        if key not in found:
+            if key not in _read:
+                statements = list(_pruned(kernel.py_func))
+                called = [one for statement in statements for one in _named_in(statement)]
+                _read[key] = len(statements), called
+            count, called = _read[key]
+            found[key] = kernel, count
+            waiting += called
+    return dict(found.values())
 
 
 def _pruned(function: Any) -> Iterator[Any]:

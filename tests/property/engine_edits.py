@@ -83,12 +83,13 @@ def edits(files: list[Path], count: int, seed: int) -> list[Edit]:
     return random.Random(seed).sample(found, count)
 
 
-def apply(edit: Edit) -> None:
-    """Write the edited file."""
-    lines = edit.path.read_text().splitlines(keepends=True)
-    line = lines[edit.line - 1]
-    lines[edit.line - 1] = line[: edit.begin] + edit.new + line[edit.end :]
-    edit.path.write_text("".join(lines))
+def apply(edits: list[Edit]) -> None:
+    """Write the edited files; of edits in one line the last is made first, so that columns hold."""
+    for edit in sorted(edits, key=lambda edit: edit.begin, reverse=True):
+        lines = edit.path.read_text().splitlines(keepends=True)
+        line = lines[edit.line - 1]
+        lines[edit.line - 1] = line[: edit.begin] + edit.new + line[edit.end :]
+        edit.path.write_text("".join(lines))
 
 
 def run(package: Path, kernels: Path) -> tuple[Any, Any]:
@@ -121,18 +122,19 @@ def prepared(folder: Path) -> tuple[Path, Path]:
     return folder, folder / "kept"
 
 
-def differs(package: Path, kept: Path, edit: Edit, place: Path) -> str:
-    """Make an edit, compare, and take it back; return what differs, or nothing."""
-    before = edit.path.read_text()
+def differs(package: Path, kept: Path, edits: list[Edit], place: Path) -> str:
+    """Make edits, compare, and take them back; return what differs, or nothing."""
+    before = {edit.path: edit.path.read_text() for edit in edits}
     used = place / "used"
     shutil.copytree(kept, used)
-    apply(edit)
+    apply(edits)
     try:
         after, _ = run(package, used)
         fresh, _ = run(package, place / "fresh")
     finally:
-        edit.path.write_text(before)
-    where = f"{edit.path.name}:{edit.line}: {edit.new}"
+        for path, text in before.items():
+            path.write_text(text)
+    where = ", ".join(f"{edit.path.name}:{edit.line}: {edit.new}" for edit in edits)
     return "" if after == fresh else f"{where}: {after} is not {fresh}"
 
 
@@ -147,7 +149,7 @@ def main() -> int:
         failed = 0
         drawn = edits(files_of_the_scene(copy), asked.edits, asked.seed)
         for number, edit in enumerate(drawn):
-            wrong = differs(copy, kept, edit, Path(folder) / str(number))
+            wrong = differs(copy, kept, [edit], Path(folder) / str(number))
             shutil.rmtree(Path(folder) / str(number))
             failed += bool(wrong)
             print(wrong or f"{edit.path.name}:{edit.line}: as fresh", flush=True)

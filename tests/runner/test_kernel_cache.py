@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 from pathlib import Path
 from typing import Any
 
@@ -47,7 +48,7 @@ def test_a_kernel_with_one_flipped_bit_is_ignored_and_written_anew(
     config, kernels, first = kept
     (file,) = of_scenes(kernels)
     copy = tmp_path / "kernels" / file.name
-    copy.parent.mkdir()
+    shutil.copytree(kernels, copy.parent)  # with its parts, which are sound
     damaged = bytearray(file.read_bytes())
     damaged[len(damaged) // 2] ^= 1
     copy.write_bytes(damaged)
