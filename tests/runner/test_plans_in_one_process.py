@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from small_configs import DROPS, run_in_new_process, write
 
-from tests.kept_kernels import of_scenes
+from tests.kept_kernels import of_scenes, parts_of
 
 INTEGRATORS = ("semi_implicit_euler", "midpoint")
 
@@ -53,11 +53,14 @@ def test_the_two_plans_differ(together: tuple[Path, dict[str, Any]]) -> None:
     assert len({*found["hashes"]}) > 3
 
 
-def test_forty_cells_of_one_structure_share_one_kernel(tmp_path: Path) -> None:
+def test_forty_cells_of_one_structure_share_one_kernel(
+    together: tuple[Path, dict[str, Any]], tmp_path: Path
+) -> None:
     values = ", ".join(f"{0.02 * step:.2f}" for step in range(40))
     text = DROPS.replace("[0.2, 0.5, 0.8]", f"[{values}]")
     text = text[: text.index("measure:\n")]
     kernels = tmp_path / "kernels"
+    parts_of(together[0], kernels)
     found = run_in_new_process(
         write(tmp_path, text), tmp_path / "runs", LAVENDER_CACHE_DIR=str(kernels)
     )
