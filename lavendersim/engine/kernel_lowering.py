@@ -228,7 +228,7 @@ class KernelLowering(NativeLowering):
     def run_pass(self, state: Any) -> bool:
         """Lower the kernel."""
         context, flags = state.targetctx, state.flags
-        explained = context.enable_debuginfo or flags.debuginfo or config.DEBUG_JIT
+        explained = context.enable_debuginfo or flags.debuginfo or config.DEBUG_JIT  # type: ignore[attr-defined]
         self._class = Lower if explained or context.enable_nrt else KernelLower
         return bool(super().run_pass(state))
 

@@ -194,13 +194,13 @@ def _shortened() -> Iterator[None]:
             self.func_ir.blocks = canonicalize_cfg(self.func_ir.blocks)
             self.func_ir.generator_info = None
 
-    PostProcessor.run = run
+    PostProcessor.run = run  # type: ignore[method-assign]
     if scheme:
         scheme._markup = lambda self, message, *_: message
     try:
         yield
     finally:
-        PostProcessor.run = whole
+        PostProcessor.run = whole  # type: ignore[method-assign]
         if scheme:
             scheme._markup = coloured
 
