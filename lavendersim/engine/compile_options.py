@@ -92,6 +92,12 @@ def _llvmlite() -> str:
     return version("llvmlite")
 
 
+@cache
+def _processor() -> Any:
+    """Return what the code generator says of the processor; asking takes a millisecond."""
+    return cpu_target.target_context.codegen().magic_tuple()
+
+
 def build() -> str:
     """Return eight hex digits of what all kernels depend on, whatever they do."""
     parts = (
@@ -99,7 +105,7 @@ def build() -> str:
         sorted(OPTIONS.items()),
         (numba.__version__, _llvmlite(), np.__version__, sys.version_info[:3]),
         platform.machine(),
-        cpu_target.target_context.codegen().magic_tuple(),
+        _processor(),
         [getattr(numba.config, name, None) for name in SETTINGS],
         # Whatever else numba is set to: a needless compilation is cheaper than a wrong kernel.
         sorted(item for item in os.environ.items() if item[0].startswith("NUMBA_")),

@@ -30,10 +30,17 @@ class KernelPart:
     """Code of a kernel that other kernels call; numba takes it for a library to be linked."""
 
     def __init__(
-        self, symbol: str, returns: Any, bitcode: bytes, called: tuple[KernelPart, ...], key: str
+        self,
+        symbol: str,
+        returns: Any,
+        bitcode: bytes,
+        called: tuple[KernelPart, ...],
+        key: str,
+        raises: bool,
     ) -> None:
         self.symbol, self.returns, self.bitcode, self.called = symbol, returns, bitcode, called
         self.key = key  # names the file it is kept in; empty where it has none
+        self.raises = raises  # whether it may return with an exception
         self._reload_init: set[Any] = set()
 
     def _ensure_finalized(self) -> None:
@@ -107,7 +114,8 @@ class PartStore:
         self._new.add(part.key)
         if kernel_store.directory()[0].name:
             keys = tuple(called.key for called in part.called)
-            stored = part.symbol, part.returns, zlib.compress(part.bitcode, 1), keys
+            code = zlib.compress(part.bitcode, 1)
+            stored = part.symbol, part.returns, code, keys, part.raises
             kernel_store.write(_path(part.key), pickle.dumps(stored))
 
     def _load(self, key: str) -> KernelPart | None:
@@ -115,14 +123,14 @@ class PartStore:
         payload = kernel_store.read(_path(key)) if kernel_store.directory()[0].name else None
         if payload is None:
             return None
-        symbol, returns, bitcode, keys = pickle.loads(payload)
+        symbol, returns, bitcode, keys, raises = pickle.loads(payload)
         called = []
         for name in keys:
             part = self._parts.get(name) or self._load(name)
             if part is None:
                 return None
             called.append(part)
-        whole = KernelPart(symbol, returns, zlib.decompress(bitcode), tuple(called), key)
+        whole = KernelPart(symbol, returns, zlib.decompress(bitcode), tuple(called), key, raises)
         self._parts[key] = whole
         return whole
 

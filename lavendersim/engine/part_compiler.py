@@ -7,23 +7,35 @@ file cannot be imported, and `compile` takes plain `njit`: slower to compile, wi
 from __future__ import annotations
 
 import itertools
+from collections.abc import Iterator
+from contextlib import contextmanager
 from copy import copy
 from functools import partial
 from typing import Any, NamedTuple
 
 from llvmlite import ir
-from llvmlite.binding import Linkage, llvm_version_info, parse_bitcode
-from numba.core import types
+from llvmlite.binding import (
+    Linkage,
+    create_new_function_pass_manager,
+    llvm_version_info,
+    parse_assembly,
+    parse_bitcode,
+)
+from numba.core import errors, types
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler, DefaultPassBuilder
 from numba.core.compiler_lock import global_compiler_lock
-from numba.core.compiler_machinery import PassManager
+from numba.core.compiler_machinery import PassManager, _pass_registry
 from numba.core.funcdesc import ExternalFunctionDescriptor, default_mangler
 from numba.core.itanium_mangler import mangle
+from numba.core.postproc import PostProcessor
 from numba.core.registry import CPUDispatcher
 from numba.core.sigutils import normalize_signature
+from numba.core.transforms import canonicalize_cfg
+from numba.core.typed_passes import NativeLowering
 from numba.core.typing.templates import make_concrete_template, signature
 
+from .kernel_lowering import KernelLowering
 from .kernel_parts import STORE, KernelPart, key_of, symbol_of, with_called
 
 if llvm_version_info < (17, 0, 0):
@@ -47,6 +59,15 @@ class _Linking(JITCodeLibrary):
             self.parts.append(library)
 
 
+def _is_success(returns: Any) -> bool:
+    [status] = returns.operands
+    return isinstance(status, ir.Constant) and status.constant == 0
+
+
+# What makes a part's bitcode a third as long, for a tenth of the time that the whole takes.
+SHORTENING = "add_sroa_pass", "add_instruction_combine_pass", "add_simplify_cfg_pass"
+
+
 class PartCode(_Linking):
     """Code of a kernel that other kernels call: optimised in each whole kernel it is linked into.
 
@@ -54,21 +75,35 @@ class PartCode(_Linking):
     of that is ever run, and it doubles the time an engine takes to compile.
     """
 
-    def _optimize_final_module(self) -> None:
-        """Leave that to the kernel this is linked into."""
-
-    def _finalize_final_module(self) -> None:
-        """Make no machine code."""
-        self._finalized = True
+    def add_ir_module(self, ir_module: ir.Module) -> None:
+        """Take the one module that a part is, and whether it may return anything but success."""
+        self.raises = any(
+            block.terminator.opname == "ret" and not _is_success(block.terminator)
+            for function in ir_module.functions
+            for block in function.blocks
+        )
+        module = parse_assembly(str(ir_module))
+        module.name, module.data_layout = ir_module.name, self._codegen._data_layout
+        passes = create_new_function_pass_manager()
+        for add in SHORTENING:
+            getattr(passes, add)()
+        builder = self._codegen._pass_builder()
+        for function in module.functions:
+            if not function.is_declaration:
+                passes.run(function, builder)
+        self._final_module = module
 
     def part(self, symbol: str, returns: Any, key: str) -> KernelPart:
         """Return the part; of its symbols other code sees only its own."""
-        self._ensure_finalized()
         module = self._final_module
+        for library in self._linking_libraries:  # of numba's own functions
+            module.link_in(library._get_module_for_linking(), preserve=True)
+        module.verify()
         for function in module.functions:
             if not function.is_declaration and function.name != symbol:
                 function.linkage = Linkage.internal
-        return KernelPart(symbol, returns, module.as_bitcode(), tuple(self.parts), key)
+        bitcode = module.as_bitcode()
+        return KernelPart(symbol, returns, bitcode, tuple(self.parts), key, self.raises)
 
 
 class KernelObject(_Linking):
@@ -141,11 +176,59 @@ NEEDLESS = frozenset(
 )
 
 
+@contextmanager
+def _shortened() -> Iterator[None]:
+    """Spare kernels what numba does for any function, while they are compiled.
+
+    Lifetimes of variables matter to generators and to counts of references. Its messages are no
+    one's, where it finds types by trying, and for each in colour it would set up the terminal.
+    """
+    whole = PostProcessor.run
+    scheme = getattr(errors, "HighlightColorScheme", None)  # only where colorama is installed
+    coloured = scheme and scheme._markup
+
+    def run(self: Any, emit_dels: bool = False, extend_lifetimes: bool = False) -> None:
+        if emit_dels or self.func_ir.is_generator or not hasattr(self.func_ir.func_id, "is_kernel"):
+            whole(self, emit_dels, extend_lifetimes)
+        else:
+            self.func_ir.blocks = canonicalize_cfg(self.func_ir.blocks)
+            self.func_ir.generator_info = None
+
+    PostProcessor.run = run  # type: ignore[method-assign]
+    if scheme:
+        scheme._markup = lambda self, message, *_: message
+    try:
+        yield
+    finally:
+        PostProcessor.run = whole  # type: ignore[method-assign]
+        if scheme:
+            scheme._markup = coloured
+
+
+class _Passes(PassManager):
+    """Passes, one after the other; numba would describe each call of each one for its log."""
+
+    def run(self, state: Any) -> None:
+        """Run the passes."""
+        state.func_id.is_kernel = True
+        for compiler_pass, _ in self.passes:
+            found = _pass_registry.get(compiler_pass)
+            one = found.pass_inst
+            one.analysis = self._analysis
+            one.run_initialization(state)
+            one.run_pass(state)
+            one.run_finalizer(state)
+            if found.mutates_CFG and compiler_pass is not KernelLowering:
+                state.func_ir.blocks = canonicalize_cfg(state.func_ir.blocks)
+
+
 def _pipeline(state: Any) -> PassManager:
     """Return numba's pipeline for a function in nopython mode, without what no kernel needs."""
-    whole, pipeline = DefaultPassBuilder.define_nopython_pipeline(state), PassManager("kernel")
+    whole, pipeline = DefaultPassBuilder.define_nopython_pipeline(state), _Passes("kernel")
     for compiler_pass, description in whole.passes:
-        if compiler_pass.__name__ not in NEEDLESS:
+        if compiler_pass is NativeLowering:
+            pipeline.add_pass(KernelLowering, description)
+        elif compiler_pass.__name__ not in NEEDLESS:
             pipeline.add_pass(compiler_pass, description)
     pipeline.finalize()
     return pipeline
@@ -175,6 +258,10 @@ def _quick(typingctx: Any) -> Any:
     return quick
 
 
+def _nothing() -> None:
+    pass
+
+
 class _KernelCompiler(Compiler):
     """Numba's pipeline for kernels, without what none needs."""
 
@@ -182,7 +269,12 @@ class _KernelCompiler(Compiler):
         self, function, symbol, typingctx, targetctx, library, args, return_type, flags, locals
     ):
         code = self.code(targetctx.codegen(), flags)
-        super().__init__(typingctx, targetctx, code, args, return_type, flags, locals)
+        # What numba has learned to compile is asked once, by the kernel that Python calls.
+        typing, target = copy(typingctx), copy(targetctx)
+        typing.refresh = target.refresh = _nothing
+        super().__init__(typing, target, code, args, return_type, flags, locals)
+        self.state.typingctx = typingctx
+        self.state.targetctx.__dict__.pop("refresh", None)
         _prepare(self.state, function, symbol)
 
     def define_pipelines(self):
@@ -218,6 +310,8 @@ class Linked(NamedTuple):
 
     entry: object
     signature: Any
+    called: ExternalFunctionDescriptor
+    part: KernelPart
 
 
 class Kernel(CPUDispatcher):
@@ -258,7 +352,7 @@ class Kernel(CPUDispatcher):
         entry = object()
         called = ExternalFunctionDescriptor(part.symbol, part.returns, args)
         self.targetctx.insert_user_function(entry, called, [part])
-        return Linked(entry, signature(part.returns, *args))
+        return Linked(entry, signature(part.returns, *args), called, part)
 
     def _compiled(self, key: str, args: tuple[Any, ...]) -> KernelPart:
         symbol = symbol_of(self.py_func, key)
@@ -271,8 +365,10 @@ class Kernel(CPUDispatcher):
 
     def compile(self, sig: Any) -> Any:
         """Compile for Python, which needs a door."""
-        with global_compiler_lock:
+        with global_compiler_lock, _shortened():
             args = tuple(normalize_signature(sig)[0])
+            self.typingctx.refresh()
+            self.targetctx.refresh()
             # Code of one kernel may be in a process twice, loaded and compiled: each has its name.
             symbol = f"{symbol_of(self.py_func, key_of(self, args))}_{next(_objects)}"
             self._compiler.pipeline_class = partial(ObjectCompiler, self.py_func, symbol)
