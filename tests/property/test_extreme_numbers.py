@@ -61,6 +61,13 @@ def test_what_cannot_be_simulated_is_refused_with_the_range(before: str, after: 
     assert "others cannot be simulated in numbers of 64 bits" in defect.message
 
 
+def test_a_speed_of_any_size_has_a_plan() -> None:
+    sliding = texts()["effects/static_friction"]
+    fast = sliding.replace("velocity: [1, 0, 0]", "velocity: [1, 1e300, 0]")
+    assert fast != sliding
+    assert outcome(fast, Path("unused"), None).kind == "complete"
+
+
 @pytest.mark.parametrize(
     "key",
     ["velocity: [1e200, 0, 0]", "angular_velocity: [0, 1e200, 0]", "velocity: [0, 0, 5e-324]"],
