@@ -51,10 +51,14 @@ class Clock:
     @classmethod
     def counted(cls, timestep: Fraction, changes: Iterable[tuple[int, Fraction]]) -> Clock:
         """Return the clock of the first timestep [s] and its `changes`, in their order."""
-        clock, timed = cls(timestep), []
+        clock = cls(timestep)
         for done, length in changes:
-            timed.append((clock.time(done), length))
-            clock = cls(timestep, timed)
+            last = clock.stretches[-1]
+            begin = last.begin + (done - last.done) * last.timestep
+            if last.done == done:
+                clock.stretches.pop()
+            if not clock.stretches or clock.stretches[-1].timestep != length:
+                clock.stretches.append(Stretch(done, begin, length))
         return clock
 
     @property

@@ -13,6 +13,7 @@ import numpy as np
 
 from lavendersim.errors import LavenderError
 from lavendersim.measures.interfaces import Cell, Rows, Trace
+from lavendersim.measures.not_finite import without_warnings
 from lavendersim.measures.sections import sections_of
 from lavendersim.measures.specs.always import BEYOND_BOUNDS, Always
 from lavendersim.measures.step_checks import CheckedSteps, StepChecks, checks_of
@@ -22,6 +23,7 @@ COMPLETE = "complete"
 PREFIX = "always: "
 
 
+@without_warnings
 def outcomes_of(always: Always, cell: Cell) -> dict[str, Outcome]:
     """Return the outcome of every check of a cell.
 

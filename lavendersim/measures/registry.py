@@ -10,6 +10,7 @@ import numpy as np
 from lavendersim.measures import kinds
 from lavendersim.measures.closed_forms import evaluate_form
 from lavendersim.measures.interfaces import Trace, Value
+from lavendersim.measures.not_finite import without_warnings
 from lavendersim.measures.registration import FUNCTIONS
 from lavendersim.measures.selection import selects
 from lavendersim.measures.specs.catalogue import MeasureSpec
@@ -17,6 +18,7 @@ from lavendersim.measures.specs.catalogue import MeasureSpec
 kinds.load_all()
 
 
+@without_warnings
 def evaluate(spec: MeasureSpec, trace: Trace) -> Value:
     """Return the measure of one log: a float, or a 1-D array for kinds that give a row.
 

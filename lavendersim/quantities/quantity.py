@@ -6,10 +6,12 @@ numbers out of bounds with a sentence of its own, and describes itself to JSON S
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Annotated, Any
+from math import isfinite
+from typing import Annotated, Any, Final
 
 from pydantic import (
     BaseModel,
@@ -24,6 +26,15 @@ from lavendersim.quantities.found import found
 from lavendersim.quantities.scalars import exact, label
 from lavendersim.quantities.units import advice
 
+# Beyond these no product of a few quantities is a number of 64 bits: m r^2 is made of them, its
+# inverse, the volume of a hull. A speed may be any: what it becomes ends a run with its step.
+LARGEST: Final = 1e50
+SMALLEST: Final = 1e-50  # of what is above 0
+OF_64_BITS: Final = "; others cannot be simulated in numbers of 64 bits"
+_LARGEST: Final[dict[str, float]] = {
+    **dict.fromkeys(("m", "kg", "kg/m^3", "kg m^2"), LARGEST),
+    "s": 9e9,  # a log counts nanoseconds in 64 bits
+}
 RATIO_PATTERN = r"^[-+]?[0-9]+/[0-9]+$"
 
 
@@ -89,10 +100,13 @@ class Quantity:
         """Return the number as float, int (whole) or Fraction (exact), or raise the refusal."""
         if isinstance(value, bool) or not isinstance(value, int | float | Fraction):
             raise refusal(self.expected, value, advice(value, self.unit))
+        if isinstance(value, float) and not isfinite(value):
+            raise refusal(self.expected, value)
         if self.whole and not (isinstance(value, int) or float(value).is_integer()):
             raise refusal(self.expected, value)
         if not self._inside(value):
             raise refusal(self.expected, value, f"; {self.hint}" if self.hint else "")
+        self._refuse_extremes(value)
         if self.whole:
             return int(value)
         if self.exact:
@@ -101,6 +115,17 @@ class Quantity:
             return float(value)
         except OverflowError:
             raise refusal(self.expected, value) from None
+
+    def _refuse_extremes(self, value: float | Fraction) -> None:
+        """Refuse what cannot be simulated though it is a number, with the range that can be."""
+        largest = _LARGEST.get(self.unit)
+        if largest is None or value == 0:
+            return
+        positive = self.above is not None and self.above >= 0
+        if not -largest <= value <= largest or (positive and value < SMALLEST):
+            low = SMALLEST if positive else 0 if self.minimum is not None else -largest
+            expected = f"a number from {low:g} to {largest:g} [{self.unit}]"
+            raise refusal(expected, value, OF_64_BITS)
 
     def _inside(self, value: float | Fraction) -> bool:
         return not (
@@ -124,7 +149,7 @@ class Quantity:
     def _check_exact(self, value: object, info: ValidationInfo) -> Any:
         """Check a number; in resolved configs (JSON) a ratio is the text `1/480`."""
         if info.mode == "json" and isinstance(value, str):
-            value = Fraction(value)
+            value = _ratio(value)
         return self.check(value)
 
     def __get_pydantic_json_schema__(
@@ -142,6 +167,16 @@ class Quantity:
         if self.whole:
             return number
         return {"anyOf": [number, {"type": "string", "pattern": RATIO_PATTERN}]}
+
+
+def _ratio(text: str) -> Fraction:
+    """Return the ratio of a resolved config; one that a log states may be any text."""
+    if len(text) > 1000 or not re.fullmatch(RATIO_PATTERN + r"|^[-+]?[0-9]+$", text):
+        raise refusal("a ratio such as 1/480", text)
+    numerator, _, denominator = text.partition("/")
+    if int(denominator or 1) == 0:
+        raise refusal("a ratio such as 1/480", text)
+    return Fraction(int(numerator), int(denominator or 1))
 
 
 def _plain(bound: float) -> str:
@@ -177,6 +212,9 @@ class Vector:
         numbers = items(tuple(value))
         if self.nonzero and not any(numbers):
             raise sentence_error(f"expected {self.expected}, not all zero, found only zeros")
+        if self.nonzero and not SMALLEST <= (largest := max(map(abs, numbers))) <= LARGEST:
+            expected = f"a largest number from {SMALLEST:g} to {LARGEST:g}"
+            raise refusal(f"{self.expected} with {expected}", float(largest), OF_64_BITS)
         return numbers
 
     def __get_pydantic_json_schema__(

@@ -17,6 +17,7 @@ from lavendersim.clock import Clock
 from lavendersim.measures.always import WorstStates
 from lavendersim.measures.contact_sums import ContactSums, nothing
 from lavendersim.measures.interfaces import Floats, Rows, Trace
+from lavendersim.measures.not_finite import without_warnings
 from lavendersim.measures.sections import Section
 from lavendersim.measures.specs.always import BEYOND_BOUNDS, STOPPING, Always
 from lavendersim.measures.step_checks import CheckedSteps, StepChecks
@@ -49,6 +50,7 @@ class Bounds:
         self._cell = (bodies, config, clock, absent)
         self._last: tuple[Rows, Floats] | None = None  # the state before the block's
 
+    @without_warnings
     def within(self, block: Block, diverged: bool = False) -> tuple[Block, str]:
         """Return the block up to the first step beyond a bound, and a sentence if there is one.
 

@@ -12,7 +12,7 @@ count of constraints), which is two to three contacts a sphere; a body with face
 
 from __future__ import annotations
 
-from math import hypot, sqrt
+from math import hypot, inf, sqrt
 from typing import Final
 
 import numpy as np
@@ -40,8 +40,10 @@ def expected_contacts(config: CellConfig) -> float:
     if acceleration == 0.0:
         return start
     sizes = (high.max(axis=0) - low.min(axis=0)).tolist()
-    height = sum(size * abs(g) for size, g in zip(sizes, gravity, strict=True)) / acceleration
-    times = config.duration / sqrt(2.0 * height / acceleration)
+    # shares of gravity first: with those of any size no product overflows
+    height = sum(size * (abs(g) / acceleration) for size, g in zip(sizes, gravity, strict=True))
+    fall = sqrt(2.0 * height / acceleration)  # [s]; 0 where coordinates hide what a body measures
+    times = config.duration / fall if fall > 0.0 else inf
     # the mean of (t/T)^2, 1 from T on, over the run
     landed = times**2 / 3.0 if times < 1.0 else 1.0 - 2.0 / (3.0 * times)
     return start + landed * (max(start, _settled(solids)) - start)

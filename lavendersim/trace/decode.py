@@ -23,11 +23,13 @@ from lavendersim.trace import layout
 from lavendersim.trace.contact_columns import DERIVED, Packed, unpack
 from lavendersim.trace.index import ChunkContent
 from lavendersim.trace.layout import PackedField
+from lavendersim.trace.limits import check_counts
 from lavendersim.trace.schema import FORMER_NAMES, HIGH_WORD, KINDS, NUMERIC_TYPES, Column
 from lavendersim.trace.sphere_contacts import POSITION, Floats, Starts
 from lavendersim.trace.wire import NANOSECONDS, Bytes, Rows, Template, gather, padded_varints
 
 Table = NDArray[Any]
+MOST_STRIDE = 1 << 16  # bytes of a point: 8,000 columns
 
 
 def columns_in(schema: Schema, message: str) -> tuple[Column, ...]:
@@ -137,6 +139,8 @@ def packed_fields(schema: Schema, chunk: ChunkContent) -> tuple[tuple[PackedFiel
     offset = chunk.messages[layout.CHANNELS["/contacts"]]["offset"][0]
     cloud.ParseFromString(body_of(chunk, int(offset)))
     fields = tuple(PackedField(f.name, f.offset, f.type) for f in cloud.fields)
+    if not 0 < cloud.point_stride <= MOST_STRIDE:
+        raise ValueError(f"points of {cloud.point_stride} bytes")
     return fields, cloud.point_stride
 
 
@@ -212,6 +216,7 @@ def decode_columns(
         steps, times, counts = (np.frombuffer(one, "<i8") for one in numbers)
         names = tuple(message.names)
         columns = [("step", "i8"), *zip(names, message.kinds, strict=True)]
+        check_counts(counts, len(names), len(message.keys) + len(message.planes))
         table = _table([*columns, *((name, "f8") for name in (*derived, "time"))], counts.sum())
         packed = Packed(*(getattr(message, name) for name in Packed._fields if name in fields))
         unpack(packed, names, table, partial(_starts, log, steps, counts))

@@ -48,6 +48,7 @@ from lavendersim.trace.container import (
     metadata_crc,
 )
 from lavendersim.trace.layout import RECORD_HEADER
+from lavendersim.trace.limits import check_chunk, check_chunks
 from lavendersim.trace.record_bytes import to_bytes
 from lavendersim.trace.whole import LogDigest, read_end
 from lavendersim.trace.wire import Bytes, gather
@@ -68,6 +69,7 @@ PARSERS: dict[int, Any] = {
     Opcode.DATA_END: DataEnd,
 }
 
+MOST_DESCRIPTIONS = 1000  # schemas and channels of a chunk; a log has about ten
 _HEAD = struct.Struct("<BQ")
 MESSAGE = np.dtype([("opcode", "u1"), ("length", "<u8"), ("channel", "<u2"), ("sequence", "<u4")])
 _CLOCKED = np.dtype([*MESSAGE.descr, ("log_time", "<u8"), ("publish_time", "<u8")])
@@ -80,7 +82,8 @@ def damage(path: Path, what: str) -> Iterator[None]:
         yield
     except (
         *(McapError, DecodeError, zstandard.ZstdError, struct.error, EOFError),
-        *(ValueError, KeyError, IndexError, TypeError, MemoryError, OverflowError),
+        *(ValueError, KeyError, IndexError, TypeError, AttributeError, MemoryError),
+        *(ArithmeticError, RecursionError),
     ) as error:
         raise TraceError(f"{path}: {what} is damaged ({error or type(error).__name__})") from error
 
@@ -115,6 +118,20 @@ def spans(data: bytes, start: int = 0) -> Iterator[tuple[int, int, int]]:
         start = end
 
 
+def records_of(payload: bytes) -> Iterator[tuple[int, int, int]]:
+    """Yield the records of a chunk as `spans` does. ValueError for others than it can have.
+
+    Of zeros, which cost nothing when compressed, every nine bytes would be a record.
+    """
+    before = 0
+    for opcode, start, end in spans(payload):
+        if opcode != Opcode.MESSAGE:
+            before += 1
+            if opcode not in (Opcode.SCHEMA, Opcode.CHANNEL) or before > MOST_DESCRIPTIONS:
+                raise ValueError("a chunk has records that are none of a chunk")
+        yield opcode, start, end
+
+
 def read_summary(path: Path, expected: LogDigest | None = None) -> FileIndex:
     """Return the index of a finished file. TraceError when it is unfinished, damaged or another."""
     with damage(path, "the summary"), path.open("rb") as stream:
@@ -122,6 +139,7 @@ def read_summary(path: Path, expected: LogDigest | None = None) -> FileIndex:
         index = FileIndex()
         for opcode, start, end in spans(summary):
             note(index, parse(summary[start:end], PARSERS[opcode]))
+        check_chunks(index.chunks, stream.seek(0, 2))
         return index
 
 
@@ -194,11 +212,12 @@ def open_chunk(chunk: Chunk, messages: Sequence[Messages]) -> ChunkContent:
     """Return the content of a chunk. ValueError unless CRC and message indexes hold."""
     if chunk.compression != "zstd":
         raise ValueError(f"chunk compression {chunk.compression!r} is not lavender's")
+    check_chunk(chunk)
     payload = zstandard.ZstdDecompressor().decompress(chunk.data, chunk.uncompressed_size)
     if zlib.crc32(payload) != chunk.uncompressed_crc or len(payload) != chunk.uncompressed_size:
         raise ValueError("a chunk fails its CRC")
     first = 0
-    for opcode, first, end in spans(payload):
+    for opcode, first, end in records_of(payload):
         if opcode == Opcode.MESSAGE:
             break
         first = end

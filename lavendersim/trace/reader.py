@@ -25,6 +25,13 @@ from lavendersim.trace.absent import absent_table
 from lavendersim.trace.contact_columns import known_rules
 from lavendersim.trace.forms import RULES
 from lavendersim.trace.index import ChunkContent, damage
+from lavendersim.trace.limits import (
+    MOST_BITS,
+    changes_of,
+    names_of,
+    reasons_of,
+    timestep_of,
+)
 from lavendersim.trace.positions import Positions
 from lavendersim.trace.recorded import KEYS, RECORDED, is_recorded, partly_recorded
 from lavendersim.trace.schema import FORMAT, RESIDUAL_COLUMNS, STEP_COLUMNS, Column
@@ -72,10 +79,10 @@ class Trace:
                 raise TraceError(
                     f"{path}: log format {description['format']}, this version reads {FORMAT}"
                 )
-            self.bodies: list[str] = json.loads(description["bodies"])
+            self.bodies = names_of(json.loads(description["bodies"]))
             self.clock = _clock(description["timestep"], description.get(TIMESTEP_CHANGES, "[]"))
             # topic -> why this log does without it; logs before there was a choice have them all
-            self.absent: dict[str, str] = json.loads(description.get(ABSENT, "{}"))
+            self.absent = reasons_of(json.loads(description.get(ABSENT, "{}")))
             # topic -> of which steps alone it has it; those are in `recorded_pose` and so on
             partly = partly_recorded(self.metadata.get(RECORDED, {}))
             self.partly = {t: why for t, why in partly.items() if t not in self.absent}
@@ -296,5 +303,7 @@ class Trace:
 @lru_cache(maxsize=64)  # the logs of a sweep mostly have the same
 def _clock(timestep: str, changes: str) -> Clock:
     """Return the times of the steps of a log; logs before timesteps could change have none."""
-    changed = [(done, Fraction(length)) for done, length in json.loads(changes)]
-    return Clock.counted(Fraction(timestep), changed)
+    clock = Clock.counted(timestep_of(timestep), changes_of(json.loads(changes)))
+    if clock.stretches[-1].begin.denominator.bit_length() > MOST_BITS:
+        raise ValueError("its times are no simple ratios")
+    return clock

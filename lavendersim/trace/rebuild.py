@@ -27,14 +27,14 @@ from lavendersim.trace.index import (
     open_chunk,
     parse,
     read_at,
-    spans,
+    records_of,
 )
 from lavendersim.trace.layout import RECORD_HEADER
+from lavendersim.trace.limits import check_chunk
 from lavendersim.trace.schema import FORMAT
 from lavendersim.trace.wire import gather
 from lavendersim.trace.writer import ABSENT, TIMESTEP_CHANGES
 
-MOST_BYTES: Final = 1024 * 1024 * 1024  # of a payload; a damaged size must not fill the memory
 REFUSALS: Final = (
     *(McapError, zstandard.ZstdError, struct.error, EOFError),
     *(ValueError, KeyError, IndexError, MemoryError, OverflowError),
@@ -56,9 +56,10 @@ def rebuilt(chunk: Chunk, indexes: bytes) -> Rebuilt:
     One of REFUSALS when its payload fails its CRC, or is no sequence of messages.
     """
     size = zstandard.frame_content_size(chunk.data)
-    if not 0 <= size <= MOST_BYTES:
+    if size < 0:
         raise ValueError("a chunk has no size")
     chunk.uncompressed_size = size
+    check_chunk(chunk)
     try:
         content = open_chunk(chunk, message_indexes(indexes))
     except REFUSALS:
@@ -80,7 +81,7 @@ def _messages_in(chunk: Chunk) -> list[Messages]:
     """Return the message indexes of a chunk by its messages."""
     payload = zstandard.ZstdDecompressor().decompress(chunk.data, chunk.uncompressed_size)
     found: dict[int, list[tuple[int, int]]] = {}
-    for opcode, start, _ in spans(payload):
+    for opcode, start, _ in records_of(payload):
         if opcode == Opcode.MESSAGE:
             channel, _, time = _HEAD.unpack_from(payload, start + RECORD_HEADER)
             found.setdefault(channel, []).append((time, start))

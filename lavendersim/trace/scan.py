@@ -22,6 +22,7 @@ from lavendersim.trace.container import LIBRARY, FileIndex
 from lavendersim.trace.groups import GEOMETRY, STEP, Group, Groups
 from lavendersim.trace.index import read_at, read_summary
 from lavendersim.trace.layout import RECORD_HEADER
+from lavendersim.trace.limits import check_growth, claimed_by
 from lavendersim.trace.rebuild import REFUSALS, rebuilt
 from lavendersim.trace.record_bytes import to_bytes
 from lavendersim.trace.source import FORMER_RESOLVED
@@ -78,6 +79,8 @@ class _Scan:
 
     def __init__(self, path: Path, stream: BinaryIO, summary: FileIndex) -> None:
         self._stream, self._summary = stream, summary
+        self._size = stream.seek(0, 2)
+        self._claimed = 0  # bytes of all chunks so far, decompressed
         self.entries = FileIndex(dict(summary.schemas), dict(summary.channels))
         self.groups = Groups(path, self.entries)
         self.crc: int | None = None
@@ -109,6 +112,8 @@ class _Scan:
     def _take_chunk(self, found: Found, indexes: list[Found]) -> None:
         end = indexes[-1].end if indexes else found.end
         behind = read_at(self._stream, found.end, end - found.end)
+        self._claimed += claimed_by(found.record)
+        check_growth(self._claimed, self._size, "its chunks")
         try:
             one = rebuilt(found.record, behind)
         except REFUSALS:

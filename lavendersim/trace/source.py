@@ -8,13 +8,13 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, Protocol
 
-import yaml
 from mcap.records import Attachment, Schema
 
 from lavendersim.cell import CellConfig
 from lavendersim.errors import TraceError
 from lavendersim.trace import layout
 from lavendersim.trace.container import CRC_KEY, FileIndex
+from lavendersim.trace.former_config import former_config
 from lavendersim.trace.index import (
     ChunkContent,
     damage,
@@ -29,6 +29,22 @@ from lavendersim.trace.whole import ExpectedLog, check_bytes
 from lavendersim.trace.writer import AS_WRITTEN, DESCRIPTION, RESOLVED, Written
 
 FORMER_RESOLVED = "resolved.yaml"  # of logs before the config was JSON
+
+
+class _OtherVersion(Exception):  # noqa: N818 - what pydantic says of a config
+    pass
+
+
+def _refused(constant: str) -> None:
+    raise ValueError(f"{constant} is no number of a config")
+
+
+def _config_of(data: dict[str, Any]) -> CellConfig:
+    """Return a config. _OtherVersion where it has not the keys and values that this one reads."""
+    try:
+        return CellConfig.from_dict(data)
+    except ValueError as error:
+        raise _OtherVersion(str(error)) from None
 
 
 class Source(Protocol):
@@ -104,8 +120,9 @@ class LogFile:
         """Return the config of the cell; TraceError where this version cannot read it."""
         data = self.config_data()
         try:
-            return CellConfig.from_dict(data)
-        except ValueError as error:  # pydantic's: a count, then a key and what is wrong with it
+            with damage(self._path, "its config"):
+                return _config_of(data)
+        except _OtherVersion as error:  # pydantic's: a count, then a key and what is wrong with it
             why = ": ".join(line.strip() for line in str(error).splitlines()[1:3])
             raise TraceError(
                 f"{self._path}: its config was written by another version: {why}"
@@ -117,11 +134,13 @@ class LogFile:
         name = FORMER_RESOLVED if FORMER_RESOLVED in names else RESOLVED
         with damage(self._path, name):
             text = self._attachment(name)
-            loaded: dict[str, Any]
-            if name == RESOLVED:
-                loaded = json.loads(text)
-            else:
-                loaded = yaml.load(text, getattr(yaml, "CSafeLoader", yaml.SafeLoader))
+            loaded = (
+                json.loads(text, parse_constant=_refused)
+                if name == RESOLVED
+                else former_config(text)
+            )
+            if not isinstance(loaded, dict):
+                raise ValueError("it is no mapping")
             return loaded
 
     def schema(self, channel: int) -> Schema | None:

@@ -117,7 +117,8 @@ def _kinetic_energy(body: BodyFacts) -> float:
     """Return the largest kinetic energy that the config gives a body [J]."""
     mass, spin = float(body.config.mass), hypot(*body.config.angular_velocity)
     inertia = float(max(body.config.inertia))
-    return 0.5 * mass * body.speed**2 + 0.5 * inertia * spin**2
+    # a power raises where this is infinite
+    return 0.5 * mass * (body.speed * body.speed) + 0.5 * inertia * (spin * spin)
 
 
 EFFECT = Effect(

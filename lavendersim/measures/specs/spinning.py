@@ -12,7 +12,8 @@ from lavendersim.quantities.quantity import Quantity
 from lavendersim.quantities.readings import POSES
 
 # |omega| dt of a step must stay small for a flip to be found between the samples around it
-Flips = Annotated[int, Quantity("", minimum=1, whole=True)]
+MOST_FLIPS = 1_000_000  # their times are reckoned, however many the log has
+Flips = Annotated[int, Quantity("", minimum=1, maximum=MOST_FLIPS, whole=True)]
 
 
 class VelocityError(Measure):
