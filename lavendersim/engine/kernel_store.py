@@ -8,7 +8,7 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import os
-import tempfile
+import stat
 import time
 from functools import cache
 from pathlib import Path
@@ -28,8 +28,9 @@ def _is_private(path: Path) -> bool:
     """Whether nobody else may write here: what is loaded from here is run."""
     if os.name != "posix":
         return True
-    status = path.stat()
-    return status.st_uid == os.getuid() and not status.st_mode & 0o022
+    status = path.lstat()  # through a link somebody else could have it elsewhere later
+    own = stat.S_ISDIR(status.st_mode) and status.st_uid == os.getuid()
+    return own and not status.st_mode & 0o022
 
 
 _why_not = ""  # nothing may be kept, whatever the place
@@ -53,15 +54,14 @@ def directory() -> tuple[Path, str]:
 def _place() -> tuple[Path, str]:
     asked = os.environ.get(DIRECTORY_VARIABLE)
     usual = Path(os.environ.get("XDG_CACHE_HOME") or "~/.cache").expanduser() / "lavender"
-    fallback = Path(tempfile.gettempdir()) / f"lavender-{os.getuid() if os.name == 'posix' else ''}"
-    chosen = Path(asked) if asked else usual
-    refusal = f"{chosen} cannot be written by this user alone"
-    for path in [chosen] if asked else [chosen, fallback]:
-        with contextlib.suppress(OSError):
-            path.mkdir(parents=True, exist_ok=True, mode=0o700)
-            if _is_private(path) and os.access(path, os.W_OK):
-                return path, "" if path == chosen else f"{refusal}: kernels are kept in {path}"
-    return Path(), f"{refusal}: {ANEW}"
+    path = Path(asked) if asked else usual
+    with contextlib.suppress(OSError):
+        path.mkdir(parents=True, exist_ok=True, mode=0o700)
+        if _is_private(path) and os.access(path, os.W_OK):
+            return path, ""
+    # Never in a shared temporary folder: who made the directory there first, would be believed.
+    refusal = f"{path} is no directory that this user alone can write"
+    return Path(), f"{refusal}, {DIRECTORY_VARIABLE} names another: {ANEW}"
 
 
 def read(path: Path) -> bytes | None:

@@ -57,6 +57,31 @@ def test_the_kernel_not_used_for_longest_makes_room(
     assert names_in(store) == {digests[0], third}
 
 
+@pytest.mark.skipif(os.name != "posix", reason="owners and links of POSIX")
+@pytest.mark.parametrize("how", ["a link", "others may write", "another's", "a file"])
+def test_kernels_are_loaded_from_a_directory_of_this_user_alone(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, how: str
+) -> None:
+    """What is loaded is run: somebody else's directory, made first, is not believed."""
+    private, asked = tmp_path / "private", tmp_path / "asked"
+    private.mkdir(mode=0o700)
+    monkeypatch.setenv(kernel_store.DIRECTORY_VARIABLE, str(private))
+    assert kernel_store._place.__wrapped__() == (private, "")
+    monkeypatch.setenv(kernel_store.DIRECTORY_VARIABLE, str(asked))
+    if how == "a link":
+        asked.symlink_to(private)
+    elif how == "a file":
+        asked.touch()
+    else:
+        asked.mkdir()
+        asked.chmod(0o777 if how == "others may write" else 0o700)
+    if how == "another's":
+        monkeypatch.setattr(os, "getuid", lambda: asked.stat().st_uid + 1)
+    place, why = kernel_store._place.__wrapped__()
+    assert place == Path()
+    assert why.startswith(f"{asked} is no directory that this user alone can write")
+
+
 def test_everything_stays_while_it_fits(store: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     digests = {keep(name).spec.digest() for name in ("first", "second")}
     total = sum(kept.size for kept in kept_kernels())
