@@ -38,6 +38,7 @@ from .run_directory import (
     SEALED,
     Run,
     RunCell,
+    check_latest,
     point_latest,
 )
 from .run_index import ENDED, PENDING, as_row
@@ -148,6 +149,7 @@ def run(
         raise UsageError(f"{experiment.name}: record.problems is written by processes alone")
     prepared = prepare(experiment)
     root = Path(root)
+    check_latest(root)
     if sentence := size_warning(prepared.cells, prepared.plans, experiment.text, root):
         progress.warning(sentence)
     logs = set(prepared.logs)

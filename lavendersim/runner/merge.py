@@ -21,7 +21,7 @@ from lavendersim.experiment import Experiment, load_experiment_text
 from .experiment_run import Finished, complete, make_directory
 from .leases import Leases
 from .progress import Progress
-from .run_directory import CONFIG, RUNS, point_latest
+from .run_directory import CONFIG, RUNS, check_latest, point_latest
 from .run_lock import run_lock
 from .shards import ended_in, read_identity, refuse_others, shards_in
 
@@ -64,6 +64,7 @@ def merge(
         running = Leases(into).run_by_others(left)
         return Missing(labels, len(running), damaged, len(by_log))
     root = Path(root)
+    check_latest(root)
     directory = make_directory(experiment, root)
     with run_lock(directory):
         cells = directory / "cells"

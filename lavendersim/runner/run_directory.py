@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -274,11 +273,21 @@ def open_run(
     raise UsageError(f"{path}: not the directory of a run (it has no {CELLS})")
 
 
+def check_latest(root: Path) -> None:
+    """Raise UsageError where `latest` is no link that could be moved: before a run, not after."""
+    latest = root / LATEST
+    if latest.is_dir() and not latest.is_symlink():
+        raise UsageError(
+            f"{latest}: a directory; the link to the newest run stands there, so name it otherwise"
+        )
+
+
 def point_latest(directory: Path, root: Path) -> None:
     """Move the `latest` link to a finished run in one step."""
     temporary = root / f".{LATEST}-{os.getpid()}"
-    with contextlib.suppress(FileNotFoundError):
-        temporary.unlink()
+    for left in root.glob(f".{LATEST}-*"):  # of a process that was killed between two calls
+        if left == temporary or not _is_running(left.name.rpartition("-")[2]):
+            left.unlink(missing_ok=True)
     try:
         temporary.symlink_to(directory.name, target_is_directory=True)
     except OSError:  # where links need a privilege, a file holds the name
@@ -289,3 +298,16 @@ def point_latest(directory: Path, root: Path) -> None:
     finally:
         temporary.unlink(missing_ok=True)
     flush_folder(root)
+
+
+def _is_running(process: str) -> bool:
+    """Whether a process of this number runs; where that cannot be asked, it may."""
+    if os.name != "posix" or not process.isdecimal():
+        return True
+    try:
+        os.kill(int(process), 0)
+    except (ProcessLookupError, OverflowError):
+        return False
+    except PermissionError:
+        pass
+    return True

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import json
+import os
+import subprocess
 from pathlib import Path
 
 import pytest
 from small_configs import DROPS, write
 
 import lavendersim
-from lavendersim.errors import ConfigError
+from lavendersim.errors import ConfigError, UsageError
 
 
 def test_runs_within_one_second_do_not_share_a_directory(tmp_path: Path) -> None:
@@ -24,6 +26,29 @@ def test_runs_within_one_second_do_not_share_a_directory(tmp_path: Path) -> None
         assert all((path / file).stat().st_size for file in files)
         assert (path / "DONE").exists()
         assert (path / "config.yaml").read_text() == DROPS
+
+
+def test_a_directory_called_latest_is_said_before_the_run_and_left_alone(tmp_path: Path) -> None:
+    root = tmp_path / "runs"
+    (root / "latest").mkdir(parents=True)
+    (root / "latest" / "mine").touch()
+    with pytest.raises(UsageError, match="latest: a directory; the link to the newest run"):
+        lavendersim.run(write(tmp_path), root=root)
+    assert [path.name for path in root.rglob("*")] == ["latest", "mine"]
+
+
+@pytest.mark.skipif(os.name != "posix", reason="links of POSIX")
+def test_a_link_that_a_killed_process_left_half_made_goes_with_the_next_run(
+    tmp_path: Path,
+) -> None:
+    root = tmp_path / "runs"
+    root.mkdir()
+    ended = subprocess.Popen(["true"])
+    ended.wait()
+    (root / f".latest-{ended.pid}").symlink_to("nowhere")
+    (root / f".latest-{os.getppid()}").symlink_to("elsewhere")
+    lavendersim.run(write(tmp_path), root=root)
+    assert sorted(path.name for path in root.glob(".*")) == [f".latest-{os.getppid()}"]
 
 
 @pytest.mark.parametrize(
