@@ -9,7 +9,7 @@ import sys
 import traceback
 import warnings
 from collections.abc import Callable
-from typing import Annotated
+from typing import Annotated, TextIO, cast
 
 import typer
 
@@ -35,7 +35,10 @@ from lavender_cli import (
     verify,
 )
 
+DISK_FULL = 6
 INTERRUPTED = 130  # typer ends with it after Ctrl-C
+# What these do goes on when nobody reads what they print.
+WORKING = ("run", "check", "cost", "merge")
 
 app = typer.Typer(
     name="lavender",
@@ -91,7 +94,10 @@ def lavender(
 
 
 def main() -> None:
-    """Run the command line; exit 0 good, 1 a check failed, 2 usage, 3 a log, 4 internal, 5, 130."""
+    """Run the command line; exit 0 good, 1 a check failed, 2 usage, 3 a log, 4 internal, 5, 6, 130.
+
+    `docs/commands.md` has the table.
+    """
     from lavendersim.errors import ConfigWarning, LavenderError
 
     # Configs, plans and results are many objects that live on; looking through them for circles
@@ -104,7 +110,11 @@ def main() -> None:
         else python_format(message, category, *where, **line)
     )
 
-    if hasattr(signal, "SIGPIPE") and not sys.stdout.isatty():
+    if sys.argv[1:2] and sys.argv[1] in WORKING:
+        from lavendersim.runner.unread_output import Unread
+
+        sys.stdout = cast(TextIO, Unread(sys.stdout))
+    elif hasattr(signal, "SIGPIPE") and not sys.stdout.isatty():
         # As other tools do: a reader that has seen enough ends the writer, without a message.
         signal.signal(signal.SIGPIPE, signal.SIG_DFL)
     try:
@@ -115,7 +125,7 @@ def main() -> None:
     except OSError as error:
         named = f"{error.filename}: " if error.filename else ""
         typer.echo(f"{named}{(error.strerror or str(error)).lower()}", err=True)
-        sys.exit(2)
+        sys.exit(DISK_FULL if error.errno in run.DISK else 2)
     except SystemExit as end:
         if end.code == INTERRUPTED:
             typer.echo("interrupted", err=True)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import itertools
 import os
+import stat
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -48,6 +49,9 @@ def load_experiment(
     """
     file = Path(path)
     try:
+        if not stat.S_ISREG(file.stat().st_mode) and not file.is_dir():
+            # Opened, a pipe without a writer would wait for one.
+            raise UsageError(f"{file}: expected a file, this is a pipe or a device")
         with file.open("rb") as stream:
             raw = stream.read(LARGEST_FILE + 1)
             size = os.fstat(stream.fileno()).st_size

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 import subprocess
 import sys
@@ -233,3 +234,31 @@ def test_a_cell_that_diverges_exits_1_and_the_others_complete(drop: Path, tmp_pa
     whole = [one for one in table["verdicts"] if "1e+155" not in one["node"]]
     assert len(whole) == 2 * (1 + 4)
     assert all(one["passed"] for one in whole)
+
+
+@pytest.mark.skipif(os.name != "posix", reason="pipes of POSIX")
+def test_runs_go_on_when_nobody_reads_what_they_print(drop: Path, tmp_path: Path) -> None:
+    for name in ("a", "b", "c"):
+        (tmp_path / f"{name}.yaml").write_text(drop.read_text())
+    names = [f"{name}.yaml" for name in ("a", "b", "c")]
+    command = [sys.executable, "-m", "lavender_cli.main", "run", *names]
+    read, write = os.pipe()
+    with subprocess.Popen(command, cwd=tmp_path, stdout=write, stderr=subprocess.PIPE) as run:
+        os.close(write)
+        os.close(read)  # the reader has gone before the first line
+        assert run.stderr is not None
+        said = run.stderr.read()
+    assert (run.returncode, b"Traceback" in said) == (0, False), said
+    assert len(list((tmp_path / "runs").glob("*/DONE"))) == 1 + 3  # and by the link
+
+
+@pytest.mark.skipif(os.name != "posix", reason="pipes of POSIX")
+def test_a_pipe_is_no_config(tmp_path: Path) -> None:
+    """Nobody writes into it: opened, it would wait for ever."""
+    os.mkfifo(tmp_path / "drop.yaml")
+    for verb in ("run", "check", "plan"):
+        done = lavender(verb, "drop.yaml", where=tmp_path)
+        assert (done.returncode, done.stderr) == (
+            2,
+            "drop.yaml: expected a file, this is a pipe or a device\n",
+        )

@@ -236,7 +236,7 @@ def test_after_a_full_disk_a_run_goes_on(drops: Path, tmp_path: Path) -> None:
     runs = tmp_path / "runs"
     command = [sys.executable, "-m", "lavender_cli.main", "run", drops, "--runs", runs]
     done = subprocess.run(command, preexec_fn=small, capture_output=True, text=True, check=False)
-    assert done.returncode == 2
+    assert done.returncode == 6
     assert f"go on with: lavender run {drops} --resume --runs {runs}" in done.stderr
     assert contents(resumed(drops, runs)[0]) == whole
 
