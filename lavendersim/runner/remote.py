@@ -163,13 +163,14 @@ def _lost(future: Future[RemoteResult]) -> str | None:
 
 @contextmanager
 def _signed(folder: Path) -> Iterator[str]:
-    """Put a sign into a folder meanwhile that no other folder has."""
+    """Put a sign into a folder meanwhile that no other folder has; what lost workers left goes."""
     sign = f".{uuid.uuid4().hex}.sign"
     write_whole(folder / sign, sign, flush=False)
     try:
         yield sign
     finally:
-        (folder / sign).unlink(missing_ok=True)
+        for left in (folder / sign, *folder.glob(".*.unfinished")):
+            left.unlink(missing_ok=True)
 
 
 def _text(path: Path) -> str:

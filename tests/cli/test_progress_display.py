@@ -9,7 +9,7 @@ import pytest
 from rich.console import Console
 
 from lavender_cli.printing import byte_size, time_span
-from lavender_cli.progress import EVERY, State
+from lavender_cli.progress import EVERY, ShownState
 from lavendersim.engine.spec import Spec
 from lavendersim.runner.progress import Compilation, Moment
 
@@ -46,13 +46,13 @@ def compilation(number: int, total: int) -> Compilation:
     return Compilation(plan, f"solver: number_{number} (3 cells)", number, total)
 
 
-def running(moment: Moment) -> State:
-    state, tally = State("pile"), Reading(moment)
+def running(moment: Moment) -> ShownState:
+    state, tally = ShownState("pile"), Reading(moment)
     state.running(tally)  # type: ignore[arg-type]
     return state
 
 
-def drawn(state: State, width: int = 80) -> list[str]:
+def drawn(state: ShownState, width: int = 80) -> list[str]:
     console = Console(file=io.StringIO(), width=width, force_terminal=True, color_system=None)
     with console.capture() as captured:
         console.print(state.drawn(console))
@@ -70,7 +70,7 @@ def test_two_lines_of_80_columns_have_it_all() -> None:
 @pytest.mark.parametrize("width", [30, 50, 80, 200])
 def test_it_never_wraps(width: int) -> None:
     long = HALF_WAY._replace(label=", ".join(f"axis_{k}=0.{k}" for k in range(9)))
-    several = State("pile")
+    several = ShownState("pile")
     for number in range(1, 6):
         several.compiling(compilation(number, 5))
     for state in (running(HALF_WAY), running(long), several):
@@ -80,7 +80,7 @@ def test_it_never_wraps(width: int) -> None:
 
 
 def test_kernels_are_counted_while_they_are_compiled() -> None:
-    state = State("pile")
+    state = ShownState("pile")
     state.compiling(compilation(2, 3))
     first, second = drawn(state)
     assert first.startswith("pile  compiling 2 of 3 (")

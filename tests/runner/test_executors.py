@@ -87,6 +87,17 @@ def test_a_cell_whose_worker_is_lost_is_run_once_more(drops: Path, tmp_path: Pat
     assert contents(found.run) == contents(run(drops, tmp_path / "whole").run)
 
 
+def test_what_a_killed_worker_left_half_written_goes_with_the_run(
+    drops: Path, tmp_path: Path
+) -> None:
+    def half(task: remote.RemoteTask) -> remote.RemoteResult:
+        (task.job.path.parent / f".{task.job.path.name}.1.unfinished").touch()
+        return remote.run_there(task)
+
+    found = run(drops, tmp_path / "runs", executor=Here(function=half))
+    assert contents(found.run) == contents(run(drops, tmp_path / "whole").run)
+
+
 def test_a_cell_whose_workers_are_lost_both_times_has_failed(drops: Path, tmp_path: Path) -> None:
     found = run(drops, tmp_path / "runs", executor=Here(lost=100))
     status = "failed: its process was lost (RuntimeError), both times"
