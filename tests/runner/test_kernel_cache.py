@@ -110,28 +110,8 @@ def test_every_change_of_an_engine_source_changes_the_source_hash(
     assert source_hash() != before
 
 
-# A path below a file cannot be made, not even by root, for whom no directory is read-only.
-def test_an_unusable_cache_directory_falls_back_and_says_where(
-    kept: tuple[Path, Path, dict[str, Any]], tmp_path: Path
-) -> None:
-    config, _, first = kept
-    blocked = write(tmp_path, "a file", "blocked")
-    fallback = tmp_path / "temporary"
-    fallback.mkdir()
-    there = run_in_new_process(
-        config,
-        tmp_path / "runs",
-        LAVENDER_CACHE_DIR="",
-        XDG_CACHE_HOME=str(blocked / "below"),
-        TMPDIR=str(fallback),
-    )
-    where, note = there["cache"]
-    assert Path(where).parent == fallback
-    assert where in note
-    assert list(Path(where).glob("*.kernel"))
-    assert there["logs"] == first["logs"]
-
-
+# A path below a file cannot be made, not even by root, for whom no directory is read-only. That no
+# shared folder takes its place: tests/cli/test_compiling_line.py.
 def test_without_any_cache_directory_a_run_compiles_and_says_so(
     kept: tuple[Path, Path, dict[str, Any]], tmp_path: Path
 ) -> None:
