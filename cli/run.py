@@ -100,6 +100,8 @@ def run(
     # Every file is read before the first run, so a defect anywhere leaves nothing half done.
     overrides = overrides_of(values, axes)
     experiments = load_all(configs, overrides=overrides)
+    where = [] if runs == Path("runs") else ["--runs", str(runs)]
+    command = _command(configs, overrides, "--resume", *where)
     good, tables, with_overheads = True, [], []
     with Drawing(experiments if plot else ()) as drawing:
         for number, experiment in enumerate(experiments):
@@ -113,7 +115,7 @@ def run(
                     tables.append({**results, "run": whole.path, "figures": []})
                 continue
             printing.warn_of_mistakes(experiment)
-            with _resumable(configs, overrides, runs), ExitStack() as open_now:
+            with _resumable(command), ExitStack() as open_now:
                 shown = open_now.enter_context(progress.reporting(experiment.name))
                 workers: Executor | None = None
                 if executor is not None or dask is not None:
@@ -174,18 +176,18 @@ def _print_figures(figures: list[Path]) -> None:
 
 
 @contextmanager
-def _resumable(configs: list[Path], overrides: list[str], runs: Path) -> Iterator[None]:
-    """Say how to go on with what is run where it ends too early, and can be resumed."""
+def _resumable(command: str) -> Iterator[None]:
+    """Print the command that goes on with what is run where that ends too early."""
     try:
         yield
-    except KeyboardInterrupt as end:  # `run` says by what, and where what was simulated is
+    except KeyboardInterrupt as end:  # it says by what, and where what was simulated is
         if str(end):
             typer.echo(str(end), err=True)
-        _say_how_to_resume(configs, overrides, runs)
+        typer.echo(f"go on with: {command}", err=True)
         raise
     except OSError as error:
         if error.errno in DISK:
-            _say_how_to_resume(configs, overrides, runs)
+            typer.echo(f"go on with: {command}", err=True)
         raise
 
 
@@ -212,17 +214,10 @@ def _run_shard(
         raise UsageError(f"--into {into}: expected one config, not {len(experiments)}")
     experiment = experiments[0]
     printing.warn_of_mistakes(experiment)
-    try:
-        with progress.reporting(experiment.name) as shown:
-            done = run_shard(experiment, into, part, jobs, shown)
-    except KeyboardInterrupt as end:
-        if str(end):
-            typer.echo(str(end), err=True)
-        options = [word for one in overrides for word in f"--{one}".split(" ", 1)]
-        given = ["--into", str(into), *(["--shard", shard] if shard is not None else [])]
-        command = shlex.join(["lavender", "run", *map(str, configs), *options, *given])
-        typer.echo(f"go on with: {command}", err=True)
-        raise
+    given = ["--into", str(into), *(["--shard", shard] if shard is not None else [])]
+    command = _command(configs, overrides, *given)
+    with _resumable(command), progress.reporting(experiment.name) as shown:
+        done = run_shard(experiment, into, part, jobs, shown)
     for sentence in done.lost:
         typer.echo(f"{experiment.name}: {sentence}", err=True)
     of = "" if shard is None else f" of part {shard}"
@@ -240,9 +235,7 @@ def overrides_of(values: list[str] | None, axes: list[str] | None) -> list[str]:
     return [*(f"set {one}" for one in values or ()), *(f"sweep {one}" for one in axes or ())]
 
 
-def _say_how_to_resume(configs: list[Path], overrides: list[str], runs: Path) -> None:
-    """Print the command that goes on where a run was interrupted."""
-    where = [] if runs == Path("runs") else ["--runs", str(runs)]
-    options = [part for one in overrides for part in f"--{one}".split(" ", 1)]
-    command = ["lavender", "run", *map(str, configs), *options, "--resume", *where]
-    typer.echo(f"go on with: {shlex.join(command)}", err=True)
+def _command(configs: list[Path], overrides: list[str], *options: str) -> str:
+    """Return the command that runs the same with options of its own, as a shell takes it."""
+    changed = [part for one in overrides for part in f"--{one}".split(" ", 1)]
+    return shlex.join(["lavender", "run", *map(str, configs), *changed, *options])
