@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from lavender_cli import printing, progress, solver_matrix, time_errors
-from lavender_cli.run import Configs, Jobs, Refine, Runs, Set, Sweep, overrides_of
+from lavender_cli.run import Configs, Jobs, Refine, Runs, Set, Strict, Sweep, overrides_of
 
 
 def check(
@@ -34,6 +34,7 @@ def check(
     refine: Refine = False,
     values: Set = None,
     axes: Sweep = None,
+    strict: Strict = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print the verdicts as JSON.")] = False,
 ) -> None:
     """Run experiments and print every verdict, cell by cell. Exits 1 when one fails.
@@ -55,7 +56,7 @@ def check(
         if refine:
             raise UsageError("--refine tells time errors of one solver: leave out --solver")
         chosen(solver)  # a wrong name is refused before any file is read
-    experiments = load_all(configs, not full, overrides)
+    experiments = load_all(configs, not full, overrides, strict)
     if report is not None:
         check_page_path(report)  # not after an hour of runs
     if solver:

@@ -8,7 +8,7 @@ from typing import Annotated, Any
 import typer
 
 from lavender_cli import printing, progress
-from lavender_cli.run import Configs, Jobs, Runs
+from lavender_cli.run import Configs, Jobs, Runs, Strict
 
 HEADER = ("setting", "error", "worst at", "order", "residual m/s", "per simulated s", "quartiles")
 MARKS = {"specified": "specified", "chapter": "the chapter's", "grid": ""}
@@ -29,6 +29,7 @@ def cost(
     ] = None,
     plot: Annotated[bool, typer.Option("--plot/--no-plot", help="Draw the figure.")] = True,
     jobs: Jobs = 1,
+    strict: Strict = False,
     runs: Runs = Path("runs"),
     as_json: Annotated[bool, typer.Option("--json", help="Print the tables as JSON.")] = False,
 ) -> None:
@@ -44,7 +45,9 @@ def cost(
     sought = [percentage(target) for target in targets or ()]
     # In a folder those with a section `cost` are meant; a file that is named must have one.
     experiments = [
-        one for one in load_all(configs) if one.config.cost is not None or one.path in configs
+        one
+        for one in load_all(configs, strict=strict)
+        if one.config.cost is not None or one.path in configs
     ]
     if not experiments:
         raise UsageError(f"{configs[0]}: no config in this folder has a section cost")

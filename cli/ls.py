@@ -64,6 +64,8 @@ def line_of(one: Listed) -> str:
     if one.damaged:
         word = "BAD " if one.passed is None else "CUT "
         state = typer.style(word, fg=typer.colors.RED, bold=True)
+    elif one.passed and not one.claims:
+        state = "none"  # nothing was claimed, so nothing passed
     else:
         state = "----" if one.passed is None else printing.mark(one.passed)
     cells = f"{one.cells} cell{' ' if one.cells == 1 else 's'}"

@@ -98,7 +98,7 @@ def main() -> None:
 
     `docs/commands.md` has the table.
     """
-    from lavendersim.errors import ConfigWarning, LavenderError
+    from lavendersim.errors import ConfigWarning, LavenderError, SuspiciousScene
 
     # Configs, plans and results are many objects that live on; looking through them for circles
     # takes a tenth of a run of hundreds of cells.
@@ -106,7 +106,7 @@ def main() -> None:
     python_format = warnings.formatwarning
     warnings.formatwarning = lambda message, category, *where, **line: (
         f"{message}\n"  # it begins with the place in the config
-        if issubclass(category, ConfigWarning)
+        if issubclass(category, (ConfigWarning, SuspiciousScene))
         else python_format(message, category, *where, **line)
     )
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from lavender_cli import printing
-from lavender_cli.run import Set, Sweep, overrides_of
+from lavender_cli.run import Set, Strict, Sweep, overrides_of
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -31,6 +31,7 @@ def plan(
     config: Annotated[Path, typer.Argument(help="Config file.")],
     values: Set = None,
     axes: Sweep = None,
+    strict: Strict = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print the plan as JSON.")] = False,
 ) -> None:
     """Show which effects a scene requires, why, and what each brings: arrays, log, kernels.
@@ -43,7 +44,7 @@ def plan(
     from lavendersim.runner.plans import distinct, shared_plans
     from lavendersim.scene.explanation import explain_all
 
-    (experiment,) = load_all([config], overrides=overrides_of(values, axes))
+    (experiment,) = load_all([config], overrides=overrides_of(values, axes), strict=strict)
     cells = experiment.cells()
     plans = shared_plans(cells)
     explained = explain_all(distinct(plans))

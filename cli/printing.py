@@ -74,8 +74,28 @@ def print_summary(finished: Any) -> None:
     print_costs(finished)
     for _, passed, text in summarise(finished.verdicts):
         typer.echo(f"  {mark(passed)}  {text}")
+    print_unjudged(finished)
     print_failures(finished)
     typer.echo(f"  logs  {finished.run.path}")
+
+
+def print_unjudged(finished: Any) -> None:
+    """Print the measures of which nothing is expected: of each the range over the cells."""
+    from lavendersim.measures.meanings import described_kinds
+
+    experiment, taken = finished.run.experiment, finished.run.taken
+    names = experiment.unjudged
+    kinds = described_kinds() if names else {}
+    for name in names:
+        values = [cell[name] for cell in taken.values() if name in cell]
+        numbers = [value for value in values if isinstance(value, float | int)]
+        unit = kinds[experiment.measures[name].kind].unit
+        if numbers:
+            low, high = min(numbers), max(numbers)
+            shown = digits(low) if low == high else f"{digits(low)} to {digits(high)}"
+            typer.echo(f"        {name}: {shown} {unit}".rstrip())
+        for reason in dict.fromkeys(value for value in values if isinstance(value, str)):
+            typer.echo(f"        {name}: {reason}")
 
 
 def print_costs(finished: Any) -> None:

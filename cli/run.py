@@ -48,6 +48,9 @@ Sweep = Annotated[
     list[str] | None,
     typer.Option("--sweep", metavar="NAME=PATH:[VALUES]", help="Another axis; repeatable."),
 ]
+Strict = Annotated[
+    bool, typer.Option("--strict", help="What of a config is suspicious is an error.")
+]
 Runs = Annotated[Path, typer.Option("--runs", metavar="DIR", help="Where runs are kept.")]
 
 
@@ -59,6 +62,7 @@ def run(
     refine: Refine = False,
     values: Set = None,
     axes: Sweep = None,
+    strict: Strict = False,
     resume: Annotated[
         bool, typer.Option("--resume", help="Go on with the newest run where it did not finish.")
     ] = False,
@@ -92,14 +96,14 @@ def run(
             "--executor": executor is not None,
             "--dask": dask is not None,
         }
-        _run_shard(configs, overrides_of(values, axes), (into, shard), jobs, asked)
+        _run_shard(configs, (overrides_of(values, axes), strict), (into, shard), jobs, asked)
         return
 
     if executor not in (None, DASK):
         raise typer.BadParameter(f"{executor!r}, expected {DASK!r}", param_hint="--executor")
     # Every file is read before the first run, so a defect anywhere leaves nothing half done.
     overrides = overrides_of(values, axes)
-    experiments = load_all(configs, overrides=overrides)
+    experiments = load_all(configs, overrides=overrides, strict=strict)
     where = [] if runs == Path("runs") else ["--runs", str(runs)]
     command = _command(configs, overrides, "--resume", *where)
     good, tables, with_overheads = True, [], []
@@ -193,7 +197,7 @@ def _resumable(command: str) -> Iterator[None]:
 
 def _run_shard(
     configs: list[Path],
-    overrides: list[str],
+    how: tuple[list[str], bool],
     where: tuple[Path | None, str | None],
     jobs: int,
     asked: dict[str, bool],
@@ -203,13 +207,13 @@ def _run_shard(
     from lavendersim.runner import load_all
     from lavendersim.runner.shards import part_of, run_shard
 
-    into, shard = where
+    (overrides, strict), (into, shard) = how, where
     if into is None:
         raise UsageError("--shard: expected --into DIR, the folder that its cells are run into")
     if refused := [option for option, given in asked.items() if given]:
         raise UsageError(f"{refused[0]} with --into: cells are not judged before `lavender merge`")
     part = part_of(shard) if shard is not None else None
-    experiments = load_all(configs, overrides=overrides)
+    experiments = load_all(configs, overrides=overrides, strict=strict)
     if len(experiments) > 1:
         raise UsageError(f"--into {into}: expected one config, not {len(experiments)}")
     experiment = experiments[0]

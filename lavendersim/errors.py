@@ -44,6 +44,10 @@ class ConfigWarning(FutureWarning):
     """A config file uses a spelling that the next version refuses; the message has its place."""
 
 
+class SuspiciousScene(UserWarning):
+    """A config can be simulated and is probably not what is meant; the message has its place."""
+
+
 class ProblemError(LavenderError):
     """A file that has a contact problem is not what its format says, or cannot be read."""
 

@@ -71,12 +71,14 @@ class ExperimentFile(pytest.File):
         """Yield one item per expectation and cell, and one for the run itself."""
         from lavendersim.errors import LavenderError
         from lavendersim.experiment import load_experiment
+        from lavendersim.lint import warn
         from lavendersim.measures import judge_nodes
         from lavendersim.runner.checks import check
 
         try:
             experiment = load_experiment(self.path, self._reduced)
             check(experiment)
+            warn(experiment)
         except LavenderError as error:
             raise self.CollectError(str(error)) from None
         for number, node in enumerate([COMPLETES, *judge_nodes(experiment)]):

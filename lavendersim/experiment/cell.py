@@ -76,13 +76,23 @@ class Cell:
             raise ConfigError(report.defects)
         return config if self.divisor == 1 else config.refined(self.divisor)
 
+    @property
+    def file(self) -> str:
+        """The file that it is of, as messages call it."""
+        return self._name
+
+    @property
+    def tree(self) -> Node:
+        """What the file says of this cell: the tree with the swept values in their places."""
+        return self._point.tree(self._root)
+
     def defect(self, path: Path, message: str) -> Defect:
         """Return a defect at a key, an item or a swept value of this cell."""
         swept = {axis.path: node for axis, node in self._point.choices}
         if path in swept:
             mark = swept[path].mark
         else:
-            parent, last = _deepest(self._point.tree(self._root), path[:-1]), path[-1]
+            parent, last = _deepest(self.tree, path[:-1]), path[-1]
             mark = parent.items[last].mark if isinstance(last, int) else key_mark(parent, last)
         return Defect(self._name, mark.line, mark.column, message)
 

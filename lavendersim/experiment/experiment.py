@@ -51,6 +51,12 @@ class Experiment:
         return tuple(claim for claim in self.config.expect if claim.fails is not None)
 
     @property
+    def unjudged(self) -> list[str]:
+        """The measures of which nothing is expected."""
+        judged = set(self.tree.get("expect").texts)
+        return [name for name in self.measures if name not in judged]
+
+    @property
     def is_drawn(self) -> bool:
         """Whether there is anything to draw."""
         return self.config.figure is not None or self.config.overhead is not None

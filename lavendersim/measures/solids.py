@@ -75,15 +75,21 @@ def solids_of(scene: CellScene, names: list[str]) -> tuple[Solids, list[HalfSpac
     bodies = [scene.bodies[names[column]] for column in columns]
     solids = Solids(
         np.array(columns, int),
-        np.array([KINDS.get(body.shape.kind, OTHER) for body in bodies], int),
-        np.array([_size(body.shape) for body in bodies], dtype=np.float64).reshape(-1, 3),
+        np.array([kind_of(body.shape) for body in bodies], int),
+        np.array([size_of(body.shape) for body in bodies], dtype=np.float64).reshape(-1, 3),
         sums_of([body.shape for body in bodies]),
         np.array([is_movable(body) for body in bodies]),
     )
     return solids, grounds
 
 
-def _size(shape: CellShape) -> list[float]:
+def kind_of(shape: CellShape) -> int:
+    """Return which of KINDS a shape is, or OTHER."""
+    return KINDS.get(shape.kind, OTHER)
+
+
+def size_of(shape: CellShape) -> list[float]:
+    """Return the three numbers of a shape's size [m]."""
     row = shape.row() if isinstance(shape, Primitive) else {}
     return [row.get(name, 0.0) for name in ("hx", "hy", "hz")]
 

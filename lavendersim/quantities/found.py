@@ -44,6 +44,10 @@ def near(name: object, names: Iterable[str]) -> str | None:
     for candidate in itertools.islice(names, MOST_COMPARED):
         by_folded.setdefault(candidate.casefold(), candidate)
     folded = str(name).casefold()[:100]
+    for whole, candidate in by_folded.items():
+        words = whole.split("_")
+        if len(words) > 1 and folded == "".join(word[:1] for word in words):
+            return candidate  # "pgs" for "projected_gauss_seidel"
     close = difflib.get_close_matches(folded, by_folded, n=1, cutoff=0.6)
     if not close and len(folded) > 2:
         # people leave words out: "gain" for "stabilisation_gain"
@@ -57,6 +61,7 @@ def nearest(name: object, names: Iterable[str]) -> str:
     if not valid:
         return ""
     if close := near(name, valid):
-        return f'; did you mean "{close}"?'
+        half = str(name).casefold().startswith("half") and not close.startswith("half")
+        return f'; did you mean "{close}"{", twice as much" if half else ""}?'
     listed = ", ".join(valid[:MOST_NAMES]) + (", ..." if len(valid) > MOST_NAMES else "")
     return f"; valid here: {listed}"

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from lavendersim.errors import ConfigError, Defect, UsageError
 from lavendersim.experiment import Experiment, load_experiment
+from lavendersim.lint import warn
 
 from .checks import check
 from .run_directory import is_run_directory
@@ -36,11 +37,12 @@ def find_configs(paths: list[Path]) -> list[Path]:
 
 
 def load_all(
-    paths: list[Path], reduced: bool = False, overrides: Sequence[str] = ()
+    paths: list[Path], reduced: bool = False, overrides: Sequence[str] = (), strict: bool = False
 ) -> list[Experiment]:
     """Load every config among `paths`; raises ConfigError with the defects of all files.
 
     reduced: slow experiments at their reduced length. overrides: see `load_experiment`.
+    strict: what is suspicious is a defect, too, not a warning; see `lint`.
 
     Among them are effects switched by hand that cannot be: the plan of the scene decides.
     """
@@ -50,6 +52,7 @@ def load_all(
         try:
             experiment = load_experiment(path, reduced, overrides=overrides)
             check(experiment)
+            warn(experiment, strict)
             experiments.append(experiment)
         except ConfigError as error:
             defects += error.defects

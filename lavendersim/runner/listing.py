@@ -29,6 +29,7 @@ class Listed(NamedTuple):
     size: int  # of its logs [B]
     tags: tuple[str, ...]
     passed: bool | None  # None: not finished, or its results are damaged
+    claims: int  # that were judged; of a run without one `passed` says that its cells completed
     damaged: list[str]  # a sentence of each log that was cut, and of each table that is damaged
 
     def as_row(self) -> dict[str, Any]:
@@ -43,7 +44,7 @@ class Wanted(NamedTuple):
     """Which runs are meant; what is None asks for nothing."""
 
     names: tuple[str, ...] = ()  # of experiments; * and ? as in a shell
-    verdict: str | None = None  # pass, fail, unfinished or damaged
+    verdict: str | None = None  # one of VERDICTS
     tag: str | None = None
     before: datetime | None = None  # it began then, or earlier
     since: datetime | None = None  # it began then, or later
@@ -61,7 +62,7 @@ class Wanted(NamedTuple):
         )
 
 
-VERDICTS: Final = ("pass", "fail", "unfinished", "damaged")
+VERDICTS: Final = ("pass", "fail", "unclaimed", "unfinished", "damaged")
 
 
 def verdict_of(one: Listed) -> str:
@@ -70,7 +71,9 @@ def verdict_of(one: Listed) -> str:
         return "damaged"
     if one.passed is None:
         return "unfinished"
-    return "pass" if one.passed else "fail"
+    if not one.passed:
+        return "fail"
+    return "pass" if one.claims else "unclaimed"
 
 
 def listed(root: Path, wanted: Wanted = Wanted()) -> Iterator[Listed]:  # noqa: B008 - immutable
@@ -81,18 +84,21 @@ def listed(root: Path, wanted: Wanted = Wanted()) -> Iterator[Listed]:  # noqa: 
 def listed_run(run: Run) -> Listed:
     """Return what there is to say of a run; a damaged one is not in the way of others."""
     passed: bool | None = None
+    claims = 0
     damaged: list[str] = []
     name, rows = "", {}
     try:
         name, rows = run.name, run.rows()
         if run.finished:  # another is listed as such; its logs are as they were left
-            passed = bool(run.results()["passed"])
+            results = run.results()
+            passed, claims = bool(results["passed"]), len(results["checks"])
             damaged = run.cut()
     except TraceError as error:
         damaged = [str(error)]
     sizes = (_size(log, row) for log, row in rows.items())
     cells = len(run.index_rows()) if rows else 0
-    return Listed(run, name, _date(run.path), cells, sum(sizes), tags_of(run), passed, damaged)
+    size, date, tags = sum(sizes), _date(run.path), tags_of(run)
+    return Listed(run, name, date, cells, size, tags, passed, claims, damaged)
 
 
 def tags_of(run: Run) -> tuple[str, ...]:

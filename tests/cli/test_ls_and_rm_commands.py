@@ -97,7 +97,7 @@ def test_options_say_which_runs(runs: Path, options: tuple[str, ...], which: tup
     ("words", "said"),
     [
         (("ls", "--older", "yesterday"), "expected a span such as 12h, 30d or 2w, or a date"),
-        (("ls", "--verdict", "good"), "expected pass, fail, unfinished or damaged"),
+        (("ls", "--verdict", "good"), "expected pass, fail, unclaimed, unfinished or damaged"),
         (("rm", "--larger", "1 stone"), "expected a size such as 200MB or 1.5GB"),
         (("rm",), "expected either runs by name, or options"),
         (("rm", NAMES[0], "--name", "drop"), "expected either runs by name, or options"),

@@ -38,13 +38,15 @@ ROOMS = {
         *("errors", "durable_files", "geometry", "quantities", "cell", "trace", "measures"),
     },
     "simulator": {"errors", "quantities", "cell", "experiment", "scene", "engine"},
+    "lint": {"errors", "geometry", "quantities", "cell", "experiment", "engine", "measures"},
     "runner": {
+        "lint",
         *("errors", "clock", "quantities", "cell", "experiment", "scene", "engine", "problems"),
         *("trace", "measures", "geometry", "record_tables", "durable_files", "arrow"),
         "figures",  # a run in a notebook
     },
     "comparison": {"errors", "geometry", "trace", "measures", "runner"},
-    "pytest_plugin": {"errors", "experiment", "trace", "measures", "runner"},
+    "pytest_plugin": {"errors", "experiment", "lint", "trace", "measures", "runner"},
     "cli": {
         *("errors", "quantities", "experiment", "scene", "trace", "measures", "figures"),
         *("replay", "runner", "problems", "comparison"),
@@ -64,6 +66,7 @@ LIBRARIES = {
     "numpy": {
         *("scene", "engine", "trace", "measures", "figures", "replay", "simulator", "runner"),
         *("problems", "clock", "geometry", "record_tables", "arrow", "comparison"),
+        "lint",
     },
     "scipy": {"geometry", "problems"},  # hulls, where a scene has one; sparse matrices
     "h5py": {"problems"},
@@ -109,7 +112,7 @@ def test_a_room_imports_only_the_rooms_it_may(room: str) -> None:
 
 
 def test_configs_are_read_with_no_more_of_the_engine_than_its_lists() -> None:
-    rooms = ("cell", "experiment", "measures", "trace")
+    rooms = ("cell", "experiment", "lint", "measures", "trace")
     of_engine = [f for f in IMPORTS if f.room in rooms and f.target == "engine"]
     strangers = [
         str(f)

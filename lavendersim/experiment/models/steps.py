@@ -34,6 +34,8 @@ def step_rules(at: Place) -> None:
         )
     elif round(steps) < 1:
         sentence = f"a duration of {_short(length)} s is less than one step of {step} s"
+        if timestep.denominator == 1 and timestep > 1:
+            sentence += f"; did you mean timestep: 1/{timestep}?"
         at.refuse_pair(duration, written, sentence)
 
 

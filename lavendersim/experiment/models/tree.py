@@ -57,15 +57,19 @@ def body_names(root: Node) -> Iterator[str]:
 
 def body_node(root: Node, name: str | None) -> Node:
     """Return the node that describes the body of this name, ABSENT where there is none."""
-    if name is None:
-        return ABSENT
-    if single := root.get(*BODIES, name):
-        return single
+    path = body_path(root, name) if name is not None else ()
+    return root.get(*path) if path else ABSENT
+
+
+def body_path(root: Node, name: str) -> Path:
+    """Return where the node stands that describes the body of this name, () where there is none."""
+    if root.get(*BODIES, name):
+        return (*BODIES, name)
     arrangement, _, number = name.rpartition("_")
     node = root.get(*ARRANGEMENTS, arrangement)
     if not (number.isascii() and number.isdigit()) or len(number) > 6:
-        return ABSENT
-    return node.get("body") if 1 <= int(number) <= members(node) else ABSENT
+        return ()
+    return (*ARRANGEMENTS, arrangement, "body") if 1 <= int(number) <= members(node) else ()
 
 
 def described(root: Node) -> Iterator[tuple[str, Node]]:

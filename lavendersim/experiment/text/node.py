@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
@@ -66,6 +66,14 @@ class Node:
     def text(self) -> str | None:
         """The text of a text scalar; None for any other node."""
         return self.content if isinstance(self.content, str) else None
+
+    @property
+    def texts(self) -> Iterator[str]:
+        """Every text at this node and below that is no key."""
+        if isinstance(self.content, str):
+            yield self.content
+        for below in (*self.entries.values(), *self.items):
+            yield from below.texts
 
     @property
     def number(self) -> float | None:

@@ -1,0 +1,57 @@
+"""Friction that one surface of a pair specifies and the other does not, so that there is none.
+
+A pair takes the geometric mean of its two surfaces' coefficients: with one that nobody specified,
+which is 0, the other is without effect. A surface with `friction: 0` says that it is meant.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Final
+
+from lavendersim.engine.effects import SURFACE_KEYS
+from lavendersim.errors import Defect
+from lavendersim.experiment import Cell, Node, described, immovable, key_mark
+
+# Coefficients of which a 0 makes 0, but for those that need another one, which says it for both.
+MEANS: Final = tuple(key.name for key in SURFACE_KEYS if key.mix(1.0, 0.0) == 0.0 and not key.needs)
+MOST_NAMES: Final = 3
+
+
+def one_sided(cell: Cell) -> Iterator[Defect]:
+    """Yield a defect at each coefficient that some body it may touch makes 0 by leaving it out."""
+    tree = cell.tree
+    surfaces = {name: _surface(tree, body) for name, body in described(tree)}
+    moves = {name: immovable(body, prescribed=True) is None for name, body in described(tree)}
+    for key in MEANS:
+        without = [name for name, surface in surfaces.items() if key not in surface.entries]
+        against: dict[tuple[int, int], tuple[Node, str, list[str]]] = {}
+        for name, surface in surfaces.items():
+            value = surface.get(key)
+            if not value.number:
+                continue
+            mark = key_mark(surface, key)
+            _, _, others = against.setdefault(mark, (value, name, []))
+            others += [one for one in without if moves[one] or moves[name]]
+        for (line, column), (value, name, others) in against.items():
+            if not others:
+                continue
+            named = _listed(list(dict.fromkeys(others)))
+            verb = "specify" if len(set(others)) > 1 else "specifies"
+            sentence = (
+                f"{key}: {value.number:g} of {name} has no effect where it touches {named}, which "
+                f"{verb} none: a pair takes the geometric mean, 0; specify it there, or {key}: 0"
+            )
+            yield Defect(cell.file, line, column, sentence)
+
+
+def _surface(tree: Node, body: Node) -> Node:
+    surface = body.get("surface")
+    return surface if surface.text is None else tree.get("scene", "surfaces", surface.text)
+
+
+def _listed(names: list[str]) -> str:
+    shown, more = names[:MOST_NAMES], len(names) - MOST_NAMES
+    if more > 0:
+        return f"{', '.join(shown)} and {more} more"
+    return " and ".join(filter(None, (", ".join(shown[:-1]), shown[-1])))

@@ -1,0 +1,56 @@
+"""What of an experiment is suspicious: every rule over the cells in which a value stands first."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Iterator
+from typing import Final
+
+from lavendersim.errors import ConfigError, Defect, SuspiciousScene
+from lavendersim.experiment import Cell, Experiment
+from lavendersim.lint.crossing import crossing
+from lavendersim.lint.one_sided import one_sided
+from lavendersim.lint.overlaps import overlaps
+from lavendersim.lint.unused import unclaimed, unused_surfaces
+
+OF_CELLS: Final[tuple[Callable[[Cell], Iterator[Defect]], ...]] = (one_sided, overlaps, crossing)
+OF_FILES: Final[tuple[Callable[[Experiment], Iterator[Defect]], ...]] = (
+    unclaimed,
+    unused_surfaces,
+)
+MOST_CELLS: Final = 100  # that are looked at; a rule takes some 0.1 ms for a small one
+
+
+def suspicions(experiment: Experiment) -> list[Defect]:
+    """Return what is suspicious, one sentence a place, in the order of the file."""
+    found: dict[tuple[int, int], Defect] = {}
+    of_file = (defect for rule in OF_FILES for defect in rule(experiment))
+    of_cells = (
+        defect for cell in _telling(experiment) for rule in OF_CELLS for defect in rule(cell)
+    )
+    for defects in (of_file, of_cells):
+        for defect in defects:
+            found.setdefault((defect.line, defect.column), defect)
+    return [found[place] for place in sorted(found)]
+
+
+def warn(experiment: Experiment, strict: bool = False) -> None:
+    """Give a `SuspiciousScene` warning for each suspicion; strict: ConfigError with all of them."""
+    defects = suspicions(experiment)
+    if strict and defects:
+        raise ConfigError(defects)
+    for defect in defects:
+        message = defect._replace(message=f"warning: {defect.message}")
+        warnings.warn_explicit(str(message), SuspiciousScene, defect.file, defect.line)
+
+
+def _telling(experiment: Experiment) -> Iterator[Cell]:
+    """Yield the first cell, and for each value of each axis the first cell that has it."""
+    seen: set[tuple[str, object]] = set()
+    count = 0
+    for cell in experiment.cells():
+        new = set(cell.coordinates.items()) - seen
+        if (new or cell.index == 0) and count < MOST_CELLS:
+            seen |= new
+            count += 1
+            yield cell

@@ -1,0 +1,32 @@
+"""What stands in a config and does nothing: surfaces that no body has; a run without a claim."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from lavendersim.errors import Defect
+from lavendersim.experiment import Experiment, key_mark
+from lavendersim.quantities.found import quoted
+
+
+def unused_surfaces(experiment: Experiment) -> Iterator[Defect]:
+    """Yield a defect at each named surface whose name stands nowhere else in the file."""
+    surfaces = experiment.tree.get("scene", "surfaces")
+    used = set(experiment.tree.texts) if surfaces.entries else set()
+    for name in surfaces.entries:
+        if name not in used:
+            line, column = key_mark(surfaces, name)
+            yield Defect(
+                str(experiment.path), line, column, f"surface {quoted(name)} is that of no body"
+            )
+
+
+def unclaimed(experiment: Experiment) -> Iterator[Defect]:
+    """Yield a defect where nothing is claimed of a run, so that its verdict says nothing."""
+    config = experiment.config
+    if config.expect or config.always or config.cost or config.overhead:
+        return
+    tree = experiment.tree
+    line, column = key_mark(tree, "measure") if "measure" in tree.entries else tree.mark
+    sentence = "nothing is claimed: without expect or always the run has no verdict"
+    yield Defect(str(experiment.path), line, column, sentence)

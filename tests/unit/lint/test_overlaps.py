@@ -1,0 +1,73 @@
+"""Bodies that start inside one another or behind a plane are found; those that touch are not."""
+
+from __future__ import annotations
+
+import math
+import re
+
+import pytest
+
+from tests.unit.lint.scenes import config, found
+
+SHAPES = {  # each of a half width of 0.5 along x, whatever turns it about x
+    "sphere": "{kind: sphere, radius: 0.5}",
+    "box": "{kind: box, size: [1, 1, 1]}",
+    "cylinder": "{kind: cylinder, radius: 0.5, length: 1}",
+    "capsule": "{kind: capsule, radius: 0.5, length: 1}",
+    "hull": "{kind: hull, points: [[0.5, 0.5, 0.5], [0.5, -0.5, 0.5], [0.5, 0.5, -0.5], "
+    "[0.5, -0.5, -0.5], [-0.5, 0.5, 0.5], [-0.5, -0.5, 0.5], [-0.5, 0.5, -0.5], "
+    "[-0.5, -0.5, -0.5]]}",
+    "compound": "{kind: compound, parts: [{shape: {kind: box, size: [1, 1, 0.5]}, "
+    "position: [0, 0, 0.25]}, {shape: {kind: box, size: [1, 1, 0.5]}, position: [0, 0, -0.25]}]}",
+}
+
+
+def body(name: str, shape: str, x: float, z: float = 10.0) -> str:
+    return f"{name}: {{shape: {SHAPES[shape]}, mass: 1, position: [{x!r}, 0, {z!r}]}}"
+
+
+PAIRS = [(one, other) for one in SHAPES for other in SHAPES if one <= other]
+
+
+@pytest.mark.parametrize(("one", "other"), PAIRS)
+def test_a_pair_is_found_as_deep_as_a_twentieth_and_not_where_it_touches(
+    one: str, other: str
+) -> None:
+    """Along x both reach 0.5 m on their axes, so the distance of touch is 1 m for every pair."""
+    (defect,) = found(config(body("a", one, 0.0), body("b", other, 0.95)))
+    assert re.match(r"[ab] starts (0\.05\d* m )?inside [ab]", defect.message), defect.message
+    assert found(config(body("a", one, 0.0), body("b", other, 1.0))) == []
+    assert found(config(body("a", one, 0.0), body("b", other, 1.2))) == []
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_a_body_behind_a_plane_is_found_by_how_deep_it_is(shape: str) -> None:
+    half = 1.0 if shape == "capsule" else 0.5  # of the height
+    text = config(body("a", shape, 0.0, half - 0.03))
+    (defect,) = found(text)
+    assert defect.message.startswith("a starts 0.03 m behind the surface of floor")
+    line = text.splitlines()[defect.line - 1]
+    assert line[defect.column - 1 :].startswith("position")
+    assert found(config(body("a", shape, 0.0, half))) == []
+    assert found(config(body("a", shape, 0.0, half + 1.0))) == []
+
+
+def test_a_tilted_box_on_its_edge_touches() -> None:
+    """A cube turned by 45 degrees about x reaches sqrt(2)/2 of its edge below its centre."""
+    turned = "orientation: {axis: [1, 0, 0], degrees: 45}"
+    text = f"a: {{shape: {SHAPES['box']}, mass: 1, position: [0, 0, {math.sqrt(0.5)!r}], {turned}}}"
+    assert found(config(text)) == []
+
+
+def test_parts_of_one_body_may_overlap_and_many_pairs_are_one_sentence() -> None:
+    parts = "{shape: {kind: box, size: [1, 1, 1]}}, {shape: {kind: sphere, radius: 0.6}}"
+    one = f"a: {{shape: {{kind: compound, parts: [{parts}]}}, mass: 1, position: [0, 0, 9]}}"
+    assert found(config(one)) == []
+    balls = [body(f"b{k}", "sphere", 0.9 * k) for k in range(4)]
+    (defect,) = found(config(*balls))
+    assert "so do 2 more pairs" in defect.message
+
+
+def test_bodies_that_never_move_may_overlap() -> None:
+    fixed = [body(name, "box", 0.0).replace("mass: 1", "fixed: true") for name in "ab"]
+    assert found(config(*fixed, body("c", "box", 5.0))) == []
