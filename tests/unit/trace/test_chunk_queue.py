@@ -86,10 +86,14 @@ def test_no_more_waits_than_may(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_a_full_disk_is_reported_and_nothing_is_written_behind() -> None:
     file = File(full=2)
     queue = queue_of(file)
-    with pytest.raises(OSError, match="No space"):
+
+    def fill() -> None:
         for number in range(20):
             queue.put(closing(number, 1e-4), 1)
         queue.drain()
+
+    with pytest.raises(OSError, match="No space"):
+        fill()
     assert file.written == [0, 1]
 
 
