@@ -37,18 +37,28 @@ import numpy as np
 from lavendersim.geometry.bodies import is_movable, mass_of, vector
 from lavendersim.geometry.shapes import bounding_radius
 from lavendersim.measures import changes, shares
-from lavendersim.measures.columns import mechanical_energy
 from lavendersim.measures.contact_sums import ContactSums
 from lavendersim.measures.interfaces import Floats, Trace
+from lavendersim.measures.step_passes import (
+    FIRST_KINETIC,
+    FIRST_POTENTIAL,
+    LOWEST,
+    LOWEST_POTENTIAL,
+    OVER_LOGS,
+    OWN_WEIGHT,
+    SO_FAR,
+    EnergyRows,
+    MomentumRows,
+    Passes,
+)
 
 
 class EnergyBalance:
     """The energy a run has gained, state by state; a log may come in several sections."""
 
-    def __init__(self) -> None:
-        self._begun = False
-        self._given = self._lowest = self._lowest_potential = self._worked = self._put_in = 0.0
-        self._own_weight = self._first_potential = self._first_kinetic = 0.0
+    def __init__(self, passes: Passes = OVER_LOGS) -> None:
+        self._passes = passes
+        self._so_far: Floats | None = None
 
     def created(self, trace: Trace, sums: ContactSums) -> Floats:
         """Return, in every state, the energy gained since it was lowest over that at play [-].
@@ -56,63 +66,41 @@ class EnergyBalance:
         trace: a log, or its next section: the last state that was counted, without its
         contacts, and what follows.
         """
-        potential = trace.step["potential_energy"] + shares.stored(trace)
-        if not self._begun:
-            self._begun = True
-            self._lowest = math.inf
-            self._lowest_potential = self._first_potential = float(potential[0])
-            self._first_kinetic = float(trace.step["kinetic_energy"][0])
-            self._own_weight = _own_weight(trace)
-        work, events = changes.work_of_forces(trace), changes.given_by_events(trace)
-        given = _summed(self._given, work + events + _lifted(trace, sums) + sums.pulled)
-        own = mechanical_energy(trace) - given
-        lowest = np.minimum(np.minimum.accumulate(own), self._lowest)
-        lowest_potential = np.minimum(np.minimum.accumulate(potential), self._lowest_potential)
-        worked = _summed(self._worked, np.abs(work))
-        put_in = _summed(self._put_in, np.maximum(events, 0.0))
-        self._given, self._lowest = float(given[-1]), float(lowest[-1])
-        self._lowest_potential = float(lowest_potential[-1])
-        self._worked, self._put_in = float(worked[-1]), float(put_in[-1])
-        with np.errstate(invalid="ignore"):  # of what is beyond all numbers
-            created = own - lowest
-        at_play = (
-            self._first_kinetic
-            + self._own_weight
-            + np.maximum(self._first_potential - lowest_potential, 0.0)
-            + worked
-            + put_in
+        step, stored = trace.step, shares.stored(trace)
+        if self._so_far is None:
+            self._so_far = so_far = np.zeros(SO_FAR)
+            so_far[LOWEST] = math.inf
+            so_far[[LOWEST_POTENTIAL, FIRST_POTENTIAL]] = step["potential_energy"][0] + stored[0]
+            so_far[FIRST_KINETIC] = step["kinetic_energy"][0]
+            so_far[OWN_WEIGHT] = _own_weight(trace)
+        rows = EnergyRows(
+            kinetic=step["kinetic_energy"],
+            potential=step["potential_energy"],
+            stored=stored,
+            work=changes.work_of_forces(trace),
+            events=changes.given_by_events(trace),
+            lifted=_lifted(trace, sums),
+            pulled=sums.pulled,
         )
-        with np.errstate(invalid="ignore", divide="ignore"):
-            share = np.where(at_play > 0.0, created / at_play, np.where(created > 0.0, np.inf, 0.0))
-        # nothing that is not finite may pass
-        result: Floats = np.where(np.isfinite(created), share, np.nan)
-        return result
+        return self._passes.created(rows, self._so_far)
 
 
-def _summed(before: float, numbers: Floats) -> Floats:
-    """Return the running sum behind what was summed before, rounded as if it were one."""
-    sums: Floats = np.cumsum(np.concatenate(([before], numbers)))[1:]
-    return sums
-
-
-def momentum_imbalance(trace: Trace, sums: ContactSums) -> Floats:
+def momentum_imbalance(trace: Trace, sums: ContactSums, passes: Passes = OVER_LOGS) -> Floats:
     """Return the part of each step's change of momentum without a cause, over all causes [-]."""
-    gaps = np.zeros(len(trace.step))
-    momentum = np.column_stack([trace.step[f"momentum_{axis}"] for axis in "xyz"])
-    # counted in steps: logged times are whole nanoseconds
-    dt = trace.clock.elapsed(trace.step["step"][:-1], trace.step["step"][1:])
-    gravity, mass = vector(trace.config.scene.gravity), changes.masses(trace)
-    forces = changes.forces(trace)
-    others = shares.outer_impulse(trace)
-    outer, size = sums.outer + others, sums.size + np.sqrt((others**2).sum(axis=1))
-    expected = (mass[1:, None] * gravity + forces[1:]) * dt[:, None] + outer[1:]
-    imbalance = np.diff(momentum, axis=0) - expected
-    carried = np.sqrt(2.0 * mass * trace.step["kinetic_energy"])
-    enters = size[1:] + carried[1:] + carried[:-1]
-    enters += (mass[1:] * math.hypot(*gravity) + np.sqrt((forces[1:] ** 2).sum(axis=1))) * dt
-    lengths = np.sqrt((imbalance**2).sum(axis=1))
-    with np.errstate(invalid="ignore", divide="ignore"):
-        gaps[1:] = np.where(lengths == 0.0, 0.0, lengths / enters)
+    step = trace.step
+    rows = MomentumRows(
+        momentum=(step["momentum_x"], step["momentum_y"], step["momentum_z"]),
+        kinetic=step["kinetic_energy"],
+        mass=changes.masses(trace),
+        gravity=vector(trace.config.scene.gravity),
+        forces=changes.forces(trace),
+        others=shares.outer_impulse(trace),
+        outer=sums.outer,
+        size=sums.size,
+        # counted in steps: logged times are whole nanoseconds
+        elapsed=trace.clock.elapsed(step["step"][:-1], step["step"][1:]),
+    )
+    gaps = passes.imbalance(rows)
     gaps[changes.unknown_momentum(trace)] = 0.0
     return gaps
 

@@ -20,14 +20,16 @@ from collections.abc import Callable, Container, Iterator
 from typing import Final, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from lavendersim.geometry.bodies import is_movable
 from lavendersim.geometry.shapes import thickness
 from lavendersim.measures.balance import EnergyBalance, momentum_imbalance
 from lavendersim.measures.changes import events_of_bodies, first_starting_at
-from lavendersim.measures.contact_sums import ContactSums, contacts_of_log, excesses, summed
+from lavendersim.measures.contact_sums import ContactSums, contacts_of_log, excesses
 from lavendersim.measures.interfaces import Floats, Rows, Trace
 from lavendersim.measures.specs.always import CHECKS, DERIVED, FINITE, NONE, Always
+from lavendersim.measures.step_passes import OVER_LOGS, Passes
 
 ENERGY: Final = "energy"  # the one check that needs what went before
 SHARE_OF_THICKNESS = 0.1  # a body that sank by a tenth of itself has left the place it stood in
@@ -53,19 +55,19 @@ class StepChecks:
         self,
         always: Always,
         checks: Container[str] = CHECKS,
-        summed: Callable[[Trace], ContactSums] = summed,
+        passes: Passes = OVER_LOGS,
     ) -> None:
         """checks: those of CHECKS that may be made; the others are left out.
 
-        summed: takes the sums over the contacts of each step.
+        passes: how sums and maxima of steps are taken.
         """
-        self._always, self._energy, self._summed = always, EnergyBalance(), summed
+        self._always, self._energy, self._passes = always, EnergyBalance(passes), passes
         self._checks = [check for check in checks_of(always) if check in checks]
         self._bounds: dict[str, float] = {}
 
     def over(self, trace: Trace) -> Iterator[CheckedSteps]:
         """Yield the checks that are made of a log or its next section, in the order of CHECKS."""
-        sums = self._summed(trace)
+        sums = self._passes.contacts(trace)
         for check in self._checks:
             if check not in self._bounds:
                 self._bounds[check] = bound_of(check, self._always, trace)
@@ -75,7 +77,7 @@ class StepChecks:
     def _numbers(self, check: str, trace: Trace, sums: ContactSums) -> Numbers:
         if check == ENERGY:
             return self._energy.created(trace, sums), _no_body
-        return NUMBERS[check](trace, sums)
+        return NUMBERS[check](trace, sums, self._passes)
 
 
 def checks_of(always: Always | None) -> tuple[str, ...]:
@@ -104,34 +106,30 @@ def _no_body(row: int) -> str:
     return ""
 
 
-def _finite(trace: Trace, sums: ContactSums) -> Numbers:
+def _finite(trace: Trace, sums: ContactSums, passes: Passes) -> Numbers:
     step = trace.step
-    wrong = sums.not_finite.copy()
-    for name in step.dtype.names or ():
-        wrong += ~np.isfinite(step[name])
     pose: Floats = np.empty((len(step), 0, 0)) if "/tf" in trace.absent else trace.pose
-    of_body = np.logical_not(np.isfinite(pose).all(axis=2))
-    wrong += of_body.sum(axis=1)
 
     def first(row: int) -> str:
-        return trace.bodies[int(np.argmax(of_body[row]))] if of_body[row].any() else ""
+        of_body = np.logical_not(np.isfinite(pose[row]).all(axis=1))
+        return trace.bodies[int(np.argmax(of_body))] if of_body.any() else ""
 
-    return wrong, first
-
-
-def _momentum(trace: Trace, sums: ContactSums) -> Numbers:
-    return momentum_imbalance(trace, sums), _no_body
+    return sums.not_finite + passes.not_finite(step, pose), first
 
 
-def _penetration(trace: Trace, sums: ContactSums) -> Numbers:
+def _momentum(trace: Trace, sums: ContactSums, passes: Passes) -> Numbers:
+    return momentum_imbalance(trace, sums, passes), _no_body
+
+
+def _penetration(trace: Trace, sums: ContactSums, passes: Passes) -> Numbers:
     return sums.deepest, _of_contacts(trace, lambda contacts: contacts["penetration"])
 
 
-def _impulses(trace: Trace, sums: ContactSums) -> Numbers:
+def _impulses(trace: Trace, sums: ContactSums, passes: Passes) -> Numbers:
     return sums.excess, _of_contacts(trace, lambda contacts: excesses(trace, contacts))
 
 
-def _residual(trace: Trace, sums: ContactSums) -> Numbers:
+def _residual(trace: Trace, sums: ContactSums, passes: Passes) -> Numbers:
     residual = np.asarray(trace.step["residual"], dtype=float)
 
     def worst(row: int) -> str:
@@ -143,28 +141,24 @@ def _residual(trace: Trace, sums: ContactSums) -> Numbers:
     return residual, worst
 
 
-def _speed(trace: Trace, sums: ContactSums) -> Numbers:
-    pose, step = trace.pose, trace.step["step"]
-    fastest, body_of_row = np.zeros(len(step)), np.zeros(len(step), dtype=int)
-    dt = trace.clock.elapsed(step[:-1], step[1:])
-    jumps = {event.body for event in events_of_bodies(trace) if event.teleport}
-    for body, name in enumerate(trace.bodies):
-        speed = np.sqrt((np.diff(pose[:, body, :3], axis=0) ** 2).sum(axis=1)) / dt
-        if name in jumps:
-            speed = _without_jumps(trace, name, speed)
-        # NaN is faster than anything, and stays
-        above = ~((speed <= fastest[1:]) | np.isnan(fastest[1:]))
-        fastest[1:][above], body_of_row[1:][above] = speed[above], body
-    return fastest, lambda row: trace.bodies[int(body_of_row[row])]
+def _speed(trace: Trace, sums: ContactSums, passes: Passes) -> Numbers:
+    step = trace.step["step"]
+    elapsed = trace.clock.elapsed(step[:-1], step[1:])
+    speeds, body_of_row = passes.fastest(trace.pose, elapsed, _moved(trace))
+    return speeds, lambda row: trace.bodies[int(body_of_row[row])]
 
 
-def _without_jumps(trace: Trace, name: str, speed: Floats) -> Floats:
-    """Return speeds without those of steps in which the config moved the body."""
-    for event in events_of_bodies(trace):
+def _moved(trace: Trace) -> NDArray[np.bool_] | None:
+    """Return in which steps the config put which body elsewhere (n - 1, bodies); None: in none."""
+    jumps = [event for event in events_of_bodies(trace) if event.teleport]
+    if not jumps:
+        return None
+    moved = np.zeros((len(trace.step) - 1, len(trace.bodies)), bool)
+    for event in jumps:
         row = first_starting_at(trace, event.at)
-        if event.body == name and event.teleport and 0 < row <= len(speed):
-            speed[row - 1] = 0.0
-    return speed
+        if 0 < row <= len(moved):
+            moved[row - 1, list(trace.bodies).index(event.body)] = True
+    return moved
 
 
 def _of_contacts(trace: Trace, numbers: Callable[[Rows], Floats]) -> Callable[[int], str]:
@@ -196,7 +190,7 @@ def _pair(trace: Trace, contact: np.void) -> str:
     return f"{trace.bodies[contact['body_a']]} and {trace.bodies[contact['body_b']]}"
 
 
-NUMBERS: Final[dict[str, Callable[[Trace, ContactSums], Numbers]]] = {
+NUMBERS: Final[dict[str, Callable[[Trace, ContactSums, Passes], Numbers]]] = {
     "finite": _finite,
     "penetration": _penetration,
     "impulses": _impulses,

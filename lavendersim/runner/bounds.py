@@ -21,9 +21,11 @@ from lavendersim.measures.not_finite import without_warnings
 from lavendersim.measures.sections import Section
 from lavendersim.measures.specs.always import BEYOND_BOUNDS, STOPPING, Always
 from lavendersim.measures.step_checks import CheckedSteps, StepChecks
+from lavendersim.measures.step_passes import Passes
 from lavendersim.record_tables import joined
 from lavendersim.trace import Block
 
+from . import step_passes_kernel
 from .contact_sums_kernel import RunningSums
 
 
@@ -44,7 +46,11 @@ class Bounds:
         def summed(part: Trace) -> ContactSums:
             return self._sums(part.step, part.contact) if touches else nothing(len(part.step))
 
-        self._checks = None if always is None else StepChecks(always, summed=summed)
+        kernels = step_passes_kernel
+        passes = Passes(
+            *(summed, kernels.not_finite, kernels.fastest, kernels.imbalance, kernels.created)
+        )
+        self._checks = None if always is None else StepChecks(always, passes=passes)
         self._stops = always is not None and always.stop
         self.worst = None if always is None else WorstStates(always)
         self._cell = (bodies, config, clock, absent)

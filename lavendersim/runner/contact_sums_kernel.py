@@ -33,6 +33,7 @@ SEPARATION, PENETRATION, NORMAL_VELOCITY, IMPULSE_N, IMPULSE_T1, IMPULSE_T2 = ra
 FRICTION, TORSIONAL, ANGULAR_N, ROLLING, ANGULAR_T1, ANGULAR_T2 = range(15, 21)
 # Columns of what the kernel fills for each step.
 NOT_FINITE, DEEPEST, EXCESS, OUTER_X, OUTER_Y, OUTER_Z, SIZE, OPENED, PULLED = range(9)
+EXPONENT: Final = 0x7FF << 52  # of a float64 that is not finite all these bits are set
 VARIES: Final = -1.0  # in place of a coefficient that changes with the motion
 
 
@@ -50,28 +51,36 @@ def _length(first, second):
     return larger * sqrt(one * one + other * other)
 
 
+def _no_numbers(words):
+    """Return how many words of a row would be no finite numbers, were all of them numbers."""
+    count = 0
+    for k in range(np.uint64(len(words))):
+        count += words[k] & EXPONENT == EXPONENT
+    return count
+
+
 def _make_sum(spec: Spec) -> Any:
-    larger, length = inner(_larger), inner(_length)
+    larger, length, no_numbers = inner(_larger), inner(_length), inner(_no_numbers)
 
     def sum_contacts(rows, places, scene, sums):
         steps, numbers, integers = rows
         columns, floats, pulls = places
         of_body, mu, choices = scene
         projection, slop, pyramid = choices[0], choices[1], choices[2] == 1.0
-        begin, end, count = 0, 0, numbers.shape[0]
+        end, count = 0, numbers.shape[0]
         for i in range(steps.shape[0]):
-            begin = end
+            dt, pushed, wrong, deepest, most = sums[i, OPENED], 0.0, 0.0, 0.0, 0.0
+            outer_x, outer_y, outer_z = 0.0, 0.0, 0.0
+            total, opened, pulled = 0.0, 0.0, 0.0
             while end < count and integers[end, columns[STEP]] <= steps[i]:
+                row, words = numbers[end], integers[end]
                 end += 1
-            out, dt, pushed = sums[i], sums[i, OPENED], 0.0
-            out[:] = 0.0
-            for c in range(begin, end):
-                row = numbers[c]
-                for k in floats:
-                    number = row[k]
-                    if number - number != 0.0:
-                        out[NOT_FINITE] += 1.0
-                a, b = integers[c, columns[A]], integers[c, columns[B]]
+                if no_numbers(words):  # or an integer below 0
+                    for k in floats:
+                        number = row[k]
+                        if number - number != 0.0:
+                            wrong += 1.0
+                a, b = words[columns[A]], words[columns[B]]
                 n, v_n = row[columns[IMPULSE_N]], row[columns[NORMAL_VELOCITY]]
                 pull = 0.0
                 for k in pulls:
@@ -102,18 +111,21 @@ def _make_sum(spec: Spec) -> Any:
                     if size != 0.0:
                         excess = larger(excess, size / row[columns[ROLLING]] - pressing)
                 sign = of_body[b, 1] - of_body[a, 1]
-                out[OUTER_X] += sign * jx
-                out[OUTER_Y] += sign * jy
-                out[OUTER_Z] += sign * jz
-                out[SIZE] += sqrt(jx * jx + jy * jy + jz * jz)
+                outer_x += sign * jx
+                outer_y += sign * jy
+                outer_z += sign * jz
+                total += sqrt(jx * jx + jy * jy + jz * jz)
                 deep = -(row[columns[SEPARATION]] + v_n * dt)
-                out[OPENED] += projection * larger(deep - slop, 0.0)
-                out[PULLED] += larger(-pull * v_n, 0.0)
-                out[DEEPEST] = larger(row[columns[PENETRATION]], out[DEEPEST])
-                out[EXCESS] = larger(excess, out[EXCESS])
+                opened += projection * larger(deep - slop, 0.0)
+                pulled += larger(-pull * v_n, 0.0)
+                deepest = larger(row[columns[PENETRATION]], deepest)
+                most = larger(excess, most)
                 pushed = larger(abs(n), pushed)
-            if out[EXCESS] != 0.0:
-                out[EXCESS] = out[EXCESS] / pushed
+            out = sums[i]
+            out[NOT_FINITE], out[DEEPEST] = wrong, deepest
+            out[EXCESS] = most / pushed if most != 0.0 else 0.0
+            out[OUTER_X], out[OUTER_Y], out[OUTER_Z] = outer_x, outer_y, outer_z
+            out[SIZE], out[OPENED], out[PULLED] = total, opened, pulled
 
     return inner(sum_contacts)
 

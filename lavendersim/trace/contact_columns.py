@@ -34,6 +34,7 @@ from lavendersim.trace import predictors
 from lavendersim.trace.layout import bytes_field
 from lavendersim.trace.message_form import columns_of_words, words_of
 from lavendersim.trace.predictors import ALONE, SPECIAL, SPHERES, Constants
+from lavendersim.trace.scratch import scratch
 from lavendersim.trace.sphere_contacts import COLUMNS as OF_SPHERES
 from lavendersim.trace.sphere_contacts import (
     FIELDS,
@@ -53,6 +54,7 @@ DERIVED: dict[str, Derived] = {
 OF_THE_MESSAGE: Final = "step"  # the same for all contacts of a step
 KEY: Final[tuple[str, ...]] = ("body_a", "body_b", "feature")
 Integers = NDArray[np.int64]
+Tables = Sequence[NDArray[Any]]  # of the same columns, at least one
 
 
 class ColumnForm(NamedTuple):
@@ -99,7 +101,7 @@ class ContactGroup(NamedTuple):
     steps: Integers  # number of each step that is recorded
     times: Integers  # of each [ns]
     counts: Integers  # contacts of each
-    rows: NDArray[Any]  # of all, one step after the other
+    rows: Tables  # of all, one step after the other; in parts, as they stand in memory
     starts: Starts | None = None  # of spheres, by which their contacts are expected
 
 
@@ -133,37 +135,48 @@ class Packed(NamedTuple):
 
 
 def pack(
-    rows: NDArray[Any],
+    rows: Tables,
     names: tuple[str, ...],
     constants: Constants,
     starts: Starts | None = None,
 ) -> Packed:
-    """Return contacts as bytes; names: of the columns that are stored, each of eight bytes."""
-    from lavendersim.engine.difference_kernel import gather_columns, pack_columns  # late: numba
+    """Return contacts as bytes; names: of the columns that are stored, each of eight bytes.
+
+    The planes are in memory that is used again when this thread packs again.
+    """
+    from lavendersim.engine.difference_kernel import (
+        PART,
+        gather_columns,
+        pack_columns,
+    )  # late: numba
 
     keys = _keys(rows, names)
     order, persists = _order(keys)
-    columns, places = _numbers(names), columns_of_words(rows.dtype)
-    words = np.empty((len(columns), len(rows)), np.uint64)
+    count, columns, places = len(order), _numbers(names), columns_of_words(rows[0].dtype)
+    words = scratch("words", (len(columns), count), np.uint64)
     stored = np.array([places[name] for name in columns], np.int64)
-    gather_columns()(words_of(rows), order, stored, words)
+    first = 0
+    for part in rows:
+        gather_columns()(words_of(part), first, order, stored, words)
+        first += len(part)
     named = dict(zip(columns, words, strict=True))
     spheres = _expected_by(starts, keys, names, order)
     if spheres is not None and not _is_of_spheres(spheres, named):
         spheres = None  # others have predictors of their own
     special = np.array([_special(name, columns, spheres is not None) for name in columns], np.int64)
-    expected = np.empty((np.count_nonzero(special) + 1, len(rows)), np.uint64)
+    expected = scratch("expected", (int(np.count_nonzero(special)) + 1, count), np.uint64)
     asked = [(name, code) for name, code in zip(columns, special.tolist(), strict=True) if code]
     for place, (name, predictor) in enumerate(asked):
         if predictor == SPHERES and spheres is not None:
             expected[place] = spheres.columns[name].view(np.uint64)
         else:
             expected[place] = predictors.expected(predictor, named, persists, constants)
-    known = np.zeros(len(rows), bool) if spheres is None else spheres.known
+    known = np.zeros(count, bool) if spheres is None else spheres.known
     chosen = np.zeros(len(columns), np.int64)
-    planes = np.empty((8, len(columns), len(rows)), np.uint8)
+    planes = scratch("planes", (8, len(columns), count), np.uint8)
     size = np.zeros(predictors.COUNT, np.int64)
-    pack_columns()(words, (persists, known), special, expected, size, (chosen, planes))
+    packed = chosen, planes, np.empty(PART, np.uint64)
+    pack_columns()(words, (persists, known), special, expected, size, packed)
     bodies = b""
     if starts is not None and SPHERES in chosen:
         bodies = _with_positions(starts).astype("<f8").tobytes()
@@ -274,9 +287,12 @@ def _numbers(names: tuple[str, ...]) -> list[str]:
     return [name for name in names if name not in KEY]
 
 
-def _keys(rows: NDArray[Any], names: tuple[str, ...]) -> Integers:
-    known = [np.asarray(rows[name], np.int64) for name in KEY if name in names]
-    return np.stack(known) if known else np.empty((0, len(rows)), np.int64)
+def _keys(rows: Tables, names: tuple[str, ...]) -> Integers:
+    known = [name for name in KEY if name in names]
+    keys = np.empty((len(known), sum(map(len, rows))), np.int64)
+    for key, name in zip(keys, known, strict=True):
+        np.concatenate([part[name] for part in rows], out=key)
+    return keys
 
 
 def _order(keys: Integers) -> tuple[NDArray[np.intp], NDArray[np.bool_]]:

@@ -39,7 +39,7 @@ from mcap.records import (
 from numpy.typing import NDArray
 
 from lavendersim.trace.file_digest import FileDigest
-from lavendersim.trace.record_bytes import to_bytes
+from lavendersim.trace.record_bytes import pieces_of, to_bytes
 from lavendersim.trace.whole import MAGIC, LogDigest
 
 LIBRARY = "lavender"
@@ -189,20 +189,23 @@ class Container:
     def write_chunk(self, one: Closed) -> None:
         """Write a chunk with its message indexes, and flush."""
         chunk, messages = one.chunk, one.messages
-        record = to_bytes(chunk)
+        *head, data = pieces_of(chunk)
+        opening = b"".join(head)
+        length = len(opening) + len(data)
         indexes = [message_index(group) for group in messages]
-        position = self._offset + len(record)
+        position = self._offset + length
         offsets = {}
         for group, index in zip(messages, indexes, strict=True):
             offsets[group.channel] = position
             position += len(index)
             count = self.index.counts.get(group.channel, 0) + len(group.entries)
             self.index.counts[group.channel] = count
-        entry = index_of(chunk, self._offset, len(record))
+        entry = index_of(chunk, self._offset, length)
         entry.message_index_offsets = offsets
-        entry.message_index_length = position - self._offset - len(record)
+        entry.message_index_length = position - self._offset - length
         self.index.chunks.append(entry)
-        self._write(b"".join([record, *indexes]))
+        for piece in (opening, data, b"".join(indexes)):
+            self._write(piece)  # the data, which is large, as it is
         self._stream.flush()
 
     def finish(self) -> LogDigest:

@@ -17,8 +17,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lavendersim.trace.layout import PackedField
+from lavendersim.trace.message_form import columns_of_words, words_of
 from lavendersim.trace.schema import COLOURS, NUMERIC_TYPES
-from lavendersim.trace.wire import Bytes
+from lavendersim.trace.wire import Bytes, Rows
 
 # Okabe and Ito's colour-blind safe set
 LOADED = (213, 94, 0, 255)  # vermilion: the contact carries an impulse
@@ -64,22 +65,29 @@ def grid_of(thicknesses: Iterable[float]) -> float:
     return 2.0 ** math.floor(math.log2(thin)) if thin > 0.0 else 0.0
 
 
-def points_of(form: PointForm, contacts: NDArray[Any], grid: float) -> Bytes:
-    """Return contacts as points, (n, form.size); grid: [m] of positions."""
-    count = len(form.names)
-    words = np.empty((len(contacts), count + 1), "<u4")
-    numbers = words.view("<f4")
-    with np.errstate(
-        over="ignore", invalid="ignore"
-    ):  # beyond float32 a number is shown as infinite
-        for column, name in enumerate(form.names):
-            exact = contacts[name]
-            on_grid = grid > 0.0 and name in POSITION
-            numbers[:, column] = np.rint(exact / grid) * grid if on_grid else exact
-    words[:, len(POSITION) : count] &= _KEPT
-    loaded = contacts["impulse_n"] > 0 if "impulse_n" in (contacts.dtype.names or ()) else True
-    words[:, count] = np.where(loaded, _word(LOADED), _word(UNLOADED))
-    return words.view(np.uint8).reshape(len(contacts), -1)
+def lay_points(
+    form: PointForm, data: Bytes, places: tuple[Rows, Rows], contacts: NDArray[Any], grid: float
+) -> None:
+    """Write contacts as points; beyond float32 a number is shown as infinite.
+
+    data: bytes of a chunk, which has room. places: for each step where its points begin, and how
+    many contacts it has. contacts: of these steps. grid: [m] of positions.
+    """
+    from lavendersim.engine.point_kernel import lay_points as kernel  # late: numba
+
+    if len(contacts) == 0:
+        return
+    place = columns_of_words(contacts.dtype)
+    columns = np.array([place[name] for name in form.names], np.int64)
+    floats = np.empty(len(columns), np.float32)
+    kernel()(
+        data,
+        places,
+        words_of(contacts).view(np.float64),
+        columns,
+        (grid, place.get("impulse_n", -1), (_KEPT, _word(LOADED), _word(UNLOADED))),
+        (floats, floats.view(np.uint32)),
+    )
 
 
 def _word(colour: tuple[int, int, int, int]) -> np.uint32:

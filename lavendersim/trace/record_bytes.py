@@ -51,9 +51,15 @@ class _Pieces:
         self.pieces += (_FOUR(len(data)), data)
 
 
-def to_bytes(*records: McapRecord) -> bytes:
-    """Return records as bytes."""
+def pieces_of(*records: McapRecord) -> list[bytes]:
+    """Return records as bytes in pieces; of a chunk the last is its data."""
     builder: Any = _Pieces()
     for record in records:
         record.write(builder)
-    return b"".join(builder.pieces)
+    pieces: list[bytes] = builder.pieces
+    return pieces
+
+
+def to_bytes(*records: McapRecord) -> bytes:
+    """Return records as bytes."""
+    return b"".join(pieces_of(*records))

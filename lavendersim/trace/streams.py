@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lavendersim.clock import Clock
-from lavendersim.record_tables import joined
 from lavendersim.trace import layout
 from lavendersim.trace.blocks import Counted, cumulative
 from lavendersim.trace.contact_columns import ContactGroup, column_form, message_of
@@ -26,7 +25,7 @@ from lavendersim.trace.message_form import (
     message_form,
     words_of,
 )
-from lavendersim.trace.points import point_form, points_of
+from lavendersim.trace.points import lay_points, point_form
 from lavendersim.trace.predictors import Constants
 from lavendersim.trace.schema import (
     LOG10_RESIDUAL_FLOOR,
@@ -35,13 +34,14 @@ from lavendersim.trace.schema import (
     STEP_COLUMNS,
     columns_of,
 )
+from lavendersim.trace.scratch import scratch
 from lavendersim.trace.sphere_contacts import Starts
-from lavendersim.trace.wire import Rows, Template, scatter
+from lavendersim.trace.wire import Rows, Template
 
 STEP_OF_COLUMNS: Final = 3 * WORD  # its number, its time, how many contacts it has
 TF_ORDER: Final = (0, 1, 2, 4, 5, 6, 3)  # x y z qx qy qz qw, of x y z qw qx qy qz
 COLUMNS: Final = "/contact_columns"
-# The bytes of a chunk, and where each channel has messages in them.
+# The bytes of a chunk, until its thread lays out the next, and where its messages stand.
 Laid = tuple[bytes | memoryview, list[Messages]]
 
 
@@ -203,9 +203,8 @@ class Points:
             heads = heads_of(step, _record_length(self._cloud, length), length)
             self._cloud.fill(chunk.data, starts[:-1], heads, heads)
             chunk.note("/contacts", heads, starts[:-1])
-            if len(contacts):
-                offsets = _ranks(starts[:-1] + len(self._cloud), counts, self.form.size)
-                scatter(chunk.data, offsets, points_of(self.form, contacts, self._grid))
+            places = starts[:-1] + len(self._cloud), counts
+            lay_points(self.form, chunk.data, places, contacts, self._grid)
             chunk.end = int(starts[-1])
         return chunk.filled()
 
@@ -254,13 +253,16 @@ class ContactColumns:
         numbers = np.concatenate([step["step"] for step in steps])
         times = np.concatenate([step["time_ns"] for step in steps])
         counts = np.concatenate([counts for _, _, counts, _ in parts])
-        rows = joined([contacts for _, contacts, _, _ in parts])
+        rows = [contacts for _, contacts, _, _ in parts]
         constants = Constants(float(self._clock.lengths(numbers[:1])[0]), self._slop)
         group = ContactGroup(numbers, times, counts, rows, self._starts(parts, counts))
         body = message_of(group, self.form, constants)
         head = layout.message_head(COLUMNS, int(numbers[0]), int(times[0]), sum(map(len, body)))
         entries = np.array([(times[0], len(prologue))], INDEX_ENTRY)
-        return b"".join([prologue, head, *body]), [Messages(layout.CHANNELS[COLUMNS], entries)]
+        pieces = [np.frombuffer(one, np.uint8) for one in (prologue, head, *body)]
+        data = scratch("chunk", (sum(map(len, pieces)),), np.uint8)
+        np.concatenate(pieces, out=data)
+        return data.data, [Messages(layout.CHANNELS[COLUMNS], entries)]
 
     def _starts(self, parts: Sequence[Any], counts: Rows) -> Starts | None:
         """Return where bodies are at the start of each step of some parts."""

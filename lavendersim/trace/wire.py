@@ -54,21 +54,9 @@ def padded_varints(values: Rows) -> Bytes:
     return out
 
 
-def as_slots(matrix: Bytes) -> Rows:
-    """Return (n,) void items, one per row of an (n, width) byte matrix."""
-    slots: Rows = np.ascontiguousarray(matrix).view(f"V{matrix.shape[1]}")[:, 0]
-    return slots
-
-
 def _windows(data: Bytes, size: int) -> Rows:
     """Return a view of `data` whose item i is the `size` bytes that start at byte i."""
     return np.ndarray((max(len(data) - size + 1, 0),), f"V{size}", data, 0, (1,))
-
-
-def scatter(data: Bytes, offsets: Rows, rows: Bytes) -> None:
-    """Copy row i of an (n, size) byte matrix to byte offsets[i] of `data`."""
-    if len(rows):
-        _windows(data, rows.shape[1])[offsets] = as_slots(rows)
 
 
 def gather(data: Bytes, offsets: Rows, size: int) -> Bytes:

@@ -13,10 +13,7 @@ readable up to its last light chunk.
 from __future__ import annotations
 
 import json
-import os
-from collections import deque
 from collections.abc import Mapping
-from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
@@ -26,6 +23,7 @@ from numpy.typing import NDArray
 from lavendersim.cell import CellConfig
 from lavendersim.trace import layout
 from lavendersim.trace.blocks import Block, Counted, cumulative
+from lavendersim.trace.chunk_queue import ChunkQueue
 from lavendersim.trace.container import Closed, Container, FileIndex, closed
 from lavendersim.trace.encode import Encoder, Streams, checked, encoders_of_cell
 from lavendersim.trace.forms import Form, description_chunk, description_records, form_of
@@ -34,8 +32,9 @@ from lavendersim.trace.schema import FORMAT
 from lavendersim.trace.urdf import robot_description
 from lavendersim.trace.whole import LogDigest
 
-# Small, so that a killed run loses little and a plot of the force reads little.
-LIGHT_BYTES = 512 * 1024
+# Small, so that a killed run loses little: some 5,000 steps. Closing a group costs as much as laying
+# out a thousand steps of one ball.
+LIGHT_BYTES = 2 * 1024 * 1024
 # Large enough to compress well, small enough that a viewer can hold a few.
 BULK_BYTES = 4 * 1024 * 1024
 # Most of what a contact's numbers have in common they have with those of the step before.
@@ -43,11 +42,6 @@ COLUMN_BYTES = 16 * 1024 * 1024
 BEFORE: Final = ("columns", "points")  # may close before their group does
 CHUNK_BYTES = Streams(COLUMN_BYTES, BULK_BYTES, BULK_BYTES, LIGHT_BYTES)
 
-# Threads that lay out and compress chunks beside the simulation, for all logs that this process
-# writes, and how much of a log may wait for them [byte]: that bounds its memory.
-COMPRESSORS: Final = min(4, os.cpu_count() or 1)
-MOST_WAITING: Final = 64 * 1024 * 1024
-_threads = ThreadPoolExecutor(COMPRESSORS, "trace")
 # Of a log with rows up to this size [byte] they are kept: who wrote it reads them from memory.
 KEPT_BYTES: Final = 256 * 1024 * 1024
 
@@ -136,8 +130,7 @@ class TraceWriter:
                 raise ValueError(f"metadata may not be called {name!r}")
             self._describe(name, values)
         self._open: dict[str, _Stream] = {}  # by the names of Streams; none before the first step
-        self._closing: deque[tuple[Future[Closed], int]] = deque()  # as in the file, and sizes
-        self._waiting = 0  # sum of these sizes [byte]
+        self._queue = ChunkQueue(self._container)
         self._kept: list[Block] | None = []
         self._kept_bytes = 0
 
@@ -186,7 +179,7 @@ class TraceWriter:
         """End the log; status is `complete`, or why the run ended early."""
         if sum(stream.size for stream in self._open.values()) > BULK_BYTES:
             self._close(*self._open)
-        self._write_all()
+        self._queue.drain()
         for stream in self._open.values():
             if stream.size:
                 self._container.write_chunk(stream.close())
@@ -197,7 +190,7 @@ class TraceWriter:
 
     def abandon(self) -> None:
         """Let the file go as a killed run would leave it."""
-        self._write_all()
+        self._queue.drain()
         self._container.abandon()
 
     def _describe(self, name: str, values: Mapping[str, str]) -> None:
@@ -224,27 +217,15 @@ class TraceWriter:
         self._container.write_chunk(description_chunk(robot_description(self._bodies, poses)))
 
     def _close(self, *names: str) -> None:
-        """Hand open chunks to the compressing threads, and write those that are done.
+        """Hand open chunks over, to be compressed and written beside.
 
         One without a message yet goes on, with the records that open its first chunk.
         """
         for name in names:
             stream = self._open[name]
             if stream.size:
-                self._closing.append((_threads.submit(stream.close), stream.size))
-                self._waiting += stream.size
+                self._queue.put(stream.close, stream.size)
                 self._open[name] = stream.next()
-        while self._closing and (self._closing[0][0].done() or self._waiting > MOST_WAITING):
-            self._write_next()
-
-    def _write_next(self) -> None:
-        future, size = self._closing.popleft()
-        self._container.write_chunk(future.result())
-        self._waiting -= size
-
-    def _write_all(self) -> None:
-        while self._closing:
-            self._write_next()
 
     def _keep(self, block: Block) -> None:
         self._kept_bytes += sum(rows.nbytes for rows in block)

@@ -51,10 +51,13 @@ def _unrecorded(root: Node, check: str) -> Iterator[str]:
 
 def _unlogged(root: Node, check: str) -> Iterator[str]:
     """Yield what effects that a body has a key of leave out of the log, and falling asleep."""
-    for (name, body), effect in itertools.product(described(root), EFFECTS):
-        unlogged = effect.balance.unlogged
-        given = any(_is_given(body, key.name) for key in effect.body_keys)
-        if given and unlogged is not None and unlogged.check == check:
+    leaving_out = [
+        (effect, unlogged)
+        for effect in EFFECTS
+        if (unlogged := effect.balance.unlogged) is not None and unlogged.check == check
+    ]
+    for (name, body), (effect, unlogged) in itertools.product(described(root), leaving_out):
+        if any(_is_given(body, key.name) for key in effect.body_keys):
             yield f"{unlogged.what.format(body=quoted(name))} is not in the log"
     if check == "momentum" and root.get("numerics", "sleeping").is_true:
         yield "what falling asleep takes is not in the log"

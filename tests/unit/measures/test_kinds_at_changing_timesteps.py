@@ -18,6 +18,7 @@ from lavendersim.measures.contact_sums import nothing, summed
 from lavendersim.measures.specs import optimality as specs
 from lavendersim.measures.specs.catalogue import MeasureSpec
 from lavendersim.measures.step_checks import NUMBERS
+from lavendersim.measures.step_passes import OVER_LOGS
 
 FIRST = 10  # steps of 10 ms
 CLOCK = Clock(Fraction(1, 100), [(Fraction(1, 10), Fraction(1, 50))])
@@ -57,7 +58,7 @@ def test_speeds_are_ways_over_the_time_that_they_took() -> None:
     for kind, values in means.items():
         # a way of 3 cm between places of 1.2 m is good to 1e-14 of itself
         assert evaluate(spec(kind, **values), log) == pytest.approx(3.0, rel=2e-14), kind
-    speeds, _ = NUMBERS["speed"](log, nothing(len(log.step)))
+    speeds, _ = NUMBERS["speed"](log, nothing(len(log.step)), OVER_LOGS)
     assert speeds[1:] == pytest.approx(3.0, rel=2e-14)
 
 

@@ -35,7 +35,7 @@ def contacts(count: int, seed: int, keys: int) -> np.ndarray:
 
 def returned(rows: np.ndarray, names: tuple[str, ...]) -> np.ndarray:
     table = np.zeros(len(rows), rows.dtype)
-    unpack(pack(rows, names, Constants()), names, table)
+    unpack(pack([rows], names, Constants()), names, table)
     return table
 
 
@@ -44,6 +44,16 @@ def returned(rows: np.ndarray, names: tuple[str, ...]) -> np.ndarray:
 def test_packed_contacts_return(count: int, keys: int) -> None:
     rows = contacts(count, count, keys)
     assert returned(rows, NAMES).tobytes() == rows.tobytes()
+
+
+@pytest.mark.parametrize("parts", [2, 3, 7])
+def test_contacts_in_parts_are_packed_as_in_one(parts: int) -> None:
+    """However steps came in: cut anywhere, into empty parts, too."""
+    rows = contacts(500, 5, 3)
+    cuts = np.sort(np.random.default_rng(parts).integers(0, 501, parts - 1))
+    cuts[0] = 0
+    split = pack(np.split(rows, cuts), NAMES, Constants())
+    assert [bytes(one) for one in split] == [bytes(one) for one in pack([rows], NAMES, Constants())]
 
 
 def test_contacts_without_a_key_return() -> None:
@@ -58,7 +68,7 @@ def test_what_persists_is_zero_but_for_its_first() -> None:
     rows = np.zeros(20, FIELDS)
     rows["body_b"] = np.tile([1, 2], 10)
     rows["x"] = np.tile([0.1, -7.0], 10)
-    planes = np.frombuffer(pack(rows, NAMES, Constants()).planes, np.uint8).reshape(8, 2, 20)
+    planes = np.frombuffer(pack([rows], NAMES, Constants()).planes, np.uint8).reshape(8, 2, 20)
     of_x = planes[:, 0]
     assert (of_x[:, [*range(1, 10), *range(11, 20)]] == 0).all()
     for place, number in ((0, 0.1), (10, -7.0)):
@@ -78,7 +88,7 @@ def test_a_log_of_an_older_version_has_its_bits_xor() -> None:
 @pytest.mark.parametrize("predictor", [3, 4, 5, 6, 7, 8, 255])
 def test_a_predictor_that_a_column_cannot_have_is_refused(predictor: int) -> None:
     rows = contacts(10, 2, 3)
-    packed = pack(rows, NAMES, Constants())._replace(predictors=bytes([predictor, 0]))
+    packed = pack([rows], NAMES, Constants())._replace(predictors=bytes([predictor, 0]))
     with pytest.raises(
         ValueError, match=f"column x has predictor {predictor}, none of this version"
     ):
@@ -89,7 +99,7 @@ def test_a_predictor_that_a_column_cannot_have_is_refused(predictor: int) -> Non
 
 def test_planes_of_another_length_are_refused() -> None:
     rows = contacts(10, 2, 3)
-    packed = pack(rows, NAMES, Constants())
+    packed = pack([rows], NAMES, Constants())
     with pytest.raises(ValueError, match="reshape"):
         unpack(packed._replace(planes=packed.planes[:-1]), NAMES, np.zeros(10, rows.dtype))
     with pytest.raises(ValueError, match="reshape"):
@@ -112,7 +122,7 @@ def test_keys_are_ordered_one_by_one_whatever_their_size(largest: int) -> None:
 def test_equal_contacts_are_equal_messages() -> None:
     rows = contacts(100, 3, 4)
     steps = np.arange(10)
-    group = ContactGroup(steps, steps * 4_166_666, np.full(10, 10), rows)
+    group = ContactGroup(steps, steps * 4_166_666, np.full(10, 10), [rows])
     form = column_form(rows.dtype)
     assert b"".join(message_of(group, form, Constants())) == b"".join(
         message_of(group, form, Constants())

@@ -30,7 +30,7 @@ def rows_of(**columns: np.ndarray) -> np.ndarray:
 
 def chosen(rows: np.ndarray) -> dict[str, int]:
     """Return the predictor of each column of rows that come back bit for bit."""
-    packed = pack(rows, NAMES, CONSTANTS)
+    packed = pack([rows], NAMES, CONSTANTS)
     table = np.zeros(len(rows), rows.dtype)
     unpack(packed, NAMES, table)
     assert table.tobytes() == rows.tobytes()
@@ -39,7 +39,7 @@ def chosen(rows: np.ndarray) -> dict[str, int]:
 
 def heavy_bytes(rows: np.ndarray, name: str) -> int:
     """Return the bytes of a column that are not zeros before its first digit."""
-    packed = pack(rows, NAMES, CONSTANTS)
+    packed = pack([rows], NAMES, CONSTANTS)
     planes = np.frombuffer(packed.planes, np.uint8).reshape(8, len(NAMES) - 2, len(rows))
     column = planes[:, NAMES.index(name) - 2]
     return int((np.cumsum(column != 0, axis=0) > 0).sum())

@@ -156,7 +156,7 @@ def test_any_rows_return(seed: int, share: float, known_only: bool) -> None:
     if known_only:
         mine = expected_contacts(rows["body_a"], rows["body_b"], starts).known
         rows, starts = rows[mine], starts._replace(step=starts.step[mine])
-    packed = pack(rows, NAMES, Constants(), starts)
+    packed = pack([rows], NAMES, Constants(), starts)
     assert (SPHERES in packed.predictors) == (known_only and share > 0.5)
     table = np.zeros(len(rows), rows.dtype)
 
@@ -174,7 +174,7 @@ def test_what_is_expected_costs_no_byte() -> None:
     rows, starts = made(1, 1.0)
     mine = expected_contacts(rows["body_a"], rows["body_b"], starts).known
     rows, starts = rows[mine], starts._replace(step=starts.step[mine])
-    packed = pack(rows, NAMES, Constants(), starts)
+    packed = pack([rows], NAMES, Constants(), starts)
     planes = np.frombuffer(packed.planes, np.uint8).reshape(8, len(NAMES) - 3, len(rows))
     assert not planes[:, : len(COLUMNS)].any()
 
@@ -192,7 +192,7 @@ def test_predictors_without_the_bodies_that_they_need_are_refused() -> None:
     rows, starts = made(1, 1.0)
     mine = expected_contacts(rows["body_a"], rows["body_b"], starts).known
     rows, starts = rows[mine], starts._replace(step=starts.step[mine])
-    packed: Packed = pack(rows, NAMES, Constants(), starts)
+    packed: Packed = pack([rows], NAMES, Constants(), starts)
     with pytest.raises(ValueError, match="predictor 7, none of this version"):
         unpack(packed._replace(bodies=b""), NAMES, np.zeros_like(rows))
     with pytest.raises(ValueError, match="predictor 7 without bodies"):
