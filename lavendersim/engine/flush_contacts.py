@@ -7,18 +7,20 @@ not meet. The directions looked at are the normals of what the body rests on:
 
     s(m) >= -FLUSH slop,   m . v >= 0        s(m): separation of the pair along m
 
-A step higher than that is met.
+A step higher than that is met. So is told, too, of tiles that a fast body is still far from as the
+part begins, whatever their gap does first: it is about to pass on to them, and at the middle of the
+step the edge of what it lies on (`midpoint_rows.make_look`) is not what carries it.
 """
 
 from __future__ import annotations
 
 from typing import Any
 
-from .approach import CREEP, make_rate, make_slowest
+from .approach import CREEP, FAR, make_rate, make_slowest
 from .collide.shapes import make_radius, make_support
 from .compile import kernel
 from .impact_rows import make_keep_present
-from .records import PLANE, TOUCHING
+from .records import PLANE, SPHERE, TOUCHING
 from .spec import Spec
 from .vectors import Vec3, dot, minus, plus, position
 
@@ -88,11 +90,13 @@ def make_drop_flush(spec: Spec) -> Any:
             contact = contacts[c]
             row = state.pairs[contact.pair]
             flush = False
-            if contact.rate >= -CREEP:
+            ajar = contact.phi > params.slop and contact.located != FAR
+            ajar = ajar and not (bodies[row.a].shape == SPHERE and bodies[row.b].shape == SPHERE)
+            if contact.rate >= -CREEP and not ajar:
                 continue
             if bodies[row.a].shape != PLANE and bodies[row.b].shape != PLANE:
                 least = slowest(contact, bodies, motion)
-                if contact.rate < -least:
+                if contact.rate < -least or ajar:
                     for o in range(count):
                         other = contacts[o]
                         if other.pair == contact.pair or other.phi > params.slop + TOUCHING:

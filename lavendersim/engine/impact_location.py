@@ -39,9 +39,10 @@ A, B, PART_A, PART_B = range(4)
 
 
 def make_locate(spec: Spec) -> Any:
-    """Return `kernel(state, contact, workspace, params) -> when`, NEVER where they miss [s].
+    """Return `kernel(state, count, contact, workspace, params) -> when` they meet [s], or NEVER.
 
-    contact: one ahead, with a first guess in `due`. The rows of the bodies are left as they were.
+    contact: one ahead of the first `count`, with a first guess in `due`. The rows of the bodies are
+    left as they were.
     """
     manifold, approach = make_manifold(spec, spec.shape_pairs), make_approach(spec)
     change_ahead, nearest_rate = make_change_ahead(spec), make_nearest_rate(spec)
@@ -60,7 +61,17 @@ def make_locate(spec: Spec) -> Any:
 
     displace = kernel(displace, spec)
 
-    def locate(state, ahead, workspace, params):
+    def touches(contacts, count, pair, feature):
+        # Whether a feature of the pair touches as the part begins.
+        for c in range(count):
+            contact = contacts[c]
+            if contact.pair == pair and contact.feature == feature:
+                return contact.phi <= TOUCHING
+        return False
+
+    touches = kernel(touches, spec)
+
+    def locate(state, count, ahead, workspace, params):
         bodies, velocities, motion = state.bodies, state.velocities, state.motion
         trial = workspace.trial
         kept, spun = trial.bodies, trial.velocities
@@ -89,22 +100,30 @@ def make_locate(spec: Spec) -> Any:
             if compound:
                 place_part(bodies, i)
                 place_part(bodies, j)
-            count = manifold(row.kind, bodies[i], bodies[j], margin, workspace.collision)
-            if count == 0:
+            found = manifold(row.kind, bodies[i], bodies[j], margin, workspace.collision)
+            if found == 0:
                 when = NEVER
                 break
             least = 0
-            for k in range(1, count):
+            for k in range(1, found):
                 if points[k].phi < points[least].phi:
                     least = k
             seen = least
             if own:
-                for k in range(count):
+                for k in range(found):
                     if points[k].feature == ahead.feature:
                         seen = k
-                if abs(points[seen].phi) <= 0.25 * TOUCHING and points[least].phi < -TOUCHING:
-                    # Its feature meets when another of the pair has met already.
-                    own, seen, low = False, least, 0.0
+                if abs(points[seen].phi) <= 0.25 * TOUCHING:
+                    # Has another of the pair met already? What it stands on has not: it lasts.
+                    met = -1
+                    for k in range(found):
+                        if points[k].phi < -TOUCHING and (
+                            met < 0 or points[k].phi < points[met].phi
+                        ):
+                            if not touches(state.contacts, count, ahead.pair, points[k].feature):
+                                met = k
+                    if met >= 0:
+                        own, seen, low = False, met, 0.0
             point = points[seen]
             contact.x, contact.y, contact.z = point.x, point.y, point.z
             contact.nx, contact.ny, contact.nz = normal[0], normal[1], normal[2]

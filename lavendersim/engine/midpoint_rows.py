@@ -303,6 +303,7 @@ def make_shift(spec: Spec) -> Any:
     """Return `kernel(contact, lead, params)`, of a row at the middle: b, where a contact lasts."""
     friction, frictionless = spec.has("friction"), has_frictionless(spec)
     springs, spring_row = made_once(spec, "spring_row")
+    swept = spec.has("fast_bodies")
     normal_velocity = make_normal_velocity(spec)
     relative_velocity = make_relative_velocity(spec)
 
@@ -320,6 +321,10 @@ def make_shift(spec: Spec) -> Any:
         calm = -(FORCED * forced + turned) <= contact.begin_n <= turned
         if not soft and (not calm or ajar > AJAR * params.dt * abs(b)):
             return
+        if swept:  # its gap is that along the normal of where bodies pass each other, not theirs
+            aside = abs(contact.at_tx) + abs(contact.at_ty) + abs(contact.at_tz)
+            if not soft and ajar > 0.0 and aside > 0.0:
+                return
         contact.lasts = 1
         if soft:
             if springs:

@@ -33,6 +33,9 @@ class Shape(NamedTuple):
     # kernel(body, centre, n, hulls, outline) -> the `Feature` that looks along n, corners written
     # to `outline`, relative to A's centre as `centre` is; none: a point
     make_feature: Maker | None = None
+    # kernel(body, centre, n, hulls, outline) -> likewise the edge that is highest along n, even
+    # where a face looks along n; none: no edges
+    make_edge: Maker | None = None
     rounded: bool = False  # whether the core is grown by the radius BODY.hx
     curved: bool = False  # whether the core itself has a curved side
     polyhedral: bool = False  # whether its faces are polygons

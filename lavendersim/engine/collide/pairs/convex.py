@@ -8,10 +8,13 @@ or hold no point as near as the nearest, the witness points themselves are added
 
 from __future__ import annotations
 
+from typing import Any
+
 from ...compile import inner, kernel, once
 from ...records import TOUCHING
 from ...vectors import Vec3, dot, minus, negative, position
 from ..convex.separation import make_separate
+from ..manifold.edge_line import make_edge_along
 from ..manifold.line_normal import make_line_normal
 from ..manifold.patch import contact_patch, frame_along
 from ..manifold.point import place, write_manifold
@@ -58,6 +61,8 @@ def make(spec):
     """Return `kernel(a, b, margin, scratch) -> count`, which writes `scratch.manifold`."""
     separate, feature, radius = make_separate(spec), make_feature(spec), make_radius(spec)
     line_normal, curved = make_line_normal(spec), has_curved(spec)
+    edge_along: Any = make_edge_along(spec)
+    edges = edge_along is not None
 
     def convex(a, b, margin, scratch):
         offset = minus(position(b), position(a))
@@ -71,12 +76,16 @@ def make(spec):
         n = normal_of(found)
         of_a = feature(a, origin, n, hulls, scratch.outline_a)
         of_b = feature(b, offset, negative(n), hulls, scratch.outline_b)
+        if edges:
+            of_a, of_b = edge_along(a, b, offset, of_a, of_b, scratch)
         if curved:
             if of_a.kind == LINE and of_b.kind == LINE:
                 line_normal(a, b, offset, scratch)
                 n = normal_of(found)
                 of_a = feature(a, origin, n, hulls, scratch.outline_a)
                 of_b = feature(b, offset, negative(n), hulls, scratch.outline_b)
+                if edges:
+                    of_a, of_b = edge_along(a, b, offset, of_a, of_b, scratch)
         phi = found.distance - radius_a - radius_b
         if phi > margin:
             return 0

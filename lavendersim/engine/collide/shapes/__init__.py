@@ -146,6 +146,12 @@ def make_feature(spec: Spec) -> Any:
 
 
 @once
+def make_edge(spec: Spec) -> Any:
+    """Return `kernel(body, centre, n, hulls, outline) -> Feature`: its highest edge along n."""
+    return by_shape(spec, lambda shape: shape.make_edge, no_feature)
+
+
+@once
 def make_radius(spec: Spec) -> Any:
     """Return `kernel(body) -> radius of the ball that the core is grown by` [m]."""
     return by_flag(spec, lambda shape: shape.rounded, own_radius, no_radius)

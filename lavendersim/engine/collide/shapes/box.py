@@ -6,7 +6,7 @@ from ...compile import kernel
 from ...records import BOX
 from ...vectors import Vec3, from_body, into_body
 from ..shape import Shape
-from .polyhedron import facet_along, feature_of_facet, put_loop
+from .polyhedron import edge_of_facet, facet_along, feature_of_facet, put_loop
 
 
 def make_support(spec):
@@ -58,4 +58,24 @@ def make_feature(spec):
     return kernel(box_feature, spec)
 
 
-SHAPE = Shape("box", BOX, make_support, make_half_extents, make_face, make_feature, polyhedral=True)
+def make_edge(spec):
+    """Return `kernel(body, centre, n, hulls, outline) -> Feature`: a line, or none."""
+
+    def box_edge(body, centre, n, hulls, outline):
+        facet = facet_along(body, hulls.face_start.shape[0] - 2, n, hulls)
+        count = put_loop(body, facet, Vec3(body.hx, body.hy, body.hz), centre, hulls, outline)
+        return edge_of_facet(facet, count, n, hulls, outline)
+
+    return kernel(box_edge, spec)
+
+
+SHAPE = Shape(
+    "box",
+    BOX,
+    make_support,
+    make_half_extents,
+    make_face,
+    make_feature,
+    make_edge,
+    polyhedral=True,
+)

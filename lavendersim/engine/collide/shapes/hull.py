@@ -6,7 +6,7 @@ from ...compile import kernel
 from ...records import HULL, HULL_BODY
 from ...vectors import Vec3, from_body, into_body
 from ..shape import Shape
-from .polyhedron import facet_along, feature_of_facet, put_loop
+from .polyhedron import edge_of_facet, facet_along, feature_of_facet, put_loop
 
 
 def make_support(spec):
@@ -47,12 +47,24 @@ def make_feature(spec):
     return kernel(hull_feature, spec)
 
 
+def make_edge(spec):
+    """Return `kernel(body, centre, n, hulls, outline) -> Feature`: a line, or none."""
+
+    def hull_edge(body, centre, n, hulls, outline):
+        facet = facet_along(body, body.hull, n, hulls)
+        count = put_loop(body, facet, Vec3(1.0, 1.0, 1.0), centre, hulls, outline)
+        return edge_of_facet(facet, count, n, hulls, outline)
+
+    return kernel(hull_edge, spec)
+
+
 SHAPE = Shape(
     "hull",
     HULL,
     make_support,
     make_face=make_face,
     make_feature=make_feature,
+    make_edge=make_edge,
     polyhedral=True,
     fields=tuple(HULL_BODY),
 )

@@ -75,6 +75,13 @@ def feature_of_facet(facet, count, n, hulls, outline):
         put_normal(plane, facet.normal)
         put_position(plane, position(corners[0]))
         return Feature(FACE_LOOP, count, facet.face - hulls.face_start[facet.row])
+    return edge_of_facet(facet, count, n, hulls, outline)
+
+
+@inner
+def edge_of_facet(facet, count, n, hulls, outline):
+    """Return the edge of the face that is highest along n; its loop is in `outline`."""
+    corners = outline.corners
     edge, slope = flattest_edge(corners, count, n)
     if slope > LINE_SLOPE:
         return NO_FEATURE
