@@ -12,6 +12,7 @@ from math import sqrt
 
 from .compile import inner, kernel
 from .effects import made_once
+from .row_terms import row_terms
 from .spec import Spec
 from .vectors import Vec3, cross
 
@@ -75,7 +76,7 @@ def largest_response(contact):
 
 def make_relative_velocity(spec: Spec):
     """Return `kernel(contact, va, vb) -> (x, y, z)`, of B's surface relative to A's [m/s]."""
-    if not spec.has("friction"):
+    if not row_terms(spec).frictional:
         return None
 
     def relative_velocity(contact, va, vb):
@@ -96,9 +97,9 @@ def make_slip_velocity(spec: Spec):
 
     With the velocities that surfaces have in their bodies.
     """
-    if not spec.has("friction"):
+    if not row_terms(spec).frictional:
         return None
-    shifted = spec.shifts_slip
+    shifted = row_terms(spec).shifted
     relative_velocity = make_relative_velocity(spec)
 
     def slip_velocity(contact, va, vb):
@@ -116,7 +117,7 @@ def make_slip_velocity(spec: Spec):
 
 def make_apply_vector(spec: Spec):
     """Return `kernel(contact, va, vb, px, py, pz)`: + on B, - on A, world axes [N s]."""
-    if not spec.has("friction"):
+    if not row_terms(spec).frictional:
         return None
 
     def apply_vector(contact, va, vb, px, py, pz):
@@ -145,7 +146,7 @@ def make_apply_vector(spec: Spec):
 def make_complete_block(spec: Spec):
     """Return `kernel(contact, body_a, body_b, va, vb, pair) -> k_n`: frame, levers and the 3x3."""
     moving_surface, surface_velocity = made_once(spec, "surface_velocity")
-    swept, shifted = spec.has("fast_bodies"), spec.shifts_slip
+    swept, shifted = spec.has("fast_bodies"), row_terms(spec).shifted
 
     def complete_block(contact, body_a, body_b, va, vb, pair):
         half = 0.5 * contact.phi

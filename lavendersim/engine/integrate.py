@@ -16,6 +16,7 @@ from .effects import made_once
 from .effects.gyroscopic import make_turn_by_mean
 from .records import NOT_FINITE, TURNS_TOO_FAST
 from .rotation import inertia_times, inverse_inertia_times, is_round, turn
+from .row_terms import row_terms
 from .spec import Spec
 
 # MOTION.carried: a contact carries the body from its impact on, or through the whole step.
@@ -26,9 +27,8 @@ LASTING = 3  # through the whole step, and its surfaces do not approach as it be
 
 def keeps_motion(spec: Spec) -> bool:
     """Whether the step needs to know what bodies did before the solve."""
-    return any(
-        spec.has(name) for name in ("speculative", "midpoint", "impact_time", "contact_midpoint")
-    )
+    in_time = spec.has("midpoint") or spec.has("impact_time") or spec.has("contact_midpoint")
+    return in_time or spec.has("speculative")
 
 
 def make_begin(spec: Spec, accelerate: Any) -> Any:
@@ -260,7 +260,7 @@ def make_displace(spec: Spec) -> Any:
 def make_integrate(spec: Spec) -> Any:
     """Return `kernel(bodies, velocities, motion, pseudo, moved, dt) -> (diverged or -1, cause)`."""
     turns, projects = spec.has("rotation"), spec.has("projection")
-    torque = spec.has("contact_torque")
+    torque = row_terms(spec).levers
     kinematic = spec.has("kinematic")
     keeps = keeps_motion(spec)
     integrate_rotation: Any = make_turn(spec)

@@ -15,10 +15,10 @@ from .collide.narrow_phase import make_manifold
 from .compile import kernel
 from .contact import make_normal_velocity
 from .effects import made_once
-from .effects.frictionless_contact import has_frictionless
 from .effects.gyroscopic import make_turn_midway
 from .records import PLANE, TOUCHING
 from .rotation import half_turn, is_round
+from .row_terms import row_terms
 from .spec import Spec
 
 # Change of a surface's velocity in half a step that a row may miss [m/s]: what solves leave.
@@ -87,7 +87,7 @@ def make_is_turning(spec: Spec) -> Any:
 
 def make_lasting(spec: Spec) -> Any:
     """Return `kernel(contact, params)`, of a row completed at the start: whether it lasts."""
-    friction, springs = spec.has("friction"), spec.has("contact_spring")
+    friction, springs = row_terms(spec).frictional, spec.has("contact_spring")
 
     def lasting(contact, params):
         contact.begin_n = contact.v_n_pre - contact.dv_n
@@ -111,7 +111,7 @@ def make_begin_slip(spec: Spec) -> Any:
     Of rows solved at the start: their slip then, and whether it counts in the mean: where they
     slide throughout, or where friction would else do work on it. None without friction.
     """
-    if not spec.has("friction"):
+    if not row_terms(spec).frictional:
         return None
     relative_velocity = make_relative_velocity(spec)
 
@@ -260,8 +260,9 @@ def make_stay(spec: Spec) -> Any:
 
 def make_keep_start(spec: Spec) -> Any:
     """Return `kernel(contacts, count)`: keep geometry and impulses of the solve at the start."""
-    swept, friction = spec.has("fast_bodies"), spec.has("friction")
-    torsional, rolling = spec.has("torsional_friction"), spec.has("rolling_friction")
+    swept, friction = spec.has("fast_bodies"), row_terms(spec).frictional
+    terms = row_terms(spec)
+    torsional, rolling = terms.torsional, terms.rolling
 
     def keep_start(contacts, count):
         for c in range(count):
@@ -284,8 +285,9 @@ def make_keep_start(spec: Spec) -> Any:
 
 def make_take_kept(spec: Spec) -> Any:
     """Return `kernel(contact)`: the impulses of the solve at the start."""
-    friction = spec.has("friction")
-    torsional, rolling = spec.has("torsional_friction"), spec.has("rolling_friction")
+    friction = row_terms(spec).frictional
+    terms = row_terms(spec)
+    torsional, rolling = terms.torsional, terms.rolling
 
     def take_kept(contact):
         contact.lambda_n = contact.kept_n
@@ -301,7 +303,8 @@ def make_take_kept(spec: Spec) -> Any:
 
 def make_shift(spec: Spec) -> Any:
     """Return `kernel(contact, lead, params)`, of a row at the middle: b, where a contact lasts."""
-    friction, frictionless = spec.has("friction"), has_frictionless(spec)
+    terms = row_terms(spec)
+    friction, frictionless = terms.frictional, terms.frictionless
     springs, spring_row = made_once(spec, "spring_row")
     normal_velocity = make_normal_velocity(spec)
     relative_velocity = make_relative_velocity(spec)

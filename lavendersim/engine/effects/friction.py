@@ -8,7 +8,7 @@ a sweep needs both and nothing else of a body.
 
 from ..spec import Spec
 from .decision import Decision, Facts, PairFacts, by_pair
-from .effect import Column, Derived, Effect, Fields, Hooks, Kernel, kernel
+from .effect import Column, Derived, Effect, Fields, Hooks, Kernel, RowTerms, kernel
 from .keys import COEFFICIENT, SurfaceKey, geometric_mean
 
 
@@ -114,6 +114,7 @@ EFFECT = Effect(
     name="friction",
     decide=decide,
     per="contact",
+    row=RowTerms(frictional=True),
     surface_keys=(
         SurfaceKey(
             name="friction",

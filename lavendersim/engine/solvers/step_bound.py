@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from ..compile import kernel
+from ..row_terms import row_terms
 from ..spec import Spec
 
 CONTACT_FIELDS = [("bound", "f8")]  # [1/kg]
@@ -26,7 +27,8 @@ def allocate(spec: Spec, bodies: int, contacts: int) -> np.ndarray:
 
 def make_bound(spec: Spec) -> Any:
     """Return `kernel(contacts, count, touching)` that fills `bound`; touching: (bodies,) counts."""
-    friction, compliant = spec.has("friction"), spec.has("compliance")
+    terms = row_terms(spec)
+    friction, compliant = terms.frictional, terms.compliant
 
     def bound_by_matrix(contacts, count, touching):
         pass  # filled with the records
