@@ -21,6 +21,7 @@ import numpy as np
 from .contact_problem import ContactProblem
 from .row_terms import row_terms
 from .spec import Spec
+from .tangents import first_tangent, second_tangent
 
 
 class StepProblem(NamedTuple):
@@ -90,10 +91,8 @@ def _frames(spec: Spec, contacts: np.ndarray) -> np.ndarray:
         return np.stack([normal, _vectors(contacts, "t1"), _vectors(contacts, "t2")], axis=1)
     x, y, z = normal.T
     side = np.where(z >= 0.0, 1.0, -1.0)
-    a = -1.0 / (side + z)
-    b = x * y * a
-    one = np.stack([1.0 + side * x * x * a, side * b, -side * x], axis=-1)
-    two = np.stack([b, side + y * y * a, -y], axis=-1)
+    one = np.stack(first_tangent(x, y, z, side), axis=-1)
+    two = np.stack(second_tangent(x, y, z, side), axis=-1)
     return np.stack([normal, one, two], axis=1)
 
 

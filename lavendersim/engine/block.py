@@ -14,21 +14,19 @@ from .compile import inner, kernel
 from .effects import made_once
 from .row_terms import row_terms
 from .spec import Spec
+from .tangents import first_tangent, second_tangent
 from .vectors import Vec3, cross
+
+t1_of, t2_of = inner(first_tangent), inner(second_tangent)
 
 
 @inner
 def set_tangents(contact):
-    """Fill t1, t2 such that (n, t1, t2) is right-handed and orthonormal.
-
-    Duff et al. 2017, "Building an orthonormal basis, revisited": continuous but at n = -z.
-    """
+    """Fill t1, t2 such that (n, t1, t2) is right-handed and orthonormal."""
     x, y, z = contact.nx, contact.ny, contact.nz
     side = 1.0 if z >= 0.0 else -1.0
-    a = -1.0 / (side + z)
-    b = x * y * a
-    contact.t1x, contact.t1y, contact.t1z = 1.0 + side * x * x * a, side * b, -side * x
-    contact.t2x, contact.t2y, contact.t2z = b, side + y * y * a, -y
+    contact.t1x, contact.t1y, contact.t1z = t1_of(x, y, z, side)
+    contact.t2x, contact.t2y, contact.t2z = t2_of(x, y, z, side)
 
 
 @inner

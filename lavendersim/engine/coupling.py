@@ -1,4 +1,4 @@
-"""How impulses reach velocities: the two ways that every solver is written for.
+"""How impulses reach velocities: through bodies, or by the blocks of W; solvers serve both.
 
     bodies   an impulse changes the velocities of two bodies, and contacts look at bodies:
              u = J v, v = M^-1 J^T r, one visit for a contact however many share its bodies

@@ -29,6 +29,8 @@ from .step import advance_for
 
 # Steps whose rows are kept before they must be handed on; several hundred amortise a kernel call.
 BLOCK_STEPS = 512
+# Contacts that memory is taken for at first, at most: more are made room for when they come.
+FIRST_CONTACTS = 1024
 
 
 class Rows(NamedTuple):
@@ -86,7 +88,7 @@ class Engine:
         self._done = self.counters["step"]
         self._initial_pose = poses
         self._kernel = advance_for(spec)
-        capacity = max(4, min(4 * len(pairs), 1024))
+        capacity = max(4, min(4 * len(pairs), FIRST_CONTACTS))
         self.state = memory.allocate_state(spec, bodies, velocities, pairs, links, capacity)
         self.workspace = memory.allocate_workspace(spec, self.state, hulls, templates)
         self.log = self._allocate_log()

@@ -1,4 +1,4 @@
-"""What two ways through a substep differ by, relative to the motion (`effects.error_control`).
+"""Error estimate of step doubling: a substep whole and in halves, compared (`error_control`).
 
     e = max over bodies of max(dx/L, dv/U)/3
     dx = |x - x'| + R theta       farthest that a point of the body is off [m]

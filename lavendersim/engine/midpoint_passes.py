@@ -1,4 +1,4 @@
-"""Solve the contacts of a step where they are at its middle (`effects.contact_midpoint`).
+"""Contacts at the middle of the step, solved by fixed-point passes (`effects.contact_midpoint`).
 
 The middle is where the velocities of the last solve lead: a fixed point, found in a few passes,
 each with its own rows and solve. A step in which nothing turns is done after the first, at its

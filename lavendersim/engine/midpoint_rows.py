@@ -11,7 +11,9 @@ from math import sqrt
 from typing import Any
 
 from .block import make_relative_velocity
+from .collide.manifold.point import manifold_normal
 from .collide.narrow_phase import make_manifold
+from .collide.records import put_normal
 from .compile import kernel
 from .contact import make_normal_velocity
 from .effects import made_once
@@ -25,6 +27,8 @@ from .spec import Spec
 SAME = 1e-9
 # What moves slower changes no geometry, whatever turns [m/s].
 STILL = 100.0 * SAME
+# What approaches or parts slower does neither: it lasts [m/s].
+CALM = 100.0 * SAME
 # A contact lasts that begins to approach or part no faster than these shares: of what forces
 # change in a step, and of what the turning of its surfaces changes in half a step.
 FORCED, TURNED = 0.05, 0.5
@@ -94,7 +98,7 @@ def make_lasting(spec: Spec) -> Any:
         contact.middle_n = contact.begin_n
         forced = abs(contact.dv_n) * params.timestep / params.dt
         closed = contact.phi <= params.slop
-        calm = -(FORCED * forced + 100.0 * SAME) <= contact.begin_n <= 100.0 * SAME
+        calm = -(FORCED * forced + CALM) <= contact.begin_n <= CALM
         contact.lasts = 1 if closed and calm else 0
         if springs:
             if contact.spring_compliance > 0.0:  # its force has no jump
@@ -197,7 +201,7 @@ def make_look(spec: Spec) -> Any:
     def look(state, count, poses, workspace):
         bodies, contacts = state.bodies, state.contacts
         scratch = workspace.collision
-        points, normal = scratch.manifold.points, scratch.manifold.normal
+        points = scratch.manifold.points
         if compound:
             place_parts(bodies)
         first = 0
@@ -230,7 +234,7 @@ def make_look(spec: Spec) -> Any:
                 if best >= 0:
                     point = points[best]
                     contact.x, contact.y, contact.z = point.x, point.y, point.z
-                    contact.nx, contact.ny, contact.nz = normal[0], normal[1], normal[2]
+                    put_normal(contact, manifold_normal(scratch.manifold))
                     if swept:
                         contact.tangential_x, contact.tangential_y = 0.0, 0.0
                         contact.tangential_z = 0.0
@@ -315,7 +319,7 @@ def make_shift(spec: Spec) -> Any:
         b = contact.middle_n - min(contact.begin_n, 0.0)
         ajar = max(contact.phi - params.slop, 0.0)
         forced = abs(contact.dv_n) * params.timestep / params.dt
-        turned = TURNED * abs(b) + 100.0 * SAME
+        turned = TURNED * abs(b) + CALM
         contact.lasts = 0
         soft = False
         if springs:

@@ -1,4 +1,4 @@
-"""Counts of a step that is made in parts: sums (`effects.impact_order`, `error_control`)."""
+"""A step made in parts: its counts are the sums of theirs (`impact_order`, `error_control`)."""
 
 from __future__ import annotations
 

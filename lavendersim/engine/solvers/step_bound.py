@@ -1,4 +1,4 @@
-"""How stiff W is at most, contact by contact: the steps that all contacts may take at once.
+"""A bound on W, contact by contact, by Cauchy and Schwarz: how far all contacts may step at once.
 
 W = sum over bodies of J_b M_b^-1 J_b^T. A body's term, with blocks X_i X_j^T, is at most the
 diagonal of n_b |X_i|^2, n_b the number of its contacts (Cauchy and Schwarz); so W is at most
