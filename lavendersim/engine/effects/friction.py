@@ -7,7 +7,6 @@ a sweep needs both and nothing else of a body.
 """
 
 from ..spec import Spec
-from ..tangents import first_tangent
 from .decision import Decision, Facts, PairFacts, by_pair
 from .effect import Column, Derived, Effect, Fields, Hooks, Kernel, RowTerms, kernel
 from .keys import COEFFICIENT, SurfaceKey, geometric_mean
@@ -81,6 +80,8 @@ def make_step_row(spec: Spec) -> Kernel:
 def _first_tangent(rows):
     """Return the first tangent of logged normals; the bits are those of `block.set_tangents`."""
     import numpy as np  # late: configs are read without it
+
+    from ..tangents import first_tangent
 
     side = np.where(rows["nz"] >= 0.0, 1.0, -1.0)
     return first_tangent(rows["nx"], rows["ny"], rows["nz"], side)
