@@ -1,4 +1,4 @@
-"""How fast surfaces approach or part in free motion (`records.MOTION`), and what is no approach.
+"""Approach speeds of surfaces in free motion (`records.MOTION`), and which are too slow to count.
 
 v > 0: they part. Speeds are those of the bodies to each other: no observer changes what meets.
 """

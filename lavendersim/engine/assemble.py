@@ -19,7 +19,9 @@ from typing import NamedTuple
 import numpy as np
 
 from .contact_problem import ContactProblem
+from .row_terms import row_terms
 from .spec import Spec
+from .tangents import first_tangent, second_tangent
 
 
 class StepProblem(NamedTuple):
@@ -41,7 +43,7 @@ class _Side(NamedTuple):
 
 def step_problem(spec: Spec, contacts: np.ndarray, velocities: np.ndarray) -> StepProblem:
     """Return the problem of completed contacts (n,); velocities: (bodies,) before any impulse."""
-    frames = _frames(spec, contacts)
+    frames, terms = _frames(spec, contacts), row_terms(spec)
     sides = [_side(spec, contacts, velocities, frames, body) for body in "ab"]
     begin, row, blocks = _delassus(sides, frames)
     frictional = _frictional(spec, contacts)
@@ -50,15 +52,15 @@ def step_problem(spec: Spec, contacts: np.ndarray, velocities: np.ndarray) -> St
         linear, angular = _velocity_of(velocities, side.body)
         along = np.einsum("cik,ck->ci", frames, linear)
         free += side.sign * (along + np.einsum("cik,ck->ci", side.levers, angular))
-    if spec.has("friction") and spec.shifts_slip:
+    if terms.frictional and terms.shifted:
         free[:, 1:] += frictional[:, None] * _columns(contacts, "surface_1", "surface_2")
     problem = ContactProblem(
         begin,
         row,
         blocks,
         free,
-        frictional * contacts["mu"] if spec.has("friction") else np.zeros(len(contacts)),
-        contacts["gamma"].copy() if spec.has("compliance") else np.zeros(len(contacts)),
+        frictional * contacts["mu"] if terms.frictional else np.zeros(len(contacts)),
+        contacts["gamma"].copy() if terms.compliant else np.zeros(len(contacts)),
         contacts["target"].copy(),
     )
     return StepProblem(problem, _impulses(spec, contacts))
@@ -74,9 +76,10 @@ def _vectors(rows: np.ndarray, name: str) -> np.ndarray:
 
 def _frictional(spec: Spec, contacts: np.ndarray) -> np.ndarray:
     """Return 1.0 for contacts with friction, 0.0 for the others."""
-    if not spec.has("friction"):
+    terms = row_terms(spec)
+    if not terms.frictional:
         return np.zeros(len(contacts))
-    if not spec.has("frictionless_contact"):
+    if not terms.frictionless:
         return np.ones(len(contacts))
     return contacts["frictional"].astype(np.float64)
 
@@ -84,14 +87,12 @@ def _frictional(spec: Spec, contacts: np.ndarray) -> np.ndarray:
 def _frames(spec: Spec, contacts: np.ndarray) -> np.ndarray:
     """Return n, t1, t2 of each contact as rows, (n, 3, 3); as `block.set_tangents` does."""
     normal = _vectors(contacts, "n")
-    if spec.has("friction"):
+    if row_terms(spec).frictional:
         return np.stack([normal, _vectors(contacts, "t1"), _vectors(contacts, "t2")], axis=1)
     x, y, z = normal.T
     side = np.where(z >= 0.0, 1.0, -1.0)
-    a = -1.0 / (side + z)
-    b = x * y * a
-    one = np.stack([1.0 + side * x * x * a, side * b, -side * x], axis=-1)
-    two = np.stack([b, side + y * y * a, -y], axis=-1)
+    one = np.stack(first_tangent(x, y, z, side), axis=-1)
+    two = np.stack(second_tangent(x, y, z, side), axis=-1)
     return np.stack([normal, one, two], axis=1)
 
 
@@ -100,12 +101,11 @@ def _side(
 ) -> _Side:
     body = contacts[name].astype(np.int64)
     levers, turns = np.zeros_like(frames), np.zeros_like(frames)
-    if spec.has("friction"):
+    terms = row_terms(spec)
+    if terms.frictional:
         levers = np.cross(_vectors(contacts, f"r{name}")[:, None, :], frames)
         turns = np.einsum("ckl,cil->cik", _inverse_inertia(velocities[body]), levers)
-    if spec.has("contact_torque") and (
-        not spec.has("friction") or spec.has("frictionless_contact")
-    ):
+    if terms.levers and terms.frictionless:
         frictionless = _frictional(spec, contacts) == 0.0
         levers[frictionless, 0] = _vectors(contacts, f"lever_{name}")[frictionless]
         turns[frictionless, 0] = _vectors(contacts, f"turn_{name}")[frictionless]
@@ -156,7 +156,7 @@ def _delassus(sides: list[_Side], frames: np.ndarray) -> tuple[np.ndarray, np.nd
 
 
 def _impulses(spec: Spec, contacts: np.ndarray) -> np.ndarray:
-    if spec.has("friction"):
+    if row_terms(spec).frictional:
         return _columns(contacts, "lambda_n", "lambda_1", "lambda_2")
     impulses = np.zeros((len(contacts), 3))
     impulses[:, 0] = contacts["lambda_n"]

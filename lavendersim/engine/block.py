@@ -12,22 +12,21 @@ from math import sqrt
 
 from .compile import inner, kernel
 from .effects import made_once
+from .row_terms import row_terms
 from .spec import Spec
+from .tangents import first_tangent, second_tangent
 from .vectors import Vec3, cross
+
+t1_of, t2_of = inner(first_tangent), inner(second_tangent)
 
 
 @inner
 def set_tangents(contact):
-    """Fill t1, t2 such that (n, t1, t2) is right-handed and orthonormal.
-
-    Duff et al. 2017, "Building an orthonormal basis, revisited": continuous but at n = -z.
-    """
+    """Fill t1, t2 such that (n, t1, t2) is right-handed and orthonormal."""
     x, y, z = contact.nx, contact.ny, contact.nz
     side = 1.0 if z >= 0.0 else -1.0
-    a = -1.0 / (side + z)
-    b = x * y * a
-    contact.t1x, contact.t1y, contact.t1z = 1.0 + side * x * x * a, side * b, -side * x
-    contact.t2x, contact.t2y, contact.t2z = b, side + y * y * a, -y
+    contact.t1x, contact.t1y, contact.t1z = t1_of(x, y, z, side)
+    contact.t2x, contact.t2y, contact.t2z = t2_of(x, y, z, side)
 
 
 @inner
@@ -75,7 +74,7 @@ def largest_response(contact):
 
 def make_relative_velocity(spec: Spec):
     """Return `kernel(contact, va, vb) -> (x, y, z)`, of B's surface relative to A's [m/s]."""
-    if not spec.has("friction"):
+    if not row_terms(spec).frictional:
         return None
 
     def relative_velocity(contact, va, vb):
@@ -96,9 +95,9 @@ def make_slip_velocity(spec: Spec):
 
     With the velocities that surfaces have in their bodies.
     """
-    if not spec.has("friction"):
+    if not row_terms(spec).frictional:
         return None
-    shifted = spec.shifts_slip
+    shifted = row_terms(spec).shifted
     relative_velocity = make_relative_velocity(spec)
 
     def slip_velocity(contact, va, vb):
@@ -116,7 +115,7 @@ def make_slip_velocity(spec: Spec):
 
 def make_apply_vector(spec: Spec):
     """Return `kernel(contact, va, vb, px, py, pz)`: + on B, - on A, world axes [N s]."""
-    if not spec.has("friction"):
+    if not row_terms(spec).frictional:
         return None
 
     def apply_vector(contact, va, vb, px, py, pz):
@@ -145,7 +144,7 @@ def make_apply_vector(spec: Spec):
 def make_complete_block(spec: Spec):
     """Return `kernel(contact, body_a, body_b, va, vb, pair) -> k_n`: frame, levers and the 3x3."""
     moving_surface, surface_velocity = made_once(spec, "surface_velocity")
-    swept, shifted = spec.has("fast_bodies"), spec.shifts_slip
+    swept, shifted = spec.has("fast_bodies"), row_terms(spec).shifted
 
     def complete_block(contact, body_a, body_b, va, vb, pair):
         half = 0.5 * contact.phi

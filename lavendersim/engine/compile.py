@@ -1,4 +1,4 @@
-"""Numba kernels from Python functions.
+"""Kernels: Python functions composed by the flags of a `Spec` and compiled by numba.
 
 Kernels are closures over the flags of a `Spec`. Numba removes the branches that a flag makes dead
 before it types them, so a pruned kernel is as small as one that never had the effect.

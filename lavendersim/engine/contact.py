@@ -14,9 +14,9 @@ from typing import Any
 from .block import make_apply_vector, make_complete_block, make_relative_velocity
 from .compile import chain, inner, kernel
 from .effects import made_by
-from .effects.frictionless_contact import by_friction, has_frictionless
 from .records import SPHERE
 from .rotation import inverse_inertia_times
+from .row_terms import by_friction, row_terms
 from .spec import Spec
 from .spin_block import (
     make_apply_start_torques,
@@ -69,7 +69,7 @@ def _make_frictional_velocity(spec: Spec):
 
 def make_frictionless_velocity(spec: Spec):
     """Return `kernel(contact, va, vb) -> v_n` of a row without friction [m/s]."""
-    torque = spec.has("contact_torque")
+    torque = row_terms(spec).levers
 
     def normal_velocity(contact, va, vb):
         v_n = (
@@ -109,7 +109,7 @@ def _make_frictional_impulse(spec: Spec):
 
 def make_frictionless_impulse(spec: Spec):
     """Return `kernel(contact, va, vb, impulse)` of a row without friction."""
-    torque = spec.has("contact_torque")
+    torque = row_terms(spec).levers
 
     def apply_impulse(contact, va, vb, impulse):
         pa, pb = impulse * contact.inv_m_a, impulse * contact.inv_m_b
@@ -166,7 +166,7 @@ def make_apply_all(spec: Spec):
 
 def make_apply_start(spec: Spec):
     """Return `kernel(contact, va, vb)`: apply the impulses the contact starts the solve with."""
-    friction, apply_block = spec.has("friction"), make_apply_block(spec)
+    friction, apply_block = row_terms(spec).frictional, make_apply_block(spec)
     spins, apply_start_torques = resists_turning(spec), make_apply_start_torques(spec)
 
     def apply_start(contact, va, vb):
@@ -182,7 +182,7 @@ def make_apply_start(spec: Spec):
 
 def make_complete_row(spec: Spec):
     """Return `kernel(contact, body_a, body_b) -> k_n` of a row without friction: its levers."""
-    torque, swept = spec.has("contact_torque"), spec.has("fast_bodies")
+    torque, swept = row_terms(spec).levers, spec.has("fast_bodies")
 
     def complete_row(contact, body_a, body_b):
         k_n = body_a.inv_m + body_b.inv_m
@@ -205,8 +205,9 @@ def make_append_contact(spec: Spec, capture):
 
     `capture` is the chain of effects that add to the row's target and compliance.
     """
-    friction, frictionless = spec.has("friction"), has_frictionless(spec)
-    compliant = spec.has("compliance")
+    terms = row_terms(spec)
+    friction, frictionless = terms.frictional, terms.frictionless
+    compliant = terms.compliant
     at_surface = spec.has("impact_time")
     forced = spec.has("impact_time") or spec.has("midpoint") or spec.has("contact_midpoint")
     normal_velocity = make_normal_velocity(spec)

@@ -1,4 +1,4 @@
-"""How impulses reach velocities: the two ways that every solver is written for.
+"""How impulses reach velocities: through bodies, or by the blocks of W; solvers serve both.
 
     bodies   an impulse changes the velocities of two bodies, and contacts look at bodies:
              u = J v, v = M^-1 J^T r, one visit for a contact however many share its bodies
@@ -16,8 +16,8 @@ import numpy as np
 from .block import make_slip_velocity
 from .compile import kernel
 from .contact import make_apply_all, make_apply_block, make_frictionless_velocity
-from .effects.frictionless_contact import by_friction
 from .records import F8, I8, Field
+from .row_terms import by_friction
 from .spec import Spec
 
 # A contact of a problem given by its matrix; the names that bodies' contacts have too mean the

@@ -22,13 +22,15 @@ from .assemble import StepProblem, step_problem
 from .collide.broad.broad_phase import allocate_broad_phase
 from .collide.convex.hull_geometry import HullGeometry
 from .compile import compiling
-from .effects import effects_of, sleeping
+from .effects import effects_of, has_hook, sleeping
 from .records import CONTACTS_FULL, PAIRS_FULL, ROWS_FULL, WOKEN
 from .spec import Spec
 from .step import advance_for
 
 # Steps whose rows are kept before they must be handed on; several hundred amortise a kernel call.
 BLOCK_STEPS = 512
+# Contacts that memory is taken for at first, at most: more are made room for when they come.
+FIRST_CONTACTS = 1024
 
 
 class Rows(NamedTuple):
@@ -80,12 +82,13 @@ class Engine:
         if lacking:
             raise ValueError(", ".join(sorted(lacking)))
         self.spec, self.parameters = spec, parameters
+        self._records_sweeps = has_hook(spec, "sweep_row")
         self.block_steps = max(block_steps, 1) if spec.has("step_log") else 0
         self.counters = memory.allocate_counters()
         self._done = self.counters["step"]
         self._initial_pose = poses
         self._kernel = advance_for(spec)
-        capacity = max(4, min(4 * len(pairs), 1024))
+        capacity = max(4, min(4 * len(pairs), FIRST_CONTACTS))
         self.state = memory.allocate_state(spec, bodies, velocities, pairs, links, capacity)
         self.workspace = memory.allocate_workspace(spec, self.state, hulls, templates)
         self.log = self._allocate_log()
@@ -158,11 +161,11 @@ class Engine:
 
     def _sweep_rows(self) -> int:
         """Rows that the sweeps of one step need."""
-        return int(self.parameters["sweeps"][0]) + 1 if self.spec.has("residual_log") else 0
+        return int(self.parameters["sweeps"][0]) + 1 if self._records_sweeps else 0
 
     def advance(self, steps: int) -> int:
         """Do up to `steps` steps; return RUNNING, ROWS_FULL (take rows, call again) or DIVERGED."""
-        if self.spec.has("residual_log"):
+        if self._records_sweeps:
             if len(self.log.residual) < self._sweep_rows():  # more sweeps are required
                 if self.counters["step_rows"][0]:
                     return ROWS_FULL

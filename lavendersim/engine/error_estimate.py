@@ -1,4 +1,4 @@
-"""What two ways through a substep differ by, relative to the motion (`effects.error_control`).
+"""Error estimate of step doubling: a substep whole and in halves, compared (`error_control`).
 
     e = max over bodies of max(dx/L, dv/U)/3
     dx = |x - x'| + R theta       farthest that a point of the body is off [m]
@@ -21,8 +21,8 @@ from typing import Any, Final
 from .block import make_relative_velocity
 from .compile import inner, kernel
 from .contact import make_apply_block, make_normal_velocity
-from .effects.frictionless_contact import has_frictionless
 from .records import Field
+from .row_terms import row_terms
 from .spec import Spec
 from .vectors import Vec3, length, minus, position
 
@@ -76,8 +76,9 @@ def make_respect_contacts(spec: Spec) -> Any:
     Takes from them what the contacts of the substep's end would, by Gauss-Seidel's method.
     """
     normal_velocity, apply_block = make_normal_velocity(spec), make_apply_block(spec)
-    friction, mixed = spec.has("friction"), has_frictionless(spec)
-    compliant = spec.has("compliance")
+    terms = row_terms(spec)
+    friction, mixed = terms.frictional, terms.frictionless
+    compliant = terms.compliant
     relative_velocity: Any = make_relative_velocity(spec)
 
     def acts(contact):

@@ -1,4 +1,4 @@
-"""When two bodies meet, found on their shapes.
+"""Time of impact of two bodies on their shapes: Newton's method on their separation, safeguarded.
 
 Newton's method on the separation phi(t) of a contact's features, at the poses of free motion:
     x(t) = x + v t + a t^2/2,    q(t): turned for t,    t <- t - phi / (d phi / dt)
@@ -22,7 +22,9 @@ from .approach import (
     make_change_ahead,
     make_nearest_rate,
 )
+from .collide.manifold.point import manifold_normal
 from .collide.narrow_phase import make_manifold
+from .collide.records import put_normal
 from .compile import kernel
 from .effects import made_once
 from .integrate import make_turn
@@ -75,7 +77,8 @@ def make_locate(spec: Spec) -> Any:
         bodies, velocities, motion = state.bodies, state.velocities, state.motion
         trial = workspace.trial
         kept, spun = trial.bodies, trial.velocities
-        points, normal = workspace.collision.manifold.points, workspace.collision.manifold.normal
+        touching = workspace.collision.manifold
+        points = touching.points
         row = state.pairs[ahead.pair]
         i, j = row.a, row.b
         owner_i, owner_j = i, j
@@ -126,7 +129,7 @@ def make_locate(spec: Spec) -> Any:
                         own, seen, low = False, met, 0.0
             point = points[seen]
             contact.x, contact.y, contact.z = point.x, point.y, point.z
-            contact.nx, contact.ny, contact.nz = normal[0], normal[1], normal[2]
+            put_normal(contact, manifold_normal(touching))
             phi = point.phi
             dv = change_ahead(contact, motion)
             v = approach(contact, bodies, motion) + dv * t / left

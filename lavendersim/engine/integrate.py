@@ -16,6 +16,7 @@ from .effects import made_once
 from .effects.gyroscopic import make_turn_by_mean
 from .records import NOT_FINITE, TURNS_TOO_FAST
 from .rotation import inertia_times, inverse_inertia_times, is_round, turn
+from .row_terms import row_terms
 from .spec import Spec
 
 # MOTION.carried: a contact carries the body from its impact on, or through the whole step.
@@ -24,17 +25,35 @@ ALWAYS = 2
 LASTING = 3  # through the whole step, and its surfaces do not approach as it begins
 
 
+# A spin whose square shrinks by this in a step is all but stopped: 64 times slower [-].
+STOPPED = 4096.0
+
+
 def keeps_motion(spec: Spec) -> bool:
     """Whether the step needs to know what bodies did before the solve."""
-    return any(
-        spec.has(name) for name in ("speculative", "midpoint", "impact_time", "contact_midpoint")
-    )
+    in_time = spec.has("midpoint") or spec.has("impact_time") or spec.has("contact_midpoint")
+    return in_time or spec.has("speculative")
+
+
+def make_note_change(spec: Spec) -> Any:
+    """Return `kernel(body, v, m, dt)`: by how much forces changed v, and how far the body gets."""
+    torque = spec.has("rotation")
+
+    def note_change(body, v, m, dt):
+        m.dvx, m.dvy, m.dvz = v.vx - m.vx, v.vy - m.vy, v.vz - m.vz
+        speed = sqrt(v.vx * v.vx + v.vy * v.vy + v.vz * v.vz)
+        if torque:
+            speed += body.bound * sqrt(v.wx * v.wx + v.wy * v.wy + v.wz * v.wz)
+        m.reach = dt * speed
+
+    return kernel(note_change, spec)
 
 
 def make_begin(spec: Spec, accelerate: Any) -> Any:
     """Return `kernel(bodies, velocities, motion, params)`: forces act; their effect is noted."""
     torque = spec.has("rotation")
     kinematic, centred = spec.has("kinematic"), spec.has("contact_midpoint")
+    note_change = make_note_change(spec)
 
     def begin(bodies, velocities, motion, params):
         for i in range(bodies.shape[0]):
@@ -51,28 +70,20 @@ def make_begin(spec: Spec, accelerate: Any) -> Any:
             if centred:
                 m.midway = 0
             if moves:
-                m.dvx, m.dvy, m.dvz = v.vx - m.vx, v.vy - m.vy, v.vz - m.vz
-                speed = sqrt(v.vx * v.vx + v.vy * v.vy + v.vz * v.vz)
-                if torque:
-                    speed += body.bound * sqrt(v.wx * v.wx + v.wy * v.wy + v.wz * v.wz)
-                m.reach = params.dt * speed
+                note_change(body, v, m, params.dt)
 
     return kernel(begin, spec)
 
 
 def make_finish(spec: Spec) -> Any:
     """Return `kernel(bodies, velocities, motion, params)`: `begin` for what acts between bodies."""
-    torque = spec.has("rotation")
+    note_change = make_note_change(spec)
 
     def finish(bodies, velocities, motion, params):
         for i in range(bodies.shape[0]):
             body, v, m = bodies[i], velocities[i], motion[i]
             if body.inv_m > 0.0:
-                m.dvx, m.dvy, m.dvz = v.vx - m.vx, v.vy - m.vy, v.vz - m.vz
-                speed = sqrt(v.vx * v.vx + v.vy * v.vy + v.vz * v.vz)
-                if torque:
-                    speed += body.bound * sqrt(v.wx * v.wx + v.wy * v.wy + v.wz * v.wz)
-                m.reach = params.dt * speed
+                note_change(body, v, m, params.dt)
 
     return kernel(finish, spec)
 
@@ -237,7 +248,7 @@ def make_displace(spec: Spec) -> Any:
             # A spin that a step all but stops would cancel to its last digits, and turns nothing.
             last = v.wx * v.wx + v.wy * v.wy + v.wz * v.wz
             before = m.wx * m.wx + m.wy * m.wy + m.wz * m.wz
-            twisted = twisted and 4096.0 * last >= before
+            twisted = twisted and STOPPED * last >= before
             if m.carried == 0 and twisted:
                 # Half of what torques give before the turn and half after it: of order 2.
                 x, y, z = inertia_times(body, gained_x, gained_y, gained_z)
@@ -260,7 +271,7 @@ def make_displace(spec: Spec) -> Any:
 def make_integrate(spec: Spec) -> Any:
     """Return `kernel(bodies, velocities, motion, pseudo, moved, dt) -> (diverged or -1, cause)`."""
     turns, projects = spec.has("rotation"), spec.has("projection")
-    torque = spec.has("contact_torque")
+    torque = row_terms(spec).levers
     kinematic = spec.has("kinematic")
     keeps = keeps_motion(spec)
     integrate_rotation: Any = make_turn(spec)

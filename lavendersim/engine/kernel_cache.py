@@ -1,4 +1,4 @@
-"""Machine code of whole kernels on disk, under a key of our own.
+"""Machine code of whole kernels on disk, under a key of all that it depends on.
 
 Numba's own `cache=True` does not fit kernels made by factories: a closure over another kernel never
 hits, and edited callees in other files go stale (numba issue 9483). The key here is what the code

@@ -1,4 +1,4 @@
-"""Solve the contacts of a step where they are at its middle (`effects.contact_midpoint`).
+"""Contacts at the middle of the step, solved by fixed-point passes (`effects.contact_midpoint`).
 
 The middle is where the velocities of the last solve lead: a fixed point, found in a few passes,
 each with its own rows and solve. A step in which nothing turns is done after the first, at its
@@ -27,6 +27,7 @@ from .midpoint_rows import (
 )
 from .parts import make_forget_history
 from .residual import make_residual
+from .row_terms import row_terms
 from .solvers.solver import ContactSystem
 from .spec import Spec
 
@@ -40,7 +41,7 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
     After a solve at the start of the step. Bodies then stand at the middle: see `make_stand_up`.
     append_contact, preload: kernels of `respond`; preload: None where nothing is preloaded.
     """
-    friction, turns = spec.has("friction"), spec.has("rotation")
+    friction, turns = row_terms(spec).frictional, spec.has("rotation")
     is_turning, begin_slip = make_is_turning(spec), make_begin_slip(spec)
     lasting = make_lasting(spec)
     keep_start, stay = make_keep_start(spec), make_stay(spec)

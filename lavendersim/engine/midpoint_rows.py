@@ -11,20 +11,24 @@ from math import sqrt
 from typing import Any
 
 from .block import make_relative_velocity
+from .collide.manifold.point import manifold_normal
 from .collide.narrow_phase import make_manifold
+from .collide.records import put_normal
 from .compile import kernel
 from .contact import make_normal_velocity
 from .effects import made_once
-from .effects.frictionless_contact import has_frictionless
 from .effects.gyroscopic import make_turn_midway
 from .records import PLANE, TOUCHING
 from .rotation import half_turn, is_round
+from .row_terms import row_terms
 from .spec import Spec
 
 # Change of a surface's velocity in half a step that a row may miss [m/s]: what solves leave.
 SAME = 1e-9
 # What moves slower changes no geometry, whatever turns [m/s].
 STILL = 100.0 * SAME
+# What approaches or parts slower does neither: it lasts [m/s].
+CALM = 100.0 * SAME
 # A contact lasts that begins to approach or part no faster than these shares: of what forces
 # change in a step, and of what the turning of its surfaces changes in half a step.
 FORCED, TURNED = 0.05, 0.5
@@ -87,14 +91,14 @@ def make_is_turning(spec: Spec) -> Any:
 
 def make_lasting(spec: Spec) -> Any:
     """Return `kernel(contact, params)`, of a row completed at the start: whether it lasts."""
-    friction, springs = spec.has("friction"), spec.has("contact_spring")
+    friction, springs = row_terms(spec).frictional, spec.has("contact_spring")
 
     def lasting(contact, params):
         contact.begin_n = contact.v_n_pre - contact.dv_n
         contact.middle_n = contact.begin_n
         forced = abs(contact.dv_n) * params.timestep / params.dt
         closed = contact.phi <= params.slop
-        calm = -(FORCED * forced + 100.0 * SAME) <= contact.begin_n <= 100.0 * SAME
+        calm = -(FORCED * forced + CALM) <= contact.begin_n <= CALM
         contact.lasts = 1 if closed and calm else 0
         if springs:
             if contact.spring_compliance > 0.0:  # its force has no jump
@@ -111,7 +115,7 @@ def make_begin_slip(spec: Spec) -> Any:
     Of rows solved at the start: their slip then, and whether it counts in the mean: where they
     slide throughout, or where friction would else do work on it. None without friction.
     """
-    if not spec.has("friction"):
+    if not row_terms(spec).frictional:
         return None
     relative_velocity = make_relative_velocity(spec)
 
@@ -197,7 +201,7 @@ def make_look(spec: Spec) -> Any:
     def look(state, count, poses, workspace):
         bodies, contacts = state.bodies, state.contacts
         scratch = workspace.collision
-        points, normal = scratch.manifold.points, scratch.manifold.normal
+        points = scratch.manifold.points
         if compound:
             place_parts(bodies)
         first = 0
@@ -230,7 +234,7 @@ def make_look(spec: Spec) -> Any:
                 if best >= 0:
                     point = points[best]
                     contact.x, contact.y, contact.z = point.x, point.y, point.z
-                    contact.nx, contact.ny, contact.nz = normal[0], normal[1], normal[2]
+                    put_normal(contact, manifold_normal(scratch.manifold))
                     if swept:
                         contact.tangential_x, contact.tangential_y = 0.0, 0.0
                         contact.tangential_z = 0.0
@@ -260,8 +264,9 @@ def make_stay(spec: Spec) -> Any:
 
 def make_keep_start(spec: Spec) -> Any:
     """Return `kernel(contacts, count)`: keep geometry and impulses of the solve at the start."""
-    swept, friction = spec.has("fast_bodies"), spec.has("friction")
-    torsional, rolling = spec.has("torsional_friction"), spec.has("rolling_friction")
+    swept, friction = spec.has("fast_bodies"), row_terms(spec).frictional
+    terms = row_terms(spec)
+    torsional, rolling = terms.torsional, terms.rolling
 
     def keep_start(contacts, count):
         for c in range(count):
@@ -284,8 +289,9 @@ def make_keep_start(spec: Spec) -> Any:
 
 def make_take_kept(spec: Spec) -> Any:
     """Return `kernel(contact)`: the impulses of the solve at the start."""
-    friction = spec.has("friction")
-    torsional, rolling = spec.has("torsional_friction"), spec.has("rolling_friction")
+    friction = row_terms(spec).frictional
+    terms = row_terms(spec)
+    torsional, rolling = terms.torsional, terms.rolling
 
     def take_kept(contact):
         contact.lambda_n = contact.kept_n
@@ -301,7 +307,8 @@ def make_take_kept(spec: Spec) -> Any:
 
 def make_shift(spec: Spec) -> Any:
     """Return `kernel(contact, lead, params)`, of a row at the middle: b, where a contact lasts."""
-    friction, frictionless = spec.has("friction"), has_frictionless(spec)
+    terms = row_terms(spec)
+    friction, frictionless = terms.frictional, terms.frictionless
     springs, spring_row = made_once(spec, "spring_row")
     swept = spec.has("fast_bodies")
     normal_velocity = make_normal_velocity(spec)
@@ -313,7 +320,7 @@ def make_shift(spec: Spec) -> Any:
         b = contact.middle_n - min(contact.begin_n, 0.0)
         ajar = max(contact.phi - params.slop, 0.0)
         forced = abs(contact.dv_n) * params.timestep / params.dt
-        turned = TURNED * abs(b) + 100.0 * SAME
+        turned = TURNED * abs(b) + CALM
         contact.lasts = 0
         soft = False
         if springs:

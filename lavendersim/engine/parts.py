@@ -1,4 +1,4 @@
-"""Counts of a step that is made in parts: sums (`effects.impact_order`, `error_control`)."""
+"""A step made in parts: its counts are the sums of theirs (`impact_order`, `error_control`)."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from typing import Any
 
 from .approach import NEVER
 from .compile import kernel
+from .effects import has_hook
 from .spec import Spec
 
 
@@ -31,7 +32,7 @@ def make_gather_parts(spec: Spec) -> Any:
 
 def make_forget_history(spec: Spec) -> Any:
     """Return `kernel(counters, rows)`: a step has the sweeps of the solve that counts, the last."""
-    records = spec.has("residual_log")
+    records = has_hook(spec, "sweep_row")
 
     def forget_history(counters, rows):
         if records:

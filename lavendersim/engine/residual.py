@@ -19,7 +19,7 @@ from .block import largest_response, make_slip_velocity
 from .compile import kernel
 from .cone import make_project_section, project_cone
 from .contact import make_frictionless_velocity
-from .effects.frictionless_contact import by_friction
+from .row_terms import by_friction, row_terms
 from .scaled_residual import make_scaled_residual
 from .spec import Spec
 from .spin_block import make_spin_residual, resists_turning
@@ -32,7 +32,7 @@ def make_row_residual(spec: Spec):
 
 def make_normal_residual(spec: Spec):
     """Return `kernel(contact, v_n) -> r` [m/s]: Signorini's law, of the normal alone."""
-    compliant = spec.has("compliance")
+    compliant = row_terms(spec).compliant
 
     def normal_residual(contact, v_n):
         w = v_n + contact.target
@@ -80,7 +80,7 @@ def _make_frictional_residual(spec: Spec):
 
 
 def _make_convex_residual(spec: Spec):
-    compliant = spec.has("compliance")
+    compliant = row_terms(spec).compliant
     spins, spin_residual = resists_turning(spec), make_spin_residual(spec)
     slip_velocity = make_slip_velocity(spec)
 

@@ -37,11 +37,6 @@ class Spec(NamedTuple):
         """Whether `effect` is part of this engine."""
         return effect in self.effects
 
-    @property
-    def shifts_slip(self) -> bool:
-        """Whether a row's slip is more than the bodies' velocities: its surface_1 and surface_2."""
-        return self.has("surface_velocity") or self.has("contact_midpoint")
-
     def including(self, *effects: str) -> Spec:
         """Return this structure with more effects."""
         return self._replace(effects=tuple(sorted({*self.effects, *effects})))

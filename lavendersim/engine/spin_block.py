@@ -19,12 +19,13 @@ from typing import Any
 from .block import inertia_response
 from .compile import inner, kernel
 from .effects import made_once
+from .row_terms import row_terms
 from .spec import Spec
 
 
 def resists_turning(spec: Spec) -> bool:
     """Whether contacts of this engine resist relative turning."""
-    return spec.has("torsional_friction") or spec.has("rolling_friction")
+    return row_terms(spec).torsional or row_terms(spec).rolling
 
 
 @inner
@@ -37,7 +38,8 @@ def _spin_response(va, vb, x, y, z):
 
 def make_resists_turning(spec: Spec) -> Any:
     """Return `kernel(pair) -> whether its contacts resist turning`."""
-    torsional, rolling = spec.has("torsional_friction"), spec.has("rolling_friction")
+    terms = row_terms(spec)
+    torsional, rolling = terms.torsional, terms.rolling
 
     def pair_resists_turning(pair):
         resists = False
@@ -101,7 +103,8 @@ def make_apply_start_torques(spec: Spec) -> Any:
     """Return `kernel(contact, va, vb)`: apply the psi that the contact starts the solve with."""
     if not resists_turning(spec):
         return None
-    torsional, rolling = spec.has("torsional_friction"), spec.has("rolling_friction")
+    terms = row_terms(spec)
+    torsional, rolling = terms.torsional, terms.rolling
     apply_spin = make_apply_spin(spec)
 
     def apply_start_torques(contact, va, vb):

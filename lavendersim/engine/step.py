@@ -18,7 +18,7 @@ from typing import Any
 from .approach import make_note_acceleration
 from .collide import narrow_phase
 from .compile import chain, composing, kernel
-from .effects import BY_NAME, made_by, made_once
+from .effects import BY_NAME, has_hook, made_by, made_once
 from .integrate import (
     keeps_motion,
     make_begin,
@@ -57,7 +57,7 @@ def make_advance(spec: Spec) -> Any:
 
     parameters, counters: records of shape (1,); the latter say how many steps are done.
     """
-    touches, record_residuals = bool(spec.shape_pairs), spec.has("residual_log")
+    touches, record_residuals = bool(spec.shape_pairs), has_hook(spec, "sweep_row")
     # The row of a step hashes the poses, whether or not they are logged.
     make_log_pose: Any = BY_NAME["pose_log"].hooks.log_pose
     log_pose = make_log_pose(spec) if spec.has("step_log") else None

@@ -1,4 +1,4 @@
-"""Substeps of a step made twice, whole and in halves (`effects.error_control`), and what is kept.
+"""Step doubling: substeps made whole and in halves, and which of them is kept (`error_control`).
 
 begin     keep the state that a substep begins with, and choose its length
 end_span  when the whole of it, or one half, is made: what comes next

@@ -28,6 +28,28 @@ def position(record):
 
 
 @inner
+def vector_of(array):
+    """Return the vector in an array of three."""
+    return Vec3(array[0], array[1], array[2])
+
+
+@inner
+def vector_at(rows, k):
+    """Return the vector in row k of an array (n, 3)."""
+    return Vec3(rows[k, 0], rows[k, 1], rows[k, 2])
+
+
+@inner
+def across(v):
+    """Return a vector across v and the axis of its smallest component, as long as the others."""
+    if abs(v.x) <= abs(v.y) and abs(v.x) <= abs(v.z):
+        return Vec3(0.0, v.z, -v.y)
+    if abs(v.y) <= abs(v.z):
+        return Vec3(-v.z, 0.0, v.x)
+    return Vec3(v.y, -v.x, 0.0)
+
+
+@inner
 def dot(a, b):
     """Return a . b."""
     return a.x * b.x + a.y * b.y + a.z * b.z

@@ -18,6 +18,7 @@ from math import sqrt
 from .compile import kernel
 from .records import Field
 from .residual import make_normal_residual
+from .row_terms import row_terms
 from .spec import Spec
 
 # Columns of steps: the largest of each, and the logged contact that has it, -1 for none.
@@ -56,7 +57,7 @@ def make_watch_signorini(spec: Spec):
 
 def make_watch_coulomb(spec: Spec):
     """Return `kernel(counters, at, contact, w_1, w_2)`; None without friction."""
-    if not spec.has("friction"):
+    if not row_terms(spec).frictional:
         return None
 
     def watch_coulomb(counters, at, contact, w_1, w_2):

@@ -1,4 +1,4 @@
-"""The engine's table of bodies and its tables of hulls, filled here alone.
+"""The engine's body table and its tables of hulls, filled from a cell.
 
 Columns that effects bring are filled where they are present.
 """

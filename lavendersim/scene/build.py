@@ -1,4 +1,4 @@
-"""The engine's arrays for one cell, filled from its config at this one place."""
+"""The engine's arrays for one cell: bodies, velocities, pairs, parameters."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""About how many contacts a step of a scene will have, before it runs.
+"""An estimate of how many contacts a step of a scene will have, before it runs.
 
     contacts
       settled |          ________    start: bounds that touch, times the points of a manifold

@@ -1,12 +1,11 @@
-"""An effect that accelerates bodies or captures contacts is its file and its name in one list.
+"""An effect of a kind that there is, is its file and its name in one list.
 
-Nothing else in the engine or the scene names it, but for what is listed here with its reason. To
-show that this is enough, a wind is added to a copy of lavender: one file, one line.
+Added to a copy of lavender, each in one file and one line: a wind, a cushion of air with a key of
+the config and a column of the log, and a padding that changes what contacts' rows are made of.
 """
 
 from __future__ import annotations
 
-import ast
 import json
 import os
 import shutil
@@ -18,78 +17,9 @@ from typing import Any
 import pytest
 from sources import ROOT
 
-from lavendersim.engine.effects import EFFECTS, Effect
 from tests.drop_config import DROP
 
 LIST = "lavendersim/engine/effects/__init__.py"
-CHAINED = [effect for effect in EFFECTS if effect.hooks.accelerate or effect.hooks.capture]
-FACT = "a property of the scene, which predicates may ask for, has the same name"
-ROW = "a soft row is a term in what every solver computes"
-TIME = "what gives way takes time: no impact of an instant"
-SPRING = "it has a penetration of its own, and no impact"
-LAW = "a row ahead of touching must be looked for, and its body's flight be kept"
-# Where else a name stands, as an identifier or a string, and why it must.
-ELSEWHERE = {
-    "gravity": {
-        "engine/effects/decision.py": FACT,
-        "scene/facts.py": FACT,
-        "scene/laws.py": FACT,
-        "scene/build.py": "its vector is a parameter of the run, with the other coefficients",
-        "engine/effects/fast_bodies.py": "how fast bodies may fall",
-        "scene/expected_contacts.py": "how soon bodies have landed",
-    },
-    "external_force": {
-        "engine/effects/sleeping.py": "who is pushed does not sleep",
-        "scene/events.py": "forces begin and end during the run",
-    },
-    "compliance": {
-        "engine/effects/pairwise_impacts.py": TIME,
-        "engine/effects/fast_bodies.py": "springs give energy back",
-        "engine/effects/impact_order.py": TIME,
-        "engine/foreseen_impacts.py": TIME,
-        "engine/impact_rows.py": TIME,
-        "engine/effects/contact_spring.py": "is another law of it",
-        "engine/contact.py": ROW,
-        "engine/assemble.py": ROW,
-        "engine/error_estimate.py": SPRING,
-        "engine/residual.py": ROW,
-        "engine/solvers/row_update.py": ROW,
-        "engine/solvers/newton/response.py": ROW,
-        "engine/solvers/newton/faces.py": ROW,
-        "engine/solvers/newton/least_norm.py": ROW,
-        "engine/solvers/packed/packing.py": ROW,
-        "engine/solvers/packed/sweep.py": ROW,
-        "engine/solvers/jacobi.py": ROW,
-        "engine/solvers/step_bound.py": ROW,
-        "engine/solvers/accelerated_projected_gradient.py": ROW,
-    },
-    "contact_spring": {
-        "engine/effects/pairwise_impacts.py": SPRING,
-        "engine/effects/impact_order.py": SPRING,
-        "engine/foreseen_impacts.py": SPRING,
-        "engine/impact_rows.py": SPRING,
-        "engine/effects/impact_time.py": SPRING,
-        "engine/effects/projection.py": SPRING,
-        "engine/midpoint_rows.py": SPRING,
-    },
-    "restitution": {
-        "engine/effects/capture_in_sweeps.py": "makes a mistake with it",
-        "engine/effects/fast_bodies.py": "captured, it gives energy",
-        "engine/effects/impact_energy.py": "takes the place of its law",
-        "engine/foreseen_impacts.py": "a rebound tells an impact from a lasting contact",
-    },
-    "speculative": {
-        "engine/effects/decision.py": FACT,
-        "scene/facts.py": FACT,
-        "scene/plan.py": "numerics choose this law: cells that differ in it share no engine",
-        "engine/effects/fast_bodies.py": "finds where to look ahead",
-        "engine/effects/contact_log.py": "rows ahead that never push are not logged",
-        "engine/effects/sleeping.py": LAW,
-        "engine/integrate.py": LAW,
-        "engine/collide/narrow_phase.py": LAW,
-        "engine/collide/pairs/box_box.py": LAW,
-    },
-}
 WIND = '''\
 """Wind: a force c (u - v) of air that moves at u along x, on every movable body."""
 
@@ -183,6 +113,63 @@ EFFECT = Effect(
     hooks=Hooks(capture=make_capture, preload=make_preload, contact_row=make_contact_row),
 )
 '''
+# An effect that changes what rows are made of: solvers ask for the term, and for no effect by name.
+PADDING = '''\
+"""Padding: a regularised row gamma = c/dt^2 of a compliance c, without any key of surfaces."""
+
+from .decision import Decision
+from .effect import Effect, Fields, Hooks, RowTerms, kernel
+
+COMPLIANCE = 1e-4  # [m/N]
+
+
+def decide(facts):
+    return Decision(bool(facts.pairs), "whatever touches is padded")
+
+
+def make(spec):
+    def pad(contact, pair, params):
+        contact.gamma += COMPLIANCE / (params.dt * params.dt)
+
+    return kernel(pad, spec)
+
+
+EFFECT = Effect(
+    name="padding",
+    decide=decide,
+    per="contact",
+    row=RowTerms(compliant=True),
+    fields=Fields(contact=[("gamma", "f8")]),
+    hooks=Hooks(capture=make),
+)
+'''
+PADDED = """\
+question: With which impulse does a padded ball begin to rest, by each solver?
+expected: With the share of its weight that its regularised row leaves.
+scene:
+  bodies:
+    floor: {shape: {kind: plane}}
+    ball: {shape: {kind: sphere, radius: 0.1}, mass: 1.0, position: [0, 0, 0.1]}
+numerics: {timestep: 1/240, integrator: semi_implicit_euler, tolerance: null, sweeps: 1000}
+duration: 1/240
+sweep:
+  solver:
+    path: numerics.solver
+    values: [projected_gauss_seidel, jacobi, accelerated_projected_gradient]
+measure:
+  fall: {kind: drift, after: 0.0}
+expect:
+  - {name: it hardly moves, measure: fall, at_most: 1.0}
+"""
+# Prints the impulses of all contacts of every cell of a run.
+IMPULSES = """
+import json, sys
+from pathlib import Path
+from lavendersim.trace import open_trace
+
+cells = Path(sys.argv[1]).glob("*-*/cells/*.mcap")  # not `latest`
+print(json.dumps([open_trace(path).contact["impulse_n"].tolist() for path in cells]))
+"""
 REST = """\
 question: What does the floor carry?
 expected: The weight less what the cushion carries.
@@ -237,31 +224,6 @@ decision = plan.decisions.get("wind")
 print(json.dumps({"package": lavendersim.__file__, "decision": decision, "speeds": speeds,
                   "hashes": hashes, "columns": engine.bodies.dtype.names}))
 """
-
-
-def names(file: Path) -> set[str]:
-    """Return the identifiers and strings of a source file; prose and docstrings are none."""
-    found = set()
-    for node in ast.walk(ast.parse(file.read_text())):
-        for field in ("id", "attr", "arg", "name", "module"):
-            found.add(getattr(node, field, None))
-        if isinstance(node, ast.Constant) and isinstance(node.value, str):
-            found.add(node.value)
-    return {name for name in found if isinstance(name, str)}
-
-
-@pytest.mark.parametrize("effect", CHAINED, ids=lambda effect: effect.name)
-def test_nothing_else_names_an_effect(effect: Effect) -> None:
-    own = {LIST, f"lavendersim/engine/effects/{effect.name}.py"}
-    files = [
-        path for room in ("engine", "scene") for path in (ROOT / "lavendersim" / room).rglob("*.py")
-    ]
-    naming = {
-        path.relative_to(ROOT / "lavendersim").as_posix()
-        for path in files
-        if path.relative_to(ROOT).as_posix() not in own and effect.name in names(path)
-    }
-    assert naming == set(ELSEWHERE.get(effect.name, ()))
 
 
 class Copy:
@@ -357,3 +319,17 @@ def test_an_effect_with_a_key_a_contact_term_and_a_column_is_a_file_and_a_line(
     assert log["cushion"] == [4.0 / 240.0] * steps
     # m g dt less F dt, each of a few roundings.
     assert log["pressing"] == pytest.approx([(9.81 - 4.0) / 240.0] * steps, rel=1e-13)
+
+
+def test_an_effect_that_softens_rows_is_a_file_and_a_line(tmp_path: Path) -> None:
+    """Whatever solver there is takes the term from the declaration."""
+    copy = Copy(tmp_path)
+    copy.config.write_text(PADDED)
+    copy.add("padding", PADDING)
+    copy.lavender("run", copy.config, "--runs", tmp_path / "runs")
+    pushed = json.loads(copy.python("-c", IMPULSES, tmp_path / "runs").splitlines()[-1])
+    # Of a ball at rest: m v = lambda - m g dt and v + gamma lambda = 0, with gamma = c/dt^2.
+    mass, dt, gamma = 1.0, 1.0 / 240.0, 1e-4 * 240.0**2
+    expected = mass * 9.81 * dt / (1.0 + mass * gamma)
+    # A thousand sweeps of one row, whose error shrinks to round-off of 6 m/s / 240.
+    assert pushed == [[pytest.approx(expected, rel=0.0, abs=1e-12)]] * 3

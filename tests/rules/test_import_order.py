@@ -21,11 +21,15 @@ NAMES = {file: ".".join(module_of(file)).removesuffix(".__init__") for file in f
 KNOWN = set(NAMES.values())
 PACKAGES = {name for file, name in NAMES.items() if file.stem == "__init__"}
 # Packages of modules that a list names.
-LISTED = {"lavendersim.engine.effects", "lavendersim.engine.solvers"}
+LISTED = {
+    *("lavendersim.engine.effects", "lavendersim.engine.solvers"),
+    *("lavendersim.measures.kinds", "lavendersim.figures.panels"),
+}
 # Each module in a process forked from one that has loaded the libraries: nothing of ours is loaded.
 FIRST = """
 import json, os, sys
 import numba, numba.core.registry, numba.extending, llvmlite.ir, numpy, pydantic
+import matplotlib.pyplot
 refused = []
 for name in json.loads(sys.argv[1]):
     child = os.fork()

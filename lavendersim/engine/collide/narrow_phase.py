@@ -11,8 +11,10 @@ from ..compile import inner, kernel
 from ..effects import made_once
 from ..records import TOUCHING
 from ..spec import Spec
-from ..vectors import Vec3
+from ..vectors import Vec3, dot
+from .manifold.point import manifold_normal
 from .pairs import SHAPE_PAIRS
+from .records import put_normal
 from .swept import make_is_fast, make_swept_manifold
 
 
@@ -73,7 +75,7 @@ def make(spec: Spec):
     def narrow_phase(state, listed, workspace, dt):
         bodies, motion, pairs, contacts = state.bodies, state.motion, state.pairs, state.contacts
         scratch = workspace.collision
-        points, normal = scratch.manifold.points, scratch.manifold.normal
+        points = scratch.manifold.points
         total = 0
         margin = TOUCHING
         for p in range(listed):
@@ -100,6 +102,7 @@ def make(spec: Spec):
                 count = manifold(pairs[p].kind, bodies[i], bodies[j], margin, scratch)
             if total + count > contacts.shape[0]:
                 return -1
+            n = manifold_normal(scratch.manifold)
             for k in range(count):
                 contact = contacts[total]
                 point = points[k]
@@ -107,14 +110,14 @@ def make(spec: Spec):
                 contact.key = pairs[p].key
                 contact.feature = point.feature
                 contact.x, contact.y, contact.z = point.x, point.y, point.z
-                contact.nx, contact.ny, contact.nz = normal[0], normal[1], normal[2]
+                put_normal(contact, n)
                 contact.phi = point.phi
                 if sweeps:
                     # Across n B's surface is touched where B will be at the impact.
-                    along = d.x * normal[0] + d.y * normal[1] + d.z * normal[2]
-                    contact.tangential_x = until_impact * (d.x - along * normal[0])
-                    contact.tangential_y = until_impact * (d.y - along * normal[1])
-                    contact.tangential_z = until_impact * (d.z - along * normal[2])
+                    along = dot(d, n)
+                    contact.tangential_x = until_impact * (d.x - along * n.x)
+                    contact.tangential_y = until_impact * (d.y - along * n.y)
+                    contact.tangential_z = until_impact * (d.z - along * n.z)
                 total += 1
         return total
 

@@ -71,6 +71,10 @@ class Frame(NamedTuple):
     n: Vec3
 
 
+# Farther than anything: nothing has been compared yet [m, or m^2].
+UNBOUNDED = 1e300
+
+
 @inner
 def normal_of(record):
     """Return the fields nx, ny, nz of a record."""

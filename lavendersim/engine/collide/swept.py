@@ -1,4 +1,4 @@
-"""Swept contacts: two fast bodies touch where they meet within the step, at their time of impact.
+"""Swept contacts: fast bodies touch where they meet in the step, found by conservative advancement.
 
 A contact made from the pose at the start of a step has that pose's normal. A body that moves by
 more than half its size before the step is over may pass beside what the normal points to (a wall's
@@ -35,7 +35,7 @@ from ..records import PLANE, TOUCHING
 from ..spec import Spec
 from ..vectors import Vec3, dot, plus_scaled, position
 from .convex.separation import make_separation
-from .manifold.point import copy_point, place, put_manifold_normal
+from .manifold.point import copy_point, manifold_normal, place, put_manifold_normal
 from .pairs import SHAPE_PAIRS
 from .pairs.convex import NEAREST
 from .records import put_position
@@ -95,11 +95,11 @@ def make_gap(spec: Spec, manifold):
 
         def closed_gap(kind, a, b, scratch):
             count = manifold(kind, a, b, ANY_MARGIN, scratch)
-            points, normal = scratch.manifold.points, scratch.manifold.normal
+            points = scratch.manifold.points
             for k in range(1, count):
                 if points[k].phi < points[0].phi:
                     copy_point(points[k], points[0])
-            return points[0].phi, Vec3(normal[0], normal[1], normal[2])
+            return points[0].phi, manifold_normal(scratch.manifold)
 
         return kernel(closed_gap, spec)
     separation, radius = make_separation(spec), make_radius(spec)
@@ -193,7 +193,7 @@ def make_swept_manifold(spec: Spec, manifold):
         put_position(b, start)
         if count == 0 or t == 0.0:
             return count, 0.0
-        n = Vec3(normal[0], normal[1], normal[2])
+        n = manifold_normal(scratch.manifold)
         along = dot(d, n)
         for k in range(count):
             move_to_start(points[k], impact, n, along)

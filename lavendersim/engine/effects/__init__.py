@@ -92,6 +92,11 @@ def made_once(spec: Spec, hook: str, *others: Any) -> tuple[bool, Any]:
     return False, None
 
 
+def has_hook(spec: Spec, hook: str) -> bool:
+    """Return whether some effect of `spec` has a hook; nothing is made."""
+    return any(getattr(effect.hooks, hook) is not None for effect in effects_of(spec))
+
+
 def surface_fields(spec: Spec) -> list[Field]:
     """Return the columns that surfaces bring to pairs."""
     return [field for effect in effects_of(spec) for field in effect.fields.pair]
@@ -129,6 +134,7 @@ __all__ = [
     "PairFacts",
     "columns_of",
     "effects_of",
+    "has_hook",
     "hook_names",
     "made_by",
     "made_once",

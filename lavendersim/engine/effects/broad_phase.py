@@ -1,4 +1,4 @@
-"""Broad phase: which bodies come near each other a tree tells, not a look at every pair."""
+"""Broad phase: a tree of bounds finds the bodies that come near, in place of all pairs."""
 
 from ..spec import Spec
 from .decision import Decision, Facts

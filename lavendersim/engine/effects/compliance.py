@@ -5,7 +5,7 @@ velocities and its unknown an impulse, F = lambda/dt and d = c F.
 """
 
 from .decision import Decision, Facts, PairFacts, by_pair
-from .effect import Effect, Fields, Hooks, kernel
+from .effect import Effect, Fields, Hooks, RowTerms, kernel
 from .keys import COMPLIANCE, SurfaceKey, in_series
 
 
@@ -25,7 +25,7 @@ def make(spec):
     """Return `kernel(contact, pair, params)`."""
 
     def compliance(contact, pair, params):
-        contact.gamma = pair.compliance / (params.dt * params.dt)
+        contact.gamma += pair.compliance / (params.dt * params.dt)
 
     return kernel(compliance, spec)
 
@@ -34,6 +34,7 @@ EFFECT = Effect(
     name="compliance",
     decide=decide,
     per="contact",
+    row=RowTerms(compliant=True),
     surface_keys=(
         SurfaceKey(
             name="compliance",

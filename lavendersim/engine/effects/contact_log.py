@@ -28,12 +28,13 @@ def make(spec: Spec, loggers):
     from ..compile import chain
     from ..parts import has_parts
     from ..residual import make_row_residual
+    from ..row_terms import row_terms
     from ..violations import make_forget, make_watch_coulomb, make_watch_signorini
     from . import effects_of
 
     speculative = spec.has("speculative")
     loads = any(effect.hooks.preload for effect in effects_of(spec))
-    friction = spec.has("friction")
+    friction = row_terms(spec).frictional
     row_residual, forget = make_row_residual(spec), make_forget(spec)
     watch_signorini, watch_coulomb = make_watch_signorini(spec), make_watch_coulomb(spec)
     log_more = chain(loggers, spec)

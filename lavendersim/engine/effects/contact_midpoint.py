@@ -21,7 +21,7 @@ from __future__ import annotations
 from ..records import Field
 from ..spec import Spec
 from .decision import Decision, Facts
-from .effect import Choice, Effect, Fields
+from .effect import Choice, Effect, Fields, RowTerms
 
 
 def decide(facts: Facts) -> Decision:
@@ -35,14 +35,16 @@ def decide(facts: Facts) -> Decision:
 
 def contact_fields(spec: Spec) -> list[Field]:
     """Return the columns of frictional and of swept contacts."""
+    from ..row_terms import row_terms
+
     swept = [("at_tx", "f8"), ("at_ty", "f8"), ("at_tz", "f8")] if spec.has("fast_bodies") else []
-    if not spec.has("friction"):
+    if not row_terms(spec).frictional:
         return swept
     torques = [("kept_psi_n", "f8"), ("kept_psi_1", "f8"), ("kept_psi_2", "f8")]
     return [
         *swept,
         *[("kept_1", "f8"), ("kept_2", "f8")],  # along the tangents
-        *(torques if spec.has("torsional_friction") or spec.has("rolling_friction") else ()),
+        *(torques if row_terms(spec).torsional or row_terms(spec).rolling else ()),
         ("surface_1", "f8"),  # added to the slip of the row: of moving surfaces, and b_t [m/s]
         ("surface_2", "f8"),
         *[(f"begin_{axis}", "f8") for axis in "xyz"],  # slip at the start, moving surfaces included
@@ -54,6 +56,7 @@ EFFECT = Effect(
     name="contact_midpoint",
     decide=decide,
     per="contact",
+    row=RowTerms(shifted=True),
     chosen_by=Choice("integrator"),
     fields=Fields(
         contact=[

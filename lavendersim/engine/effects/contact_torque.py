@@ -2,8 +2,7 @@
 
 from ..records import LEVER
 from .decision import Decision, Facts, named
-from .effect import Effect, Fields
-from .frictionless_contact import has_frictionless
+from .effect import Effect, Fields, RowTerms
 
 
 def decide(facts: Facts) -> Decision:
@@ -27,13 +26,16 @@ def decide(facts: Facts) -> Decision:
 
 def contact_fields(spec):
     """Return the columns of a normal row; the blocks of friction have levers of their own."""
-    return LEVER if has_frictionless(spec) else []
+    from ..row_terms import row_terms
+
+    return LEVER if row_terms(spec).frictionless else []
 
 
 EFFECT = Effect(
     name="contact_torque",
     decide=decide,
     per="contact",
+    row=RowTerms(levers=True),
     needs=("rotation",),
     fields=Fields(
         contact_with=contact_fields,

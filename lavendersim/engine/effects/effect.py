@@ -115,6 +115,7 @@ class Hooks:
     choose_impulses: Maker | None = None  # (system, workspace, params, counters), once solved
     spring_row: Maker | None = None  # (contact, v_n, params): its target and gamma
     contact_energy: Maker | None = None  # (contacts, count, velocities, params) -> stored [J]
+    sweep_row: Maker | None = None  # (params, counters, rows, sweep, residual): after each sweep
     log_contacts: Maker | None = None  # made with (spec, kernels of contact_row); after the solve
     store: Maker | None = None  # (contacts, count, bodies, cache, counters, params)
     project: Maker | None = None  # (contacts, order, count, velocities, pseudo, params) -> sweeps
@@ -144,6 +145,23 @@ class Balance:
     unlogged: Unlogged | None = None  # where a body has a key of the effect
 
 
+@dataclass(frozen=True, kw_only=True)
+class RowTerms:
+    """What contacts' rows are made of. Solvers ask for these terms, and never for an effect.
+
+    An effect that declares a term brings the fields it is written in; one that several bring stands
+    once. What an engine has of them: `row_terms.row_terms`.
+    """
+
+    frictional: bool = False  # rows of three, along n, t1 and t2: see `block`
+    frictionless: bool = False  # rows of a normal alone, beside those
+    compliant: bool = False  # gamma lambda_n adds to w_n: `gamma`, from 0 in each step [1/kg]
+    torsional: bool = False  # an angular impulse psi_n about n: see `spin_block` [N m s]
+    rolling: bool = False  # psi_1, psi_2 in the tangent plane [N m s]
+    levers: bool = False  # of rows of a normal: impulses turn bodies
+    shifted: bool = False  # surface_1, surface_2 add to the slip [m/s]
+
+
 class Choice(NamedTuple):
     """The key of a config that chooses an effect: a law, which no coefficient turns off."""
 
@@ -167,6 +185,7 @@ class Effect:
     body_keys: tuple[BodyKey, ...] = ()
     acts_on: Callable[[Any], Iterable[tuple[str, bool]]] | None = None  # bodies, whether it turns
     links: Callable[[Any, dict[str, int]], list[dict[str, Any]]] | None = None  # of a scene
+    row: RowTerms = RowTerms()
     balance: Balance = Balance()
     study_only: str = ""  # of a deliberate error, what it does: every run that has it says so
     fields: Fields = Fields()

@@ -1,4 +1,4 @@
-"""Forces and torques from the config: constant within a step, changed between steps.
+"""External forces and torques, from the config: constant within a step, changed between steps.
 
     v += F dt / m,   omega += I^-1 T dt
 Both act on the centre of mass, in world axes.

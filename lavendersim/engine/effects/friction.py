@@ -8,7 +8,7 @@ a sweep needs both and nothing else of a body.
 
 from ..spec import Spec
 from .decision import Decision, Facts, PairFacts, by_pair
-from .effect import Column, Derived, Effect, Fields, Hooks, Kernel, kernel
+from .effect import Column, Derived, Effect, Fields, Hooks, Kernel, RowTerms, kernel
 from .keys import COEFFICIENT, SurfaceKey, geometric_mean
 
 
@@ -77,31 +77,29 @@ def make_step_row(spec: Spec) -> Kernel:
     return make_log_coulomb(spec)
 
 
-def _duff(rows):
-    """Return side and a of logged normals: see `block.set_tangents`, whose bits these are."""
+def _first_tangent(rows):
+    """Return the first tangent of logged normals; the bits are those of `block.set_tangents`."""
     import numpy as np  # late: configs are read without it
 
-    z = rows["nz"]
-    side = np.where(z >= 0.0, 1.0, -1.0)
-    return side, -1.0 / (side + z)
+    from ..tangents import first_tangent
+
+    side = np.where(rows["nz"] >= 0.0, 1.0, -1.0)
+    return first_tangent(rows["nx"], rows["ny"], rows["nz"], side)
 
 
 def tangent_x(rows, timestep):
     """Return the first tangent's x of logged contacts."""
-    side, a = _duff(rows)
-    return 1.0 + side * rows["nx"] * rows["nx"] * a
+    return _first_tangent(rows)[0]
 
 
 def tangent_y(rows, timestep):
     """Return the first tangent's y of logged contacts."""
-    side, a = _duff(rows)
-    return side * (rows["nx"] * rows["ny"] * a)
+    return _first_tangent(rows)[1]
 
 
 def tangent_z(rows, timestep):
     """Return the first tangent's z of logged contacts."""
-    side, _ = _duff(rows)
-    return -side * rows["nx"]
+    return _first_tangent(rows)[2]
 
 
 NORMAL = ("nx", "ny", "nz")
@@ -114,6 +112,7 @@ EFFECT = Effect(
     name="friction",
     decide=decide,
     per="contact",
+    row=RowTerms(frictional=True),
     surface_keys=(
         SurfaceKey(
             name="friction",

@@ -5,12 +5,10 @@ apart; a frictionless one then costs, and gives, what it would in a scene withou
 bit.
 """
 
-from typing import Any
-
 from ..records import Field
 from ..spec import Spec
 from .decision import Decision, Facts, PairFacts, named
-from .effect import Effect, Fields, kernel
+from .effect import Effect, Fields, RowTerms
 
 
 def is_frictionless(pair: PairFacts) -> bool:
@@ -30,40 +28,16 @@ def decide(facts: Facts) -> Decision:
 
 def contact_fields(spec: Spec) -> list[Field]:
     """Return the column that tells the two kinds of contacts apart, where there are both."""
-    return [("frictional", "i8")] if spec.has("friction") else []
+    from ..row_terms import row_terms
 
-
-def has_frictionless(spec: Spec) -> bool:
-    """Whether an engine has contacts of a normal alone."""
-    return spec.has("frictionless_contact") or not spec.has("friction")
-
-
-def by_friction(spec: Spec, make_frictionless: Any, make_frictional: Any) -> Any:
-    """Return the kernel for the contacts that an engine has: of one kind, or by the contact.
-
-    make_frictionless, make_frictional: (spec) -> kernel(contact, ...), with equal arguments.
-    """
-    if not spec.has("friction"):
-        return make_frictionless(spec)
-    frictional = make_frictional(spec)
-    if not spec.has("frictionless_contact"):
-        return frictional
-    frictionless = make_frictionless(spec)
-
-    def either(contact, *others):
-        if contact.frictional == 0:
-            return frictionless(contact, *others)
-        return frictional(contact, *others)
-
-    either.__name__ = f"either_{frictionless.__name__}"  # as `lavender plan` lists them
-    either.__qualname__ += f"_{frictionless.__name__}"
-    return kernel(either, spec)
+    return [("frictional", "i8")] if row_terms(spec).frictional else []
 
 
 EFFECT = Effect(
     name="frictionless_contact",
     decide=decide,
     per="contact",
+    row=RowTerms(frictionless=True),
     fields=Fields(
         contact_with=contact_fields,
     ),

@@ -61,11 +61,12 @@ def make_settle(spec: Spec, solve: Any, classify: Any) -> Any:
     """
     from ..block import make_slip_velocity
     from ..parts import make_forget_history
+    from ..row_terms import row_terms
     from ..stronge import make_leave
 
     slip_velocity = make_slip_velocity(spec)
     leave = make_leave(spec)
-    some_frictionless = spec.has("frictionless_contact")
+    some_frictionless = row_terms(spec).frictionless
     forget_history = make_forget_history(spec)
 
     def work_of(contacts, count, velocities, motion, params):

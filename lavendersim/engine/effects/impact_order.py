@@ -26,8 +26,10 @@ from ..spec import Spec
 from .decision import Decision, Facts
 from .effect import Choice, Column, Effect, Fields, Hooks, kernel
 
-# Rows of contacts that the parts of one step may have in all; one that is not met is a 16th.
+# Rows of contacts that the parts of one step may have in all.
 WORK = 512
+# So many contacts that a part looks at, and does not meet, count as one row.
+LOOKS = 16
 # An impact of more rows is not made by itself.
 CROWD = 64
 # Bodies that overlap by more are moved apart first: what they do has no order in time [m].
@@ -155,7 +157,7 @@ def make_order(spec: Spec) -> Any:
         rows = touching
         if meets:
             rows = mark_impact(contacts, count, state.pairs, bodies, motion, params.slop)
-        counters.spent += 1 + rows + count // 16
+        counters.spent += 1 + rows + count // LOOKS
         if counters.spent > WORK or (meets and rows > CROWD):
             counters.unordered = 1
             return count, left

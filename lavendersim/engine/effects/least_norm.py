@@ -49,12 +49,14 @@ def make(spec: Spec) -> Any:
 
 def contact_fields(spec: Spec) -> list[Field]:
     """Return the columns of the face of Coulomb's cone that a contact's impulse is on."""
+    from ..row_terms import row_terms
+
     sliding = [
         *[("slip_1", "f8"), ("slip_2", "f8")],  # of the solve [m/s]
         *[("given_1", "f8"), ("given_2", "f8")],  # friction of what slides, given for a round [N s]
     ]
     # See `solvers.newton.faces`.
-    return [("face", "i8"), *(sliding if spec.has("friction") else ())]
+    return [("face", "i8"), *(sliding if row_terms(spec).frictional else ())]
 
 
 EFFECT = Effect(

@@ -23,13 +23,13 @@ FORCES = [
     ("stiff_n", "f8"),  # e along the normal and in the tangent plane [kg]
     ("stiff_t", "f8"),
 ]
-TORQUES = {  # by the effect that brings them: the same of psi, and the limits of a round [N m s]
-    "torsional_friction": [
+TORQUES = {  # by the term of rows: the same of psi, and the limits of a round [N m s]
+    "torsional": [
         *[(f"{name}_n", "f8") for name in ("start_psi", "best_psi", "spin", "step_spin")],
         ("stiff_torsion", "f8"),  # e [kg m^2]
         ("limit_torsion", "f8"),
     ],
-    "rolling_friction": [
+    "rolling": [
         *[
             (f"{name}_{k}", "f8")
             for name in ("start_psi", "best_psi", "spin", "step_spin")
@@ -64,7 +64,10 @@ def decide(facts: Facts) -> Decision:
 
 def contact_fields(spec: Spec) -> list[Field]:
     """Return the columns of what is on its way: impulses, and the torques that there are."""
-    torques = [field for effect, own in TORQUES.items() if spec.has(effect) for field in own]
+    from ..row_terms import row_terms
+
+    terms = row_terms(spec)
+    torques = [field for term, own in TORQUES.items() if getattr(terms, term) for field in own]
     return [*FORCES, *torques]
 
 

@@ -26,11 +26,12 @@ def decide(facts: Facts) -> Decision:
 def make(spec):
     """Return `kernel(contacts, order, count, velocities, pseudo, params) -> sweeps spent`."""
     from ..contact import make_apply_impulse, make_normal_velocity
+    from ..row_terms import row_terms
 
     normal_velocity = make_normal_velocity(spec)
     apply_impulse = make_apply_impulse(spec)
-    torque = spec.has("contact_torque")
-    friction, midpoint = spec.has("friction"), spec.has("midpoint")
+    torque = row_terms(spec).levers
+    friction, midpoint = row_terms(spec).frictional, spec.has("midpoint")
     centred, springs = spec.has("contact_midpoint"), spec.has("contact_spring")
     controlled = spec.has("error_control")
 

@@ -4,7 +4,7 @@ Solvers then evaluate it in every sweep, and leave none out because it would cha
 """
 
 from .decision import Decision, Facts
-from .effect import Column, Effect
+from .effect import Column, Effect, Hooks, kernel
 
 
 def decide(facts: Facts) -> Decision:
@@ -18,6 +18,22 @@ def decide(facts: Facts) -> Decision:
     return Decision(True, "record.residuals asks for the sweeps of some steps")
 
 
+def make_sweep_row(spec):
+    """Return `kernel(params, counters, rows, sweep, residual)`: a row, where its step is asked for.
+
+    sweep: how many are done; residual: the largest over the contacts [m/s].
+    """
+
+    def record_residual(params, counters, rows, sweep, residual):
+        step = counters.step + 1
+        if params.residuals_from <= step <= params.residuals_to:
+            row = rows[counters.residual_rows]
+            row.step, row.sweep, row.residual = step, sweep, residual
+            counters.residual_rows += 1
+
+    return kernel(record_residual, spec)
+
+
 EFFECT = Effect(
     name="residual_log",
     decide=decide,
@@ -28,4 +44,5 @@ EFFECT = Effect(
         Column("residual", "f8", "largest residual over the contacts", "m/s", number=2),
     ),
     channels=("/residuals",),
+    hooks=Hooks(sweep_row=make_sweep_row),
 )

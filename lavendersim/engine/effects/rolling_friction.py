@@ -11,7 +11,7 @@ psi_t: angular impulse on B [N m s]; a pair's c is the larger of its surfaces'. 
 from math import sqrt
 
 from .decision import Decision, Facts, PairFacts, by_pair
-from .effect import Column, Effect, Fields, Hooks, kernel
+from .effect import Column, Effect, Fields, Hooks, RowTerms, kernel
 from .keys import LENGTH, SurfaceKey, larger
 
 # spin: angular velocity of B relative to A after the solve, about the tangents.
@@ -92,6 +92,7 @@ EFFECT = Effect(
     name="rolling_friction",
     decide=decide,
     per="contact",
+    row=RowTerms(rolling=True),
     surface_keys=(
         SurfaceKey(
             name="rolling_friction",

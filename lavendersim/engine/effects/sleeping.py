@@ -155,10 +155,10 @@ def make_update_sleeping(spec: Spec) -> Any:
     `point_speed` is that of the step's begin: what counts is a step behind. island: (bodies,)
     int64, overwritten.
     """
+    from ..integrate import keeps_motion
     from ..islands import make_label_islands
 
-    turns = spec.has("rotation")
-    keeps = any(spec.has(name) for name in ("speculative", "midpoint", "impact_time"))
+    turns, keeps = spec.has("rotation"), keeps_motion(spec)
     kinematic = spec.has("kinematic")
     label_islands, is_pushed = make_label_islands(spec), make_is_pushed(spec)
 

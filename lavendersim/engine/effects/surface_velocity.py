@@ -10,7 +10,7 @@ from lavendersim.quantities.quantity import Vector3, Velocity
 
 from ..records import ORIENTED_BODY
 from .decision import Decision, Facts, named
-from .effect import Balance, Effect, Fields, Hooks, Unlogged, kernel
+from .effect import Balance, Effect, Fields, Hooks, RowTerms, Unlogged, kernel
 from .keys import BodyKey, Turn
 
 
@@ -52,6 +52,7 @@ EFFECT = Effect(
     name="surface_velocity",
     decide=decide,
     per="contact",
+    row=RowTerms(shifted=True),
     needs=("friction",),
     body_keys=(
         BodyKey(

@@ -8,7 +8,7 @@ no other friction: mu may be 0, friction's block is there for its frame.
 """
 
 from .decision import Decision, Facts, PairFacts, by_pair
-from .effect import Column, Effect, Fields, Hooks, kernel
+from .effect import Column, Effect, Fields, Hooks, RowTerms, kernel
 from .keys import LENGTH, SurfaceKey, larger
 
 # spin: angular velocity of B relative to A after the solve, about the normal.
@@ -78,6 +78,7 @@ EFFECT = Effect(
     name="torsional_friction",
     decide=decide,
     per="contact",
+    row=RowTerms(torsional=True),
     surface_keys=(
         SurfaceKey(
             name="torsional_friction",

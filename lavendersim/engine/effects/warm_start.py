@@ -18,9 +18,11 @@ def decide(facts: Facts) -> Decision:
 
 def make(spec):
     """Return `kernel(contacts, count, bodies, cache, counters, params)` that sets lambda_n."""
+    from ..row_terms import row_terms
 
-    friction = spec.has("friction")
-    torsional, rolling = spec.has("torsional_friction"), spec.has("rolling_friction")
+    friction = row_terms(spec).frictional
+    terms = row_terms(spec)
+    torsional, rolling = terms.torsional, terms.rolling
 
     def match_contacts(contacts, count, bodies, cache, counters, params):
         if counters.cached == 0:
@@ -85,9 +87,11 @@ def make(spec):
 
 def make_store(spec):
     """Return `kernel(contacts, count, bodies, cache, counters, params)` that refills the cache."""
+    from ..row_terms import row_terms
 
-    friction = spec.has("friction")
-    torsional, rolling = spec.has("torsional_friction"), spec.has("rolling_friction")
+    friction = row_terms(spec).frictional
+    terms = row_terms(spec)
+    torsional, rolling = terms.torsional, terms.rolling
 
     def store_contacts(contacts, count, bodies, cache, counters, params):
         for c in range(count):

@@ -19,12 +19,14 @@ from typing import Any, NamedTuple
 from ..compile import kernel
 from ..cone import project_cone
 from ..coupling import make_contact_velocity
+from ..effects import made_once
 from ..residual import make_residual
+from ..row_terms import row_terms
 from ..spec import Spec
 from . import step_bound
 from .jacobi import make_apply_changes
 from .solver import Solver
-from .sweep import make_record_residual, make_report
+from .sweep import make_report
 
 CONTACT_FIELDS = [
     *step_bound.CONTACT_FIELDS,
@@ -58,7 +60,8 @@ class StepSums(NamedTuple):
 
 def make_advance(spec: Spec) -> Any:
     """Return `kernel(contact, velocities, beta, theta) -> StepSums`: one contact's step."""
-    friction, compliant = spec.has("friction"), spec.has("compliance")
+    terms = row_terms(spec)
+    friction, compliant = terms.frictional, terms.compliant
     shifts = spec.friction_cone != "convex"
     contact_velocity = make_contact_velocity(spec)
 
@@ -115,7 +118,7 @@ def make_advance(spec: Spec) -> Any:
 
 def make_begin(spec: Spec) -> Any:
     """Return `kernel(contacts, count, velocities)`: at rest at the impulses that there are."""
-    friction = spec.has("friction")
+    friction = row_terms(spec).frictional
     contact_velocity = make_contact_velocity(spec)
 
     def begin(contacts, count, velocities):
@@ -151,9 +154,9 @@ def make(spec: Spec) -> Any:
 
     Writes counters.sweeps, .residual [m/s], .residual_contact and .not_converged of this step.
     """
-    record_residuals = spec.has("residual_log")
-    shifts = spec.has("friction") and spec.friction_cone != "convex"
-    record_residual, report = make_record_residual(spec), make_report(spec)
+    record_residuals, record_residual = made_once(spec, "sweep_row")
+    shifts = row_terms(spec).frictional and spec.friction_cone != "convex"
+    report = make_report(spec)
     residual, bound = make_residual(spec), step_bound.make_bound(spec)
     begin, advance, apply_changes = make_begin(spec), make_advance(spec), make_apply_changes(spec)
     shift: Any = make_shift(spec) if shifts else None

@@ -22,12 +22,13 @@ from math import inf, log
 from typing import Any
 
 from ..compile import kernel
+from ..effects import made_once
 from ..residual import make_residual
 from ..spec import Spec
 from .newton.envelope import allocate_envelope
 from .newton.method import make_newton
 from .solver import Solver, no_workspace
-from .sweep import make_record_residual, make_report, make_sweep
+from .sweep import make_report, make_sweep
 
 # Sweeps between two looks at how fast they converge.
 LOOK = 8
@@ -58,8 +59,8 @@ def make(spec: Spec):
 
     Writes counters.sweeps, .residual [m/s], .residual_contact and .not_converged of this step.
     """
-    record_residuals = spec.has("residual_log")
-    sweep, record_residual, report = make_sweep(spec), make_record_residual(spec), make_report(spec)
+    record_residuals, record_residual = made_once(spec, "sweep_row")
+    sweep, report = make_sweep(spec), make_report(spec)
     residual = make_residual(spec)
     uses_newton = spec.has("newton")
     newton: Any = make_newton(spec) if uses_newton else None

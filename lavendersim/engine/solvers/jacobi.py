@@ -13,12 +13,14 @@ from typing import Any
 from ..compile import kernel
 from ..cone import make_project_section, project_cone
 from ..coupling import make_add_impulse, make_contact_velocity
+from ..effects import made_once
 from ..residual import make_residual
+from ..row_terms import row_terms
 from ..spec import Spec
 from ..spin_block import make_solve_spin, resists_turning
 from . import step_bound
 from .solver import Solver
-from .sweep import make_record_residual, make_report
+from .sweep import make_report
 
 CONTACT_FIELDS = [
     *step_bound.CONTACT_FIELDS,
@@ -32,7 +34,8 @@ LOOK = 8
 
 def make_update(spec: Spec) -> Any:
     """Return `kernel(contact, velocities) -> change` [m/s]: the contact's own new impulse."""
-    friction, compliant = spec.has("friction"), spec.has("compliance")
+    terms = row_terms(spec)
+    friction, compliant = terms.frictional, terms.compliant
     project = make_project_section(spec)
     convex = friction and spec.friction_cone == "convex"
     contact_velocity = make_contact_velocity(spec)
@@ -71,7 +74,7 @@ def make_apply_changes(spec: Spec) -> Any:
 
     change: of what resists turning, which follows; 0 without it.
     """
-    friction = spec.has("friction")
+    friction = row_terms(spec).frictional
     add_impulse = make_add_impulse(spec)
     spins, solve_spin = resists_turning(spec), make_solve_spin(spec)
 
@@ -100,8 +103,8 @@ def make(spec: Spec) -> Any:
 
     Writes counters.sweeps, .residual [m/s], .residual_contact and .not_converged of this step.
     """
-    record_residuals = spec.has("residual_log")
-    record_residual, report = make_record_residual(spec), make_report(spec)
+    record_residuals, record_residual = made_once(spec, "sweep_row")
+    report = make_report(spec)
     residual, bound = make_residual(spec), step_bound.make_bound(spec)
     update, apply_changes = make_update(spec), make_apply_changes(spec)
 

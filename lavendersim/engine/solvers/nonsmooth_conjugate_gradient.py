@@ -16,10 +16,12 @@ from __future__ import annotations
 
 from ..compile import kernel
 from ..coupling import make_add_impulse
+from ..effects import made_once
 from ..residual import make_residual
+from ..row_terms import row_terms
 from ..spec import Spec
 from .solver import Solver
-from .sweep import make_record_residual, make_report, make_sweep
+from .sweep import make_report, make_sweep
 
 CONTACT_FIELDS = [
     ("start_n", "f8"),  # impulse before the sweep [N s]
@@ -37,7 +39,7 @@ def make_move_on(spec: Spec):
 
     lambda += share p, then p <- share p + last change.
     """
-    friction = spec.has("friction")
+    friction = row_terms(spec).frictional
     add_impulse = make_add_impulse(spec)
 
     def move_on(contact, contacts, velocities, share):
@@ -62,9 +64,9 @@ def make(spec: Spec):
 
     Writes counters.sweeps, .residual [m/s], .residual_contact and .not_converged of this step.
     """
-    friction = spec.has("friction")
-    record_residuals = spec.has("residual_log")
-    sweep, record_residual, report = make_sweep(spec), make_record_residual(spec), make_report(spec)
+    friction = row_terms(spec).frictional
+    record_residuals, record_residual = made_once(spec, "sweep_row")
+    sweep, report = make_sweep(spec), make_report(spec)
     residual = make_residual(spec)
     move_on = make_move_on(spec)
 

@@ -9,10 +9,11 @@ nothing either.
 from __future__ import annotations
 
 from ..compile import kernel
+from ..effects import made_once
 from ..residual import make_residual
 from ..spec import Spec
 from .solver import Solver
-from .sweep import make_record_residual, make_report, make_sweep
+from .sweep import make_report, make_sweep
 
 
 def make(spec: Spec):
@@ -20,10 +21,10 @@ def make(spec: Spec):
 
     Writes counters.sweeps, .residual [m/s] and .residual_contact of this step.
     """
-    sweep, record_residual, report = make_sweep(spec), make_record_residual(spec), make_report(spec)
+    sweep, report = make_sweep(spec), make_report(spec)
     residual = make_residual(spec)
-    every_sweep = spec.has("residual_log") or spec.tolerance
-    record_residuals = spec.has("residual_log")
+    record_residuals, record_residual = made_once(spec, "sweep_row")
+    every_sweep = record_residuals or spec.tolerance
     stop_early = spec.tolerance
 
     def projected_gauss_seidel(system, workspace, params, counters, residual_rows):

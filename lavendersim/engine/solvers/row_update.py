@@ -27,7 +27,7 @@ from ..cone import project_cone, project_disc, project_square
 from ..contact import make_frictionless_impulse, make_frictionless_velocity
 from ..coupling import make_add_frictional, make_frictional_velocity
 from ..effects import made_once
-from ..effects.frictionless_contact import by_friction
+from ..row_terms import by_friction, row_terms
 from ..spec import Spec
 from ..spin_block import make_solve_spin, resists_turning
 
@@ -44,7 +44,7 @@ def make_solve_contact_velocity(spec: Spec):
 
 
 def _make_normal(spec: Spec):
-    compliant, relaxed = spec.has("compliance"), spec.over_relaxation
+    compliant, relaxed = row_terms(spec).compliant, spec.over_relaxation
     recaptures, capture_again = made_once(spec, "recapture")
     normal_velocity = make_frictionless_velocity(spec)
     apply_impulse = make_frictionless_impulse(spec)
@@ -97,7 +97,7 @@ def _make_give(spec: Spec):
 
 
 def _make_block(spec: Spec):
-    compliant, relaxed = spec.has("compliance"), spec.over_relaxation
+    compliant, relaxed = row_terms(spec).compliant, spec.over_relaxation
     recaptures, capture_again = made_once(spec, "recapture")
     pyramid = spec.friction_cone == "pyramid"
     contact_velocity, give = make_frictional_velocity(spec), _make_give(spec)
@@ -132,7 +132,7 @@ def _make_block(spec: Spec):
 
 
 def _make_convex(spec: Spec):
-    compliant, relaxed = spec.has("compliance"), spec.over_relaxation
+    compliant, relaxed = row_terms(spec).compliant, spec.over_relaxation
     recaptures, capture_again = made_once(spec, "recapture")
     contact_velocity, give = make_frictional_velocity(spec), _make_give(spec)
 

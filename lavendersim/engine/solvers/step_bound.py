@@ -1,4 +1,4 @@
-"""How stiff W is at most, contact by contact: the steps that all contacts may take at once.
+"""A bound on W, contact by contact, by Cauchy and Schwarz: how far all contacts may step at once.
 
 W = sum over bodies of J_b M_b^-1 J_b^T. A body's term, with blocks X_i X_j^T, is at most the
 diagonal of n_b |X_i|^2, n_b the number of its contacts (Cauchy and Schwarz); so W is at most
@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from ..compile import kernel
+from ..row_terms import row_terms
 from ..spec import Spec
 
 CONTACT_FIELDS = [("bound", "f8")]  # [1/kg]
@@ -26,7 +27,8 @@ def allocate(spec: Spec, bodies: int, contacts: int) -> np.ndarray:
 
 def make_bound(spec: Spec) -> Any:
     """Return `kernel(contacts, count, touching)` that fills `bound`; touching: (bodies,) counts."""
-    friction, compliant = spec.has("friction"), spec.has("compliance")
+    terms = row_terms(spec)
+    friction, compliant = terms.frictional, terms.compliant
 
     def bound_by_matrix(contacts, count, touching):
         pass  # filled with the records

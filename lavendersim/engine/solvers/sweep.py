@@ -1,4 +1,4 @@
-"""What solvers by sweeps share: the sweep, a history of residuals, the report of a solve."""
+"""What solvers by sweeps share: one sweep over the contacts, and the report of a solve."""
 
 from __future__ import annotations
 
@@ -33,24 +33,6 @@ def make_sweep(spec: Spec):
         return greatest
 
     return kernel(sweep, spec)
-
-
-def make_record_residual(spec: Spec):
-    """Return `kernel(params, counters, rows, sweep, residual)`: a row of the history, if asked.
-
-    None where no history is recorded.
-    """
-    if not spec.has("residual_log"):
-        return None
-
-    def record_residual(params, counters, rows, sweep, residual):
-        step = counters.step + 1
-        if params.residuals_from <= step <= params.residuals_to:
-            row = rows[counters.residual_rows]
-            row.step, row.sweep, row.residual = step, sweep, residual
-            counters.residual_rows += 1
-
-    return kernel(record_residual, spec)
 
 
 def make_report(spec: Spec):

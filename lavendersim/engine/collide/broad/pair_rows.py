@@ -1,4 +1,4 @@
-"""Rows of the pair table, ascending in their key: two stable counting sorts of the pairs found.
+"""Rows of the pair table in ascending order of their key, by two stable counting sorts.
 
 key = i N + j,   i < j rows of the two bodies, N rows in all
 """

@@ -15,7 +15,7 @@ import numpy as np
 
 from ...compile import inner, kernel, once
 from ...vectors import dot, minus, position, scaled
-from ..records import copy_vertex, normal_of, put_normal
+from ..records import UNBOUNDED, copy_vertex, normal_of, put_normal
 from ..scratch import EPA_VERTICES, SIMPLEX_VERTICES
 from .gjk import make_difference
 from .polytope import NOT_SEEN, flood, grow, join, nearest_face, put_face
@@ -109,7 +109,7 @@ def make_epa(spec):
         tetrahedron(a, b, offset, count, vertices, hulls)
         face_count = put_tetrahedron(polytope)
         chosen = (0, 1, 2)
-        least, slack = 1e300, 0.0
+        least, slack = UNBOUNDED, 0.0
         for vertex in range(SIMPLEX_VERTICES, EPA_VERTICES):
             t = nearest_face(faces, face_count)
             d = faces[t].offset

@@ -18,7 +18,7 @@ from math import sqrt
 
 from ...compile import inner, kernel, once
 from ...vectors import Vec3, dot, length, negative, position
-from ..records import copy_vertex
+from ..records import UNBOUNDED, copy_vertex
 from ..scratch import NEW_VERTEX
 from ..shapes import make_support
 from .simplex import drop_weightless, nearest_on_simplex
@@ -33,6 +33,10 @@ GAP = 1e-14
 GRAIN = 2e-15
 # Closer than this share of the shapes' sizes the direction of v is round-off: they touch [-].
 CLOSE = 1e-11
+# Half a unit in the last place of 1: what a product of lengths loses [-].
+EPSILON = 1e-16
+# Squared distance of centres, as a share of the sizes', below which any direction may begin [-].
+CONCENTRIC = 1e-24
 
 
 @once
@@ -98,9 +102,9 @@ def make_gjk(spec):
         size = a.bound + b.bound
         new = vertices[NEW_VERTEX]
         v = negative(offset)
-        if dot(v, v) < 1e-24 * size * size:
+        if dot(v, v) < CONCENTRIC * size * size:
             v = Vec3(size, 0.0, 0.0)
-        squared = 1e300
+        squared = UNBOUNDED
         count, bound, grain = 0, 0.0, GRAIN * size
         for _ in range(ROUNDS):
             difference(a, b, offset, negative(v), scratch.hulls, new)
@@ -110,7 +114,7 @@ def make_gjk(spec):
                 return FARTHER, 0
             bound = max(bound, along / distance)
             if count > 0:
-                if squared - along <= GAP * squared + 1e-16 * size * distance:
+                if squared - along <= GAP * squared + EPSILON * size * distance:
                     break
                 if is_known(vertices, count):
                     break

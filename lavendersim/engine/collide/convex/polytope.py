@@ -7,11 +7,11 @@ vertex. The mesh is `scratch.Polytope`; edge k of a face leads from its corner k
 
 from __future__ import annotations
 
-from math import sqrt
+from math import inf, sqrt
 
 from ...compile import inner
 from ...vectors import cross, divided, dot, length, minus, position
-from ..records import normal_of, put_normal
+from ..records import UNBOUNDED, normal_of, put_normal
 
 # A face whose area is below this share of its edges' product has no normal [-].
 NO_AREA = 1e-12
@@ -29,7 +29,7 @@ def put_face(polytope, t, i, j, k):
     n = cross(u, w)
     area = length(n)
     if area <= NO_AREA * sqrt(dot(u, u) * dot(w, w)):
-        face.nx, face.ny, face.nz, face.offset = 0.0, 0.0, 0.0, 1e300
+        face.nx, face.ny, face.nz, face.offset = 0.0, 0.0, 0.0, UNBOUNDED
         return
     n = divided(n, area)
     put_normal(face, n)
@@ -46,7 +46,7 @@ def join(polytope, t, ij, jk, ki):
 @inner
 def nearest_face(faces, count):
     """Face whose plane is nearest to the origin, counted negative where the origin is outside."""
-    chosen, nearest = 0, 1e301
+    chosen, nearest = 0, inf
     for t in range(count):
         if faces[t].alive and faces[t].offset < nearest:
             chosen, nearest = t, faces[t].offset

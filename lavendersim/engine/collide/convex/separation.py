@@ -15,7 +15,7 @@ from __future__ import annotations
 from ...compile import kernel, once
 from ...records import PLANE
 from ...vectors import Vec3, dot, minus, negative, plus_scaled, position, scaled
-from ..records import copy_separation, normal_of, put_normal
+from ..records import UNBOUNDED, copy_separation, normal_of, put_normal
 from ..shapes import (
     has_curved,
     make_best_face,
@@ -35,7 +35,12 @@ ASCENTS = 30
 # How far B is moved clear of A, as a share of the sizes [-]. Larger: slower; smaller: round-off of
 # 1e-16 of the sizes shows in the normal.
 CLEARANCE = 1e-4
-ANY_DISTANCE = 1e300  # [m]
+# And as a multiple of the depth found so far, which may be less than the depth along n [-].
+CLEAR = 1.25
+# Ascent ends when the normal's components change by less in all, or the separation, as a share of
+# the sizes: round-off [-].
+STEADY = 1e-6
+NO_GAIN = 1e-15
 
 
 @once
@@ -67,8 +72,8 @@ def make_ascend(spec):
         copy_separation(found, best)
         for _ in range(ASCENTS):
             n = normal_of(best)
-            t = 1.25 * max(-best.distance, 0.0) + CLEARANCE * size
-            status, _ = gjk(a, b, plus_scaled(offset, t, n), ANY_DISTANCE, scratch)
+            t = CLEAR * max(-best.distance, 0.0) + CLEARANCE * size
+            status, _ = gjk(a, b, plus_scaled(offset, t, n), UNBOUNDED, scratch)
             if status == OVERLAPPING:
                 break
             m = normal_of(found)
@@ -82,7 +87,7 @@ def make_ascend(spec):
             gain = s - best.distance
             found.distance = s
             copy_separation(found, best)
-            if moved < 1e-6 or gain <= 1e-15 * size:
+            if moved < STEADY or gain <= NO_GAIN * size:
                 break
         copy_separation(best, found)
 
@@ -148,7 +153,7 @@ def make_separation(spec):
                 p = support(b, negative(n), scratch.hulls)
                 height = dot(n, Vec3(b.x + p.x, b.y + p.y, b.z + p.z))
                 return height - a.offset - radius(b), n
-        status, _ = gjk(a, b, minus(position(b), position(a)), ANY_DISTANCE, scratch)
+        status, _ = gjk(a, b, minus(position(b), position(a)), UNBOUNDED, scratch)
         reach = radius(a) + radius(b)
         if status == OVERLAPPING:
             return -reach, Vec3(0.0, 0.0, 0.0)

@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 from ...compile import inner
 from ...vectors import Vec3, cross, dot, minus, plus_scaled, position, scaled
-from ..records import copy_vertex
+from ..records import UNBOUNDED, copy_vertex
 
 # Triangles whose squared sine is below this have no normal to speak of: their edges are tried.
 FLAT = 1e-26
@@ -60,7 +60,7 @@ def nearest_on_triangle(p, q, r):
         c = 1.0 - a - b
         if a >= 0.0 and b >= 0.0 and c >= 0.0:
             return OnTriangle(foot, a, b, c)
-    best, nearest = 1e300, OnTriangle(Vec3(0.0, 0.0, 0.0), 0.0, 0.0, 0.0)
+    best, nearest = UNBOUNDED, OnTriangle(Vec3(0.0, 0.0, 0.0), 0.0, 0.0, 0.0)
     if a < 0.0:
         x, first, second = nearest_on_segment(q, r)
         d = dot(x, x)
@@ -95,7 +95,7 @@ def faces_away(p, q, r, opposite, grain):
 @inner
 def nearest_on_tetrahedron(vertices, weights, grain):
     """Write the weights of the nearest point; returns (inside, point)."""
-    best = 1e300
+    best = UNBOUNDED
     nearest = Vec3(0.0, 0.0, 0.0)
     for opposite in range(4):
         i = 1 if opposite == 0 else 0
@@ -109,7 +109,7 @@ def nearest_on_tetrahedron(vertices, weights, grain):
                 best, nearest = d, found.point
                 weights[i], weights[j], weights[k] = found.p, found.q, found.r
                 weights[opposite] = 0.0
-    return best == 1e300, nearest
+    return best == UNBOUNDED, nearest
 
 
 @inner

@@ -7,7 +7,7 @@ kept; the rest is looked for across what there is.
 from __future__ import annotations
 
 from ...compile import inner, kernel, once
-from ...vectors import Vec3, cross, dot, length, minus, position, scaled
+from ...vectors import Vec3, across, cross, dot, length, minus, negative, position, scaled
 from ..records import copy_vertex
 from ..scratch import NEW_VERTEX
 from .gjk import make_difference
@@ -65,12 +65,7 @@ def along_an_axis(side):
 @inner
 def across_line(u):
     """Two directions across u and each other, as long as u's larger components."""
-    if abs(u.x) <= abs(u.y) and abs(u.x) <= abs(u.z):
-        p = Vec3(0.0, -u.z, u.y)
-    elif abs(u.y) <= abs(u.z):
-        p = Vec3(u.z, 0.0, -u.x)
-    else:
-        p = Vec3(-u.y, u.x, 0.0)
+    p = negative(across(u))
     return p, scaled(1.0 / length(u), cross(u, p))
 
 

@@ -17,8 +17,9 @@ from typing import NamedTuple
 
 from ...compile import inner
 from ...records import TOUCHING
-from ...vectors import Vec3, dot, minus, plus_scaled, scaled
+from ...vectors import Vec3, dot, minus, plus_scaled, scaled, vector_at, vector_of
 from ..records import Frame
+from .features import SAME_COSINE
 from .point import copy_point, place, put_manifold_normal
 
 # Rows of a polygon, two of which are in the manifold's points: four cuts make eight vertices of
@@ -55,13 +56,13 @@ class Side(NamedTuple):
 @inner
 def axis_of(box, k):
     """Return an axis of a `BoxFrame` [-]."""
-    return Vec3(box.axes[k, 0], box.axes[k, 1], box.axes[k, 2])
+    return vector_at(box.axes, k)
 
 
 @inner
 def centre_of(box):
     """Return the centre of a `BoxFrame` [m]."""
-    return Vec3(box.centre[0], box.centre[1], box.centre[2])
+    return vector_of(box.centre)
 
 
 @inner
@@ -71,7 +72,7 @@ def incident_axis(incident, n):
     for k in range(3):
         along = dot(axis_of(incident, k), n)
         # The margin keeps the choice when two faces oppose n equally.
-        if abs(along) > abs(steepest) + 1e-9:
+        if abs(along) > abs(steepest) + SAME_COSINE:
             axis, steepest = k, along
     return axis, (-1.0 if steepest > 0.0 else 1.0)
 

@@ -19,6 +19,8 @@ from ..records import put_position
 FACE_COSINE = 0.95
 # Greatest slope of a line that counts as across n [-].
 LINE_SLOPE = 0.3
+# Of faces whose normals are as near to n but for this, the first is taken [-].
+SAME_COSINE = 1e-9
 
 
 @inner

@@ -13,7 +13,7 @@ from math import sqrt
 
 from ...compile import inner
 from ...records import TOUCHING
-from ...vectors import Vec3, cross, dot, position, scaled
+from ...vectors import Vec3, across, cross, dot, position, scaled
 from ..records import DISC, FACE_LOOP, LINE, POINT, Frame
 from .point import copy_point, place
 from .polygon_clip import OTHER, blend, cut_line, cut_polygon, slope_of
@@ -29,12 +29,7 @@ PARALLEL = 2e-3
 @inner
 def frame_along(n):
     """Return a right-handed frame t1, t2, n; t1 is across the smallest component of n."""
-    if abs(n.x) <= abs(n.y) and abs(n.x) <= abs(n.z):
-        t = Vec3(0.0, n.z, -n.y)
-    elif abs(n.y) <= abs(n.z):
-        t = Vec3(-n.z, 0.0, n.x)
-    else:
-        t = Vec3(n.y, -n.x, 0.0)
+    t = across(n)
     t1 = scaled(1.0 / sqrt(dot(t, t)), t)
     return Frame(t1, cross(n, t1), n)
 

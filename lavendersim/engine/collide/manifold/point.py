@@ -8,10 +8,16 @@ matters for its balance.
 from __future__ import annotations
 
 from ...compile import inner
-from ...vectors import cross, dot, minus, position
+from ...vectors import cross, dot, minus, position, vector_of
 
 # Points that `keep_four` exchanges at most: three are kept beside the deepest, most fit at once.
 EXCHANGES = 4
+# A later point is taken where it is better by this share, or round-off would choose [-].
+BETTER = 1e-9
+# The deepest of points whose depths differ by less is the first of them [m].
+SAME_DEPTH = 1e-9
+# A fourth point that adds less than this lies in the triangle of the others [m^2].
+NO_AREA = 1e-18
 
 
 @inner
@@ -73,7 +79,7 @@ def exchange(points, count, n):
             q = points[2 if k == 3 else 3]
             for i in range(4, count):
                 area = quadrilateral(points[0], p, q, points[i], n)
-                if area > best * (1.0 + 1e-9):
+                if area > best * (1.0 + BETTER):
                     best, out, chosen = area, k, i
         if out < 0:
             break
@@ -93,20 +99,20 @@ def keep_four(points, count, n):
     deepest = 0
     for i in range(1, count):
         # The margin keeps the choice when depths differ by round-off only.
-        if points[i].phi < points[deepest].phi - 1e-9:
+        if points[i].phi < points[deepest].phi - SAME_DEPTH:
             deepest = i
     swap_points(points[0], points[deepest])
     best, chosen = -1.0, 1
     for i in range(1, count):
         d = minus(points[i], points[0])
         distance = dot(d, d)
-        if distance > best * (1.0 + 1e-9):
+        if distance > best * (1.0 + BETTER):
             best, chosen = distance, i
     swap_points(points[1], points[chosen])
     best, chosen = -1.0, 2
     for i in range(2, count):
         area = abs(signed_area(points[0], points[1], points[i], n))
-        if area > best * (1.0 + 1e-9):
+        if area > best * (1.0 + BETTER):
             best, chosen = area, i
     swap_points(points[2], points[chosen])
     turn = signed_area(points[0], points[1], points[2], n)
@@ -118,7 +124,7 @@ def keep_four(points, count, n):
         gain = max(gain, -side * signed_area(points[0], points[1], points[i], n))
         gain = max(gain, -side * signed_area(points[1], points[2], points[i], n))
         gain = max(gain, -side * signed_area(points[2], points[0], points[i], n))
-        if gain > best * (1.0 + 1e-9) + 1e-18:
+        if gain > best * (1.0 + BETTER) + NO_AREA:
             best, chosen = gain, i
     if chosen < 0:
         return 3
@@ -131,6 +137,12 @@ def keep_four(points, count, n):
 def put_manifold_normal(manifold, n):
     """Write the normal that all points share."""
     manifold.normal[0], manifold.normal[1], manifold.normal[2] = n.x, n.y, n.z
+
+
+@inner
+def manifold_normal(manifold):
+    """Return the normal that all points share."""
+    return vector_of(manifold.normal)
 
 
 @inner

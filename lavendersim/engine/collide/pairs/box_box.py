@@ -33,7 +33,7 @@ from ..manifold.box_clip import (
     centre_of,
     clip_incident_face,
 )
-from ..manifold.point import keep_four, place, put_manifold_normal
+from ..manifold.point import keep_four, manifold_normal, place, put_manifold_normal
 from ..records import normal_of
 from ..shape_pair import ShapePair
 
@@ -65,7 +65,7 @@ def load_box(body, d, box):
     axes[1, 0], axes[1, 1], axes[1, 2] = body.r01, body.r11, body.r21
     axes[2, 0], axes[2, 1], axes[2, 2] = body.r02, body.r12, body.r22
     for i in range(3):
-        offset[i] = d.x * axes[i, 0] + d.y * axes[i, 1] + d.z * axes[i, 2]
+        offset[i] = dot(d, axis_of(box, i))
 
 
 @inner
@@ -192,8 +192,7 @@ def clip_faces(b_is_better, axis_a, axis_b, margin, scratch):
         # B is the reference: its outward normal points back to A.
         face = ReferenceFace(axis_b, 1.0 if box_b.offset[axis_b] < 0.0 else -1.0, BOX_NAMES)
         count = clip_incident_face(box_b, box_a, face, margin, manifold)
-        normal = manifold.normal
-        normal[0], normal[1], normal[2] = -normal[0], -normal[1], -normal[2]
+        put_manifold_normal(manifold, negative(manifold_normal(manifold)))
         return count
     face = ReferenceFace(axis_a, 1.0 if box_a.offset[axis_a] >= 0.0 else -1.0, 0)
     return clip_incident_face(box_a, box_b, face, margin, manifold)
@@ -244,8 +243,7 @@ def make(spec):
                 if status != APART:
                     return 0
                 return nearest_contact(a, found, manifold)
-        normal = manifold.normal
-        return keep_four(manifold.points, count, Vec3(normal[0], normal[1], normal[2]))
+        return keep_four(manifold.points, count, manifold_normal(manifold))
 
     return kernel(box_box, spec)
 

@@ -23,6 +23,8 @@ from ..shape_pair import ShapePair
 PARALLEL = 2e-3
 # Axes nearer than this share of the capsules' sizes meet: their offset is round-off [-].
 MEETING = 1e-14
+# Squared sine [-] below which axes are parallel to the last digit: any point of one is as near.
+NO_SINE_SQUARED = 1e-30
 
 
 @inner
@@ -41,7 +43,7 @@ def nearest_on_axes(d, u, w, half_a, half_b):
     c = cross(u, w)
     squared = dot(c, c)  # sine squared, exact where the axes are nearly parallel
     s = 0.0
-    if squared > 1e-30:
+    if squared > NO_SINE_SQUARED:
         s = min(max((du - cosine * dw) / squared, -half_a), half_a)
     # Nearest on B to A's point, then on A to that: exact once either of the two is clamped.
     r = min(max(cosine * s - dw, -half_b), half_b)

@@ -18,7 +18,7 @@ from ..manifold.edge_line import make_edge_along
 from ..manifold.line_normal import make_line_normal
 from ..manifold.patch import contact_patch, frame_along
 from ..manifold.point import place, write_manifold
-from ..records import LINE, normal_of
+from ..records import LINE, UNBOUNDED, normal_of
 from ..shape_pair import ShapePair
 from ..shapes import has_curved, make_feature, make_radius
 
@@ -30,7 +30,7 @@ NEAREST = 1 << 60
 def put_patch(a, frame, start, total, margin, rows):
     """Put a patch's corners within the margin into the world; returns (count, least separation)."""
     t1, t2, n = frame.t1, frame.t2, frame.n
-    count, least = 0, 1e300
+    count, least = 0, UNBOUNDED
     for k in range(start, start + total):
         row = rows[k]
         if row.phi <= margin:

@@ -11,6 +11,7 @@ from ...compile import inner, kernel
 from ...records import TOUCHING
 from ...vectors import Vec3, dot, negative, position
 from ..manifold.point import place, write_manifold
+from ..records import UNBOUNDED
 from ..shapes import make_feature, make_radius, make_support
 
 CORNER_BITS = 8  # of a name, for the corner within the feature
@@ -41,7 +42,7 @@ def make(spec):
         phi = height + dot(n, lowest)
         if phi > margin:
             return 0
-        count, least, rows = 0, 1e300, scratch.polygon
+        count, least, rows = 0, UNBOUNDED, scratch.polygon
         found = feature(body, Vec3(0.0, 0.0, 0.0), negative(n), hulls, scratch.outline_b)
         for k in range(found.corners):
             p = position(scratch.outline_b.corners[k])

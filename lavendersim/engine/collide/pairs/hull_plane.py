@@ -7,7 +7,7 @@ of the face that looks down are a subset; keeping four of all spans at least as 
 from __future__ import annotations
 
 from ...compile import kernel
-from ...vectors import Vec3, dot, from_body, into_body
+from ...vectors import Vec3, dot, from_body, into_body, vector_at
 from ..manifold.point import place, write_manifold
 from ..shape_pair import ShapePair
 
@@ -25,10 +25,10 @@ def make(spec):
         first, last = hulls.vertex_start[hull.hull], hulls.vertex_start[hull.hull + 1]
         count = 0
         for v in range(first, last):
-            x, y, z = vertices[v, 0], vertices[v, 1], vertices[v, 2]
-            phi = height + local.x * x + local.y * y + local.z * z
+            corner = vector_at(vertices, v)
+            phi = height + local.x * corner.x + local.y * corner.y + local.z * corner.z
             if phi <= margin:
-                p, half = from_body(hull, Vec3(x, y, z)), 0.5 * phi
+                p, half = from_body(hull, corner), 0.5 * phi
                 middle = Vec3(
                     hull.x + p.x - half * n.x,
                     hull.y + p.y - half * n.y,

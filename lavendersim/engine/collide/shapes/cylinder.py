@@ -10,7 +10,7 @@ from math import sqrt
 
 from ...compile import inner, kernel
 from ...records import CYLINDER
-from ...vectors import Vec3, from_body, into_body
+from ...vectors import Vec3, from_body, into_body, vector_of
 from ..manifold.features import FACE_COSINE, LINE_SLOPE, put_corner
 from ..records import DISC, LINE, NO_FEATURE, Feature, put_normal
 from ..scratch import CAP_CORNERS
@@ -22,6 +22,8 @@ LEVEL = 1e-6
 # The side of a cylinder, in names of features; its caps are 0 and 1.
 SIDE = 2
 DIAGONAL = sqrt(0.5)
+# What is shorter has a square that is zero, and no direction [-].
+NO_LENGTH = 1e-150
 
 
 @inner
@@ -48,8 +50,7 @@ def put_cap(body, centre, local, outline):
     x, y = local.x, local.y
     across = sqrt(x * x + y * y)
     if not across > LEVEL:
-        pull = outline.pull
-        along = into_body(body, Vec3(pull[0], pull[1], pull[2]))
+        along = into_body(body, vector_of(outline.pull))
         x, y = along.x, along.y
         across = sqrt(x * x + y * y)
         if not across > LEVEL * abs(along.z):
@@ -76,7 +77,7 @@ def make_support(spec):
         local = into_body(body, direction)
         across = sqrt(local.x * local.x + local.y * local.y)
         # Straight along the axis every point of the cap is extreme: its centre.
-        share = body.hx / across if across > 1e-150 else 0.0
+        share = body.hx / across if across > NO_LENGTH else 0.0
         z = body.hz if local.z >= 0.0 else -body.hz
         return from_body(body, Vec3(share * local.x, share * local.y, z))
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from ...compile import kernel
 from ...records import HULL, HULL_BODY
-from ...vectors import Vec3, from_body, into_body
+from ...vectors import Vec3, dot, from_body, into_body, vector_at
+from ..records import UNBOUNDED
 from ..shape import Shape
 from .polyhedron import edge_of_facet, facet_along, feature_of_facet, put_loop
 
@@ -16,12 +17,12 @@ def make_support(spec):
         local = into_body(body, direction)
         vertices = hulls.vertices
         first, last = hulls.vertex_start[body.hull], hulls.vertex_start[body.hull + 1]
-        best, farthest = first, -1e300
+        best, farthest = first, -UNBOUNDED
         for k in range(first, last):
-            reach = local.x * vertices[k, 0] + local.y * vertices[k, 1] + local.z * vertices[k, 2]
+            reach = dot(local, vector_at(vertices, k))
             if reach > farthest:
                 best, farthest = k, reach
-        return from_body(body, Vec3(vertices[best, 0], vertices[best, 1], vertices[best, 2]))
+        return from_body(body, vector_at(vertices, best))
 
     return kernel(hull_support, spec)
 

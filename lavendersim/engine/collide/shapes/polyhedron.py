@@ -9,13 +9,15 @@ from math import sqrt
 from typing import NamedTuple
 
 from ...compile import inner
-from ...vectors import Vec3, dot, from_body, into_body, minus, position
+from ...vectors import Vec3, dot, from_body, into_body, minus, position, vector_at
 from ..convex.hull_geometry import MOST_FACES
-from ..manifold.features import FACE_COSINE, LINE_SLOPE, put_corner, put_line
-from ..records import FACE_LOOP, LINE, NO_FEATURE, Feature, put_normal, put_position
+from ..manifold.features import FACE_COSINE, LINE_SLOPE, SAME_COSINE, put_corner, put_line
+from ..records import FACE_LOOP, LINE, NO_FEATURE, UNBOUNDED, Feature, put_normal, put_position
 
 # Names of edges come behind those of all faces.
 EDGES = MOST_FACES
+# Of edges whose lower ends are as high but for this, the first is taken [m].
+SAME_HEIGHT = 1e-12
 
 
 class Facet(NamedTuple):
@@ -33,12 +35,11 @@ def facet_along(body, row, n, hulls):
     local = into_body(body, n)
     best, chosen = -2.0, starts[row]
     for f in range(starts[row], starts[row + 1]):
-        cosine = local.x * normals[f, 0] + local.y * normals[f, 1] + local.z * normals[f, 2]
+        cosine = dot(local, vector_at(normals, f))
         # The margin keeps the choice when two faces are along n equally.
-        if cosine > best + 1e-9:
+        if cosine > best + SAME_COSINE:
             best, chosen = cosine, f
-    normal = Vec3(normals[chosen, 0], normals[chosen, 1], normals[chosen, 2])
-    return Facet(row, chosen, from_body(body, normal))
+    return Facet(row, chosen, from_body(body, vector_at(normals, chosen)))
 
 
 @inner
@@ -47,20 +48,20 @@ def put_loop(body, facet, scale, centre, hulls, outline):
     first = hulls.loop_start[facet.face]
     count = hulls.loop_start[facet.face + 1] - first
     for k in range(count):
-        v = hulls.loops[first + k]
-        x, y, z = hulls.vertices[v, 0], hulls.vertices[v, 1], hulls.vertices[v, 2]
-        put_corner(body, centre, Vec3(scale.x * x, scale.y * y, scale.z * z), outline, k)
+        corner = vector_at(hulls.vertices, hulls.loops[first + k])
+        local = Vec3(scale.x * corner.x, scale.y * corner.y, scale.z * corner.z)
+        put_corner(body, centre, local, outline, k)
     return count
 
 
 @inner
 def flattest_edge(corners, count, n):
     """Edge of the loop whose lower end is highest along n: (edge, its slope)."""
-    chosen, best = 0, -1e300
+    chosen, best = 0, -UNBOUNDED
     for k in range(count):
         p, q = position(corners[k]), position(corners[(k + 1) % count])
         low = min(dot(p, n), dot(q, n))
-        if low > best + 1e-12:
+        if low > best + SAME_HEIGHT:
             chosen, best = k, low
     d = minus(position(corners[(chosen + 1) % count]), position(corners[chosen]))
     return chosen, abs(dot(d, n)) / sqrt(dot(d, d))

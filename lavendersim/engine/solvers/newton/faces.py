@@ -17,7 +17,7 @@ from typing import Any
 from ...block import make_slip_velocity
 from ...compile import kernel
 from ...contact import make_frictionless_velocity
-from ...effects.frictionless_contact import by_friction
+from ...row_terms import by_friction, row_terms
 from ...spec import Spec
 from .response import (
     Stiffness,
@@ -39,8 +39,8 @@ def make_find_face(spec: Spec) -> Any:
 
 
 def _make_find_normal(spec: Spec) -> Any:
-    normal_velocity, compliant = make_frictionless_velocity(spec), spec.has("compliance")
-    tangents = spec.has("friction")
+    normal_velocity, compliant = make_frictionless_velocity(spec), row_terms(spec).compliant
+    tangents = row_terms(spec).frictional
 
     def find_normal(contact, va, vb, still):
         parting = normal_velocity(contact, va, vb) + contact.target
@@ -55,7 +55,7 @@ def _make_find_normal(spec: Spec) -> Any:
 
 
 def _make_find_block(spec: Spec) -> Any:
-    slip_velocity, compliant = make_slip_velocity(spec), spec.has("compliance")
+    slip_velocity, compliant = make_slip_velocity(spec), row_terms(spec).compliant
 
     def find_block(contact, va, vb, still):
         parting, one, two = slip_velocity(contact, va, vb)
@@ -112,7 +112,7 @@ def make_turn_friction(spec: Spec) -> Any:
 
     None without friction.
     """
-    if not spec.has("friction"):
+    if not row_terms(spec).frictional:
         return None
 
     def turn_friction(contact):

@@ -20,6 +20,7 @@ from typing import Any
 
 from ...compile import kernel
 from ...residual import make_residual
+from ...row_terms import row_terms
 from ...spec import Spec
 from ...spin_block import resists_turning
 from .envelope import DOF, OF_A, OF_B, T1, T2, factorise, lay_out, solve_factorised
@@ -62,7 +63,8 @@ def make_begin(spec: Spec, stiffness: Any) -> Any:
     `velocity` have it. slope: along the step [J], 0 where there is none. stiff: E [kg]; load: what
     contacts are taken to carry [N s].
     """
-    friction, compliant = spec.has("friction"), spec.has("compliance")
+    terms = row_terms(spec)
+    friction, compliant = terms.frictional, terms.compliant
     fill_rows, body_of = make_fill_rows(spec), make_body_of(spec)
     assemble = make_assemble(spec, stiffness, torques=False)
     directional_derivative = make_directional_derivative(spec, torques=False)
@@ -142,7 +144,7 @@ def make_least_norm(spec: Spec) -> Any:
     Of a step that is solved. Impulses stay as they are where they are the only ones, where they
     were chosen and have hardly changed, and where the residual would grow.
     """
-    friction = spec.has("friction")
+    friction = row_terms(spec).frictional
     spins, limits_torque = resists_turning(spec), make_limits_torque(spec)
     residual, assemble_mass = make_residual(spec), make_assemble_mass(spec)
     find_face, face_impulse = make_find_face(spec), make_face_impulse(spec)

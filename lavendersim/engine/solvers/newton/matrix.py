@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import Any
 
 from ...compile import kernel
+from ...row_terms import row_terms
 from ...spec import Spec
 from ...spin_block import resists_turning
 from .envelope import DOF, OF_A, OF_B, SCALED, T1, T2, WX, WY, WZ
@@ -20,7 +21,7 @@ def make_assemble(spec: Spec, stiffness: Any, torques: bool = True):
 
     stiffness: kernel(contact) -> E'. torques: they respond, too.
     """
-    friction, fill_rows = spec.has("friction"), make_fill_rows(spec)
+    friction, fill_rows = row_terms(spec).frictional, make_fill_rows(spec)
     directions = 3 if friction else 1
     spins, add_torque_block = torques and resists_turning(spec), make_add_torque_block(spec)
 

@@ -22,6 +22,7 @@ from typing import Any
 from ...compile import kernel
 from ...contact import make_apply_block
 from ...residual import make_residual
+from ...row_terms import row_terms
 from ...spec import Spec
 from ...spin_block import resists_turning
 from .envelope import lay_out
@@ -60,7 +61,7 @@ def make_restore(spec: Spec, which: str, set_impulse: Any, torques: bool = True)
     which: at the `start` of the round, or the `best` so far; velocities follow. torques: whether
     they are restored, too.
     """
-    friction, spins = spec.has("friction"), torques and resists_turning(spec)
+    friction, spins = row_terms(spec).frictional, torques and resists_turning(spec)
     restore_torques = make_restore_torques(spec, which)
     kept_n, kept_1, kept_2 = (f"{which}_{axis}" for axis in "n12")
 
@@ -81,7 +82,7 @@ def make_restore(spec: Spec, which: str, set_impulse: Any, torques: bool = True)
 
 def make_set_impulse(spec: Spec):
     """Return `kernel(contact, velocities, n, one, two)`: new impulses, and velocities with them."""
-    friction, apply_block = spec.has("friction"), make_apply_block(spec)
+    friction, apply_block = row_terms(spec).frictional, make_apply_block(spec)
 
     def set_impulse(contact, velocities, n, one, two):
         change_n, change_1, change_2 = n - contact.lambda_n, 0.0, 0.0
@@ -97,7 +98,7 @@ def make_set_impulse(spec: Spec):
 
 def make_accept(spec: Spec, set_impulse: Any):
     """Return `kernel(contacts, count, velocities)`: impulses of a minimum in place of those now."""
-    friction, spins = spec.has("friction"), resists_turning(spec)
+    friction, spins = row_terms(spec).frictional, resists_turning(spec)
     projected_impulse, accept_torques = make_projected_impulse(spec), make_accept_torques(spec)
 
     def accept(contacts, count, velocities):
@@ -119,7 +120,7 @@ def make_accept(spec: Spec, set_impulse: Any):
 
 def make_keep(spec: Spec):
     """Return `kernel(contacts, count)`: the impulses of now are the `best` so far."""
-    friction, spins = spec.has("friction"), resists_turning(spec)
+    friction, spins = row_terms(spec).frictional, resists_turning(spec)
     keep_torques = make_keep_torques(spec)
 
     def keep(contacts, count):

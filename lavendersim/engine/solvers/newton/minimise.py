@@ -13,6 +13,7 @@ from typing import Any
 
 from ...compile import kernel
 from ...rotation import inertia_times
+from ...row_terms import row_terms
 from ...spec import Spec
 from ...spin_block import resists_turning
 from .envelope import DOF, OF_A, OF_B, T1, T2, WX, WY, WZ, factorise, solve_factorised
@@ -73,7 +74,7 @@ def make_directional_derivative(spec: Spec, torques: bool = True):
 
     torques: of what resists turning, too.
     """
-    friction = spec.has("friction")
+    friction = row_terms(spec).frictional
     fill_rows, body_of = make_fill_rows(spec), make_body_of(spec)
     spins, directional_spin = torques and resists_turning(spec), make_directional_spin(spec)
 
@@ -108,7 +109,7 @@ def make_minimise(spec: Spec):
     Contacts have their `start` impulses, and their `velocity` is brought to the minimum's; enough:
     a further step need not gain more [J].
     """
-    friction = spec.has("friction")
+    friction = row_terms(spec).frictional
     descend = make_descend(spec, make_projected_impulse(spec), make_stiffness(spec))
 
     def minimise(contacts, count, size, workspace, enough):
@@ -132,7 +133,7 @@ def make_descend(spec: Spec, projected_impulse: Any, stiffness: Any, torques: bo
     projected_impulse, stiffness: kernels of a contact's response, see `response`. torques: they
     respond, too.
     """
-    friction = spec.has("friction")
+    friction = row_terms(spec).frictional
     fill_rows, body_of = make_fill_rows(spec), make_body_of(spec)
     assemble = make_assemble(spec, stiffness, torques)
     directional_derivative = make_directional_derivative(spec, torques)

@@ -14,7 +14,7 @@ from typing import NamedTuple
 from ...block import make_relative_velocity
 from ...compile import inner, kernel
 from ...contact import make_frictionless_velocity
-from ...effects.frictionless_contact import by_friction
+from ...row_terms import by_friction, row_terms
 from ...spec import Spec
 from ...spin_block import resists_turning
 from .envelope import OF_A, OF_B, T1, T2, WX, WY, WZ, N, X, Y, Z
@@ -28,7 +28,7 @@ def make_start(spec: Spec):
     relative to the row's own effective mass [-]; at_rest: what slides is taken to stop;
     stalls: shifts go on by the secant of their last two.
     """
-    compliant = spec.has("compliance")
+    compliant = row_terms(spec).compliant
     start_velocity = by_friction(spec, _make_start_normal, _make_start_block)
     spins, start_torques = resists_turning(spec), make_start_torques(spec)
 
@@ -50,7 +50,7 @@ def make_start(spec: Spec):
 
 
 def _make_start_normal(spec: Spec):
-    tangents = spec.has("friction")
+    tangents = row_terms(spec).frictional
     normal_velocity = make_frictionless_velocity(spec)
 
     def start_normal(contact, va, vb, softness, at_rest, stalls):
@@ -85,7 +85,7 @@ def update_shift(contact, slip, stalls):
 
 
 def _make_start_block(spec: Spec):
-    shifted = spec.shifts_slip
+    shifted = row_terms(spec).shifted
     relative_velocity = make_relative_velocity(spec)
 
     def start_block(contact, va, vb, softness, at_rest, stalls):
@@ -235,7 +235,7 @@ def _make_fill_block(spec: Spec):
 
 
 def _make_fill_normal(spec: Spec):
-    torque = spec.has("contact_torque")
+    torque = row_terms(spec).levers
 
     def fill_normal(contact, rows):
         rows[OF_A, X], rows[OF_A, Y], rows[OF_A, Z] = -contact.nx, -contact.ny, -contact.nz

@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 
 from ...compile import inner, kernel
 from ...effects import made_once
+from ...row_terms import row_terms
 from ...spec import Spec
 from ...spin_block import make_apply_spin, resists_turning
 from .envelope import DOF, WX, WY, WZ
@@ -21,7 +22,8 @@ from .envelope import DOF, WX, WY, WZ
 
 def make_start_torques(spec: Spec) -> Any:
     """Return `kernel(contact, va, vb, softness)`: what a round begins with."""
-    torsional, rolling = spec.has("torsional_friction"), spec.has("rolling_friction")
+    terms = row_terms(spec)
+    torsional, rolling = terms.torsional, terms.rolling
 
     def start_torques(contact, va, vb, softness):
         x, y, z = vb.wx - va.wx, vb.wy - va.wy, vb.wz - va.wz
@@ -44,7 +46,8 @@ def make_start_torques(spec: Spec) -> Any:
 
 def make_limits_torque(spec: Spec) -> Any:
     """Return `kernel(contact) -> bool`: whether it resists turning at all."""
-    torsional, rolling = spec.has("torsional_friction"), spec.has("rolling_friction")
+    terms = row_terms(spec)
+    torsional, rolling = terms.torsional, terms.rolling
 
     def limits_torque(contact):
         limited = False
@@ -59,7 +62,8 @@ def make_limits_torque(spec: Spec) -> Any:
 
 def make_projected_torque(spec: Spec) -> Any:
     """Return `kernel(contact, length) -> (n, one, two)`: psi - psi^k so far along the step."""
-    torsional, rolling = spec.has("torsional_friction"), spec.has("rolling_friction")
+    terms = row_terms(spec)
+    torsional, rolling = terms.torsional, terms.rolling
 
     def projected_torque(contact, length):
         n, one, two = 0.0, 0.0, 0.0
@@ -107,7 +111,8 @@ def make_gather_torque(spec: Spec) -> Any:
 
 def make_directional_spin(spec: Spec) -> Any:
     """Return `kernel(contact, a, b, step)`: what the step adds to the turning that it sees."""
-    torsional, rolling = spec.has("torsional_friction"), spec.has("rolling_friction")
+    terms = row_terms(spec)
+    torsional, rolling = terms.torsional, terms.rolling
 
     def directional_spin(contact, a, b, step):
         x, y, z = 0.0, 0.0, 0.0
@@ -126,7 +131,8 @@ def make_directional_spin(spec: Spec) -> Any:
 
 def make_torque_slope(spec: Spec) -> Any:
     """Return `kernel(contact, length) -> the torques' part of the derivative along the step`."""
-    torsional, rolling = spec.has("torsional_friction"), spec.has("rolling_friction")
+    terms = row_terms(spec)
+    torsional, rolling = terms.torsional, terms.rolling
     projected_torque = make_projected_torque(spec)
 
     def torque_slope(contact, length):
@@ -143,7 +149,8 @@ def make_torque_slope(spec: Spec) -> Any:
 
 def make_advance_spin(spec: Spec) -> Any:
     """Return `kernel(contact, length)`: the step, so much of it, is taken."""
-    torsional, rolling = spec.has("torsional_friction"), spec.has("rolling_friction")
+    terms = row_terms(spec)
+    torsional, rolling = terms.torsional, terms.rolling
 
     def advance_spin(contact, length):
         if torsional:
@@ -190,7 +197,8 @@ def _add(workspace, p, q, scale, t):
 
 def make_add_torque_block(spec: Spec) -> Any:
     """Return `kernel(contact, a, b, workspace)`: matrix += S^T E' S, E' = -d psi / d omega."""
-    torsional, rolling = spec.has("torsional_friction"), spec.has("rolling_friction")
+    terms = row_terms(spec)
+    torsional, rolling = terms.torsional, terms.rolling
 
     def add_torque_block(contact, a, b, workspace):
         h_nn, h_11, h_12, h_22 = 0.0, 0.0, 0.0, 0.0
@@ -262,7 +270,8 @@ def make_accept_torques(spec: Spec) -> Any:
 
 def make_keep_torques(spec: Spec) -> Any:
     """Return `kernel(contact)`: psi is the best so far."""
-    torsional, rolling = spec.has("torsional_friction"), spec.has("rolling_friction")
+    terms = row_terms(spec)
+    torsional, rolling = terms.torsional, terms.rolling
 
     def keep_torques(contact):
         if torsional:
@@ -280,7 +289,8 @@ def make_restore_torques(spec: Spec, which: str) -> Any:
     """
     if not resists_turning(spec):
         return None
-    torsional, rolling = spec.has("torsional_friction"), spec.has("rolling_friction")
+    terms = row_terms(spec)
+    torsional, rolling = terms.torsional, terms.rolling
     apply_spin = make_apply_spin(spec)
     kept_n, kept_1, kept_2 = (f"{which}_psi_{axis}" for axis in "n12")
 

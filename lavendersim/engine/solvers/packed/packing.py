@@ -7,7 +7,7 @@ from typing import Any
 
 from ...block import make_slip_velocity
 from ...compile import inner, kernel
-from ...effects.frictionless_contact import has_frictionless
+from ...row_terms import row_terms
 from ...spec import Spec
 from ...vectors import Vec3, cross
 from .lane_memory import STRIDE, put_one, take_one
@@ -94,7 +94,8 @@ def _make_put_geometry(spec: Spec, eight: bool) -> Any:
 
 def _make_pack_contact(spec: Spec, eight: bool) -> Any:
     """Return `kernel(contact, velocities, rows, at, factor)`: every field of a contact."""
-    compliant, frictionless = spec.has("compliance"), has_frictionless(spec)
+    terms = row_terms(spec)
+    compliant, frictionless = terms.compliant, terms.frictionless
     slip_velocity = make_slip_velocity(spec)
     put_axis, put_turn, put_turns = _make_put_geometry(spec, eight)
     step = WIDTH if eight else 1

@@ -16,10 +16,12 @@ from __future__ import annotations
 from typing import Any
 
 from ...compile import kernel
+from ...effects import made_once
 from ...residual import make_residual
+from ...row_terms import row_terms
 from ...spec import Spec
 from ...spin_block import resists_turning
-from ..sweep import make_record_residual, make_report
+from ..sweep import make_report
 from .lane_memory import (
     put_bodies,
     put_body,
@@ -76,7 +78,7 @@ from .packing import make_pack, make_unpack
 
 def can_pack(spec: Spec) -> bool:
     """Whether contacts of this engine are blocks of a normal and a disc, and nothing else."""
-    frictional = spec.has("friction") and not resists_turning(spec)
+    frictional = row_terms(spec).frictional and not resists_turning(spec)
     plain = not spec.over_relaxation and spec.order != "symmetric"
     return frictional and plain and spec.friction_cone == "disc" and spec.operator == "bodies"
 
@@ -87,7 +89,7 @@ def _make_visit(spec: Spec, eight: bool) -> Any:
     One projected update of the contact, or of the group, whose fields begin at `at`; most: the
     greatest change so far [m/s].
     """
-    compliant = spec.has("compliance")
+    compliant = row_terms(spec).compliant
     step = WIDTH if eight else 1
     take_number, take_axis = (take_eight, take_triples) if eight else (take_one, take_triple)
     put_number = put_eight if eight else put_one
@@ -184,14 +186,11 @@ def make_sweep_packed(spec: Spec, eight: bool) -> Any:
 
 def make_solve_packed(spec: Spec, eight: bool) -> Any:
     """Return the solver's kernel, see `solvers`; for a `spec` that `can_pack`."""
-    record_residuals, stop_early = spec.has("residual_log"), spec.tolerance
+    record_residuals, record_residual = made_once(spec, "sweep_row")
+    stop_early = spec.tolerance
     pack, unpack = make_pack(spec, eight), make_unpack(spec, eight)
     sweep = make_sweep_packed(spec, eight)
-    residual, record_residual, report = (
-        make_residual(spec),
-        make_record_residual(spec),
-        make_report(spec),
-    )
+    residual, report = make_residual(spec), make_report(spec)
 
     def solve_packed(system, workspace, params, counters, residual_rows):
         contacts, count, velocities = system.contacts, system.count, system.velocities
