@@ -186,8 +186,6 @@ BESIDE_THE_DOOR = {
     "lavendersim/runner/experiment_run.py": "a large table, aside by the door",
     "lavendersim/replay/headless.py": "what the viewer says, gone with it",
     "lavendersim/scene/effects_page.py": "a document",
-    "lavendersim/measures/documentation.py": "a document",
-    "lavendersim/experiment/reference.py": "a document",
 }
 
 
