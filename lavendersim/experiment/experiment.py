@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from lavendersim.cell.choices import NO_MISTAKE
+from lavendersim.config_options import ConfigOptions
 from lavendersim.experiment.cell import Cell
 from lavendersim.experiment.models.experiment import ExperimentConfig
 from lavendersim.experiment.text.node import Node
@@ -26,9 +27,7 @@ class Experiment:
     axes: dict[str, tuple[Any, ...]]  # axis -> its values, over all products of the sweep
     tree: Node = field(repr=False, compare=False)  # with overrides, in this version's spelling
     _cells: tuple[Cell, ...] = field(repr=False)
-    reduced: bool = False  # a slow one, at its reduced length
-    solver: str | None = None  # of every cell, instead of what the config says
-    overrides: tuple[str, ...] = ()  # other values instead of the file's: `sweeps.option_overrides`
+    options: ConfigOptions
 
     @property
     def measures(self) -> dict[str, MeasureSpec]:
@@ -86,12 +85,8 @@ class Experiment:
     def refined(self, divisor: int) -> Experiment:
         """Return the same experiment with every cell at timesteps of 1/divisor of its own."""
         cells = (replace(cell, divisor=cell.divisor * divisor) for cell in self._cells)
-        return replace(self, _cells=tuple(cells))
-
-    @property
-    def divisor(self) -> int:
-        """What the timestep of every cell was divided by."""
-        return self._cells[0].divisor
+        options = self.options._replace(divisor=self.options.divisor * divisor)
+        return replace(self, _cells=tuple(cells), options=options)
 
     def cells(self) -> tuple[Cell, ...]:
         """All cells of the sweep, the first axis slowest; one cell without a sweep."""

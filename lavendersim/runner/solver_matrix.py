@@ -71,7 +71,8 @@ def cases_of(experiments: Sequence[Experiment]) -> tuple[list[Case], dict[str, s
             continue
         if any(case.name == name for case in cases):
             name = str(experiment.path)
-        cases.append(Case(name, experiment.path, experiment.reduced, experiment.config.question))
+        reduced, question = experiment.options.reduced, experiment.config.question
+        cases.append(Case(name, experiment.path, reduced, question))
     return cases, left_out
 
 

@@ -14,6 +14,7 @@ ROOMS = {
     "__init__": {"experiment", "runner", "simulator", "trace"},  # public names, imported when used
     "errors": set(),
     "clock": set(),
+    "config_options": set(),
     "record_tables": set(),
     "durable_files": set(),
     "arrow": {"errors", "durable_files"},
@@ -22,6 +23,7 @@ ROOMS = {
     "cell": {"errors", "clock", "quantities", "engine"},  # of the engine: DECLARATIONS
     "experiment": {
         *("errors", "clock", "geometry", "quantities", "cell", "engine", "measures", "figures"),
+        "config_options",
     },
     "engine": {"quantities", "record_tables", "durable_files"},
     "scene": {"errors", "clock", "geometry", "quantities", "cell", "experiment", "engine"},
@@ -41,7 +43,7 @@ ROOMS = {
     "runner": {
         *("errors", "clock", "quantities", "cell", "experiment", "scene", "engine", "problems"),
         *("trace", "measures", "geometry", "record_tables", "durable_files", "arrow"),
-        "figures",  # a run in a notebook
+        *("figures", "config_options"),  # figures: a run in a notebook
     },
     "comparison": {"errors", "geometry", "trace", "measures", "runner"},
     "pytest_plugin": {"errors", "experiment", "trace", "measures", "runner"},
