@@ -65,15 +65,12 @@ class Experiment:
     def mistakes(self) -> dict[str, list[Cell]]:
         """Each deliberate error, and the cells that make it."""
         found: dict[str, list[Cell]] = {}
-        for cell in self._cells if self._may_be_wrong else ():
+        if self.config.study.mistake == NO_MISTAKE and "study.mistake" not in self.swept.values():
+            return found  # the file says nothing of mistakes: no cell need be looked at
+        for cell in self._cells:
             if cell.config.study.mistake != NO_MISTAKE:
                 found.setdefault(cell.config.study.mistake, []).append(cell)
         return found
-
-    @property
-    def _may_be_wrong(self) -> bool:
-        """Whether the file says anything of mistakes, so that not every cell need be looked at."""
-        return self.config.study.mistake != NO_MISTAKE or "study.mistake" in self.swept.values()
 
     @property
     def swept(self) -> dict[str, str]:

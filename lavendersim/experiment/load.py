@@ -113,9 +113,7 @@ def _load(raw: bytes, name: str, size: int, options: ConfigOptions) -> Experimen
     return Experiment(path.stem, path, decode(raw), config, values, tree, made, options)
 
 
-def _check_first(
-    root: Node, axes: tuple[tuple[sweep.SweptAxis, ...], ...], report: Report
-) -> ExperimentConfig | None:
+def _check_first(root: Node, axes: sweep.Products, report: Report) -> ExperimentConfig | None:
     """Check the whole file, with the first value of every axis in its place."""
     tree = next(sweep.points(axes), sweep.SweepPoint(())).tree(root)
     config = Reading(tree, swept_values(root), report).read(ExperimentConfig)
@@ -124,11 +122,7 @@ def _check_first(
 
 
 def _check_others(
-    root: Node,
-    axes: tuple[tuple[sweep.SweptAxis, ...], ...],
-    count: int,
-    report: Report,
-    name: str,
+    root: Node, axes: sweep.Products, count: int, report: Report, name: str
 ) -> tuple[Cell, ...]:
     """Check the cells one by one and return them all; those that were built keep their config."""
     if report.defects or count > MOST_CELLS_CHECKED:

@@ -17,7 +17,7 @@ from pydantic import BaseModel, ValidationError
 
 from lavendersim.experiment.checks.messages import report_errors
 from lavendersim.experiment.models.shapes import SOLIDS
-from lavendersim.experiment.models.tree import BODIES, body_names, swept_values
+from lavendersim.experiment.models.tree import BODIES, bodies_of, swept_values
 from lavendersim.experiment.text.node import ABSENT, Mark, Node, Path
 from lavendersim.experiment.text.place import Place
 from lavendersim.experiment.text.report import Report
@@ -44,7 +44,7 @@ class Reading:
     @cached_property
     def _names(self) -> dict[NamedKind, Collection[str]]:
         return {
-            "body": dict.fromkeys(body_names(self.root)),
+            "body": bodies_of(self.root),
             "plane": self.root.get(*BODIES).entries,
             "measure": self.root.get("measure").entries,
             "surface": self.root.get("scene", "surfaces").entries,

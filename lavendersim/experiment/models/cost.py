@@ -13,7 +13,7 @@ from typing import Annotated, Any, Final, Literal
 from pydantic import Field, Tag
 
 from lavendersim.cell.choices import Solver
-from lavendersim.experiment.models.overhead import all_or_named, refuse_what_interrupts
+from lavendersim.experiment.models.overhead import TimedFrom, all_or_named, refuse_what_interrupts
 from lavendersim.experiment.models.tree import products
 from lavendersim.experiment.text.node import key_mark
 from lavendersim.experiment.text.place import Place
@@ -122,11 +122,7 @@ class CostSpec(ConfigModel):
     repeats: Repeats = Field(
         default=9, description="rounds, 7 or more; every round times every setting"
     )
-    begin: Annotated[float, Quantity("s", minimum=0)] = Field(
-        alias="from",
-        default=0.0,
-        description="[s] simulated time at which what is timed begins; it ends with the run",
-    )
+    begin: TimedFrom = 0.0
 
     @classmethod
     def rules(cls, at: Place) -> None:

@@ -10,12 +10,12 @@ from pydantic import Field
 from lavendersim.experiment.models.tree import (
     Removal,
     after_the_end,
-    body_node,
+    bodies_of,
     immovable,
     prescribes_motion,
     removals,
 )
-from lavendersim.experiment.text.node import Node
+from lavendersim.experiment.text.node import ABSENT, Node
 from lavendersim.experiment.text.place import Place
 from lavendersim.quantities.found import near
 from lavendersim.quantities.model import ConfigModel
@@ -81,7 +81,7 @@ class Event(ConfigModel):
 
 
 def _change_rules(at: Place, body: Node) -> None:
-    target = body_node(at.root, body.text)
+    target = bodies_of(at.root).get(body.text or "", ABSENT)
     if what := immovable(target, prescribed=False):
         at.refuse(body.mark, f'body: "{body.text}" is {what}; expected a movable body')
     elif (key := prescribes_motion(target)) and at.get("scale_mass"):

@@ -33,6 +33,10 @@ class SweptAxis:
     values: tuple[Node, ...]
 
 
+# Of each product of the sweep, its axes.
+Products = tuple[tuple[SweptAxis, ...], ...]
+
+
 @dataclass(frozen=True)
 class SweepPoint:
     """One cell of the sweep before it is resolved: the nodes to graft in, axis by axis."""
@@ -65,7 +69,7 @@ def swept_value(value: Any) -> Any:
     return value
 
 
-def axes_of(root: Node, report: Report) -> tuple[tuple[SweptAxis, ...], ...]:
+def axes_of(root: Node, report: Report) -> Products:
     """Return the axes of each product, without those that are refused here."""
     read: list[tuple[SweptAxis, ...]] = []
     paths: dict[str, Path] = {}
@@ -87,19 +91,19 @@ def axes_of(root: Node, report: Report) -> tuple[tuple[SweptAxis, ...], ...]:
     return tuple(read)
 
 
-def points(axes: tuple[tuple[SweptAxis, ...], ...]) -> Iterator[SweepPoint]:
+def points(axes: Products) -> Iterator[SweepPoint]:
     """Yield all cells: product after product, the first axis slowest; one without a sweep."""
     for product in axes or ((),):
         for nodes in itertools.product(*(axis.values for axis in product)):
             yield SweepPoint(tuple(zip(product, nodes, strict=True)))
 
 
-def count(axes: tuple[tuple[SweptAxis, ...], ...]) -> int:
+def count(axes: Products) -> int:
     """Return the number of cells without making them."""
     return sum(math.prod(len(axis.values) for axis in product) for product in axes or ((),))
 
 
-def telling_points(axes: tuple[tuple[SweptAxis, ...], ...]) -> Iterator[SweepPoint]:
+def telling_points(axes: Products) -> Iterator[SweepPoint]:
     """Yield a few cells in which every value of every axis stands once, for large sweeps."""
     for product in axes or ((),):
         if not product:
@@ -110,7 +114,7 @@ def telling_points(axes: tuple[tuple[SweptAxis, ...], ...]) -> Iterator[SweepPoi
                 yield SweepPoint((*first[:index], (axis, node), *first[index + 1 :]))
 
 
-def check_distinct(axes: tuple[tuple[SweptAxis, ...], ...], report: Report) -> None:
+def check_distinct(axes: Products, report: Report) -> None:
     """Note cells that stand twice in a union of products."""
     seen: set[str] = set()
     for product in axes if len(axes) > 1 else ():
