@@ -101,18 +101,17 @@ class Reading:
         """Return why nothing, or nothing of this kind, is called so."""
         known = self._names[kind]
         if name not in known:
-            names = self._planes() if kind == "plane" else known
-            hint = nearest(name, names) or "; this file has none"
+            if kind == "plane":  # or may have been meant as one
+                known = [one for one in known if self._shape_of(one) not in SOLIDS]
+            hint = nearest(name, known) or "; this file has none"
             return f"no {kind} is called {quoted(name)}{hint}"
-        shape = self.root.get(*BODIES, name, "shape", "kind").text if kind == "plane" else None
+        shape = self._shape_of(name) if kind == "plane" else None
         if shape in SOLIDS:
             return f"{quoted(name)} is a {shape}, expected the name of a plane"
         return None
 
-    def _planes(self) -> list[str]:
-        """Return the bodies that are planes, or may have been meant as one."""
-        bodies = self.root.get(*BODIES).entries
-        return [name for name, b in bodies.items() if b.get("shape", "kind").text not in SOLIDS]
+    def _shape_of(self, body: str) -> str | None:
+        return self.root.get(*BODIES, body, "shape", "kind").text
 
     def check_selection(self, data: object) -> None:
         """Refuse values that their axis does not take."""

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from fractions import Fraction
 from typing import Annotated, Final, Literal
 
 from pydantic import Field
 
+from lavendersim.cell.numerics import Timestep
 from lavendersim.experiment.models.tree import (
     Removal,
     after_the_end,
@@ -35,7 +35,7 @@ class Event(ConfigModel):
         default=None,
         description="a body that is not fixed; required but for a timestep, and `remove` takes any",
     )
-    timestep: Annotated[Fraction, Quantity("s", above=0, exact=True)] | None = Field(
+    timestep: Timestep | None = Field(
         default=None,
         description="[s] length of the steps from then on; an event of its own, without a body",
     )

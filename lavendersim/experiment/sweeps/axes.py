@@ -32,6 +32,10 @@ class SweptAxis:
     path: Path
     values: tuple[Node, ...]
 
+    def overlaps(self, path: Path) -> bool:
+        """Tell whether it varies what stands at the path, or a part of it, or what has it."""
+        return self.path[: len(path)] == path[: len(self.path)]
+
 
 # Of each product of the sweep, its axes.
 Products = tuple[tuple[SweptAxis, ...], ...]
@@ -82,7 +86,7 @@ def axes_of(root: Node, report: Report) -> Products:
             if paths.setdefault(name, axis.path) != axis.path:
                 sentence = f"{name}: varies another path earlier in the file; rename it"
                 report.add(key_mark(product, name), sentence)
-            elif clash := next((one for one in axes if _overlap(one.path, axis.path)), None):
+            elif clash := next((one for one in axes if one.overlaps(axis.path)), None):
                 sentence = f"{name}: varies the same place as axis {quoted(clash.name)}"
                 report.add(key_mark(product, name), sentence)
             else:
@@ -157,11 +161,6 @@ def _usable(name: str, values: Node, report: Report, nullable: bool) -> tuple[No
             usable[key] = value
             labels.add(shown)
     return tuple(usable.values())
-
-
-def _overlap(one: Path, other: Path) -> bool:
-    shorter = min(len(one), len(other))
-    return one[:shorter] == other[:shorter]
 
 
 def opened(root: Node, path: Path) -> Node:
