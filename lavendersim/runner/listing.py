@@ -82,16 +82,15 @@ def listed_run(run: Run) -> Listed:
     """Return what there is to say of a run; a damaged one is not in the way of others."""
     passed: bool | None = None
     damaged: list[str] = []
-    name, rows = "", {}
+    name, cells, rows = "", 0, {}
     try:
-        name, rows = run.name, run.rows()
+        name, cells, rows = run.name, len(run.index_rows()), run.rows()
         if run.finished:  # another is listed as such; its logs are as they were left
             passed = bool(run.results()["passed"])
             damaged = run.cut()
     except TraceError as error:
         damaged = [str(error)]
     sizes = (_size(log, row) for log, row in rows.items())
-    cells = len(run.index_rows()) if rows else 0
     return Listed(run, name, _date(run.path), cells, sum(sizes), tags_of(run), passed, damaged)
 
 
