@@ -101,7 +101,7 @@ def check(
     else:
         passed = sum(bool(verdict["passed"]) for verdict in verdicts)
         ended = sum(cell["status"] == "complete" for cell in cells)
-        short = sum(experiment.reduced for experiment in experiments)
+        short = sum(experiment.options.reduced for experiment in experiments)
         typer.echo(
             f"{passed} of {len(verdicts)} expectations met, {ended} of {len(cells)} cells complete"
             + (

@@ -100,7 +100,7 @@ def print_unjudged(finished: Any) -> None:
 
 def print_costs(finished: Any) -> None:
     """Print what a run cost: physics by cell, logging and compilation once."""
-    outcomes, reduced = finished.outcomes, finished.run.experiment.reduced
+    outcomes, reduced = finished.outcomes, finished.run.experiment.options.reduced
     steps = sum(outcome.steps for outcome in outcomes)
     logging = sum(outcome.logging_ns for outcome in outcomes) / max(steps, 1) / 1000
     physics = [outcome.physics_ns / max(outcome.steps, 1) / 1000 for outcome in outcomes]

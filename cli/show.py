@@ -56,8 +56,8 @@ def show(
     ):
         if text:
             typer.echo(f"{name}  {text}")
-    if experiment.solver is not None:
-        typer.echo(f"solver  {experiment.solver}, instead of the config's")
+    if experiment.options.solver is not None:
+        typer.echo(f"solver  {experiment.options.solver}, instead of the config's")
     plans, damaged = plans_of(opened.cells)
     for cells, metadata in plans:
         print_plan(cells, metadata, len(opened.cells))

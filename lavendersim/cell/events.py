@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from fractions import Fraction
-from typing import Annotated, Literal
+from typing import Literal
 
+from lavendersim.cell.numerics import Timestep
 from lavendersim.quantities.model import ResolvedModel
-from lavendersim.quantities.quantity import Quantity, Vector3
+from lavendersim.quantities.quantity import Vector3
 
 
 class CellEvent(ResolvedModel):
@@ -26,4 +26,4 @@ class CellTimestep(ResolvedModel):
     """A timestep that applies from the first step that starts at `at` or later."""
 
     at: float  # [s]
-    timestep: Annotated[Fraction, Quantity("s", above=0, exact=True)]  # [s]
+    timestep: Timestep  # [s]

@@ -23,14 +23,19 @@ from lavendersim.cell.choices import (
 from lavendersim.quantities.model import ConfigModel
 from lavendersim.quantities.quantity import Quantity
 
+Timestep = Annotated[Fraction, Quantity("s", above=0, exact=True)]
+Accuracy = Annotated[float, Quantity(above=0, below=1)]
+Sweeps = Annotated[int, Quantity(whole=True, minimum=1, maximum=1_000_000)]
+Tolerance = Annotated[float, Quantity("m/s", above=0)]
+
 
 class Numerics(ConfigModel):
     """How a cell is simulated."""
 
-    timestep: Annotated[Fraction, Quantity("s", above=0, exact=True)] = Field(
+    timestep: Timestep = Field(
         default=Fraction(1, 240), description="[s] a ratio such as 1/480 is kept exactly"
     )
-    accuracy: Annotated[float, Quantity(above=0, below=1)] | None = Field(
+    accuracy: Accuracy | None = Field(
         default=None,
         description="relative error that the run may have: each timestep is made in substeps "
         "whose lengths follow from their estimated errors; null: every step is one timestep long",
@@ -46,7 +51,7 @@ class Numerics(ConfigModel):
         "`nonsmooth_conjugate_gradient`, `jacobi`, `accelerated_projected_gradient`, or "
         "`adaptive`: what each step requires",
     )
-    sweeps: Annotated[int, Quantity(whole=True, minimum=1, maximum=1_000_000)] = Field(
+    sweeps: Sweeps = Field(
         default=50,
         description="most velocity sweeps per step; one that changes nothing is the last",
     )
@@ -59,7 +64,7 @@ class Numerics(ConfigModel):
         description="in which sweeps visit contacts: `coloured`, `forward`, `backward`, "
         "`symmetric` or `random`",
     )
-    tolerance: Annotated[float, Quantity("m/s", above=0)] | None = Field(
+    tolerance: Tolerance | None = Field(
         default=1e-9, description="[m/s] residual at which sweeping stops early; null: never"
     )
     warm_start: bool = Field(

@@ -146,7 +146,7 @@ def _states_of(pair: CellPair) -> CellStates:
 def _written(run: Run) -> dict[str, Any]:
     """Return the config as it was read, with what the command line made of it."""
     experiment = run.experiment
-    options = {"--solver": experiment.solver, "reduced": experiment.reduced}
+    options = {"--solver": experiment.options.solver, "reduced": experiment.options.reduced}
     return {**experiment.tree.data, **{name: one for name, one in options.items() if one}}
 
 

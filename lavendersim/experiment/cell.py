@@ -10,6 +10,7 @@ from typing import Any, Final
 
 from lavendersim.cell.config import CellConfig
 from lavendersim.errors import ConfigError, Defect
+from lavendersim.experiment.checks.messages import locate
 from lavendersim.experiment.checks.reading import Reading
 from lavendersim.experiment.models.always import AlwaysSection
 from lavendersim.experiment.models.cost import CostSpec
@@ -43,16 +44,9 @@ def build_cell(root: Node, point: SweepPoint, report: Report) -> CellConfig | No
     try:
         return resolve_cell(source)
     except SceneError as error:
-        report.add(_deepest(tree, error.path).mark, str(error))
+        report.add(locate(tree, error.path)[1].mark, str(error))
         report.close_round()
         return None
-
-
-def _deepest(tree: Node, path: Path) -> Node:
-    """Return the node at the path, or the last one on the way to it."""
-    for step in path:
-        tree = tree.get(step) or tree
-    return tree
 
 
 @dataclass(frozen=True)
@@ -92,7 +86,7 @@ class Cell:
         if path in swept:
             mark = swept[path].mark
         else:
-            parent, last = _deepest(self.tree, path[:-1]), path[-1]
+            (_, parent), last = locate(self.tree, path[:-1]), path[-1]
             mark = parent.items[last].mark if isinstance(last, int) else key_mark(parent, last)
         return Defect(self._name, mark.line, mark.column, message)
 

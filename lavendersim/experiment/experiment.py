@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from lavendersim.cell.choices import NO_MISTAKE
+from lavendersim.config_options import ConfigOptions
 from lavendersim.experiment.cell import Cell
 from lavendersim.experiment.models.experiment import ExperimentConfig
 from lavendersim.experiment.text.node import Node
@@ -26,9 +27,7 @@ class Experiment:
     axes: dict[str, tuple[Any, ...]]  # axis -> its values, over all products of the sweep
     tree: Node = field(repr=False, compare=False)  # with overrides, in this version's spelling
     _cells: tuple[Cell, ...] = field(repr=False)
-    reduced: bool = False  # a slow one, at its reduced length
-    solver: str | None = None  # of every cell, instead of what the config says
-    overrides: tuple[str, ...] = ()  # other values instead of the file's: `sweeps.option_overrides`
+    options: ConfigOptions
 
     @property
     def measures(self) -> dict[str, MeasureSpec]:
@@ -72,15 +71,12 @@ class Experiment:
     def mistakes(self) -> dict[str, list[Cell]]:
         """Each deliberate error, and the cells that make it."""
         found: dict[str, list[Cell]] = {}
-        for cell in self._cells if self._may_be_wrong else ():
+        if self.config.study.mistake == NO_MISTAKE and "study.mistake" not in self.swept.values():
+            return found  # the file says nothing of mistakes: no cell need be looked at
+        for cell in self._cells:
             if cell.config.study.mistake != NO_MISTAKE:
                 found.setdefault(cell.config.study.mistake, []).append(cell)
         return found
-
-    @property
-    def _may_be_wrong(self) -> bool:
-        """Whether the file says anything of mistakes, so that not every cell need be looked at."""
-        return self.config.study.mistake != NO_MISTAKE or "study.mistake" in self.swept.values()
 
     @property
     def swept(self) -> dict[str, str]:
@@ -92,12 +88,8 @@ class Experiment:
     def refined(self, divisor: int) -> Experiment:
         """Return the same experiment with every cell at timesteps of 1/divisor of its own."""
         cells = (replace(cell, divisor=cell.divisor * divisor) for cell in self._cells)
-        return replace(self, _cells=tuple(cells))
-
-    @property
-    def divisor(self) -> int:
-        """What the timestep of every cell was divided by."""
-        return self._cells[0].divisor
+        options = self.options._replace(divisor=self.options.divisor * divisor)
+        return replace(self, _cells=tuple(cells), options=options)
 
     def cells(self) -> tuple[Cell, ...]:
         """All cells of the sweep, the first axis slowest; one cell without a sweep."""

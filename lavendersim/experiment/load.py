@@ -10,9 +10,9 @@ import itertools
 import os
 import stat
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 
+from lavendersim.config_options import ConfigOptions
 from lavendersim.errors import ConfigError, UsageError
 from lavendersim.experiment.cell import Cell, build_cell
 from lavendersim.experiment.checks.reading import Reading
@@ -57,7 +57,8 @@ def load_experiment(
             size = os.fstat(stream.fileno()).st_size
     except OSError as error:
         raise UsageError(f"{file}: {(error.strerror or str(error)).lower()}") from None
-    return _load(raw, file, str(file), max(size, len(raw)), (reduced, solver, tuple(overrides)))
+    options = ConfigOptions(reduced, solver, tuple(overrides))
+    return _load(raw, str(file), max(size, len(raw)), options)
 
 
 def load_experiment_text(
@@ -66,16 +67,18 @@ def load_experiment_text(
     reduced: bool = False,
     solver: str | None = None,
     overrides: Sequence[str] = (),
+    divisor: int = 1,
 ) -> Experiment:
-    """Validate a config given as text; `name` stands for the file in messages."""
+    """Validate a config given as text; `name` stands for the file in messages.
+
+    The rest by the names of `ConfigOptions`: `**run.options._asdict()` reads it as a run did.
+    """
     raw = text.encode("utf-8", "surrogatepass") if isinstance(text, str) else text
-    return _load(raw, Path(name), name, len(raw), (reduced, solver, tuple(overrides)))
+    options = ConfigOptions(reduced, solver, tuple(overrides))
+    return _load(raw, name, len(raw), options).refined(divisor)
 
 
-def _load(
-    raw: bytes, path: Path, name: str, size: int, options: tuple[bool, str | None, tuple[str, ...]]
-) -> Experiment:
-    reduced, solver, overrides = options
+def _load(raw: bytes, name: str, size: int, options: ConfigOptions) -> Experiment:
     report = Report(name)
     root = parse(raw, report, size)
     if root is None:
@@ -84,12 +87,12 @@ def _load(
         sentence = f"expected a mapping with scene and duration, found {found(root.data)}"
         report.add(root.mark, sentence)
         raise ConfigError(report.defects)
-    root = tree = with_overrides(with_new_spellings(root, name), overrides, report)
+    root = tree = with_overrides(with_new_spellings(root, name), options.overrides, report)
     if not report.close_round():
         raise ConfigError(report.defects)
     check_reduced_length(root, report)
-    root, shortened = at_reduced_length(root) if reduced else (root, False)
-    root = with_solver(root, solver) if solver is not None else root
+    root, shortened = at_reduced_length(root) if options.reduced else (root, False)
+    root = with_solver(root, options.solver) if options.solver is not None else root
     axes = sweep.axes_of(root, report)
     check_untouched(root, axes, report)
     config = _check_first(root, axes, report)
@@ -106,13 +109,11 @@ def _load(
         axis: tuple(dict.fromkeys(sweep.swept_value(node.data) for node in nodes))
         for axis, nodes in swept_values(root).items()
     }
-    whole = Experiment(path.stem, path, decode(raw), config, values, tree, made, shortened, solver)
-    return replace(whole, overrides=overrides)
+    path, options = Path(name), options._replace(reduced=shortened)
+    return Experiment(path.stem, path, decode(raw), config, values, tree, made, options)
 
 
-def _check_first(
-    root: Node, axes: tuple[tuple[sweep.SweptAxis, ...], ...], report: Report
-) -> ExperimentConfig | None:
+def _check_first(root: Node, axes: sweep.Products, report: Report) -> ExperimentConfig | None:
     """Check the whole file, with the first value of every axis in its place."""
     tree = next(sweep.points(axes), sweep.SweepPoint(())).tree(root)
     config = Reading(tree, swept_values(root), report).read(ExperimentConfig)
@@ -121,11 +122,7 @@ def _check_first(
 
 
 def _check_others(
-    root: Node,
-    axes: tuple[tuple[sweep.SweptAxis, ...], ...],
-    count: int,
-    report: Report,
-    name: str,
+    root: Node, axes: sweep.Products, count: int, report: Report, name: str
 ) -> tuple[Cell, ...]:
     """Check the cells one by one and return them all; those that were built keep their config."""
     if report.defects or count > MOST_CELLS_CHECKED:

@@ -12,40 +12,36 @@ from typing import Any
 from lavendersim.experiment.models.experiment import ExperimentConfig
 
 DRAFT_7 = "http://json-schema.org/draft-07/schema#"
-_NAMED_SCHEMAS = ("properties", "patternProperties", "definitions")
-_SCHEMA_LISTS = ("anyOf", "oneOf", "allOf")
+_NAMED_SCHEMAS = ("properties", "patternProperties")
+_GENERATED = ("title", "discriminator")  # titles repeat the key, discriminators are OpenAPI's
 
 
 def json_schema() -> dict[str, Any]:
     """Return the schema of a config file as plain data."""
-    written = ExperimentConfig.model_json_schema(by_alias=True, mode="validation")
-    described = {key: value for key, value in written.items() if key not in ("$defs", "title")}
-    schema: dict[str, Any] = {"$schema": DRAFT_7, "title": "lavender experiment"}
-    schema |= _draft_7(described)
-    definitions = written.get("$defs", {})
-    schema["definitions"] = {name: _draft_7(definitions[name]) for name in sorted(definitions)}
-    return schema
+    written = ExperimentConfig.model_json_schema(ref_template="#/definitions/{model}")
+    definitions = written.pop("$defs")
+    return {
+        "$schema": DRAFT_7,
+        "title": "lavender experiment",
+        **_draft_7(written),
+        "definitions": {name: _draft_7(definitions[name]) for name in sorted(definitions)},
+    }
 
 
 def _draft_7(schema: Any) -> Any:
     """Return one schema, and all schemas inside it, in the words of draft 7."""
+    if isinstance(schema, list):
+        return [_draft_7(inner) for inner in schema]
     if not isinstance(schema, dict):
-        return schema  # `additionalProperties: false`
+        return schema
     converted: dict[str, Any] = {}
     for key, value in schema.items():
         if key in _NAMED_SCHEMAS:
             converted[key] = {name: _draft_7(inner) for name, inner in value.items()}
-        elif key in _SCHEMA_LISTS:
-            converted[key] = [_draft_7(inner) for inner in value]
-        elif key in ("items", "additionalProperties", "propertyNames", "not"):
-            converted[key] = _draft_7(value)
         elif key == "prefixItems":  # an array of fixed length
-            converted["items"] = [_draft_7(inner) for inner in value]
-            converted["additionalItems"] = False
-        elif key == "$ref":
-            converted[key] = value.replace("#/$defs/", "#/definitions/")
-        elif key not in ("title", "discriminator"):  # generated titles repeat the key
-            converted[key] = value
+            converted |= {"items": _draft_7(value), "additionalItems": False}
+        elif key not in _GENERATED:
+            converted[key] = _draft_7(value)
     if "patternProperties" in converted:
         converted.setdefault("additionalProperties", False)
     kind = converted.get("properties", {}).get("kind")

@@ -43,7 +43,7 @@ def _case(result: Any, folder: Path) -> dict[str, Any]:
     ended = [f"{cell.label or 'the cell'}: {cell.status}" for cell in result.ended_early]
     return {
         "name": run.name,
-        "reduced": run.experiment.reduced,
+        "reduced": run.experiment.options.reduced,
         "question": run.experiment.config.question,
         "picture": picture(shown),
         "log": address(shown.path, folder),

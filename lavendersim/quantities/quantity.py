@@ -51,13 +51,14 @@ def sentence_error(sentence: str) -> PydanticCustomError:
 def either(expected: str, form: Mapping[type, str] | Callable[[Any], str | None]) -> Discriminator:
     """Return the discriminator of a field that has several forms; `form` names the tag of one.
 
-    form: the tags by the type of the value (a model is written as a dict), or what tells the tag.
+    form: the tags by the type of the value (a model is written as a dict; `object` is any other
+    type), or what tells the tag.
     """
 
     def tag_of(value: Any) -> str | None:
         if callable(form):
             return form(value)
-        return form.get(dict if isinstance(value, BaseModel) else type(value))
+        return form.get(dict if isinstance(value, BaseModel) else type(value), form.get(object))
 
     return Discriminator(
         tag_of,

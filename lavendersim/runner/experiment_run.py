@@ -95,10 +95,11 @@ Closing = Callable[[Finished, list[dict[str, Any]]], None]
 def make_directory(experiment: Experiment, root: Path) -> Path:
     """Make a new directory for a run; never an existing one."""
     now = datetime.now(UTC).strftime("%Y%m%dT%H%M%SZ")
-    read = "\n".join((experiment.text, *experiment.overrides))
+    options = experiment.options
+    read = "\n".join((experiment.text, *options.overrides))
     digest = hashlib.sha256(read.encode("utf-8", "surrogatepass")).hexdigest()[:8]
-    changed = map(_short, experiment.overrides)
-    name = "-".join(filter(None, (experiment.name, experiment.solver, *changed)))[:MOST_NAME]
+    changed = map(_short, options.overrides)
+    name = "-".join(filter(None, (experiment.name, options.solver, *changed)))[:MOST_NAME]
     root.mkdir(parents=True, exist_ok=True)
     # A name that sorts by age even when several runs start within one second.
     for attempt in range(1000):
@@ -299,12 +300,12 @@ def _write_index(
         }
 
     cells = zip(experiment.cells(), jobs, strict=True)
+    options = experiment.options.row
+    if not experiment.options.overrides:
+        del options["overrides"]  # as in earlier versions
     table = {
         "experiment": experiment.name,
-        "reduced": experiment.reduced,
-        "solver": experiment.solver,
-        "timestep_divisor": experiment.divisor,
-        **({"overrides": list(experiment.overrides)} if experiment.overrides else {}),
+        **options,
         "cells": (row_of(cell, *job) for cell, job in cells),
     }
     write_in_pieces(directory / CELLS, pieces_of(table), flush=False)

@@ -86,9 +86,9 @@ def listed_run(run: Run) -> Listed:
     passed: bool | None = None
     claims = 0
     damaged: list[str] = []
-    name, rows = "", {}
+    name, cells, rows = "", 0, {}
     try:
-        name, rows = run.name, run.rows()
+        name, cells, rows = run.name, len(run.index_rows()), run.rows()
         if run.finished:  # another is listed as such; its logs are as they were left
             results = run.results()
             passed, claims = bool(results["passed"]), len(results["checks"])
@@ -96,7 +96,6 @@ def listed_run(run: Run) -> Listed:
     except TraceError as error:
         damaged = [str(error)]
     sizes = (_size(log, row) for log, row in rows.items())
-    cells = len(run.index_rows()) if rows else 0
     size, date, tags = sum(sizes), _date(run.path), tags_of(run)
     return Listed(run, name, date, cells, size, tags, passed, claims, damaged)
 

@@ -15,6 +15,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
+from lavendersim.config_options import ConfigOptions
 from lavendersim.errors import TraceError, UsageError
 from lavendersim.experiment import Experiment, load_experiment_text
 
@@ -82,9 +83,9 @@ def experiment_of(shard: Path) -> Experiment:
     known = read_identity(shard)
     try:
         text = (shard / CONFIG).read_bytes()
-        options = known["reduced"], known["solver"], tuple(known["overrides"])
-        experiment = load_experiment_text(text, str(shard / CONFIG), *options)
-        return replace(experiment.refined(known["timestep_divisor"]), name=known["experiment"])
+        options = ConfigOptions.of_row(known)._asdict()
+        experiment = load_experiment_text(text, str(shard / CONFIG), **options)
+        return replace(experiment, name=known["experiment"])
     except (KeyError, TypeError) as error:
         raise TraceError(f"{shard}: damaged: {error} is missing") from None
 

@@ -49,8 +49,8 @@ def write_results(
         )
     table = {
         "experiment": run.name,
-        "reduced": run.experiment.reduced,
-        "solver": run.experiment.solver,  # instead of the config's; none where it is that
+        "reduced": run.experiment.options.reduced,
+        "solver": run.experiment.options.solver,  # instead of the config's; none where it is that
         "cells": (finite(row, str) for row in rows),
         # Cells share kernels, so what compiling costs is a number of the run.
         "compile_s": compile_seconds(finished),

@@ -35,10 +35,8 @@ def newest_run(experiment: Experiment, root: Path) -> Run | None:
 
 
 def _is_of(run: Run, experiment: Experiment) -> bool:
-    one = experiment
-    options = one.reduced, one.solver, one.divisor, one.overrides
     try:
-        return run.name == experiment.name and run.options == options
+        return run.name == experiment.name and run.options == experiment.options
     except (TraceError, KeyError):  # a damaged index is nothing to go on from
         return False
 

@@ -9,6 +9,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from lavendersim.config_options import ConfigOptions
 from lavendersim.durable_files import flush_folder, write_whole
 from lavendersim.errors import TraceError, UsageError
 
@@ -108,9 +109,9 @@ class Run:
         from lavendersim.experiment import load_experiment_text  # late: see `RunCell.trace`
 
         text = read_sealed(self.path / CONFIG)
-        reduced, solver, divisor, overrides = self.options
-        experiment = load_experiment_text(text, str(self.path / CONFIG), reduced, solver, overrides)
-        return replace(experiment.refined(divisor), name=self.name)
+        options = self.options._asdict()
+        experiment = load_experiment_text(text, str(self.path / CONFIG), **options)
+        return replace(experiment, name=self.name)
 
     @cached_property
     def name(self) -> str:
@@ -177,11 +178,9 @@ class Run:
         return list(self._index["cells"])
 
     @property
-    def options(self) -> tuple[bool, str | None, int, tuple[str, ...]]:
-        """What it was run with beside its config, by the names of `Experiment`."""
-        index = self._index
-        reduced, divisor = bool(index.get("reduced")), index.get("timestep_divisor", 1)
-        return reduced, index.get("solver"), divisor, tuple(index.get("overrides", ()))
+    def options(self) -> ConfigOptions:
+        """What its config was read with."""
+        return ConfigOptions.of_row(ConfigOptions().row | self._index)
 
     @property
     def finished(self) -> bool:

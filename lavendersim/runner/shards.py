@@ -205,10 +205,7 @@ def identity_of(prepared: Prepared) -> dict[str, Any]:
     return {
         "experiment": one.name,
         "config": hashlib.sha256(one.text.encode("utf-8", "surrogatepass")).hexdigest(),
-        "reduced": one.reduced,
-        "solver": one.solver,
-        "timestep_divisor": one.divisor,
-        "overrides": list(one.overrides),
+        **one.options.row,
         "versions": versions(),
         "logs": hashlib.sha256(engine_and_cells.encode()).hexdigest(),
     }

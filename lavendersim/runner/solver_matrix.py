@@ -18,12 +18,12 @@ from typing import NamedTuple, get_args
 from lavendersim.cell.choices import Solver
 from lavendersim.errors import ConfigError, UsageError
 from lavendersim.experiment import Experiment, load_experiment
-from lavendersim.experiment.sweeps.solver_override import about_something_else
 from lavendersim.quantities.found import nearest, quoted
 
 from .experiment_run import run
 from .matrix_entry import DIED, REFUSED, Entry, entry_of, without_run
 from .run_directory import RUNS
+from .solver_cases import about_something_else
 from .workers import end_with_parent
 
 ALL = "all"
@@ -71,7 +71,8 @@ def cases_of(experiments: Sequence[Experiment]) -> tuple[list[Case], dict[str, s
             continue
         if any(case.name == name for case in cases):
             name = str(experiment.path)
-        cases.append(Case(name, experiment.path, experiment.reduced, experiment.config.question))
+        reduced, question = experiment.options.reduced, experiment.config.question
+        cases.append(Case(name, experiment.path, reduced, question))
     return cases, left_out
 
 

@@ -1,15 +1,18 @@
 """Tables of the documents that are made from the code; `python tests/rules/tables.py` writes them.
 
-Packages and their imports, columns of the log, effects. What a package does stands in the page.
+Packages and their imports, columns of the log, effects, keys of configs, measures. What a package
+does stands in the page.
 """
 
 from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Sequence
 from pathlib import Path
 
+from config_tables import with_key_tables
+from markdown_tables import escaped, markdown
+from measure_tables import with_measure_tables
 from sources import ROOT
 from test_walls import ROOMS
 
@@ -41,17 +44,6 @@ SECTIONS = {
     "residual": ("residual_log",),
     "the-law-of-contact": ("problem_log",),
 }
-
-
-def markdown(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    """Return a table."""
-    lines = [heads, ["---"] * len(heads), *rows]
-    return "\n".join(f"| {' | '.join(line)} |" for line in lines)
-
-
-def escaped(text: str) -> str:
-    """Return a text that ends no cell."""
-    return text.replace("|", "\\|")
 
 
 def packages(page: str) -> str:
@@ -124,6 +116,10 @@ def with_table(page: str, after: str, table: str) -> str:
 def made(name: str) -> str:
     """Return a page of the documents as it should be."""
     page = (DOCUMENTS / name).read_text()
+    if name == "config.md":
+        return with_key_tables(page)
+    if name == "measures.md":
+        return with_measure_tables(page)
     if name == "plan.md":
         return with_table(page, "## Every effect", effects())
     page = with_table(page, "## Packages", packages(page))
@@ -131,7 +127,7 @@ def made(name: str) -> str:
     return with_table(page, "Columns of `/contacts`", contact_columns())
 
 
-PAGES = ("architecture.md", "plan.md")
+PAGES = ("architecture.md", "config.md", "measures.md", "plan.md")
 
 if __name__ == "__main__":
     for made_page in PAGES:

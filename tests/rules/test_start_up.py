@@ -90,6 +90,7 @@ def test_listing_runs_reads_no_config_and_no_log() -> None:
     assert loaded & (HEAVY | {"mcap", "rich"}) == set()
     assert {name for name in loaded if name.startswith("lavendersim.")} == {
         *("lavendersim.errors", "lavendersim.durable_files", "lavendersim.runner"),
+        "lavendersim.config_options",  # a record of four fields
         *("lavendersim.runner.listing", "lavendersim.runner.run_directory"),
         *(f"lavendersim.runner.run_{part}" for part in ("index", "seal", "tables")),
     }

@@ -14,6 +14,7 @@ ROOMS = {
     "__init__": {"experiment", "runner", "simulator", "trace"},  # public names, imported when used
     "errors": set(),
     "clock": set(),
+    "config_options": set(),
     "record_tables": set(),
     "durable_files": set(),
     "arrow": {"errors", "durable_files"},
@@ -22,6 +23,7 @@ ROOMS = {
     "cell": {"errors", "clock", "quantities", "engine"},  # of the engine: DECLARATIONS
     "experiment": {
         *("errors", "clock", "geometry", "quantities", "cell", "engine", "measures", "figures"),
+        "config_options",
     },
     "engine": {"quantities", "record_tables", "durable_files"},
     "scene": {"errors", "clock", "geometry", "quantities", "cell", "experiment", "engine"},
@@ -43,7 +45,7 @@ ROOMS = {
         "lint",
         *("errors", "clock", "quantities", "cell", "experiment", "scene", "engine", "problems"),
         *("trace", "measures", "geometry", "record_tables", "durable_files", "arrow"),
-        "figures",  # a run in a notebook
+        *("figures", "config_options"),  # figures: a run in a notebook
     },
     "comparison": {"errors", "geometry", "trace", "measures", "runner"},
     "pytest_plugin": {"errors", "experiment", "lint", "trace", "measures", "runner"},
@@ -190,8 +192,6 @@ BESIDE_THE_DOOR = {
     "lavendersim/runner/experiment_run.py": "a large table, aside by the door",
     "lavendersim/replay/headless.py": "what the viewer says, gone with it",
     "lavendersim/scene/effects_page.py": "a document",
-    "lavendersim/measures/documentation.py": "a document",
-    "lavendersim/experiment/reference.py": "a document",
 }
 
 

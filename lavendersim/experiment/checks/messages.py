@@ -69,7 +69,7 @@ def report_errors(
 
 
 def locate(root: Node, loc: tuple[str | int, ...]) -> tuple[Path, Node]:
-    """Return the deepest node on the way of a pydantic location, whose union tags are no keys."""
+    """Return the deepest node on the way of a location; pydantic's have union tags, no keys."""
     path: list[str | int] = []
     node = root
     for step in loc:

@@ -17,7 +17,7 @@ from pydantic import BaseModel, ValidationError
 
 from lavendersim.experiment.checks.messages import report_errors
 from lavendersim.experiment.models.shapes import SOLIDS
-from lavendersim.experiment.models.tree import BODIES, body_names, swept_values
+from lavendersim.experiment.models.tree import BODIES, bodies_of, swept_values
 from lavendersim.experiment.text.node import ABSENT, Mark, Node, Path
 from lavendersim.experiment.text.place import Place
 from lavendersim.experiment.text.report import Report
@@ -44,7 +44,7 @@ class Reading:
     @cached_property
     def _names(self) -> dict[NamedKind, Collection[str]]:
         return {
-            "body": dict.fromkeys(body_names(self.root)),
+            "body": bodies_of(self.root),
             "plane": self.root.get(*BODIES).entries,
             "measure": self.root.get("measure").entries,
             "surface": self.root.get("scene", "surfaces").entries,
@@ -101,18 +101,17 @@ class Reading:
         """Return why nothing, or nothing of this kind, is called so."""
         known = self._names[kind]
         if name not in known:
-            names = self._planes() if kind == "plane" else known
-            hint = nearest(name, names) or "; this file has none"
+            if kind == "plane":  # or may have been meant as one
+                known = [one for one in known if self._shape_of(one) not in SOLIDS]
+            hint = nearest(name, known) or "; this file has none"
             return f"no {kind} is called {quoted(name)}{hint}"
-        shape = self.root.get(*BODIES, name, "shape", "kind").text if kind == "plane" else None
+        shape = self._shape_of(name) if kind == "plane" else None
         if shape in SOLIDS:
             return f"{quoted(name)} is a {shape}, expected the name of a plane"
         return None
 
-    def _planes(self) -> list[str]:
-        """Return the bodies that are planes, or may have been meant as one."""
-        bodies = self.root.get(*BODIES).entries
-        return [name for name, b in bodies.items() if b.get("shape", "kind").text not in SOLIDS]
+    def _shape_of(self, body: str) -> str | None:
+        return self.root.get(*BODIES, body, "shape", "kind").text
 
     def check_selection(self, data: object) -> None:
         """Refuse values that their axis does not take."""

@@ -33,20 +33,19 @@ class AlwaysSection(Always):
             if (bound.text if bound else default) == NONE:
                 continue
             mark = bound.mark if bound else key_mark(at.root, "always")
-            reasons = itertools.chain(_unlogged(at.root, check), _unrecorded(at.root, check))
-            if reason := next(reasons, None):
+            reason = next(_unlogged(at.root, check), None) or _unrecorded(at.root, check)
+            if reason is not None:
                 at.refuse(mark, f"{check}: {reason}; specify {check}: none")
 
 
-def _unrecorded(root: Node, check: str) -> Iterator[str]:
-    """Yield why the log has not of every step what a check takes."""
+def _unrecorded(root: Node, check: str) -> str | None:
+    """Return why the log has not of every step what a check takes; None where it has."""
     taken = READS.get(check, SUMS)
     acts = root.get("events").items or root.get("scene", "forces").items
     if check == "energy" and acts:  # what they do is counted by where the bodies are
         taken |= POSES
     reason = not_recorded(root, taken)
-    if reason is not None:
-        yield f"it {reason}"
+    return None if reason is None else f"it {reason}"
 
 
 def _unlogged(root: Node, check: str) -> Iterator[str]:

@@ -85,7 +85,8 @@ class _Matter(declared("Matter", _MatterOwn, BODY_KEYS), _MatterOwn):  # type: i
         if kind == "plane":
             _plane_rules(at)
         elif kind in SOLIDS:
-            cls.start_rules(at)
+            if "position" in cls.model_fields:  # a body that stands alone
+                _exactly_one(at, ("position", "release"), "[m], or a release above a plane")
             constrained = [key for key in _CONSTRAIN if at.get(key).is_true]
             if len(constrained) > 1:
                 one, other = constrained[:2]
@@ -97,10 +98,6 @@ class _Matter(declared("Matter", _MatterOwn, BODY_KEYS), _MatterOwn):  # type: i
                 meaning = "[kg], or a density [kg/m^3], or fixed: true"
                 _exactly_one(at, ("mass", "density"), meaning)
                 _inertia_rules(at, kind)
-
-    @classmethod
-    def start_rules(cls, at: Place) -> None:
-        """Refuse a start that is none."""
 
 
 class Body(_Matter):
@@ -115,11 +112,6 @@ class Body(_Matter):
         default=None, description="start above a plane, instead of a position; of what can move"
     )
 
-    @classmethod
-    def start_rules(cls, at: Place) -> None:
-        """A body that stands alone has one of position and release."""
-        _exactly_one(at, ("position", "release"), "[m], or a release above a plane")
-
 
 class ArrangedBody(_Matter):
     """A body that stands in several places: all that a body has but its position."""
@@ -132,7 +124,8 @@ class ArrangedBody(_Matter):
 def _immovable_rules(at: Place, word: str) -> None:
     for key in (*_OF_MOVABLE, *(_OF_MOVING if word == "fixed" else ())):
         if mark := at.written(key):
-            at.refuse(mark, f"{key}: {at} is {word}; a {word} body has no {_words(key)}")
+            has = f"a {word} body has no {key.replace('_', ' ')}"
+            at.refuse(mark, f"{key}: {at} is {word}; {has}")
     if mark := at.written("release"):
         goes = "stays" if word == "fixed" else "goes its own way"
         at.refuse(mark, f"release: {at} is {word} and {goes}; specify its position")
@@ -165,8 +158,8 @@ def _plane_rules(at: Place) -> None:
     for key in (*_OF_MOVABLE, *_OF_MOVING, *_OF_PLACES):
         if mark := at.written(key):
             instead = "; its normal and offset say where it is" if key in _OF_PLACES else ""
-            sentence = f"{key}: {at} is a plane; a plane has no {_words(key)}{instead}"
-            at.refuse(mark, sentence)
+            has = f"a plane has no {key.replace('_', ' ')}{instead}"
+            at.refuse(mark, f"{key}: {at} is a plane; {has}")
 
 
 def _exactly_one(at: Place, keys: tuple[str, str], meaning: str) -> None:
@@ -179,7 +172,3 @@ def _exactly_one(at: Place, keys: tuple[str, str], meaning: str) -> None:
             at.doubt()  # a refused key may have been one of them
         else:
             at.lacks(keys[0], meaning)
-
-
-def _words(key: str) -> str:
-    return key.replace("_", " ")

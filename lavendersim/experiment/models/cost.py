@@ -13,7 +13,8 @@ from typing import Annotated, Any, Final, Literal
 from pydantic import Field, Tag
 
 from lavendersim.cell.choices import Solver
-from lavendersim.experiment.models.overhead import all_or_named, refuse_what_interrupts
+from lavendersim.cell.numerics import Accuracy, Sweeps, Timestep, Tolerance
+from lavendersim.experiment.models.overhead import TimedFrom, all_or_named, refuse_what_interrupts
 from lavendersim.experiment.models.tree import products
 from lavendersim.experiment.text.node import key_mark
 from lavendersim.experiment.text.place import Place
@@ -29,10 +30,6 @@ GRID_NAMES: Final = frozenset(
 FEWEST_REPEATS = 7  # of six samples the interval that holds the median is all of them
 FEW = "of fewer, one slow moment of the machine decides where the median lies"
 
-Timestep = Annotated[Fraction, Quantity("s", above=0, exact=True)]
-Sweeps = Annotated[int, Quantity(whole=True, minimum=1, maximum=1_000_000)]
-Tolerance = Annotated[float, Quantity("m/s", above=0)]
-Accuracy = Annotated[float, Quantity(above=0, below=1)]
 Share = Annotated[float, Quantity(above=0)]
 Repeats = Annotated[int, Quantity(whole=True, minimum=FEWEST_REPEATS, maximum=1000, hint=FEW)]
 
@@ -122,11 +119,7 @@ class CostSpec(ConfigModel):
     repeats: Repeats = Field(
         default=9, description="rounds, 7 or more; every round times every setting"
     )
-    begin: Annotated[float, Quantity("s", minimum=0)] = Field(
-        alias="from",
-        default=0.0,
-        description="[s] simulated time at which what is timed begins; it ends with the run",
-    )
+    begin: TimedFrom = 0.0
 
     @classmethod
     def rules(cls, at: Place) -> None:

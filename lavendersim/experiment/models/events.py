@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from fractions import Fraction
 from typing import Annotated, Final, Literal
 
 from pydantic import Field
 
+from lavendersim.cell.numerics import Timestep
 from lavendersim.experiment.models.tree import (
     Removal,
     after_the_end,
-    body_node,
+    bodies_of,
     immovable,
     prescribes_motion,
     removals,
 )
-from lavendersim.experiment.text.node import Node
+from lavendersim.experiment.text.node import ABSENT, Node
 from lavendersim.experiment.text.place import Place
 from lavendersim.quantities.found import near
 from lavendersim.quantities.model import ConfigModel
@@ -35,7 +35,7 @@ class Event(ConfigModel):
         default=None,
         description="a body that is not fixed; required but for a timestep, and `remove` takes any",
     )
-    timestep: Annotated[Fraction, Quantity("s", above=0, exact=True)] | None = Field(
+    timestep: Timestep | None = Field(
         default=None,
         description="[s] length of the steps from then on; an event of its own, without a body",
     )
@@ -81,7 +81,7 @@ class Event(ConfigModel):
 
 
 def _change_rules(at: Place, body: Node) -> None:
-    target = body_node(at.root, body.text)
+    target = bodies_of(at.root).get(body.text or "", ABSENT)
     if what := immovable(target, prescribed=False):
         at.refuse(body.mark, f'body: "{body.text}" is {what}; expected a movable body')
     elif (key := prescribes_motion(target)) and at.get("scale_mass"):

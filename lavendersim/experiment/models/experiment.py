@@ -9,10 +9,9 @@ from pydantic import ConfigDict, Field, Tag
 from lavendersim.cell.choices import Preset, Switch
 from lavendersim.cell.numerics import Numerics
 from lavendersim.experiment.models.always import AlwaysSection
+from lavendersim.experiment.models.claims import expectation_rules, measure_rules
 from lavendersim.experiment.models.cost import CostSpec
 from lavendersim.experiment.models.events import Event
-from lavendersim.experiment.models.expectation_names import expectation_rules
-from lavendersim.experiment.models.measure_names import measure_rules
 from lavendersim.experiment.models.overhead import OverheadSpec
 from lavendersim.experiment.models.record import Record
 from lavendersim.experiment.models.recorded import recording_rules

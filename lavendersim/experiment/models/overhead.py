@@ -24,6 +24,16 @@ EffectNames = Annotated[
 ]
 
 
+TimedFrom = Annotated[
+    float,
+    Quantity("s", minimum=0),
+    Field(
+        alias="from",
+        description="[s] simulated time at which what is timed begins; it ends with the run",
+    ),
+]
+
+
 class OverheadSpec(ConfigModel):
     """What each effect costs in this scene: taken by `lavender run`, after the cells."""
 
@@ -33,11 +43,7 @@ class OverheadSpec(ConfigModel):
     repeats: Annotated[int, Quantity(whole=True, minimum=1, maximum=1000)] = Field(
         default=9, description="rounds; every round visits every effect, on and off, in turn"
     )
-    begin: Annotated[float, Quantity("s", minimum=0)] = Field(
-        alias="from",
-        default=0.0,
-        description="[s] simulated time at which what is timed begins; it ends with the run",
-    )
+    begin: TimedFrom = 0.0
 
     @classmethod
     def rules(cls, at: Place) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Final, Literal
+from typing import Annotated, Literal
 
 from pydantic import Field, Tag
 
@@ -37,11 +37,12 @@ Residuals = Annotated[
 ]
 
 
-# A number is read as the text, which says how it would be right.
-_STEPS_FORM: Final = {str: "every", int: "every", dict: "window"}
 Steps = Annotated[
     Annotated[EveryOrAll, Tag("every")] | Annotated[Window, Tag("window")],
-    either("all, every N or {from: seconds, to: seconds}", _STEPS_FORM),
+    either(  # a number is read as the text, which says how it would be right
+        "all, every N or {from: seconds, to: seconds}",
+        {str: "every", int: "every", dict: "window"},
+    ),
 ]
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated
 
 from pydantic import Field, Tag
 
@@ -13,16 +13,15 @@ from lavendersim.experiment.models.bodies import Body
 from lavendersim.experiment.models.tree import (
     MOST_BODIES,
     after_the_end,
-    body_node,
+    bodies_of,
     described,
     immovable,
-    is_static,
     member_name,
     members,
     not_after,
     removals,
 )
-from lavendersim.experiment.text.node import key_mark
+from lavendersim.experiment.text.node import ABSENT, key_mark
 from lavendersim.experiment.text.place import Place
 from lavendersim.quantities.found import quoted
 from lavendersim.quantities.model import ConfigModel, declared
@@ -57,12 +56,6 @@ class TiltedGravity(ConfigModel):
             at.refuse(max(tilt, slope), "gravity specifies both tilt_degrees and slope; keep one")
 
 
-def _gravity_form(value: Any) -> str:
-    if isinstance(value, dict):
-        return "tilted"
-    return "vector" if isinstance(value, list | tuple) else "magnitude"
-
-
 Gravity = Annotated[
     Annotated[
         float,
@@ -71,7 +64,10 @@ Gravity = Annotated[
     ]
     | Annotated[Vector3, Vector(3, Quantity("m/s^2")), Tag("vector")]
     | Annotated[TiltedGravity, Tag("tilted")],
-    either("a number, a list of 3 numbers [m/s^2] or {slope: ...}", _gravity_form),
+    either(
+        "a number, a list of 3 numbers [m/s^2] or {slope: ...}",
+        {dict: "tilted", tuple: "vector", list: "vector", object: "magnitude"},
+    ),
 ]
 
 _ZERO = (0.0, 0.0, 0.0)
@@ -101,7 +97,7 @@ class Force(ConfigModel):
         """It acts on a body that can move, for a while of the run, before the body is removed."""
         body, begin, end = at.get("body"), at.get("from"), at.get("to")
         name = body.text
-        if what := immovable(body_node(at.root, name), prescribed=True):
+        if what := immovable(bodies_of(at.root).get(name or "", ABSENT), prescribed=True):
             at.refuse(body.mark, f'body: "{name}" is {what}; expected a movable body')
         if not at.get("force") and not at.get("torque"):
             at.refuse(at.node.mark, f"{at} does nothing; expected force or torque")
@@ -144,7 +140,7 @@ class Scene(declared("Scene", ConfigModel, SCENE_KEYS)):  # type: ignore[misc]
         every = [body for _, body in described(at.root)]
         if not every:
             at.refuse(bodies.mark, "bodies: expected at least one movable body, found none")
-        elif all(map(is_static, every)):
+        elif all(immovable(body, prescribed=False) for body in every):
             sentence = "nothing can move here; expected at least one body that is not fixed"
             at.refuse(at.key("bodies"), f"bodies: {sentence}")
 

@@ -8,10 +8,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from functools import lru_cache
 from typing import Final, NamedTuple
 
 from lavendersim.engine.effects import MOTION_KEYS
-from lavendersim.experiment.text.node import ABSENT, Node, Path
+from lavendersim.experiment.text.node import Node, Path
 from lavendersim.experiment.text.place import Place, place_of
 
 MOST_BODIES = 100_000  # of a scene; their names alone are some megabytes
@@ -45,20 +46,17 @@ def member_name(arrangement: str, number: int) -> str:
     return f"{arrangement}_{number}"
 
 
-def body_names(root: Node) -> Iterator[str]:
-    """Yield the names of all bodies, in their order; no more than a scene may have."""
-    yield from root.get(*BODIES).entries
+@lru_cache(maxsize=1)  # every force and event asks for one
+def bodies_of(root: Node) -> dict[str, Node]:
+    """Return the nodes that describe all bodies, in their order; no more than a scene may have."""
+    nodes = dict(root.get(*BODIES).entries)
     left = MOST_BODIES
     for name, arrangement in root.get(*ARRANGEMENTS).entries.items():
         count = min(members(arrangement), left)
         left -= count
-        yield from (member_name(name, number) for number in range(1, count + 1))
-
-
-def body_node(root: Node, name: str | None) -> Node:
-    """Return the node that describes the body of this name, ABSENT where there is none."""
-    path = body_path(root, name) if name is not None else ()
-    return root.get(*path) if path else ABSENT
+        for number in range(1, count + 1):
+            nodes.setdefault(member_name(name, number), arrangement.get("body"))
+    return nodes
 
 
 def body_path(root: Node, name: str) -> Path:
@@ -80,11 +78,6 @@ def described(root: Node) -> Iterator[tuple[str, Node]]:
             yield name, body
 
 
-def is_static(body: Node) -> bool:
-    """Tell whether a body never moves: a plane, or fixed."""
-    return body.get("shape", "kind").text == "plane" or body.get("fixed").is_true
-
-
 def prescribes_motion(body: Node) -> str | None:
     """Return the key by which a body moves whatever touches it, None where there is none."""
     return next((key for key in PRESCRIBE_MOTION if body.get(key).is_true), None)
@@ -95,7 +88,7 @@ def immovable(body: Node, *, prescribed: bool) -> str | None:
     if body.get("shape", "kind").text == "plane":
         return "a plane"
     own = prescribes_motion(body) if prescribed else None
-    return own or ("fixed" if is_static(body) else None)
+    return own or ("fixed" if body.get("fixed").is_true else None)
 
 
 def after_the_end(at: Place, key: str) -> bool:

@@ -12,6 +12,8 @@ sqrt(2 g h) dt, hence phases 0..15/16 sample where in a step the impact falls.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
+from contextlib import contextmanager
 from fractions import Fraction
 
 from lavendersim.cell.body import Release
@@ -29,9 +31,14 @@ class SceneError(ValueError):
         super().__init__(sentence)
         self.path = path
 
-    def below(self, *steps: str | int) -> SceneError:
-        """Return the same with more steps before the path."""
-        return SceneError((*steps, *self.path), str(self))
+
+@contextmanager
+def below(*steps: str | int) -> Iterator[None]:
+    """Put these steps before the path of a SceneError that comes from within."""
+    try:
+        yield
+    except SceneError as error:
+        raise SceneError((*steps, *error.path), str(error)) from None
 
 
 def released_position(

@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import replace
 from fractions import Fraction
 from types import MappingProxyType
-from typing import Any, Final
+from typing import Final
 
 from lavendersim.cell.numerics import Numerics
 from lavendersim.experiment.text.node import UNWRITTEN, Node, graft
@@ -80,14 +80,13 @@ def with_preset(root: Node) -> Node:
     wrong = numerics and numerics.text is None and not numerics.entries
     if named is None or wrong:
         return root  # refused by the model
-    entries = {key: Node(_scalar(value), UNWRITTEN) for key, value in named}
+    entries = {
+        key: Node(Ratio(value) if isinstance(value, Fraction) else value, UNWRITTEN)
+        for key, value in named
+    }
     given = {k: v for k, v in values.items() if v.content is not None or k == "tolerance"}
     whole = replace(
         numerics or Node({}, root.mark),
         content=entries | {"preset": Node(name, UNWRITTEN)} | given,
     )
     return graft(root, ("numerics",), whole)
-
-
-def _scalar(value: Any) -> Any:
-    return Ratio(value) if isinstance(value, Fraction) else value

@@ -18,7 +18,7 @@ from lavendersim.experiment.models.tree import (
     member_name,
 )
 from lavendersim.experiment.resolve.arrangements import centres
-from lavendersim.experiment.resolve.placement import SceneError, released_position
+from lavendersim.experiment.resolve.placement import below, released_position
 from lavendersim.experiment.resolve.shape import quaternion_of, resolve_shape
 from lavendersim.geometry.quaternions import IDENTITY, Quaternion, product, to_body, to_world
 from lavendersim.geometry.vectors import unit
@@ -34,15 +34,11 @@ def resolve_scene(scene: Scene, timestep: Fraction, duration: float) -> CellScen
     written: dict[str, Quaternion] = {}  # orientation of the frame that the file means
     for name, body in scene.bodies.items():
         written[name] = quaternion_of(body.orientation)
-        try:
+        with below(*BODIES, name):
             bodies[name] = _body(body, scene, gravity, timestep)
-        except SceneError as error:
-            raise error.below(*BODIES, name) from None
     for name, arrangement in scene.arrangements.items():
-        try:
+        with below(*ARRANGEMENTS, name, "body"):
             one = _matter(arrangement.body, scene)
-        except SceneError as error:
-            raise error.below(*ARRANGEMENTS, name, "body") from None
         assert not isinstance(one.shape, Plane)
         places = centres(arrangement, one.shape, one.orientation)
         for number, position in enumerate(places, start=1):
@@ -110,10 +106,8 @@ def _matter(body: Body | ArrangedBody, scene: Scene) -> CellBody:
     if isinstance(body.shape, Plane):
         shape = body.shape.model_copy(update={"normal": unit(body.shape.normal)})
     else:
-        try:
+        with below("shape"):
             shape, volume, (x, y, z), axes = resolve_shape(body.shape)
-        except SceneError as error:
-            raise error.below("shape") from None
         if axes != IDENTITY:
             orientation = product(orientation, axes)
         if not fixed:

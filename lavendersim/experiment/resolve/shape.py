@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from lavendersim.cell.shapes import CellCompound, CellHull, CellPart, CellSimple, Primitive
 from lavendersim.experiment.models.shapes import AxisAngle, Compound, Simple
-from lavendersim.experiment.resolve.placement import SceneError
+from lavendersim.experiment.resolve.placement import SceneError, below
 from lavendersim.geometry.convex_hull import FlatError, convex_hull
 from lavendersim.geometry.mass_properties import (
     ORIGIN,
@@ -70,10 +70,8 @@ def _compound(compound: Compound) -> SolidShape:
     shapes: list[CellSimple] = []
     placed: list[Placed] = []
     for index, part in enumerate(compound.parts):
-        try:
+        with below("parts", index, "shape"):
             shape, solid = _simple(part.shape)
-        except SceneError as error:
-            raise error.below("parts", index, "shape") from None
         turn = quaternion_of(part.orientation)
         if isinstance(shape, CellHull):
             turn = product(turn, shape.axes)

@@ -32,6 +32,14 @@ class SweptAxis:
     path: Path
     values: tuple[Node, ...]
 
+    def overlaps(self, path: Path) -> bool:
+        """Tell whether it varies what stands at the path, or a part of it, or what has it."""
+        return self.path[: len(path)] == path[: len(self.path)]
+
+
+# Of each product of the sweep, its axes.
+Products = tuple[tuple[SweptAxis, ...], ...]
+
 
 @dataclass(frozen=True)
 class SweepPoint:
@@ -65,7 +73,7 @@ def swept_value(value: Any) -> Any:
     return value
 
 
-def axes_of(root: Node, report: Report) -> tuple[tuple[SweptAxis, ...], ...]:
+def axes_of(root: Node, report: Report) -> Products:
     """Return the axes of each product, without those that are refused here."""
     read: list[tuple[SweptAxis, ...]] = []
     paths: dict[str, Path] = {}
@@ -78,7 +86,7 @@ def axes_of(root: Node, report: Report) -> tuple[tuple[SweptAxis, ...], ...]:
             if paths.setdefault(name, axis.path) != axis.path:
                 sentence = f"{name}: varies another path earlier in the file; rename it"
                 report.add(key_mark(product, name), sentence)
-            elif clash := next((one for one in axes if _overlap(one.path, axis.path)), None):
+            elif clash := next((one for one in axes if one.overlaps(axis.path)), None):
                 sentence = f"{name}: varies the same place as axis {quoted(clash.name)}"
                 report.add(key_mark(product, name), sentence)
             else:
@@ -87,19 +95,19 @@ def axes_of(root: Node, report: Report) -> tuple[tuple[SweptAxis, ...], ...]:
     return tuple(read)
 
 
-def points(axes: tuple[tuple[SweptAxis, ...], ...]) -> Iterator[SweepPoint]:
+def points(axes: Products) -> Iterator[SweepPoint]:
     """Yield all cells: product after product, the first axis slowest; one without a sweep."""
     for product in axes or ((),):
         for nodes in itertools.product(*(axis.values for axis in product)):
             yield SweepPoint(tuple(zip(product, nodes, strict=True)))
 
 
-def count(axes: tuple[tuple[SweptAxis, ...], ...]) -> int:
+def count(axes: Products) -> int:
     """Return the number of cells without making them."""
     return sum(math.prod(len(axis.values) for axis in product) for product in axes or ((),))
 
 
-def telling_points(axes: tuple[tuple[SweptAxis, ...], ...]) -> Iterator[SweepPoint]:
+def telling_points(axes: Products) -> Iterator[SweepPoint]:
     """Yield a few cells in which every value of every axis stands once, for large sweeps."""
     for product in axes or ((),):
         if not product:
@@ -110,7 +118,7 @@ def telling_points(axes: tuple[tuple[SweptAxis, ...], ...]) -> Iterator[SweepPoi
                 yield SweepPoint((*first[:index], (axis, node), *first[index + 1 :]))
 
 
-def check_distinct(axes: tuple[tuple[SweptAxis, ...], ...], report: Report) -> None:
+def check_distinct(axes: Products, report: Report) -> None:
     """Note cells that stand twice in a union of products."""
     seen: set[str] = set()
     for product in axes if len(axes) > 1 else ():
@@ -153,11 +161,6 @@ def _usable(name: str, values: Node, report: Report, nullable: bool) -> tuple[No
             usable[key] = value
             labels.add(shown)
     return tuple(usable.values())
-
-
-def _overlap(one: Path, other: Path) -> bool:
-    shorter = min(len(one), len(other))
-    return one[:shorter] == other[:shorter]
 
 
 def opened(root: Node, path: Path) -> Node:

@@ -22,9 +22,6 @@ UNWRITTEN = Mark(0, 0)  # of a preset's values: before every place of the file
 class Broken:
     """Stands in the data for a value that was already refused, so that it is reported once."""
 
-    def __repr__(self) -> str:
-        return "<refused>"
-
 
 BROKEN = Broken()
 Path = tuple[str | int, ...]

@@ -34,18 +34,16 @@ class Report:
         self._beside[-number] = name
         return -number
 
-    def _defect(self, mark: Mark, said: str) -> Defect:
-        if mark.line in self._beside:
-            return Defect(self._beside[mark.line], 1, mark.column, said)
-        return Defect(self.name, mark.line, mark.column, said)
-
     def doubt(self) -> None:
         """Note that something is wrong that was reported already, perhaps at another place."""
         self._sound = False
 
     def close_round(self) -> bool:
         """End the round; tells whether nothing was found in it, be it new or reported before."""
-        self._defects += [self._defect(mark, said) for mark, said in self._round]
+        for mark, said in self._round:
+            line = 1 if mark.line in self._beside else mark.line
+            name = self._beside.get(mark.line, self.name)
+            self._defects.append(Defect(name, line, mark.column, said))
         self._reported |= {mark for mark, _ in self._round}
         self._round.clear()
         sound, self._sound = self._sound, True

@@ -14,70 +14,24 @@ from hypothesis import strategies as st
 
 from lavendersim.errors import ConfigError
 from lavendersim.experiment import Experiment, load_experiment_text
+from tests.many_keys_config import MANY_KEYS
 
 CONFIGS = Path(__file__).parents[3] / "configs"
 GOOD = [path.read_text(encoding="utf-8") for path in sorted(CONFIGS.glob("*/*.yaml"))]
-EVERYTHING = """\
-question: What if?
+WALL = "    wall: {shape: {kind: box, size: [1, 1, 1]}, fixed: true, position: [-5, 0, 0]}\n"
+# What is no number: a fixed body, words, a sweep and a claim of some of its cells.
+EVERYTHING = (
+    MANY_KEYS.replace("  arrangements:\n", WALL + "  arrangements:\n").replace(
+        "measure: aside, equals", "measure: aside, at: {e: 0.5}, equals"
+    )
+    + """\
 expected: Nothing breaks.
-scene:
-  gravity: {magnitude: 9.81, slope: 0.1, azimuth_degrees: 45}
-  surfaces: {rubber: {restitution: 0.8, compliance: 1e-6}}
-  bodies:
-    floor: {shape: {kind: plane, normal: [0, 0, 1], offset: 0.0}}
-    ball:
-      shape: {kind: sphere, radius: 0.1}
-      mass: 1.0
-      surface: rubber
-      release: {above: floor, clearance: 1.0, phase: 3/16, at: [0, 0]}
-      orientation: {axis: [0, 0, 1], degrees: 30}
-    block: {shape: {kind: box, size: [1, 1, 1]}, density: 10, position: [5, 0, 2]}
-    wall: {shape: {kind: box, size: [1, 1, 1]}, fixed: true, position: [-5, 0, 0]}
-    rock:
-      shape: {kind: hull, points: [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [0.1, 0.1, 0.1]]}
-      density: 10
-      drag: {linear: 0.1, quadratic: 0.2}
-      release: {above: floor, clearance: 0.5, at: [9, 9]}
-    thing:
-      shape:
-        kind: compound
-        parts:
-          - {shape: {kind: capsule, radius: 0.1, length: 0.3}, position: [0.1, 0, 0]}
-          - {shape: {kind: cylinder, radius: 0.1, length: 0.3}, orientation: [1, 1, 0, 0]}
-      mass: 2.0
-      position: [7, 0, 1]
-    belt: {shape: {kind: box, size: [1, 1, 1]}, kinematic: true, position: [0, 9, 0]}
-  arrangements:
-    tower:
-      kind: tower
-      count: 3
-      base: [4, 4, 0]
-      body: {shape: {kind: box, size: [1, 1, 1]}, mass: 1}
-    heap:
-      {kind: grid, counts: [2, 2, 1], spacing: [1, 1, 1], jitter: 0.1, seed: 3,
-      body: {shape: {kind: sphere, radius: 0.1}, mass: 1, surface: rubber}}
-    pyramid:
-      kind: pyramid
-      base_count: 3
-      gap: 0.1
-      body: {shape: {kind: box, size: [1, 1, 1]}, mass: 1}
-  forces:
-    - {body: tower_2, from: 0.5, to: 1, force: [0, 0, 1], torque: [1, 0, 0]}
-events:
-  - {at: 1.0, body: ball, scale_mass: 1.05, contact_cache: keep}
-  - {at: 1.0, body: belt, velocity: [1, 0, 0], angular_velocity: [0, 0, 1]}
-numerics: {preset: chapter, timestep: 1/480, speculative: true, impacts: at_surface}
-duration: 2.0
 sweep:
   e: {path: scene.surfaces.rubber.restitution, values: [0, 0.5]}
   phase: {path: scene.bodies.ball.release.phase, values: [0, 1/16]}
   count: {path: scene.arrangements.tower.count, values: [2, 3]}
-record: {residuals: {from: 0.5, to: 1}}
-measure:
-  rebound: {kind: first_apex, body: ball, above: floor}
-expect:
-  - {name: rebound, measure: rebound, at: {e: 0.5}, between: [0.2, 0.3]}
 """
+)
 TOKEN = re.compile(r"[A-Za-z_]\w*|[-+]?\d[\d./e+-]*|\n *|\s+|.")
 STRANGE = [
     *"[]{}:,-?&*!|>'\"%@`#~\t\n\x85\u2028\ufeff\x00é😀",

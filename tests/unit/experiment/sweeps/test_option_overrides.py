@@ -43,7 +43,7 @@ def test_a_value_stands_in_the_place_of_the_files() -> None:
     assert bodies["ball"].position == (0.0, 0.0, 2.5)
     # As in a sweep, a path through a surface varies this body's own copy of it.
     assert [bodies[name].surface.restitution for name in ("ball", "floor")] == [0.9, 0.5]
-    assert experiment.overrides == overrides
+    assert experiment.options.overrides == overrides
     assert experiment.text == TEXT
 
 
@@ -104,7 +104,7 @@ def test_a_run_keeps_them(tmp_path: Path) -> None:
     assert done.path.name.startswith("2")
     assert "-drop-duration=0.05-" in done.path.name
     again = open_run(done.path)
-    assert again.experiment.overrides == ("set duration=0.05",)
+    assert again.experiment.options.overrides == ("set duration=0.05",)
     assert again.cells[0].trace().config.duration == 0.05
     assert again.experiment.cells()[0].config.duration == 0.05
     # Other values make it another experiment: it is not resumed, nor taken for finished.

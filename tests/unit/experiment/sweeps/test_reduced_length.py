@@ -10,7 +10,7 @@ SLOW = DROP + "slow: true\nreduced: {duration: 0.25}\n"
 
 def test_a_slow_experiment_has_both_its_lengths() -> None:
     full, short = (load_experiment_text(SLOW, "slow.yaml", reduced) for reduced in (False, True))
-    assert (full.reduced, short.reduced) == (False, True)
+    assert (full.options.reduced, short.options.reduced) == (False, True)
     assert [one.cells()[0].config.duration for one in (full, short)] == [0.5, 0.25]
     assert [one.cells()[0].config.steps for one in (full, short)] == [120, 60]
     assert full.text == short.text
@@ -25,5 +25,5 @@ def test_only_the_length_differs() -> None:
 
 def test_other_experiments_have_one_length() -> None:
     experiment = load_experiment_text(DROP, "drop.yaml", reduced=True)
-    assert not experiment.reduced
+    assert not experiment.options.reduced
     assert experiment.cells()[0].config.duration == 0.5

@@ -1,7 +1,5 @@
 """The tables of docs/config.md, written from the models: keys, defaults, meaning with unit.
 
-    python -m lavendersim.experiment.reference docs/config.md
-
 A table stands between two comments; the first names its models, and what stands between is
 replaced. Whatever an effect declares as a key of a config is a field of a model, and so in a table.
 
@@ -14,12 +12,11 @@ replaced. Whatever an effect declares as a key of a config is a field of a model
 from __future__ import annotations
 
 import re
-import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
-from pathlib import Path
 from typing import Any, get_args
 
+from markdown_tables import escaped, markdown
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
@@ -35,11 +32,11 @@ _OF_EFFECTS = frozenset(key.name for key in SCENE_KEYS)
 _TABLE = re.compile(r"(<!-- (keys|kinds|presets): ([\w ]+) -->\n).*?(<!-- end -->)", re.DOTALL)
 
 
-def render(text: str) -> str:
+def with_key_tables(text: str) -> str:
     """Return a page with every table written anew."""
     models = {model.__name__: model for model in models_below(ExperimentConfig)}
     models["Numerics"] = Numerics
-    tables: dict[str, Callable[..., Iterator[list[str]]]] = {
+    tables: dict[str, Callable[..., Iterator[Sequence[str]]]] = {
         "keys": keys_table,
         "kinds": kinds_table,
         "presets": presets_table,
@@ -47,9 +44,8 @@ def render(text: str) -> str:
 
     def table(found: re.Match[str]) -> str:
         head, form, names, end = found.groups()
-        rows = tables[form](*(models[name] for name in names.split()))
-        lines = "".join(f"| {' | '.join(row)} |\n" for row in rows)
-        return f"{head}\n{lines}\n{end}"
+        heads, *rows = tables[form](*(models[name] for name in names.split()))
+        return f"{head}\n{markdown(heads, rows)}\n\n{end}"
 
     return _TABLE.sub(table, text)
 
@@ -69,7 +65,7 @@ def models_below(annotation: Any) -> list[type[BaseModel]]:
 
 def keys_table(*models: type[BaseModel]) -> Iterator[list[str]]:
     """Yield the rows of a table of the models' keys."""
-    yield from (["key", "default", "meaning"], ["---", "---", "---"])
+    yield ["key", "default", "meaning"]
     for model in models:
         for key, info in fields(model).items():
             yield [f"`{key}`", _default(info), _meaning(info)]
@@ -81,10 +77,10 @@ def keys_table(*models: type[BaseModel]) -> Iterator[list[str]]:
 
 def kinds_table(*models: type[BaseModel]) -> Iterator[list[str]]:
     """Yield the rows of a table of kinds, and below each one those of its keys."""
-    yield from (["`kind`", "key", "default", "meaning"], ["---", "---", "---", "---"])
+    yield ["`kind`", "key", "default", "meaning"]
     for model in models:
         doc = " ".join((model.__doc__ or "").split())
-        yield [f"`{kinds(model)[0]}`", "", "", _escaped(doc)]
+        yield [f"`{kinds(model)[0]}`", "", "", escaped(doc)]
         for key, info in fields(model).items():
             if key != "kind":
                 yield ["", f"`{key}`", _default(info), _meaning(info)]
@@ -93,7 +89,6 @@ def kinds_table(*models: type[BaseModel]) -> Iterator[list[str]]:
 def presets_table(model: type[BaseModel]) -> Iterator[list[str]]:
     """Yield the rows of a table of the model's keys with the numbers of every preset."""
     yield ["key", *(f"`{name}`" for name in PRESETS), "meaning"]
-    yield ["---"] * (len(PRESETS) + 2)
     for key, info in fields(model).items():
         numbers = [_value(getattr(preset, key)) for preset in PRESETS.values()]
         yield [f"`{key}`", *numbers, _meaning(info)]
@@ -118,14 +113,4 @@ def _value(value: object) -> str:
 
 
 def _meaning(info: FieldInfo) -> str:
-    return _escaped(info.description or "")
-
-
-def _escaped(text: str) -> str:
-    return text.replace("|", r"\|")
-
-
-if __name__ == "__main__":
-    for name in sys.argv[1:]:
-        page = Path(name)
-        page.write_text(render(page.read_text(encoding="utf-8")), encoding="utf-8")
+    return escaped(info.description or "")

@@ -1,11 +1,28 @@
-"""The rules between expectations: each has a name of its own, and what must fail exists."""
+"""The rules between claims: measures are of those above them, expectations have own names."""
 
 from __future__ import annotations
 
 from lavendersim.experiment.text.node import Mark
 from lavendersim.experiment.text.place import Place
 from lavendersim.measures.specs.always import CHECKS, COMPLETES, DIVERGES, NONE
+from lavendersim.measures.specs.arithmetic import OPERANDS, OfMeasures
+from lavendersim.measures.specs.catalogue import KINDS
 from lavendersim.quantities.found import nearest, quoted
+
+
+def measure_rules(at: Place) -> None:
+    """Refuse a measure of one that does not stand above it."""
+    measures = at.get("measure").entries
+    above: list[str] = []
+    for name, node in measures.items():
+        kind = node.get("kind").text
+        if kind in KINDS and issubclass(KINDS[kind], OfMeasures):
+            for key in OPERANDS:
+                operand = node.get(key)
+                if operand.text in measures and operand.text not in above:
+                    sentence = f"{key}: expected a measure above {quoted(name)}"
+                    at.refuse(operand.mark, f"{sentence}, found {quoted(operand.text)}")
+        above.append(name)
 
 
 def expectation_rules(at: Place) -> None:

@@ -1,23 +1,21 @@
 """The tables of docs/measures.md, made from the models and functions of the measures.
 
-    python -m lavendersim.measures.documentation docs/measures.md
-
-writes them anew between the markers `<!-- table of ... -->` and `<!-- end of table -->`; the prose
-around them is written by hand.
+They stand between the markers `<!-- table of ... -->` and `<!-- end of table -->`; the prose around
+them is written by hand.
 """
 
 from __future__ import annotations
 
 import inspect
 import re
-import sys
 from collections.abc import Callable, Iterator
 from importlib import import_module
-from pathlib import Path
-from typing import Any, Final, get_args
+from typing import Any, Final
 
+from markdown_tables import escaped
 from pydantic import BaseModel
 
+from lavendersim.experiment.checks.annotations import models_of
 from lavendersim.measures.closed_forms import FORMS
 from lavendersim.measures.specs.always import Always
 from lavendersim.measures.specs.base import Measure
@@ -31,7 +29,7 @@ BLOCK: Final = re.compile(
 EVERY_MEASURE: Final = {*Measure.model_fields, "kind"}
 
 
-def with_tables(text: str) -> str:
+def with_measure_tables(text: str) -> str:
     """Return a document with every table between markers made anew."""
 
     def made(block: re.Match[str]) -> str:
@@ -72,7 +70,7 @@ def judgements() -> Iterator[str]:
     for place, keys in (("a cell", CELL_JUDGEMENTS), ("several cells", SWEEP_JUDGEMENTS)):
         for key in keys:
             info = ExpectSpec.model_fields[key]
-            models = [one for one in get_args(info.annotation) if _is_model(one)]
+            models = models_of(info.annotation)
             what = [info.description or "", *(_text(model) for model in models)]
             keyed = "; ".join(parameters(model, set()) for model in models)
             yield _row(f"`{key}`", place, ". ".join(what), keyed)
@@ -105,10 +103,6 @@ def parameters(model: type[BaseModel], without: set[str]) -> str:
     return "; ".join(described)
 
 
-def _is_model(annotation: Any) -> bool:
-    return isinstance(annotation, type) and issubclass(annotation, BaseModel)
-
-
 def _written(default: Any) -> str:
     if isinstance(default, bool):
         return str(default).lower()
@@ -130,10 +124,4 @@ def _head(*titles: str) -> list[str]:
 
 
 def _row(*cells: str) -> str:
-    texts = (cell.replace("|", "\\|") for cell in cells)
-    return f"| {' | '.join(texts)} |"
-
-
-if __name__ == "__main__":
-    document = Path(sys.argv[1])
-    document.write_text(with_tables(document.read_text(encoding="utf-8")), encoding="utf-8")
+    return f"| {' | '.join(map(escaped, cells))} |"
