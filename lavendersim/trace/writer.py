@@ -32,8 +32,8 @@ from lavendersim.trace.schema import FORMAT
 from lavendersim.trace.urdf import robot_description
 from lavendersim.trace.whole import LogDigest
 
-# Small, so that a killed run loses little: some 5,000 steps. Closing a group costs as much as laying
-# out a thousand steps of one ball.
+# Small, so that a killed run loses little: some 5,000 steps. Closing a group costs as much as
+# laying out a thousand steps of one ball.
 LIGHT_BYTES = 2 * 1024 * 1024
 # Large enough to compress well, small enough that a viewer can hold a few.
 BULK_BYTES = 4 * 1024 * 1024
