@@ -1,31 +1,32 @@
 """Loading a config file: an Experiment, or a ConfigError with every defect of the file.
 
-The outline: text -> tree -> axes -> every cell's tree -> models and checks. Checks work on trees,
-so that a defect in one section hides none in another.
+The outline: text -> tree, over those that it extends -> axes -> every cell's tree -> models and
+checks. Checks work on trees, so that a defect in one section hides none in another.
 """
 
 from __future__ import annotations
 
 import itertools
 import os
-import stat
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from lavendersim.errors import ConfigError, UsageError
+from lavendersim.errors import ConfigError
 from lavendersim.experiment.cell import Cell, build_cell
 from lavendersim.experiment.checks.reading import Reading
 from lavendersim.experiment.experiment import Experiment
+from lavendersim.experiment.inheritance.parents import with_parents
 from lavendersim.experiment.models.experiment import ExperimentConfig
 from lavendersim.experiment.models.tree import swept_values
 from lavendersim.experiment.sweeps import axes as sweep
 from lavendersim.experiment.sweeps.option_overrides import check_untouched, with_overrides
 from lavendersim.experiment.sweeps.reduced_length import at_reduced_length, check_reduced_length
 from lavendersim.experiment.sweeps.solver_override import with_solver
+from lavendersim.experiment.text.file import read_file
 from lavendersim.experiment.text.former import with_new_spellings
 from lavendersim.experiment.text.node import Node, key_mark
-from lavendersim.experiment.text.parse import LARGEST_FILE, decode, parse
+from lavendersim.experiment.text.parse import decode, parse
 from lavendersim.experiment.text.report import Report
 from lavendersim.quantities.found import found
 
@@ -48,16 +49,8 @@ def load_experiment(
     Raises ConfigError with all defects of the file, UsageError when it cannot be read.
     """
     file = Path(path)
-    try:
-        if not stat.S_ISREG(file.stat().st_mode) and not file.is_dir():
-            # Opened, a pipe without a writer would wait for one.
-            raise UsageError(f"{file}: expected a file, this is a pipe or a device")
-        with file.open("rb") as stream:
-            raw = stream.read(LARGEST_FILE + 1)
-            size = os.fstat(stream.fileno()).st_size
-    except OSError as error:
-        raise UsageError(f"{file}: {(error.strerror or str(error)).lower()}") from None
-    return _load(raw, file, str(file), max(size, len(raw)), (reduced, solver, tuple(overrides)))
+    raw, size = read_file(file, str(file))
+    return _load(raw, file, str(file), size, (reduced, solver, tuple(overrides), True))
 
 
 def load_experiment_text(
@@ -69,13 +62,17 @@ def load_experiment_text(
 ) -> Experiment:
     """Validate a config given as text; `name` stands for the file in messages."""
     raw = text.encode("utf-8", "surrogatepass") if isinstance(text, str) else text
-    return _load(raw, Path(name), name, len(raw), (reduced, solver, tuple(overrides)))
+    return _load(raw, Path(name), name, len(raw), (reduced, solver, tuple(overrides), False))
 
 
 def _load(
-    raw: bytes, path: Path, name: str, size: int, options: tuple[bool, str | None, tuple[str, ...]]
+    raw: bytes,
+    path: Path,
+    name: str,
+    size: int,
+    options: tuple[bool, str | None, tuple[str, ...], bool],
 ) -> Experiment:
-    reduced, solver, overrides = options
+    reduced, solver, overrides, is_file = options
     report = Report(name)
     root = parse(raw, report, size)
     if root is None:
@@ -84,7 +81,12 @@ def _load(
         sentence = f"expected a mapping with scene and duration, found {found(root.data)}"
         report.add(root.mark, sentence)
         raise ConfigError(report.defects)
-    root = tree = with_overrides(with_new_spellings(root, name), overrides, report)
+    root, text = with_new_spellings(root, name), decode(raw)
+    if is_file and (whole := with_parents(root, path, name, report)) is not None:
+        root, text = whole
+    if report.defects:
+        raise ConfigError(report.defects)
+    root = tree = with_overrides(root, overrides, report)
     if not report.close_round():
         raise ConfigError(report.defects)
     check_reduced_length(root, report)
@@ -106,8 +108,8 @@ def _load(
         axis: tuple(dict.fromkeys(sweep.swept_value(node.data) for node in nodes))
         for axis, nodes in swept_values(root).items()
     }
-    whole = Experiment(path.stem, path, decode(raw), config, values, tree, made, shortened, solver)
-    return replace(whole, overrides=overrides)
+    made_of = Experiment(path.stem, path, text, config, values, tree, made, shortened, solver)
+    return replace(made_of, overrides=overrides)
 
 
 def _check_first(

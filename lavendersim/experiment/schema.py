@@ -22,6 +22,8 @@ def json_schema() -> dict[str, Any]:
     described = {key: value for key, value in written.items() if key not in ("$defs", "title")}
     schema: dict[str, Any] = {"$schema": DRAFT_7, "title": "lavender experiment"}
     schema |= _draft_7(described)
+    required = schema.pop("required")  # what a file lacks may stand in the one that it extends
+    schema["anyOf"] = [{"required": ["extends"]}, {"required": required}]
     definitions = written.get("$defs", {})
     schema["definitions"] = {name: _draft_7(definitions[name]) for name in sorted(definitions)}
     return schema

@@ -14,6 +14,7 @@ class Mark(NamedTuple):
 
     line: int
     column: int
+    file: str = ""  # where it is not the config itself: a file that it extends, or an option
 
 
 UNWRITTEN = Mark(0, 0)  # of a preset's values: before every place of the file
