@@ -19,6 +19,7 @@ from lavendersim.experiment.experiment import Experiment
 from lavendersim.experiment.inheritance.parents import with_parents
 from lavendersim.experiment.models.experiment import ExperimentConfig
 from lavendersim.experiment.models.tree import swept_values
+from lavendersim.experiment.own_measures import with_own_measures
 from lavendersim.experiment.sweeps import axes as sweep
 from lavendersim.experiment.sweeps.option_overrides import check_untouched, with_overrides
 from lavendersim.experiment.sweeps.reduced_length import at_reduced_length, check_reduced_length
@@ -84,7 +85,9 @@ def _load(
     root, text = with_new_spellings(root, name), decode(raw)
     if is_file and (whole := with_parents(root, path, name, report)) is not None:
         root, text = whole
-    if report.defects:
+    if is_file and (whole := with_own_measures(root, path, report)) is not None:
+        root, text = whole
+    if not report.close_round() or report.defects:
         raise ConfigError(report.defects)
     root = tree = with_overrides(root, overrides, report)
     if not report.close_round():
