@@ -41,7 +41,6 @@ expect:
 """
 )
 EQUALS = "equals: {value: 0.15, within: 1.0e-12}"
-PLACE = "  top: {kind: highest, body: ball, above: 0.05, at: {mass: [1, 2]}}"
 
 
 @pytest.fixture
