@@ -94,7 +94,7 @@ class Cell:
         else:
             parent, last = _deepest(self.tree, path[:-1]), path[-1]
             mark = parent.items[last].mark if isinstance(last, int) else key_mark(parent, last)
-        return Defect(mark.file or self._name, mark.line, mark.column, message)
+        return mark.defect(self._name, message)
 
     @cached_property
     def digest(self) -> str:

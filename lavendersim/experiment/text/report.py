@@ -28,16 +28,13 @@ class Report:
         if mark not in self._reported:
             self._round[mark, message] = None
 
-    def _defect(self, mark: Mark, said: str) -> Defect:
-        return Defect(mark.file or self.name, mark.line, mark.column, said)
-
     def doubt(self) -> None:
         """Note that something is wrong that was reported already, perhaps at another place."""
         self._sound = False
 
     def close_round(self) -> bool:
         """End the round; tells whether nothing was found in it, be it new or reported before."""
-        self._defects += [self._defect(mark, said) for mark, said in self._round]
+        self._defects += [mark.defect(self.name, said) for mark, said in self._round]
         self._reported |= {mark for mark, _ in self._round}
         self._round.clear()
         sound, self._sound = self._sound, True
