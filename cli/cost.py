@@ -8,7 +8,7 @@ from typing import Annotated, Any
 import typer
 
 from lavender_cli import printing, progress
-from lavender_cli.run import Configs, Jobs, Runs, Strict
+from lavender_cli.run import Configs, Jobs, Runs, Set, Strict, Sweep, overrides_of
 
 HEADER = ("setting", "error", "worst at", "order", "residual m/s", "per simulated s", "quartiles")
 MARKS = {"specified": "specified", "chapter": "the chapter's", "grid": ""}
@@ -30,6 +30,8 @@ def cost(
     plot: Annotated[bool, typer.Option("--plot/--no-plot", help="Draw the figure.")] = True,
     jobs: Jobs = 1,
     strict: Strict = False,
+    values: Set = None,
+    axes: Sweep = None,
     runs: Runs = Path("runs"),
     as_json: Annotated[bool, typer.Option("--json", help="Print the tables as JSON.")] = False,
 ) -> None:
@@ -46,7 +48,7 @@ def cost(
     # In a folder those with a section `cost` are meant; a file that is named must have one.
     experiments = [
         one
-        for one in load_all(configs, strict=strict)
+        for one in load_all(configs, overrides=overrides_of(values, axes), strict=strict)
         if one.config.cost is not None or one.path in configs
     ]
     if not experiments:

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from lavender_cli import printing
-from lavender_cli.run import Runs
+from lavender_cli.run import Own, Runs
 
 
 def judge(
@@ -16,6 +16,7 @@ def judge(
         Path | None, typer.Argument(metavar="[RUN]", help="Run directory; the latest by default.")
     ] = None,
     runs: Runs = Path("runs"),
+    own: Own = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the verdicts as JSON.")] = False,
 ) -> None:
     """Measure and judge a run again from its logs alone; it may be one that was killed.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -13,6 +14,10 @@ def measures(
     kind: Annotated[
         str | None, typer.Argument(metavar="[KIND]", help="Print the parameters of one kind.")
     ] = None,
+    own: Annotated[
+        Path | None,
+        typer.Option("--measures", metavar="FILE", help="Those of a measures.py, too; it is run."),
+    ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print all as JSON.")] = False,
 ) -> None:
     """List all measures, those of other packages included: kind, unit, meaning."""
@@ -20,7 +25,7 @@ def measures(
     from lavendersim.measures.meanings import described_kinds
     from lavendersim.quantities.found import nearest, quoted
 
-    found = described_kinds()
+    found = described_kinds(own)
     if kind is not None and kind not in found:
         raise UsageError(f"no measure is called {quoted(kind)}{nearest(kind, list(found))}")
     chosen = found if kind is None else {kind: found[kind]}
@@ -32,4 +37,4 @@ def measures(
         of = f"  (of {one.package})" if one.package else ""
         typer.echo(f"{name:{widths[0]}}  {one.unit:{widths[1]}}  {one.meaning}{of}")
         for key, meaning in one.parameters.items() if kind is not None else ():
-            typer.echo(f"  {key}: {meaning}")
+            typer.echo(f"  {key}: {meaning}".rstrip(": "))

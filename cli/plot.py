@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from lavender_cli import printing
-from lavender_cli.run import AllowIncomplete, Runs
+from lavender_cli.run import AllowIncomplete, Own, Runs
 
 
 def plot(
@@ -22,6 +22,7 @@ def plot(
         typer.Option("--output", "-o", metavar="DIR", help="Instead of the run's own figures/."),
     ] = None,
     allow_incomplete: AllowIncomplete = False,
+    own: Own = None,
 ) -> None:
     """Draw the figure of each run as PNG and SVG. Exits 3 when a log is damaged."""
     from lavendersim.errors import UsageError

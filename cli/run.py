@@ -51,6 +51,25 @@ Sweep = Annotated[
 Strict = Annotated[
     bool, typer.Option("--strict", help="What of a config is suspicious is an error.")
 ]
+
+
+def _run_own(path: Path | None) -> Path | None:
+    if path is not None:
+        from lavendersim.measures.own_file import read_own
+
+        read_own(path)
+    return path
+
+
+Own = Annotated[
+    Path | None,
+    typer.Option(
+        "--measures",
+        metavar="FILE",
+        callback=_run_own,
+        help="The measures.py that the run was made with; it is run.",
+    ),
+]
 Runs = Annotated[Path, typer.Option("--runs", metavar="DIR", help="Where runs are kept.")]
 
 

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from lavender_cli import printing
-from lavender_cli.run import Runs
+from lavender_cli.run import Own, Runs
 
 
 def verify(
@@ -17,6 +17,7 @@ def verify(
         typer.Argument(metavar="[RUN]...", help="Run directories; the latest by default."),
     ] = None,
     root: Runs = Path("runs"),
+    own: Own = None,
 ) -> None:
     """Read every byte of a run: digests, checksums, results measured again from the logs.
 

@@ -1,12 +1,14 @@
 """YAML experiments as pytest items: one for each judged expectation.
 
-A YAML file is an experiment when it has a `scene:` at its top level; other YAML files are left
-alone. The experiment runs once, when its first selected item does; its logs are kept in pytest's
+A YAML file is an experiment when it has a `scene:` at its top level, or a file that it extends
+has; other YAML files are left alone, and those whose name begins with `_`, which are there to be
+extended. The experiment runs once, when its first selected item does; its logs are kept in pytest's
 temporary directory, whose path stands in every failure.
 """
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Iterator
 from pathlib import Path
@@ -19,6 +21,8 @@ if TYPE_CHECKING:
 
 FULL = "--lavender-full"
 _EXPERIMENT = re.compile(rb"^scene[ \t]*:", re.MULTILINE)
+_EXTENDS = re.compile(rb"""^extends[ \t]*:[ \t]*["']?([^"'\s#]+\.ya?ml)\b""", re.MULTILINE)
+_MOST_PARENTS = 8
 # Experiments are small; a larger YAML file is somebody's data.
 _LARGEST_FILE = 1 << 20
 COMPLETES = "every cell completes"
@@ -27,11 +31,20 @@ _NOT_CONVERGED = pytest.StashKey[list[str]]()
 
 
 def _is_experiment(path: Path) -> bool:
-    if path.suffix not in (".yaml", ".yml") or path.stat().st_size > _LARGEST_FILE:
+    if path.suffix not in (".yaml", ".yml") or path.name.startswith("_"):
         return False
     if (path.parent / "cells.json").exists():  # a copy in the directory of a run
         return False
-    return _EXPERIMENT.search(path.read_bytes()) is not None
+    for _ in range(_MOST_PARENTS + 1):  # what else is wrong with them is said when it is loaded
+        if not path.is_file() or path.stat().st_size > _LARGEST_FILE:
+            return False
+        text = path.read_bytes()
+        if _EXPERIMENT.search(text) is not None:
+            return True
+        if (extended := _EXTENDS.search(text)) is None:
+            return False
+        path = path.parent / os.fsdecode(extended[1])
+    return False
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

@@ -88,7 +88,7 @@ class Cell:
         else:
             (_, parent), last = locate(self.tree, path[:-1]), path[-1]
             mark = parent.items[last].mark if isinstance(last, int) else key_mark(parent, last)
-        return Defect(self._name, mark.line, mark.column, message)
+        return mark.defect(self._name, message)
 
     @cached_property
     def digest(self) -> str:

@@ -1,31 +1,33 @@
 """Loading a config file: an Experiment, or a ConfigError with every defect of the file.
 
-The outline: text -> tree -> axes -> every cell's tree -> models and checks. Checks work on trees,
-so that a defect in one section hides none in another.
+The outline: text -> tree, over those that it extends -> axes -> every cell's tree -> models and
+checks. Checks work on trees, so that a defect in one section hides none in another.
 """
 
 from __future__ import annotations
 
 import itertools
 import os
-import stat
 from collections.abc import Sequence
 from pathlib import Path
 
 from lavendersim.config_options import ConfigOptions
-from lavendersim.errors import ConfigError, UsageError
+from lavendersim.errors import ConfigError
 from lavendersim.experiment.cell import Cell, build_cell
 from lavendersim.experiment.checks.reading import Reading
 from lavendersim.experiment.experiment import Experiment
+from lavendersim.experiment.inheritance.parents import with_parents
 from lavendersim.experiment.models.experiment import ExperimentConfig
 from lavendersim.experiment.models.tree import swept_values
+from lavendersim.experiment.own_measures import with_own_measures
 from lavendersim.experiment.sweeps import axes as sweep
 from lavendersim.experiment.sweeps.option_overrides import check_untouched, with_overrides
 from lavendersim.experiment.sweeps.reduced_length import at_reduced_length, check_reduced_length
 from lavendersim.experiment.sweeps.solver_override import with_solver
+from lavendersim.experiment.text.file import read_file
 from lavendersim.experiment.text.former import with_new_spellings
 from lavendersim.experiment.text.node import Node, key_mark
-from lavendersim.experiment.text.parse import LARGEST_FILE, decode, parse
+from lavendersim.experiment.text.parse import decode, parse
 from lavendersim.experiment.text.report import Report
 from lavendersim.quantities.found import found
 
@@ -48,17 +50,8 @@ def load_experiment(
     Raises ConfigError with all defects of the file, UsageError when it cannot be read.
     """
     file = Path(path)
-    try:
-        if not stat.S_ISREG(file.stat().st_mode) and not file.is_dir():
-            # Opened, a pipe without a writer would wait for one.
-            raise UsageError(f"{file}: expected a file, this is a pipe or a device")
-        with file.open("rb") as stream:
-            raw = stream.read(LARGEST_FILE + 1)
-            size = os.fstat(stream.fileno()).st_size
-    except OSError as error:
-        raise UsageError(f"{file}: {(error.strerror or str(error)).lower()}") from None
-    options = ConfigOptions(reduced, solver, tuple(overrides))
-    return _load(raw, str(file), max(size, len(raw)), options)
+    raw, size = read_file(file, str(file))
+    return _load(raw, str(file), size, ConfigOptions(reduced, solver, tuple(overrides)), file)
 
 
 def load_experiment_text(
@@ -78,7 +71,10 @@ def load_experiment_text(
     return _load(raw, name, len(raw), options).refined(divisor)
 
 
-def _load(raw: bytes, name: str, size: int, options: ConfigOptions) -> Experiment:
+def _load(
+    raw: bytes, name: str, size: int, options: ConfigOptions, file: Path | None = None
+) -> Experiment:
+    """file: that the text is of, where it may speak of others beside it."""
     report = Report(name)
     root = parse(raw, report, size)
     if root is None:
@@ -87,7 +83,14 @@ def _load(raw: bytes, name: str, size: int, options: ConfigOptions) -> Experimen
         sentence = f"expected a mapping with scene and duration, found {found(root.data)}"
         report.add(root.mark, sentence)
         raise ConfigError(report.defects)
-    root = tree = with_overrides(with_new_spellings(root, name), options.overrides, report)
+    root, text, known = with_new_spellings(root, name), decode(raw), len(report.defects)
+    if file and (whole := with_parents(root, file, name, report)) is not None:
+        root, text = whole
+    if file and (whole := with_own_measures(root, file, report)) is not None:
+        root, text = whole
+    if len(report.defects) > known:  # of files beside this one: what it has is not known
+        raise ConfigError(report.defects)
+    root = tree = with_overrides(root, options.overrides, report)
     if not report.close_round():
         raise ConfigError(report.defects)
     check_reduced_length(root, report)
@@ -110,7 +113,7 @@ def _load(raw: bytes, name: str, size: int, options: ConfigOptions) -> Experimen
         for axis, nodes in swept_values(root).items()
     }
     path, options = Path(name), options._replace(reduced=shortened)
-    return Experiment(path.stem, path, decode(raw), config, values, tree, made, options)
+    return Experiment(path.stem, path, text, config, values, tree, made, options)
 
 
 def _check_first(root: Node, axes: sweep.Products, report: Report) -> ExperimentConfig | None:

@@ -20,12 +20,12 @@ def json_schema() -> dict[str, Any]:
     """Return the schema of a config file as plain data."""
     written = ExperimentConfig.model_json_schema(ref_template="#/definitions/{model}")
     definitions = written.pop("$defs")
-    return {
-        "$schema": DRAFT_7,
-        "title": "lavender experiment",
-        **_draft_7(written),
-        "definitions": {name: _draft_7(definitions[name]) for name in sorted(definitions)},
-    }
+    schema: dict[str, Any] = {"$schema": DRAFT_7, "title": "lavender experiment"}
+    schema |= _draft_7(written)
+    required = schema.pop("required")  # what a file lacks may stand in the one that it extends
+    schema["anyOf"] = [{"required": ["extends"]}, {"required": required}]
+    schema["definitions"] = {name: _draft_7(definitions[name]) for name in sorted(definitions)}
+    return schema
 
 
 def _draft_7(schema: Any) -> Any:

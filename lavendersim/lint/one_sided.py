@@ -11,7 +11,7 @@ from typing import Final
 
 from lavendersim.engine.effects import SURFACE_KEYS
 from lavendersim.errors import Defect
-from lavendersim.experiment import Cell, Node, described, immovable, key_mark
+from lavendersim.experiment import Cell, Mark, Node, described, immovable, key_mark
 
 # Coefficients of which a 0 makes 0, but for those that need another one, which says it for both.
 MEANS: Final = tuple(key.name for key in SURFACE_KEYS if key.mix(1.0, 0.0) == 0.0 and not key.needs)
@@ -25,7 +25,7 @@ def one_sided(cell: Cell) -> Iterator[Defect]:
     moves = {name: immovable(body, prescribed=True) is None for name, body in described(tree)}
     for key in MEANS:
         without = [name for name, surface in surfaces.items() if key not in surface.entries]
-        against: dict[tuple[int, int], tuple[Node, str, list[str]]] = {}
+        against: dict[Mark, tuple[Node, str, list[str]]] = {}
         for name, surface in surfaces.items():
             value = surface.get(key)
             if not value.number:
@@ -33,7 +33,7 @@ def one_sided(cell: Cell) -> Iterator[Defect]:
             mark = key_mark(surface, key)
             _, _, others = against.setdefault(mark, (value, name, []))
             others += [one for one in without if moves[one] or moves[name]]
-        for (line, column), (value, name, others) in against.items():
+        for mark, (value, name, others) in against.items():
             if not others:
                 continue
             named = _listed(list(dict.fromkeys(others)))
@@ -42,7 +42,7 @@ def one_sided(cell: Cell) -> Iterator[Defect]:
                 f"{key}: {value.number:g} of {name} has no effect where it touches {named}, which "
                 f"{verb} none: a pair takes the geometric mean, 0; specify it there, or {key}: 0"
             )
-            yield Defect(cell.file, line, column, sentence)
+            yield mark.defect(cell.file, sentence)
 
 
 def _surface(tree: Node, body: Node) -> Node:

@@ -23,14 +23,14 @@ MOST_CELLS: Final = 100  # that are looked at; a rule takes some 0.1 ms for a sm
 
 def suspicions(experiment: Experiment) -> list[Defect]:
     """Return what is suspicious, one sentence a place, in the order of the file."""
-    found: dict[tuple[int, int], Defect] = {}
+    found: dict[tuple[str, int, int], Defect] = {}
     of_file = (defect for rule in OF_FILES for defect in rule(experiment))
     of_cells = (
         defect for cell in _telling(experiment) for rule in OF_CELLS for defect in rule(cell)
     )
     for defects in (of_file, of_cells):
         for defect in defects:
-            found.setdefault((defect.line, defect.column), defect)
+            found.setdefault((defect.file, defect.line, defect.column), defect)
     return [found[place] for place in sorted(found)]
 
 

@@ -15,10 +15,10 @@ def unused_surfaces(experiment: Experiment) -> Iterator[Defect]:
     used = set(experiment.tree.texts) if surfaces.entries else set()
     for name in surfaces.entries:
         if name not in used:
-            line, column = key_mark(surfaces, name)
-            yield Defect(
-                str(experiment.path), line, column, f"surface {quoted(name)} is that of no body"
-            )
+            mark = key_mark(surfaces, name)
+            if not mark.file:  # a file that others extend has what each of them may use
+                sentence = f"surface {quoted(name)} is that of no body"
+                yield mark.defect(str(experiment.path), sentence)
 
 
 def unclaimed(experiment: Experiment) -> Iterator[Defect]:
@@ -27,6 +27,6 @@ def unclaimed(experiment: Experiment) -> Iterator[Defect]:
     if config.expect or config.always or config.cost or config.overhead:
         return
     tree = experiment.tree
-    line, column = key_mark(tree, "measure") if "measure" in tree.entries else tree.mark
+    mark = key_mark(tree, "measure") if "measure" in tree.entries else tree.mark
     sentence = "nothing is claimed: without expect or always the run has no verdict"
-    yield Defect(str(experiment.path), line, column, sentence)
+    yield mark.defect(str(experiment.path), sentence)

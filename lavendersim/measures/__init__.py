@@ -11,7 +11,9 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from lavendersim.measures.always import outcomes_of
     from lavendersim.measures.controls import meant_to_end_early
+    from lavendersim.measures.interfaces import Trace
     from lavendersim.measures.judging import judge, judge_nodes
+    from lavendersim.measures.own_file import own_measure
     from lavendersim.measures.registration import measure
     from lavendersim.measures.registry import applies, evaluate
     from lavendersim.measures.specs.base import Measure
@@ -20,6 +22,7 @@ if TYPE_CHECKING:
 
 _HOME = {
     "Measure": "specs.base",
+    "Trace": "interfaces",
     "Values": "values",
     "Verdict": "verdict",
     "applies": "registry",
@@ -29,10 +32,12 @@ _HOME = {
     "meant_to_end_early": "controls",
     "measure": "registration",
     "outcomes_of": "always",
+    "own_measure": "own_file",
 }
 
 __all__ = [
     "Measure",
+    "Trace",
     "Values",
     "Verdict",
     "applies",
@@ -42,6 +47,7 @@ __all__ = [
     "meant_to_end_early",
     "measure",
     "outcomes_of",
+    "own_measure",
 ]
 
 

@@ -7,12 +7,14 @@ from __future__ import annotations
 
 import inspect
 import re
+from pathlib import Path
 from typing import Final, NamedTuple
 
 from pydantic.fields import FieldInfo
 
 from lavendersim.measures.specs.base import Measure
 from lavendersim.measures.specs.catalogue import KINDS
+from lavendersim.measures.specs.own import FromFile
 
 RATIO: Final = "-"
 _UNIT: Final = re.compile(r"\s*\[(?P<unit>[^\]]*)\]")
@@ -21,6 +23,8 @@ _UNIT: Final = re.compile(r"\s*\[(?P<unit>[^\]]*)\]")
 def meaning_of(spec: Measure) -> tuple[str, str]:
     """Return meaning and unit; the unit is `-` of a ratio, empty of a number of something."""
     meaning, unit = meaning_of_kind(type(spec))
+    if isinstance(spec, FromFile):
+        meaning, unit = _meaning_and_unit(spec.meaning or spec.function)
     form = spec.over or spec.against
     if form is None:
         return meaning, unit
@@ -30,7 +34,10 @@ def meaning_of(spec: Measure) -> tuple[str, str]:
 
 def meaning_of_kind(model: type[Measure]) -> tuple[str, str]:
     """Return meaning and unit of a kind; the unit is empty where it depends on a parameter."""
-    text = " ".join((inspect.getdoc(model) or "").split())
+    return _meaning_and_unit(" ".join((inspect.getdoc(model) or "").split()))
+
+
+def _meaning_and_unit(text: str) -> tuple[str, str]:
     first = re.split(r"(?<=[^.])\. ", text, maxsplit=1)[0].rstrip(".")
     units = set(_UNIT.findall(first))
     return _UNIT.sub("", first), units.pop() if len(units) == 1 else ""
@@ -41,13 +48,24 @@ class Described(NamedTuple):
 
     meaning: str
     unit: str
-    package: str  # of the kinds of other packages
+    package: str  # of the kinds of other packages; the file of a project's own
     parameters: dict[str, str]
 
 
-def described_kinds() -> dict[str, Described]:
-    """Return all kinds that a config may name, those of other packages last."""
-    return {kind: _described(model) for kind, model in KINDS.items()}
+def described_kinds(own: Path | None = None) -> dict[str, Described]:
+    """Return all kinds that a config may name, those of other packages last.
+
+    own: a file of measures, which is run.
+    """
+    found = {kind: _described(model) for kind, model in KINDS.items() if model is not FromFile}
+    if own is not None:
+        from lavendersim.measures.own_file import read_own  # late: it needs numpy
+
+        for kind, one in read_own(own).kinds.items():
+            meaning, unit = _meaning_and_unit(one.meaning)
+            keys = {name: _default(info).strip() for name, info in one.model.model_fields.items()}
+            found[kind] = Described(meaning, unit, own.name, keys)
+    return found
 
 
 def _described(model: type[Measure]) -> Described:

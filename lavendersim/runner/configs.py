@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Final
 
 from lavendersim.errors import ConfigError, Defect, UsageError
 from lavendersim.experiment import Experiment, load_experiment
@@ -12,9 +13,13 @@ from lavendersim.lint import warn
 from .checks import check
 from .run_directory import is_run_directory
 
+BASE: Final = "_"  # a config's name begins with it that is no experiment by itself
+
 
 def find_configs(paths: list[Path]) -> list[Path]:
     """Return the config files among `paths`; a folder stands for its *.yaml files, in order.
+
+    But for those whose name begins with `_`: they are there to be extended.
 
     Raises UsageError when a path does not exist or a folder holds none.
     """
@@ -24,7 +29,7 @@ def find_configs(paths: list[Path]) -> list[Path]:
             inside = [
                 file
                 for file in sorted([*path.rglob("*.yaml"), *path.rglob("*.yml")])
-                if not is_run_directory(file.parent)
+                if not is_run_directory(file.parent) and not file.name.startswith(BASE)
             ]
             if not inside:
                 raise UsageError(f"{path}: no *.yaml file in this folder")

@@ -87,6 +87,7 @@ def take_cost(
         table = {
             "experiment": experiment.name,
             "config": str(experiment.path),
+            "overrides": list(experiment.options.overrides),
             "question": experiment.config.question,
             "error": spec.error.model_dump(mode="json"),
             "axes": list(experiment.axes),

@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import Any, NamedTuple
 
 from lavendersim.measures import Values, Verdict, judge, meant_to_end_early, outcomes_of
+from lavendersim.measures.own_file import check_sources
 from lavendersim.measures.verdict import Outcome
 
 from .json_table import finite
@@ -49,6 +50,7 @@ def judge_again(run: Run) -> JudgedAgain:
     Every byte of them is read. Of a damaged log nothing is measured: its claims fail for that.
     """
     experiment = run.experiment
+    check_sources(experiment.measures.values())
     cells: list[RunCell] = []
     measured: list[Measured] = []
     damaged: dict[str, None] = {}

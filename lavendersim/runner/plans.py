@@ -50,7 +50,7 @@ def check_overrides(experiment: Experiment) -> None:
 
 def _first_of_each_place(defects: Iterable[Defect]) -> Iterator[Defect]:
     """Yield one defect a place, in the file's order: reasons differ by cell, their cause not."""
-    places: dict[tuple[int, int], Defect] = {}
+    places: dict[tuple[str, int, int], Defect] = {}
     for defect in defects:
-        places.setdefault((defect.line, defect.column), defect)
+        places.setdefault((defect.file, defect.line, defect.column), defect)
     yield from (places[place] for place in sorted(places))

@@ -12,6 +12,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from lavendersim.errors import LavenderError, TraceError
+from lavendersim.measures.own_file import NoSourceError
 
 from .judge_again import JudgedAgain, judge_again
 from .run_directory import REFINED, RESULTS, Run, list_runs
@@ -28,6 +29,8 @@ def problems_of(run: Run) -> Iterator[str]:
         yield from found
         if not found:
             yield from _contents(run)
+    except NoSourceError:  # no problem of the run's
+        raise
     except LavenderError as error:
         yield str(error)
     for refined in list_runs(run.path / REFINED):

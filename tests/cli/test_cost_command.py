@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from command_line import lavender
 
+from lavendersim import open_run
 from lavendersim.experiment import load_experiment
 
 COST = """\
@@ -44,6 +45,21 @@ def test_a_grid_gives_a_table_a_figure_and_a_sentence_a_target(
     plotted = lavender("plot", where=tmp_path)
     assert plotted.returncode == 0, plotted.stderr
     assert "drop_cost.png" in plotted.stdout
+
+
+def test_what_is_set_stands_in_every_setting_of_the_grid(costed: Path, tmp_path: Path) -> None:
+    asked = ("--set", "duration=0.4", "--sweep", "e=scene.bodies.ball.surface.restitution:[0.5]")
+    done = lavender("cost", costed, *asked, "--no-plot", "--json", where=tmp_path)
+    assert done.returncode == 0, done.stderr
+    (table,) = json.loads(done.stdout)
+    assert table["duration"] == 0.4
+    assert "e" in table["axes"]
+    run = open_run(Path(table["run"]) if Path(table["run"]).exists() else tmp_path / table["run"])
+    bodies = [cell.config.scene.bodies["ball"] for cell in run.experiment.cells()]
+    assert {one.surface.restitution for one in bodies} == {0.5}
+    wrong = lavender("cost", costed, "--set", "duratoin=1", "--no-plot", where=tmp_path)
+    assert wrong.returncode == 2
+    assert wrong.stderr.startswith("--set duratoin=1:1:7: path: ")
 
 
 def test_a_target_prints_what_is_to_be_pasted_and_nothing_else(

@@ -34,6 +34,15 @@ def test_each_expectation_and_cell_is_an_item(pytester: pytest.Pytester) -> None
     )
 
 
+def test_what_a_config_extends_is_part_of_it(pytester: pytest.Pytester) -> None:
+    pytester.makefile(".yaml", _base=SWEPT, drop="extends: _base.yaml\nduration: 0.2\n")
+    pytester.makefile(".yaml", lint="extends: recommended\n", other="extends: [a.yaml]\n")
+    result = run(pytester, "--collect-only", "-q")
+    result.stdout.fnmatch_lines(["drop.yaml::rebound at e=0.5"])
+    result.stdout.no_fnmatch_line("*base.yaml*")
+    result.stdout.no_fnmatch_line("*rror*")
+
+
 def test_a_failure_shows_measured_expected_tolerance_and_log(pytester: pytest.Pytester) -> None:
     pytester.makefile(".yaml", drop=SWEPT)
     result = run(pytester)

@@ -1,16 +1,15 @@
 """A run that was killed goes on where it was, and ends as one that was never interrupted.
 
-`LAVENDER_TEST_KILLS` kills more often than 2 times for each config and number of processes.
+`LAVENDER_TEST_KILLS` kills more often than 2 times for each config and number of processes;
+`python -m tests.property.killed_runs` does as often as is asked for.
 """
 
 from __future__ import annotations
 
 import os
 import random
-import signal
 import subprocess
 import sys
-import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import NoReturn
@@ -24,52 +23,9 @@ from lavendersim.errors import TraceError, UsageError
 from lavendersim.experiment import load_experiment
 from lavendersim.runner import Progress, Run, finished_run, list_runs, run
 from lavendersim.runner.run_lock import run_lock
+from tests.property.killed_runs import CONFIGS, prepared, wrong_when_resumed
 
 KILLS = int(os.environ.get("LAVENDER_TEST_KILLS", "2"))
-MANY = DROPS.replace("[0.2, 0.5, 0.8]", str([round(0.1 + i / 100, 2) for i in range(60)]))
-# Cells that break a bound have to end as they did: at their first contact, 30 um deep.
-BOUNDED = MANY + "always: {penetration: 1.0e-9}\n"
-SPREAD = """\
-scene:
-  bodies: {floor: {shape: {kind: plane}}}
-  arrangements:
-    ball:
-      kind: grid
-      counts: [2, 2, 1]
-      origin: [0, 0, 0.3]
-      jitter: 0.01
-      seed: 3
-      spacing: [0.3, 0.3, 0.3]
-      body: {shape: {kind: sphere, radius: 0.1}, mass: 1.0}
-numerics: {preset: chapter, timestep: 1/60}
-duration: 0.5
-sweep: {h: {path: numerics.timestep, values: [1/60, 1/120, 1/240, 1/480, 1/960, 1/1920]}}
-measure: {drift: {kind: drift}}
-"""
-CONFIGS = {"many": MANY, "bounded": BOUNDED, "spread": SPREAD}
-SCRIPT = """
-import sys
-import lavendersim.runner.executor as executor
-import lavendersim
-if __name__ == "__main__":
-    executor.WORTH_PROCESSES = -1.0
-    print(flush=True)
-    lavendersim.run(sys.argv[1], root=sys.argv[2], jobs=int(sys.argv[3]))
-"""
-
-
-def killed(folder: Path, config: Path, jobs: int, wait: float) -> Path:
-    """Kill a run so long after its first cell began; returns the folder of its runs."""
-    script, runs = folder / "script.py", folder / "runs"
-    script.write_text(SCRIPT)
-    arguments = [sys.executable, script, config, runs, jobs]
-    process = subprocess.Popen([str(one) for one in arguments], stdout=subprocess.PIPE)
-    while process.poll() is None and not list(runs.glob("*/cells.json")):
-        time.sleep(0.001)
-    time.sleep(wait)
-    process.send_signal(signal.SIGKILL)
-    process.communicate()
-    return runs
 
 
 @pytest.mark.skipif(os.name != "posix", reason="kills as POSIX does")
@@ -78,18 +34,14 @@ def killed(folder: Path, config: Path, jobs: int, wait: float) -> Path:
 def test_a_killed_run_that_is_resumed_is_one_that_never_was(
     tmp_path: Path, name: str, jobs: int
 ) -> None:
-    config = write(tmp_path, CONFIGS[name])
-    whole = contents(run(config, tmp_path / "whole").run)
-    begin = time.perf_counter()
-    run(config, tmp_path / "kernels_are_there")
-    taken = time.perf_counter() - begin
+    case = prepared(tmp_path, name, CONFIGS[name])
     draw = random.Random(f"{name} {jobs}")
     for kill in range(KILLS):
         folder = tmp_path / f"{kill}"
         folder.mkdir()
-        runs = killed(folder, config, jobs, draw.uniform(0.0, 1.2 * taken))
-        again = run(config, runs, jobs, resume=True)
-        assert contents(again.run) == whole
+        assert [
+            *wrong_when_resumed(case, folder, jobs, draw.uniform(0.0, 1.2 * case.seconds))
+        ] == []
 
 
 @pytest.fixture

@@ -129,6 +129,10 @@ class Reduced(ConfigModel):
 class ExperimentConfig(CellSource):
     """One experiment: a question, a scene, what is varied, measured, expected and drawn."""
 
+    extends: str | None = Field(
+        default=None,
+        description="the file that this one is a change of, such as ../base.yaml",
+    )
     question: str = Field(default="", description="what the experiment asks, in words")
     expected: str = Field(default="", description="the expected result and why, in words")
     sweep: SweepOf = Field(
@@ -160,6 +164,8 @@ class ExperimentConfig(CellSource):
     def rules(cls, at: Place) -> None:
         """Expectations have names of their own, what must fail exists, what is taken is logged."""
         super().rules(at)
+        if at.written("extends"):  # what is read from a file is merged before it comes here
+            at.refuse(at.key("extends"), "extends: a text has no folder to look in; merge it first")
         expectation_rules(at)
         recording_rules(at)
         measure_rules(at)

@@ -136,6 +136,8 @@ def over_the_grid(experiment: Experiment, settings: list[Setting]) -> Experiment
         {**_axes(setting.coordinates), **axes} for setting in settings for axes in products
     ]
     head = f"# {experiment.name}: the settings of its section `cost`, as a sweep.\n"
+    for override in experiment.options.overrides:
+        head += f"# with --{' '.join(override.split())}\n"
     swept = load_experiment_text(
         head + _yaml(data, width=100, default_flow_style=None), str(experiment.path)
     )

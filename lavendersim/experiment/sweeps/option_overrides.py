@@ -24,8 +24,8 @@ FORMS: Final = {SET: "--set PATH=VALUE", SWEEP: "--sweep NAME=PATH:[VALUES]"}
 
 def with_overrides(root: Node, overrides: Sequence[str], report: Report) -> Node:
     """Return the tree with the values of the overrides; notes what is wrong with them."""
-    for number, override in enumerate(overrides, start=1):
-        line = report.beside(f"--{override}", number)
+    for override in overrides:
+        option = f"--{override}"
         kind = SWEEP if override.startswith(SWEEP) else SET
         name, found, value = override.removeprefix(kind).partition("=")
         path, values = name, value
@@ -33,13 +33,13 @@ def with_overrides(root: Node, overrides: Sequence[str], report: Report) -> Node
             path, separated, values = value.partition(":")
             found = found and separated
         if not found or not values.strip():
-            report.add(Mark(line, 1), f"expected {FORMS[kind]}")
+            report.add(Mark(1, 1, option), f"expected {FORMS[kind]}")
             continue
         begin = 2 + len(override) - len(values)  # behind the dashes
-        node = _parsed(values, Mark(line, begin), report)
+        node = _parsed(values, Mark(1, begin, option), report)
         if node is None:
             continue
-        at = Node(path.strip(), Mark(line, 2 + override.index(path, len(kind)) + 1))
+        at = Node(path.strip(), Mark(1, 2 + override.index(path, len(kind)) + 1, option))
         if kind == SWEEP:
             axis = Node({"path": at, "values": node}, at.mark, {"path": at.mark, "values": at.mark})
             root = _with_axis(root, name.strip(), axis, report)
@@ -53,7 +53,7 @@ def check_untouched(root: Node, axes: Sequence[Sequence[SweptAxis]], report: Rep
     varied = {axis.path: axis.name for product in axes for axis in product}
     for path, name in varied.items():
         mark = root.get(*path).mark
-        if mark.line < 0:
+        if mark.file.startswith("--"):
             dotted = ".".join(map(str, path))
             instead = f"--sweep {name}={dotted}:[...]"
             report.add(mark, f"{dotted} is varied by axis {name}; expected {instead}")
@@ -73,7 +73,7 @@ def _parsed(text: str, begin: Mark, report: Report) -> Node | None:
     own = Report("")
     node = parse(text.encode("utf-8", "surrogatepass"), own)
     for defect in own.defects:
-        report.add(Mark(begin.line, begin.column + defect.column), defect.message)
+        report.add(begin._replace(column=begin.column + defect.column), defect.message)
     return None if node is None or own.defects else _placed(node, begin)
 
 
@@ -88,4 +88,4 @@ def _placed(node: Node, begin: Mark) -> Node:
 
 
 def _moved(mark: Mark, begin: Mark) -> Mark:
-    return Mark(begin.line, begin.column + mark.column)
+    return begin._replace(column=begin.column + mark.column)

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
+from lavendersim.errors import Defect
 from lavendersim.quantities.scalars import Value
 
 
@@ -14,6 +15,11 @@ class Mark(NamedTuple):
 
     line: int
     column: int
+    file: str = ""  # where it is not the config itself: a file that it extends, or an option
+
+    def defect(self, config: str, message: str) -> Defect:
+        """Return a defect at this place; config: what messages call the config."""
+        return Defect(self.file or config, self.line, self.column, message)
 
 
 UNWRITTEN = Mark(0, 0)  # of a preset's values: before every place of the file

@@ -51,12 +51,13 @@ class _Open:
         self.torn = False
 
 
-def parse(raw: bytes, report: Report, size: int | None = None) -> Node | None:
+def parse(raw: bytes, report: Report, size: int | None = None, file: str = "") -> Node | None:
     """Return the tree, None where there is none to speak of; notes what is wrong with the text.
 
-    `size` is the length of the file [byte] when `raw` is only its beginning.
+    `size` is the length of the file [byte] when `raw` is only its beginning; `file` its name where
+    it is not the one that the report is about.
     """
-    composer = _Composer(report)
+    composer = _Composer(report, file)
     # The tree has no circles, and at most MOST_VALUES nodes: looking for some while it grows takes
     # as long as reading it.
     collects = gc.isenabled()
@@ -77,15 +78,16 @@ def decode(raw: bytes) -> str:
 
 
 class _Composer:
-    def __init__(self, report: Report) -> None:
+    def __init__(self, report: Report, file: str) -> None:
         self.report = report
+        self.file = file
         self.stack: list[_Open] = []
         self.root: Node | None = None
         self.anchors: set[str] = set()
         self.values = 0
 
     def stop(self, mark: Mark, message: str) -> _Stop:
-        self.report.add(mark, message)
+        self.report.add(mark._replace(file=self.file), message)
         return _Stop()
 
     def decode(self, raw: bytes, size: int) -> str:
@@ -110,7 +112,7 @@ class _Composer:
             self._read(_events(text))
         except yaml.MarkedYAMLError as error:
             for mark, sentence in describe(error, text):
-                self.report.add(mark, sentence)
+                self.report.add(mark._replace(file=self.file), sentence)
             return None
         if self.root is None or self.root.content is None:
             raise self.stop(Mark(1, 1), "the file is empty; an experiment has a scene, a duration")
@@ -120,7 +122,7 @@ class _Composer:
         documents = 0
         for event in events:
             start = event.start_mark
-            mark = Mark(start.line + 1, start.column + 1)
+            mark = Mark(start.line + 1, start.column + 1, self.file)
             if isinstance(event, yaml.NodeEvent):
                 self._node(event, mark)
             elif isinstance(event, yaml.DocumentStartEvent):

@@ -17,7 +17,6 @@ class Report:
 
     def __init__(self, name: str) -> None:
         self.name = name
-        self._beside: dict[int, str] = {}  # what else has values, by lines below 0
         self._defects: list[Defect] = []
         self._reported: set[Mark] = set()
         self._round: dict[tuple[Mark, str], None] = {}
@@ -29,31 +28,30 @@ class Report:
         if mark not in self._reported:
             self._round[mark, message] = None
 
-    def beside(self, name: str, number: int) -> int:
-        """Return the line that stands for a text of one line beside the file, number 1, 2, ..."""
-        self._beside[-number] = name
-        return -number
-
     def doubt(self) -> None:
         """Note that something is wrong that was reported already, perhaps at another place."""
         self._sound = False
 
     def close_round(self) -> bool:
         """End the round; tells whether nothing was found in it, be it new or reported before."""
-        for mark, said in self._round:
-            line = 1 if mark.line in self._beside else mark.line
-            name = self._beside.get(mark.line, self.name)
-            self._defects.append(Defect(name, line, mark.column, said))
+        self._defects += [mark.defect(self.name, said) for mark, said in self._round]
         self._reported |= {mark for mark, _ in self._round}
         self._round.clear()
         sound, self._sound = self._sound, True
         return sound
 
+    def _order(self, defect: Defect) -> tuple[str, int, int]:
+        own = defect.file == self.name or defect.file.startswith("--")
+        return "" if own else defect.file, defect.line, defect.column
+
     @property
     def defects(self) -> tuple[Defect, ...]:
-        """All defects in the order of the file; a very long list ends with how many are left."""
+        """All defects in the order of the file, those of files that it extends behind them.
+
+        A very long list ends with how many are left.
+        """
         self.close_round()
-        ordered = sorted(self._defects, key=lambda defect: (defect.line, defect.column))
+        ordered = sorted(self._defects, key=self._order)
         if len(ordered) <= MOST_DEFECTS:
             return tuple(ordered)
         last = ordered[MOST_DEFECTS - 1]
