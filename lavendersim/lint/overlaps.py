@@ -8,7 +8,7 @@ DRAWN_IN towards its centre, so that what merely touches is not found.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -16,25 +16,45 @@ from lavendersim.cell import CellBody, Plane
 from lavendersim.cell.shapes import CellSimple
 from lavendersim.errors import Defect
 from lavendersim.experiment import Cell, body_path
-from lavendersim.geometry.bodies import is_movable, rotation_of
+from lavendersim.geometry.bodies import is_movable
+from lavendersim.geometry.minkowski_sums import Sums, extents, sums_of
 from lavendersim.geometry.point_sets import hulls_meet
-from lavendersim.geometry.rotations import Floats, rotation_matrix
+from lavendersim.geometry.rotations import Floats, rotation_matrices, rotation_matrix
 from lavendersim.geometry.shapes import extent, half_space, pieces, thickness
 from lavendersim.measures.penetration import depths
-from lavendersim.measures.solids import PlacedSolids, kind_of, near_pairs, size_of, sums_of
+from lavendersim.measures.solids import (
+    PlacedSolids,
+    kind_of,
+    near_pairs,
+    size_of,
+)
 
 DRAWN_IN: Final = 0.01  # share of a shape's size that counts as touching
 MOST_PAIRS: Final = 2000  # that GJK looks at, some 0.2 ms each
 
 
+class Parts(NamedTuple):
+    """The convex solids of all bodies that are no planes, in the world."""
+
+    names: list[str]  # of the body that each is of
+    shapes: list[CellSimple]
+    placed: PlacedSolids
+    sums: Sums
+    thickness: Floats  # [m]
+    movable: np.ndarray
+
+
 def overlaps(cell: Cell) -> Iterator[Defect]:
     """Yield a defect at the deepest body behind a plane, and at the deepest inside another."""
     bodies = cell.config.scene.bodies
-    behind = max(_behind_planes(bodies), default=None)
+    parts = _parts(bodies)
+    if not parts.names:
+        return
+    behind = max(_behind_planes(bodies, parts), default=None)
     if behind is not None:
         depth, name, plane = behind
         yield _defect(cell, name, f"{name} starts {depth:.3g} m behind the surface of {plane}")
-    inside = _inside(bodies)
+    inside = _inside(parts)
     if inside:
         depth, name, other = max(inside)
         far = f"{depth:.3g} m " if depth > 0.0 else ""
@@ -48,60 +68,74 @@ def _defect(cell: Cell, name: str, sentence: str) -> Defect:
     return cell.defect((*path, written) if written else path, sentence)
 
 
-def _behind_planes(bodies: dict[str, CellBody]) -> Iterator[tuple[float, str, str]]:
-    """Yield depth [m], body and plane wherever a movable body reaches far behind one."""
-    planes = {name: half_space(b.shape) for name, b in bodies.items() if isinstance(b.shape, Plane)}
-    for name, body in bodies.items() if planes else ():
-        if not is_movable(body):
-            continue
-        turn = rotation_of(body)
-        for plane, (normal, offset) in planes.items():
-            reach = extent(body.shape, turn, -normal)
-            depth = offset + reach - float(normal @ np.asarray(body.position))
-            if depth > DRAWN_IN * thickness(body.shape):
-                yield depth, name, plane
-
-
-def _inside(bodies: dict[str, CellBody]) -> list[tuple[float, str, str]]:
-    """Return depth [m] (0 where it is not known) and names of every pair that overlaps."""
+def _parts(bodies: dict[str, CellBody]) -> Parts:
     solids = {name: body for name, body in bodies.items() if not isinstance(body.shape, Plane)}
-    names, shapes, positions, turns, movable = [], [], [], [], []
-    for name, body in solids.items():
-        turn = rotation_of(body)
-        for piece in pieces(body.shape):
-            names.append(name)
-            shapes.append(piece.shape)
-            positions.append(np.asarray(body.position) + turn @ piece.position)
-            turns.append(turn @ rotation_matrix(piece.orientation))
-            movable.append(is_movable(body))
-    if len(solids) < 2:
-        return []
-    placed = PlacedSolids(
-        np.array(positions), np.array(turns), np.array([size_of(shape) for shape in shapes])
+    centres = np.array([body.position for body in solids.values()]).reshape(-1, 3)
+    turns = rotation_matrices(
+        np.array([body.orientation for body in solids.values()]).reshape(-1, 4)
     )
-    bounds = sums_of(shapes)
-    balls = np.array([shape.bounding_radius() for shape in shapes])
-    bounds = bounds._replace(ball=np.minimum(bounds.ball, balls))  # of what is no sum
-    kinds = np.array([kind_of(shape) for shape in shapes])
+    names: list[str] = []
+    shapes: list[CellSimple] = []
+    movable: list[bool] = []
+    positions: list[Floats] = []
+    rotations: list[Floats] = []
+    for (name, body), centre, turn in zip(solids.items(), centres, turns, strict=True):
+        for shape, position, orientation in pieces(body.shape):
+            names.append(name)
+            shapes.append(shape)
+            movable.append(is_movable(body))
+            one = body.shape is shape
+            positions.append(centre if one else centre + turn @ position)
+            rotations.append(turn if one else turn @ rotation_matrix(orientation))
+    sizes = np.array([size_of(shape) for shape in shapes]).reshape(-1, 3)
+    placed = PlacedSolids(
+        np.array(positions).reshape(-1, 3), np.array(rotations).reshape(-1, 3, 3), sizes
+    )
     thick = np.array([thickness(shape) for shape in shapes])
-    a, b = near_pairs(bounds, placed, np.array(movable))
-    found: dict[tuple[str, str], float] = {}
-    for one, other in set(zip(kinds[a].tolist(), kinds[b].tolist(), strict=True)):
+    return Parts(names, shapes, placed, sums_of(shapes), thick, np.array(movable, dtype=bool))
+
+
+def _behind_planes(bodies: dict[str, CellBody], parts: Parts) -> Iterator[tuple[float, str, str]]:
+    """Yield depth [m], body and plane of the movable solid that reaches farthest behind each."""
+    placed = parts.placed
+    for name, body in bodies.items():
+        if not isinstance(body.shape, Plane):
+            continue
+        normal, offset = half_space(body.shape)
+        reach = extents(parts.sums, placed.rotation, -normal)
+        for row in np.flatnonzero(np.isinf(reach)):  # of what is no sum
+            reach[row] = extent(parts.shapes[row], placed.rotation[row], -normal)
+        depth = offset + reach - placed.position @ normal
+        depth[~parts.movable | (depth <= DRAWN_IN * parts.thickness)] = 0.0
+        deepest = int(np.argmax(depth))
+        if depth[deepest] > 0.0:
+            yield float(depth[deepest]), parts.names[deepest], name
+
+
+def _inside(parts: Parts) -> list[tuple[float, str, str]]:
+    """Return depth [m] (0 where it is not known) and names of every pair that overlaps."""
+    names, shapes, placed = parts.names, parts.shapes, parts.placed
+    balls = np.array([shape.bounding_radius() for shape in shapes])
+    bounds = parts.sums._replace(ball=np.minimum(parts.sums.ball, balls))  # of what is no sum
+    kinds = np.array([kind_of(shape) for shape in shapes])
+    a, b = near_pairs(bounds, placed, parts.movable)
+    touching = DRAWN_IN * np.minimum(parts.thickness[a], parts.thickness[b])
+    apart = np.linalg.norm(placed.position[a] - placed.position[b], axis=1)
+    near = balls[a] + balls[b] - apart > touching  # no pair is deeper than its bounding spheres
+    a, b, touching = a[near], b[near], touching[near]
+    deep = np.full(len(a), np.nan)
+    for one, other in sorted(set(zip(kinds[a].tolist(), kinds[b].tolist(), strict=True))):
         rows = (kinds[a] == one) & (kinds[b] == other)
-        first, second = a[rows], b[rows]
-        deep = depths(one, other, placed.take(first), placed.take(second))
-        touching = DRAWN_IN * np.minimum(thick[first], thick[second])
-        unknown = np.isnan(deep)
-        for i, j, depth in zip(
-            first[deep > touching], second[deep > touching], deep[deep > touching], strict=True
-        ):
-            _note(found, names[j], names[i], float(depth))
-        for i, j in zip(first[unknown][:MOST_PAIRS], second[unknown][:MOST_PAIRS], strict=True):
-            if names[i] != names[j] and hulls_meet(
-                _corners(shapes[i], placed.position[i], placed.rotation[i]),
-                _corners(shapes[j], placed.position[j], placed.rotation[j]),
-            ):
-                _note(found, names[j], names[i], 0.0)
+        deep[rows] = depths(one, other, placed.take(a[rows]), placed.take(b[rows]))
+    found: dict[tuple[str, str], float] = {}
+    for row in np.flatnonzero(deep > touching):
+        _note(found, names[b[row]], names[a[row]], float(deep[row]))
+    for row in np.flatnonzero(np.isnan(deep))[:MOST_PAIRS]:
+        first, second = (
+            _corners(shapes[k], placed.position[k], placed.rotation[k]) for k in (a[row], b[row])
+        )
+        if names[a[row]] != names[b[row]] and hulls_meet(first, second):
+            _note(found, names[b[row]], names[a[row]], 0.0)
     return [(depth, *pair) for pair, depth in found.items()]
 
 

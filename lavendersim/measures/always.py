@@ -34,9 +34,8 @@ def outcomes_of(always: Always, cell: Cell) -> dict[str, Outcome]:
         trace: Trace = cell.trace()
         ended = trace.status
         worst = WorstStates(always)
-        states = len(trace.step) - (0 if is_whole(ended) else 1)
         checks = StepChecks(always)
-        for before, section in sections_of(trace, max(states, 0)):
+        for before, section in sections_of(trace, is_whole(ended)):
             for one in checks.over(section):
                 worst.take(one, section, 1 if before else 0, len(section.step))
     except LavenderError as error:  # a log that is damaged

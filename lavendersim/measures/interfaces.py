@@ -24,6 +24,9 @@ class Trace(Protocol):
     def step(self) -> Any:
         """Structured rows, one per logged step; row 0 is the initial state."""
 
+    def steps_in_parts(self) -> Iterator[Any]:
+        """Yield the rows of `step` in parts, read as they are asked for."""
+
     @property
     def contact(self) -> Any:
         """Structured rows, one per contact, grouped by rising step.
@@ -38,6 +41,9 @@ class Trace(Protocol):
     @property
     def pose(self) -> Any:
         """Rows, bodies, 7: x y z [m] and quaternion w x y z."""
+
+    def poses_in_parts(self) -> Iterator[tuple[Any, Any]]:
+        """Yield the rows of `pose` in parts with the numbers of their steps."""
 
     @property
     def residual(self) -> Any:

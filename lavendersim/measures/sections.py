@@ -13,6 +13,7 @@ import numpy as np
 
 from lavendersim.cell import CellConfig
 from lavendersim.clock import Clock
+from lavendersim.errors import TraceError
 from lavendersim.measures.interfaces import Floats, Rows, Trace
 
 
@@ -29,30 +30,97 @@ class Section(NamedTuple):
     residual: Any = ()  # no measure of a single step needs sweeps
     status: str = "complete"
 
+    def steps_in_parts(self) -> Iterator[Rows]:
+        """Yield all states: a section fits into memory."""
+        yield self.step
+
+    def poses_in_parts(self) -> Iterator[tuple[Rows, Floats]]:
+        """Yield all poses with the numbers of their steps."""
+        yield self.step["step"], self.pose
+
     def contacts_in_parts(self) -> Iterator[Rows]:
         """Yield all contacts: a section fits into memory."""
         yield self.contact
 
 
-def sections_of(trace: Trace, states: int) -> Iterator[tuple[int, Trace]]:
-    """Yield the first states of a log in sections, each with how many went before it."""
-    context = (trace.bodies, trace.config, trace.clock, trace.absent)
-    step = trace.step[:states]
+class _Column:
+    """One topic of a log, by rising step: parts that come in as they are asked for."""
+
+    def __init__(self, parts: Iterator[tuple[Rows, Any]]) -> None:
+        """parts: the numbers of their steps, and their rows."""
+        self._parts = parts
+        self._numbers: Any = np.empty(0, np.int64)
+        self._rows: Any = None
+
+    def fill(self) -> bool:
+        """Have some rows at hand; false where there are no more."""
+        while len(self._numbers) == 0:
+            part = next(self._parts, None)
+            if part is None:
+                return False
+            self._numbers, self._rows = part
+        return True
+
+    @property
+    def last(self) -> int:
+        """The step of the last row at hand."""
+        return int(self._numbers[-1])
+
+    def take(self, end: int) -> tuple[Rows, Any]:
+        """Return what is at hand up to a step: the numbers of its steps, and its rows."""
+        count = int(np.searchsorted(self._numbers, end, "right"))
+        numbers, rows = self._numbers, self._rows
+        self._numbers = numbers[count:]
+        if rows is not None:
+            self._rows, rows = rows[count:], rows[:count]
+        return numbers[:count], rows
+
+
+def sections_of(trace: Trace, whole: bool) -> Iterator[tuple[int, Trace]]:
+    """Yield the states of a log in sections, each with how many went before it.
+
+    whole: its last state counts; else it is left out. Parts are read as they are asked for and not
+    kept: a log of any length takes as much memory as some of its chunks. Raises TraceError where
+    poses are of other steps than states.
+    """
     posed = "/tf" not in trace.absent
-    pose = trace.pose[:states] if posed else np.empty((len(step), 0, 0))
-    begin, none = 0, None
-    for contact in trace.contacts_in_parts():
-        none = contact[:0]
-        if len(contact) == 0:
+    step = _Column((part["step"], part) for part in _states(trace.steps_in_parts(), whole))
+    pose = _Column(trace.poses_in_parts() if posed else iter(()))
+    contact = _Column((part["step"], part) for part in trace.contacts_in_parts())
+    begin, before = 0, None
+    while step.fill():
+        # A part of contacts has all those of its steps, and of steps before them that have none.
+        end = min(column.last for column in (step, pose, contact) if column.fill())
+        numbers, steps = step.take(end)
+        posed_numbers, poses = pose.take(end)
+        if not posed:
+            poses = np.empty((len(steps), 0, 0))
+        elif not np.array_equal(numbers, posed_numbers):
+            raise TraceError("the poses of a log are of other steps than its states")
+        _, contacts = contact.take(end)
+        if contacts is None:
+            contacts = trace.contact  # of a log that has none
+        if before is not None:
+            steps, poses = np.concatenate([before[0], steps]), np.concatenate([before[1], poses])
+        yield (
+            begin,
+            Section(steps, contacts, poses, trace.bodies, trace.config, trace.clock, trace.absent),
+        )
+        begin += len(numbers)
+        before = steps[-1:].copy(), poses[-1:].copy()
+
+
+def _states(parts: Iterator[Rows], whole: bool) -> Iterator[Rows]:
+    """Yield parts of states, the last state only where it counts."""
+    if whole:
+        yield from parts
+        return
+    last = None
+    for part in parts:
+        if len(part) == 0:
             continue
-        end = int(np.searchsorted(step["step"], contact["step"][-1], "right"))
-        if end == begin:
-            break  # contacts of states beyond those
-        again = max(begin - 1, 0)
-        mine = contact[: np.searchsorted(contact["step"], step["step"][end - 1], "right")]
-        yield begin, Section(step[again:end], mine, pose[again:end], *context)
-        begin = end
-    if begin < len(step):
-        again = max(begin - 1, 0)
-        without = trace.contact if none is None else none
-        yield begin, Section(step[again:], without, pose[again:], *context)
+        if last is not None:
+            yield last
+        last = part
+    if last is not None:
+        yield last[:-1]

@@ -7,8 +7,6 @@ reaches follows from what it is the Minkowski sum of, which its shape declares.
 
 from __future__ import annotations
 
-import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Final, NamedTuple
 
@@ -16,8 +14,9 @@ import numpy as np
 
 from lavendersim.cell import CellScene, Plane
 from lavendersim.cell.shapes import CellShape, Primitive
-from lavendersim.cell.shapes.shape import MinkowskiSum
 from lavendersim.geometry.bodies import is_movable
+from lavendersim.geometry.meeting_boxes import meeting_boxes
+from lavendersim.geometry.minkowski_sums import Sums, extents, sums_of
 from lavendersim.geometry.rotations import rotation_matrices
 from lavendersim.geometry.shapes import HalfSpace, half_space
 from lavendersim.measures.interfaces import Floats
@@ -37,14 +36,6 @@ class PlacedSolids(NamedTuple):
     def take(self, rows: Any) -> PlacedSolids:
         """Return some of them."""
         return PlacedSolids(self.position[rows], self.rotation[rows], self.size[rows])
-
-
-class Sums(NamedTuple):
-    """Solids as Minkowski sums (`MinkowskiSum`); what is none has a ball without end."""
-
-    half: Floats  # (n, 3) edges of the box [m]
-    disc: Floats  # (n,) radius [m]
-    ball: Floats  # (n,) radius [m]
 
 
 @dataclass(frozen=True)
@@ -94,39 +85,9 @@ def size_of(shape: CellShape) -> list[float]:
     return [row.get(name, 0.0) for name in ("hx", "hy", "hz")]
 
 
-def sums_of(shapes: Sequence[CellShape]) -> Sums:
-    """Return shapes as Minkowski sums."""
-    sums = [shape.minkowski_sum() if isinstance(shape, Primitive) else None for shape in shapes]
-    known = [one or MinkowskiSum(ball=math.inf) for one in sums]
-    return Sums(
-        np.array([one.half for one in known], dtype=np.float64).reshape(-1, 3),
-        np.array([one.disc for one in known], dtype=np.float64),
-        np.array([one.ball for one in known], dtype=np.float64),
-    )
-
-
-def extents(sums: Sums, placed: PlacedSolids, direction: Floats) -> Floats:
-    """Return the extent of each solid along a unit direction [m]; inf where that is unknown."""
-    along = np.abs(np.einsum("nij,i->nj", placed.rotation, direction))  # in body axes
-    across = np.sqrt(np.maximum(0.0, 1.0 - along[:, 2] * along[:, 2]))
-    reach: Floats = np.einsum("nj,nj->n", along, sums.half) + sums.disc * across + sums.ball
-    return reach
-
-
 def near_pairs(sums: Sums, placed: PlacedSolids, movable: np.ndarray) -> tuple[Any, Any]:
-    """Return the two columns of pairs whose boxes along the world's axes meet (sweep and prune).
-
-    Sorted by their lower ends along the axis on which the scene is longest, a solid can meet only
-    those whose lower end comes before its own upper end.
-    """
-    half = np.stack([extents(sums, placed, axis) for axis in (X, Y, Z)], axis=1)
-    low, high = placed.position - half, placed.position + half
-    axis = int(np.argmax(np.ptp(placed.position, axis=0)))
-    order = np.argsort(low[:, axis], kind="stable")
-    ends = np.searchsorted(low[order, axis], high[order, axis], side="right")
-    counts = ends - np.arange(len(order)) - 1
-    first = np.repeat(np.arange(len(order)), counts)
-    step = np.arange(len(first)) - np.repeat(np.cumsum(counts) - counts, counts)
-    a, b = order[first], order[first + 1 + step]
-    meet = (movable[a] | movable[b]) & np.all((low[a] <= high[b]) & (low[b] <= high[a]), axis=1)
-    return a[meet], b[meet]
+    """Return the two columns of pairs of which one can move and whose bounds meet."""
+    half = np.stack([extents(sums, placed.rotation, axis) for axis in (X, Y, Z)], axis=1)
+    a, b = meeting_boxes(placed.position - half, placed.position + half)
+    moves = movable[a] | movable[b]
+    return a[moves], b[moves]

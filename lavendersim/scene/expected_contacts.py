@@ -19,6 +19,9 @@ import numpy as np
 
 from lavendersim.cell import CellBody, CellConfig, Convex, Plane, Sphere
 from lavendersim.geometry.bodies import is_movable
+from lavendersim.geometry.meeting_boxes import meeting_boxes
+from lavendersim.geometry.minkowski_sums import extents, sums_of
+from lavendersim.geometry.rotations import rotation_matrices
 from lavendersim.geometry.support import extent_against
 
 FACE_POINTS: Final = 4  # of a manifold, at most
@@ -63,12 +66,16 @@ def _settled(solids: list[CellBody]) -> float:
 
 def _bounds(solids: list[CellBody]) -> tuple[Bounds, Bounds]:
     """Return the least and the largest coordinates of every body [m]."""
-    low, high = np.empty((len(solids), 3)), np.empty((len(solids), 3))
-    for row, body in enumerate(solids):
-        for axis, direction in enumerate(AXES):
+    centres = np.array([body.position for body in solids]).reshape(-1, 3)
+    turns = rotation_matrices(np.array([body.orientation for body in solids]).reshape(-1, 4))
+    sums = sums_of([body.shape for body in solids])
+    half = np.stack([extents(sums, turns, np.array(axis)) for axis in AXES], axis=1)
+    low, high = centres - half, centres + half
+    for row in np.flatnonzero(np.isinf(half[:, 0])):  # of what is no sum
+        for column, direction in enumerate(AXES):
             against = (-direction[0], -direction[1], -direction[2])
-            low[row, axis] = body.position[axis] - _extent(body, direction)
-            high[row, axis] = body.position[axis] + _extent(body, against)
+            low[row, column] = centres[row, column] - _extent(solids[row], direction)
+            high[row, column] = centres[row, column] + _extent(solids[row], against)
     return low, high
 
 
@@ -81,7 +88,7 @@ def _between_solids(solids: list[CellBody], low: Bounds, high: Bounds) -> float:
     """Return the contacts of bodies whose bounds touch, and of spheres that touch themselves."""
     gap = TOUCHING * (high - low).min(axis=1)
     low, high = low - gap[:, None] / 2, high + gap[:, None] / 2
-    first, second = _overlapping(low, high)
+    first, second = meeting_boxes(low, high)
     movable = np.array([is_movable(body) for body in solids])
     points = np.array([_points(body) for body in solids])
     near = movable[first] | movable[second]
@@ -90,22 +97,6 @@ def _between_solids(solids: list[CellBody], low: Bounds, high: Bounds) -> float:
     apart = np.linalg.norm(centre[first] - centre[second], axis=1) > radius[first] + radius[second]
     near &= ~(spheres[first] & spheres[second] & apart)
     return float(np.minimum(points[first], points[second])[near].sum())
-
-
-def _overlapping(low: Bounds, high: Bounds) -> tuple[np.ndarray, np.ndarray]:
-    """Return the pairs of rows whose bounds overlap: sweep and prune along the best axis."""
-    candidates = []
-    for axis in range(3):
-        order = np.argsort(low[:, axis], kind="stable")
-        ends = np.searchsorted(low[order, axis], high[order, axis], "right")
-        candidates.append((ends - np.arange(len(order)) - 1, order))
-    counts, order = min(candidates, key=lambda found: int(found[0].sum()))
-    first = np.repeat(np.arange(len(order)), counts)
-    begins = np.cumsum(counts) - counts
-    second = first + 1 + np.arange(len(first)) - np.repeat(begins, counts)
-    first, second = order[first], order[second]
-    near = np.all((low[first] <= high[second]) & (low[second] <= high[first]), axis=1)
-    return first[near], second[near]
 
 
 def _on_planes(bodies: list[CellBody], solids: list[CellBody], sizes: Bounds) -> float:

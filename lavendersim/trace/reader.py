@@ -122,6 +122,9 @@ class Trace:
 
     def steps_in_parts(self) -> Iterator[NDArray[Any]]:
         """Yield the rows of `step` in parts, read as they are asked for and not kept."""
+        if "step" in self.__dict__:  # read already
+            yield self.step
+            return
         with damage(self.path, "/step"):
             columns = self.step_columns
             for chunk in self._chunks("/step"):

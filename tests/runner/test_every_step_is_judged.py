@@ -77,6 +77,15 @@ class Falsified:
         cuts = np.searchsorted(self.contact["step"], [5, BROKEN, BROKEN, BROKEN + 1, 100])
         return iter(np.split(self.contact, cuts))
 
+    def steps_in_parts(self) -> Any:
+        """In parts, cut elsewhere; one of them is empty, too."""
+        return iter(np.split(self.step, [1, BROKEN - 1, BROKEN - 1, 200]))
+
+    def poses_in_parts(self) -> Any:
+        """In parts of their own."""
+        cuts = [BROKEN, BROKEN + 1, 150]
+        return zip(np.split(self.step["step"], cuts), np.split(self.pose, cuts), strict=True)
+
     def sliding(self) -> int:
         """Row of the contact between floor and low ball in the step that is falsified."""
         return int(np.flatnonzero(self.contact["step"] == BROKEN)[0])

@@ -1,11 +1,13 @@
 """Rotation: orientations change; something turns at the start or a contact exerts a torque."""
 
+from collections.abc import Hashable
+
 from ..records import ANGULAR_VELOCITY, ORIENTED_BODY
 from .decision import BodyFacts, Decision, Facts, PairFacts, named
 from .effect import Effect, Fields, Hooks, kernel
 
 # Bodies of one kind are alike to all others: a pair stands for all pairs of its two kinds.
-Kind = tuple[str, bool, str]
+Kind = tuple[str, bool, Hashable]  # shape, whether it can move, surface
 
 
 def decide(facts: Facts) -> Decision:
@@ -44,7 +46,7 @@ def _turned_by(body: BodyFacts, touches: bool, frictional: set[Kind], resisting:
 
 
 def _kind(body: BodyFacts) -> Kind:
-    return body.shape, body.movable, repr(body.name if body.config is None else body.config.surface)
+    return body.shape, body.movable, body.name if body.config is None else body.config.surface
 
 
 def _touched(facts: Facts, pairs: list[PairFacts]) -> set[Kind]:

@@ -6,12 +6,13 @@ from typing import Any
 
 import numpy as np
 
+from lavendersim.geometry.minkowski_sums import extents
 from lavendersim.geometry.shapes import HalfSpace
 from lavendersim.measures.columns import last_window
 from lavendersim.measures.interfaces import Floats, Trace
 from lavendersim.measures.penetration import depths
 from lavendersim.measures.registration import measure
-from lavendersim.measures.solids import PlacedSolids, Solids, extents, near_pairs, solids_of
+from lavendersim.measures.solids import PlacedSolids, Solids, near_pairs, solids_of
 from lavendersim.measures.specs.overlap import Overlap
 
 NAN = float("nan")
@@ -48,7 +49,7 @@ def overlap_of_rows(trace: Trace, rows: Any) -> Floats:
 def _with_planes(solids: Solids, placed: PlacedSolids, grounds: list[HalfSpace]) -> list[float]:
     found = [0.0]
     for normal, offset in grounds:
-        inside = offset - placed.position @ normal + extents(solids.sums, placed, -normal)
+        inside = offset - placed.position @ normal + extents(solids.sums, placed.rotation, -normal)
         inside = inside[solids.movable]
         found += [float(np.max(np.where(np.isinf(inside), NAN, inside)))] if len(inside) else []
     return found

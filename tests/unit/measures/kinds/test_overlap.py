@@ -15,6 +15,7 @@ from lavendersim.cell.shapes.box import Box
 from lavendersim.cell.shapes.capsule import Capsule
 from lavendersim.cell.shapes.cylinder import Cylinder
 from lavendersim.cell.shapes.sphere import Sphere
+from lavendersim.geometry.minkowski_sums import extents, sums_of
 from lavendersim.geometry.rotations import rotation_matrices as rotations
 from lavendersim.geometry.shapes import extent
 from lavendersim.measures import evaluate
@@ -25,7 +26,7 @@ from lavendersim.measures.penetration import (
     sphere_capsule,
     sphere_sphere,
 )
-from lavendersim.measures.solids import PlacedSolids, extents, near_pairs, sums_of
+from lavendersim.measures.solids import PlacedSolids, near_pairs
 from lavendersim.measures.specs.overlap import Overlap
 
 SEED = 20
@@ -172,7 +173,9 @@ def test_a_solid_reaches_as_far_as_its_shape_says() -> None:
         ]
         # sums of a few numbers below 1 m; sqrt(1 - n_z^2) loses digits where a cylinder stands,
         # by eps / sqrt(1 - n_z^2), 1e-14 for the nearest of these directions
-        np.testing.assert_allclose(extents(sums_of(shapes), scene, direction), expected, atol=1e-14)
+        np.testing.assert_allclose(
+            extents(sums_of(shapes), scene.rotation, direction), expected, atol=1e-14
+        )
 
 
 @pytest.mark.parametrize("stretch", [(1, 1, 1), (0.1, 0.1, 8), (9, 0.2, 0.2)])
