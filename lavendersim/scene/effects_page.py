@@ -7,11 +7,13 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator
+from dataclasses import fields
 from importlib import import_module
 from inspect import cleandoc
 from pathlib import Path
 
 from lavendersim.engine.effects import EFFECTS, Column, Effect
+from lavendersim.engine.effects.effect import RowTerms
 from lavendersim.engine.effects.keys import Key
 
 INTRODUCTION = """\
@@ -39,6 +41,9 @@ def _section(effect: Effect) -> Iterator[str]:
         yield f"```text\n{rest.strip()}\n```\n"
     if effect.needs:
         yield f"Needs {', '.join(f'`{name}`' for name in effect.needs)}.\n"
+    terms = [term.name for term in fields(RowTerms) if getattr(effect.row, term.name)]
+    if terms:
+        yield f"Brings to contacts' rows the term {', '.join(f'`{term}`' for term in terms)}.\n"
     if effect.chosen_by:
         yield f"Chosen by `{effect.chosen_by.section}.{effect.chosen_by.key}`.\n"
     keys: list[tuple[str, Key]] = [
