@@ -12,7 +12,7 @@ from .effect import Column, Derived, Effect, Fields, Hooks, Kernel, RowTerms, ke
 from .keys import COEFFICIENT, SurfaceKey, geometric_mean
 
 
-def _said(pair: PairFacts) -> str:
+def _described(pair: PairFacts) -> str:
     if pair.surface.friction > 0.0:
         return f"sliding {pair.surface.friction:g}"
     return "resistance to turning acts in friction's frame" if pair.resists_turning else ""
@@ -21,7 +21,7 @@ def _said(pair: PairFacts) -> str:
 def decide(facts: Facts) -> Decision:
     """On when a pair that may touch has a positive coefficient, or resists turning without one."""
     if any(pair.surface.friction > 0.0 or pair.resists_turning for pair in facts.pairs):
-        return Decision(True, by_pair(facts.pairs, _said))
+        return Decision(True, by_pair(facts.pairs, _described))
     return Decision(False, "every pair that may touch has coefficient 0")
 
 

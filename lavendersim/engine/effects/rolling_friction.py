@@ -17,7 +17,7 @@ from .keys import LENGTH, SurfaceKey, larger
 # spin: angular velocity of B relative to A after the solve, about the tangents.
 
 
-def _said(pair: PairFacts) -> str:
+def _described(pair: PairFacts) -> str:
     length = pair.surface.rolling_friction
     return f"rolling friction {length:g} m" if length > 0.0 else ""
 
@@ -25,7 +25,7 @@ def _said(pair: PairFacts) -> str:
 def decide(facts: Facts) -> Decision:
     """On when a pair that may touch has a positive coefficient."""
     if any(pair.surface.rolling_friction > 0.0 for pair in facts.pairs):
-        return Decision(True, by_pair(facts.pairs, _said))
+        return Decision(True, by_pair(facts.pairs, _described))
     return Decision(False, "every pair that may touch has rolling friction 0")
 
 

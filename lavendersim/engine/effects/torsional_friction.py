@@ -14,7 +14,7 @@ from .keys import LENGTH, SurfaceKey, larger
 # spin: angular velocity of B relative to A after the solve, about the normal.
 
 
-def _said(pair: PairFacts) -> str:
+def _described(pair: PairFacts) -> str:
     length = pair.surface.torsional_friction
     return f"torsional friction {length:g} m" if length > 0.0 else ""
 
@@ -22,7 +22,7 @@ def _said(pair: PairFacts) -> str:
 def decide(facts: Facts) -> Decision:
     """On when a pair that may touch has a positive coefficient."""
     if any(pair.surface.torsional_friction > 0.0 for pair in facts.pairs):
-        return Decision(True, by_pair(facts.pairs, _said))
+        return Decision(True, by_pair(facts.pairs, _described))
     return Decision(False, "every pair that may touch has torsional friction 0")
 
 
