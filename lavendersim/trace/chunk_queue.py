@@ -17,9 +17,10 @@ from typing import Final
 
 from lavendersim.trace.container import Closed, Container
 
-# Threads for all logs that this process writes: one core is the simulation's. And how much of a log
-# may wait for them [byte]: that bounds its memory.
-COMPRESSORS: Final = max(1, min(4, (os.cpu_count() or 1) - 1))
+# Threads for all logs that this process writes, and how much of a log may wait for them [byte]:
+# that bounds its memory. As many as cores: one fewer leaves the simulation undisturbed, and takes
+# as long in all; where others use the cores, too, it takes longer.
+COMPRESSORS: Final = min(4, os.cpu_count() or 1)
 MOST_WAITING: Final = 64 * 1024 * 1024
 _threads = ThreadPoolExecutor(COMPRESSORS, "trace")
 
