@@ -1,7 +1,7 @@
 """What killed processes left half written in runs that nobody goes on with: removed before a run.
 
 Files are written aside and renamed (`durable_files`), so what is left under a name of its own is
-nothing that anybody reads. A run whose directory is held (`run_lock`) is left alone.
+nothing that anybody reads. A run whose directory is locked (`run_lock`) is left alone.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ def remove_leftovers(root: Path) -> None:
     for directory in root.glob("[!.]*"):
         if directory.is_symlink() or (directory / DONE).exists():
             continue
-        # A directory is held for no longer than it takes, and not at all where nothing is left.
+        # A directory is locked for no longer than it takes, and not at all where nothing is left.
         if not is_run_directory(directory) or not [*directory.rglob(UNFINISHED)]:
             continue
         with suppress(UsageError, OSError), run_lock(directory):

@@ -55,11 +55,11 @@ def predicted(experiment: Experiment, root: Path, jobs: int = 1) -> Prediction:
     """Return what a run of an experiment into a folder will take; jobs: its processes."""
     cells = experiment.cells()
     steps = sum(cell.config.steps for cell in cells)
-    told = cells[:: max(1, len(cells) // TELLING)]
+    sampled = cells[:: max(1, len(cells) // TELLING)]
     work = sum(
-        one.config.steps * (PER_STEP + PER_CONTACT * expected_contacts(one.config)) for one in told
+        one.config.steps * (PER_STEP + PER_CONTACT * expected_contacts(one.config)) for one in sampled
     )
-    seconds = work * steps / sum(one.config.steps for one in told) + PER_CELL * len(cells)
+    seconds = work * steps / sum(one.config.steps for one in sampled) + PER_CELL * len(cells)
     free = shutil.disk_usage(existing(root)).free
     seconds /= min(jobs, len(cells))
     size = None

@@ -75,16 +75,16 @@ class Runs:
 
         runs = self.top / f"{number}-{error}"
         run(self.config, runs)
-        said, told = self.top / "stderr", self.top / "call"
+        said, failed = self.top / "stderr", self.top / "call"
         process = os.fork()
         if process == 0:
-            self._run(runs, (number, error), said, told)
+            self._run(runs, (number, error), said, failed)
         _, status = os.waitpid(process, 0)
         return runs, Found(
-            told.read_text(), os.waitstatus_to_exitcode(status), said.read_text(errors="replace")
+            failed.read_text(), os.waitstatus_to_exitcode(status), said.read_text(errors="replace")
         )
 
-    def _run(self, runs: Path, fails: tuple[int, int], said: Path, told: Path) -> None:
+    def _run(self, runs: Path, fails: tuple[int, int], said: Path, failed: Path) -> None:
         from lavender_cli.main import main
 
         code = 99
@@ -102,7 +102,7 @@ class Runs:
                 sys.stderr.flush()
                 which = self.library.failing_calls_which().decode()
                 self.library.failing_calls_arm(b"", -1, 0)
-                told.write_text(which)
+                failed.write_text(which)
         finally:
             os._exit(code)
 

@@ -14,7 +14,7 @@ LEFT = (".results.1-1.unfinished.json", "cells/.a.mcap.0f.unfinished")
 
 @pytest.fixture
 def runs(tmp_path: Path) -> Path:
-    for name in ("dead", "held", "finished"):
+    for name in ("dead", "locked", "finished"):
         (tmp_path / name / "cells").mkdir(parents=True)
         (tmp_path / name / "cells.json").write_text("{}")
         for left in LEFT:
@@ -22,7 +22,7 @@ def runs(tmp_path: Path) -> Path:
     (tmp_path / "finished" / "DONE").touch()
     (tmp_path / "other").mkdir()
     (tmp_path / "other" / LEFT[0]).write_text("of somebody else")
-    (tmp_path / "latest").symlink_to("held")
+    (tmp_path / "latest").symlink_to("locked")
     return tmp_path
 
 
@@ -31,9 +31,9 @@ def left_in(runs: Path) -> dict[str, int]:
 
 
 def test_what_is_half_written_in_dead_runs_is_removed(runs: Path) -> None:
-    with run_lock(runs / "held"):
+    with run_lock(runs / "locked"):
         remove_leftovers(runs)
-    assert left_in(runs) == {"dead": 0, "held": 2, "finished": 2, "other": 1}
+    assert left_in(runs) == {"dead": 0, "locked": 2, "finished": 2, "other": 1}
     assert (runs / "dead" / "cells.json").exists()
     remove_leftovers(runs)
-    assert left_in(runs)["held"] == 0
+    assert left_in(runs)["locked"] == 0
