@@ -57,7 +57,8 @@ def predicted(experiment: Experiment, root: Path, jobs: int = 1) -> Prediction:
     steps = sum(cell.config.steps for cell in cells)
     sampled = cells[:: max(1, len(cells) // TELLING)]
     work = sum(
-        one.config.steps * (PER_STEP + PER_CONTACT * expected_contacts(one.config)) for one in sampled
+        one.config.steps * (PER_STEP + PER_CONTACT * expected_contacts(one.config))
+        for one in sampled
     )
     seconds = work * steps / sum(one.config.steps for one in sampled) + PER_CELL * len(cells)
     free = shutil.disk_usage(existing(root)).free
