@@ -14,6 +14,7 @@ import typer
 
 from lavender_cli import overheads, printing, progress, time_errors
 from lavender_cli.drawing import Drawing
+from lavender_cli.prediction import Yes, confirm
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
@@ -96,6 +97,7 @@ def run(
         str | None,
         typer.Option("--dask", metavar="ADDRESS", help="Of Dask's scheduler: tcp://host:8786."),
     ] = None,
+    yes: Yes = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print the results as JSON.")] = False,
     into: Annotated[
         Path | None,
@@ -126,6 +128,8 @@ def run(
     where = [] if runs == Path("runs") else ["--runs", str(runs)]
     command = _command(configs, overrides, "--resume", *where)
     good, tables, with_overheads = True, [], []
+    if not resume:  # it was asked before
+        confirm(experiments, runs, jobs, yes)
     with Drawing(experiments if plot else ()) as drawing:
         for number, experiment in enumerate(experiments):
             whole = finished_run(experiment, runs) if resume else None

@@ -37,10 +37,11 @@ def written_aside(path: Path, *, flush: bool = True, anew: bool = False) -> Iter
     path.parent.mkdir(parents=True, exist_ok=True)
     unfinished = _aside(path)
     try:
-        yield unfinished
-        if flush:
-            _flush(unfinished)
-        _move(unfinished, path, anew)
+        with named(path, unfinished):
+            yield unfinished
+            if flush:
+                _flush(unfinished)
+            _move(unfinished, path, anew)
     finally:
         with contextlib.suppress(FileNotFoundError):
             os.unlink(unfinished)
@@ -62,10 +63,11 @@ def write_together(
         for path, content in contents.items():
             path.parent.mkdir(parents=True, exist_ok=True)
             data = content.encode() if isinstance(content, str) else content
-            with _named(path):
+            with named(path, aside[path]):
                 _write(aside[path], data, flush, mode)
         for path, unfinished in aside.items():
-            os.replace(unfinished, path)
+            with named(path, unfinished):
+                os.replace(unfinished, path)
     finally:
         for unfinished in aside.values():
             with contextlib.suppress(FileNotFoundError):
@@ -79,7 +81,7 @@ def write_in_pieces(path: Path, pieces: Iterable[str], *, flush: bool = True) ->
     """Write a file from pieces of text, in UTF-8; they are taken as they are written."""
     with (
         written_aside(path, flush=flush) as unfinished,
-        _named(path),
+        named(path, unfinished),
         unfinished.open("w", BUFFER, encoding="utf-8", newline="") as file,
     ):
         file.writelines(pieces)
@@ -130,12 +132,16 @@ def _aside(path: Path) -> Path:
 
 
 @contextlib.contextmanager
-def _named(path: Path) -> Iterator[None]:
-    """Let an error of the system say which file it is of: a full disk does not."""
+def named(path: Path, aside: Path | None = None) -> Iterator[None]:
+    """Let an error of the system say which file it is of: a full disk does not.
+
+    aside: the file that is written in place of it.
+    """
     try:
         yield
     except OSError as error:
-        error.filename = str(path)
+        if error.filename is None or str(error.filename) == str(aside):
+            error.filename = str(path)
         raise
 
 
@@ -156,7 +162,8 @@ def _flush(path: Path) -> None:
     folder = path.is_dir()
     handle = os.open(path, os.O_RDONLY if folder or os.name == "posix" else os.O_RDWR)
     try:
-        os.fsync(handle)
+        with named(path):
+            os.fsync(handle)
     finally:
         os.close(handle)
 

@@ -24,6 +24,7 @@ from lavendersim.measures import Values, Verdict, judge, meant_to_end_early
 from .environment import environment
 from .interruption import Interrupted, handled
 from .json_table import pieces_of, text_of
+from .leftovers import remove_leftovers
 from .listing import TAGS, checked_tags
 from .progress import Progress
 from .results import compile_seconds, convergence_notices, write_results
@@ -151,6 +152,7 @@ def run(
     prepared = prepare(experiment)
     root = Path(root)
     check_latest(root)
+    remove_leftovers(root)
     if sentence := size_warning(prepared.cells, prepared.plans, experiment.text, root):
         progress.warning(sentence)
     logs = set(prepared.logs)

@@ -58,8 +58,8 @@ def expected_log_sizes(cells: Iterable[Cell], plans: Iterable[Plan], as_written:
 
 def size_warning(cells: Sequence[Cell], plans: Sequence[Plan], as_written: str, root: Path) -> str:
     """Return a sentence where the logs fill the disk of `root` too far; else nothing."""
-    free = shutil.disk_usage(_existing(root)).free
-    if sum(map(_most, cells)) <= MOST_OF_DISK * free:
+    free = shutil.disk_usage(existing(root)).free
+    if sum(map(most_bytes, cells)) <= MOST_OF_DISK * free:
         return ""
     total = sum(expected_log_sizes(cells, plans, as_written))
     if total <= MOST_OF_DISK * free:
@@ -70,7 +70,7 @@ def size_warning(cells: Sequence[Cell], plans: Sequence[Plan], as_written: str, 
     )
 
 
-def _most(cell: Cell) -> float:
+def most_bytes(cell: Cell) -> float:
     """Return more bytes [B] than the log of a cell takes."""
     config = cell.config
     sweeps = config.numerics.sweeps if config.record.residuals != "none" else 0
@@ -88,7 +88,7 @@ def _logged_sweeps(config: CellConfig, steps: int) -> float:
     return config.numerics.sweeps * max(0, min(last, steps) - first + 1) / steps
 
 
-def _existing(path: Path) -> Path:
+def existing(path: Path) -> Path:
     """Return the folder that a path will be made in."""
     path = path.absolute()
     return next(folder for folder in (path, *path.parents) if folder.exists())

@@ -38,6 +38,7 @@ from mcap.records import (
 )
 from numpy.typing import NDArray
 
+from lavendersim.durable_files import named
 from lavendersim.trace.file_digest import FileDigest
 from lavendersim.trace.record_bytes import pieces_of, to_bytes
 from lavendersim.trace.whole import MAGIC, LogDigest
@@ -158,6 +159,7 @@ class Container:
 
     def __init__(self, path: Path) -> None:
         self.index = FileIndex()
+        self._path = path
         self._stream = path.open("wb")
         self._registered: list[Registered] = []
         self._crc = 0
@@ -206,7 +208,8 @@ class Container:
         self.index.chunks.append(entry)
         for piece in (opening, data, b"".join(indexes)):
             self._write(piece)  # the data, which is large, as it is
-        self._stream.flush()
+        with named(self._path):
+            self._stream.flush()
 
     def finish(self) -> LogDigest:
         """Write DataEnd, the summary and the footer, and close the file; returns what it is."""
@@ -242,13 +245,15 @@ class Container:
 
     def abandon(self) -> None:
         """Close the file as it stands: without `finish` it is a killed run."""
-        self._stream.close()
+        with named(self._path):
+            self._stream.close()
 
     def _write(self, data: bytes) -> None:
         self._crc = zlib.crc32(data, self._crc)
         self._sha256.update(data)
         self._offset += len(data)
-        self._stream.write(data)
+        with named(self._path):
+            self._stream.write(data)
 
 
 def index_of(chunk: Chunk, offset: int, length: int) -> ChunkIndex:

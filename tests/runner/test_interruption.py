@@ -86,6 +86,7 @@ def test_a_run_that_is_interrupted_closes_its_log_and_says_so(tmp_path: Path, na
     command = ["-m", "lavender_cli.main", "run", str(config), "--runs", str(runs)]
     directory, said = interrupted(runs, name, command, logs=1)
     assert f"interrupted by {name}: 0 of 2 cells are whole, {directory}\n" in said
+    assert f"go on with: lavender run {config} --resume --runs {runs}\n" in said
     (log,) = (directory / "cells").glob("*.mcap")
     with pytest.raises(TraceError, match=f"interrupted by {name} after step"):
         open_trace(log)

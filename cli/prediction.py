@@ -1,0 +1,65 @@
+"""What runs will take is said before the first begins; of what is long or large it is asked."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from lavender_cli import printing
+
+if TYPE_CHECKING:
+    from lavendersim.runner.prediction import Prediction
+
+VARIABLE = "LAVENDER_YES"
+Yes = Annotated[
+    bool,
+    typer.Option("--yes", "-y", envvar=VARIABLE, help="Begin long or large runs without asking."),
+]
+
+
+def confirm(experiments: Sequence[Any], runs: Path, jobs: int, yes: bool) -> None:
+    """Say what runs will take where that is long, and ask. UsageError where nobody can be asked.
+
+    yes: nobody is asked.
+    """
+    from lavendersim.errors import UsageError
+    from lavendersim.runner.prediction import predicted
+
+    found = [predicted(experiment, runs, jobs) for experiment in experiments]
+    for one in found:
+        if one.is_worth_saying:
+            typer.echo(sentence_of(one), err=True)
+    much = [one for one in found if one.is_long or one.is_large]
+    if not much or yes:
+        return
+    which = ", ".join(one.name for one in much)
+    why = "more than an hour" if any(one.is_long for one in much) else ""
+    if any(one.is_large for one in much):
+        why += " and " * bool(why) + "more than a tenth of the free disk"
+    if not _somebody_answers():
+        raise UsageError(f"{which}: {why}; nothing has begun: say --yes, or set {VARIABLE}=1")
+    if not typer.confirm(f"{which}: {why}. Begin?", err=True):
+        raise UsageError("nothing has begun")
+
+
+def sentence_of(one: Prediction) -> str:
+    """Return what a run will take, in words."""
+    cells = f"{one.cells:,} cell{'s' * (one.cells != 1)}, {one.steps:,} steps"
+    size = "" if one.size is None else f", about {printing.byte_size(one.size, digits=2)} of logs"
+    free = f" ({printing.byte_size(one.free, digits=2)} are free)" if one.is_large else ""
+    return f"{one.name}: {cells}{size}{free}, about {_time(one.seconds)}"
+
+
+def _time(seconds: float) -> str:
+    for unit, name in ((86400.0, "days"), (3600.0, "hours"), (60.0, "minutes")):
+        if seconds >= 1.5 * unit:
+            return f"{seconds / unit:.2g} {name}"
+    return f"{seconds:.2g} s"
+
+
+def _somebody_answers() -> bool:
+    return sys.stdin.isatty() and sys.stderr.isatty()

@@ -1,0 +1,69 @@
+"""What a run will take, before it begins: cells, steps, bytes and time.
+
+Bytes are those of `log_size`. The time is a rough one, of steps and expected contacts at the speed
+of one core of a desktop: within some three times for scenes of the docs' tables, without compiling.
+"""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+from typing import Final, NamedTuple
+
+from lavendersim.experiment import Experiment
+from lavendersim.scene.expected_contacts import expected_contacts
+
+from .log_size import MOST_OF_DISK, existing, expected_log_sizes, most_bytes
+from .plans import shared_plans
+
+# Of docs/results.md, with logging: a ball 2.7 us a step; a pile, a pyramid 0.5 to 2.5 us a contact.
+PER_STEP: Final = 2.7e-6  # [s]
+PER_CONTACT: Final = 1.5e-6  # [s] and step
+PER_CELL: Final = 4e-3  # [s]
+TELLING: Final = 100  # cells whose contacts are counted; the others are taken to be like them
+WORTH_SAYING: Final = 60.0  # [s]
+LONGEST: Final = 3600.0  # [s] that nobody is asked about
+
+
+class Prediction(NamedTuple):
+    """What a run will take, about."""
+
+    name: str  # of the experiment
+    cells: int
+    steps: int
+    seconds: float  # by the clock on the wall
+    size: int | None  # [B] of the logs; None: far less than the disk has
+    free: int  # [B] of the disk
+
+    @property
+    def is_long(self) -> bool:
+        """Whether it takes more than an hour."""
+        return self.seconds > LONGEST
+
+    @property
+    def is_large(self) -> bool:
+        """Whether its logs take more than a tenth of the free disk."""
+        return self.size is not None and self.size > MOST_OF_DISK * self.free
+
+    @property
+    def is_worth_saying(self) -> bool:
+        """Whether somebody would want to know it before."""
+        return self.seconds > WORTH_SAYING or self.is_large
+
+
+def predicted(experiment: Experiment, root: Path, jobs: int = 1) -> Prediction:
+    """Return what a run of an experiment into a folder will take; jobs: its processes."""
+    cells = experiment.cells()
+    steps = sum(cell.config.steps for cell in cells)
+    sampled = cells[:: max(1, len(cells) // TELLING)]
+    work = sum(
+        one.config.steps * (PER_STEP + PER_CONTACT * expected_contacts(one.config))
+        for one in sampled
+    )
+    seconds = work * steps / sum(one.config.steps for one in sampled) + PER_CELL * len(cells)
+    free = shutil.disk_usage(existing(root)).free
+    seconds /= min(jobs, len(cells))
+    size = None
+    if seconds > WORTH_SAYING or sum(map(most_bytes, cells)) > MOST_OF_DISK * free:
+        size = sum(expected_log_sizes(cells, shared_plans(cells), experiment.text))
+    return Prediction(experiment.name, len(cells), steps, seconds, size, free)
