@@ -35,7 +35,7 @@ from lavendersim.trace.whole import INTERRUPTED
 from .accuracy import Accuracy
 from .bounds import Bounds
 from .call_length import CallLength, block_steps
-from .cell_outcome import CellOutcome, note_measured
+from .cell_outcome import CellOutcome, EndedCell, note_measured
 from .environment import versions
 from .interruption import deferred, raise_noted
 from .measured import Measured, measure_cell
@@ -186,9 +186,7 @@ def compile_kernel(job: CellJob) -> int:
     return started(build(job.config, job.plan.spec), job.plan, 0)[1]
 
 
-def run_and_measure(
-    job: CellJob, began: Began | None = None
-) -> tuple[CellOutcome, dict[int, Measured]]:
+def run_and_measure(job: CellJob, began: Began | None = None) -> EndedCell:
     """Simulate one cell, write its log, and measure it for each cell of the sweep that it is of.
 
     What ended is noted in the directory of its run.
@@ -199,16 +197,16 @@ def run_and_measure(
         note_ended(job.path, outcome.status, outcome.log)
         raise_noted()
 
-    outcome, measured = measured_run(job, began, closed)
-    note_measured(job.path, outcome, measured)
-    return outcome, measured
+    ended = measured_run(job, began, closed)
+    note_measured(job.path, ended)
+    return ended
 
 
 def measured_run(
     job: CellJob,
     began: Began | None = None,
     closed: Callable[[CellOutcome], None] = lambda outcome: None,
-) -> tuple[CellOutcome, dict[int, Measured]]:
+) -> EndedCell:
     """Simulate one cell, write its log, and measure it; nothing is noted.
 
     closed: called when the log is, before it is measured.
@@ -220,11 +218,11 @@ def measured_run(
     for index, label, coordinates in job.cells:
         cell = RunCell(index, label, coordinates, job.path, outcome.status, job.config, [trace])
         measured[index] = measure_cell(cell, job.measures, worst)
-    return outcome, measured
+    return EndedCell(outcome, measured)
 
 
-def failed(job: CellJob, how: str) -> tuple[CellOutcome, dict[int, Measured]]:
-    """Return the outcome of a cell whose process died each time: nothing is measured of it."""
+def failed(job: CellJob, how: str) -> EndedCell:
+    """Return the end of a cell whose process died each time: nothing is measured of it."""
     status = f"failed: its process {how}, both times"
     accuracy = Accuracy(tolerance=job.config.numerics.tolerance)
     why = failure("a complete run", status)
@@ -236,16 +234,21 @@ def failed(job: CellJob, how: str) -> tuple[CellOutcome, dict[int, Measured]]:
         )
         for index, _, coordinates in job.cells
     }
-    return CellOutcome(job.cell, status, 0, 0, 0, 0, accuracy), measured
+    return EndedCell(CellOutcome(job.cell, status, 0, 0, 0, 0, accuracy), measured)
 
 
-def simulate(
-    job: CellJob, began: Began | None = None
-) -> tuple[CellOutcome, Written, WorstStates | None]:
+class Simulated(NamedTuple):
+    """A cell that was simulated."""
+
+    outcome: CellOutcome
+    written: Written  # its log, as this process may read it
+    worst: WorstStates | None  # its states, by `always`
+
+
+def simulate(job: CellJob, began: Began | None = None) -> Simulated:
     """Simulate one cell and write its log.
 
     began: called when its kernel is there, with what reads how many steps are done, at any time.
-    Returns beside the outcome the log as this process may read it, and its states by `always`.
     """
     physics_ns = logging_ns = 0
     scene, steps = build(job.config, job.plan.spec), job.config.steps
@@ -301,4 +304,4 @@ def simulate(
         logging_ns += perf_counter_ns() - start
     times = compile_ns, physics_ns, logging_ns
     outcome = CellOutcome(job.cell, status, done, *times, accuracy, written.digest)
-    return outcome, written, bounds.worst
+    return Simulated(outcome, written, bounds.worst)

@@ -6,7 +6,6 @@ JSON gives back every number as it was, NaN and infinities included.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -33,14 +32,15 @@ class CellOutcome(NamedTuple):
 
 
 class EndedCell(NamedTuple):
-    """A cell that ended in an earlier process of its run."""
+    """A cell that ended: how, and what was measured of it."""
 
     outcome: CellOutcome
     measured: dict[int, Measured]  # by the cells of the sweep that its log is of
 
 
-def note_measured(log: Path, outcome: CellOutcome, measured: Mapping[int, Measured]) -> None:
+def note_measured(log: Path, ended: EndedCell) -> None:
     """Append what was measured of a log to how its cell ended."""
+    outcome, measured = ended
     row = {
         "file": log.name,
         "status": outcome.status,

@@ -15,8 +15,7 @@ from lavendersim.engine.step import is_compiled
 from lavendersim.errors import UsageError
 
 from .cell import CellJob, compile_kernel, failed, run_and_measure
-from .cell_outcome import CellOutcome
-from .measured import Measured
+from .cell_outcome import EndedCell
 from .progress import Compilation, Progress, Tally
 from .workers import Death, Retried, work
 
@@ -27,11 +26,8 @@ WORTH_PROCESSES = 4.0
 
 def outcomes_of(
     jobs: Sequence[CellJob], workers: int, progress: Progress
-) -> Iterator[tuple[CellJob, CellOutcome, dict[int, Measured]]]:
-    """Run and measure every job; with several workers they do not come in the order of `jobs`.
-
-    Yielded are the job, how it ended, and what was measured, by the cells of the sweep.
-    """
+) -> Iterator[tuple[CellJob, EndedCell]]:
+    """Run and measure every job; with several workers they do not come in the order of `jobs`."""
     if compiler_is_off():
         raise UsageError("NUMBA_DISABLE_JIT is set: lavender runs compiled kernels only, unset it")
     if not jobs:
@@ -54,18 +50,19 @@ def outcomes_of(
         compiles = done < len(first) and not is_compiled(job.plan.spec)
         begun = missing.get(job.plan.spec) if compiles else None
         begin = perf_counter()
-        outcome, measured = run_and_measure(job, _beginning(job, begun, tally, progress))
+        ended = run_and_measure(job, _beginning(job, begun, tally, progress))
+        outcome = ended.outcome
         tally.end(job)
         done, taken = done + 1, taken + perf_counter() - begin - outcome.compile_ns / 1e9
         spent = outcome.compile_ns + apart.pop(job.path, 0)
-        yield job, outcome._replace(compile_ns=spent), measured
+        yield job, ended._replace(outcome=outcome._replace(compile_ns=spent))
     rest = [job.alone() for job in ordered[done:]]
     if not rest:
         return
     tally.begin_in_others()
     for job, found in work(run_and_measure, rest, workers, partial(_run_again, progress)):
         tally.end(job)
-        yield (job, *(failed(job, found.how) if isinstance(found, Death) else found))
+        yield job, failed(job, found.how) if isinstance(found, Death) else found
 
 
 def _run_again(progress: Progress, one: Retried[CellJob]) -> None:

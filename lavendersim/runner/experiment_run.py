@@ -252,9 +252,9 @@ def _run_cells(
                 if isinstance(workers, int)
                 else run_by(workers, left, progress)
             )
-            for job, outcome, found in results:
-                ended[job.path] = outcome
-                taken |= found
+            for job, cell in results:
+                ended[job.path] = cell.outcome
+                taken |= cell.measured
                 progress.cell_done(len(ended), len(by_log))
     except Interrupted as end:
         whole = f"{len(ended)} of {len(by_log)} cells are whole"

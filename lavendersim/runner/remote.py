@@ -25,8 +25,7 @@ from lavendersim.durable_files import write_whole
 from lavendersim.errors import LavenderError, UsageError
 
 from .cell import CellJob, failed, measured_run
-from .cell_outcome import CellOutcome, note_measured
-from .measured import Measured
+from .cell_outcome import EndedCell, note_measured
 from .progress import Progress, Tally
 
 AHEAD: Final = 256  # cells that workers are given before one of them has ended
@@ -45,14 +44,13 @@ class RemoteTask(NamedTuple):
 class RemoteResult(NamedTuple):
     """What comes back."""
 
-    outcome: CellOutcome
-    measured: dict[int, Measured]
+    ended: EndedCell
     log: bytes | None  # None: it is in its place
 
 
 def run_by(
     executor: Executor, jobs: Sequence[CellJob], progress: Progress
-) -> Iterator[tuple[CellJob, CellOutcome, dict[int, Measured]]]:
+) -> Iterator[tuple[CellJob, EndedCell]]:
     """Run and measure every job by an executor; they do not come in the order of `jobs`.
 
     A cell whose worker was lost is run once more; where it is lost again, it has failed.
@@ -68,12 +66,12 @@ def run_by(
         for job, found in _results(executor, alone, sign, progress.warning):
             tally.end(job)
             if isinstance(found, str):
-                yield (job, *failed(job, found))
+                yield job, failed(job, found)
                 continue
             if found.log is not None:
                 write_whole(job.path, found.log, flush=False)
-            note_measured(job.path, found.outcome, found.measured)
-            yield job, found.outcome, found.measured
+            note_measured(job.path, found.ended)
+            yield job, found.ended
 
 
 def run_there(task: RemoteTask) -> RemoteResult:
@@ -83,15 +81,15 @@ def run_there(task: RemoteTask) -> RemoteResult:
     if _text(sign) == task.sign:
         log = job.path.with_name(f".{job.path.name}.{uuid.uuid4().hex}.unfinished")
         try:
-            outcome, measured = measured_run(job._replace(path=log))
+            ended = measured_run(job._replace(path=log))
             os.replace(log, job.path)
         finally:
             log.unlink(missing_ok=True)
-        return RemoteResult(outcome, measured, None)
+        return RemoteResult(ended, None)
     with tempfile.TemporaryDirectory(prefix="lavender-") as folder:
         log = Path(folder) / job.path.name
-        outcome, measured = measured_run(job._replace(path=log))
-        return RemoteResult(outcome, measured, log.read_bytes())
+        ended = measured_run(job._replace(path=log))
+        return RemoteResult(ended, log.read_bytes())
 
 
 def _results(

@@ -132,7 +132,7 @@ class _Worker:
         while batch := self._take(waiting, most):
             begin = perf_counter()
             tasks = [self._by_log[log] for log in batch]
-            for job, outcome, _ in outcomes_of(tasks, self._jobs, self._progress):
+            for job, (outcome, _) in outcomes_of(tasks, self._jobs, self._progress):
                 self.ran += 1
                 if outcome.log is None:
                     self.lost.append(f"cell {job.cells[0].label or job.cell}: {outcome.status}")

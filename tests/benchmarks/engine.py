@@ -95,7 +95,7 @@ def logging_step(timed: Case) -> float:
     with tempfile.TemporaryDirectory() as folder:
         log = Path(folder) / "cell.mcap"
         job = CellJob(0, timed.config, timed.text, log, timed.plan, "none")
-        outcome, _, _ = simulate(job)
+        outcome = simulate(job).outcome
     assert outcome.status == "complete", outcome.status
     return outcome.logging_ns / MICROSECOND / outcome.steps
 
