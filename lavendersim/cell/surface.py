@@ -29,7 +29,7 @@ class Surface(declared("Surface", ConfigModel, _KEYS)):  # type: ignore[misc]
             node, needed = at.get(key.name), at.get(key.needs)
             if node.number is None or node.number <= 0.0:
                 continue
-            unknown = at.node.torn or at.node.entries.keys() - cls.model_fields.keys()
+            unknown = at.node.incomplete or at.node.entries.keys() - cls.model_fields.keys()
             if not needed and unknown:
                 at.doubt()  # a refused key may have been this one
             elif not needed or needed.number == 0.0:

@@ -129,7 +129,7 @@ def _check_others(
 ) -> tuple[Cell, ...]:
     """Check the cells one by one and return them all; those that were built keep their config."""
     if report.defects or count > MOST_CELLS_CHECKED:
-        for point in itertools.islice(sweep.telling_points(axes), MOST_CELLS_CHECKED):
+        for point in itertools.islice(sweep.covering_points(axes), MOST_CELLS_CHECKED):
             build_cell(root, point, report)
     cells: list[Cell] = []
     if report.defects:

@@ -52,7 +52,7 @@ def with_own_measures(root: Node, path: Path, report: Report) -> tuple[Node, str
     for name, node in found.items():
         kind = str(node.get("kind").text)
         given = {k: v for k, v in node.entries.items() if k not in (*_COMMON, "kind")}
-        pruned[name] = Node(given, node.mark, node.keys, node.torn)
+        pruned[name] = Node(given, node.mark, node.keys, node.incomplete)
         fields[name] = (own.kinds[kind].model, ...)
         mark = node.get("kind").mark
         whole = {

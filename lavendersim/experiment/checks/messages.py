@@ -60,7 +60,7 @@ def report_errors(
             judged.add(path)
         if isinstance(node.content, Broken) or item.get("input") is BROKEN:
             continue
-        if item["type"] == "missing" and (node.torn or (path, item["loc"][-1]) in replaced):
+        if item["type"] == "missing" and (node.incomplete or (path, item["loc"][-1]) in replaced):
             continue
         if item["type"] == "too_short" and len(node.items) >= item["ctx"]["min_length"]:
             continue  # pydantic does not count the items that it refused

@@ -47,7 +47,7 @@ def _merged(parent: Node, child: Node, path: Path, report: Report) -> Node:
             continue
         entries[key] = _merged(entries[key], node, below, report) if key in entries else node
         keys[key] = child.keys.get(key, child.mark)
-    return Node(entries, child.mark, keys, parent.torn or child.torn)
+    return Node(entries, child.mark, keys, parent.incomplete or child.incomplete)
 
 
 def _expectations(parent: Node, child: Node, report: Report) -> Node:

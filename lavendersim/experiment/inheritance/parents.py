@@ -114,7 +114,7 @@ def _parent(
 
 def _without(tree: Node) -> Node:
     entries = {key: node for key, node in tree.entries.items() if key != EXTENDS}
-    return Node(entries, tree.mark, tree.keys, tree.torn)
+    return Node(entries, tree.mark, tree.keys, tree.incomplete)
 
 
 def _check_size(text: str, mark: Mark, report: Report) -> None:

@@ -168,7 +168,7 @@ def _exactly_one(at: Place, keys: tuple[str, str], meaning: str) -> None:
         at.refuse(max(first, second), f"{at} specifies both {keys[0]} and {keys[1]}; keep one")
     elif not first and not second:
         unknown = [key for key in at.node.entries if key not in Body.model_fields]
-        if at.node.torn or any(near(key, Body.model_fields) in keys for key in unknown):
+        if at.node.incomplete or any(near(key, Body.model_fields) in keys for key in unknown):
             at.doubt()  # a refused key may have been one of them
         else:
             at.lacks(keys[0], meaning)

@@ -98,7 +98,7 @@ def _change_rules(at: Place, body: Node) -> None:
 def _lacks_body(at: Place) -> None:
     """Without a body there is only a timestep to change; a misspelt key is refused elsewhere."""
     unknown = at.node.entries.keys() - {"at", "body", "timestep", *_EVERY_CHANGE}
-    if not at.node.torn and not any(near(key, ("body", "timestep")) for key in unknown):
+    if not at.node.incomplete and not any(near(key, ("body", "timestep")) for key in unknown):
         at.lacks("body", "name of a body, or else a timestep")
 
 

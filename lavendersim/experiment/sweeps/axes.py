@@ -107,7 +107,7 @@ def count(axes: Products) -> int:
     return sum(math.prod(len(axis.values) for axis in product) for product in axes or ((),))
 
 
-def telling_points(axes: Products) -> Iterator[SweepPoint]:
+def covering_points(axes: Products) -> Iterator[SweepPoint]:
     """Yield a few cells in which every value of every axis stands once, for large sweeps."""
     for product in axes or ((),):
         if not product:

@@ -84,7 +84,7 @@ def _placed(node: Node, begin: Mark) -> Node:
     elif isinstance(content, dict):
         content = {key: _placed(value, begin) for key, value in content.items()}
     keys = {key: _moved(mark, begin) for key, mark in node.keys.items()}
-    return Node(content, _moved(node.mark, begin), keys, node.torn)
+    return Node(content, _moved(node.mark, begin), keys, node.incomplete)
 
 
 def _moved(mark: Mark, begin: Mark) -> Mark:

@@ -40,7 +40,7 @@ class Node:
     content: Value | tuple[Node, ...] | dict[str, Node] | Broken
     mark: Mark
     keys: Mapping[str, Mark] = field(default_factory=dict)  # of a mapping: where each key stands
-    torn: bool = False  # one of its keys was refused, so that what it lacks is not known
+    incomplete: bool = False  # one of its keys was refused, so that what it lacks is not known
 
     def get(self, *path: str | int) -> Node:
         """Return the node at the path below this one, or ABSENT, which is false, without one."""
@@ -121,4 +121,4 @@ def graft(root: Node, path: Path, value: Node) -> Node:
     entries = dict(root.entries)
     below = entries.get(step, Node({}, value.mark))
     entries[step] = graft(below, rest, value)
-    return Node(entries, root.mark, {step: value.mark, **root.keys}, root.torn)
+    return Node(entries, root.mark, {step: value.mark, **root.keys}, root.incomplete)

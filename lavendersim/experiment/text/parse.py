@@ -48,7 +48,7 @@ class _Open:
         self.keys: dict[str, Mark] = {}
         self.key: str | None = None  # read, and waiting for its value
         self.drops_value = False  # the key was refused
-        self.torn = False
+        self.incomplete = False
 
 
 def parse(raw: bytes, report: Report, size: int | None = None, file: str = "") -> Node | None:
@@ -132,7 +132,7 @@ class _Composer:
             elif isinstance(event, yaml.CollectionEndEvent):
                 done = self.stack.pop()
                 content = done.entries if done.is_mapping else tuple(done.items)
-                self._place(Node(content, done.mark, done.keys, done.torn), done.mark)
+                self._place(Node(content, done.mark, done.keys, done.incomplete), done.mark)
 
     def _node(self, event: Any, mark: Mark) -> None:
         self.values += 1
@@ -198,7 +198,7 @@ class _Composer:
         into.drops_value = False
         if text is None:
             self.report.add(mark, "a key is a list, a mapping or an alias; a key is a name")
-            into.drops_value = into.torn = True
+            into.drops_value = into.incomplete = True
         elif text in into.keys:
             first = into.keys[text].line
             self.report.add(mark, f"key {quoted(text)} stands twice, first in line {first}")
