@@ -23,10 +23,11 @@ def shared_plans(cells: Iterable[Cell]) -> list[Plan]:
     Raises ConfigError with every key of the file's `effects` that cannot be, in any cell.
     """
     own: list[Plan] = []
+    known: dict[Any, Any] = {}
     defects: dict[Defect, None] = {}
     for cell in cells:
         try:
-            own.append(plan_of_cell(cell))
+            own.append(_shared(plan_of_cell(cell), known))
         except ConfigError as error:
             defects |= dict.fromkeys(error.defects)
     if defects:
@@ -36,6 +37,18 @@ def shared_plans(cells: Iterable[Cell]) -> list[Plan]:
         groups.setdefault(plan.choices, []).append(plan)
     shared = {choices: union(group) for choices, group in groups.items()}
     return [shared[plan.choices] for plan in own]
+
+
+def _shared(plan: Plan, known: dict[Any, Any]) -> Plan:
+    """Return a plan whose decisions are kept once for all cells that are decided alike.
+
+    Every plan decides on the same effects and pairs, in one order.
+    """
+    decisions, pairs = plan.decisions, plan.shape_pairs
+    return plan._replace(
+        decisions=known.setdefault(("effects", *decisions.values()), decisions),
+        shape_pairs=known.setdefault(("pairs", *pairs.values()), pairs),
+    )
 
 
 def distinct(plans: Iterable[Plan]) -> list[Plan]:

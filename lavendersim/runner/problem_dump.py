@@ -80,6 +80,6 @@ def _untellable(experiment: Experiment) -> Iterator[str]:
     for cell in experiment.cells():
         plan = plan_of_cell(cell)
         for name in _OF_NO_FILE:
-            if plan.required_by[name]:
+            if plan.requiring(name):
                 what, why = name.replace("_", " "), plan.decisions[name].reason
                 yield f"problems: FCLIB files have no {what}, expected none; found {why}"

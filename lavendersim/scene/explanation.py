@@ -122,7 +122,7 @@ def _decided(plan: Plan, name: str) -> ExplanationItem:
         reason=decision.reason,
         reasons={why: [cell.number for cell in cells] for why, cells in reasons.items()},
         forced=plan.forced.get(name),
-        required_by=[cell.number for cell in plan.required_by[name]],
+        required_by=[cell.number for cell in plan.requiring(name)],
         requirement=plan.requirement(name),
         needs=[],
         chosen_by=None,

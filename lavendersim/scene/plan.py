@@ -69,7 +69,7 @@ class Plan(NamedTuple):
     shape_pairs: dict[str, Decision]  # of every pair of shapes
     forced: dict[str, Forced]  # what was switched against the scene
     cells: tuple[CellName, ...]  # that this is the plan of
-    required_by: dict[str, tuple[CellName, ...]]  # of an effect or pair: the cells that require it
+    required_by: dict[str, tuple[CellName, ...]]  # see `requiring`; no key: none
     reasons: dict[str, Reasons]  # of a union: see `reasons_of`
 
     def decided(self, name: str) -> Decision:
@@ -85,9 +85,13 @@ class Plan(NamedTuple):
         reason, requirement = self.decided(name).reason, self.requirement(name)
         return f"{reason}; {requirement}" if requirement else reason
 
+    def requiring(self, name: str) -> tuple[CellName, ...]:
+        """Return which cells require an effect or pair."""
+        return self.required_by.get(name, ())
+
     def requirement(self, name: str) -> str:
         """Return which cells require an effect or pair, where it is some of them and not all."""
-        requiring = self.required_by.get(name, ())
+        requiring = self.requiring(name)
         if not 0 < len(requiring) < len(self.cells):
             return ""
         labels = [cell.text for cell in requiring]
@@ -115,7 +119,7 @@ def plan_of(config: CellConfig, record: bool = True, cell: CellName = ALONE) -> 
         over_relaxation=numerics.over_relaxation != 1.0,
         order=numerics.order,
     )
-    called = {name: decision.on for name, decision in (derived | touching).items()}
+    required = [name for name, decision in (derived | touching).items() if decision.on]
     return Plan(
         spec,
         made.effects,
@@ -123,7 +127,7 @@ def plan_of(config: CellConfig, record: bool = True, cell: CellName = ALONE) -> 
         made.shape_pairs,
         made.forced,
         (cell,),
-        {name: (cell,) if on else () for name, on in called.items()},
+        dict.fromkeys(required, (cell,)),
         {},
     )
 
@@ -146,8 +150,9 @@ def union(plans: Iterable[Plan]) -> Plan:
             raise UsageError(f"the cells of one sweep share their {name}")
     if len(plans) == 1:
         return first
-    reasons = {name: _reasons(plans, name) for name in first.required_by}
-    joined = {name: _joined(plans, name, reasons[name]) for name in first.required_by}
+    names = (*first.decisions, *first.shape_pairs)
+    reasons = {name: _reasons(plans, name) for name in names}
+    joined = {name: _joined(plans, name, reasons[name]) for name in names}
     effects = {name: joined[name] for name in first.decisions}
     shape_pairs = {name: joined[name] for name in first.shape_pairs}
     spec = first.spec._replace(
@@ -157,8 +162,7 @@ def union(plans: Iterable[Plan]) -> Plan:
         over_relaxation=any(plan.spec.over_relaxation for plan in plans),
     )
     required_by = {
-        name: tuple(cell for plan in plans for cell in plan.required_by[name])
-        for name in first.required_by
+        name: tuple(cell for plan in plans for cell in plan.requiring(name)) for name in names
     }
     forced = {name: how for plan in plans for name, how in plan.forced.items()}
     for name, how in list(forced.items()):

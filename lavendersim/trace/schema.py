@@ -30,7 +30,7 @@ take the columns from the file (the descriptor of lavender.Step, the `fields` of
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -100,7 +100,8 @@ NUMERIC_TYPES = {"u1": 1, "i1": 2, "u2": 3, "i2": 4, "u4": 5, "i4": 6, "f4": 7, 
 COLOURS = ("red", "green", "blue", "alpha")
 
 
-def columns_of(dtype: np.dtype[Any], known: Iterable[Column]) -> tuple[Column, ...]:
+@lru_cache(maxsize=64)  # the cells of a sweep have the same
+def columns_of(dtype: np.dtype[Any], known: tuple[Column, ...]) -> tuple[Column, ...]:
     """Return the columns present in a structured dtype: the known ones first, then the others."""
     names = list(dtype.names or ())
     present = [column for column in known if column.name in names]

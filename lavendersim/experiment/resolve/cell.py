@@ -6,6 +6,7 @@ from lavendersim.cell.config import CellConfig, CellEffects, CellStudy
 from lavendersim.cell.events import CellEvent, CellTimestep
 from lavendersim.cell.numerics import Numerics
 from lavendersim.cell.record import CellRecord
+from lavendersim.cell.shared_parts import shared
 from lavendersim.experiment.models.events import Event
 from lavendersim.experiment.models.experiment import CellSource, NumericsSource
 from lavendersim.experiment.resolve.scene import resolve_scene
@@ -17,17 +18,19 @@ def resolve_cell(source: CellSource) -> CellConfig:
     `source` has passed the checks between its values (`checks`).
     """
     assert isinstance(source.numerics, NumericsSource)  # its preset is merged in (`with_preset`)
-    numerics = Numerics.model_construct(**dict(source.numerics))
+    numerics = shared(Numerics.model_construct(**dict(source.numerics)))
     return CellConfig.model_construct(
         scene=resolve_scene(source.scene, numerics.timestep, source.duration),
         events=tuple(map(_event, source.events)),
         numerics=numerics,
         duration=source.duration,
-        record=CellRecord.model_validate(source.record.model_dump(by_alias=True)),
-        effects=CellEffects(
-            force=source.effects.force, switches=dict(sorted(source.effects.switches.items()))
+        record=shared(CellRecord.model_validate(source.record.model_dump(by_alias=True))),
+        effects=shared(
+            CellEffects(
+                force=source.effects.force, switches=dict(sorted(source.effects.switches.items()))
+            )
         ),
-        study=CellStudy(mistake=source.study.mistake),
+        study=shared(CellStudy(mistake=source.study.mistake)),
     )
 
 

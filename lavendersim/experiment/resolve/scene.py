@@ -8,6 +8,7 @@ from fractions import Fraction
 from lavendersim.cell.body import CellBody
 from lavendersim.cell.scene import CellForce, CellScene
 from lavendersim.cell.shapes import CellShape, Plane
+from lavendersim.cell.shared_parts import shared
 from lavendersim.engine.effects import BODY_KEYS, SCENE_KEYS
 from lavendersim.experiment.models.bodies import ArrangedBody, Body
 from lavendersim.experiment.models.scene import Force, Scene, TiltedGravity
@@ -125,7 +126,7 @@ def _matter(body: Body | ArrangedBody, scene: Scene) -> CellBody:
         mass=mass,
         density=body.density,
         inertia=inertia,
-        surface=surface,
+        surface=shared(surface),
         position=_ORIGIN,
         release=None,
         orientation=orientation,
