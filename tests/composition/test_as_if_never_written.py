@@ -1,13 +1,15 @@
 """A pruned engine has the very instructions of one whose sources never had the effect.
 
 From a copy of the engine an effect is cut out: its file, its name in the list, and every
-`if flag:` that its flag guards elsewhere. A new process compiles the same plan from it, and the
-instructions, in their order, are those of the plan compiled from the sources as they are.
+`if flag:` elsewhere that guards it or a term of rows that it alone brings. A new process compiles
+the same plan from it, and the instructions, in their order, are those of the plan compiled from the
+sources as they are.
 """
 
 from __future__ import annotations
 
 import ast
+import dataclasses
 import json
 import os
 import shutil
@@ -16,6 +18,8 @@ import sys
 from pathlib import Path
 
 import pytest
+
+from lavendersim.engine.effects import EFFECTS
 
 ROOT = Path(__file__).parents[2]
 # Prints the instructions of a scene's engine, compiled anew; a cached one has no text. Operands
@@ -38,27 +42,44 @@ print(json.dumps({"where": where, "spec": engine.spec, "instructions": words}))
 """
 
 
+def terms_of(effect: str) -> list[str]:
+    """Return the terms of rows that no other effect brings."""
+    (row,) = (one.row for one in EFFECTS if one.name == effect)
+    others = [one.row for one in EFFECTS if one.name != effect]
+    names = [term.name for term in dataclasses.fields(row) if getattr(row, term.name)]
+    return [name for name in names if not any(getattr(other, name) for other in others)]
+
+
 class Cut(ast.NodeTransformer):
     """Take out the branches of an effect's flags, and the flags."""
 
     def __init__(self, effect: str) -> None:
-        self.effect = effect
+        asked = [(f"row_terms(spec).{term}", f"terms.{term}") for term in terms_of(effect)]
+        self.asked = {f"spec.has('{effect}')", *(one for pair in asked for one in pair)}
         self.flags: set[str] = set()
         self.branches = 0
 
-    def visit_Assign(self, node: ast.Assign) -> ast.AST | None:
-        if ast.unparse(node.value) == f"spec.has('{self.effect}')":
-            (target,) = node.targets
-            self.flags.add(target.id)
-            return None
-        return node
+    def visit_Assign(self, node: ast.Assign) -> ast.AST | list[ast.AST]:
+        if len(node.targets) > 1:
+            return node
+        (target,) = node.targets
+        several = isinstance(target, ast.Tuple) and isinstance(node.value, ast.Tuple)
+        names = target.elts if several else [target]
+        values = node.value.elts if several else [node.value]
+        pairs = list(zip(names, values, strict=True))
+        flags = [name for name, value in pairs if ast.unparse(value) in self.asked]
+        self.flags |= {name.id for name in flags}
+        left = [ast.Assign([name], value) for name, value in pairs if name not in flags]
+        return node if not flags else [ast.copy_location(one, node) for one in left]
 
     def visit_If(self, node: ast.If) -> ast.AST | None:
         if isinstance(node.test, ast.Name) and node.test.id in self.flags:
             assert not node.orelse
             self.branches += 1
             return None
-        return self.generic_visit(node)
+        self.generic_visit(node)
+        node.body = node.body or [ast.Pass()]
+        return node
 
 
 def cut_out(folder: Path, effect: str) -> int:
@@ -71,9 +92,10 @@ def cut_out(folder: Path, effect: str) -> int:
     listed.write_text(text.replace(line, ""))
     branches = 0
     for path in folder.rglob("*.py"):
-        if f'spec.has("{effect}")' in path.read_text():
-            cut = Cut(effect)
-            path.write_text(ast.unparse(cut.visit(ast.parse(path.read_text()))) + "\n")
+        cut = Cut(effect)
+        tree = cut.visit(ast.parse(path.read_text()))
+        if cut.flags:
+            path.write_text(ast.unparse(tree) + "\n")
             branches += cut.branches
         assert f'"{effect}"' not in path.read_text()
     return branches
