@@ -140,7 +140,8 @@ def named(path: Path, aside: Path | None = None) -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        if error.filename is None or str(error.filename) == str(aside):
+        nameless = error.filename is None or str(error.filename) == str(aside)
+        if error.errno is not None and nameless:  # of the system, which knows the name aside
             error.filename = str(path)
         raise
 

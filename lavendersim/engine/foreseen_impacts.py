@@ -29,8 +29,7 @@ FLIGHT = 1.0 / 64.0
 # Slowest impact without a rebound, in what forces change in a step.
 SLOW = 1.0
 # Where the path of a contact bends by more than this share of what forces change, it is the motion
-# that brings surfaces together: they meet at a slower speed, in the same measure. So they do where
-# bodies pivot about another contact: a slender block that rocks lands slowly, and flies for long.
+# that brings surfaces together: they meet at a slower speed, in the same measure.
 BENDS, GLANCING = 0.05, 1.0 / 64.0
 LAST = 1.0 - 1e-9  # first guess, in what is left of the step, where only shapes tell
 
@@ -92,8 +91,7 @@ def make_foresee(spec: Spec) -> Any:
         squared = v * v - 2.0 * a * gap
         slow = most
         if gap > params.slop:
-            bends = bend(contact, bodies, motion) * left > BENDS * most
-            if bends or contact.pivots == 1:
+            if bend(contact, bodies, motion) * left > BENDS * most:
                 slow = GLANCING * most
         if squared > 0.0 and (v < 0.0 or a < 0.0):
             speed = sqrt(squared)

@@ -83,7 +83,7 @@ def interrupted(runs: Path, name: str, command: list[str], logs: int) -> tuple[P
 @pytest.mark.parametrize("name", SIGNALS)
 def test_a_run_that_is_interrupted_closes_its_log_and_says_so(tmp_path: Path, name: str) -> None:
     runs, config = tmp_path / "runs", write(tmp_path, ENDLESS.format(durations="[500, 501]"))
-    command = ["-m", "lavender_cli.main", "run", str(config), "--runs", str(runs)]
+    command = ["-m", "lavender_cli.main", "run", str(config), "--yes", "--runs", str(runs)]
     directory, said = interrupted(runs, name, command, logs=1)
     assert f"interrupted by {name}: 0 of 2 cells are whole, {directory}\n" in said
     assert f"go on with: lavender run {config} --resume --runs {runs}\n" in said

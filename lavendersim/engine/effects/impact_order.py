@@ -10,11 +10,11 @@ a contact ahead acts only when it is met, along the normal that it then has.
 
 Slow meetings are no impacts (`foreseen_impacts`): with a rebound that would end within FLIGHT
 steps, or without rebound below SLOW times what forces change in a step (GLANCING of that across a
-gap, where the path of the contact bends, or the bodies pivot about another of their contacts). They
-are contacts of the motion (`impact_time`). An impact takes along what touches and does not part
-(`impact_rows`), and nothing else. One may have CROWD rows of contacts, and a step has WORK of them
-to spend on its parts. The rest of one that has spent them or meets a larger impact, or whose bodies
-overlap, is made in one part: its impacts at their times but without their order (/step: unordered).
+gap, where the path of the contact bends). They are contacts of the motion (`impact_time`). An
+impact takes along what touches and does not part (`impact_rows`), and nothing else. One may have
+CROWD rows of contacts, and a step has WORK of them to spend on its parts. The rest of one that has
+spent them or meets a larger impact, or whose bodies overlap, is made in one part: its impacts at
+their times but without their order (/step: unordered).
 """
 
 from __future__ import annotations
@@ -89,27 +89,14 @@ def make_order(spec: Spec) -> Any:
 
     first_due = kernel(first_due, spec)
 
-    def stands_at(contacts, count, first, slop):
-        # Whether bodies touch at any of the rows of their pair, which begin at the first.
-        stands, c = False, first
-        while c < count and contacts[c].pair == contacts[first].pair:
-            stands = stands or contacts[c].phi <= slop
-            c += 1
-        return stands
-
-    stands_at = kernel(stands_at, spec)
-
-    def begin_order(state, count, slop):
+    def begin_order(state, count):
         # Whether anything moves that touches or may: what rests on each other has no order.
         bodies, motion, contacts = state.bodies, state.motion, state.contacts
-        moves, stands = False, False
+        moves = False
         for c in range(count):
             contact = contacts[c]
             contact.waits, contact.located, contact.due, contact.rate = 0, GUESSED, NEVER, 0.0
             contact.passed_on = 0
-            if c == 0 or contact.pair != contacts[c - 1].pair:
-                stands = stands_at(contacts, count, c, slop)
-            contact.pivots = 1 if stands and contact.phi > slop else 0
             if contact.phi > TOUCHING:
                 # Beyond what both can move: no part of this step, whatever happens in it.
                 if contact.phi > motion[contact.a].reach + motion[contact.b].reach:
@@ -128,7 +115,7 @@ def make_order(spec: Spec) -> Any:
     def order(state, count, workspace, params, counters):
         bodies, motion, contacts = state.bodies, state.motion, state.contacts
         left = params.dt
-        if not begin_order(state, count, params.slop):
+        if not begin_order(state, count):
             return count, left
         expect(state.contacts, count, bodies, motion, left)
         if edged:
@@ -204,7 +191,6 @@ EFFECT = Effect(
             ("waits", "i8"),  # 1: not met in this part, or it parts: no row of it
             ("located", "i8"),  # GUESSED, ELSEWHERE, LOCATED or FAR, see `approach`
             ("rate", "f8"),  # of the gap, as the part begins [m/s]
-            ("pivots", "i8"),  # 1: it is open, and another of its pair touches
             ("passed_on", "i8"),  # 1: its body is about to slide or roll from it to a flush one
             ("due", "f8"),  # when the surfaces meet, from the start of the part [s]
         ],

@@ -13,7 +13,7 @@ from typer.testing import CliRunner
 from lavender_cli.main import app
 from lavendersim.experiment import load_experiment
 from lavendersim.runner import run
-from lavendersim.runner.log_size import _most, expected_log_sizes
+from lavendersim.runner.log_size import expected_log_sizes, most_bytes
 from lavendersim.runner.plans import shared_plans
 
 CONFIGS = Path(__file__).parents[3] / "configs"
@@ -43,7 +43,7 @@ def test_the_expected_size_is_within_a_factor_of_three(name: str, tmp_path: Path
     for cell, size, real in zip(finished.run.cells, expected, found, strict=True):
         if cell.status == "complete":
             assert real / FACTOR <= size <= real * FACTOR, cell.label
-    assert sum(found) <= sum(map(_most, cells))
+    assert sum(found) <= sum(map(most_bytes, cells))
 
 
 def test_logged_sweeps_are_counted_as_the_most_there_may_be(tmp_path: Path) -> None:
