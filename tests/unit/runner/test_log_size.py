@@ -78,7 +78,8 @@ def test_logs_of_more_than_a_tenth_of_the_free_disk_are_warned_of(
             return SimpleNamespace(total=10**15, used=0, free=free)
 
         monkeypatch.setattr(shutil, "disk_usage", disk_usage)
-        done = CliRunner().invoke(app, [verb, str(drop), "--runs", str(tmp_path / "a" / "b")])
+        words = [verb, str(drop), "--runs", str(tmp_path / "a" / "b")]
+        done = CliRunner().invoke(app, words + (["--yes"] if verb == "run" else []))
         assert done.exit_code == 0
         return "".join(line for line in done.stderr.splitlines(True) if "logs take" in line)
 
@@ -90,4 +91,5 @@ def test_logs_of_more_than_a_tenth_of_the_free_disk_are_warned_of(
     assert warned(10**15) == ""
     # `runs` is asked where it will be, also before it is made
     assert asked[0] == tmp_path
-    assert set(asked[1:]) == {tmp_path / "a" / "b"}
+    assert asked[-1] == tmp_path / "a" / "b"
+    assert set(asked) == {tmp_path, tmp_path / "a" / "b"}
