@@ -113,7 +113,7 @@ def own_scales(problem: ContactProblem) -> np.ndarray:
 
 
 def contact_velocities(problem: ContactProblem, impulses: np.ndarray) -> np.ndarray:
-    """Return u, (n, 3) [m/s], with what softness and targets add to its normal rows."""
+    """Return u, (n, 3) [m/s], with what regularisation and targets add to its normal rows."""
     u = problem.q
     u[:, 0] += problem.gamma * impulses[:, 0]
     pushed = np.einsum("mij,mj->mi", problem.blocks, impulses[problem.columns])

@@ -134,7 +134,7 @@ def message_class(name: str, descriptors: bytes) -> Any:
 
 
 def packed_fields(schema: Schema, chunk: ChunkContent) -> tuple[tuple[PackedField, ...], int]:
-    """Return the fields and the stride [B] that the first PointCloud of a chunk states."""
+    """Return the fields and the stride [B] that the first PointCloud of a chunk gives."""
     cloud = message_class(schema.name, schema.data)()
     offset = chunk.messages[layout.CHANNELS["/contacts"]]["offset"][0]
     cloud.ParseFromString(body_of(chunk, int(offset)))

@@ -10,7 +10,7 @@ The second and the fourth by their natural maps, |min((k_n + gamma) lambda_n, w)
 zero exactly where the law holds. The residual of a step bounds both: the first is its very terms,
 and the second grows with k, for which it has the largest response of the contact to a tangential
 impulse and this file the least that any contact of the two bodies can have, the sum of their
-inverse masses. mu is the config's, not the log's.
+inverse masses. mu is the config's; the log's only where it changes with the motion.
 """
 
 from __future__ import annotations
