@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from lavendersim.cell import Sphere
 from lavendersim.errors import UsageError
+from lavendersim.geometry.bodies import is_movable, mass_of, vector
 from lavendersim.geometry.rotations import rotation_matrix, unit_quaternion
 from lavendersim.geometry.shapes import extent, half_space
 from lavendersim.measures import shares
@@ -107,6 +110,29 @@ def first_ending_after(trace: Trace, seconds: float) -> int | None:
     """Return the first logged step that ends after a time, None when there is none."""
     later = np.flatnonzero(trace.step["time"] > seconds)
     return int(later[0]) if len(later) else None
+
+
+def body_columns(trace: Trace, bodies: Sequence[str]) -> list[int]:
+    """Return the columns of these bodies in `pose`; of all that can move where none is named."""
+    given = trace.config.scene.bodies.items()
+    names = bodies or [name for name, body in given if is_movable(body)]
+    return [list(trace.bodies).index(name) for name in names]
+
+
+def momentum(trace: Trace) -> Floats:
+    """Return the scene's momentum [kg m/s] in every logged state (n, 3)."""
+    return np.column_stack([trace.step[f"momentum_{axis}"] for axis in "xyz"])
+
+
+def energy_at_rest(trace: Trace, body: str, plane: str, clearance: float) -> float:
+    """Return the potential energy [J] of a scene whose only movable body rests on a plane.
+
+    clearance: of the body in the first state [m], by which its potential energy there is larger.
+    """
+    scene = trace.config.scene
+    normal = half_space(scene.bodies[plane].shape).normal
+    weight = mass_of(scene.bodies[body]) * -float(normal @ vector(scene.gravity))
+    return float(trace.step["potential_energy"][0]) - weight * clearance
 
 
 def mechanical_energy(trace: Trace) -> Floats:

@@ -7,10 +7,10 @@ import math
 import numpy as np
 
 from lavendersim.geometry.bodies import is_movable, mass_of, vector
-from lavendersim.geometry.shapes import half_space
 from lavendersim.measures import changes, shares
 from lavendersim.measures.columns import (
     clearance_by_step,
+    energy_at_rest,
     last_window,
     mechanical_energy,
     rows_of_steps,
@@ -79,13 +79,8 @@ def energy_gain(spec: specs.EnergyGain, trace: Trace) -> float:
 def _energy_change(spec: specs.EnergyDrift | specs.EnergyGain, trace: Trace) -> Floats:
     energy = mechanical_energy(trace)
     if spec.body is not None and spec.above is not None:
-        # resting on the plane: the potential energy of the start less m g times the clearance
-        scene = trace.config.scene
-        normal = half_space(scene.bodies[spec.above].shape).normal
-        weight = mass_of(scene.bodies[spec.body]) * -float(normal @ vector(scene.gravity))
         height = float(clearance_by_step(trace, spec.body, spec.above)[0])
-        at_rest = float(trace.step["potential_energy"][0]) - weight * height
-        energy = energy - at_rest
+        energy = energy - energy_at_rest(trace, spec.body, spec.above, height)
     return energy / energy[0] - 1.0 if energy[0] != 0.0 else np.array([NAN])
 
 
