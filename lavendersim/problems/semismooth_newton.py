@@ -43,8 +43,8 @@ class Iterate(NamedTuple):
     size: float  # |F|
 
 
-def look(p: ScaledProblem, x: np.ndarray) -> Iterate:
-    """Evaluate the natural map at x."""
+def iterate_at(p: ScaledProblem, x: np.ndarray) -> Iterate:
+    """Return the natural map at x, and what it follows from."""
     v = velocities(p, x)
     side = np.hypot(v[:, 1], v[:, 2])
     y = x - v
@@ -57,7 +57,7 @@ def newton_steps(
     p: ScaledProblem, x: np.ndarray, budget: Budget, eps: float = 1e-2, most: int = 20
 ) -> tuple[np.ndarray, float]:
     """Return impulses and their residual after at most so many steps; |F| never grows."""
-    here = look(p, x)
+    here = iterate_at(p, x)
     residual = scaled_residual(p, x, here.v)
     sizes: list[float] = []
     for step in range(most):
@@ -68,7 +68,7 @@ def newton_steps(
             break
         d, cost = _direction(p, here, eps)
         for length in LENGTHS:
-            there = look(p, here.x + length * d)
+            there = iterate_at(p, here.x + length * d)
             if there.size < here.size * (1.0 - ENOUGH * length):
                 if length == 1.0:
                     fast = there.size < 0.5 * here.size
