@@ -203,8 +203,8 @@ class Points:
             heads = heads_of(step, _record_length(self._cloud, length), length)
             self._cloud.fill(chunk.data, starts[:-1], heads, heads)
             chunk.note("/contacts", heads, starts[:-1])
-            places = starts[:-1] + len(self._cloud), counts
-            lay_points(self.form, chunk.data, places, contacts, self._grid)
+            first = starts[:-1] + len(self._cloud)
+            lay_points(self.form, chunk.data, first, counts, contacts, self._grid)
             chunk.end = int(starts[-1])
         return chunk.filled()
 

@@ -161,8 +161,8 @@ class TraceWriter:
             is_recorded(which, self._clock, step["step"])
             for which in (record.poses, record.contacts)
         )
-        columns = self._form.columns
-        counted = checked(block, posed, touched, columns, (self._topics, len(self._bodies)))
+        columns, topics, bodies = self._form.columns, self._topics, len(self._bodies)
+        counted = checked(block, posed, touched, columns, topics, bodies)
         counted = counted._replace(before=self._last_pose)
         self._last_pose = block.pose[-1]
         starts = Streams(*(cumulative(encoder.sizes(counted)) for encoder in self._encoders))

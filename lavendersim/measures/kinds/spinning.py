@@ -42,8 +42,8 @@ def velocity_error(spec: specs.VelocityError, trace: Trace) -> float:
     turn = rotation_matrices(_pose(trace, spec.body)[-1:, 3:])[0]
     omega = body_rates(trace, spec.body)[-1] @ turn.T
     return max(
-        math.dist(momentum(trace)[-1] / mass_of(moving), ideal[0]),
-        bounding_radius(moving.shape) * math.dist(omega, ideal[1]),
+        math.dist(momentum(trace)[-1] / mass_of(moving), ideal.velocity),
+        bounding_radius(moving.shape) * math.dist(omega, ideal.angular_velocity),
     )
 
 
