@@ -19,7 +19,12 @@ import numpy as np
 from lavendersim.problems.budget import Budget
 from lavendersim.problems.factorise import factorise
 from lavendersim.problems.friction_cone import derivative_root, project
-from lavendersim.problems.scaled_problem import ScaledProblem, scaled_residual, velocities
+from lavendersim.problems.scaled_problem import (
+    Reached,
+    ScaledProblem,
+    scaled_residual,
+    velocities,
+)
 
 # eps at most: a step is then a short one along -F; and at least: above round-off of A [-].
 LARGEST, LEAST = 10.0, 1e-10
@@ -55,7 +60,7 @@ def iterate_at(p: ScaledProblem, x: np.ndarray) -> Iterate:
 
 def newton_steps(
     p: ScaledProblem, x: np.ndarray, budget: Budget, eps: float = 1e-2, most: int = 20
-) -> tuple[np.ndarray, float]:
+) -> Reached:
     """Return impulses and their residual after at most so many steps; |F| never grows."""
     here = iterate_at(p, x)
     residual = scaled_residual(p, x, here.v)
@@ -79,7 +84,7 @@ def newton_steps(
         else:  # a NaN ends here too
             eps *= GROWS
         budget.step(cost, residual)
-    return here.x, residual
+    return Reached(here.x, residual)
 
 
 def _direction(p: ScaledProblem, here: Iterate, eps: float) -> tuple[np.ndarray, float]:
