@@ -16,11 +16,10 @@ from lavendersim.geometry.bodies import (
 )
 from lavendersim.geometry.rotations import rotation_matrices
 from lavendersim.geometry.shapes import bounding_radius
-from lavendersim.measures.columns import momentum, one_timestep
+from lavendersim.measures.columns import angular_momentum, momentum, one_timestep
 from lavendersim.measures.free_rotation import FreeRotation, free_rotation
 from lavendersim.measures.impact_forms import velocities_after
 from lavendersim.measures.interfaces import Floats, Trace
-from lavendersim.measures.kinds.laws import angular_momentum
 from lavendersim.measures.registration import measure
 from lavendersim.measures.specs import spinning as specs
 
