@@ -34,7 +34,7 @@ STEPS_PER_BLOCK = 200
 CONTACT_FIELDS = ("step", *CONTACT_KEY, "x", "y", "z", "nx", "ny", "nz", "force_n")
 
 FORCE_COLOUR = 0xF0E442FF  # yellow
-CUT_FORCE_COLOUR = 0xD55E00FF  # vermillion: this arrow would be longer
+CUT_FORCE_COLOUR = 0xD55E00FF  # vermilion: this arrow would be longer
 POINT_COLOUR = (255, 255, 255)
 
 

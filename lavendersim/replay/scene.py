@@ -29,7 +29,7 @@ BODIES, GRIDS = "bodies", "grid"  # where bodies are drawn, and the grids of pla
 WORLD = "tf#/"  # rerun's name of the root frame, which no body can have
 
 # Okabe and Ito's palette, which stays distinct for all common kinds of colour blindness. Yellow
-# and vermillion are kept for forces (columns.py).
+# and vermilion are kept for forces (columns.py).
 MOVABLE_COLOURS = ((86, 180, 233), (204, 121, 167), (0, 158, 115), (0, 114, 178), (230, 159, 0))
 FIXED_COLOUR = (150, 150, 150)
 GHOST_COLOUR = (225, 225, 230)
