@@ -140,7 +140,10 @@ def named(path: Path, aside: Path | None = None) -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        if error.filename is None or str(error.filename) == str(aside):
+        # without a number it is none of the system, and would lose its sentence
+        if error.errno is not None and (
+            error.filename is None or str(error.filename) == str(aside)
+        ):
             error.filename = str(path)
         raise
 
