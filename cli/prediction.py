@@ -1,4 +1,4 @@
-"""What runs will take is said before the first begins; of what is long or large it is asked."""
+"""What runs will take, printed before the first begins; a long or large one is confirmed."""
 
 from __future__ import annotations
 

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 import typer
 
@@ -117,7 +117,8 @@ def run(
             "--executor": executor is not None,
             "--dask": dask is not None,
         }
-        _run_shard(configs, (overrides_of(values, axes), strict), (into, shard), jobs, asked)
+        overrides = overrides_of(values, axes)
+        _run_shard(configs, overrides, strict, _Place(into, shard), jobs, asked)
         return
 
     if executor not in (None, DASK):
@@ -218,10 +219,18 @@ def _resumable(command: str) -> Iterator[None]:
         raise
 
 
+class _Place(NamedTuple):
+    """The folder that workers share, and which part of the cells is this one's: K/N; None: any."""
+
+    into: Path | None
+    shard: str | None
+
+
 def _run_shard(
     configs: list[Path],
-    how: tuple[list[str], bool],
-    where: tuple[Path | None, str | None],
+    overrides: list[str],
+    strict: bool,
+    place: _Place,
     jobs: int,
     asked: dict[str, bool],
 ) -> None:
@@ -230,7 +239,7 @@ def _run_shard(
     from lavendersim.runner import load_all
     from lavendersim.runner.shards import part_of, run_shard
 
-    (overrides, strict), (into, shard) = how, where
+    into, shard = place
     if into is None:
         raise UsageError("--shard: expected --into DIR, the folder that its cells are run into")
     if refused := [option for option, given in asked.items() if given]:

@@ -23,7 +23,7 @@ class ContactProblem(NamedTuple):
     blocks: np.ndarray  # (m, 3, 3) [1/kg] entry [i, j] maps impulse j of the column to velocity i
     free: np.ndarray  # (n, 3) [m/s] velocities without any impulse
     mu: np.ndarray  # (n,) [-]
-    gamma: np.ndarray  # (n,) [1/kg] softness of the normal rows
+    gamma: np.ndarray  # (n,) [1/kg] regularisation of the normal rows
     target: np.ndarray  # (n,) [m/s] added to the normal velocity
 
     @property

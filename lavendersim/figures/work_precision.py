@@ -18,16 +18,15 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from lavendersim.figures.cost_looks import RINGS, Looks, curves_of, handles_of
+from lavendersim.figures.cost_looks import RINGS, Looks, Row, curves_of, handles_of
 from lavendersim.figures.drawing import describe
 from lavendersim.figures.page import Page, blank, write
 from lavendersim.figures.style import DARK, GREY
-from lavendersim.figures.timestep_errors import draw_timestep_errors
+from lavendersim.figures.timestep_errors import FLOOR, draw_timestep_errors
 
 WIDTH, LEGEND_WIDTH, HEIGHT = 5.6, 2.9, 5.0  # [inch] of a panel, of the legend
 SECOND_WIDTH: Final = 4.2  # [inch]
 GAPS: Final = (0.1, 0.04167)  # [inch] around a panel
-FLOOR: Final = 1e-15  # [-] smaller errors are round-off
 BAND: Final = 0.94  # share of the axis from which on settings without an error stand
 CAPTION: Final = (
     "Error of {measure}{truth}, against the processor's time for a simulated second of physics: "
@@ -39,8 +38,6 @@ CAPTION: Final = (
     "drawn there. Neither compilation "
     "nor logging is in any time. {processor}, clock {clock}. {targets}"
 )
-
-Row = dict[str, Any]
 
 
 def draw_work_precision(run: Any, directory: Path) -> list[Path]:

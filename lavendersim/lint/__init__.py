@@ -1,6 +1,6 @@
 """Scenes that can be simulated and are probably not meant: each a warning with its place.
 
-Experiment -> a few telling cells -> rules -> warnings, in the order of the file
+experiment -> the first cell with each swept value -> rules -> warnings, in the file's order
 """
 
 from lavendersim.lint.suspicions import suspicions, warn

@@ -32,16 +32,16 @@ def crossing(cell: Cell) -> Iterator[Defect]:
         other = next((one for one in thinnest if one != name), None)
         if other is None or not any(body.velocity):
             continue
-        way = timestep * _closing(body, solids[other])
+        moved = timestep * _relative_speed(body, solids[other])
         thick = thickness(body.shape) + thickness(solids[other].shape)
-        if way > thick:
+        if moved > thick:
             sentence = (
                 f"velocity: {name} and {other} may pass through each other: they close by "
-                f"{way:.3g} m in a step and are {thick:.3g} m thick; speculative: true meets them"
+                f"{moved:.3g} m in a step and are {thick:.3g} m thick; speculative: true meets them"
             )
             yield cell.defect((*body_path(cell.tree, name), "velocity"), sentence)
 
 
-def _closing(one: CellBody, other: CellBody) -> float:
+def _relative_speed(one: CellBody, other: CellBody) -> float:
     """Return the speed of two bodies relative to each other [m/s]."""
     return hypot(*(a - b for a, b in zip(one.velocity, other.velocity, strict=True)))

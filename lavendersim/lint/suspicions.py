@@ -1,4 +1,4 @@
-"""What of an experiment is suspicious: every rule over the cells in which a value stands first."""
+"""What of an experiment is suspicious: every rule, over the first cell with each swept value."""
 
 from __future__ import annotations
 

@@ -17,7 +17,7 @@ from lavendersim.measures.not_finite import without_warnings
 from lavendersim.measures.sections import sections_of
 from lavendersim.measures.specs.always import BEYOND_BOUNDS, Always
 from lavendersim.measures.step_checks import CheckedSteps, StepChecks, checks_of
-from lavendersim.measures.verdict import Outcome, failure
+from lavendersim.measures.verdict import NO_TOLERANCE, Outcome, failure
 
 COMPLETE = "complete"
 PREFIX = "always: "
@@ -104,14 +104,14 @@ def _outcome(one: _Worst, ended: str, cell: Cell) -> Outcome:
     expected = f"at most {bound:g}{unit} in every step"
     margin = 1.0 - one.number / bound if bound > 0.0 else float("nan")
     if not one.first:
-        return Outcome(True, one.number, expected, "none", margin=margin)
+        return Outcome(True, one.number, expected, NO_TOLERANCE, margin=margin)
     reason = (
         f"{one.first}"
         f"\n  cell       {cell.label or 'the only one'}"
         f"\n  replay     {replay_command(cell, one.time)}"
     )
     reason += f"\n  ended      {ended}" if ended else ""
-    return Outcome(False, one.number, expected, "none", reason, bool(ended), margin)
+    return Outcome(False, one.number, expected, NO_TOLERANCE, reason, bool(ended), margin)
 
 
 def replay_command(cell: Cell, time: float) -> str:

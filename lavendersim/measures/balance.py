@@ -13,9 +13,10 @@ lifts what sank: at most M |g| times the sum over contacts of what it opens,
 So energy less work, less what events and the projection gave, never rises. What it rises above its
 lowest value so far is counted, relative to what is at play: the first kinetic energy, the weight of
 each body times its radius, what the potential energy has fallen by, the work of the forces and what
-events gave, so far. A step solved
-to the residual r creates at most r times the sum of its impulses: at 1e-9 m/s a ball of 0.1 m at
-rest needs 100 s to reach 1e-6 of its weight times its radius, at the worst.
+events gave, so far.
+
+A step solved to the residual r creates at most r times the sum of its impulses: at 1e-9 m/s a ball
+of 0.1 m at rest needs 100 s to reach 1e-6 of its weight times its radius, at the worst.
 A gain (`stabilisation_gain`) turns penetration into velocity and does create energy; restitution
 captured at the start of a step (`impacts: captured`) creates up to m |g| dt times the speed, since
 the body moves off from where it began the step; a gain together with compliance stores energy and

@@ -14,9 +14,7 @@ import numpy as np
 from lavendersim.measures.closed_forms import evaluate_form
 from lavendersim.measures.interfaces import Cell, Floats, Value
 from lavendersim.measures.specs.expectation import Equals, ExpectSpec
-from lavendersim.measures.verdict import Outcome
-
-NO_TOLERANCE = "none"
+from lavendersim.measures.verdict import NO_TOLERANCE, Outcome
 
 
 def judge_cell(expectation: ExpectSpec, value: Value, cell: Cell) -> Outcome:

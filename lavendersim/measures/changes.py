@@ -140,8 +140,8 @@ def _turns(quaternions: Floats) -> Floats:
 
     A step turns by Cayley's map: the tangent of half the angle is half of what is returned.
     """
-    real, vector = turns_between(quaternions[:-1], quaternions[1:])
+    real, imaginary = turns_between(quaternions[:-1], quaternions[1:])
     turns = np.zeros((len(quaternions), 3))
     with np.errstate(invalid="ignore", divide="ignore"):
-        turns[1:] = 2.0 * vector / real[:, None]
+        turns[1:] = 2.0 * imaginary / real[:, None]
     return turns

@@ -2,7 +2,7 @@
 
 Nothing recorded by a run is read here, so a closed form is an independent judge.
 
-Impact of A and B at the configured pose, n from A to B, v_n their normal velocity (chapter):
+Impact of A and B at the configured pose, n from A to B, v_n their normal velocity:
     k_n = 1/m_A + 1/m_B + n . [(I_A^-1 (r_A x n)) x r_A + (I_B^-1 (r_B x n)) x r_B]
     j   = max(0, -(1 + e) v_n / k_n),   v_n+ = v_n + k_n j
 A drop from the clearance h: speed sqrt(2 g h), rebound e^2 h, impulse (1 + e) m sqrt(2 g h).

@@ -1,11 +1,15 @@
-"""Columns of a log that several measures and figures share: one number per logged step."""
+"""What several measures and figures take from a log: numbers by logged step, and by contact."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
-from lavendersim.cell import Sphere
+from lavendersim.cell import Sphere, Surface
+from lavendersim.cell.mixing import mixed
 from lavendersim.errors import UsageError
+from lavendersim.geometry.bodies import is_movable, mass_of, vector
 from lavendersim.geometry.rotations import rotation_matrix, unit_quaternion
 from lavendersim.geometry.shapes import extent, half_space
 from lavendersim.measures import shares
@@ -58,6 +62,38 @@ def deepest_by_step(trace: Trace, rows: Rows) -> Floats:
     return deepest
 
 
+def impulses(contacts: Rows) -> Floats:
+    """Return the impulse vector on B of each contact [N s] (n, 3), friction included."""
+    normals = np.column_stack([contacts[f"n{axis}"] for axis in "xyz"])
+    total: Floats = normals * shares.net_impulse_n(contacts)[:, None]
+    if "impulse_t1" in (contacts.dtype.names or ()):
+        first = np.column_stack([contacts[f"t1{axis}"] for axis in "xyz"])
+        second = np.cross(normals, first)  # the frame (n, t1, t2) is right-handed
+        total += first * contacts["impulse_t1"][:, None]
+        total += second * contacts["impulse_t2"][:, None]
+    return total
+
+
+def friction_of(contacts: Rows, surfaces: list[Surface]) -> Floats:
+    """Return mu of each contact by the config, where it changes with the motion by the log.
+
+    surfaces: of the bodies by their rows.
+    """
+    different = list(dict.fromkeys(surfaces))
+    number = {surface: row for row, surface in enumerate(different)}
+    rows = np.array([number[surface] for surface in surfaces])
+    pair = rows[contacts["body_a"]] * len(different) + rows[contacts["body_b"]]
+    table = np.zeros(len(different) ** 2)
+    present = np.zeros(len(table), dtype=bool)
+    present[pair] = True
+    for one in np.flatnonzero(present):
+        a, b = divmod(int(one), len(different))
+        between = mixed(different[a], different[b])
+        table[one] = np.nan if shares.varies_friction(between) else between.friction
+    mu: Floats = table[pair]
+    return np.where(np.isnan(mu), contacts["friction"], mu) if np.isnan(mu).any() else mu
+
+
 def clearance_by_step(trace: Trace, body: str, plane: str) -> Floats:
     """Return the gap [m] between a body's surface and a plane in every logged state."""
     shape = trace.config.scene.bodies[body].shape
@@ -107,6 +143,34 @@ def first_ending_after(trace: Trace, seconds: float) -> int | None:
     """Return the first logged step that ends after a time, None when there is none."""
     later = np.flatnonzero(trace.step["time"] > seconds)
     return int(later[0]) if len(later) else None
+
+
+def body_columns(trace: Trace, bodies: Sequence[str]) -> list[int]:
+    """Return the columns of these bodies in `pose`; of all that can move where none is named."""
+    given = trace.config.scene.bodies.items()
+    names = bodies or [name for name, body in given if is_movable(body)]
+    return [list(trace.bodies).index(name) for name in names]
+
+
+def momentum(trace: Trace) -> Floats:
+    """Return the scene's momentum [kg m/s] in every logged state (n, 3)."""
+    return np.column_stack([trace.step[f"momentum_{axis}"] for axis in "xyz"])
+
+
+def angular_momentum(trace: Trace) -> Floats:
+    """Return the scene's angular momentum about the origin [kg m^2/s] in every state (n, 3)."""
+    return np.column_stack([trace.step[f"angular_momentum_{axis}"] for axis in "xyz"])
+
+
+def energy_at_rest(trace: Trace, body: str, plane: str, clearance: float) -> float:
+    """Return the potential energy [J] of a scene whose only movable body rests on a plane.
+
+    clearance: of the body in the first state [m], by which its potential energy there is larger.
+    """
+    scene = trace.config.scene
+    normal = half_space(scene.bodies[plane].shape).normal
+    weight = mass_of(scene.bodies[body]) * -float(normal @ vector(scene.gravity))
+    return float(trace.step["potential_energy"][0]) - weight * clearance
 
 
 def mechanical_energy(trace: Trace) -> Floats:

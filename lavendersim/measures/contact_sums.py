@@ -13,10 +13,8 @@ import numpy as np
 
 from lavendersim.geometry.bodies import is_movable
 from lavendersim.measures import shares
-from lavendersim.measures.columns import rows_of_steps
+from lavendersim.measures.columns import friction_of, impulses, rows_of_steps
 from lavendersim.measures.interfaces import Floats, Rows, Trace
-from lavendersim.measures.kinds.laws import impulses
-from lavendersim.measures.kinds.optimality import friction_of
 
 # (coefficient, its components): angular impulses that a lever times the normal one bounds
 SPINS = (

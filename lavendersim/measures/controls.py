@@ -16,7 +16,7 @@ from lavendersim.measures.always import COMPLETE
 from lavendersim.measures.selection import coordinates_text, select, telling_axes
 from lavendersim.measures.specs.always import BEYOND_BOUNDS, COMPLETES, DIVERGES, STOPPING
 from lavendersim.measures.specs.expectation import ExpectSpec
-from lavendersim.measures.verdict import Verdict
+from lavendersim.measures.verdict import NO_TOLERANCE, Verdict
 
 
 class ControlTrial(NamedTuple):
@@ -122,7 +122,14 @@ def verdict_of(trial: ControlTrial, claims: Sequence[Any], raw: Mapping[str, Ver
         measured = float(trial.cells[0].trace().step["step"][-1])  # the last there is
         expected += f" (after step {measured:.0f})" if passed else ""
     return Verdict(
-        trial.control.name, trial.node, passed, measured, expected, "none", "\n".join(lines), path
+        trial.control.name,
+        trial.node,
+        passed,
+        measured,
+        expected,
+        NO_TOLERANCE,
+        "\n".join(lines),
+        path,
     )
 
 

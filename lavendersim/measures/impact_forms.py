@@ -13,6 +13,7 @@ where |u|/k_t <= mu j (stick), else J_t = -mu j u/|u| (slip; the direction of u 
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -24,10 +25,15 @@ from lavendersim.measures.closed_forms import clearance, pair_restitution
 from lavendersim.measures.interfaces import Floats
 
 
-def velocities_after(
-    cell: CellConfig, body: str, plane: str, time: float
-) -> tuple[Floats, Floats] | None:
-    """Return v [m/s] and omega [rad/s] of a body at a time [s] after its only impact.
+class Velocities(NamedTuple):
+    """The velocities of a body, in the world frame."""
+
+    velocity: Floats  # (3,) [m/s]
+    angular_velocity: Floats  # (3,) [rad/s]
+
+
+def velocities_after(cell: CellConfig, body: str, plane: str, time: float) -> Velocities | None:
+    """Return the velocities of a body at a time [s] after its only impact.
 
     None where this has no closed form: no plane, a turning or frictional body that is no sphere,
     no impact before that time, or a second one.
@@ -51,7 +57,7 @@ def velocities_after(
     separation = float(normal @ velocity)
     if pull < 0.0 and time - arrival >= -2.0 * separation / pull:
         return None
-    return velocity + gravity * (time - arrival), turn
+    return Velocities(velocity + gravity * (time - arrival), turn)
 
 
 def _arrival(gap: float, speed: float, pull: float) -> float | None:

@@ -1,4 +1,4 @@
-"""Measures and checks of states that are no numbers: infinite or NaN, and without a warning.
+"""A decorator: measures and checks of states that are infinite or NaN, without numpy's warnings.
 
 A run may end beyond all numbers, which is a result. A sum over its states is infinite or NaN then,
 and is judged as such; what numpy would say of it to a person is of no use.

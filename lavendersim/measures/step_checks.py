@@ -10,7 +10,8 @@ momentum     the part of its change without a cause (`balance`)
 residual     of the step [m/s]
 speed        displacement of a body's centre over the step's time, the largest [m/s]
 
-mu is the config's; the limits of torsional and rolling friction are those of the contact's row.
+mu is the config's, or the log's where it changes with the motion; the limits of torsional and
+rolling friction are those of the contact's row.
 """
 
 from __future__ import annotations

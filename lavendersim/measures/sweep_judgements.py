@@ -11,10 +11,9 @@ import numpy as np
 from lavendersim.measures.interfaces import Cell, Floats
 from lavendersim.measures.selection import group_by, select
 from lavendersim.measures.specs.expectation import Crosses, ExpectSpec, Order, Ratio
-from lavendersim.measures.verdict import Outcome, failure
+from lavendersim.measures.verdict import NO_TOLERANCE, Outcome, failure
 from lavendersim.quantities.scalars import label
 
-NO_TOLERANCE = "none"
 REDUCTIONS: Final[Mapping[str, Callable[..., Floats]]] = {
     "max": np.max,  # np.max, not np.nanmax: one NaN spoils the group, and so it must
     "min": np.min,

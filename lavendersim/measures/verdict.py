@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Final, NamedTuple
+
+NO_TOLERANCE: Final = "none"
 
 
 class Outcome(NamedTuple):
@@ -34,4 +36,4 @@ class Verdict(NamedTuple):
 
 def failure(expected: str, reason: str, follows: bool = False) -> Outcome:
     """Return the outcome of an expectation for which there is nothing to measure."""
-    return Outcome(False, float("nan"), expected, "none", reason, follows)
+    return Outcome(False, float("nan"), expected, NO_TOLERANCE, reason, follows)

@@ -230,7 +230,7 @@ def _steps(problem: ContactProblem, solver: str, watch: _Stopwatch) -> list[_Cal
         calls.append(_Call(problem, solver, REACHED, 2**doubling, REPEATING_STEP))
         watch.time(calls[-1])
         solution = calls[-1].solution
-        scaled, _ = distances(problem, solution.impulses)
+        scaled = distances(problem, solution.impulses).scaled
         if solution.sweeps < 2**doubling or scaled <= REACHED or calls[-1].times[0] > LONGEST_CALL:
             break
     return calls

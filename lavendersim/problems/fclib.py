@@ -166,9 +166,10 @@ def write_fclib(
 ) -> None:
     """Write the local form; equal problems give equal bytes.
 
-    FCLIB knows neither softness nor targets: gamma goes onto W's normal diagonal, target into q, so
-    what is read back has the same solutions and velocities w. `guess` and `solution` (n, 3) [N s]
-    are stored with their velocities; `attributes` are whole numbers that stand at the group `info`.
+    FCLIB knows neither regularisation nor targets: gamma goes onto W's normal diagonal, target into
+    q, so what is read back has the same solutions and velocities w. `guess` and `solution` (n, 3)
+    [N s] are stored with their velocities; `attributes` are whole numbers that stand at the group
+    `info`.
     Raises ProblemError without contacts.
     """
     if problem.contacts == 0:

@@ -4,7 +4,8 @@
     g = (1, mu d) / hypot(1, mu),  d = y_t / |y_t|:   P(y) = (g . y) g
     P'(y) = L L^T   inside: L = I.  In the polar cone: L = 0.  Else, with d' normal to d in the
     tangent plane, its columns are  g  and  sqrt(mu (y_n + mu |y_t|) / (1 + mu^2) / |y_t|) d'
-P is the gradient of a convex function, so P' is symmetric with eigenvalues from 0 to 1.
+P is the gradient of a convex function, so P' is symmetric with eigenvalues from 0 to 1. `residual`
+has a projection of its own: what judges these methods shares no line with them.
 """
 
 from __future__ import annotations

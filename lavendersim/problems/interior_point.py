@@ -18,7 +18,13 @@ import numpy as np
 
 from lavendersim.problems.budget import Budget
 from lavendersim.problems.factorise import factorise
-from lavendersim.problems.scaled_problem import ScaledProblem, multiply, scaled_residual, velocities
+from lavendersim.problems.scaled_problem import (
+    Reached,
+    ScaledProblem,
+    multiply,
+    scaled_residual,
+    velocities,
+)
 from lavendersim.problems.semismooth_newton import newton_steps
 
 MOST = 80
@@ -63,9 +69,7 @@ class Cones(NamedTuple):
     own: np.ndarray  # indices of the diagonal blocks
 
 
-def interior_point(
-    p: ScaledProblem, budget: Budget, strategy: Strategy = LONG_STEPS
-) -> tuple[np.ndarray, float]:
+def interior_point(p: ScaledProblem, budget: Budget, strategy: Strategy = LONG_STEPS) -> Reached:
     """Return impulses and their residual after at most `MOST` steps and a few of Newton's."""
     frictional = p.mu > 0.0
     cones = _on_circular_cones(p, frictional)
@@ -91,7 +95,7 @@ def interior_point(
         stuck += length < NOWHERE
     if least > budget.tolerance:
         return newton_steps(p, best, budget, FINISHING_EPS, FINISHING)
-    return best, least
+    return Reached(best, least)
 
 
 def _on_circular_cones(p: ScaledProblem, frictional: np.ndarray) -> Cones:

@@ -17,7 +17,7 @@ DIMENSION = 3  # rows per contact: normal, two tangents
 
 
 def problem_of(matrix: Any, free: np.ndarray, mu: np.ndarray) -> ContactProblem:
-    """Return the problem `u = W r + free` without softness and target.
+    """Return the problem `u = W r + free` without regularisation and target.
 
     `matrix` (3n, 3n) [1/kg] sparse; `free` (3n,) or (n, 3) [m/s]; `mu` (n,) [-].
     """
@@ -57,11 +57,11 @@ def matrix_of(problem: ContactProblem) -> Any:
 
     With it and `problem.q` the problem is `u = W r + q`, as other libraries write it.
     """
-    softened = problem.blocks.copy()
+    regularised = problem.blocks.copy()
     own = problem.row == problem.columns
-    softened[own, 0, 0] += problem.gamma
+    regularised[own, 0, 0] += problem.gamma
     size = DIMENSION * problem.contacts
     transposed = sparse.bsr_matrix(
-        (softened.transpose(0, 2, 1), problem.row, problem.begin), shape=(size, size)
+        (regularised.transpose(0, 2, 1), problem.row, problem.begin), shape=(size, size)
     )
     return transposed.tocsr().T.tocsc()

@@ -20,7 +20,13 @@ import numpy as np
 from lavendersim.problems.budget import Budget
 from lavendersim.problems.factorise import factorise
 from lavendersim.problems.friction_cone import derivative_root, project
-from lavendersim.problems.scaled_problem import ScaledProblem, multiply, scaled_residual, velocities
+from lavendersim.problems.scaled_problem import (
+    Reached,
+    ScaledProblem,
+    multiply,
+    scaled_residual,
+    velocities,
+)
 from lavendersim.problems.semismooth_newton import newton_steps
 
 # Softness of the first round, of the second where the first failed, and the least [-].
@@ -58,9 +64,7 @@ class Line(NamedTuple):
         return float(np.vdot(self.dy, impulses + self.softness * (self.h + length * self.dh)))
 
 
-def newton_rounds(
-    p: ScaledProblem, x: np.ndarray, budget: Budget, most: int = 60
-) -> tuple[np.ndarray, float]:
+def newton_rounds(p: ScaledProblem, x: np.ndarray, budget: Budget, most: int = 60) -> Reached:
     """Return impulses and their residual after rounds of at most so many steps in all."""
     least = residual = scaled_residual(p, x, velocities(p, x))
     softness, good, cut, failed, first = FIRST_SOFTNESS, SOFTEST / CUT, CUT, 0, True
@@ -84,7 +88,7 @@ def newton_rounds(
                 cut = sqrt(cut)
             softness = good * cut
         first = False
-    return x, residual
+    return Reached(x, residual)
 
 
 def _round(

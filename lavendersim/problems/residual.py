@@ -46,6 +46,13 @@ class Residual(NamedTuple):
     dissipation: ResidualPart
 
 
+class ResidualNorms(NamedTuple):
+    """The two lengths of the natural map over |q|."""
+
+    scaled: float  # [-]
+    local: float  # [-]
+
+
 def residual(problem: ContactProblem, impulses: np.ndarray) -> Residual:
     """Judge `impulses` (n, 3) [N s]; what is not finite is infinitely far."""
     with np.errstate(over="ignore", invalid="ignore"):
@@ -63,7 +70,7 @@ def residual(problem: ContactProblem, impulses: np.ndarray) -> Residual:
     return Residual(scaled, local, *map(_worst, parts))
 
 
-def distances(problem: ContactProblem, impulses: np.ndarray) -> tuple[float, float]:
+def distances(problem: ContactProblem, impulses: np.ndarray) -> ResidualNorms:
     """Return `scaled` and `local` of `impulses` alone, at less than half the cost."""
     with np.errstate(over="ignore", invalid="ignore"):
         u = contact_velocities(problem, impulses)
@@ -99,9 +106,9 @@ def _natural_maps(
     return natural_map(scales, *twice).reshape(2, len(own), 3)
 
 
-def _distances(problem: ContactProblem, maps: np.ndarray) -> tuple[float, float]:
+def _distances(problem: ContactProblem, maps: np.ndarray) -> ResidualNorms:
     q = _length(problem.q)
-    return _ratio(_length(maps[0]), q), _ratio(_length(maps[1]), q)
+    return ResidualNorms(_ratio(_length(maps[0]), q), _ratio(_length(maps[1]), q))
 
 
 def own_scales(problem: ContactProblem) -> np.ndarray:
@@ -113,7 +120,7 @@ def own_scales(problem: ContactProblem) -> np.ndarray:
 
 
 def contact_velocities(problem: ContactProblem, impulses: np.ndarray) -> np.ndarray:
-    """Return u, (n, 3) [m/s], with what softness and targets add to its normal rows."""
+    """Return u, (n, 3) [m/s], with what regularisation and targets add to its normal rows."""
     u = problem.q
     u[:, 0] += problem.gamma * impulses[:, 0]
     pushed = np.einsum("mij,mj->mi", problem.blocks, impulses[problem.columns])

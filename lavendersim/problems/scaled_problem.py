@@ -38,6 +38,13 @@ class ScaledProblem(NamedTuple):
         return len(self.mu)
 
 
+class Reached(NamedTuple):
+    """What a method ends with: impulses of a scaled problem, and their distance from solving it."""
+
+    x: np.ndarray  # (n, 3) [-]
+    residual: float  # `scaled_residual` [-]
+
+
 def scale(problem: ContactProblem) -> ScaledProblem:
     """Return the problem without units; every contact can be moved, and q is not 0."""
     own, q = own_scales(problem), problem.q

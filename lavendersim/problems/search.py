@@ -50,7 +50,7 @@ class Search:
         self.problem, self.tolerance, self.history = problem, tolerance, history
         self.budget = Budget(MARGIN * tolerance, steps, cost)
         self.best = self.here = np.zeros((problem.contacts, 3)) if start is None else start.copy()
-        self.least, _ = distances(problem, self.best)
+        self.least = distances(problem, self.best).scaled
         self.budget.history.append(self.least)
         if not self.over:  # what needs no impulses may have no scale
             self.p = scale(problem)

@@ -19,7 +19,12 @@ import numpy as np
 from lavendersim.problems.budget import Budget
 from lavendersim.problems.factorise import factorise
 from lavendersim.problems.friction_cone import derivative_root, project
-from lavendersim.problems.scaled_problem import ScaledProblem, scaled_residual, velocities
+from lavendersim.problems.scaled_problem import (
+    Reached,
+    ScaledProblem,
+    scaled_residual,
+    velocities,
+)
 
 # eps at most: a step is then a short one along -F; and at least: above round-off of A [-].
 LARGEST, LEAST = 10.0, 1e-10
@@ -43,8 +48,8 @@ class Iterate(NamedTuple):
     size: float  # |F|
 
 
-def look(p: ScaledProblem, x: np.ndarray) -> Iterate:
-    """Evaluate the natural map at x."""
+def iterate_at(p: ScaledProblem, x: np.ndarray) -> Iterate:
+    """Return the natural map at x, and what it follows from."""
     v = velocities(p, x)
     side = np.hypot(v[:, 1], v[:, 2])
     y = x - v
@@ -55,9 +60,9 @@ def look(p: ScaledProblem, x: np.ndarray) -> Iterate:
 
 def newton_steps(
     p: ScaledProblem, x: np.ndarray, budget: Budget, eps: float = 1e-2, most: int = 20
-) -> tuple[np.ndarray, float]:
+) -> Reached:
     """Return impulses and their residual after at most so many steps; |F| never grows."""
-    here = look(p, x)
+    here = iterate_at(p, x)
     residual = scaled_residual(p, x, here.v)
     sizes: list[float] = []
     for step in range(most):
@@ -68,7 +73,7 @@ def newton_steps(
             break
         d, cost = _direction(p, here, eps)
         for length in LENGTHS:
-            there = look(p, here.x + length * d)
+            there = iterate_at(p, here.x + length * d)
             if there.size < here.size * (1.0 - ENOUGH * length):
                 if length == 1.0:
                     fast = there.size < 0.5 * here.size
@@ -79,7 +84,7 @@ def newton_steps(
         else:  # a NaN ends here too
             eps *= GROWS
         budget.step(cost, residual)
-    return here.x, residual
+    return Reached(here.x, residual)
 
 
 def _direction(p: ScaledProblem, here: Iterate, eps: float) -> tuple[np.ndarray, float]:

@@ -1,8 +1,8 @@
 """Replay of a log in rerun: a viewer, an .rrd file or a picture of the viewer.
 
-The only room that knows rerun. Rerun takes 0.4 s to import, so it is imported when something is
-shown, not when this room is. Nothing is computed here that the log does not hold: replay scales,
-colours and places what was recorded.
+The only package that knows rerun. Rerun takes 0.4 s to import, so it is imported when something
+is shown, not when this package is. Nothing is computed here that the log does not hold: replay
+scales, colours and places what was recorded.
 """
 
 from __future__ import annotations

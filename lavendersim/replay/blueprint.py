@@ -52,7 +52,7 @@ def blueprint(
     """Lay out the 3D view and the plots of a recording; scale: None where nothing can touch."""
     times = time_in_nanoseconds(trace)
     seconds = float(times[-1] - times[0]) * 1e-9 if len(times) else 0.0
-    grounded = any(shape.kind == "plane" for shape in bodies)
+    grounded = any(body.kind == "plane" for body in bodies)
     rulers = [scale.label if scale is not None else "bodies"]
     rulers += [f"grid {grid_spacing(room):g} m"] if grounded else []
     scene = scene_view("; ".join(rulers), contents_of(ALONE, scale is not None), bodies, room)
@@ -112,7 +112,7 @@ def laid_out(views: rrb.Container | rrb.View, seconds: float) -> rrb.Blueprint:
 def eye_position(bodies: Sequence[DrawnBody], room: Extent) -> Vector:
     """Where the camera stands [m]: far enough to see everything, on the open side of each plane."""
     direction = VIEW_DIRECTION / np.linalg.norm(VIEW_DIRECTION)
-    for plane in (shape for shape in bodies if shape.kind == "plane"):
+    for plane in (body for body in bodies if body.kind == "plane"):
         direction = direction + max(0.0, 0.3 - float(direction @ plane.normal)) * plane.normal
     direction = direction / np.linalg.norm(direction)
     return np.asarray(room.centre + VIEW_DISTANCE * room.diagonal * direction)

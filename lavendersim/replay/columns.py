@@ -34,7 +34,7 @@ STEPS_PER_BLOCK = 200
 CONTACT_FIELDS = ("step", *CONTACT_KEY, "x", "y", "z", "nx", "ny", "nz", "force_n")
 
 FORCE_COLOUR = 0xF0E442FF  # yellow
-CUT_FORCE_COLOUR = 0xD55E00FF  # vermillion: this arrow would be longer
+CUT_FORCE_COLOUR = 0xD55E00FF  # vermilion: this arrow would be longer
 POINT_COLOUR = (255, 255, 255)
 
 
@@ -54,14 +54,15 @@ class Plot(NamedTuple):
     dots: bool = False
 
 
-def _millimetres(metres: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+def millimetres(metres: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    """Lengths [m] in millimetres."""
     return metres * 1e3
 
 
-def _log10(residual: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
-    """Base-10 logarithm; NaN (a gap in the curve) where the residual is exactly zero."""
-    logarithm = np.full(len(residual), np.nan)
-    np.log10(residual, out=logarithm, where=residual > 0)
+def log10(numbers: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    """Base-10 logarithm; NaN (a gap in the curve) where a number is exactly zero."""
+    logarithm = np.full(len(numbers), np.nan)
+    np.log10(numbers, out=logarithm, where=numbers > 0)
     return logarithm
 
 
@@ -80,7 +81,7 @@ PLOTS = (
         "max_penetration",
         "max penetration [mm]",
         (86, 180, 233),
-        _millimetres,
+        millimetres,
     ),
     Plot(
         "/plot/log10_residual",
@@ -88,7 +89,7 @@ PLOTS = (
         "residual",
         "log10 residual [m/s]",
         (204, 121, 167),
-        _log10,
+        log10,
         dots=True,
     ),
 )
@@ -211,11 +212,20 @@ def _send_plots(stream: rr.RecordingStream, trace: Trace, times: npt.NDArray[Any
             else rr.SeriesLines(widths=[1.5], aggregation_policy="MinMax", **look)
         )
         stream.log(plot.entity, style, static=True)
-        values = values_of(trace, plot)
-        for block in blocks(len(times)):
-            known = np.isfinite(values[block])
-            curve = rr.Scalars.columns(scalars=values[block][known])
-            send_columns(stream, plot.entity, times[block], curve.partition(known.astype(np.int64)))
+        send_curve(stream, plot.entity, times, values_of(trace, plot))
+
+
+def send_curve(
+    stream: rr.RecordingStream,
+    path: str,
+    times: npt.NDArray[Any],
+    values: npt.NDArray[np.float64],
+) -> None:
+    """Send a plot's values at these times, with a gap where they are not finite."""
+    for block in blocks(len(times)):
+        known = np.isfinite(values[block])
+        curve = rr.Scalars.columns(scalars=values[block][known])
+        send_columns(stream, path, times[block], curve.partition(known.astype(np.int64)))
 
 
 def send_columns(

@@ -41,20 +41,15 @@ class _Plot(NamedTuple):
     legend: rrb.Corner2D  # where curves that grow are not
 
 
-def _millimetres(metres: Curve) -> Curve:
-    return 1e3 * metres
-
-
-def _log10(metres: Curve) -> Curve:
-    """Base-10 logarithm; NaN (a gap in the curve) where both are equal to the bit."""
-    logarithm = np.full(len(metres), np.nan)
-    np.log10(metres, out=logarithm, where=metres > 0)
-    return logarithm
-
-
+# Where both are equal to the bit the logarithm has a gap.
 _PLOTS: Final = (
-    _Plot("distance", "distance between A and B [mm]", _millimetres, rrb.Corner2D.LeftTop),
-    _Plot("log10_distance", "log10 distance between A and B [m]", _log10, rrb.Corner2D.RightBottom),
+    _Plot("distance", "distance between A and B [mm]", columns.millimetres, rrb.Corner2D.LeftTop),
+    _Plot(
+        "log10_distance",
+        "log10 distance between A and B [m]",
+        columns.log10,
+        rrb.Corner2D.RightBottom,
+    ),
 )
 
 
@@ -133,9 +128,4 @@ def _send_distances(stream: rr.RecordingStream, found: Distances) -> None:
                 colors=[colour], names=[one.body], widths=[1.5], aggregation_policy="MinMax"
             )
             stream.log(path, look, static=True)
-            values = plot.shown(one.metres)
-            for block in columns.blocks(len(times)):
-                known = np.isfinite(values[block])
-                curve = rr.Scalars.columns(scalars=values[block][known])
-                parts = curve.partition(known.astype(np.int64))
-                columns.send_columns(stream, path, times[block], parts)
+            columns.send_curve(stream, path, times, plot.shown(one.metres))

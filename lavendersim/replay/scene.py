@@ -29,7 +29,7 @@ BODIES, GRIDS = "bodies", "grid"  # where bodies are drawn, and the grids of pla
 WORLD = "tf#/"  # rerun's name of the root frame, which no body can have
 
 # Okabe and Ito's palette, which stays distinct for all common kinds of colour blindness. Yellow
-# and vermillion are kept for forces (columns.py).
+# and vermilion are kept for forces (columns.py).
 MOVABLE_COLOURS = ((86, 180, 233), (204, 121, 167), (0, 158, 115), (0, 114, 178), (230, 159, 0))
 FIXED_COLOUR = (150, 150, 150)
 GHOST_COLOUR = (225, 225, 230)
@@ -66,14 +66,14 @@ def extent(trace: Trace, bodies: Iterable[DrawnBody]) -> Extent:
     """The room that the bodies take over the whole trace, planes left out."""
     row_of = {name: row for row, name in enumerate(trace.bodies)}
     lows, highs = [], []
-    for shape in bodies:
-        if shape.kind == "plane":
+    for body in bodies:
+        if body.kind == "plane":
             continue
-        positions = trace.recorded_pose.pose[:, row_of[shape.name], :3]
+        positions = trace.recorded_pose.pose[:, row_of[body.name], :3]
         positions = positions[np.isfinite(positions).all(axis=1)]
         if len(positions):
-            lows.append(positions.min(axis=0) - shape.bounding_radius)
-            highs.append(positions.max(axis=0) + shape.bounding_radius)
+            lows.append(positions.min(axis=0) - body.bounding_radius)
+            highs.append(positions.max(axis=0) + body.bounding_radius)
     if not lows:
         return Extent(np.full(3, -0.5), np.full(3, 0.5))
     return Extent(np.min(lows, axis=0), np.max(highs, axis=0))
@@ -96,28 +96,28 @@ def draw(
     stream.log("/", rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
     gone = removed(trace)
     begin = int(trace.step["time_ns"][0]) if len(trace.step) else 0
-    movable = sum(not shape.fixed for shape in bodies)
+    movable = sum(not body.fixed for body in bodies)
     colours = iter(MOVABLE_COLOURS * (movable // len(MOVABLE_COLOURS) + 1))
-    for shape in bodies:
-        stays = shape.name not in gone
-        if ghost and shape.fixed:
+    for body in bodies:
+        stays = body.name not in gone
+        if ghost and body.fixed:
             continue
-        if shape.kind == "plane":
+        if body.kind == "plane":
             with at_time(stream, begin):
-                _draw_plane(stream, shape, room, stays, layer)
+                _draw_plane(stream, body, room, stays, layer)
             continue
-        colour = FIXED_COLOUR if shape.fixed else GHOST_COLOUR if ghost else next(colours)
-        _draw_path(stream, trace, shape, colour, layer)
+        colour = FIXED_COLOUR if body.fixed else GHOST_COLOUR if ghost else next(colours)
+        _draw_path(stream, trace, body, colour, layer)
         labelled = len(bodies) <= LABELLED_BODIES and not ghost
         # Forces act at surfaces and point into bodies: solid bodies would hide them.
-        look = BodyLook(colour, shape.fixed, shape.name, labelled)
-        drawn = archetypes(shape.pieces, look)
-        frame = rr.CoordinateFrame(layer.frame(shape.name))
+        look = BodyLook(colour, body.fixed, body.name, labelled)
+        drawn = archetypes(body.pieces, look)
+        frame = rr.CoordinateFrame(layer.frame(body.name))
         for kind, forms in drawn.items():
             within = [] if len(drawn) == 1 else [kind]
             for form in forms:
                 edges = ["edges"] if isinstance(form, rr.LineStrips3D) else []
-                place = layer.path(BODIES, shape.name, *within, *edges)
+                place = layer.path(BODIES, body.name, *within, *edges)
                 with at_time(stream, begin):
                     stream.log(place, frame, form, static=stays)
 
@@ -125,17 +125,17 @@ def draw(
 def _draw_path(
     stream: rr.RecordingStream,
     trace: Trace,
-    shape: DrawnBody,
+    body: DrawnBody,
     colour: tuple[int, int, int],
     layer: Layer,
 ) -> None:
     """A thin line through the body's recorded positions: a still picture then tells its story."""
-    path = trace.recorded_pose.pose[:, trace.bodies.index(shape.name), :3]
+    path = trace.recorded_pose.pose[:, trace.bodies.index(body.name), :3]
     path = path[np.isfinite(path).all(axis=1)]
     if len(path) and np.ptp(path, axis=0).max() > 0:
         path = path[:: 1 + len(path) // PATH_POINTS]
         line = rr.LineStrips3D([path], colors=[(*colour, 120)], radii=rr.Radius.ui_points(1.0))
-        place = layer.path("paths", shape.name)
+        place = layer.path("paths", body.name)
         stream.log(place, rr.CoordinateFrame(WORLD), line, static=True)
 
 

@@ -34,6 +34,7 @@ from lavendersim.trace import predictors
 from lavendersim.trace.layout import bytes_field
 from lavendersim.trace.message_form import columns_of_words, words_of
 from lavendersim.trace.predictors import ALONE, SPECIAL, SPHERES, Constants
+from lavendersim.trace.schema import OF_THE_MESSAGE
 from lavendersim.trace.scratch import scratch
 from lavendersim.trace.sphere_contacts import COLUMNS as OF_SPHERES
 from lavendersim.trace.sphere_contacts import (
@@ -51,7 +52,6 @@ DERIVED: dict[str, Derived] = {
     for column in effect.contact_columns
     if column.derived is not None
 }
-OF_THE_MESSAGE: Final = "step"  # the same for all contacts of a step
 KEY: Final[tuple[str, ...]] = ("body_a", "body_b", "feature")
 Integers = NDArray[np.int64]
 Tables = Sequence[NDArray[Any]]  # of the same columns, at least one

@@ -26,7 +26,15 @@ from lavendersim.trace.layout import PackedField
 from lavendersim.trace.limits import check_counts
 from lavendersim.trace.schema import FORMER_NAMES, HIGH_WORD, KINDS, NUMERIC_TYPES, Column
 from lavendersim.trace.sphere_contacts import POSITION, Floats, Starts
-from lavendersim.trace.wire import NANOSECONDS, Bytes, Rows, Template, gather, padded_varints
+from lavendersim.trace.wire import (
+    NANOSECONDS,
+    Bytes,
+    Rows,
+    Template,
+    gather,
+    padded_varints,
+    rows_behind,
+)
 
 Table = NDArray[Any]
 MOST_STRIDE = 1 << 16  # bytes of a point: 8,000 columns
@@ -102,7 +110,7 @@ def decode_residuals(chunk: ChunkContent, columns: Sequence[Column]) -> Table:
     head, tail = layout.residual_layout(), layout.residual_row_layout(columns)
     rows = _matching(head, chunk.data, offsets)
     counts = _counts(head, rows, len(tail))
-    sweeps = _matching(tail, chunk.data, _tails(offsets + len(head), counts, len(tail)))
+    sweeps = _matching(tail, chunk.data, rows_behind(offsets + len(head), counts, len(tail)))
     words = tail.take(sweeps, "sweep")
     table = _table(residual_columns(columns), len(sweeps))
     table["step"] = np.repeat(_column(head.take(rows, "step"), 0, "i8"), counts)
@@ -134,7 +142,7 @@ def message_class(name: str, descriptors: bytes) -> Any:
 
 
 def packed_fields(schema: Schema, chunk: ChunkContent) -> tuple[tuple[PackedField, ...], int]:
-    """Return the fields and the stride [B] that the first PointCloud of a chunk states."""
+    """Return the fields and the stride [B] that the first PointCloud of a chunk gives."""
     cloud = message_class(schema.name, schema.data)()
     offset = chunk.messages[layout.CHANNELS["/contacts"]]["offset"][0]
     cloud.ParseFromString(body_of(chunk, int(offset)))
@@ -188,7 +196,7 @@ def decode_contacts(
         raise ValueError("a point cloud contradicts its length")
     row = contact_row(tuple(fields), stride)
     data = np.empty((counts.sum(), row.itemsize), np.uint8)
-    data[:, :stride] = gather(chunk.data, _tails(offsets + len(head), counts, stride), stride)
+    data[:, :stride] = gather(chunk.data, rows_behind(offsets + len(head), counts, stride), stride)
     table: Table = data.view(row)[:, 0]
     table["step"] = np.repeat(_sequence(head, rows), counts)
     table["time"] = np.repeat(seconds(entries["time"]), counts)
@@ -261,10 +269,3 @@ def _counts(head: Template, rows: Bytes, size: int) -> Rows:
     if np.any(tail < 0) or np.any(tail % size):
         raise ValueError("messages have another layout than lavender's")
     return tail // size
-
-
-def _tails(starts: Rows, counts: Rows, size: int) -> Rows:
-    """Return the byte offset of every row that follows the heads."""
-    before = np.cumsum(counts) - counts
-    offsets: Rows = np.repeat(starts - before * size, counts) + np.arange(counts.sum()) * size
-    return offsets

@@ -86,14 +86,14 @@ def checked(
     posed: Rows,
     touched: Rows,
     columns: tuple[np.dtype[Any], ...],
-    shape: tuple[Collection[str], int],
+    topics: Collection[str],
+    bodies: int,
 ) -> Counted:
     """Return a block with its counts. ValueError when it contradicts itself or its log.
 
     posed, touched: whether poses and contacts of each step are recorded, bool (n,). columns: of
-    the log's tables. shape: its topics and how many bodies it has.
+    the log's tables. topics: that it has. bodies: how many.
     """
-    topics, bodies = shape
     if (block.step.dtype, block.contact.dtype, block.residual.dtype) != columns:
         raise ValueError("a block has other columns than the first one")
     if block.pose.shape != (len(block.step), bodies, layout.POSE):

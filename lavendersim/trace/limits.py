@@ -53,7 +53,7 @@ def check_growth(claimed: int, stored: int, what: str) -> None:
 
 
 def timestep_of(text: object) -> Fraction:
-    """Return the timestep [s] that a log states, such as `1/480`. ValueError for what is none."""
+    """Return the timestep [s] that a log gives, such as `1/480`. ValueError for what is none."""
     if not isinstance(text, str) or len(text) > MOST_DIGITS or not _RATIO.fullmatch(text):
         raise ValueError("a timestep is no ratio of whole numbers")
     numerator, _, denominator = text.partition("/")
@@ -81,7 +81,7 @@ def changes_of(given: object) -> list[tuple[int, Fraction]]:
 
 
 def names_of(given: object) -> list[str]:
-    """Return the names of bodies that a log states. ValueError else."""
+    """Return the names of bodies that a log gives. ValueError else."""
     if not isinstance(given, list) or not all(isinstance(name, str) for name in given):
         raise ValueError("the names of bodies are no list of texts")
     return given

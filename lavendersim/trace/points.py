@@ -66,12 +66,17 @@ def grid_of(thicknesses: Iterable[float]) -> float:
 
 
 def lay_points(
-    form: PointForm, data: Bytes, places: tuple[Rows, Rows], contacts: NDArray[Any], grid: float
+    form: PointForm,
+    data: Bytes,
+    starts: Rows,
+    counts: Rows,
+    contacts: NDArray[Any],
+    grid: float,
 ) -> None:
     """Write contacts as points; beyond float32 a number is shown as infinite.
 
-    data: bytes of a chunk, which has room. places: for each step where its points begin, and how
-    many contacts it has. contacts: of these steps. grid: [m] of positions.
+    data: bytes of a chunk, which has room. starts, counts: for each step where its points begin,
+    and how many contacts it has. contacts: of these steps. grid: [m] of positions.
     """
     from lavendersim.engine.point_kernel import lay_points as kernel  # late: numba
 
@@ -82,7 +87,7 @@ def lay_points(
     floats = np.empty(len(columns), np.float32)
     kernel()(
         data,
-        places,
+        (starts, counts),
         words_of(contacts).view(np.float64),
         columns,
         (grid, place.get("impulse_n", -1), (_KEPT, _word(LOADED), _word(UNLOADED))),

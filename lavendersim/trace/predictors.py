@@ -1,9 +1,10 @@
-"""What the numbers of contacts are expected to be, so that what is stored of them is short.
+"""Predictive coding of contact columns: what each number is expected to be, from known ones.
 
 A column of numbers is taken as its bits, contacts of one key (`contact_columns`) one after the
-other. What is stored is how each differs from what its predictor says; a kernel of the engine
-writes that (`engine.difference_kernel`), and here is the inverse. All of it is integer arithmetic
-modulo 2^64, or operations that IEEE 754 rounds in one way alone: logs are read on any machine.
+other. What is stored is how each differs from what its predictor says, which compresses well; a
+kernel of the engine writes that (`engine.difference_kernel`), and here is the inverse. All of it is
+integer arithmetic modulo 2^64, or operations that IEEE 754 rounds in one way alone:
+logs are read on any machine.
 
     0  the contact before of the same key, differences by xor
     1  the contact before, differences by subtraction

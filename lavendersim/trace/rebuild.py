@@ -6,9 +6,7 @@ made again from that payload where they do not fit it.
 
 from __future__ import annotations
 
-import json
 import struct
-from collections.abc import Mapping
 from typing import Any, BinaryIO, Final, NamedTuple
 
 import numpy as np
@@ -18,7 +16,6 @@ from mcap.opcode import Opcode
 from mcap.records import Chunk, ChunkIndex
 from numpy.typing import NDArray
 
-from lavendersim.cell import CellConfig
 from lavendersim.trace.container import INDEX_ENTRY, Messages, message_index
 from lavendersim.trace.index import (
     MESSAGE,
@@ -31,9 +28,7 @@ from lavendersim.trace.index import (
 )
 from lavendersim.trace.layout import RECORD_HEADER
 from lavendersim.trace.limits import check_chunk
-from lavendersim.trace.schema import FORMAT
 from lavendersim.trace.wire import gather
-from lavendersim.trace.writer import ABSENT, TIMESTEP_CHANGES
 
 REFUSALS: Final = (
     *(McapError, zstandard.ZstdError, struct.error, EOFError),
@@ -87,21 +82,6 @@ def _messages_in(chunk: Chunk) -> list[Messages]:
             found.setdefault(channel, []).append((time, start))
     groups = sorted(found.items())
     return [Messages(channel, np.array(rows, INDEX_ENTRY)) for channel, rows in groups]
-
-
-def description_of(config: CellConfig, absent: Mapping[str, str]) -> dict[str, str]:
-    """Return the metadata that a log of this config begins with; absent: topics it does without."""
-    clock = config.clock
-    found = {
-        "format": FORMAT,
-        "bodies": json.dumps(list(config.scene.bodies)),
-        "timestep": str(clock.timestep),
-        ABSENT: json.dumps(absent, sort_keys=True),
-    }
-    if clock.changes:
-        changes = [[done, str(timestep)] for done, timestep in clock.changes]
-        found[TIMESTEP_CHANGES] = json.dumps(changes)
-    return found
 
 
 def sequences_of(content: ChunkContent, channel: int) -> NDArray[Any]:

@@ -55,7 +55,7 @@ class Column(NamedTuple):
 
 
 FORMER_NAMES = {"unsolved": "not_converged"}  # of columns in older logs, and their names now
-_OF_THE_MESSAGE = "step"  # a row of a contact or a sweep has the number of its step there
+OF_THE_MESSAGE = "step"  # a row of a contact or a sweep has the number of its step there
 STEP_COLUMNS = tuple(
     sorted(
         [
@@ -73,13 +73,13 @@ RESIDUAL_COLUMNS = tuple(
     Column(column.name, column.kind, column.number, column.text)
     for effect in EFFECTS
     for column in effect.residual_columns
-    if column.name != _OF_THE_MESSAGE
+    if column.name != OF_THE_MESSAGE
 )
 CONTACT_COLUMNS = {
     column.name: column.text
     for effect in EFFECTS
     for column in effect.contact_columns
-    if column.name != _OF_THE_MESSAGE
+    if column.name != OF_THE_MESSAGE
 }
 
 # topic -> the column of /step it draws

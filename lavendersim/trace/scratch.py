@@ -1,4 +1,4 @@
-"""Memory of a thread that is used again: to ask for fresh pages takes longer than to fill them."""
+"""Scratch arrays, kept by thread and name: asking for new pages takes longer than filling them."""
 
 from __future__ import annotations
 

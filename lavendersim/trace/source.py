@@ -23,10 +23,10 @@ from lavendersim.trace.index import (
     read_at,
     read_chunk,
 )
-from lavendersim.trace.rebuild import description_of, rebuilt_at
+from lavendersim.trace.rebuild import rebuilt_at
 from lavendersim.trace.recorded import RECORDED, described
 from lavendersim.trace.whole import ExpectedLog, check_bytes
-from lavendersim.trace.writer import AS_WRITTEN, DESCRIPTION, RESOLVED, Written
+from lavendersim.trace.writer import AS_WRITTEN, DESCRIPTION, RESOLVED, Written, description_of
 
 FORMER_RESOLVED = "resolved.yaml"  # of logs before the config was JSON
 

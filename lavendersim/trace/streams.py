@@ -36,7 +36,7 @@ from lavendersim.trace.schema import (
 )
 from lavendersim.trace.scratch import scratch
 from lavendersim.trace.sphere_contacts import Starts
-from lavendersim.trace.wire import Rows, Template
+from lavendersim.trace.wire import Rows, Template, rows_behind
 
 STEP_OF_COLUMNS: Final = 3 * WORD  # its number, its time, how many contacts it has
 TF_ORDER: Final = (0, 1, 2, 4, 5, 6, 3)  # x y z qx qy qz qw, of x y z qw qx qy qz
@@ -131,7 +131,7 @@ class Light:
         heads = heads_of(step[asked], _record_length(self._sweeps, swept * len(self._sweep)))
         self._sweeps.fill(chunk.data, starts, heads, heads)
         chunk.note("/residuals", heads, starts)
-        rows = _ranks(starts + len(self._sweeps), swept, len(self._sweep))
+        rows = rows_behind(starts + len(self._sweeps), swept, len(self._sweep))
         words = words_of(sweeps)
         self._sweep.fill(chunk.data, rows, words, words)
 
@@ -203,8 +203,8 @@ class Points:
             heads = heads_of(step, _record_length(self._cloud, length), length)
             self._cloud.fill(chunk.data, starts[:-1], heads, heads)
             chunk.note("/contacts", heads, starts[:-1])
-            places = starts[:-1] + len(self._cloud), counts
-            lay_points(self.form, chunk.data, places, contacts, self._grid)
+            first = starts[:-1] + len(self._cloud)
+            lay_points(self.form, chunk.data, first, counts, contacts, self._grid)
             chunk.end = int(starts[-1])
         return chunk.filled()
 
@@ -296,10 +296,3 @@ def _record_length(head: Any, tail: Rows) -> Rows:
     """Return the length in a record's header, which does not count: of a head and its tail."""
     length: Rows = len(head) - layout.RECORD_HEADER + tail
     return length
-
-
-def _ranks(starts: Rows, counts: Rows, size: int) -> Rows:
-    """Return the byte offset of every row: rows of one owner stand one after the other."""
-    before = cumulative(counts)[:-1]
-    row: Rows = np.repeat(starts - before * size, counts) + np.arange(counts.sum()) * size
-    return row

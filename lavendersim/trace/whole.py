@@ -1,4 +1,4 @@
-"""Whether a log was closed, and whether every byte of it is as it was written.
+"""Whether a log was closed, and is as it was written to the byte: by CRC-32 and SHA-256.
 
     magic  Header  records ...  DataEnd  summary ...  Footer  magic
     `---- CRC of DataEnd -----'          `- CRC of Footer -'

@@ -67,6 +67,13 @@ def gather(data: Bytes, offsets: Rows, size: int) -> Bytes:
     return rows
 
 
+def rows_behind(starts: Rows, counts: Rows, size: int) -> Rows:
+    """Return the byte offset of every row of `size` bytes; rows of one start follow each other."""
+    before = np.cumsum(counts) - counts
+    offsets: Rows = np.repeat(starts - before * size, counts) + np.arange(counts.sum()) * size
+    return offsets
+
+
 class Template:
     """Constant bytes with named slots; a name may stand for many slots of one size."""
 

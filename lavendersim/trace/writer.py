@@ -75,6 +75,21 @@ class _Stream:
         return _Stream(self._encoder, b"")
 
 
+def description_of(config: CellConfig, absent: Mapping[str, str]) -> dict[str, str]:
+    """Return the metadata that a log of this config begins with; absent: topics it does without."""
+    clock = config.clock
+    found = {
+        "format": FORMAT,
+        "bodies": json.dumps(list(config.scene.bodies)),
+        "timestep": str(clock.timestep),
+        ABSENT: json.dumps(absent, sort_keys=True),
+    }
+    if clock.changes:
+        changes = [[done, str(timestep)] for done, timestep in clock.changes]
+        found[TIMESTEP_CHANGES] = json.dumps(changes)
+    return found
+
+
 class Written(NamedTuple):
     """A log that was just written, for who reads it in the same process."""
 
@@ -105,7 +120,7 @@ class TraceWriter:
         self._topics = layout.CHANNELS.keys() - absent.keys()
         self._path, self._config, self._as_written = Path(path), config, as_written
         self._bodies = config.scene.bodies
-        self._clock = clock = config.clock
+        self._clock = config.clock
         self._form: Form | None = None
         self._last_step = -1
         self._last_pose: NDArray[np.float64] | None = None
@@ -113,16 +128,7 @@ class TraceWriter:
         self._container.attach(AS_WRITTEN, "application/yaml", as_written.encode())
         self._container.attach(RESOLVED, "application/json", config.as_json().encode())
         self._metadata: dict[str, dict[str, str]] = {}
-        description = {
-            "format": FORMAT,
-            "bodies": json.dumps(list(self._bodies)),
-            "timestep": str(clock.timestep),
-            ABSENT: json.dumps(absent, sort_keys=True),
-        }
-        if clock.changes:
-            changes = [[done, str(timestep)] for done, timestep in clock.changes]
-            description[TIMESTEP_CHANGES] = json.dumps(changes)
-        self._describe(DESCRIPTION, description)
+        self._describe(DESCRIPTION, description_of(config, absent))
         if partly := described(config.record):
             self._describe(RECORDED, partly)
         for name, values in metadata.items():
@@ -155,8 +161,8 @@ class TraceWriter:
             is_recorded(which, self._clock, step["step"])
             for which in (record.poses, record.contacts)
         )
-        columns = self._form.columns
-        counted = checked(block, posed, touched, columns, (self._topics, len(self._bodies)))
+        columns, topics, bodies = self._form.columns, self._topics, len(self._bodies)
+        counted = checked(block, posed, touched, columns, topics, bodies)
         counted = counted._replace(before=self._last_pose)
         self._last_pose = block.pose[-1]
         starts = Streams(*(cumulative(encoder.sizes(counted)) for encoder in self._encoders))

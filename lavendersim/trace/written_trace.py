@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 from lavendersim.record_tables import widen, widened
 from lavendersim.trace import decode
 from lavendersim.trace.blocks import Block
-from lavendersim.trace.contact_columns import OF_THE_MESSAGE, column_form
+from lavendersim.trace.contact_columns import column_form
 from lavendersim.trace.reader import RecordedPoses, Trace
 from lavendersim.trace.recorded import is_recorded
-from lavendersim.trace.schema import RESIDUAL_COLUMNS, STEP_COLUMNS, columns_of
+from lavendersim.trace.schema import OF_THE_MESSAGE, RESIDUAL_COLUMNS, STEP_COLUMNS, columns_of
 from lavendersim.trace.source import JustWritten
 from lavendersim.trace.writer import Written
 

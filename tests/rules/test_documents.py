@@ -78,3 +78,9 @@ def test_tables_of_the_documents_are_those_of_the_code(name: str) -> None:
 def test_every_solver_is_written_down(page: str) -> None:
     text = (DOCUMENTS / page).read_text()
     assert [name for name in SOLVER_NAMES if f"`{name}`" not in text] == []
+
+
+def test_every_module_of_the_engine_is_on_the_page() -> None:
+    text = (DOCUMENTS / "architecture.md").read_text()
+    modules = [file.name for file in sorted((ROOT / "lavendersim/engine").glob("*.py"))]
+    assert [name for name in modules if name != "__init__.py" and f"`{name}`" not in text] == []

@@ -19,6 +19,7 @@ from lavendersim.figures.registration import draws
 from lavendersim.figures.series import by_value
 from lavendersim.figures.specs.stability_map import StabilityMap
 from lavendersim.figures.style import DARK, GREY
+from lavendersim.measures.always import COMPLETE
 from lavendersim.measures.interfaces import Cell
 from lavendersim.measures.values import Values
 from lavendersim.quantities.scalars import label
@@ -78,7 +79,7 @@ def limits(
 
 
 def _holds(panel: StabilityMap, cell: Cell, values: Values) -> bool:
-    if cell.trace().status != "complete":
+    if cell.trace().status != COMPLETE:
         return False
     # NaN <= bound is false, as it must be.
     return bool(np.all(values.row(panel.measure, cell) <= panel.at_most))

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from lavendersim.geometry.bodies import mass_of, vector
-from lavendersim.geometry.shapes import half_space
 from lavendersim.measures.columns import (
     clearance_by_step,
     contacts_of,
+    energy_at_rest,
     mechanical_energy,
     pushing_runs,
 )
@@ -37,10 +36,7 @@ def _by_bounce(spec: specs.EnergyByBounce | specs.EnergyAfterBounces, trace: Tra
     """
     drift = np.full(spec.bounces, np.nan)
     heights = clearance_by_step(trace, spec.body, spec.above)
-    scene = trace.config.scene
-    normal = half_space(scene.bodies[spec.above].shape).normal
-    weight = mass_of(scene.bodies[spec.body]) * -float(normal @ vector(scene.gravity))
-    at_rest = float(trace.step["potential_energy"][0]) - weight * float(heights[0])
+    at_rest = energy_at_rest(trace, spec.body, spec.above, float(heights[0]))
     energy = mechanical_energy(trace) - at_rest
     runs = pushing_runs(trace, contacts_of(trace, spec.body, spec.above))
     starts = [first for first, _ in runs[1:]] + [len(heights)]

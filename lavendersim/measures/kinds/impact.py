@@ -14,6 +14,7 @@ from lavendersim.measures.changes import events_of_bodies
 from lavendersim.measures.columns import (
     clearance_by_step,
     contacts_of,
+    momentum,
     one_timestep,
     pushing_runs,
     runs_of,
@@ -144,11 +145,11 @@ def impulse_balance(spec: specs.ImpulseBalance, trace: Trace) -> float:
     if size == 0.0:
         return NAN
     mass = sum(mass_of(one) for one in bodies.values())
-    momentum = _momentum(trace)
+    momenta = momentum(trace)
     # counted in steps: logged times are whole nanoseconds, 1e-7 of a step
     steps = trace.step["step"]
     time = float(trace.clock.elapsed(steps[first - 1], steps[last]))
-    gained = momentum[last] - momentum[first - 1]
+    gained = momenta[last] - momenta[first - 1]
     gap = impulse + mass * time * vector(trace.config.scene.gravity) - gained
     return math.sqrt(float(gap @ gap)) / size
 
@@ -156,14 +157,10 @@ def impulse_balance(spec: specs.ImpulseBalance, trace: Trace) -> float:
 @measure(specs.MomentumDrift)
 def momentum_drift(spec: specs.MomentumDrift, trace: Trace) -> float:
     """Return the largest |p - p0| over the largest |p| of the run; NaN if nothing ever moves."""
-    momentum = _momentum(trace)
-    largest = float(np.sqrt((momentum**2).sum(axis=1)).max())
-    change = momentum - momentum[0]
+    momenta = momentum(trace)
+    largest = float(np.sqrt((momenta**2).sum(axis=1)).max())
+    change = momenta - momenta[0]
     return float(np.sqrt((change**2).sum(axis=1)).max()) / largest if largest > 0.0 else NAN
-
-
-def _momentum(trace: Trace) -> Floats:
-    return np.column_stack([trace.step[f"momentum_{axis}"] for axis in "xyz"])
 
 
 def _vector_impulse(trace: Trace, rows: Rows, movable: np.ndarray, first: int, last: int) -> Floats:

@@ -9,8 +9,8 @@ import math
 
 import numpy as np
 
-from lavendersim.geometry.bodies import is_movable
 from lavendersim.geometry.rotations import rotation_matrix, turns_between, unit_quaternion
+from lavendersim.measures.columns import body_columns
 from lavendersim.measures.interfaces import Floats, Trace
 from lavendersim.measures.registration import measure
 from lavendersim.measures.specs import kinematics as specs
@@ -101,9 +101,7 @@ def _displacement(
 
 def _speeds(trace: Trace, bodies: tuple[str, ...]) -> tuple[Floats, Floats]:
     """Return the fastest centre's speed [m/s] between neighbouring states, and when they end."""
-    names = bodies or [name for name, body in trace.config.scene.bodies.items() if is_movable(body)]
-    columns = [list(trace.bodies).index(name) for name in names]
-    displacements = np.diff(trace.pose[:, columns, :3], axis=0)
+    displacements = np.diff(trace.pose[:, body_columns(trace, bodies), :3], axis=0)
     steps = np.asarray(trace.step["step"])
     seconds = trace.clock.elapsed(steps[:-1], steps[1:])
     speeds: Floats = np.sqrt((displacements**2).sum(axis=2)).max(axis=1) / seconds

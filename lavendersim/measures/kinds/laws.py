@@ -7,15 +7,17 @@ import math
 import numpy as np
 
 from lavendersim.geometry.bodies import is_movable, mass_of, vector
-from lavendersim.geometry.shapes import half_space
-from lavendersim.measures import changes, shares
+from lavendersim.measures import changes
 from lavendersim.measures.columns import (
+    angular_momentum,
     clearance_by_step,
+    energy_at_rest,
+    impulses,
     last_window,
     mechanical_energy,
     rows_of_steps,
 )
-from lavendersim.measures.interfaces import Floats, Rows, Trace
+from lavendersim.measures.interfaces import Floats, Trace
 from lavendersim.measures.registration import measure
 from lavendersim.measures.specs import laws as specs
 
@@ -51,18 +53,6 @@ def force_error(spec: specs.ForceError, trace: Trace) -> float:
     return float(np.max(np.abs(forces[rows] / weight - 1.0)))
 
 
-def impulses(contacts: Rows) -> Floats:
-    """Return the impulse vector on B of each contact [N s] (n, 3), friction included."""
-    normals = np.column_stack([contacts[f"n{axis}"] for axis in "xyz"])
-    total: Floats = normals * shares.net_impulse_n(contacts)[:, None]
-    if "impulse_t1" in (contacts.dtype.names or ()):
-        first = np.column_stack([contacts[f"t1{axis}"] for axis in "xyz"])
-        second = np.cross(normals, first)  # the frame (n, t1, t2) is right-handed
-        total += first * contacts["impulse_t1"][:, None]
-        total += second * contacts["impulse_t2"][:, None]
-    return total
-
-
 @measure(specs.EnergyDrift)
 def energy_drift(spec: specs.EnergyDrift, trace: Trace) -> float:
     """Return the largest |E/E0 - 1| over the run; NaN for a run that starts without energy."""
@@ -79,13 +69,8 @@ def energy_gain(spec: specs.EnergyGain, trace: Trace) -> float:
 def _energy_change(spec: specs.EnergyDrift | specs.EnergyGain, trace: Trace) -> Floats:
     energy = mechanical_energy(trace)
     if spec.body is not None and spec.above is not None:
-        # resting on the plane: the potential energy of the start less m g times the clearance
-        scene = trace.config.scene
-        normal = half_space(scene.bodies[spec.above].shape).normal
-        weight = mass_of(scene.bodies[spec.body]) * -float(normal @ vector(scene.gravity))
         height = float(clearance_by_step(trace, spec.body, spec.above)[0])
-        at_rest = float(trace.step["potential_energy"][0]) - weight * height
-        energy = energy - at_rest
+        energy = energy - energy_at_rest(trace, spec.body, spec.above, height)
     return energy / energy[0] - 1.0 if energy[0] != 0.0 else np.array([NAN])
 
 
@@ -96,11 +81,6 @@ def angular_momentum_drift(spec: specs.AngularMomentumDrift, trace: Trace) -> fl
     size = math.sqrt(float(momentum[0] @ momentum[0]))
     change = momentum - momentum[0]
     return float(np.sqrt((change**2).sum(axis=1)).max()) / size if size > 0.0 else NAN
-
-
-def angular_momentum(trace: Trace) -> Floats:
-    """Return the scene's angular momentum about the origin [kg m^2/s] in every state (n, 3)."""
-    return np.column_stack([trace.step[f"angular_momentum_{axis}"] for axis in "xyz"])
 
 
 @measure(specs.LawViolation)

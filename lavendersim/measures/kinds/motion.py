@@ -7,10 +7,15 @@ import math
 import numpy as np
 
 from lavendersim.cell import Box, Plane
-from lavendersim.geometry.bodies import is_movable, rotation_of, vector
+from lavendersim.geometry.bodies import rotation_of, vector
 from lavendersim.geometry.shapes import half_space
 from lavendersim.measures.closed_forms import clearance, pair_restitution
-from lavendersim.measures.columns import clearance_by_step, last_window, one_timestep
+from lavendersim.measures.columns import (
+    body_columns,
+    clearance_by_step,
+    last_window,
+    one_timestep,
+)
 from lavendersim.measures.interfaces import Floats, Trace
 from lavendersim.measures.kinds.impact import parabola_vertex
 from lavendersim.measures.registration import measure
@@ -63,9 +68,7 @@ def drift_by_step(trace: Trace, after: float, bodies: tuple[str, ...] = ()) -> F
     rows = np.flatnonzero(time > after - 2e-9)
     if len(rows) < 2:
         return np.zeros(0)
-    names = bodies or [name for name, body in trace.config.scene.bodies.items() if is_movable(body)]
-    columns = [list(trace.bodies).index(name) for name in names]
-    centres = trace.pose[rows[0] :, columns, :3]
+    centres = trace.pose[rows[0] :, body_columns(trace, bodies), :3]
     distances: Floats = np.sqrt(((centres - centres[0]) ** 2).sum(axis=2)).max(axis=1)
     return distances
 

@@ -10,17 +10,15 @@ The second and the fourth by their natural maps, |min((k_n + gamma) lambda_n, w)
 zero exactly where the law holds. The residual of a step bounds both: the first is its very terms,
 and the second grows with k, for which it has the largest response of the contact to a tangential
 impulse and this file the least that any contact of the two bodies can have, the sum of their
-inverse masses. mu is the config's, not the log's.
+inverse masses. mu is the config's; the log's only where it changes with the motion.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from lavendersim.cell import Surface
-from lavendersim.cell.mixing import mixed
 from lavendersim.geometry.bodies import inverse_mass
-from lavendersim.measures import shares
+from lavendersim.measures.columns import friction_of
 from lavendersim.measures.interfaces import Floats, Rows, Trace
 from lavendersim.measures.registration import measure
 from lavendersim.measures.specs.optimality import Optimality
@@ -65,26 +63,6 @@ def _summed(contacts: Rows, of_bodies: list[float]) -> Floats:
     values = np.array(of_bodies)
     total: Floats = values[contacts["body_a"]] + values[contacts["body_b"]]
     return total
-
-
-def friction_of(contacts: Rows, surfaces: list[Surface]) -> Floats:
-    """Return mu of each contact by the config, where it changes with the motion by the log.
-
-    surfaces: of the bodies by their rows.
-    """
-    different = list(dict.fromkeys(surfaces))
-    number = {surface: row for row, surface in enumerate(different)}
-    rows = np.array([number[surface] for surface in surfaces])
-    pair = rows[contacts["body_a"]] * len(different) + rows[contacts["body_b"]]
-    table = np.zeros(len(different) ** 2)
-    present = np.zeros(len(table), dtype=bool)
-    present[pair] = True
-    for one in np.flatnonzero(present):
-        a, b = divmod(int(one), len(different))
-        between = mixed(different[a], different[b])
-        table[one] = np.nan if shares.varies_friction(between) else between.friction
-    mu: Floats = table[pair]
-    return np.where(np.isnan(mu), contacts["friction"], mu) if np.isnan(mu).any() else mu
 
 
 def _friction(trace: Trace, contacts: Rows, scale: Floats, mu: Floats) -> tuple[Floats, Floats]:

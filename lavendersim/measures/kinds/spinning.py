@@ -16,11 +16,10 @@ from lavendersim.geometry.bodies import (
 )
 from lavendersim.geometry.rotations import rotation_matrices
 from lavendersim.geometry.shapes import bounding_radius
-from lavendersim.measures.columns import one_timestep
+from lavendersim.measures.columns import angular_momentum, momentum, one_timestep
 from lavendersim.measures.free_rotation import FreeRotation, free_rotation
 from lavendersim.measures.impact_forms import velocities_after
 from lavendersim.measures.interfaces import Floats, Trace
-from lavendersim.measures.kinds.laws import angular_momentum
 from lavendersim.measures.registration import measure
 from lavendersim.measures.specs import spinning as specs
 
@@ -39,12 +38,11 @@ def velocity_error(spec: specs.VelocityError, trace: Trace) -> float:
     ideal = velocities_after(trace.config, spec.body, spec.other, time)
     if ideal is None or not _alone(trace, moving):
         return NAN
-    momentum = np.array([float(trace.step[f"momentum_{axis}"][-1]) for axis in "xyz"])
     turn = rotation_matrices(_pose(trace, spec.body)[-1:, 3:])[0]
     omega = body_rates(trace, spec.body)[-1] @ turn.T
     return max(
-        math.dist(momentum / mass_of(moving), ideal[0]),
-        bounding_radius(moving.shape) * math.dist(omega, ideal[1]),
+        math.dist(momentum(trace)[-1] / mass_of(moving), ideal.velocity),
+        bounding_radius(moving.shape) * math.dist(omega, ideal.angular_velocity),
     )
 
 
@@ -120,8 +118,7 @@ def times(trace: Trace) -> Floats:
 def body_rates(trace: Trace, body: str) -> Floats:
     """Return omega in a body's own axes [rad/s] (n, 3), from angular momentum and pose."""
     pose = _pose(trace, body)
-    momentum = np.column_stack([trace.step[f"momentum_{axis}"] for axis in "xyz"])
-    spin = angular_momentum(trace) - np.cross(pose[:, :3], momentum)
+    spin = angular_momentum(trace) - np.cross(pose[:, :3], momentum(trace))
     rates: Floats = np.einsum("nji,nj->ni", rotation_matrices(pose[:, 3:]), spin)
     return rates / principal_inertia(trace.config.scene.bodies[body])
 

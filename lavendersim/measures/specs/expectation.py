@@ -17,7 +17,7 @@ It names an expectation of the file, a check of `always`, or `completes` (a cell
 passes when exactly that fails, and nothing else does, in every cell that it selects. One whose name
 begins with `known failure` names what lavender does not reach yet, but should.
 
-How `sweep` is read: `sweep` is one mapping of axes or a list of such mappings. A list is
+What `at` selects from: `sweep` is one mapping of axes or a list of such mappings. A list is
 the union of the products, in order; an axis absent from a product keeps the config's own value
 and is absent from the coordinates of its cells. An axis with a single value is allowed.
 Names of expectations are unique within a file (they become test ids).

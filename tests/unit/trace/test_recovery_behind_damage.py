@@ -15,8 +15,8 @@ from lavendersim.trace import Trace, open_trace, recover
 from lavendersim.trace.contact_rows import COLUMNS, POINTS, contact_rows
 from lavendersim.trace.index import read_chunk, read_summary
 from lavendersim.trace.layout import CHANNELS
-from lavendersim.trace.rebuild import description_of
 from lavendersim.trace.recovery import EXCHANGED, RecoveryReport
+from lavendersim.trace.writer import description_of
 
 STEPS = 1000  # five groups
 GROUPS = 5
