@@ -26,7 +26,7 @@ from typing import NamedTuple
 from ...compile import inner
 from ...records import TOUCHING
 from ...vectors import dot, minus, plus_scaled, position
-from ..records import DISC, normal_of
+from ..records import DISC, UNBOUNDED, normal_of
 from .point import copy_point, place
 
 OTHER = 1 << 8
@@ -105,7 +105,7 @@ def disc_roots(p, q, disc):
     c = x * x + y * y + z * z - disc.radius * disc.radius
     under = b * b - a * c
     if under <= 0.0 or a == 0.0:
-        return (-1e300, 1e300) if a == 0.0 and c <= 0.0 else (2.0, -1.0)
+        return (-UNBOUNDED, UNBOUNDED) if a == 0.0 and c <= 0.0 else (2.0, -1.0)
     root = sqrt(under)
     return (-b - root) / a, (-b + root) / a
 
