@@ -46,14 +46,14 @@ class Rows(NamedTuple):
 _entries: dict[Any, Any] = {}
 
 
-def _types_of(memory: Any) -> Any:
-    """Return what numba tells arrays apart by, in the shape of the memory."""
-    if isinstance(memory, np.ndarray):
-        flags = memory.flags
-        return memory.dtype, memory.ndim, flags.c_contiguous, flags.writeable, flags.aligned
-    if isinstance(memory, tuple):
-        return type(memory), tuple(_types_of(part) for part in memory)
-    return type(memory)
+def _types_of(arrays: Any) -> Any:
+    """Return what numba tells arrays apart by, in the shape of the tuples that they stand in."""
+    if isinstance(arrays, np.ndarray):
+        flags = arrays.flags
+        return arrays.dtype, arrays.ndim, flags.c_contiguous, flags.writeable, flags.aligned
+    if isinstance(arrays, tuple):
+        return type(arrays), tuple(_types_of(inner) for inner in arrays)
+    return type(arrays)
 
 
 class Engine:

@@ -50,7 +50,7 @@ def distance(one, other):
 
 @inner
 def angle(one, other):
-    """Return the angle between two orientations, at most a little too large [rad]."""
+    """Return the chord 2 sin(angle/2) between two orientations, to third order their angle."""
     x = one.qw * other.qx - one.qx * other.qw - one.qy * other.qz + one.qz * other.qy
     y = one.qw * other.qy - one.qy * other.qw - one.qz * other.qx + one.qx * other.qz
     z = one.qw * other.qz - one.qz * other.qw - one.qx * other.qy + one.qy * other.qx

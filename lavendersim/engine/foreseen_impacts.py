@@ -54,9 +54,10 @@ def make_is_impact(spec: Spec) -> Any:
 
 
 def make_foresee(spec: Spec) -> Any:
-    """Return `kernel(contact, pair, bodies, motion, params) -> whether an impact happens now`.
+    """Return `kernel(contact, pair, bodies, motion, params, met) -> whether an impact happens now`.
 
-    Fills waits and due of a row whose `rate` is known. params.dt: what is left of the step.
+    Fills waits and due of a row whose `rate` is known. params.dt: what is left of the step. met:
+    whether the part before ended where its two bodies met.
     """
     forced, slowest = make_forced(spec), make_slowest(spec)
     change_ahead = make_change_ahead(spec)

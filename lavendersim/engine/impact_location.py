@@ -31,11 +31,16 @@ from .integrate import make_turn
 from .records import INSTANT, TOUCHING
 from .spec import Spec
 
+# Looks at the pair: Newton's steps find a meeting in some five; those of bodies that are followed
+# are 1/STRIDE at most, and halving a step of 1 s down to what INSTANT tells apart takes 40.
 PASSES = 80
 # Shortest, of what is left of the step, in which bodies that part are looked at again.
 STRIDE = 1.0 / 32.0
 # Earliest meeting [s]: a part of the step before it takes time, or what forces do in it is lost.
 SOONEST = 2.0 * INSTANT
+# They meet where they are nearer than this [m]: inside of TOUCHING, so that the part that ends
+# there finds them touching, whatever round-off its own look at them has.
+MET = 0.25 * TOUCHING
 # Rows of `memory.Trial`: the two bodies that move, and the rows that collide (parts of them).
 A, B, PART_A, PART_B = range(4)
 
@@ -116,7 +121,7 @@ def make_locate(spec: Spec) -> Any:
                 for k in range(found):
                     if points[k].feature == ahead.feature:
                         seen = k
-                if abs(points[seen].phi) <= 0.25 * TOUCHING:
+                if abs(points[seen].phi) <= MET:
                     # Has another of the pair met already? What it stands on has not: it lasts.
                     met = -1
                     for k in range(found):
@@ -133,16 +138,16 @@ def make_locate(spec: Spec) -> Any:
             phi = point.phi
             dv = change_ahead(contact, motion)
             v = approach(contact, bodies, motion) + dv * t / left
-            if abs(phi) <= 0.25 * TOUCHING:
+            if abs(phi) <= MET:
                 # Newton's next step has twice as many digits: no friction with a lever of its own.
                 when = t - phi / v if v < 0.0 else NEVER
                 if when < NEVER or not marches:
                     break
-            if phi < -0.25 * TOUCHING and not (first and v >= 0.0):
+            if phi < -MET and not (first and v >= 0.0):
                 high = t
             else:
                 low = t
-            first = first and phi < -0.25 * TOUCHING
+            first = first and phi < -MET
             if marches and high == NEVER:
                 when = NEVER
                 if t >= left:

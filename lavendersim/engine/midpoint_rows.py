@@ -13,7 +13,7 @@ from typing import Any
 from .block import make_relative_velocity
 from .collide.manifold.point import manifold_normal
 from .collide.narrow_phase import make_manifold
-from .collide.records import put_normal
+from .collide.records import UNBOUNDED, put_normal
 from .compile import kernel
 from .contact import make_normal_velocity
 from .effects import made_once
@@ -70,7 +70,7 @@ def make_is_turning(spec: Spec) -> Any:
             x, y, z = mb.vx - ma.vx, mb.vy - ma.vy, mb.vz - ma.vz
             speed = sqrt(x * x + y * y + z * z)
             body_a, body_b = bodies[contact.a], bodies[contact.b]
-            rate, size = 0.0, 1e300
+            rate, size = 0.0, UNBOUNDED
             if body_a.shape != PLANE:
                 size = body_a.bound
             if body_b.shape != PLANE:

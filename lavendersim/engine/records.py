@@ -212,7 +212,7 @@ COUNTERS: Final[list[Field]] = [
     ("dissipation_contact", I8),
     ("contact_energy", F8),  # that contacts store at the end of the last step [J]
     ("body", I8),  # body that diverged
-    ("cause", I8),  # NOT_FINITE or TURNS_TOO_FAST
+    ("cause", I8),  # NOT_FINITE, TURNS_TOO_FAST or INACCURATE
     ("step_rows", I8),  # trace rows written since the caller emptied the columns
     ("contact_rows", I8),
     ("residual_rows", I8),

@@ -28,6 +28,7 @@ def crossing(cell: Cell) -> Iterator[Defect]:
         if not isinstance(body.shape, Plane)
     }
     thinnest = sorted(solids, key=lambda name: thickness(solids[name].shape))[:2]
+    tree = cell.tree
     for name, body in solids.items():
         other = next((one for one in thinnest if one != name), None)
         if other is None or not any(body.velocity):
@@ -39,7 +40,7 @@ def crossing(cell: Cell) -> Iterator[Defect]:
                 f"velocity: {name} and {other} may pass through each other: they close by "
                 f"{moved:.3g} m in a step and are {thick:.3g} m thick; speculative: true meets them"
             )
-            yield cell.defect((*body_path(cell.tree, name), "velocity"), sentence)
+            yield cell.defect((*body_path(tree, name), "velocity"), sentence)
 
 
 def _relative_speed(one: CellBody, other: CellBody) -> float:

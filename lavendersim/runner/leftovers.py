@@ -16,7 +16,7 @@ from .run_directory import is_run_directory
 from .run_lock import run_lock
 from .run_seal import DONE
 
-UNFINISHED: Final = ".*.unfinished*"
+UNFINISHED: Final = ".*.unfinished*"  # names of files that are written aside
 
 
 def remove_leftovers(root: Path) -> None:

@@ -19,6 +19,7 @@ from lavendersim.errors import TraceError
 from lavendersim.experiment import Experiment
 from lavendersim.trace.whole import INTERRUPTED
 
+from .leftovers import UNFINISHED
 from .run_directory import CONFIG, Run, list_runs
 from .run_index import ENDED, PENDING, kept_lines
 
@@ -89,7 +90,7 @@ def take_over(run: Run, logs: Collection[str], note: Callable[[str], None]) -> d
             done[name] = ended[name]
     # Lines are appended to it: none may stand behind one that a kill has cut.
     write_whole(run.path / ENDED, kept_lines(run.path, done), flush=False)
-    for left in run.path.rglob(".*.unfinished*"):
+    for left in run.path.rglob(UNFINISHED):
         left.unlink()
     note(f"goes on with {run.path}: {len(done)} of {len(logs)} cells are done")
     for why, count in again.items():

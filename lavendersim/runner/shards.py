@@ -29,6 +29,7 @@ from lavendersim.trace.whole import INTERRUPTED
 
 from .interruption import Interrupted, handled
 from .leases import SHARDS, Leases, alive
+from .leftovers import UNFINISHED
 from .progress import Progress
 from .run_directory import CONFIG
 from .run_index import ENDED, drop_cut_line
@@ -84,7 +85,7 @@ def run_shard(
     shard = _directory(into, part)
     (shard / "cells").mkdir(exist_ok=True)
     with alive(shard):
-        for left in shard.rglob(".*.unfinished*"):
+        for left in shard.rglob(UNFINISHED):
             left.unlink()
         drop_cut_line(shard)
         write_whole(shard / CONFIG, experiment.text, flush=False)

@@ -20,7 +20,7 @@ VERTEX: list[Field] = [
     *[(f"{body}{axis}", F8) for body in "ab" for axis in "xyz"],
 ]
 
-# The separation of two cores (shapes.py) and where it is.
+# The separation of two cores (`shape`) and where it is.
 SEPARATION: list[Field] = [
     ("nx", F8),  # unit normal from A to B
     ("ny", F8),

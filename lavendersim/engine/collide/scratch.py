@@ -136,6 +136,7 @@ def allocate_scratch(geometry: HullGeometry | None = None) -> Scratch:
         ),
         outline_a=outline(),
         outline_b=outline(),
-        # A polygon of n corners cut by m sides has at most n + m; one more for the nearest point.
-        polygon=np.zeros(max(2 * (2 * longest + 2), most), _POINT),
+        # A polygon of n corners cut by m sides has at most n + 2 m (manifold/polygon_clip), and a
+        # cut looks for two rows more; two halves.
+        polygon=np.zeros(max(2 * (3 * longest + 2), most), _POINT),
     )

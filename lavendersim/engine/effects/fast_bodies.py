@@ -128,10 +128,8 @@ EFFECT = Effect(
     needs=("speculative",),
     fields=Fields(
         contact=[
-            (
-                "tangential_x",
-                "f8",
-            ),  # displacement of B from A across n until the impact [m]
+            # displacement of B from A across n until the impact [m]
+            ("tangential_x", "f8"),
             ("tangential_y", "f8"),
             ("tangential_z", "f8"),
         ],

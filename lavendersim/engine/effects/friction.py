@@ -129,9 +129,8 @@ EFFECT = Effect(
         contact=[
             ("mu", "f8"),
             *[(f"t{k}{axis}", "f8") for k in "12" for axis in "xyz"],  # tangents, n x t1 = t2
-            *[
-                (f"r{body}{axis}", "f8") for body in "ab" for axis in "xyz"
-            ],  # centre to own surface [m]
+            # levers: from the centre of mass to the own surface [m]
+            *[(f"r{body}{axis}", "f8") for body in "ab" for axis in "xyz"],
             ("k_n1", "f8"),  # entries of K in the frame (n, t1, t2) [1/kg]
             ("k_n2", "f8"),
             ("i_11", "f8"),  # inverse of the tangential 2x2 of K [kg]

@@ -189,7 +189,7 @@ EFFECT = Effect(
         body=[("ax", "f8"), ("ay", "f8"), ("az", "f8")],  # in the last part of a step [m/s^2]
         contact=[
             ("waits", "i8"),  # 1: not met in this part, or it parts: no row of it
-            ("located", "i8"),  # GUESSED, ELSEWHERE, LOCATED or FAR, see `approach`
+            ("located", "i8"),  # GUESSED, ELSEWHERE, LOCATED, FAR or MEETS, see `approach`
             ("rate", "f8"),  # of the gap, as the part begins [m/s]
             ("passed_on", "i8"),  # 1: its body is about to slide or roll from it to a flush one
             ("due", "f8"),  # when the surfaces meet, from the start of the part [s]

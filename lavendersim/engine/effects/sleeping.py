@@ -247,12 +247,9 @@ EFFECT = Effect(
         body=[
             ("asleep", "i8"),  # 1: at rest, left out
             ("island", "i8"),  # asleep: the number its island has in common
-            (
-                "point_speed",
-                "f8",
-            ),  # speed of its fastest point, at most, when the step begins [m/s]
+            ("point_speed", "f8"),  # of its fastest point, at most, as the step begins [m/s]
             ("rest", "f8"),  # how long it has been at rest [s]
-            ("own_inv_m", "f8"),  # asleep: what it weighs once awake
+            ("own_inv_m", "f8"),  # asleep: its inverse mass once awake [1/kg], and inertia
             ("own_inv_ix", "f8"),
             ("own_inv_iy", "f8"),
             ("own_inv_iz", "f8"),

@@ -19,7 +19,7 @@ from .sweep import make_report, make_sweep
 def make(spec: Spec):
     """Return `kernel(system, workspace, params, counters, residual_rows)`.
 
-    Writes counters.sweeps, .residual [m/s] and .residual_contact of this step.
+    Writes counters.sweeps, .residual [m/s], .residual_contact and .not_converged of this step.
     """
     sweep, report = make_sweep(spec), make_report(spec)
     residual = make_residual(spec)

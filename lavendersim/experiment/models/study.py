@@ -1,10 +1,10 @@
-"""The section `study`: a deliberate error, for teaching and for negative controls.
+"""The section `study`: a deliberate error, for teaching and for negative controls of the checks.
 
     study: {mistake: capture_in_sweeps}
 
-For teaching, and for negative controls that show that a check sees it. A mistake is part of no
-preset and of no other section, and every run that makes one says so: `lavender plan`, `run`,
-`check` and `show`, and the metadata of its log.
+A negative control shows that a check sees the error. A mistake is part of no preset and of no other
+section, and every run that makes one says so: `lavender plan`, `run`, `check` and `show`, and the
+metadata of its log.
 """
 
 from __future__ import annotations

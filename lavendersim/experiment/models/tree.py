@@ -46,28 +46,31 @@ def member_name(arrangement: str, number: int) -> str:
     return f"{arrangement}_{number}"
 
 
-@lru_cache(maxsize=1)  # every force and event asks for one
-def bodies_of(root: Node) -> dict[str, Node]:
-    """Return the nodes that describe all bodies, in their order; no more than a scene may have."""
-    nodes = dict(root.get(*BODIES).entries)
+@lru_cache(maxsize=1)  # several rules and warnings ask for bodies of one tree
+def _body_paths(root: Node) -> dict[str, Path]:
+    """Return where the nodes stand that describe all bodies, in their order; see `bodies_of`."""
+    paths: dict[str, Path] = {name: (*BODIES, name) for name in root.get(*BODIES).entries}
     left = MOST_BODIES
     for name, arrangement in root.get(*ARRANGEMENTS).entries.items():
         count = min(members(arrangement), left)
         left -= count
+        path = (*ARRANGEMENTS, name, "body")
         for number in range(1, count + 1):
-            nodes.setdefault(member_name(name, number), arrangement.get("body"))
-    return nodes
+            paths.setdefault(member_name(name, number), path)
+    return paths
+
+
+@lru_cache(maxsize=1)  # every force and event asks for one
+def bodies_of(root: Node) -> dict[str, Node]:
+    """Return the nodes that describe all bodies, in their order; no more than a scene may have."""
+    paths = _body_paths(root)
+    nodes = {path: root.get(*path) for path in dict.fromkeys(paths.values())}
+    return {name: nodes[path] for name, path in paths.items()}
 
 
 def body_path(root: Node, name: str) -> Path:
     """Return where the node stands that describes the body of this name, () where there is none."""
-    if root.get(*BODIES, name):
-        return (*BODIES, name)
-    arrangement, _, number = name.rpartition("_")
-    node = root.get(*ARRANGEMENTS, arrangement)
-    if not (number.isascii() and number.isdigit()) or len(number) > 6:
-        return ()
-    return (*ARRANGEMENTS, arrangement, "body") if 1 <= int(number) <= members(node) else ()
+    return _body_paths(root).get(name, ())
 
 
 def described(root: Node) -> Iterator[tuple[str, Node]]:

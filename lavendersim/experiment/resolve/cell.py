@@ -15,7 +15,7 @@ from lavendersim.experiment.resolve.scene import resolve_scene
 def resolve_cell(source: CellSource) -> CellConfig:
     """Fill in what the file leaves to defaults; raises SceneError for bodies that cannot be made.
 
-    `source` has passed the checks between its values (`checks`).
+    `source` has passed the rules of its models.
     """
     assert isinstance(source.numerics, NumericsSource)  # its preset is merged in (`with_preset`)
     numerics = shared(Numerics.model_construct(**dict(source.numerics)))
@@ -35,7 +35,7 @@ def resolve_cell(source: CellSource) -> CellConfig:
 
 
 def _event(event: Event) -> CellEvent | CellTimestep:
-    if event.body is None:  # `checks.events` let no other event stand without one
+    if event.body is None:  # the rules of `Event` let no other one stand
         assert event.timestep is not None
         return CellTimestep(at=event.at, timestep=event.timestep)
     kept = event.contact_cache or ("keep" if event.teleport is None else "clear")

@@ -19,7 +19,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-# Names of contact points hold a face and a corner of it in so many bits (overlay.py).
+# Names of contact points hold a face and a corner of it in so many bits (`manifold.patch`).
 MOST_FACES = 1 << 12
 MOST_CORNERS = 1 << 8
 

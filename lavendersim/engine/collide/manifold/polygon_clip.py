@@ -8,9 +8,14 @@ Coordinates: u, v across n, w along n, in the fields x, y, z of POINT rows. `row
 polygon each; every cut reads one half and writes the other. Corners are named by the lines that
 meet in them: the subject's lines 0.. and the outline's OTHER + 0..; line k leads from corner k.
 
-A convex polygon gains at most one corner with each side that cuts it, which is what `rows` has room
-for. Corners of a side that lies along the cut may fall on alternate sides of it by round-off and
-gain more: beyond the room they are left out.
+Room: for each run of corners beyond it, a cut adds two corners and takes at least one away. A
+convex polygon has one such run, so that a cut adds one corner at most. By round-off, corners near
+the line of a cut may stand on either side of it. They are at the two ends of the piece of that line
+in the polygon, since no three corners of a face are in line (geometry/convex_hull leaves out the
+middle one, a million times coarser than round-off); at each end two at most, since two lines of the
+subject and two of the outline, the cut among them, are all that meet in a point. That makes two
+runs at most: a polygon of n corners has n + 2 m after m cuts at most, which half of `rows` has room
+for (collide/scratch). `cut_straight` stops where that half is full only to keep to its memory.
 """
 
 from __future__ import annotations
@@ -21,7 +26,7 @@ from typing import NamedTuple
 from ...compile import inner
 from ...records import TOUCHING
 from ...vectors import dot, minus, plus_scaled, position
-from ..records import DISC, normal_of
+from ..records import DISC, UNBOUNDED, normal_of
 from .point import copy_point, place
 
 OTHER = 1 << 8
@@ -100,7 +105,7 @@ def disc_roots(p, q, disc):
     c = x * x + y * y + z * z - disc.radius * disc.radius
     under = b * b - a * c
     if under <= 0.0 or a == 0.0:
-        return (-1e300, 1e300) if a == 0.0 and c <= 0.0 else (2.0, -1.0)
+        return (-UNBOUNDED, UNBOUNDED) if a == 0.0 and c <= 0.0 else (2.0, -1.0)
     root = sqrt(under)
     return (-b - root) / a, (-b + root) / a
 

@@ -6,7 +6,7 @@ from ...compile import kernel
 from ...records import BOX
 from ...vectors import Vec3, from_body, into_body
 from ..shape import Shape
-from .polyhedron import edge_of_facet, facet_along, feature_of_facet, put_loop
+from .polyhedron import box_row, edge_of_facet, facet_along, feature_of_facet, put_loop
 
 
 def make_support(spec):
@@ -41,7 +41,7 @@ def make_face(spec):
     """Return `kernel(body, n, hulls) -> (face, outward normal)`; face: of the unit box."""
 
     def box_face(body, n, hulls):
-        facet = facet_along(body, hulls.face_start.shape[0] - 2, n, hulls)
+        facet = facet_along(body, box_row(hulls), n, hulls)
         return facet.face, facet.normal
 
     return kernel(box_face, spec)
@@ -51,7 +51,7 @@ def make_feature(spec):
     """Return `kernel(body, centre, n, hulls, outline) -> Feature`."""
 
     def box_feature(body, centre, n, hulls, outline):
-        facet = facet_along(body, hulls.face_start.shape[0] - 2, n, hulls)
+        facet = facet_along(body, box_row(hulls), n, hulls)
         count = put_loop(body, facet, Vec3(body.hx, body.hy, body.hz), centre, hulls, outline)
         return feature_of_facet(facet, count, n, hulls, outline)
 
@@ -62,7 +62,7 @@ def make_edge(spec):
     """Return `kernel(body, centre, n, hulls, outline) -> Feature`: a line, or none."""
 
     def box_edge(body, centre, n, hulls, outline):
-        facet = facet_along(body, hulls.face_start.shape[0] - 2, n, hulls)
+        facet = facet_along(body, box_row(hulls), n, hulls)
         count = put_loop(body, facet, Vec3(body.hx, body.hy, body.hz), centre, hulls, outline)
         return edge_of_facet(facet, count, n, hulls, outline)
 

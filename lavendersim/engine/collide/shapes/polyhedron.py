@@ -29,6 +29,12 @@ class Facet(NamedTuple):
 
 
 @inner
+def box_row(hulls):
+    """Row of the box with half edges 1 in the tables: the last; `face_start` has one more."""
+    return hulls.face_start.shape[0] - 2
+
+
+@inner
 def facet_along(body, row, n, hulls):
     """Face of the polyhedron in `row` whose outward normal is nearest to n."""
     starts, normals = hulls.face_start, hulls.normals
