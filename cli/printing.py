@@ -18,6 +18,12 @@ def digits(value: float) -> str:
     return f"{value:.6g}"
 
 
+def digits_between(values: list[float]) -> str:
+    """Return the least and the greatest of some numbers; one where they are equal."""
+    low, high = min(values), max(values)
+    return digits(low) if low == high else f"{digits(low)} to {digits(high)}"
+
+
 def byte_size(count: float, digits: int = 3) -> str:
     """Return a number of bytes in the unit that suits it."""
     for unit, size in (("TB", 1e12), ("GB", 1e9), ("MB", 1e6), ("kB", 1e3)):
@@ -44,9 +50,7 @@ def summarise(verdicts: list[Any]) -> list[tuple[str, bool, str]]:
     lines = []
     for name, group in groups.items():
         passed = sum(verdict.passed for verdict in group)
-        values = [verdict.measured for verdict in group]
-        low, high = min(values), max(values)
-        shown = digits(low) if low == high else f"{digits(low)} to {digits(high)}"
+        shown = digits_between([verdict.measured for verdict in group])
         count = f" in {passed} of {len(group)} cells" if len(group) > 1 else ""
         text = f"{name}: {shown}, expected {_expected(group)}{count}"
         lines.append((name, passed == len(group), text))
@@ -91,9 +95,7 @@ def print_unjudged(finished: Any) -> None:
         numbers = [value for value in values if isinstance(value, float | int)]
         unit = kinds[experiment.measures[name].kind].unit
         if numbers:
-            low, high = min(numbers), max(numbers)
-            shown = digits(low) if low == high else f"{digits(low)} to {digits(high)}"
-            typer.echo(f"        {name}: {shown} {unit}".rstrip())
+            typer.echo(f"        {name}: {digits_between(numbers)} {unit}".rstrip())
         for reason in dict.fromkeys(value for value in values if isinstance(value, str)):
             typer.echo(f"        {name}: {reason}")
 

@@ -37,7 +37,7 @@ EXPONENT: Final = 0x7FF << 52  # of a float64 that is not finite all these bits 
 VARIES: Final = -1.0  # in place of a coefficient that changes with the motion
 
 
-def _larger(one, other):
+def nan_or_larger(one, other):
     """Return the larger of two numbers; NaN is larger than anything."""
     return one if one > other or one != one else other
 
@@ -60,7 +60,7 @@ def _no_numbers(words):
 
 
 def _make_sum(spec: Spec) -> Any:
-    larger, length, no_numbers = inner(_larger), inner(_length), inner(_no_numbers)
+    larger, length, no_numbers = inner(nan_or_larger), inner(_length), inner(_no_numbers)
 
     def sum_contacts(rows, places, scene, sums):
         steps, numbers, integers = rows

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import cache
 from math import hypot, sqrt
-from typing import Any, Final
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,12 +31,7 @@ from lavendersim.measures.step_passes import (
     MomentumRows,
 )
 
-EXPONENT: Final = 0x7FF << 52  # of a float64 that is not finite all these bits are set
-
-
-def _larger(one, other):
-    """Return the larger of two numbers; NaN is larger than anything."""
-    return one if one > other or one != one else other
+from .contact_sums_kernel import EXPONENT, nan_or_larger
 
 
 def _smaller(one, other):
@@ -103,7 +98,7 @@ def _make_imbalance(spec: Spec) -> Any:
 
 
 def _make_created(spec: Spec) -> Any:
-    larger, smaller = inner(_larger), inner(_smaller)
+    larger, smaller = inner(nan_or_larger), inner(_smaller)
 
     def balance_energy(rows, so_far, shares):
         kinetic, potential, stored, work, events, lifted, pulled = rows

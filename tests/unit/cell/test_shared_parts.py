@@ -9,25 +9,17 @@ from lavendersim.cell.shared_parts import shared
 from lavendersim.cell.surface import Surface
 from lavendersim.experiment import load_experiment_text
 from lavendersim.runner.cell_jobs import Prepared, prepare
+from tests.drop_config import SCENE
 
 FEW, MANY = 100, 400  # cells
 # 100,000 cells in 1.5 GB, of which 0.3 GB are the interpreter, numba and the kernels.
 MOST_BYTES = 12_000  # of a cell
 
-DROPS = """\
-scene:
-  bodies:
-    floor: {shape: {kind: plane}}
-    ball:
-      shape: {kind: sphere, radius: 0.1}
-      mass: 1.0
-      surface: {restitution: 0.5}
-      release: {above: floor, clearance: 1.0}
-numerics: {timestep: 1/240}
-duration: 1.0
+DROPS = f"""\
+{SCENE.replace("numerics: chapter", "numerics: {timestep: 1/240}")}duration: 1.0
 sweep:
-  mass: {path: scene.bodies.ball.mass, values: [MASSES]}
-  e: {path: scene.bodies.ball.surface.restitution, values: [0.1, 0.2, 0.3, 0.4]}
+  mass: {{path: scene.bodies.ball.mass, values: [MASSES]}}
+  e: {{path: scene.bodies.ball.surface.restitution, values: [0.1, 0.2, 0.3, 0.4]}}
 """
 
 
