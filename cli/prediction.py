@@ -27,9 +27,9 @@ def confirm(experiments: Sequence[Any], runs: Path, jobs: int, yes: bool) -> Non
     yes: nobody is asked.
     """
     from lavendersim.errors import UsageError
-    from lavendersim.runner.prediction import predicted
+    from lavendersim.runner.prediction import is_short, predicted
 
-    found = [predicted(experiment, runs, jobs) for experiment in experiments]
+    found = [predicted(one, runs, jobs) for one in experiments if not is_short(one, runs)]
     for one in found:
         if one.is_worth_saying:
             typer.echo(sentence_of(one), err=True)

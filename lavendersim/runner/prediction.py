@@ -21,6 +21,7 @@ PER_STEP: Final = 2.7e-6  # [s]
 PER_CONTACT: Final = 1.5e-6  # [s] and step
 PER_CELL: Final = 4e-3  # [s]
 TELLING: Final = 100  # cells whose contacts are counted; the others are taken to be like them
+MOST_CONTACTS: Final = 20  # of a body, by far
 WORTH_SAYING: Final = 60.0  # [s]
 LONGEST: Final = 3600.0  # [s] that nobody is asked about
 
@@ -49,6 +50,22 @@ class Prediction(NamedTuple):
     def is_worth_saying(self) -> bool:
         """Whether somebody would want to know it before."""
         return self.seconds > WORTH_SAYING or self.is_large
+
+
+def is_short(experiment: Experiment, root: Path) -> bool:
+    """Whether a run is certainly not worth a word: known at once, without expected contacts.
+
+    They are bounded by MOST_CONTACTS a body, as the bytes of `log_size` are.
+    """
+    configs = [cell.config for cell in experiment.cells()]
+    seconds = PER_CELL * len(configs) + sum(
+        config.steps * (PER_STEP + PER_CONTACT * MOST_CONTACTS * len(config.scene.bodies))
+        for config in configs
+    )
+    if seconds > min(WORTH_SAYING, LONGEST):
+        return False
+    free = shutil.disk_usage(existing(root)).free
+    return sum(map(most_bytes, experiment.cells())) <= MOST_OF_DISK * free
 
 
 def predicted(experiment: Experiment, root: Path, jobs: int = 1) -> Prediction:
