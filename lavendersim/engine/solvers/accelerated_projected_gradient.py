@@ -13,20 +13,18 @@ Without the shift (`friction_cone: convex`) it is the convex relaxation of the l
 
 from __future__ import annotations
 
-from math import sqrt
+from math import inf, sqrt
 from typing import Any, NamedTuple
 
 from ..compile import kernel
 from ..cone import project_cone
 from ..coupling import make_contact_velocity
-from ..effects import made_once
-from ..residual import make_residual
 from ..row_terms import row_terms
 from ..spec import Spec
 from . import step_bound
+from .iteration import Iteration
 from .jacobi import make_apply_changes
 from .solver import Solver
-from .sweep import make_report
 
 CONTACT_FIELDS = [
     *step_bound.CONTACT_FIELDS,
@@ -45,7 +43,7 @@ EASE, LEAST = 0.98, 1e-3
 # Round-off of a step's curvature, as a share [-].
 ROUND_OFF = 1e-9
 # Sweeps between two looks at the residual.
-LOOK = 8
+LOOK_EVERY = 8
 
 
 class StepSums(NamedTuple):
@@ -149,67 +147,63 @@ def make_shift(spec: Spec) -> Any:
     return kernel(shift, spec)
 
 
-def make(spec: Spec) -> Any:
-    """Return `kernel(system, workspace, params, counters, residual_rows)`.
+class Momentum(NamedTuple):
+    """What accelerated gradients carry, see `iteration.Carry`."""
 
-    Writes counters.sweeps, .residual [m/s], .residual_contact and .not_converged of this step.
-    """
-    record_residuals, record_residual = made_once(spec, "sweep_row")
+    aim: float
+    theta: float  # how much the metric is eased [-]
+    momentum: float  # Nesterov's t [-]
+    beta: float  # share of the last step that the next one begins with [-]
+
+
+def make(spec: Spec) -> Iteration:
+    """Return the sweeps: one projected gradient step of all contacts each."""
     shifts = row_terms(spec).frictional and spec.friction_cone != "convex"
-    report = make_report(spec)
-    residual, bound = make_residual(spec), step_bound.make_bound(spec)
+    bound = step_bound.make_bound(spec)
     begin, advance, apply_changes = make_begin(spec), make_advance(spec), make_apply_changes(spec)
     shift: Any = make_shift(spec) if shifts else None
 
-    def accelerated_projected_gradient(system, workspace, params, counters, residual_rows):
+    def prepare(system, workspace, params, counters):
         contacts, count, velocities = system.contacts, system.count, system.velocities
         bound(contacts, count, workspace)
         begin(contacts, count, velocities)
         if shifts:
             shift(contacts, count, velocities)
-        largest, worst = residual(contacts, count, velocities)
-        sweeps, measured = 0, True
-        if record_residuals:
-            record_residual(params, counters, residual_rows, 0, largest)
-        theta, momentum, beta = 1.0, 1.0, 0.0
-        while sweeps < params.sweeps:
-            if measured and (largest <= params.tolerance or largest != largest):
-                break
-            uphill, curvature, bound_curvature = 0.0, 0.0, 0.0
-            natural_map, shift_defect = 0.0, 0.0
-            for c in range(count):
-                own = advance(contacts[c], velocities, beta, theta)
-                uphill, curvature = uphill + own.uphill, curvature + own.curvature
-                bound_curvature += own.bound_curvature
-                natural_map += own.natural_map
-                shift_defect += own.shift_defect
-            apply_changes(contacts, count, velocities)
-            sweeps += 1
-            allowed = curvature <= theta * bound_curvature * (1.0 + ROUND_OFF)
-            theta = max(EASE * theta, LEAST) if allowed else min(theta / EASE**8, 1.0)
-            if uphill > 0.0 or not allowed:
-                momentum, beta = 1.0, 0.0
-            else:
-                longer = 0.5 * (1.0 + sqrt(1.0 + 4.0 * momentum * momentum))
-                momentum, beta = longer, (momentum - 1.0) / longer
-            if shifts:
-                if natural_map <= INEXACT * INEXACT * shift_defect:
-                    shift(contacts, count, velocities)
-            measured = record_residuals or sweeps % LOOK == 0
-            if measured:
-                largest, worst = residual(contacts, count, velocities)
-            if record_residuals:
-                record_residual(params, counters, residual_rows, sweeps, largest)
-        if not measured:
-            largest, worst = residual(contacts, count, velocities)
-        report(params, counters, sweeps, largest, worst)
+        return Momentum(params.tolerance, 1.0, 1.0, 0.0)
 
-    return kernel(accelerated_projected_gradient, spec)
+    def sweep_accelerated(system, workspace, params, counters, carry):
+        contacts, count, velocities = system.contacts, system.count, system.velocities
+        theta, momentum, beta = carry.theta, carry.momentum, carry.beta
+        uphill, curvature, bound_curvature = 0.0, 0.0, 0.0
+        natural_map, shift_defect = 0.0, 0.0
+        for c in range(count):
+            own = advance(contacts[c], velocities, beta, theta)
+            uphill, curvature = uphill + own.uphill, curvature + own.curvature
+            bound_curvature += own.bound_curvature
+            natural_map += own.natural_map
+            shift_defect += own.shift_defect
+        apply_changes(contacts, count, velocities)
+        allowed = curvature <= theta * bound_curvature * (1.0 + ROUND_OFF)
+        theta = max(EASE * theta, LEAST) if allowed else min(theta / EASE**8, 1.0)
+        if uphill > 0.0 or not allowed:
+            momentum, beta = 1.0, 0.0
+        else:
+            longer = 0.5 * (1.0 + sqrt(1.0 + 4.0 * momentum * momentum))
+            momentum, beta = longer, (momentum - 1.0) / longer
+        if shifts:
+            if natural_map <= INEXACT * INEXACT * shift_defect:
+                shift(contacts, count, velocities)
+        # A step may be short far from the solution: its changes say nothing.
+        return inf, Momentum(carry.aim, theta, momentum, beta)
+
+    return Iteration(
+        kernel(sweep_accelerated, spec), prepare=kernel(prepare, spec), look_every=LOOK_EVERY
+    )
 
 
 SOLVER = Solver(
     name="accelerated_projected_gradient",
-    make=make,
+    iteration=make,
     allocate=step_bound.allocate,
     contact_fields=CONTACT_FIELDS,
 )

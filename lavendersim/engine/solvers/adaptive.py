@@ -19,16 +19,16 @@ A solve that begins near its solution is over after a sweep and pays for nothing
 from __future__ import annotations
 
 from math import inf, log
-from typing import Any
+from typing import Any, NamedTuple
 
 from ..compile import kernel
-from ..effects import made_once
 from ..residual import make_residual
 from ..spec import Spec
+from .iteration import Iteration
 from .newton.envelope import allocate_envelope
 from .newton.method import make_newton
 from .solver import Solver, no_workspace
-from .sweep import make_report, make_sweep
+from .sweep import make_sweep
 
 # Sweeps between two looks at how fast they converge.
 LOOK = 8
@@ -54,88 +54,85 @@ def allocate(spec: Spec, bodies: int, contacts: int) -> Any:
     return allocate_envelope(bodies, contacts, min(rows * (rows + 1) // 2, MOST_ENTRIES))
 
 
-def make(spec: Spec):
-    """Return `kernel(system, workspace, params, counters, residual_rows)`.
+class Adaption(NamedTuple):
+    """What the choice between sweeps and Newton's method carries, see `iteration.Carry`."""
 
-    Writes counters.sweeps, .residual [m/s], .residual_contact and .not_converged of this step.
-    """
-    record_residuals, record_residual = made_once(spec, "sweep_row")
-    sweep, report = make_sweep(spec), make_report(spec)
-    residual = make_residual(spec)
-    uses_newton = spec.has("newton")
-    newton: Any = make_newton(spec) if uses_newton else None
+    aim: float
+    sweeps: int  # made
+    greatest: float  # change of the last sweep [m/s]
+    earlier: float  # the same at the last look; 0: there was none [m/s]
+    look: int  # sweeps made at the next look at how fast they converge
+    pause: int  # sweeps between two of them
+    sticking_guess: bool  # see `newton.method`
+
+
+def make(spec: Spec) -> Iteration:
+    """Return the sweeps, and Newton's method between them."""
+    sweep = make_sweep(spec)
     chooses = spec.has("least_norm")
 
-    def adaptive(system, workspace, params, counters, residual_rows):
-        contacts, count, velocities = system.contacts, system.count, system.velocities
-        largest, worst = 0.0, -1
-        if record_residuals:
-            largest, worst = residual(contacts, count, velocities)
-            record_residual(params, counters, residual_rows, 0, largest)
-        sweeps, look, pause = 0, LOOK, LOOK
+    def prepare(system, workspace, params, counters):
         # None is a number below 0, whose logarithm would be no number of sweeps.
-        tolerance = max(params.tolerance, 0.0)
-        sharp = SHARPNESS * tolerance
-        aim = sharp if counters.sharpen == 1 else tolerance
+        aim = max(params.tolerance, 0.0)
+        if counters.sharpen == 1:
+            aim *= SHARPNESS
         counters.sharpen = 0
-        measured, sticking_guess = False, True
-        earlier = 0.0
-        last = params.sweeps - LAST
-        while sweeps < params.sweeps:
-            greatest = sweep(system, params)
-            sweeps += 1
-            if chooses:
-                counters.unchosen += greatest
-            measured = False
-            if record_residuals:
-                largest, worst = residual(contacts, count, velocities)
-                measured = True
-                record_residual(params, counters, residual_rows, sweeps, largest)
-            # The residual is evaluated when the sweep's own changes say that it may be small.
-            over = greatest == 0.0 or greatest != greatest
-            if over or greatest <= aim:
-                if not measured:
-                    largest, worst = residual(contacts, count, velocities)
-                    measured = True
-                if over or largest <= aim:
-                    break
-            if uses_newton:
-                ends = False
-                if sweeps == last and sweeps > LOOK:
-                    if not measured:
-                        largest, worst = residual(contacts, count, velocities)
-                        measured = True
-                    ends = not largest <= tolerance
-                if sweeps >= look or ends:
-                    look = sweeps + pause
-                    if earlier > 0.0 or ends:
-                        # Sweeps still needed at the rate of the last LOOK of them.
-                        needed = MOST_SWEEPS
-                        if aim > 0.0 and greatest < earlier and not ends:
-                            rate = log(greatest / earlier) / pause
-                            needed = min(log(aim / greatest) / rate, MOST_SWEEPS)
-                        if sweeps + needed > params.sweeps:
-                            needed = max(needed, WORTH)
-                        allowance = VISIT * count * needed
-                        steps, sticking_guess = newton(
-                            system, workspace, sharp, allowance, sticking_guess
-                        )
-                        counters.newton_steps += steps
-                        measured = False
-                        if steps > 0:
-                            if chooses:
-                                counters.unchosen = inf
-                            counters.sharpen = 1
-                            aim = tolerance
-                            # Where this was not the last call, sweeps must prepare the next one.
-                            greatest, pause = 0.0, 4 * pause
-                    earlier = greatest
-        if not measured:
-            largest, worst = residual(contacts, count, velocities)
-        report(params, counters, sweeps, largest, worst)
+        return Adaption(aim, 0, 0.0, 0.0, LOOK, LOOK, True)
 
-    return kernel(adaptive, spec)
+    def sweep_and_count(system, workspace, params, counters, carry):
+        greatest = sweep(system, params)
+        if chooses:
+            counters.unchosen += greatest
+        made = carry.sweeps + 1
+        return greatest, Adaption(
+            carry.aim, made, greatest, carry.earlier, carry.look, carry.pause, carry.sticking_guess
+        )
+
+    return Iteration(
+        kernel(sweep_and_count, spec),
+        prepare=kernel(prepare, spec),
+        proceed=_make_proceed(spec) if spec.has("newton") else None,
+    )
+
+
+def _make_proceed(spec: Spec) -> Any:
+    newton, residual, chooses = make_newton(spec), make_residual(spec), spec.has("least_norm")
+
+    def proceed(system, workspace, params, counters, carry):
+        tolerance = max(params.tolerance, 0.0)
+        sweeps, greatest, aim = carry.sweeps, carry.greatest, carry.aim
+        pause, sticking_guess = carry.pause, carry.sticking_guess
+        ends = False
+        if sweeps == params.sweeps - LAST and sweeps > LOOK:
+            largest, _ = residual(system.contacts, system.count, system.velocities)
+            ends = not largest <= tolerance
+        if sweeps < carry.look and not ends:
+            return carry
+        look = sweeps + pause
+        if carry.earlier > 0.0 or ends:
+            # Sweeps still needed at the rate of the last LOOK of them.
+            needed = MOST_SWEEPS
+            if aim > 0.0 and greatest < carry.earlier and not ends:
+                rate = log(greatest / carry.earlier) / pause
+                needed = min(log(aim / greatest) / rate, MOST_SWEEPS)
+            if sweeps + needed > params.sweeps:
+                needed = max(needed, WORTH)
+            allowance = VISIT * system.count * needed
+            steps, sticking_guess = newton(
+                system, workspace, SHARPNESS * tolerance, allowance, sticking_guess
+            )
+            counters.newton_steps += steps
+            if steps > 0:
+                if chooses:
+                    counters.unchosen = inf
+                counters.sharpen = 1
+                aim = tolerance
+                # Where this was not the last call, sweeps must prepare the next one.
+                greatest, pause = 0.0, 4 * pause
+        return Adaption(aim, sweeps, greatest, greatest, look, pause, sticking_guess)
+
+    return kernel(proceed, spec)
 
 
 # By what bodies allow, it chooses whether to factorise: a matrix alone says nothing of bodies.
-SOLVER = Solver(name="adaptive", make=make, allocate=allocate, solves_matrix=False)
+SOLVER = Solver(name="adaptive", iteration=make, allocate=allocate, solves_matrix=False)

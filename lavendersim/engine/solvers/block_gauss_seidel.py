@@ -12,8 +12,9 @@ from typing import Any
 
 from ..spec import Spec
 from . import projected_gauss_seidel
+from .iteration import Iteration
 from .packed.layout import allocate_packed
-from .packed.sweep import can_pack, make_solve_packed
+from .packed.sweep import can_pack, make_packed_iteration
 from .solver import Solver, no_workspace
 
 
@@ -24,14 +25,11 @@ def allocate(spec: Spec, bodies: int, contacts: int) -> Any:
     return allocate_packed(bodies, contacts, eight=False)
 
 
-def make(spec: Spec) -> Any:
-    """Return `kernel(system, workspace, params, counters, residual_rows)`.
-
-    Writes counters.sweeps, .residual [m/s], .residual_contact and .not_converged of this step.
-    """
+def make(spec: Spec) -> Iteration:
+    """Return the sweeps over packed contacts, or those of `projected_gauss_seidel`."""
     if can_pack(spec):
-        return make_solve_packed(spec, eight=False)
+        return make_packed_iteration(spec, eight=False)
     return projected_gauss_seidel.make(spec)
 
 
-SOLVER = Solver(name="block_gauss_seidel", make=make, allocate=allocate)
+SOLVER = Solver(name="block_gauss_seidel", iteration=make, allocate=allocate)

@@ -13,14 +13,12 @@ from typing import Any
 from ..compile import kernel
 from ..cone import make_project_section, project_cone
 from ..coupling import make_add_impulse, make_contact_velocity
-from ..effects import made_once
-from ..residual import make_residual
 from ..row_terms import row_terms
 from ..spec import Spec
 from ..spin_block import make_solve_spin, resists_turning
 from . import step_bound
+from .iteration import Carry, Iteration
 from .solver import Solver
-from .sweep import make_report
 
 CONTACT_FIELDS = [
     *step_bound.CONTACT_FIELDS,
@@ -29,7 +27,7 @@ CONTACT_FIELDS = [
     ("change_2", "f8"),
 ]
 # Sweeps between two looks at the residual.
-LOOK = 8
+LOOK_EVERY = 8
 
 
 def make_update(spec: Spec) -> Any:
@@ -98,53 +96,36 @@ def make_apply_changes(spec: Spec) -> Any:
     return kernel(apply_changes, spec)
 
 
-def make(spec: Spec) -> Any:
-    """Return `kernel(system, workspace, params, counters, residual_rows)`.
-
-    Writes counters.sweeps, .residual [m/s], .residual_contact and .not_converged of this step.
-    """
-    record_residuals, record_residual = made_once(spec, "sweep_row")
-    report = make_report(spec)
-    residual, bound = make_residual(spec), step_bound.make_bound(spec)
+def make(spec: Spec) -> Iteration:
+    """Return the sweeps: all contacts look, then all act."""
+    bound = step_bound.make_bound(spec)
     update, apply_changes = make_update(spec), make_apply_changes(spec)
 
-    def jacobi(system, workspace, params, counters, residual_rows):
-        contacts, count, velocities = system.contacts, system.count, system.velocities
-        bound(contacts, count, workspace)
-        largest, worst = residual(contacts, count, velocities)
-        sweeps, measured = 0, True
-        if record_residuals:
-            record_residual(params, counters, residual_rows, 0, largest)
-        while sweeps < params.sweeps:
-            if measured and largest <= params.tolerance:
-                break
-            greatest = 0.0
-            for c in range(count):
-                change = update(contacts[c], velocities)
-                # A NaN is greater than anything.
-                if change > greatest or change != change:
-                    greatest = change
-            turned = apply_changes(contacts, count, velocities)
-            if turned > greatest or turned != turned:
-                greatest = turned
-            sweeps += 1
-            measured = record_residuals or greatest <= params.tolerance or sweeps % LOOK == 0
-            if measured:
-                largest, worst = residual(contacts, count, velocities)
-            if record_residuals:
-                record_residual(params, counters, residual_rows, sweeps, largest)
-            if greatest == 0.0 or greatest != greatest:
-                break
-        if not measured:
-            largest, worst = residual(contacts, count, velocities)
-        report(params, counters, sweeps, largest, worst)
+    def prepare(system, workspace, params, counters):
+        bound(system.contacts, system.count, workspace)
+        return Carry(params.tolerance)
 
-    return kernel(jacobi, spec)
+    def sweep_at_once(system, workspace, params, counters, carry):
+        contacts, count, velocities = system.contacts, system.count, system.velocities
+        greatest = 0.0
+        for c in range(count):
+            change = update(contacts[c], velocities)
+            # A NaN is greater than anything.
+            if change > greatest or change != change:
+                greatest = change
+        turned = apply_changes(contacts, count, velocities)
+        if turned > greatest or turned != turned:
+            greatest = turned
+        return greatest, carry
+
+    return Iteration(
+        kernel(sweep_at_once, spec), prepare=kernel(prepare, spec), look_every=LOOK_EVERY
+    )
 
 
 SOLVER = Solver(
     name="jacobi",
-    make=make,
+    iteration=make,
     allocate=step_bound.allocate,
     contact_fields=CONTACT_FIELDS,
 )

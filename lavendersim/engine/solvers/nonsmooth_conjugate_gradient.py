@@ -14,14 +14,15 @@ thing done is always a sweep, so impulses end inside their cones.
 
 from __future__ import annotations
 
+from typing import Any, NamedTuple
+
 from ..compile import kernel
 from ..coupling import make_add_impulse
-from ..effects import made_once
-from ..residual import make_residual
 from ..row_terms import row_terms
 from ..spec import Spec
+from .iteration import Iteration
 from .solver import Solver
-from .sweep import make_report, make_sweep
+from .sweep import make_sweep
 
 CONTACT_FIELDS = [
     ("start_n", "f8"),  # impulse before the sweep [N s]
@@ -59,75 +60,72 @@ def make_move_on(spec: Spec):
     return kernel(move_on, spec)
 
 
-def make(spec: Spec):
-    """Return `kernel(system, workspace, params, counters, residual_rows)`.
+class Directions(NamedTuple):
+    """What conjugate gradients carry, see `iteration.Carry`."""
 
-    Writes counters.sweeps, .residual [m/s], .residual_contact and .not_converged of this step.
+    aim: float
+    sweeps: int  # made
+    squared: float  # |g|^2 of the sweep before the last one that a direction followed [m^2 kg/s^2]
+
+
+def make_follow(spec: Spec) -> Any:
+    """Return `kernel(contacts, count, velocities, previous, fresh) -> squared`.
+
+    Moves along the direction of the sweep that was, and returns |g|^2 of it; previous: of the one
+    before, which there is not when the direction is fresh.
     """
     friction = row_terms(spec).frictional
-    record_residuals, record_residual = made_once(spec, "sweep_row")
-    sweep, report = make_sweep(spec), make_report(spec)
-    residual = make_residual(spec)
     move_on = make_move_on(spec)
 
-    def nonsmooth_conjugate_gradient(system, workspace, params, counters, residual_rows):
-        contacts, count, velocities = system.contacts, system.count, system.velocities
-        largest, worst = 0.0, -1
-        previous, fresh = 0.0, True
-        if record_residuals:
-            largest, worst = residual(contacts, count, velocities)
-            record_residual(params, counters, residual_rows, 0, largest)
-        sweeps = 0
-        measured = False
-        while sweeps < params.sweeps:
-            directed = sweeps >= PLAIN_SWEEPS
-            if directed:
-                for c in range(count):
-                    contact = contacts[c]
-                    contact.start_n = contact.lambda_n
-                    if friction:
-                        contact.start_1, contact.start_2 = contact.lambda_1, contact.lambda_2
-            greatest = sweep(system, params)
-            sweeps += 1
-            measured = False
-            if record_residuals:
-                largest, worst = residual(contacts, count, velocities)
-                measured = True
-                record_residual(params, counters, residual_rows, sweeps, largest)
-            # The residual is evaluated when the sweep's own changes say that it may be small.
-            if greatest <= params.tolerance or greatest == 0.0 or greatest != greatest:
-                if not measured:
-                    largest, worst = residual(contacts, count, velocities)
-                    measured = True
-                if largest <= params.tolerance or greatest == 0.0 or greatest != greatest:
-                    break
-            if directed:
-                squared = 0.0
-                for c in range(count):
-                    contact = contacts[c]
-                    change = contact.lambda_n - contact.start_n
-                    squared += change * change * contact.k_n
-                    if friction:
-                        one = contact.lambda_1 - contact.start_1
-                        two = contact.lambda_2 - contact.start_2
-                        squared += (one * one + two * two) * contact.k_t
-                share = 0.0 if fresh else squared / previous
-                if share > 1.0:
-                    share = 0.0
-                if sweeps < params.sweeps:
-                    for c in range(count):
-                        contact = contacts[c]
-                        if fresh:
-                            contact.path_n = 0.0
-                            if friction:
-                                contact.path_1, contact.path_2 = 0.0, 0.0
-                        move_on(contact, contacts, velocities, share)
-                previous, fresh = squared, False
-        if not measured:
-            largest, worst = residual(contacts, count, velocities)
-        report(params, counters, sweeps, largest, worst)
+    def follow(contacts, count, velocities, previous, fresh):
+        squared = 0.0
+        for c in range(count):
+            contact = contacts[c]
+            change = contact.lambda_n - contact.start_n
+            squared += change * change * contact.k_n
+            if friction:
+                one = contact.lambda_1 - contact.start_1
+                two = contact.lambda_2 - contact.start_2
+                squared += (one * one + two * two) * contact.k_t
+        share = 0.0 if fresh else squared / previous
+        if share > 1.0:
+            share = 0.0
+        for c in range(count):
+            contact = contacts[c]
+            if fresh:
+                contact.path_n = 0.0
+                if friction:
+                    contact.path_1, contact.path_2 = 0.0, 0.0
+            move_on(contact, contacts, velocities, share)
+        return squared
 
-    return kernel(nonsmooth_conjugate_gradient, spec)
+    return kernel(follow, spec)
 
 
-SOLVER = Solver(name="nonsmooth_conjugate_gradient", make=make, contact_fields=CONTACT_FIELDS)
+def make(spec: Spec) -> Iteration:
+    """Return the sweeps, each but the first ones after a step along the last direction."""
+    friction = row_terms(spec).frictional
+    sweep, follow = make_sweep(spec), make_follow(spec)
+
+    def prepare(system, workspace, params, counters):
+        return Directions(params.tolerance, 0, 0.0)
+
+    def sweep_directed(system, workspace, params, counters, carry):
+        contacts, count = system.contacts, system.count
+        made, squared = carry.sweeps, carry.squared
+        if made > PLAIN_SWEEPS:
+            fresh = made == PLAIN_SWEEPS + 1
+            squared = follow(contacts, count, system.velocities, squared, fresh)
+        if made >= PLAIN_SWEEPS:
+            for c in range(count):
+                contact = contacts[c]
+                contact.start_n = contact.lambda_n
+                if friction:
+                    contact.start_1, contact.start_2 = contact.lambda_1, contact.lambda_2
+        greatest = sweep(system, params)
+        return greatest, Directions(carry.aim, made + 1, squared)
+
+    return Iteration(kernel(sweep_directed, spec), prepare=kernel(prepare, spec))
+
+
+SOLVER = Solver(name="nonsmooth_conjugate_gradient", iteration=make, contact_fields=CONTACT_FIELDS)

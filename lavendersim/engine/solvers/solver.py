@@ -10,6 +10,7 @@ import numpy as np
 
 from ..records import Field
 from ..spec import Spec
+from .iteration import Iteration, make_solve
 
 
 class ContactSystem(NamedTuple):
@@ -31,16 +32,22 @@ def no_workspace(spec: Spec, bodies: int, contacts: int) -> Any:
 class Solver:
     """One solver of the step's contact problem.
 
-    make: (spec) -> kernel(system, workspace, params, counters, residual_rows), which changes the
-        impulses of a ContactSystem and, consistent with them, its velocities, and reports the solve
-        in the counters (`sweep.make_report`).
+    iteration: (spec) -> the kernels that are its own, see `iteration`.
     allocate: (spec, bodies, contacts) -> the arrays that the kernel works in, a record of arrays.
     contact_fields: columns of the contact record that the solver keeps.
     solves_matrix: whether the kernel of the operator `matrix` (`coupling`) is one, too.
     """
 
     name: str
-    make: Callable[[Spec], Any]
+    iteration: Callable[[Spec], Iteration]
     allocate: Callable[[Spec, int, int], Any] = no_workspace
     contact_fields: Sequence[Field] = ()
     solves_matrix: bool = True
+
+    def make(self, spec: Spec) -> Any:
+        """Return `kernel(system, workspace, params, counters, residual_rows)`.
+
+        It changes the impulses of a ContactSystem and, consistent with them, its velocities, and
+        reports the solve in the counters.
+        """
+        return make_solve(spec, self.name, self.iteration(spec))

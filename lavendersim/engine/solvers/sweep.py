@@ -1,4 +1,4 @@
-"""What solvers by sweeps share: one sweep over the contacts, and the report of a solve."""
+"""One sweep over the contacts in their order, as solvers by sweeps share it."""
 
 from __future__ import annotations
 
@@ -33,20 +33,3 @@ def make_sweep(spec: Spec):
         return greatest
 
     return kernel(sweep, spec)
-
-
-def make_report(spec: Spec):
-    """Return `kernel(params, counters, sweeps, residual, worst)`: what the step's record tells."""
-    asked = spec.tolerance
-
-    def report(params, counters, sweeps, residual, worst):
-        counters.sweeps = sweeps
-        counters.residual = residual
-        counters.residual_contact = worst
-        counters.not_converged = 0
-        if asked:
-            if params.tolerance >= 0.0:
-                if not residual <= params.tolerance:
-                    counters.not_converged = 1
-
-    return kernel(report, spec)

@@ -13,15 +13,13 @@ it.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 from ...compile import kernel
-from ...effects import made_once
-from ...residual import make_residual
 from ...row_terms import row_terms
 from ...spec import Spec
 from ...spin_block import resists_turning
-from ..sweep import make_report
+from ..iteration import Iteration
 from .lane_memory import (
     put_bodies,
     put_body,
@@ -184,45 +182,22 @@ def make_sweep_packed(spec: Spec, eight: bool) -> Any:
     return kernel(sweep_by_eight if eight else sweep_singly, spec)
 
 
-def make_solve_packed(spec: Spec, eight: bool) -> Any:
-    """Return the solver's kernel, see `solvers`; for a `spec` that `can_pack`."""
-    record_residuals, record_residual = made_once(spec, "sweep_row")
-    stop_early = spec.tolerance
+class PackedCarry(NamedTuple):
+    """What sweeps over packed contacts carry, see `iteration.Carry`."""
+
+    aim: float
+    slots: int  # contacts, idle lanes included
+
+
+def make_packed_iteration(spec: Spec, eight: bool) -> Iteration:
+    """Return the sweeps over packed contacts; for a `spec` that `can_pack`."""
     pack, unpack = make_pack(spec, eight), make_unpack(spec, eight)
     sweep = make_sweep_packed(spec, eight)
-    residual, report = make_residual(spec), make_report(spec)
 
-    def solve_packed(system, workspace, params, counters, residual_rows):
-        contacts, count, velocities = system.contacts, system.count, system.velocities
-        largest, worst = 0.0, -1
-        if record_residuals:
-            largest, worst = residual(contacts, count, velocities)
-            record_residual(params, counters, residual_rows, 0, largest)
-        slots = pack(system, workspace)
-        sweeps, measured = 0, False
-        while sweeps < params.sweeps:
-            greatest = sweep(workspace, slots)
-            sweeps += 1
-            measured = record_residuals
-            if record_residuals:
-                unpack(system, workspace)
-                largest, worst = residual(contacts, count, velocities)
-                record_residual(params, counters, residual_rows, sweeps, largest)
-            # One that changes nothing is the last. A NaN is no change here; the residual has it.
-            if greatest == 0.0:
-                break
-            if stop_early:
-                # The residual is evaluated when the sweep's own changes say that it may be small.
-                if greatest <= params.tolerance:
-                    if not measured:
-                        unpack(system, workspace)
-                        largest, worst = residual(contacts, count, velocities)
-                        measured = True
-                    if largest <= params.tolerance:
-                        break
-        if not measured:
-            unpack(system, workspace)
-            largest, worst = residual(contacts, count, velocities)
-        report(params, counters, sweeps, largest, worst)
+    def prepare(system, workspace, params, counters):
+        return PackedCarry(params.tolerance, pack(system, workspace))
 
-    return kernel(solve_packed, spec)
+    def sweep_packed(system, workspace, params, counters, carry):
+        return sweep(workspace, carry.slots), carry
+
+    return Iteration(kernel(sweep_packed, spec), prepare=kernel(prepare, spec), finish=unpack)

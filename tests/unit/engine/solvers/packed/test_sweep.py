@@ -182,4 +182,4 @@ def test_contacts_that_are_no_such_blocks_are_swept_as_records(solver: str) -> N
     ):
         declared = SOLVERS[solver]
         assert declared.allocate(spec, 2, 2) == ()
-        assert declared.make(spec).py_func.__name__ == "projected_gauss_seidel"
+        assert declared.iteration(spec).sweep.py_func.__name__ == "sweep_in_order"

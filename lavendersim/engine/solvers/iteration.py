@@ -1,0 +1,128 @@
+"""The loop of every contact solver: sweep, measure the residual, stop, count and record.
+
+    prepare                     the rows, and what the method carries from sweep to sweep
+    sweep                       all contacts once, until the residual is at its aim
+    proceed                     between two sweeps: what a method does beside them
+    finish                      impulses and velocities back to where the residual reads them
+A solver is an `Iteration`, what is its own of these; measuring, stopping, counting and recording
+stand here for all of them. The residual costs about a sweep, so it is measured only where the
+changes of a sweep, or so many sweeps, say that it may be small enough. A sweep that changes nothing
+is the last one: those left would change nothing either. So is one that ends in a NaN.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+from ..compile import kernel
+from ..effects import made_once
+from ..residual import make_residual
+from ..spec import Spec
+
+
+class Carry(NamedTuple):
+    """What a method carries from sweep to sweep; those that carry more have a tuple of their own.
+
+    Every one has this field.
+    """
+
+    aim: float  # residual at which the solve ends [m/s]; negative: none
+
+
+class Iteration(NamedTuple):
+    """What is a solver's own: kernels, composed for a spec, and when they have to be looked at.
+
+    sweep: kernel(system, workspace, params, counters, carry) -> (greatest change [m/s], carry);
+        0 or NaN end the solve, infinity says nothing of the changes.
+    prepare: kernel(system, workspace, params, counters) -> carry; None: a `Carry`.
+    proceed: kernel(system, workspace, params, counters, carry) -> carry, after every sweep that
+        did not end the solve, the last one too; None: nothing.
+    finish: kernel(system, workspace), before the residual is measured; None: the sweeps keep
+        impulses in the records of contacts, and the velocities consistent with them.
+    look_every: sweeps between two looks at the residual, one at the start included; 0: only the
+        sweeps' changes say when. Methods whose changes may be small far from the solution need it.
+    """
+
+    sweep: Any
+    prepare: Any = None
+    proceed: Any = None
+    finish: Any = None
+    look_every: int = 0
+
+
+def make_solve(spec: Spec, name: str, iteration: Iteration) -> Any:
+    """Return `kernel(system, workspace, params, counters, residual_rows)`, called `name`.
+
+    Writes counters.sweeps, .residual [m/s], .residual_contact and .not_converged of this step.
+    """
+    record_residuals, record_residual = made_once(spec, "sweep_row")
+    residual, report = make_residual(spec), _make_report(spec)
+    prepare = _make_carry(spec) if iteration.prepare is None else iteration.prepare
+    sweep, proceed, finish = iteration.sweep, iteration.proceed, iteration.finish
+    proceeds, finishes = proceed is not None, finish is not None
+    every, looks = iteration.look_every, iteration.look_every > 0
+
+    def solve(system, workspace, params, counters, residual_rows):
+        contacts, count, velocities = system.contacts, system.count, system.velocities
+        carry = prepare(system, workspace, params, counters)
+        largest, worst, measured = 0.0, -1, False
+        if looks or record_residuals:
+            largest, worst = residual(contacts, count, velocities)
+            measured = True
+        if record_residuals:
+            record_residual(params, counters, residual_rows, 0, largest)
+        sweeps, ends = 0, False
+        if looks:
+            ends = largest <= carry.aim or largest != largest
+        while sweeps < params.sweeps and not ends:
+            greatest, carry = sweep(system, workspace, params, counters, carry)
+            sweeps += 1
+            over = greatest == 0.0 or greatest != greatest
+            look = over or greatest <= carry.aim
+            if looks:
+                look = look or record_residuals or sweeps % every == 0
+            measured = look or record_residuals
+            if measured:
+                if finishes:
+                    finish(system, workspace)
+                largest, worst = residual(contacts, count, velocities)
+            if record_residuals:
+                record_residual(params, counters, residual_rows, sweeps, largest)
+            if look:
+                ends = over or largest <= carry.aim or largest != largest
+            if proceeds:
+                if not ends:
+                    carry = proceed(system, workspace, params, counters, carry)
+                    measured = False
+        if not measured:
+            if finishes:
+                finish(system, workspace)
+            largest, worst = residual(contacts, count, velocities)
+        report(params, counters, sweeps, largest, worst)
+
+    solve.__name__ = name  # as `lavender plan` lists them
+    solve.__qualname__ += f"_{name}"
+    return kernel(solve, spec)
+
+
+def _make_carry(spec: Spec) -> Any:
+    def carry_nothing(system, workspace, params, counters):
+        return Carry(params.tolerance)
+
+    return kernel(carry_nothing, spec)
+
+
+def _make_report(spec: Spec) -> Any:
+    asked = spec.tolerance
+
+    def report(params, counters, sweeps, residual, worst):
+        counters.sweeps = sweeps
+        counters.residual = residual
+        counters.residual_contact = worst
+        counters.not_converged = 0
+        if asked:
+            if params.tolerance >= 0.0:
+                if not residual <= params.tolerance:
+                    counters.not_converged = 1
+
+    return kernel(report, spec)
