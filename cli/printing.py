@@ -34,9 +34,11 @@ def byte_size(count: float, digits: int = 3) -> str:
 
 
 def time_span(seconds: float) -> str:
-    """Return a time by the clock on the wall, to the second."""
+    """Return a time by the clock on the wall: its two largest units, at least seconds."""
     whole = round(seconds)
     hours, minutes, rest = whole // 3600, whole // 60 % 60, whole % 60
+    if hours >= 48:
+        return f"{hours // 24} days {hours % 24} h"
     if hours:
         return f"{hours} h {minutes} min"
     return f"{minutes} min {rest} s" if minutes else f"{rest} s"
