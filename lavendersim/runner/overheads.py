@@ -10,11 +10,9 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Callable, Sequence
-from math import ceil, comb
+from math import ceil
 from pathlib import Path
-from typing import Any, Final, NamedTuple
-
-import numpy as np
+from typing import Any, Final
 
 from lavendersim.durable_files import write_whole
 from lavendersim.engine.spec import Spec
@@ -22,6 +20,7 @@ from lavendersim.errors import ConfigError
 from lavendersim.experiment import Experiment
 from lavendersim.experiment.cell import Cell
 from lavendersim.geometry.bodies import is_movable
+from lavendersim.measures.spread import Spread
 from lavendersim.quantities.found import nearest, quoted
 from lavendersim.quantities.scalars import exact
 
@@ -31,44 +30,6 @@ from .overhead_pairs import EnginePair, names_of_effects, pairs_of
 from .timed_engine import Diverged, Timed, clock
 
 Report = Callable[[str, int, int], None]
-OUTSIDE: Final = 0.025  # largest probability that the median lies beyond either end of the interval
-
-
-class Spread(NamedTuple):
-    """Some samples in five numbers; low and high hold their true median in 19 of 20 cases."""
-
-    median: float
-    lower_quartile: float
-    upper_quartile: float
-    low: float
-    high: float
-
-    @classmethod
-    def of(cls, samples: Sequence[float]) -> Spread:
-        """Return the spread of samples."""
-        ordered = np.sort(np.asarray(samples, dtype=np.float64))
-        beyond = samples_beyond(len(ordered))
-        middle, lower, upper = np.quantile(ordered, [0.5, 0.25, 0.75]).tolist()
-        return cls(middle, lower, upper, float(ordered[beyond]), float(ordered[-1 - beyond]))
-
-    def per(self, units: float) -> dict[str, float]:
-        """Return the numbers of one unit."""
-        return {name: value / units for name, value in self._asdict().items()}
-
-
-def samples_beyond(count: int) -> int:
-    """Return how many samples may be left out at either end of an interval for the median.
-
-    At most k of n samples lie below the median with probability sum_(i<=k) C(n, i) / 2^n, whatever
-    their distribution; with fewer than six samples even all of them hold it less often than asked.
-    """
-    beyond, below = 0, 0.0
-    for k in range(count):
-        below += comb(count, k) / 2**count
-        if below > OUTSIDE:
-            break
-        beyond = k
-    return beyond
 
 
 def check_overheads(experiment: Experiment) -> None:

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from lavendersim.arrow import Table
     from lavendersim.cell import CellConfig
     from lavendersim.experiment import Experiment
+    from lavendersim.measures.cost_table import CostTable
     from lavendersim.trace import ExpectedLog, Trace
 
 CONFIG, RESOLVED = "config.yaml", "resolved.json"
@@ -223,12 +224,21 @@ class Run:
 
         return html_of(self)
 
-    def cost(self) -> dict[str, Any] | None:
-        """Return what accuracy costs, where it was taken; UsageError while it is not finished."""
+    def cost(self) -> CostTable | None:
+        """Return what accuracy costs, where it was taken; UsageError while it is not finished.
+
+        TraceError where its table is damaged.
+        """
         self.results()
-        if not (self.path / COST).exists():
+        path = self.path / COST
+        if not path.exists():
             return None
-        return renamed(read_table(self.path / COST, "rows"), "rows")
+        from lavendersim.measures.cost_table import CostTable  # late: see `RunCell.trace`
+
+        try:
+            return CostTable.of(renamed(read_table(path, "rows"), "rows"))
+        except ValueError as error:
+            raise TraceError(f"{path}: damaged: {error}") from None
 
 
 def is_run_directory(path: Path) -> bool:

@@ -163,13 +163,6 @@ def test_a_sample_is_the_same_steps_every_time() -> None:
     assert whole.motion == timed.motion  # where an uninterrupted run ends, to the bit
 
 
-def test_intervals_hold_the_median_in_nineteen_of_twenty_cases() -> None:
-    # P(at most k of n fair coins show heads) <= 1/40: by the table of the binomial distribution,
-    # n = 9: 10/512 for k = 1, 46/512 for k = 2; n = 6: 1/64 for k = 0, 7/64 for k = 1; n = 25:
-    # k = 7 gives 0.0216, k = 8 0.0539.
-    assert [overheads.samples_beyond(n) for n in (1, 3, 6, 9, 25)] == [0, 0, 0, 1, 7]
-
-
 def test_a_run_leaves_its_overheads_in_json_and_csv(tmp_path: Path) -> None:
     config = tmp_path / "ball.yaml"
     config.write_text(BALL.replace("repeats: 6", "repeats: 2"))
