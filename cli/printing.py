@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-from typing import Any
+from typing import Any, NamedTuple
 
 import typer
 
@@ -44,8 +44,15 @@ def time_span(seconds: float) -> str:
     return f"{minutes} min {rest} s" if minutes else f"{rest} s"
 
 
-def summarise(verdicts: list[Any]) -> list[tuple[str, bool, str]]:
-    """Return (name, passed, text) per expectation, its cells counted together."""
+class ClaimLine(NamedTuple):
+    """What became of one expectation in all its cells."""
+
+    passed: bool
+    text: str
+
+
+def summarise(verdicts: list[Any]) -> list[ClaimLine]:
+    """Return a line for each expectation, its cells counted together."""
     groups: dict[str, list[Any]] = {}
     for verdict in verdicts:
         groups.setdefault(verdict.name, []).append(verdict)
@@ -55,7 +62,7 @@ def summarise(verdicts: list[Any]) -> list[tuple[str, bool, str]]:
         shown = digits_between([verdict.measured for verdict in group])
         count = f" in {passed} of {len(group)} cells" if len(group) > 1 else ""
         text = f"{name}: {shown}, expected {_expected(group)}{count}"
-        lines.append((name, passed == len(group), text))
+        lines.append(ClaimLine(passed == len(group), text))
     return lines
 
 
@@ -78,11 +85,16 @@ def mark(passed: bool) -> str:
 def print_summary(finished: Any) -> None:
     """Print what became of a run: one line per expectation, failures in full."""
     print_costs(finished)
-    for _, passed, text in summarise(finished.verdicts):
-        typer.echo(f"  {mark(passed)}  {text}")
+    print_claims(finished.verdicts)
     print_unjudged(finished)
     print_failures(finished)
     typer.echo(f"  logs  {finished.run.path}")
+
+
+def print_claims(verdicts: list[Any]) -> None:
+    """Print a line for each expectation."""
+    for passed, text in summarise(verdicts):
+        typer.echo(f"  {mark(passed)}  {text}")
 
 
 def print_unjudged(finished: Any) -> None:
