@@ -6,12 +6,10 @@ A number that a setting does not have (it diverged, it was not timed) is None.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from functools import cache
 from typing import Any
 
-from pydantic import TypeAdapter, ValidationError
-
 from lavendersim.measures.spread import Spread
+from lavendersim.measures.typed_tables import plain, read_as
 
 
 @dataclass(frozen=True)
@@ -117,19 +115,8 @@ class CostTable:
     def of(cls, data: dict[str, Any]) -> CostTable:
         """Return a table that was read. ValueError where something in it is missing or wrong."""
         given = {"begin": data.get("from"), **data}
-        try:
-            return _adapter().validate_python(given)
-        except ValidationError as error:
-            first = error.errors(include_url=False)[0]
-            place = ".".join(map(str, first["loc"]))
-            raise ValueError(f"{place}: {first['msg'].lower()}") from None
+        return read_as(cls, given)
 
     def as_data(self) -> dict[str, Any]:
         """Return the table as it is written."""
-        data: dict[str, Any] = _adapter().dump_python(self, mode="json")
-        return {"from" if key == "begin" else key: value for key, value in data.items()}
-
-
-@cache
-def _adapter() -> TypeAdapter[CostTable]:
-    return TypeAdapter(CostTable)
+        return {"from" if key == "begin" else key: value for key, value in plain(self).items()}

@@ -34,9 +34,9 @@ class Spread:
         middle, lower, upper = np.quantile(ordered, [0.5, 0.25, 0.75]).tolist()
         return cls(middle, lower, upper, float(ordered[beyond]), float(ordered[-1 - beyond]))
 
-    def per(self, units: float) -> dict[str, float]:
-        """Return the numbers of one unit."""
-        return {name: value / units for name, value in asdict(self).items()}
+    def per(self, units: float) -> Spread:
+        """Return the spread of one unit."""
+        return Spread(**{name: value / units for name, value in asdict(self).items()})
 
 
 def samples_beyond(count: int) -> int:

@@ -69,8 +69,8 @@ class Cones(NamedTuple):
     own: np.ndarray  # indices of the diagonal blocks
 
 
-class Iterate(NamedTuple):
-    """Impulses and velocities, each in its cone."""
+class Interior(NamedTuple):
+    """Impulses and velocities, each inside its cone."""
 
     x: np.ndarray  # (n, 3)
     z: np.ndarray  # (n, 3)
@@ -79,7 +79,7 @@ class Iterate(NamedTuple):
 class Advanced(NamedTuple):
     """What one step came to."""
 
-    there: Iterate | None  # None: the step has no finite direction
+    there: Interior | None  # None: the step has no finite direction
     length: float  # [-] share of the direction that was taken
     cost: float  # of the factorisation
 
@@ -101,7 +101,7 @@ def interior_point(p: ScaledProblem, budget: Budget, strategy: Strategy = LONG_S
             best, least = impulses, residual
         if least <= budget.tolerance or budget.spent or stuck > PATIENCE:
             break
-        step = _advance(p, cones, Iterate(x, z), unit, shift_frozen, strategy)
+        step = _advance(p, cones, Interior(x, z), unit, shift_frozen, strategy)
         budget.step(step.cost, least)
         if step.there is None:
             break
@@ -125,7 +125,7 @@ def _on_circular_cones(p: ScaledProblem, frictional: np.ndarray) -> Cones:
 def _advance(
     p: ScaledProblem,
     cones: Cones,
-    here: Iterate,
+    here: Interior,
     unit: float,
     shift_frozen: bool,
     strategy: Strategy,
@@ -146,10 +146,10 @@ def _advance(
     factor = factorise(p, blocks, cones.keep)
     inverse = MIRROR * x / np.maximum(_determinant(x), TINY)[:, None]
 
-    def direction(centring: float) -> Iterate:
+    def direction(centring: float) -> Interior:
         target = centring * mean * inverse - z
         dx = factor.solve(np.einsum("nij,nj->ni", C, target) - F)
-        return Iterate(dx, (target - np.einsum("nij,nj->ni", H, dx)) * cones.keep)
+        return Interior(dx, (target - np.einsum("nij,nj->ni", H, dx)) * cones.keep)
 
     straight, centred = direction(0.0), direction(1.0)
     if not all(np.isfinite(d).all() for d in (*straight, *centred)):
@@ -166,7 +166,7 @@ def _advance(
             1.0, strategy.share * _to_boundary(x, dx), strategy.share * _to_boundary(z, dz)
         )
         for _ in range(TRIALS):
-            new = Iterate(x + length * dx, z + length * dz)
+            new = Interior(x + length * dx, z + length * dz)
             if _is_centred(*new, strategy.centred):
                 break
             length *= BACK

@@ -12,7 +12,7 @@ import io
 from collections.abc import Callable, Sequence
 from math import ceil
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 from lavendersim.durable_files import write_whole
 from lavendersim.engine.spec import Spec
@@ -20,6 +20,7 @@ from lavendersim.errors import ConfigError
 from lavendersim.experiment import Experiment
 from lavendersim.experiment.cell import Cell
 from lavendersim.geometry.bodies import is_movable
+from lavendersim.measures.overhead_table import OverheadRow, OverheadTable, OverheadTiming
 from lavendersim.measures.spread import Spread
 from lavendersim.quantities.found import nearest, quoted
 from lavendersim.quantities.scalars import exact
@@ -54,7 +55,7 @@ def _named(experiment: Experiment) -> tuple[str, ...]:
 
 def take_overheads(
     experiment: Experiment, workers: int = 1, report: Report = lambda what, done, total: None
-) -> dict[str, Any]:
+) -> OverheadTable:
     """Return what the effects of an experiment's only cell cost, as plain data.
 
     workers: processes that compile. report: called with what is done, how far, and of how many.
@@ -128,7 +129,7 @@ def _table(
     samples: dict[str, list[tuple[float, float]]],
     seconds: dict[Spec, float],
     window: tuple[int, int, int],
-) -> dict[str, Any]:
+) -> OverheadTable:
     bodies = sum(is_movable(body) for body in cell.config.scene.bodies.values())
     # Contacts of the scene's own motion: of an engine whose effects the scene requires, or idle.
     own = next(
@@ -141,16 +142,8 @@ def _table(
         0.0,
     )
     first, steps, repeats = window
-    return {
-        "first_step": first,
-        "steps": steps,
-        "repeats": repeats,
-        "clock": clock()[0],
-        "processor": processor(),
-        "bodies": bodies,
-        "contacts_per_step": own,
-        "rows": [_row(pair, timed, samples[pair.effect], seconds, bodies, own) for pair in pairs],
-    }
+    rows = [_row(pair, timed, samples[pair.effect], seconds, bodies, own) for pair in pairs]
+    return OverheadTable(first, steps, repeats, clock()[0], processor(), bodies, own, rows)
 
 
 def _row(
@@ -160,36 +153,37 @@ def _row(
     seconds: dict[Spec, float],
     bodies: int,
     contacts: float,
-) -> dict[str, Any]:
+) -> OverheadRow:
     # Below one contact a step the cost is that of looking for it, which every body has.
     by_contact = pair.of_contacts and contacts >= 1.0
     units = contacts if by_contact else max(bodies, 1)
-    row: dict[str, Any] = {
-        "effect": pair.effect,
-        "required": pair.required,
-        "reason": pair.reason,
-        "unit": "contact" if by_contact else "body",
-        "units": units,
-        "on_top_of": list(pair.on_top_of),
-        "why_not": pair.why_not,
-    }
-    if pair.off is None or pair.on is None:
-        return row
-    off, on = timed[pair.off], timed[pair.on]
-    difference = Spread.of([after - before for before, after in samples])
-    return row | {
-        "same_motion": off.motion == on.motion,
-        "contacts_off": off.contacts,
-        "contacts_on": on.contacts,
-        "compile_s_off": seconds[pair.off],
-        "compile_s_on": seconds[pair.on],
-        "off": Spread.of([before for before, _ in samples]).per(units),  # ns per unit and step
-        "on": Spread.of([after for _, after in samples]).per(units),
-        "overhead": difference.per(units),
-        "within_noise": difference.low <= 0.0 <= difference.high,
-        "samples_off": [before for before, _ in samples],  # ns per step
-        "samples_on": [after for _, after in samples],
-    }
+    timing = None
+    if pair.off is not None and pair.on is not None:
+        off, on = timed[pair.off], timed[pair.on]
+        difference = Spread.of([after - before for before, after in samples])
+        timing = OverheadTiming(
+            same_motion=off.motion == on.motion,
+            contacts_off=off.contacts,
+            contacts_on=on.contacts,
+            compile_s_off=seconds[pair.off],
+            compile_s_on=seconds[pair.on],
+            off=Spread.of([before for before, _ in samples]).per(units),
+            on=Spread.of([after for _, after in samples]).per(units),
+            overhead=difference.per(units),
+            within_noise=difference.low <= 0.0 <= difference.high,
+            samples_off=[before for before, _ in samples],
+            samples_on=[after for _, after in samples],
+        )
+    return OverheadRow(
+        effect=pair.effect,
+        required=pair.required,
+        reason=pair.reason,
+        unit="contact" if by_contact else "body",
+        units=units,
+        on_top_of=list(pair.on_top_of),
+        why_not=pair.why_not,
+        timing=timing,
+    )
 
 
 COLUMNS: Final = (
@@ -199,15 +193,15 @@ COLUMNS: Final = (
 )
 
 
-def write_overheads(path: Path, overheads: dict[str, Any]) -> None:
+def write_overheads(path: Path, overheads: OverheadTable) -> None:
     """Write a table of overheads as CSV: medians and ends of intervals, ns per unit and step."""
     text = io.StringIO()
     writer = csv.DictWriter(text, COLUMNS, restval="", extrasaction="ignore")
     writer.writeheader()
-    for row in overheads["rows"]:
-        overhead = row.get("overhead", {})
-        spreads = {name: row[name] for name in ("off", "on", "overhead") if name in row}
-        medians = {name: spread["median"] for name, spread in spreads.items()}
-        ends = {name: overhead[name] for name in ("low", "high") if name in overhead}
-        writer.writerow({**row, "on_top_of": " ".join(row["on_top_of"]), **ends, **medians})
+    for row, data in zip(overheads.rows, overheads.as_data()["rows"], strict=True):
+        numbers: dict[str, float] = {}
+        if (timing := row.timing) is not None:
+            numbers = {name: getattr(timing, name).median for name in ("off", "on", "overhead")}
+            numbers |= {"low": timing.overhead.low, "high": timing.overhead.high}
+        writer.writerow({**data, "on_top_of": " ".join(row.on_top_of), **numbers})
     write_whole(path, text.getvalue(), flush=False)

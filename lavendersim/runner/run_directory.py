@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from lavendersim.cell import CellConfig
     from lavendersim.experiment import Experiment
     from lavendersim.measures.cost_table import CostTable
+    from lavendersim.measures.overhead_table import OverheadTable
     from lavendersim.trace import ExpectedLog, Trace
 
 CONFIG, RESOLVED = "config.yaml", "resolved.json"
@@ -223,6 +224,20 @@ class Run:
         from lavendersim.figures.notebook import html_of  # late: see `RunCell.trace`
 
         return html_of(self)
+
+    def overheads(self) -> OverheadTable | None:
+        """Return what each effect costs, where it was taken; UsageError while it is not finished.
+
+        TraceError where its table is damaged.
+        """
+        if (data := self.results().get("overheads")) is None:
+            return None
+        from lavendersim.measures.overhead_table import OverheadTable  # late: see `RunCell.trace`
+
+        try:
+            return OverheadTable.of(data)
+        except (ValueError, KeyError, TypeError) as error:
+            raise TraceError(f"{self.path / RESULTS}: damaged: overheads: {error}") from None
 
     def cost(self) -> CostTable | None:
         """Return what accuracy costs, where it was taken; UsageError while it is not finished.

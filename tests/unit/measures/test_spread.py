@@ -16,4 +16,4 @@ def test_the_spread_of_samples_is_that_of_the_ordered_ones() -> None:
     # of nine the interval leaves one out at either end
     found = Spread.of([9.0, 1.0, 8.0, 2.0, 7.0, 3.0, 6.0, 4.0, 5.0])
     assert found == Spread(median=5.0, lower_quartile=3.0, upper_quartile=7.0, low=2.0, high=8.0)
-    assert found.per(2.0)["high"] == 4.0
+    assert found.per(2.0).high == 4.0
