@@ -18,14 +18,8 @@ from typing import Any, Final, NamedTuple
 from lavendersim.durable_files import write_whole
 from lavendersim.errors import ConfigError, UsageError
 from lavendersim.experiment import Experiment
-from lavendersim.experiment.models.cost import FEW, FEWEST_REPEATS
-from lavendersim.experiment.sweeps.cost_grid import (
-    KNOBS,
-    Setting,
-    fragment_of,
-    over_the_grid,
-    settings_of,
-)
+from lavendersim.experiment.models.cost import FEW, FEWEST_REPEATS, KNOBS
+from lavendersim.experiment.sweeps.cost_grid import Setting, fragment_of, over_the_grid, settings_of
 from lavendersim.measures.cost_table import CostRow, CostTable, CostTruth, ErrorSource
 from lavendersim.measures.spread import Spread
 
