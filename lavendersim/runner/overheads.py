@@ -97,7 +97,7 @@ def _timed(
 def _without_diverged(pair: EnginePair, diverged: set[Spec]) -> EnginePair:
     for which, spec in (("without", pair.off), ("with", pair.on)):
         if spec in diverged:
-            return pair._replace(off=None, on=None, why_not=f"the scene flies apart {which} it")
+            return pair._replace(off=None, on=None, why_not=f"the scene diverges {which} it")
     return pair
 
 
