@@ -4,9 +4,15 @@ from __future__ import annotations
 
 import json
 import re
-from typing import Any, NamedTuple
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import typer
+
+if TYPE_CHECKING:
+    from rich.console import Console
 
 FAILURES_SHOWN = 10
 DAMAGED = 3  # exit code of a verb that met a log which is not whole
@@ -176,6 +182,22 @@ def print_failures(finished: Any) -> None:
         typer.echo("\n".join(f"  {line}" for line in verdict.message.splitlines()))
     if len(failed) > FAILURES_SHOWN:
         typer.echo(f"  and {len(failed) - FAILURES_SHOWN} more failed, see results.json")
+
+
+@contextmanager
+def by_rich(width: int | None, of_a_pipe: int) -> Iterator[Console]:
+    """Give a console, and print what it was given: wrapped to the terminal, without its spaces.
+
+    width: columns in place of the terminal's; of_a_pipe: where there is none.
+    """
+    from rich.console import Console
+
+    wrapped = sys.stdout.isatty() or width is not None
+    console = Console(width=width if wrapped else of_a_pipe, highlight=False, markup=False)
+    with console.capture() as captured:
+        yield console
+    for line in captured.get().splitlines():
+        typer.echo(line.rstrip())
 
 
 def as_json(data: Any) -> None:
