@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from lavender_cli import printing, progress
 from lavender_cli.run import Configs, Jobs, Runs, Set, Strict, Sweep, overrides_of
+
+if TYPE_CHECKING:
+    from lavendersim.measures.cost_table import CostRow, CostTable
 
 HEADER = ("setting", "error", "worst at", "order", "residual m/s", "per simulated s", "quartiles")
 MARKS = {"specified": "specified", "chapter": "the chapter's", "grid": ""}
@@ -55,17 +58,18 @@ def cost(
         raise UsageError(f"{configs[0]}: no config in this folder has a section cost")
     for experiment in experiments:
         check_cost(experiment, repeats)
-    tables = []
+    tables, missed = [], False
     for experiment in experiments:
         with progress.reporting(experiment.name) as shown:
             costed = take_cost(experiment, runs, jobs, shown, sought, repeats)
         run = costed.finished.run
+        missed = missed or not all(target.reached for target in costed.table.targets)
         figures = []
         if plot:
             from lavendersim.figures import draw
 
             figures = draw(run, run.path / "figures")
-        tables.append({**costed.table, "run": run.path, "figures": figures})
+        tables.append({**costed.table.as_data(), "run": run.path, "figures": figures})
         if as_json:
             continue
         # With targets given, stdout is what is to be pasted, and nothing else.
@@ -77,37 +81,37 @@ def cost(
             _print_fragments(costed.table, several=len(experiments) * len(sought) > 1)
     if as_json:
         printing.as_json(tables)
-    if sought and not all(target["reached"] for table in tables for target in table["targets"]):
+    if sought and missed:
         raise typer.Exit(1)
 
 
-def _print_fragments(table: dict[str, Any], several: bool) -> None:
-    for target in table["targets"]:
-        if target["reached"]:
+def _print_fragments(table: CostTable, several: bool) -> None:
+    for target in table.targets:
+        if target.reached:
             if several:
-                typer.echo(f"# {table['experiment']}: {target['sentence']}")
-            typer.echo(target["fragment"], nl=False)
+                typer.echo(f"# {table.experiment}: {target.sentence}")
+            typer.echo(target.fragment, nl=False)
 
 
-def print_table(table: dict[str, Any], aside: bool = False) -> None:
+def print_table(table: CostTable, aside: bool = False) -> None:
     """Print a row a setting and a sentence a target; aside: to stderr."""
     for line in lines_of(table):
         typer.echo(line, err=aside)
 
 
-def lines_of(table: dict[str, Any]) -> list[str]:
+def lines_of(table: CostTable) -> list[str]:
     """Return the table and the sentences as lines."""
     from lavendersim.runner.cost_targets import percent
 
-    rows = table["rows"]
+    rows = table.rows
     cells = [HEADER, *(_cells(row) for row in rows)]
     # an empty column is left out
     shown = [column for column in range(len(HEADER)) if any(row[column] for row in cells[1:])]
     widths = {column: max(len(row[column]) for row in cells) for column in shown}
     lines = [
-        f"{typer.style(table['experiment'], bold=True)}: error of {table['error']['measure']}, "
-        f"{_truth(table)}; physics per simulated second, medians of {table['repeats']} interleaved "
-        f"repeats with quartiles; {table['machine']['processor']}"
+        f"{typer.style(table.experiment, bold=True)}: error of {table.error.measure}, "
+        f"{_truth(table)}; physics per simulated second, medians of {table.repeats} interleaved "
+        f"repeats with quartiles; {table.machine['processor']}"
     ]
     for text, row in zip(cells, [None, *rows], strict=True):
         columns = [
@@ -116,57 +120,56 @@ def lines_of(table: dict[str, Any]) -> list[str]:
         notes = ", ".join(_notes(row)) if row is not None else ""
         lines.append(f"  {'  '.join(columns)}  {notes}".rstrip())
     lines.append("  * none is cheaper and as good")
-    for law in dict.fromkeys(row["law"] for row in rows):
-        which = [row for row in rows if row["law"] == law]
-        least = min((row["error"] for row in which if row["error"] is not None), default=None)
+    for law in dict.fromkeys(row.law for row in rows):
+        which = [row for row in rows if row.law == law]
+        least = min((row.error for row in which if row.error is not None), default=None)
         best = "" if least is None else f", at best {percent(least)}"
         lines.append(f"  law: {law} ({len(which)} settings{best})")
-    compiled = sorted({row["compile_s"] for row in rows})
+    compiled = sorted({row.compile_s for row in rows})
     lines.append(
         f"  compile time, once and in no cost: {compiled[0]:.1f} to {compiled[-1]:.1f} s an engine"
     )
-    return lines + [f"{target['sentence']}" for target in table["targets"]]
+    return lines + [f"{target.sentence}" for target in table.targets]
 
 
-def _truth(table: dict[str, Any]) -> str:
+def _truth(table: CostTable) -> str:
     from lavendersim.runner.cost_targets import rate_of
 
-    if table["truth"] is None:
+    if table.truth is None:
         return "against its truth"
-    truth = table["truth"]
-    return (
-        f"against itself at {rate_of(truth['timestep'])}, solved to "
-        f"{truth['worst_residual']:.1g} m/s"
-    )
+    solved = _residual(table.truth.worst_residual, ".1g")
+    return f"against itself at {rate_of(table.truth.timestep)}, solved to {solved}"
 
 
-def _cells(row: dict[str, Any]) -> tuple[str, ...]:
+def _residual(number: float | None, form: str) -> str:
+    return "no finite residual" if number is None else f"{number:{form}} m/s"
+
+
+def _cells(row: CostRow) -> tuple[str, ...]:
     from lavendersim.runner.cost_targets import effort_of, percent, short_time, steps_of
 
-    spread = row["ns_per_second"]
-    name, start = f"{row['solver']:28} {row['preset']:7}", "warm" if row["warm_start"] else "cold"
+    spread = row.ns_per_second
+    name, start = f"{row.solver:28} {row.preset:7}", "warm" if row.warm_start else "cold"
     return (
         f"{name} {steps_of(row):>13} {effort_of(row):>12} {start}",
-        "none" if row["error"] is None else percent(row["error"]),
-        row["worst_at"],
-        "" if row["order"] is None else f"{row['order']:.1f}",
-        f"{row['worst_residual']:.1e}" if row["worst_residual"] is not None else "not finite",
-        "" if spread is None else short_time(spread["median"]),
+        "none" if row.error is None else percent(row.error),
+        row.worst_at,
+        "" if row.order is None else f"{row.order:.1f}",
+        f"{row.worst_residual:.1e}" if row.worst_residual is not None else "not finite",
+        "" if spread is None else short_time(spread.median),
         ""
         if spread is None
-        else f"{short_time(spread['lower_quartile'])} to {short_time(spread['upper_quartile'])}",
+        else f"{short_time(spread.lower_quartile)} to {short_time(spread.upper_quartile)}",
     )
 
 
-def _notes(row: dict[str, Any]) -> list[str]:
-    notes = ["*"] if row["front"] else []
-    notes += [MARKS[row["role"]]] if MARKS[row["role"]] else []
-    if row["failed"]:
-        return [*notes, f"FAILED: {row['failed']}"]
-    if row["not_converged_steps"]:
+def _notes(row: CostRow) -> list[str]:
+    notes = ["*"] if row.front else []
+    notes += [MARKS[row.role]] if MARKS[row.role] else []
+    if row.failed:
+        return [*notes, f"FAILED: {row.failed}"]
+    if row.not_converged_steps:
         from lavendersim.runner.cost_errors import not_converged_steps
 
-        notes.append(
-            not_converged_steps(row["not_converged_steps"], row["steps"], row["tolerance"])
-        )
+        notes.append(not_converged_steps(row.not_converged_steps, row.steps, row.tolerance))
     return notes

@@ -32,8 +32,7 @@ def judge(
         printing.as_json(judged.table())
     else:
         typer.echo(f"{typer.style(opened.name, bold=True)}  {opened.path}")
-        for _, passed, text in printing.summarise(judged.verdicts):
-            typer.echo(f"  {printing.mark(passed)}  {text}")
+        printing.print_claims(judged.verdicts)
         printing.print_failures(judged)
     printing.report_damage(judged.damaged)
     if judged.damaged:

@@ -2,25 +2,28 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import typer
+
+if TYPE_CHECKING:
+    from lavendersim.measures.overhead_table import OverheadRow, OverheadTiming
 
 HEADER = ("effect", "required", "off", "on", "overhead", "interval", "compile off/on s", "")
 
 
 def print_table(run: Any) -> None:
     """Print what each effect costs, where the run has overheads; nothing where it has none."""
-    overheads = run.results().get("overheads")
+    overheads = run.overheads()
     if overheads is None:
         return
     typer.echo(
-        f"  overheads in ns per body (/b) or contact (/c) and step: {overheads['bodies']} movable "
-        f"{'body' if overheads['bodies'] == 1 else 'bodies'}, {overheads['contacts_per_step']:.3g} "
-        f"contacts a step, {overheads['steps']} steps; medians of {overheads['repeats']} repeats, "
-        f"interval: where the median lies in 19 of 20 cases; {overheads['processor']}"
+        f"  overheads in ns per body (/b) or contact (/c) and step: {overheads.bodies} movable "
+        f"{'body' if overheads.bodies == 1 else 'bodies'}, {overheads.contacts_per_step:.3g} "
+        f"contacts a step, {overheads.steps} steps; medians of {overheads.repeats} repeats, "
+        f"interval: where the median lies in 19 of 20 cases; {overheads.processor}"
     )
-    rows = [HEADER, *(_cells(row) for row in overheads["rows"])]
+    rows = [HEADER, *(_cells(row) for row in overheads.rows)]
     widths = [max(len(row[column]) for row in rows if len(row) > 3) for column in range(7)]
     for row in rows:
         if len(row) == 3:  # no overhead, and why
@@ -30,30 +33,30 @@ def print_table(run: Any) -> None:
         typer.echo(f"  {row[0]:{widths[0]}}  {row[1]:{widths[1]}}  {numbers}  {row[7]}".rstrip())
 
 
-def _cells(row: dict[str, Any]) -> tuple[str, ...]:
-    required = "yes" if row["required"] else "no"
-    if row["why_not"]:
-        return (row["effect"], required, row["why_not"])
-    overhead = row["overhead"]
+def _cells(row: OverheadRow) -> tuple[str, ...]:
+    required = "yes" if row.required else "no"
+    if (timing := row.timing) is None:
+        return (row.effect, required, row.why_not)
+    overhead = timing.overhead
     return (
-        row["effect"],
+        row.effect,
         required,
-        _short(row["off"]["median"]),
-        _short(row["on"]["median"]),
-        f"{_short(overhead['median'])} /{row['unit'][0]}",
-        f"{_short(overhead['low'])} to {_short(overhead['high'])}",
-        f"{row['compile_s_off']:.1f}/{row['compile_s_on']:.1f}",
-        ", ".join(_notes(row)),
+        _short(timing.off.median),
+        _short(timing.on.median),
+        f"{_short(overhead.median)} /{row.unit[0]}",
+        f"{_short(overhead.low)} to {_short(overhead.high)}",
+        f"{timing.compile_s_off:.1f}/{timing.compile_s_on:.1f}",
+        ", ".join(_notes(row, timing)),
     )
 
 
-def _notes(row: dict[str, Any]) -> list[str]:
-    notes = ["within noise"] if row["within_noise"] else []
-    if not row["same_motion"]:
-        contacts = f"{row['contacts_off']:.3g} and {row['contacts_on']:.3g} contacts a step"
+def _notes(row: OverheadRow, timing: OverheadTiming) -> list[str]:
+    notes = ["within noise"] if timing.within_noise else []
+    if not timing.same_motion:
+        contacts = f"{timing.contacts_off:.3g} and {timing.contacts_on:.3g} contacts a step"
         notes.append(f"another motion without it: {contacts}")
-    if row["on_top_of"]:
-        notes.append(f"on top of {', '.join(row['on_top_of'])}")
+    if row.on_top_of:
+        notes.append(f"on top of {', '.join(row.on_top_of)}")
     return notes
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -80,11 +79,7 @@ def _about(size: int) -> str:
 
 def write(explained: Explanation, title: str, width: int | None = None) -> None:
     """Print one plan, wrapped to the terminal; a pipe gets whole lines."""
-    from rich.console import Console
-
-    wrapped = sys.stdout.isatty() or width is not None
-    console = Console(width=width if wrapped else UNWRAPPED, highlight=False, markup=False)
-    with console.capture() as captured:
+    with printing.by_rich(width, UNWRAPPED) as console:
         console.print(title, style="bold")
         if (mistake := explained.choices["mistake"]) in explained.spec["effects"]:
             console.print(f"study-only: {mistake}, a deliberate error", style="bold yellow")
@@ -105,8 +100,6 @@ def write(explained: Explanation, title: str, width: int | None = None) -> None:
         ]
         console.print("choices that one engine has", style="bold")
         console.print(_pairs([*laws, ("digest", explained.digest)]))
-    for line in captured.get().splitlines():
-        typer.echo(line.rstrip())
 
 
 def _table(parts: list[ExplanationItem], heading: str) -> Table:

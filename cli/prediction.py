@@ -33,12 +33,12 @@ def confirm(experiments: Sequence[Any], runs: Path, jobs: int, yes: bool) -> Non
     for one in found:
         if one.is_worth_saying:
             typer.echo(sentence_of(one), err=True)
-    much = [one for one in found if one.is_long or one.is_large]
+    much = [one for one in found if one.is_long or one.space.is_large]
     if not much or yes:
         return
     which = ", ".join(one.name for one in much)
     why = "more than an hour" if any(one.is_long for one in much) else ""
-    if any(one.is_large for one in much):
+    if any(one.space.is_large for one in much):
         why += " and " * bool(why) + "more than a tenth of the free disk"
     if not _somebody_answers():
         raise UsageError(f"{which}: {why}; nothing has begun: say --yes, or set {VARIABLE}=1")
@@ -49,16 +49,10 @@ def confirm(experiments: Sequence[Any], runs: Path, jobs: int, yes: bool) -> Non
 def sentence_of(one: Prediction) -> str:
     """Return what a run will take, in words."""
     cells = f"{one.cells:,} cell{'s' * (one.cells != 1)}, {one.steps:,} steps"
-    size = "" if one.size is None else f", about {printing.byte_size(one.size, digits=2)} of logs"
-    free = f" ({printing.byte_size(one.free, digits=2)} are free)" if one.is_large else ""
-    return f"{one.name}: {cells}{size}{free}, about {_time(one.seconds)}"
-
-
-def _time(seconds: float) -> str:
-    for unit, name in ((86400.0, "days"), (3600.0, "hours"), (60.0, "minutes")):
-        if seconds >= 1.5 * unit:
-            return f"{seconds / unit:.2g} {name}"
-    return f"{seconds:.2g} s"
+    size, free = one.space
+    logs = "" if size is None else f", about {printing.byte_size(size, digits=2)} of logs"
+    there = f" ({printing.byte_size(free, digits=2)} are free)" if one.space.is_large else ""
+    return f"{one.name}: {cells}{logs}{there}, about {printing.time_span(one.seconds)}"
 
 
 def _somebody_answers() -> bool:

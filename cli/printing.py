@@ -4,9 +4,15 @@ from __future__ import annotations
 
 import json
 import re
-from typing import Any
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import typer
+
+if TYPE_CHECKING:
+    from rich.console import Console
 
 FAILURES_SHOWN = 10
 DAMAGED = 3  # exit code of a verb that met a log which is not whole
@@ -34,16 +40,25 @@ def byte_size(count: float, digits: int = 3) -> str:
 
 
 def time_span(seconds: float) -> str:
-    """Return a time by the clock on the wall, to the second."""
+    """Return a time by the clock on the wall: its two largest units, at least seconds."""
     whole = round(seconds)
     hours, minutes, rest = whole // 3600, whole // 60 % 60, whole % 60
+    if hours >= 48:
+        return f"{hours // 24} days {hours % 24} h"
     if hours:
         return f"{hours} h {minutes} min"
     return f"{minutes} min {rest} s" if minutes else f"{rest} s"
 
 
-def summarise(verdicts: list[Any]) -> list[tuple[str, bool, str]]:
-    """Return (name, passed, text) per expectation, its cells counted together."""
+class ClaimLine(NamedTuple):
+    """What became of one expectation in all its cells."""
+
+    passed: bool
+    text: str
+
+
+def summarise(verdicts: list[Any]) -> list[ClaimLine]:
+    """Return a line for each expectation, its cells counted together."""
     groups: dict[str, list[Any]] = {}
     for verdict in verdicts:
         groups.setdefault(verdict.name, []).append(verdict)
@@ -53,7 +68,7 @@ def summarise(verdicts: list[Any]) -> list[tuple[str, bool, str]]:
         shown = digits_between([verdict.measured for verdict in group])
         count = f" in {passed} of {len(group)} cells" if len(group) > 1 else ""
         text = f"{name}: {shown}, expected {_expected(group)}{count}"
-        lines.append((name, passed == len(group), text))
+        lines.append(ClaimLine(passed == len(group), text))
     return lines
 
 
@@ -76,11 +91,16 @@ def mark(passed: bool) -> str:
 def print_summary(finished: Any) -> None:
     """Print what became of a run: one line per expectation, failures in full."""
     print_costs(finished)
-    for _, passed, text in summarise(finished.verdicts):
-        typer.echo(f"  {mark(passed)}  {text}")
+    print_claims(finished.verdicts)
     print_unjudged(finished)
     print_failures(finished)
     typer.echo(f"  logs  {finished.run.path}")
+
+
+def print_claims(verdicts: list[Any]) -> None:
+    """Print a line for each expectation."""
+    for passed, text in summarise(verdicts):
+        typer.echo(f"  {mark(passed)}  {text}")
 
 
 def print_unjudged(finished: Any) -> None:
@@ -162,6 +182,22 @@ def print_failures(finished: Any) -> None:
         typer.echo("\n".join(f"  {line}" for line in verdict.message.splitlines()))
     if len(failed) > FAILURES_SHOWN:
         typer.echo(f"  and {len(failed) - FAILURES_SHOWN} more failed, see results.json")
+
+
+@contextmanager
+def by_rich(width: int | None, of_a_pipe: int) -> Iterator[Console]:
+    """Give a console, and print what it was given: wrapped to the terminal, without its spaces.
+
+    width: columns in place of the terminal's; of_a_pipe: where there is none.
+    """
+    from rich.console import Console
+
+    wrapped = sys.stdout.isatty() or width is not None
+    console = Console(width=width if wrapped else of_a_pipe, highlight=False, markup=False)
+    with console.capture() as captured:
+        yield console
+    for line in captured.get().splitlines():
+        typer.echo(line.rstrip())
 
 
 def as_json(data: Any) -> None:

@@ -158,6 +158,7 @@ def run(
                     resume=resume,
                     tags=tags or (),
                     executor=workers,
+                    is_predicted=not resume,
                 )
             good = good and finished.good
             printing.warn_of_not_converged(finished)

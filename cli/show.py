@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import shlex
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 import typer
 
@@ -58,9 +58,9 @@ def show(
             typer.echo(f"{name}  {text}")
     if experiment.options.solver is not None:
         typer.echo(f"solver  {experiment.options.solver}, instead of the config's")
-    plans, damaged = plans_of(opened.cells)
-    for cells, metadata in plans:
-        print_plan(cells, metadata, len(opened.cells))
+    logged = plans_of(opened.cells)
+    for plan in logged.plans:
+        print_plan(plan, len(opened.cells))
     steps = sum(row["steps"] for row in results["cells"])
     logging = sum(row["steps"] * row["logging_us_per_step"] for row in results["cells"])
     compiling = f"compile {results.get('compile_s', float('nan')):.1f} s"
@@ -78,7 +78,7 @@ def show(
     typer.echo("checks")
     for verdict in results["checks"]:
         typer.echo(f"  {printing.mark(verdict['passed'])}  {verdict['node']}")
-    _end(damaged)
+    _end(logged.damaged)
 
 
 def _show_cell(opened: Run, number: int, as_json: bool) -> None:
@@ -106,14 +106,25 @@ def _end(damaged: list[str]) -> None:
         raise typer.Exit(printing.DAMAGED)
 
 
-def plans_of(cells: Sequence[RunCell]) -> tuple[list[tuple[list[RunCell], Metadata]], list[str]]:
-    """Return each different plan that the logs describe, with the cells that were run by it.
+class LoggedPlan(NamedTuple):
+    """A plan as logs describe it, and the cells that were run by it."""
 
-    Beside them a sentence of each log that is damaged and describes none.
-    """
+    cells: list[RunCell]
+    metadata: Metadata  # SECTIONS
+
+
+class LoggedPlans(NamedTuple):
+    """The plans of a run."""
+
+    plans: list[LoggedPlan]
+    damaged: list[str]  # a sentence of each log that describes none
+
+
+def plans_of(cells: Sequence[RunCell]) -> LoggedPlans:
+    """Return each different plan that the logs describe."""
     from lavendersim.errors import TraceError
 
-    plans: dict[str, tuple[list[RunCell], Metadata]] = {}
+    plans: dict[str, LoggedPlan] = {}
     damaged: dict[str, None] = {}
     for cell in cells:
         try:
@@ -123,12 +134,16 @@ def plans_of(cells: Sequence[RunCell]) -> tuple[list[tuple[list[RunCell], Metada
             continue
         cell.release()
         plan = {name: metadata.get(name, {}) for name in SECTIONS}
-        plans.setdefault(repr(plan), ([], plan))[0].append(cell)
-    return list(plans.values()), list(damaged)
+        plans.setdefault(repr(plan), LoggedPlan([], plan)).cells.append(cell)
+    return LoggedPlans(list(plans.values()), list(damaged))
 
 
-def print_plan(cells: list[RunCell], metadata: Metadata, count: int) -> None:
-    """Print one plan: what is on with its reason, what is off by name, what was overridden."""
+def print_plan(plan: LoggedPlan, count: int) -> None:
+    """Print one plan: what is on with its reason, what is off by name, what was overridden.
+
+    count: the cells of the run.
+    """
+    cells, metadata = plan
     more = "" if len(cells) == 1 else f" and {len(cells) - 1} more"
     typer.echo("plan" if len(cells) == count else f"plan of {cells[0].label}{more}")
     forced = metadata["forced"]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -121,11 +120,7 @@ def print_matrix(
     width: int | None = None,
 ) -> None:
     """Print the matrix, what failed below it, and what is not in it, wrapped to the terminal."""
-    from rich.console import Console
-
-    wrapped = sys.stdout.isatty() or width is not None
-    console = Console(width=width if wrapped else UNWRAPPED, highlight=False, markup=False)
-    with console.capture() as captured:
+    with printing.by_rich(width, UNWRAPPED) as console:
         console.print(_matrix(cases, solvers, made))
         for solver in solvers:
             bad = [one for one in made if one.solver == solver and one.verdict != "passes"]
@@ -140,8 +135,6 @@ def print_matrix(
                 console.print(f"{why}: {', '.join(names)}")
         if reduced := [case.name for case in cases if case.reduced]:
             console.print(f"\nreduced, --full runs all of them: {', '.join(reduced)}")
-    for line in captured.get().splitlines():
-        typer.echo(line.rstrip())
 
 
 def _matrix(cases: Sequence[Case], solvers: Sequence[str], made: Sequence[Entry]) -> Table:

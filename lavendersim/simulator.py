@@ -11,7 +11,6 @@ normal_force = sim.body_contact_data()[sim.body_id("ball"), 1]
 
 from __future__ import annotations
 
-import difflib
 from os import PathLike
 from typing import Any, Final
 
@@ -21,6 +20,7 @@ from lavendersim.engine.engine import Engine, Rows
 from lavendersim.engine.records import DIVERGED
 from lavendersim.errors import UsageError
 from lavendersim.experiment import Experiment, load_experiment
+from lavendersim.quantities.found import nearest, quoted
 from lavendersim.scene.build import Scene, build
 from lavendersim.scene.events import EventQueue
 from lavendersim.scene.plan import Plan, plan_of_cell
@@ -87,9 +87,7 @@ class Simulator:
     def body_id(self, name: str) -> int:
         """Return the id of a named body; raises UsageError with the nearest name."""
         if name not in self._scene.names:
-            near = difflib.get_close_matches(name, self._scene.names, 1)
-            hint = f"; did you mean {near[0]}?" if near else f": {', '.join(self._scene.names)}"
-            raise UsageError(f"no body is called {name}{hint}")
+            raise UsageError(f"no body is called {quoted(name)}{nearest(name, self._scene.names)}")
         return self._scene.names.index(name)
 
     def reset(

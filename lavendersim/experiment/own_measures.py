@@ -14,9 +14,9 @@ from typing import Any, Final
 from pydantic import create_model
 
 from lavendersim.experiment.checks.reading import Reading
-from lavendersim.experiment.inheritance.yaml_text import as_yaml
 from lavendersim.experiment.text.node import Node, graft
 from lavendersim.experiment.text.report import Report
+from lavendersim.experiment.text.yaml_text import as_yaml
 from lavendersim.measures.specs.base import Measure
 from lavendersim.measures.specs.catalogue import KINDS
 from lavendersim.measures.specs.own import FILE, FROM_FILE

@@ -11,6 +11,7 @@ from matplotlib.lines import Line2D
 
 from lavendersim.cell.choices import Solver
 from lavendersim.figures.style import DARK, LOOKS, Look
+from lavendersim.measures.cost_table import CostRow, CostTable
 
 # Every solver has its colour in every figure; black is that of the front and of what failed.
 COLOURED: Final = [one for one in LOOKS if one.colour != "#000000"]
@@ -19,6 +20,7 @@ SOLVER_LOOKS: Final = {
     for place, name in enumerate(sorted(get_args(Solver), key=lambda name: name != "adaptive"))
 }
 MARKERS: Final = ("o", "s", "^", "D", "v", "P", "X", "*")  # of timesteps, the coarsest first
+FLOOR: Final = 1e-15  # [-] smaller errors are round-off
 CONTROLLED: Final = "<"  # marker of an accuracy that is asked for
 RINGS: Final = {
     "specified": {"marker": "o", "markersize": 14, "markeredgewidth": 1.6},
@@ -26,8 +28,7 @@ RINGS: Final = {
 }
 
 
-Row = dict[str, Any]
-Key = Callable[[Row], Any]
+Key = Callable[[CostRow], Any]
 
 
 class Looks(NamedTuple):
@@ -38,12 +39,12 @@ class Looks(NamedTuple):
     presets: dict[str, Any]  # line by preset
 
     @classmethod
-    def of(cls, rows: Sequence[Row]) -> Looks:
+    def of(cls, rows: Sequence[CostRow]) -> Looks:
         """Give every solver, timestep and preset its look, in the order of the grid."""
-        shown = {row["solver"] for row in rows}
-        fixed = [row for row in rows if not is_controlled(row)]
-        steps = sorted({row["timestep"] for row in fixed}, key=lambda step: -Fraction(step))
-        presets = list(dict.fromkeys(row["preset"] for row in rows if row["role"] != "chapter"))
+        shown = {row.solver for row in rows}
+        fixed = [row for row in rows if not row.is_controlled]
+        steps = sorted({row.timestep for row in fixed}, key=lambda step: -Fraction(step))
+        presets = list(dict.fromkeys(row.preset for row in rows if row.role != "chapter"))
         lines = ("-", (0, (4, 2)))
         return cls(
             {name: one for name, one in SOLVER_LOOKS.items() if name in shown},
@@ -51,52 +52,53 @@ class Looks(NamedTuple):
             {name: lines[place % len(lines)] for place, name in enumerate(presets)},
         )
 
-    def mark(self, row: Row) -> dict[str, Any]:
+    def mark(self, row: CostRow) -> dict[str, Any]:
         """Return the marker of a setting: full where it starts warm, hollow where cold."""
-        colour = self.solvers[row["solver"]].colour
+        colour = self.solvers[row.solver].colour
         return {
-            "marker": CONTROLLED if is_controlled(row) else self.timesteps[row["timestep"]],
+            "marker": CONTROLLED if row.is_controlled else self.timesteps[row.timestep],
             "markersize": 6.5,
-            "markerfacecolor": colour if row["warm_start"] else "white",
+            "markerfacecolor": colour if row.warm_start else "white",
             "markeredgecolor": colour,
             "markeredgewidth": 1.1,
             "linestyle": "none",
         }
 
 
-def is_controlled(row: Row) -> bool:
-    """Whether an accuracy was asked for; tables of before do not say."""
-    return row.get("accuracy") is not None
+def drawn(row: CostRow) -> float:
+    """Return where the error of a setting that has one is drawn: round-off at the floor."""
+    assert row.error is not None
+    return max(row.error, FLOOR)
 
 
-def curves_of(rows: Sequence[Row]) -> Iterator[list[Row]]:
+def curves_of(rows: Sequence[CostRow]) -> Iterator[list[CostRow]]:
     """Yield the settings that one knob joins: the one that a solver has most values of."""
     knobs: dict[str, Key] = {
-        "timestep": lambda row: -Fraction(row["timestep"]),
-        "effort": lambda row: (row["sweeps"], -(row["tolerance"] or 0.0)),
+        "timestep": lambda row: -Fraction(row.timestep),
+        "effort": lambda row: (row.sweeps, -(row.tolerance or 0.0)),
     }
-    grid = [row for row in rows if row["role"] != "chapter" and not is_controlled(row)]
-    for family in _grouped(grid, lambda row: (row["preset"], row["solver"], row["warm_start"])):
+    grid = [row for row in rows if row.role != "chapter" and not row.is_controlled]
+    for family in _grouped(grid, lambda row: (row.preset, row.solver, row.warm_start)):
         counts = {name: len({knob(row) for row in family}) for name, knob in knobs.items()}
         along, across = sorted(knobs, key=lambda name: -counts[name])
         for curve in _grouped(family, knobs[across]):
             yield sorted(curve, key=knobs[along])
-    yield from _grouped([row for row in rows if is_controlled(row)], lambda row: row["preset"])
+    yield from _grouped([row for row in rows if row.is_controlled], lambda row: row.preset)
 
 
-def _grouped(rows: Sequence[Row], key: Key) -> Iterator[list[Row]]:
+def _grouped(rows: Sequence[CostRow], key: Key) -> Iterator[list[CostRow]]:
     for _, group in groupby(sorted(rows, key=key), key):
         yield list(group)
 
 
-def handles_of(table: dict[str, Any], looks: Looks) -> list[Line2D]:
+def handles_of(table: CostTable, looks: Looks) -> list[Line2D]:
     """Return the legend: solvers, presets, timesteps, and what marks mean."""
 
     def dot(marker: str, label: str, **more: Any) -> Line2D:
         plain = {"color": DARK, "linestyle": "none", "markersize": 6.5, "markeredgewidth": 1.1}
         return Line2D([], [], marker=marker, label=label, **{**plain, **more})
 
-    rows = table["rows"]
+    rows = table.rows
     handles = [
         Line2D([], [], color=one.colour, linewidth=5, label=name.replace("_", " "))
         for name, one in looks.solvers.items()
@@ -107,14 +109,14 @@ def handles_of(table: dict[str, Any], looks: Looks) -> list[Line2D]:
             for name, line in looks.presets.items()
         ]
     handles += [dot(marker, f"{step} s") for step, marker in looks.timesteps.items()]
-    if any(is_controlled(row) for row in rows):
+    if any(row.is_controlled for row in rows):
         handles.append(dot(CONTROLLED, "accuracy asked for"))
-    if not all(row["warm_start"] for row in rows):
+    if not all(row.warm_start for row in rows):
         handles.append(dot("o", "cold start", markerfacecolor="white"))
-    rings = {row["role"]: row for row in rows if row["role"] in RINGS}
+    rings = {row.role: row for row in rows if row.role in RINGS}
     names = {"specified": "what the config specifies", "chapter": "the chapter's setting"}
     hollow = {"markerfacecolor": "none", "markeredgewidth": 1.6, "markersize": 11}
     handles += [dot(str(RINGS[role]["marker"]), names[role], **hollow) for role in rings]
-    if any(row["failed"] for row in rows):
+    if any(row.failed for row in rows):
         handles.append(dot("x", "failed", markersize=8))
     return [*handles, Line2D([], [], color=DARK, linewidth=1.6, label="front")]

@@ -18,6 +18,7 @@ from matplotlib.ticker import FuncFormatter, NullLocator, SymmetricalLogLocator
 from lavendersim.figures.drawing import describe
 from lavendersim.figures.page import Page, blank, write
 from lavendersim.figures.style import DARK, GREY, look
+from lavendersim.measures.overhead_table import OverheadRow, OverheadTable, OverheadTiming
 
 ROW: Final = 0.27  # [inch]
 SCENE_WIDTH, COMPILE_WIDTH, NAMES_WIDTH = 3.6, 2.6, 2.0  # [inch]
@@ -39,26 +40,22 @@ CAPTION: Final = (
 def draw_overheads(runs: Sequence[Any], directory: Path) -> list[Path]:
     """Write one figure for all runs that have overheads; returns its files, none without any.
 
-    A run has `.name` and `.results()`. One run gives `<name>_overheads`, several give `overheads`.
+    A run has `.name` and `.overheads()`. One gives `<name>_overheads`, several give `overheads`.
     """
-    tables = [
-        (str(run.name), table)
-        for run in runs
-        if (table := run.results().get("overheads")) is not None
-    ]
+    tables = [(str(run.name), table) for run in runs if (table := run.overheads()) is not None]
     if not tables:
         return []
     stem = f"{tables[0][0]}_overheads" if len(tables) == 1 else "overheads"
     return write(Path(directory) / stem, compose, tables)
 
 
-def compose(tables: Sequence[tuple[str, dict[str, Any]]]) -> Figure:
+def compose(tables: Sequence[tuple[str, OverheadTable]]) -> Figure:
     """Return the page as a matplotlib Figure."""
-    effects = list(dict.fromkeys(row["effect"] for _, table in tables for row in table["rows"]))
+    effects = list(dict.fromkeys(row.effect for _, table in tables for row in table.rows))
     places = {effect: place for place, effect in enumerate(effects)}
     width = NAMES_WIDTH + SCENE_WIDTH * len(tables) + COMPILE_WIDTH
-    repeats = sorted({table["repeats"] for _, table in tables})
-    processors = sorted({table["processor"] for _, table in tables})
+    repeats = sorted({table.repeats for _, table in tables})
+    processors = sorted({table.processor for _, table in tables})
     caption = CAPTION.format(
         repeats=" or ".join(map(str, repeats)), processor="Processor: " + ", ".join(processors)
     )
@@ -74,27 +71,27 @@ def compose(tables: Sequence[tuple[str, dict[str, Any]]]) -> Figure:
     return figure
 
 
-def _draw_scene(axes: Any, name: str, table: dict[str, Any], places: dict[str, int]) -> None:
-    bodies, contacts = table["bodies"], table["contacts_per_step"]
+def _draw_scene(axes: Any, name: str, table: OverheadTable, places: dict[str, int]) -> None:
+    bodies, contacts = table.bodies, table.contacts_per_step
     title = f"{name}: {bodies} {'body' if bodies == 1 else 'bodies'}, {contacts:.3g} contacts"
     describe(axes, title, "overhead [ns per body or contact and step]", "")
     axes.set_xscale("symlog", linthresh=LINEAR)
     axes.axvline(0.0, color=DARK, linewidth=1.1)
-    for row in table["rows"]:
-        place = places[row["effect"]]
-        if row["why_not"]:
-            _write_why_not(axes, place, row["why_not"])
+    for row in table.rows:
+        place = places[row.effect]
+        if row.timing is None:
+            _write_why_not(axes, place, row.why_not)
             continue
-        overhead, colour = row["overhead"], _colour(row)
-        axes.plot([overhead["low"], overhead["high"]], [place, place], color=colour, linewidth=1.6)
+        overhead, colour = row.timing.overhead, _colour(row, row.timing)
+        axes.plot([overhead.low, overhead.high], [place, place], color=colour, linewidth=1.6)
         axes.plot(
-            overhead["median"],
+            overhead.median,
             place,
             linestyle="none",
-            marker=MARKERS[row["unit"]],
+            marker=MARKERS[row.unit],
             markersize=6.5,
             color=colour,
-            markerfacecolor="white" if row["within_noise"] else colour,
+            markerfacecolor="white" if row.timing.within_noise else colour,
             markeredgewidth=1.3,
             zorder=3,
         )
@@ -108,10 +105,10 @@ def _short(value: float, _: int) -> str:
     return f"{value / 1000.0:g}k" if abs(value) >= 1000.0 else f"{value:g}"
 
 
-def _colour(row: dict[str, Any]) -> str:
-    if not row["same_motion"]:
+def _colour(row: OverheadRow, timing: OverheadTiming) -> str:
+    if not timing.same_motion:
         return MOVES
-    return REQUIRED if row["required"] else IDLE
+    return REQUIRED if row.required else IDLE
 
 
 def _write_why_not(axes: Any, place: int, why_not: str) -> None:
@@ -129,21 +126,22 @@ def _write_why_not(axes: Any, place: int, why_not: str) -> None:
 
 
 def _draw_compile_times(
-    axes: Any, tables: Sequence[tuple[str, dict[str, Any]]], places: dict[str, int]
+    axes: Any, tables: Sequence[tuple[str, OverheadTable]], places: dict[str, int]
 ) -> None:
     describe(axes, "compile time", "compile time [s]", "")
     handles = []
     for index, (name, table) in enumerate(tables):
         shown = look(index + 2)  # the first two colours mean something else on this page
-        rows = [row for row in table["rows"] if not row["why_not"]]
+        timed = [(row, row.timing) for row in table.rows if row.timing is not None]
         marks: dict[str, Any] = {"linestyle": "none", "marker": shown.marker, "color": shown.colour}
         axes.plot(
-            [row["compile_s_on"] for row in rows],
-            [places[row["effect"]] for row in rows],
+            [timing.compile_s_on for _, timing in timed],
+            [places[row.effect] for row, _ in timed],
             **marks,
             markersize=5.5,
         )
-        alone = min((row["compile_s_off"] for row in rows if not row["required"]), default=None)
+        idle = [timing.compile_s_off for row, timing in timed if not row.required]
+        alone = min(idle, default=None)
         if alone is not None:
             axes.axvline(alone, color=shown.colour, linewidth=1.1)
         handles.append(Line2D([], [], label=name, **marks))

@@ -9,66 +9,65 @@ from typing import Any, Final
 import numpy as np
 from matplotlib.ticker import NullFormatter, NullLocator
 
-from lavendersim.figures.cost_looks import is_controlled
+from lavendersim.figures.cost_looks import FLOOR, Looks, drawn
 from lavendersim.figures.drawing import describe, ticks_at_values
 from lavendersim.figures.style import GREY
+from lavendersim.measures.cost_table import CostRow, CostTable
 
 MS: Final = 1e3
 SLOPES: Final = {1: (0, (1, 2)), 2: (0, (5, 2, 1, 2))}
-FLOOR: Final = 1e-15  # [-] smaller errors are round-off
 
 
-def draw_timestep_errors(axes: Any, table: dict[str, Any], looks: Any) -> None:
+def draw_timestep_errors(axes: Any, table: CostTable, looks: Looks) -> None:
     """Draw, for every solver and preset, the settings that were solved best, and slopes 1 and 2."""
     describe(axes, "error against timestep, solved best", "timestep [ms]", "", "log", "log")
     rows = [
         row
-        for row in table["rows"]
-        if row["error"] is not None and row["role"] != "chapter" and not is_controlled(row)
+        for row in table.rows
+        if row.error is not None and row.role != "chapter" and not row.is_controlled
     ]
     if not rows:
         axes.text(0.5, 0.5, "no setting has an error", transform=axes.transAxes, ha="center")
         return
     curves = best_solved(rows)
     for curve in curves:
-        steps = [MS * float(Fraction(row["timestep"])) for row in curve]
-        errors = [max(row["error"], FLOOR) for row in curve]
-        look = looks.solvers[curve[0]["solver"]]
-        line = looks.presets[curve[0]["preset"]]
+        steps = [MS * float(Fraction(row.timestep)) for row in curve]
+        errors = [drawn(row) for row in curve]
+        look = looks.solvers[curve[0].solver]
+        line = looks.presets[curve[0].preset]
         axes.plot(steps, errors, color=look.colour, linestyle=line, linewidth=1.2, alpha=0.8)
         for row, step, error in zip(curve, steps, errors, strict=True):
             axes.plot(step, error, **looks.mark(row), zorder=3)
     _draw_slopes(axes, [row for curve in curves for row in curve])
-    ticks_at_values(axes, [MS * float(Fraction(row["timestep"])) for row in rows])
+    ticks_at_values(axes, [MS * float(Fraction(row.timestep)) for row in rows])
     axes.xaxis.set_minor_locator(NullLocator())
     axes.xaxis.set_minor_formatter(NullFormatter())
     axes.tick_params(axis="x", labelrotation=45)
 
 
-def best_solved(rows: Sequence[dict[str, Any]]) -> list[list[dict[str, Any]]]:
+def best_solved(rows: Sequence[CostRow]) -> list[list[CostRow]]:
     """Return a curve a solver and preset: most sweeps or least tolerance, warm where it can be."""
-    curves: dict[tuple[str, str], dict[str, dict[str, Any]]] = {}
+    curves: dict[tuple[str, str], dict[str, CostRow]] = {}
     for row in rows:
-        curve = curves.setdefault((row["preset"], row["solver"]), {})
-        best = curve.get(row["timestep"])
+        curve = curves.setdefault((row.preset, row.solver), {})
+        best = curve.get(row.timestep)
         if best is None or _solved(row) > _solved(best):
-            curve[row["timestep"]] = row
+            curve[row.timestep] = row
     return [
-        sorted(curve.values(), key=lambda row: Fraction(row["timestep"]))
-        for curve in curves.values()
+        sorted(curve.values(), key=lambda row: Fraction(row.timestep)) for curve in curves.values()
     ]
 
 
-def _solved(row: dict[str, Any]) -> tuple[float, int, bool]:
+def _solved(row: CostRow) -> tuple[float, int, bool]:
     """Return how hard a setting tries: a tolerance outbids any number of sweeps."""
-    tolerance = row["tolerance"]
-    return (-np.inf if tolerance is None else -tolerance, row["sweeps"], row["warm_start"])
+    tolerance = row.tolerance
+    return (-np.inf if tolerance is None else -tolerance, row.sweeps, row.warm_start)
 
 
-def _draw_slopes(axes: Any, rows: Sequence[dict[str, Any]]) -> None:
+def _draw_slopes(axes: Any, rows: Sequence[CostRow]) -> None:
     """Draw lines of order 1 and 2 through the largest error."""
-    errors = [row["error"] for row in rows if row["error"] > FLOOR]
-    steps = np.array(sorted({MS * float(Fraction(row["timestep"])) for row in rows}))
+    errors = [drawn(row) for row in rows if drawn(row) > FLOOR]
+    steps = np.array(sorted({MS * float(Fraction(row.timestep)) for row in rows}))
     if not errors or len(steps) < 2:
         return
     for order, dashes in SLOPES.items():

@@ -18,11 +18,12 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from lavendersim.figures.cost_looks import RINGS, Looks, Row, curves_of, handles_of
+from lavendersim.figures.cost_looks import RINGS, Looks, curves_of, drawn, handles_of
 from lavendersim.figures.drawing import describe
 from lavendersim.figures.page import Page, blank, write
 from lavendersim.figures.style import DARK, GREY
-from lavendersim.figures.timestep_errors import FLOOR, draw_timestep_errors
+from lavendersim.figures.timestep_errors import draw_timestep_errors
+from lavendersim.measures.cost_table import CostRow, CostTable
 
 WIDTH, LEGEND_WIDTH, HEIGHT = 5.6, 2.9, 5.0  # [inch] of a panel, of the legend
 SECOND_WIDTH: Final = 4.2  # [inch]
@@ -51,12 +52,12 @@ def draw_work_precision(run: Any, directory: Path) -> list[Path]:
     return write(Path(directory) / f"{run.name}_cost", compose, table)
 
 
-def compose(table: dict[str, Any]) -> Figure:
+def compose(table: CostTable) -> Figure:
     """Return the page as a matplotlib Figure."""
     widths = [WIDTH, SECOND_WIDTH, LEGEND_WIDTH]
-    figure = blank(Page(_caption(table), sum(widths), HEIGHT, table["question"], gaps=GAPS))
+    figure = blank(Page(_caption(table), sum(widths), HEIGHT, table.question, gaps=GAPS))
     work, orders, legend = figure.subplots(1, 3, width_ratios=widths)
-    looks = Looks.of(table["rows"])
+    looks = Looks.of(table.rows)
     draw_settings(work, table, looks)
     draw_timestep_errors(orders, table, looks)
     limits = [*work.get_ylim(), *orders.get_ylim()]
@@ -67,51 +68,49 @@ def compose(table: dict[str, Any]) -> Figure:
     return figure
 
 
-def _caption(table: dict[str, Any]) -> str:
-    truth = table["truth"]
+def _caption(table: CostTable) -> str:
+    truth = table.truth
     reference = ""
     if truth is not None:
-        reference = f", against the same run at a timestep of {truth['timestep']} s"
-    if table["axes"]:
-        reference += (
-            f" (the worst of {table['cells_per_setting']} cells of {', '.join(table['axes'])})"
-        )
+        reference = f", against the same run at a timestep of {truth.timestep} s"
+    if table.axes:
+        reference += f" (the worst of {table.cells_per_setting} cells of {', '.join(table.axes)})"
     return CAPTION.format(
-        measure=table["error"]["measure"],
+        measure=table.error.measure,
         truth=reference,
-        repeats=table["repeats"],
-        processor=table["machine"]["processor"],
-        clock=table["clock"],
-        targets=". ".join(target["sentence"] for target in table["targets"]).replace(" us ", " µs ")
+        repeats=table.repeats,
+        processor=table.machine["processor"],
+        clock=table.clock,
+        targets=". ".join(target.sentence for target in table.targets).replace(" us ", " µs ")
         + ".",
     )
 
 
-def draw_settings(axes: Any, table: dict[str, Any], looks: Looks) -> None:
+def draw_settings(axes: Any, table: CostTable, looks: Looks) -> None:
     """Draw every setting, the curves between neighbours, the front and the targets."""
     unit, size = unit_of(table)
-    cost, error = f"cost [{unit} per simulated second]", table["error"]["measure"]
+    cost, error = f"cost [{unit} per simulated second]", table.error.measure
     describe(axes, "error against cost", cost, f"relative error of {error} [-]", "log", "log")
-    timed = [row for row in table["rows"] if row["ns_per_second"] is not None]
+    timed = [row for row in table.rows if row.ns_per_second is not None]
     for curve in curves_of(timed):
-        shown = [row for row in curve if row["error"] is not None]
+        shown = [row for row in curve if row.error is not None]
         axes.plot(
-            [_cost(row) / size for row in shown],
+            [row.cost / size for row in shown],
             [drawn(row) for row in shown],
-            color=looks.solvers[curve[0]["solver"]].colour,
-            linestyle=looks.presets.get(curve[0]["preset"], "-"),
+            color=looks.solvers[curve[0].solver].colour,
+            linestyle=looks.presets.get(curve[0].preset, "-"),
             linewidth=0.9,
             alpha=0.55,
         )
     for row in timed:
         _draw_setting(axes, row, size, looks)
     _draw_front(axes, timed, size)
-    for target in table["targets"]:
-        axes.axhline(target["target"], color=GREY, linewidth=1.1, linestyle=(0, (5, 3)), zorder=1)
+    for target in table.targets:
+        axes.axhline(target.target, color=GREY, linewidth=1.1, linestyle=(0, (5, 3)), zorder=1)
         axes.text(
             1.01,
-            target["target"],
-            f"{100.0 * target['target']:.3g} %",
+            target.target,
+            f"{100.0 * target.target:.3g} %",
             transform=axes.get_yaxis_transform(),
             ha="left",
             va="center",
@@ -122,7 +121,7 @@ def draw_settings(axes: Any, table: dict[str, Any], looks: Looks) -> None:
     axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axes.xaxis.set_minor_formatter(NullFormatter())
     low, high = axes.get_ylim()
-    if any(row["error"] is None for row in timed):
+    if any(row.error is None for row in timed):
         band = Rectangle((0.0, BAND), 1.0, 1.0 - BAND, transform=axes.transAxes, color="#ececec")
         axes.add_patch(band)
         axes.text(0.01, 0.97, "no error", transform=axes.transAxes, va="center", fontsize=9)
@@ -130,42 +129,34 @@ def draw_settings(axes: Any, table: dict[str, Any], looks: Looks) -> None:
     axes.set_ylim(low, high)
 
 
-def _draw_setting(axes: Any, row: Row, size: float, looks: Looks) -> None:
+def _draw_setting(axes: Any, row: CostRow, size: float, looks: Looks) -> None:
     place: dict[str, Any] = {}
-    level = drawn(row) if row["error"] is not None else 0.5 * (1.0 + BAND)
-    if row["error"] is None:
+    level = drawn(row) if row.error is not None else 0.5 * (1.0 + BAND)
+    if row.error is None:
         place["transform"] = axes.get_xaxis_transform()
-    spread = row["ns_per_second"]
-    colour = looks.solvers[row["solver"]].colour
-    ends = [spread["low"] / size, spread["high"] / size]
+    spread = row.ns_per_second
+    assert spread is not None
+    colour = looks.solvers[row.solver].colour
+    ends = [spread.low / size, spread.high / size]
     axes.plot(ends, [level, level], color=colour, linewidth=1.4, **place)
-    axes.plot(_cost(row) / size, level, **looks.mark(row), **place, zorder=3)
-    if row["failed"]:
+    axes.plot(row.cost / size, level, **looks.mark(row), **place, zorder=3)
+    if row.failed:
         crossed = {"marker": "x", "markersize": 9, "color": DARK, "markeredgewidth": 1.2}
-        axes.plot(_cost(row) / size, level, linestyle="none", **crossed, **place, zorder=5)
-    if row["role"] in RINGS:
+        axes.plot(row.cost / size, level, linestyle="none", **crossed, **place, zorder=5)
+    if row.role in RINGS:
         ring = {"markerfacecolor": "none", "markeredgecolor": DARK, "linestyle": "none"}
-        axes.plot(_cost(row) / size, level, **ring, **RINGS[row["role"]], **place, zorder=4)
+        axes.plot(row.cost / size, level, **ring, **RINGS[row.role], **place, zorder=4)
 
 
-def _draw_front(axes: Any, rows: Sequence[Row], size: float) -> None:
+def _draw_front(axes: Any, rows: Sequence[CostRow], size: float) -> None:
     """Draw the front as a stair: what the cheapest setting of at most this cost reaches."""
-    front = sorted((row for row in rows if row["front"]), key=_cost)
-    costs, errors = [_cost(row) / size for row in front], [drawn(row) for row in front]
+    front = sorted((row for row in rows if row.front), key=lambda row: row.cost)
+    costs, errors = [row.cost / size for row in front], [drawn(row) for row in front]
     axes.step(costs, errors, where="post", color=DARK, linewidth=1.6, zorder=2)
 
 
-def drawn(row: Row) -> float:
-    """Return where an error is drawn: round-off at the floor."""
-    return max(float(row["error"]), FLOOR)
-
-
-def unit_of(table: dict[str, Any]) -> tuple[str, float]:
+def unit_of(table: CostTable) -> tuple[str, float]:
     """Return the unit of costs and its size [ns]: what most settings take some of."""
-    costs = sorted(_cost(row) for row in table["rows"] if row["ns_per_second"] is not None)
+    costs = sorted(row.cost for row in table.rows if row.ns_per_second is not None)
     middle = costs[len(costs) // 2] if costs else 1e6
     return ("ms", 1e6) if middle >= 5e5 else ("µs", 1e3)
-
-
-def _cost(row: Row) -> float:
-    return float(row["ns_per_second"]["median"])

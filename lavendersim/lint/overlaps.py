@@ -44,6 +44,14 @@ class Parts(NamedTuple):
     movable: np.ndarray
 
 
+class Inside(NamedTuple):
+    """A body that begins in another one, or behind a plane; ordered by depth."""
+
+    depth: float  # [m], 0 where it is not known
+    name: str
+    other: str  # a body, or a plane
+
+
 def overlaps(cell: Cell) -> Iterator[Defect]:
     """Yield a defect at the deepest body behind a plane, and at the deepest inside another."""
     bodies = cell.config.scene.bodies
@@ -52,14 +60,15 @@ def overlaps(cell: Cell) -> Iterator[Defect]:
         return
     behind = max(_behind_planes(bodies, parts), default=None)
     if behind is not None:
-        depth, name, plane = behind
-        yield _defect(cell, name, f"{name} starts {depth:.3g} m behind the surface of {plane}")
+        how = f"starts {behind.depth:.3g} m behind the surface of {behind.other}"
+        yield _defect(cell, behind.name, f"{behind.name} {how}")
     inside = _inside(parts)
     if inside:
-        depth, name, other = max(inside)
-        far = f"{depth:.3g} m " if depth > 0.0 else ""
+        deepest = max(inside)
+        far = f"{deepest.depth:.3g} m " if deepest.depth > 0.0 else ""
         more = f"; so do {len(inside) - 1} more pairs" if len(inside) > 1 else ""
-        yield _defect(cell, name, f"{name} starts {far}inside {other}{more}")
+        how = f"starts {far}inside {deepest.other}{more}"
+        yield _defect(cell, deepest.name, f"{deepest.name} {how}")
 
 
 def _defect(cell: Cell, name: str, sentence: str) -> Defect:
@@ -95,8 +104,8 @@ def _parts(bodies: dict[str, CellBody]) -> Parts:
     return Parts(names, shapes, placed, sums_of(shapes), thick, np.array(movable, dtype=bool))
 
 
-def _behind_planes(bodies: dict[str, CellBody], parts: Parts) -> Iterator[tuple[float, str, str]]:
-    """Yield depth [m], body and plane of the movable solid that reaches farthest behind each."""
+def _behind_planes(bodies: dict[str, CellBody], parts: Parts) -> Iterator[Inside]:
+    """Yield of each plane the movable solid that reaches farthest behind it."""
     placed = parts.placed
     for name, body in bodies.items():
         if not isinstance(body.shape, Plane):
@@ -109,11 +118,11 @@ def _behind_planes(bodies: dict[str, CellBody], parts: Parts) -> Iterator[tuple[
         depth[~parts.movable | (depth <= DRAWN_IN * parts.thickness)] = 0.0
         deepest = int(np.argmax(depth))
         if depth[deepest] > 0.0:
-            yield float(depth[deepest]), parts.names[deepest], name
+            yield Inside(float(depth[deepest]), parts.names[deepest], name)
 
 
-def _inside(parts: Parts) -> list[tuple[float, str, str]]:
-    """Return depth [m] (0 where it is not known) and names of every pair that overlaps."""
+def _inside(parts: Parts) -> list[Inside]:
+    """Return every pair of bodies that overlaps."""
     names, shapes, placed = parts.names, parts.shapes, parts.placed
     balls = np.array([shape.bounding_radius() for shape in shapes])
     bounds = parts.sums._replace(ball=np.minimum(parts.sums.ball, balls))  # of what is no sum
@@ -136,7 +145,7 @@ def _inside(parts: Parts) -> list[tuple[float, str, str]]:
         )
         if names[a[row]] != names[b[row]] and hulls_meet(first, second):
             _note(found, names[b[row]], names[a[row]], 0.0)
-    return [(depth, *pair) for pair, depth in found.items()]
+    return [Inside(depth, *pair) for pair, depth in found.items()]
 
 
 def _note(found: dict[tuple[str, str], float], name: str, other: str, depth: float) -> None:

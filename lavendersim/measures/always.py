@@ -35,9 +35,9 @@ def outcomes_of(always: Always, cell: Cell) -> dict[str, Outcome]:
         ended = trace.status
         worst = WorstStates(always)
         checks = StepChecks(always)
-        for before, section in sections_of(trace, is_whole(ended)):
+        for section in sections_of(trace, is_whole(ended)):
             for one in checks.over(section):
-                worst.take(one, section, 1 if before else 0, len(section.step))
+                worst.take(one, section, 1 if section.before else 0, len(section.step))
     except LavenderError as error:  # a log that is damaged
         return {check: failure("a log that can answer", str(error)) for check in checks_of(always)}
     return worst.outcomes(ended, cell)

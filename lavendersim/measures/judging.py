@@ -54,24 +54,22 @@ class Claim(NamedTuple):
 
 def judge_nodes(experiment: _Planned) -> list[str]:
     """Return the names of all verdicts of an experiment, in the order of `judge`."""
-    cells = experiment.cells()
-    claims = _claims(experiment.measures, experiment.expectations, cells)
-    claims += _checks(experiment.always, cells)
-    stops = experiment.always is not None and experiment.always.stop
-    left = controls.uncontrolled(claims, experiment.controls, cells, stops)
-    judged = controls.trials(claims, experiment.controls, cells)
-    return [claim.node for claim in left] + [trial.node for trial in judged]
+    return [one.node for one in _to_judge(experiment)]
 
 
 def cells_of_claims(experiment: _Planned) -> dict[str, int]:
     """Return the cell of each claim that is on one cell alone, by its node."""
-    cells = experiment.cells()
-    claims = _claims(experiment.measures, experiment.expectations, cells)
-    claims += _checks(experiment.always, cells)
-    stops = experiment.always is not None and experiment.always.stop
+    judged = _to_judge(experiment)
+    return {one.node: one.cells[0].index for one in judged if len(one.cells) == 1}
+
+
+def _to_judge(experiment: _Planned) -> list[Claim | controls.ControlTrial]:
+    """Return what will be judged: claims that no control is on, then the negative controls."""
+    cells, always = experiment.cells(), experiment.always
+    claims = _claims(experiment.measures, experiment.expectations, cells) + _checks(always, cells)
+    stops = always is not None and always.stop
     left = controls.uncontrolled(claims, experiment.controls, cells, stops)
-    trials = controls.trials(claims, experiment.controls, cells)
-    return {one.node: one.cells[0].index for one in (*left, *trials) if len(one.cells) == 1}
+    return [*left, *controls.trials(claims, experiment.controls, cells)]
 
 
 def judge(

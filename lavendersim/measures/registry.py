@@ -22,9 +22,11 @@ kinds.load_all()
 def evaluate(spec: MeasureSpec, trace: Trace) -> Value:
     """Return the measure of one log: a float, or a 1-D array for kinds that give a row.
 
-    NaN where the log cannot answer, or a closed form to divide by is 0.
+    NaN where the log cannot answer, or a closed form to divide by is 0; a row without numbers is a
+    row of one NaN, which no judgement passes.
     """
-    return beside_form(spec, FUNCTIONS[type(spec)](spec, trace), trace)
+    value = FUNCTIONS[type(spec)](spec, trace)
+    return beside_form(spec, value if np.size(value) else np.array([np.nan]), trace)
 
 
 def beside_form(spec: MeasureSpec, value: Value, trace: Trace) -> Value:

@@ -27,6 +27,7 @@ class Section(NamedTuple):
     config: CellConfig
     clock: Clock
     absent: Mapping[str, str]
+    before: int = 0  # states of the log before it; of its own the first is the last of these
     residual: Any = ()  # no measure of a single step needs sweeps
     status: str = "complete"
 
@@ -76,8 +77,8 @@ class _Column:
         return numbers[:count], rows
 
 
-def sections_of(trace: Trace, whole: bool) -> Iterator[tuple[int, Trace]]:
-    """Yield the states of a log in sections, each with how many went before it.
+def sections_of(trace: Trace, whole: bool) -> Iterator[Section]:
+    """Yield the states of a log in sections.
 
     whole: its last state counts; else it is left out. Parts are read as they are asked for and not
     kept: a log of any length takes as much memory as some of its chunks. Raises TraceError where
@@ -102,10 +103,8 @@ def sections_of(trace: Trace, whole: bool) -> Iterator[tuple[int, Trace]]:
             contacts = trace.contact  # of a log that has none
         if before is not None:
             steps, poses = np.concatenate([before[0], steps]), np.concatenate([before[1], poses])
-        yield (
-            begin,
-            Section(steps, contacts, poses, trace.bodies, trace.config, trace.clock, trace.absent),
-        )
+        same = trace.bodies, trace.config, trace.clock, trace.absent
+        yield Section(steps, contacts, poses, *same, begin)
         begin += len(numbers)
         before = steps[-1:].copy(), poses[-1:].copy()
 

@@ -69,6 +69,21 @@ class Cones(NamedTuple):
     own: np.ndarray  # indices of the diagonal blocks
 
 
+class Interior(NamedTuple):
+    """Impulses and velocities, each inside its cone."""
+
+    x: np.ndarray  # (n, 3)
+    z: np.ndarray  # (n, 3)
+
+
+class Advanced(NamedTuple):
+    """What one step came to."""
+
+    there: Interior | None  # None: the step has no finite direction
+    length: float  # [-] share of the direction that was taken
+    cost: float  # of the factorisation
+
+
 def interior_point(p: ScaledProblem, budget: Budget, strategy: Strategy = LONG_STEPS) -> Reached:
     """Return impulses and their residual after at most `MOST` steps and a few of Newton's."""
     frictional = p.mu > 0.0
@@ -86,13 +101,13 @@ def interior_point(p: ScaledProblem, budget: Budget, strategy: Strategy = LONG_S
             best, least = impulses, residual
         if least <= budget.tolerance or budget.spent or stuck > PATIENCE:
             break
-        there, length, cost = _advance(p, cones, (x, z), unit, shift_frozen, strategy)
-        budget.step(cost, least)
-        if there is None:
+        step = _advance(p, cones, Interior(x, z), unit, shift_frozen, strategy)
+        budget.step(step.cost, least)
+        if step.there is None:
             break
-        x, z = there
-        shift_frozen = not shift_frozen and length < JAMMED
-        stuck += length < NOWHERE
+        x, z = step.there
+        shift_frozen = not shift_frozen and step.length < JAMMED
+        stuck += step.length < NOWHERE
     if least > budget.tolerance:
         return newton_steps(p, best, budget, FINISHING_EPS, FINISHING)
     return Reached(best, least)
@@ -110,11 +125,11 @@ def _on_circular_cones(p: ScaledProblem, frictional: np.ndarray) -> Cones:
 def _advance(
     p: ScaledProblem,
     cones: Cones,
-    here: tuple[np.ndarray, np.ndarray],
+    here: Interior,
     unit: float,
     shift_frozen: bool,
     strategy: Strategy,
-) -> tuple[tuple[np.ndarray, np.ndarray] | None, float, float]:
+) -> Advanced:
     x, z = here
     mean = 0.5 * float((x * z).sum(axis=1).mean())
     side = np.hypot(z[:, 1], z[:, 2])
@@ -131,19 +146,19 @@ def _advance(
     factor = factorise(p, blocks, cones.keep)
     inverse = MIRROR * x / np.maximum(_determinant(x), TINY)[:, None]
 
-    def direction(centring: float) -> tuple[np.ndarray, np.ndarray]:
+    def direction(centring: float) -> Interior:
         target = centring * mean * inverse - z
         dx = factor.solve(np.einsum("nij,nj->ni", C, target) - F)
-        return dx, (target - np.einsum("nij,nj->ni", H, dx)) * cones.keep
+        return Interior(dx, (target - np.einsum("nij,nj->ni", H, dx)) * cones.keep)
 
     straight, centred = direction(0.0), direction(1.0)
     if not all(np.isfinite(d).all() for d in (*straight, *centred)):
-        return None, 0.0, factor.cost
+        return Advanced(None, 0.0, factor.cost)
     # Mehrotra's rule: centre by as much as the straight step would leave.
-    length = min(1.0, _to_boundary(x, straight[0]), _to_boundary(z, straight[1]))
-    left = ((x + length * straight[0]) * (z + length * straight[1])).sum(axis=1).mean()
+    length = min(1.0, _to_boundary(x, straight.x), _to_boundary(z, straight.z))
+    left = ((x + length * straight.x) * (z + length * straight.z)).sum(axis=1).mean()
     centring = min(1.0, max((0.5 * float(left) / mean) ** strategy.power, LEAST_CENTRING))
-    best, there = -1.0, (x, z)
+    best, there = -1.0, here
     for share in (centring, *CENTRING):
         centring = max(centring, share)
         dx, dz = (s + centring * (c - s) for s, c in zip(straight, centred, strict=True))
@@ -151,7 +166,7 @@ def _advance(
             1.0, strategy.share * _to_boundary(x, dx), strategy.share * _to_boundary(z, dz)
         )
         for _ in range(TRIALS):
-            new = x + length * dx, z + length * dz
+            new = Interior(x + length * dx, z + length * dz)
             if _is_centred(*new, strategy.centred):
                 break
             length *= BACK
@@ -159,7 +174,7 @@ def _advance(
             best, there = length, new
         if length > JAMMED:
             break
-    return there, best, factor.cost
+    return Advanced(there, best, factor.cost)
 
 
 def _determinant(x: np.ndarray) -> np.ndarray:

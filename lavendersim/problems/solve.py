@@ -6,7 +6,6 @@ move (both bodies fixed, an empty row of W) are left out of the problem that is 
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Callable
 from functools import partial
 
@@ -19,6 +18,7 @@ from lavendersim.problems.by_kernel import solve_by_kernel
 from lavendersim.problems.interior_point import STRATEGIES
 from lavendersim.problems.residual import judged, own_scales
 from lavendersim.problems.search import Search
+from lavendersim.quantities.found import nearest, quoted
 
 Solver = Callable[[ContactProblem, float, int, "np.ndarray | None", bool], Solution]
 
@@ -92,9 +92,7 @@ def solve(
     Raises UsageError for an unknown solver, with the nearest name.
     """
     if solver not in SOLVERS:
-        near = difflib.get_close_matches(solver, SOLVERS, 1)
-        hint = f", did you mean {near[0]!r}?" if near else f"; there are {', '.join(SOLVERS)}"
-        raise UsageError(f"no solver is called {solver!r}{hint}")
+        raise UsageError(f"no solver is called {quoted(solver)}{nearest(solver, SOLVERS)}")
     begin = np.zeros((problem.contacts, 3)) if start is None else np.asarray(start, dtype=float)
     if not all(np.isfinite(numbers).all() for numbers in problem):
         return Solution(begin, 0, np.empty(0), NOT_FINITE, float("inf"), float("inf"))

@@ -9,23 +9,26 @@ from __future__ import annotations
 
 import csv
 import io
+import math
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
 from lavendersim.durable_files import write_whole
 from lavendersim.errors import ConfigError, UsageError
 from lavendersim.experiment import Experiment
-from lavendersim.experiment.models.cost import FEW, FEWEST_REPEATS
+from lavendersim.experiment.models.cost import FEW, FEWEST_REPEATS, KNOBS
 from lavendersim.experiment.sweeps.cost_grid import Setting, fragment_of, over_the_grid, settings_of
+from lavendersim.measures.cost_table import CostRow, CostTable, CostTruth, ErrorSource
+from lavendersim.measures.spread import Spread
 
 from .cost_errors import SettingError, errors_of, law_of, orders_of, runs_of
 from .cost_targets import answers, front_of
 from .cost_times import Clocked, Times, times_of
 from .environment import machine
 from .experiment_run import Finished, run
-from .json_table import finite, text_of
-from .overheads import Spread
+from .json_table import text_of
 from .progress import Progress
 from .run_directory import COST, COST_TABLE, RUNS
 from .timed_engine import clock
@@ -35,7 +38,7 @@ class Costed(NamedTuple):
     """A run of a grid, and what accuracy costs in it."""
 
     finished: Finished
-    table: dict[str, Any]  # as in `cost.json`
+    table: CostTable
 
 
 def check_cost(experiment: Experiment, repeats: int | None = None) -> None:
@@ -64,7 +67,7 @@ def take_cost(
     assert experiment.config.cost is not None
     settings = settings_of(experiment)
     grid = over_the_grid(experiment, settings)
-    tables: list[dict[str, Any]] = []
+    tables: list[CostTable] = []
 
     def closing(finished: Finished, measured: list[dict[str, Any]]) -> None:
         runs = runs_of(settings, finished, measured)
@@ -84,27 +87,27 @@ def take_cost(
         times = times_of(clocked, spec.begin, rounds, jobs, progress.timing)
         laws = [law_of(one.cells[0].config) for one in clocked]
         rows = _rows(experiment, settings, errors, times, laws)
-        table = {
-            "experiment": experiment.name,
-            "config": str(experiment.path),
-            "overrides": list(experiment.options.overrides),
-            "question": experiment.config.question,
-            "error": spec.error.model_dump(mode="json"),
-            "axes": list(experiment.axes),
-            "cells_per_setting": each,
-            "clock": clock()[0],
-            "machine": machine(),
-            "repeats": rounds,
-            "from": spec.begin,
-            "duration": experiment.cells()[0].config.duration,
-            "truth": _truth(settings, errors),
-            "rows": rows,
-            "targets": answers(rows, targets or spec.targets),
-        }
-        # Not a text, as in `results.json` for people: what reads `cost.json` calculates with it.
-        tables.append(finite(table, lambda _: None))
-        write_whole(finished.run.path / COST, text_of(tables[0]), flush=False)
-        _write_csv(finished.run.path / COST_TABLE, tables[0]["rows"])
+        table = CostTable(
+            experiment=experiment.name,
+            config=str(experiment.path),
+            overrides=list(experiment.options.overrides),
+            question=experiment.config.question,
+            error=ErrorSource(**spec.error.model_dump(mode="json")),
+            axes=list(experiment.axes),
+            cells_per_setting=each,
+            clock=clock()[0],
+            machine=machine(),
+            repeats=rounds,
+            begin=spec.begin,
+            duration=experiment.cells()[0].config.duration,
+            truth=_truth(settings, errors),
+            rows=rows,
+            targets=answers(rows, targets or spec.targets),
+        )
+        tables.append(table)
+        data = table.as_data()
+        write_whole(finished.run.path / COST, text_of(data), flush=False)
+        _write_csv(finished.run.path / COST_TABLE, data["rows"])
 
     finished = run(grid, root, jobs, progress, overheads=False, closing=closing)
     return Costed(finished, tables[0])
@@ -116,51 +119,59 @@ def _rows(
     errors: Sequence[SettingError],
     times: Sequence[Times],
     laws: Sequence[str],
-) -> list[dict[str, Any]]:
+) -> list[CostRow]:
     orders = orders_of(settings, [error.error for error in errors])
     rows = []
     # the truth stands last, and is not timed
     for setting, error, order, time, law in zip(
         settings, errors, orders, times, laws, strict=False
     ):
-        spread = Spread.of(time.samples)._asdict() if time.samples else None
-        rows.append(
-            {
-                "role": setting.role,
-                "preset": setting.preset,
-                **{**setting.knobs, "timestep": str(setting.timestep)},
-                "accuracy": setting.accuracy,
-                "error": error.error,
-                "worst_at": error.worst_at,
-                "order": order,
-                "law": law,
-                "worst_residual": error.residual,  # [m/s]
-                "not_converged_steps": error.not_converged,
-                "steps": error.steps,
-                "failed": error.failed or ("" if spread else "it ends before timing begins"),
-                "ns_per_second": spread,  # of physics per simulated second
-                "samples": time.samples,
-                "timed_seconds": time.seconds,
-                "compile_s": time.compile_s,
-                "fragment": fragment_of(experiment, setting),
-            }
+        spread = Spread.of(time.samples) if time.samples else None
+        row = CostRow(
+            role=setting.role,
+            preset=setting.preset,
+            **_numerics(setting),
+            accuracy=setting.accuracy,
+            error=_known(error.error),
+            worst_at=error.worst_at,
+            order=order,
+            law=law,
+            worst_residual=_known(error.residual),
+            not_converged_steps=error.not_converged,
+            steps=error.steps,
+            failed=error.failed or ("" if spread else "it ends before timing begins"),
+            ns_per_second=spread,
+            samples=time.samples,
+            timed_seconds=time.seconds,
+            compile_s=time.compile_s,
+            fragment=fragment_of(experiment, setting),
         )
+        rows.append(row)
     front = front_of(rows)
-    return [{**row, "front": place in front} for place, row in enumerate(rows)]
+    return [replace(row, front=place in front) for place, row in enumerate(rows)]
 
 
-def _truth(settings: Sequence[Setting], errors: Sequence[SettingError]) -> dict[str, Any] | None:
+def _truth(settings: Sequence[Setting], errors: Sequence[SettingError]) -> CostTruth | None:
     """Return what was taken for the truth, where it is a run of its own."""
     for setting, error in zip(settings, errors, strict=True):
         if setting.role == "truth":
-            return {
-                **{**setting.knobs, "timestep": str(setting.timestep)},
-                "worst_residual": error.residual,
-                "not_converged_steps": error.not_converged,
-                "steps": error.steps,
-                "failed": error.failed,
-            }
+            return CostTruth(
+                **_numerics(setting),
+                worst_residual=_known(error.residual),
+                not_converged_steps=error.not_converged,
+                steps=error.steps,
+                failed=error.failed,
+            )
     return None
+
+
+def _numerics(setting: Setting) -> dict[str, Any]:
+    return {name: getattr(setting, name) for name in KNOBS} | {"timestep": str(setting.timestep)}
+
+
+def _known(number: float) -> float | None:
+    """Return a number; None for those that JSON does not have."""
+    return number if math.isfinite(number) else None
 
 
 COLUMNS: Final = (

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from fractions import Fraction
-from typing import Any
 
 from lavendersim.errors import UsageError
+from lavendersim.measures.cost_table import CostAnswer, CostRow
 
-Row = Mapping[str, Any]
 ROUND_OFF = 1e-13  # [-] some hundred operations of 2^-52 each; of two such errors none is better
 
 
@@ -25,11 +24,11 @@ def percentage(text: str) -> float:
     return share
 
 
-def front_of(rows: Sequence[Row]) -> list[int]:
+def front_of(rows: Sequence[CostRow]) -> list[int]:
     """Return the settings than which none is cheaper and as good, from the cheapest on."""
-    good = [place for place, row in enumerate(rows) if is_answer(row)]
-    errors = {place: max(rows[place]["error"], ROUND_OFF) for place in good}
-    good.sort(key=lambda place: (cost_of(rows[place]), errors[place]))
+    errors = {place: max(error_of(row), ROUND_OFF) for place, row in enumerate(rows)}
+    good = [place for place, row in enumerate(rows) if row.is_answer]
+    good.sort(key=lambda place: (rows[place].cost, errors[place]))
     front: list[int] = []
     for place in good:
         if not front or errors[place] < errors[front[-1]]:
@@ -37,53 +36,43 @@ def front_of(rows: Sequence[Row]) -> list[int]:
     return front
 
 
-def is_answer(row: Row) -> bool:
-    """Whether a setting did not fail and was timed."""
-    return not row["failed"] and row["ns_per_second"] is not None
+def error_of(row: CostRow) -> float:
+    """Return the error of a setting; infinite where it has none."""
+    return math.inf if row.error is None else row.error
 
 
-def cost_of(row: Row) -> float:
-    """Return the median cost of a simulated second [ns]."""
-    return float(row["ns_per_second"]["median"])
-
-
-def answers(rows: Sequence[Row], targets: Iterable[float]) -> list[dict[str, Any]]:
+def answers(rows: Sequence[CostRow], targets: Iterable[float]) -> list[CostAnswer]:
     """Return the cheapest setting that reaches each target, in words and as a fragment."""
     return [_answer(rows, target) for target in targets]
 
 
-def _answer(rows: Sequence[Row], target: float) -> dict[str, Any]:
+def _answer(rows: Sequence[CostRow], target: float) -> CostAnswer:
     front = front_of(rows)
-    reaching = [place for place in front if rows[place]["error"] <= target]
+    reaching = [place for place in front if error_of(rows[place]) <= target]
     if reaching:
         row = rows[reaching[0]]
         sentence = f"{percent(target)} costs {time_of(row)}: {name_of(row)}"
         if alike := _as_cheap(rows, reaching[0], target):
             sentence += f" ({alike} other{'s are' if alike > 1 else ' is'} as cheap, by the spread)"
-        return {
-            "target": target,
-            "reached": True,
-            "row": reaching[0],
-            "sentence": sentence,
-            "fragment": row["fragment"],
-        }
+        return CostAnswer(target, True, reaching[0], sentence, row.fragment)
     sentence = f"no setting of the grid reaches {percent(target)}"
     if front:
         row = rows[front[-1]]
-        nearest = f"{percent(row['error'])} at {time_of(row)}: {name_of(row)}"
+        nearest = f"{percent(error_of(row))} at {time_of(row)}: {name_of(row)}"
         sentence += f": the nearest is {nearest}"
     else:
         sentence += ": all of them failed"
-    return {"target": target, "reached": False, "row": None, "sentence": sentence, "fragment": None}
+    return CostAnswer(target, False, None, sentence, None)
 
 
-def _as_cheap(rows: Sequence[Row], best: int, target: float) -> int:
+def _as_cheap(rows: Sequence[CostRow], best: int, target: float) -> int:
     """Count the other settings that reach a target no slower than the best, within its spread."""
-    most = rows[best]["ns_per_second"]["high"]
+    spread = rows[best].ns_per_second
+    assert spread is not None
+    others = [row for place, row in enumerate(rows) if place != best and error_of(row) <= target]
     return sum(
-        row["ns_per_second"]["low"] <= most
-        for place, row in enumerate(rows)
-        if place != best and is_answer(row) and row["error"] <= target
+        row.is_answer and row.ns_per_second is not None and row.ns_per_second.low <= spread.high
+        for row in others
     )
 
 
@@ -92,9 +81,9 @@ def percent(share: float) -> str:
     return f"{100.0 * share:.3g} %"
 
 
-def time_of(row: Row) -> str:
+def time_of(row: CostRow) -> str:
     """Return the cost of a setting in words."""
-    return f"{short_time(cost_of(row))} per simulated second"
+    return f"{short_time(row.cost)} per simulated second"
 
 
 def short_time(nanoseconds: float) -> str:
@@ -105,24 +94,23 @@ def short_time(nanoseconds: float) -> str:
     return f"{nanoseconds:.3g} ns"
 
 
-def name_of(row: Row) -> str:
+def name_of(row: CostRow) -> str:
     """Return a setting in words: `projected_gauss_seidel, 240 Hz, 8 sweeps, warm`."""
-    if row["role"] == "chapter":
+    if row.role == "chapter":
         return f"the chapter's setting ({_knobs(row)})"
-    return _knobs(row) if row["preset"] == "default" else f"{_knobs(row)}, laws of {row['preset']}"
+    return _knobs(row) if row.preset == "default" else f"{_knobs(row)}, laws of {row.preset}"
 
 
-def _knobs(row: Row) -> str:
-    start = "warm" if row["warm_start"] else "cold"
-    return f"{row['solver']}, {steps_of(row)}, {effort_of(row)}, {start}"
+def _knobs(row: CostRow) -> str:
+    start = "warm" if row.warm_start else "cold"
+    return f"{row.solver}, {steps_of(row)}, {effort_of(row)}, {start}"
 
 
-def steps_of(row: Row) -> str:
+def steps_of(row: CostRow) -> str:
     """Return what decides the length of steps: their rate, or the accuracy asked for."""
-    accuracy = row.get("accuracy")  # tables of before do not say
-    if accuracy is None:
-        return rate_of(row["timestep"])
-    return f"accuracy {accuracy:.0e}".replace("e-0", "e-")
+    if row.accuracy is None:
+        return rate_of(row.timestep)
+    return f"accuracy {row.accuracy:.0e}".replace("e-0", "e-")
 
 
 def rate_of(timestep: str) -> str:
@@ -131,8 +119,8 @@ def rate_of(timestep: str) -> str:
     return f"{rate.numerator} Hz" if rate.denominator == 1 else f"timestep {timestep} s"
 
 
-def effort_of(row: Row) -> str:
+def effort_of(row: CostRow) -> str:
     """Return how far a step is solved: its sweeps, or the tolerance that ends them."""
-    if row["tolerance"] is not None:
-        return f"to {row['tolerance']:.0e} m/s".replace("e-0", "e-")
-    return f"{row['sweeps']} sweep{'' if row['sweeps'] == 1 else 's'}"
+    if row.tolerance is not None:
+        return f"to {row.tolerance:.0e} m/s".replace("e-0", "e-")
+    return f"{row.sweeps} sweep{'' if row.sweeps == 1 else 's'}"

@@ -131,6 +131,7 @@ def run(
     resume: bool = False,
     tags: Sequence[str] = (),
     executor: Executor | None = None,
+    is_predicted: bool = False,
 ) -> Finished:
     """Run every cell of an experiment and judge its expectations; take overheads where it asks.
 
@@ -140,9 +141,10 @@ def run(
     did not finish; see `resume`. tags: words to find it by. A cell that diverges or breaks a bound
     of `always` ends there, with a readable log; the others go on. executor: runs the cells in place
     of `jobs` processes, anything with the interface of `concurrent.futures`; see `remote`.
+    is_predicted: what it takes is known (`prediction`); else logs that fill the disk are warned of.
     """
     from .cell_jobs import prepare
-    from .log_size import size_warning
+    from .log_size import log_space
 
     if not isinstance(experiment, Experiment):
         experiment = load_experiment(experiment)
@@ -153,8 +155,10 @@ def run(
     root = Path(root)
     check_latest(root)
     remove_leftovers(root)
-    if sentence := size_warning(prepared.cells, prepared.plans, experiment.text, root):
-        progress.warning(sentence)
+    if not is_predicted:
+        space = log_space(prepared.cells, lambda: prepared.plans, experiment.text, root)
+        if space.is_large:
+            progress.warning(space.warning(root))
     logs = set(prepared.logs)
     before = unfinished_run(experiment, root, logs, progress.note) if resume else None
     directory = before.path if before else make_directory(experiment, root)

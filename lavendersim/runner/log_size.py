@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
-from typing import Final
+from typing import Final, NamedTuple
 
 from lavendersim.cell import CellConfig
 from lavendersim.engine.effects import effects_of, row_fields
@@ -22,6 +22,27 @@ IMPACTS: Final = 0.25
 # More than logs take, by far: twenty contacts of 250 B a body. It is known at once.
 MOST_PER_STEP: Final = 1_000  # [B]
 MOST_PER_BODY: Final = 5_000  # [B] and step
+
+
+class LogSpace(NamedTuple):
+    """What the logs of a run take of the disk that they go to."""
+
+    size: int | None  # [B] about; None: far less than there is
+    free: int  # [B]
+
+    @property
+    def is_large(self) -> bool:
+        """Whether they take more than a tenth of what is free."""
+        return self.size is not None and self.size > MOST_OF_DISK * self.free
+
+    def warning(self, root: Path) -> str:
+        """Return a sentence for logs that are large; else nothing."""
+        if self.size is None or not self.is_large:
+            return ""
+        return (
+            f"its logs take about {self.size / 1e9:.2g} GB, more than a tenth of the "
+            f"{self.free / 1e9:.2g} GB that are free in {root}"
+        )
 
 
 def expected_log_size(config: CellConfig, plan: Plan, as_written: str) -> float:
@@ -56,18 +77,31 @@ def expected_log_sizes(cells: Iterable[Cell], plans: Iterable[Plan], as_written:
     ]
 
 
-def size_warning(cells: Sequence[Cell], plans: Sequence[Plan], as_written: str, root: Path) -> str:
-    """Return a sentence where the logs fill the disk of `root` too far; else nothing."""
-    free = shutil.disk_usage(existing(root)).free
-    if sum(map(most_bytes, cells)) <= MOST_OF_DISK * free:
-        return ""
-    total = sum(expected_log_sizes(cells, plans, as_written))
-    if total <= MOST_OF_DISK * free:
-        return ""
-    return (
-        f"its logs take about {total / 1e9:.2g} GB, more than a tenth of the {free / 1e9:.2g} GB "
-        f"that are free in {root}"
-    )
+def log_space(
+    cells: Sequence[Cell],
+    plans: Callable[[], Iterable[Plan]],
+    as_written: str,
+    root: Path,
+    always: bool = False,
+) -> LogSpace:
+    """Return what the logs of a run take of the disk of `root`.
+
+    always: expect a size also where it is certainly small, and planning would take longer.
+    """
+    free = free_bytes(root)
+    if not always and is_certainly_small(cells, free):
+        return LogSpace(None, free)
+    return LogSpace(sum(expected_log_sizes(cells, plans(), as_written)), free)
+
+
+def is_certainly_small(cells: Iterable[Cell], free: int) -> bool:
+    """Whether logs take little of what is free [B]: known at once, by a bound."""
+    return sum(map(most_bytes, cells)) <= MOST_OF_DISK * free
+
+
+def free_bytes(root: Path) -> int:
+    """Return what is free on the disk of a folder [B], which need not be made yet."""
+    return shutil.disk_usage(existing(root)).free
 
 
 def most_bytes(cell: Cell) -> float:

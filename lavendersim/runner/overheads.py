@@ -10,11 +10,9 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Callable, Sequence
-from math import ceil, comb
+from math import ceil
 from pathlib import Path
-from typing import Any, Final, NamedTuple
-
-import numpy as np
+from typing import Final
 
 from lavendersim.durable_files import write_whole
 from lavendersim.engine.spec import Spec
@@ -22,6 +20,8 @@ from lavendersim.errors import ConfigError
 from lavendersim.experiment import Experiment
 from lavendersim.experiment.cell import Cell
 from lavendersim.geometry.bodies import is_movable
+from lavendersim.measures.overhead_table import OverheadRow, OverheadTable, OverheadTiming
+from lavendersim.measures.spread import Spread
 from lavendersim.quantities.found import nearest, quoted
 from lavendersim.quantities.scalars import exact
 
@@ -31,44 +31,6 @@ from .overhead_pairs import EnginePair, names_of_effects, pairs_of
 from .timed_engine import Diverged, Timed, clock
 
 Report = Callable[[str, int, int], None]
-OUTSIDE: Final = 0.025  # largest probability that the median lies beyond either end of the interval
-
-
-class Spread(NamedTuple):
-    """Some samples in five numbers; low and high hold their true median in 19 of 20 cases."""
-
-    median: float
-    lower_quartile: float
-    upper_quartile: float
-    low: float
-    high: float
-
-    @classmethod
-    def of(cls, samples: Sequence[float]) -> Spread:
-        """Return the spread of samples."""
-        ordered = np.sort(np.asarray(samples, dtype=np.float64))
-        beyond = samples_beyond(len(ordered))
-        middle, lower, upper = np.quantile(ordered, [0.5, 0.25, 0.75]).tolist()
-        return cls(middle, lower, upper, float(ordered[beyond]), float(ordered[-1 - beyond]))
-
-    def per(self, units: float) -> dict[str, float]:
-        """Return the numbers of one unit."""
-        return {name: value / units for name, value in self._asdict().items()}
-
-
-def samples_beyond(count: int) -> int:
-    """Return how many samples may be left out at either end of an interval for the median.
-
-    At most k of n samples lie below the median with probability sum_(i<=k) C(n, i) / 2^n, whatever
-    their distribution; with fewer than six samples even all of them hold it less often than asked.
-    """
-    beyond, below = 0, 0.0
-    for k in range(count):
-        below += comb(count, k) / 2**count
-        if below > OUTSIDE:
-            break
-        beyond = k
-    return beyond
 
 
 def check_overheads(experiment: Experiment) -> None:
@@ -93,7 +55,7 @@ def _named(experiment: Experiment) -> tuple[str, ...]:
 
 def take_overheads(
     experiment: Experiment, workers: int = 1, report: Report = lambda what, done, total: None
-) -> dict[str, Any]:
+) -> OverheadTable:
     """Return what the effects of an experiment's only cell cost, as plain data.
 
     workers: processes that compile. report: called with what is done, how far, and of how many.
@@ -135,7 +97,7 @@ def _timed(
 def _without_diverged(pair: EnginePair, diverged: set[Spec]) -> EnginePair:
     for which, spec in (("without", pair.off), ("with", pair.on)):
         if spec in diverged:
-            return pair._replace(off=None, on=None, why_not=f"the scene flies apart {which} it")
+            return pair._replace(off=None, on=None, why_not=f"the scene diverges {which} it")
     return pair
 
 
@@ -167,7 +129,7 @@ def _table(
     samples: dict[str, list[tuple[float, float]]],
     seconds: dict[Spec, float],
     window: tuple[int, int, int],
-) -> dict[str, Any]:
+) -> OverheadTable:
     bodies = sum(is_movable(body) for body in cell.config.scene.bodies.values())
     # Contacts of the scene's own motion: of an engine whose effects the scene requires, or idle.
     own = next(
@@ -180,16 +142,8 @@ def _table(
         0.0,
     )
     first, steps, repeats = window
-    return {
-        "first_step": first,
-        "steps": steps,
-        "repeats": repeats,
-        "clock": clock()[0],
-        "processor": processor(),
-        "bodies": bodies,
-        "contacts_per_step": own,
-        "rows": [_row(pair, timed, samples[pair.effect], seconds, bodies, own) for pair in pairs],
-    }
+    rows = [_row(pair, timed, samples[pair.effect], seconds, bodies, own) for pair in pairs]
+    return OverheadTable(first, steps, repeats, clock()[0], processor(), bodies, own, rows)
 
 
 def _row(
@@ -199,36 +153,37 @@ def _row(
     seconds: dict[Spec, float],
     bodies: int,
     contacts: float,
-) -> dict[str, Any]:
+) -> OverheadRow:
     # Below one contact a step the cost is that of looking for it, which every body has.
     by_contact = pair.of_contacts and contacts >= 1.0
     units = contacts if by_contact else max(bodies, 1)
-    row: dict[str, Any] = {
-        "effect": pair.effect,
-        "required": pair.required,
-        "reason": pair.reason,
-        "unit": "contact" if by_contact else "body",
-        "units": units,
-        "on_top_of": list(pair.on_top_of),
-        "why_not": pair.why_not,
-    }
-    if pair.off is None or pair.on is None:
-        return row
-    off, on = timed[pair.off], timed[pair.on]
-    difference = Spread.of([after - before for before, after in samples])
-    return row | {
-        "same_motion": off.motion == on.motion,
-        "contacts_off": off.contacts,
-        "contacts_on": on.contacts,
-        "compile_s_off": seconds[pair.off],
-        "compile_s_on": seconds[pair.on],
-        "off": Spread.of([before for before, _ in samples]).per(units),  # ns per unit and step
-        "on": Spread.of([after for _, after in samples]).per(units),
-        "overhead": difference.per(units),
-        "within_noise": difference.low <= 0.0 <= difference.high,
-        "samples_off": [before for before, _ in samples],  # ns per step
-        "samples_on": [after for _, after in samples],
-    }
+    timing = None
+    if pair.off is not None and pair.on is not None:
+        off, on = timed[pair.off], timed[pair.on]
+        difference = Spread.of([after - before for before, after in samples])
+        timing = OverheadTiming(
+            same_motion=off.motion == on.motion,
+            contacts_off=off.contacts,
+            contacts_on=on.contacts,
+            compile_s_off=seconds[pair.off],
+            compile_s_on=seconds[pair.on],
+            off=Spread.of([before for before, _ in samples]).per(units),
+            on=Spread.of([after for _, after in samples]).per(units),
+            overhead=difference.per(units),
+            within_noise=difference.low <= 0.0 <= difference.high,
+            samples_off=[before for before, _ in samples],
+            samples_on=[after for _, after in samples],
+        )
+    return OverheadRow(
+        effect=pair.effect,
+        required=pair.required,
+        reason=pair.reason,
+        unit="contact" if by_contact else "body",
+        units=units,
+        on_top_of=list(pair.on_top_of),
+        why_not=pair.why_not,
+        timing=timing,
+    )
 
 
 COLUMNS: Final = (
@@ -238,15 +193,15 @@ COLUMNS: Final = (
 )
 
 
-def write_overheads(path: Path, overheads: dict[str, Any]) -> None:
+def write_overheads(path: Path, overheads: OverheadTable) -> None:
     """Write a table of overheads as CSV: medians and ends of intervals, ns per unit and step."""
     text = io.StringIO()
     writer = csv.DictWriter(text, COLUMNS, restval="", extrasaction="ignore")
     writer.writeheader()
-    for row in overheads["rows"]:
-        overhead = row.get("overhead", {})
-        spreads = {name: row[name] for name in ("off", "on", "overhead") if name in row}
-        medians = {name: spread["median"] for name, spread in spreads.items()}
-        ends = {name: overhead[name] for name in ("low", "high") if name in overhead}
-        writer.writerow({**row, "on_top_of": " ".join(row["on_top_of"]), **ends, **medians})
+    for row, data in zip(overheads.rows, overheads.as_data()["rows"], strict=True):
+        numbers: dict[str, float] = {}
+        if (timing := row.timing) is not None:
+            numbers = {name: getattr(timing, name).median for name in ("off", "on", "overhead")}
+            numbers |= {"low": timing.overhead.low, "high": timing.overhead.high}
+        writer.writerow({**data, "on_top_of": " ".join(row.on_top_of), **numbers})
     write_whole(path, text.getvalue(), flush=False)

@@ -6,14 +6,13 @@ of one core of a desktop: within some three times for scenes of the docs' tables
 
 from __future__ import annotations
 
-import shutil
 from pathlib import Path
 from typing import Final, NamedTuple
 
 from lavendersim.experiment import Experiment
 from lavendersim.scene.expected_contacts import expected_contacts
 
-from .log_size import MOST_OF_DISK, existing, expected_log_sizes, most_bytes
+from .log_size import LogSpace, free_bytes, is_certainly_small, log_space
 from .plans import shared_plans
 
 # Of docs/results.md, with logging: a ball 2.7 us a step; a pile, a pyramid 0.5 to 2.5 us a contact.
@@ -33,8 +32,7 @@ class Prediction(NamedTuple):
     cells: int
     steps: int
     seconds: float  # by the clock on the wall
-    size: int | None  # [B] of the logs; None: far less than the disk has
-    free: int  # [B] of the disk
+    space: LogSpace
 
     @property
     def is_long(self) -> bool:
@@ -42,14 +40,9 @@ class Prediction(NamedTuple):
         return self.seconds > LONGEST
 
     @property
-    def is_large(self) -> bool:
-        """Whether its logs take more than a tenth of the free disk."""
-        return self.size is not None and self.size > MOST_OF_DISK * self.free
-
-    @property
     def is_worth_saying(self) -> bool:
         """Whether somebody would want to know it before."""
-        return self.seconds > WORTH_SAYING or self.is_large
+        return self.seconds > WORTH_SAYING or self.space.is_large
 
 
 def is_short(experiment: Experiment, root: Path) -> bool:
@@ -64,8 +57,7 @@ def is_short(experiment: Experiment, root: Path) -> bool:
     )
     if seconds > min(WORTH_SAYING, LONGEST):
         return False
-    free = shutil.disk_usage(existing(root)).free
-    return sum(map(most_bytes, experiment.cells())) <= MOST_OF_DISK * free
+    return is_certainly_small(experiment.cells(), free_bytes(root))
 
 
 def predicted(experiment: Experiment, root: Path, jobs: int = 1) -> Prediction:
@@ -78,9 +70,8 @@ def predicted(experiment: Experiment, root: Path, jobs: int = 1) -> Prediction:
         for one in sampled
     )
     seconds = work * steps / sum(one.config.steps for one in sampled) + PER_CELL * len(cells)
-    free = shutil.disk_usage(existing(root)).free
     seconds /= min(jobs, len(cells))
-    size = None
-    if seconds > WORTH_SAYING or sum(map(most_bytes, cells)) > MOST_OF_DISK * free:
-        size = sum(expected_log_sizes(cells, shared_plans(cells), experiment.text))
-    return Prediction(experiment.name, len(cells), steps, seconds, size, free)
+    space = log_space(
+        cells, lambda: shared_plans(cells), experiment.text, root, always=seconds > WORTH_SAYING
+    )
+    return Prediction(experiment.name, len(cells), steps, seconds, space)

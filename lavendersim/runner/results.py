@@ -13,6 +13,8 @@ from .json_table import finite, pieces_of
 from .run_directory import RESULTS, TABLE, Run
 
 if TYPE_CHECKING:
+    from lavendersim.measures.overhead_table import OverheadTable
+
     from .experiment_run import Finished
 
 # Columns of both tables, beside the measures: what a cell cost, and how well it was solved.
@@ -24,7 +26,7 @@ VIOLATIONS = tuple(name for name in _WORST if name not in ACCURACY)
 
 
 def write_results(
-    finished: Finished, measured: list[dict[str, Any]], overheads: dict[str, Any] | None = None
+    finished: Finished, measured: list[dict[str, Any]], overheads: OverheadTable | None = None
 ) -> None:
     """Write the tables of a finished run; numbers keep all their digits."""
     run = finished.run
@@ -56,7 +58,7 @@ def write_results(
         "compile_s": compile_seconds(finished),
         "checks": (finite(verdict._asdict(), str) for verdict in finished.verdicts),
         "passed": finished.good,
-        **({} if overheads is None else {"overheads": finite(overheads, str)}),
+        **({} if overheads is None else {"overheads": finite(overheads.as_data(), str)}),
     }
     write_in_pieces(run.path / RESULTS, pieces_of(table), flush=False)
     _write_csv(run, rows)

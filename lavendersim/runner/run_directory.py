@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from lavendersim.arrow import Table
     from lavendersim.cell import CellConfig
     from lavendersim.experiment import Experiment
+    from lavendersim.measures.cost_table import CostTable
+    from lavendersim.measures.overhead_table import OverheadTable
     from lavendersim.trace import ExpectedLog, Trace
 
 CONFIG, RESOLVED = "config.yaml", "resolved.json"
@@ -223,12 +225,35 @@ class Run:
 
         return html_of(self)
 
-    def cost(self) -> dict[str, Any] | None:
-        """Return what accuracy costs, where it was taken; UsageError while it is not finished."""
-        self.results()
-        if not (self.path / COST).exists():
+    def overheads(self) -> OverheadTable | None:
+        """Return what each effect costs, where it was taken; UsageError while it is not finished.
+
+        TraceError where its table is damaged.
+        """
+        if (data := self.results().get("overheads")) is None:
             return None
-        return renamed(read_table(self.path / COST, "rows"), "rows")
+        from lavendersim.measures.overhead_table import OverheadTable  # late: see `RunCell.trace`
+
+        try:
+            return OverheadTable.of(data)
+        except (ValueError, KeyError, TypeError) as error:
+            raise TraceError(f"{self.path / RESULTS}: damaged: overheads: {error}") from None
+
+    def cost(self) -> CostTable | None:
+        """Return what accuracy costs, where it was taken; UsageError while it is not finished.
+
+        TraceError where its table is damaged.
+        """
+        self.results()
+        path = self.path / COST
+        if not path.exists():
+            return None
+        from lavendersim.measures.cost_table import CostTable  # late: see `RunCell.trace`
+
+        try:
+            return CostTable.of(renamed(read_table(path, "rows"), "rows"))
+        except ValueError as error:
+            raise TraceError(f"{path}: damaged: {error}") from None
 
 
 def is_run_directory(path: Path) -> bool:

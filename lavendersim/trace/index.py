@@ -107,29 +107,37 @@ def parse_metadata(data: bytes) -> Metadata:
     return record
 
 
-def spans(data: bytes, start: int = 0) -> Iterator[tuple[int, int, int]]:
-    """Yield opcode, start and end of each record; stops where the next one is not whole."""
+class Span(NamedTuple):
+    """Where a record stands in some bytes."""
+
+    opcode: int
+    start: int  # [B]
+    end: int  # [B]
+
+
+def spans(data: bytes, start: int = 0) -> Iterator[Span]:
+    """Yield where each record stands; stops where the next one is not whole."""
     while start + RECORD_HEADER <= len(data):
         opcode, length = _HEAD.unpack_from(data, start)
         end = start + RECORD_HEADER + length
         if end > len(data):
             return
-        yield opcode, start, end
+        yield Span(opcode, start, end)
         start = end
 
 
-def records_of(payload: bytes) -> Iterator[tuple[int, int, int]]:
+def records_of(payload: bytes) -> Iterator[Span]:
     """Yield the records of a chunk as `spans` does. ValueError for others than it can have.
 
     Of zeros, which cost nothing when compressed, every nine bytes would be a record.
     """
     before = 0
-    for opcode, start, end in spans(payload):
-        if opcode != Opcode.MESSAGE:
+    for span in spans(payload):
+        if span.opcode != Opcode.MESSAGE:
             before += 1
-            if opcode not in (Opcode.SCHEMA, Opcode.CHANNEL) or before > MOST_DESCRIPTIONS:
+            if span.opcode not in (Opcode.SCHEMA, Opcode.CHANNEL) or before > MOST_DESCRIPTIONS:
                 raise ValueError("a chunk has records that are none of a chunk")
-        yield opcode, start, end
+        yield span
 
 
 def read_summary(path: Path, expected: LogDigest | None = None) -> FileIndex:

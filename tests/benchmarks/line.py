@@ -25,7 +25,7 @@ from typing import Any
 
 from lavendersim.runner.environment import environment
 
-from .line_bars import held, ratio
+from .line_bars import compared, ratio
 from .line_cases import PILE_DURATION, STEPS, LineCase, cases
 from .line_commands import COMMANDS, RUN, Cost, cost
 from .line_stages import STAGES, TOTALS, Sample, sample
@@ -131,7 +131,7 @@ def table(found: dict[str, Any]) -> str:
         f"{machine['date']}, {machine['processor']}, {machine['cores']} cores; "
         f"{found['repeats']} interleaved repeats"
     )
-    return "\n".join([*lines, *(str(bar) for bar in held(found))])
+    return "\n".join([*lines, *(str(bar) for bar in compared(found))])
 
 
 def parsed() -> argparse.Namespace:
@@ -159,7 +159,7 @@ def main() -> int:
         if arguments.json:
             arguments.json.write_text(json.dumps(found, indent=1) + "\n")
     print(table(found))
-    return 1 if arguments.check and any(bar.missed for bar in held(found)) else 0
+    return 1 if arguments.check and any(bar.missed for bar in compared(found)) else 0
 
 
 if __name__ == "__main__":

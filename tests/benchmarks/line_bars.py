@@ -16,7 +16,7 @@ PILE_BAR = 200.0  # [MB] log of the pile, of PILE_STEPS
 PILE_STEPS = 1200  # 5 s at 240 Hz
 
 
-class Held(NamedTuple):
+class Compared(NamedTuple):
     """A number and the most it may be."""
 
     what: str
@@ -63,32 +63,32 @@ def log_size(case: dict[str, Any], steps: int) -> float:
     return size / 1e6
 
 
-def held(found: dict[str, Any]) -> list[Held]:
+def compared(found: dict[str, Any]) -> list[Compared]:
     """Return every bar of what was measured."""
     return [*_of_commands(found["commands"]), *_of_cases(found["cases"])]
 
 
-def _of_commands(commands: dict[str, Any]) -> Iterator[Held]:
+def _of_commands(commands: dict[str, Any]) -> Iterator[Compared]:
     for command, bar in COMMAND_BARS.items():
         if command in commands:
-            yield Held(command, commands[command]["median"], bar, "s")
+            yield Compared(command, commands[command]["median"], bar, "s")
 
 
-def _of_cases(cases: dict[str, Any]) -> Iterator[Held]:
+def _of_cases(cases: dict[str, Any]) -> Iterator[Compared]:
     if "drops" in cases:
         drops = cases["drops"]
         cell = drops["medians"]["wall"] / drops["cells"] * 1e3
-        yield Held("a cell of the sweep of drops", cell, DROP_BAR, "ms")
+        yield Compared("a cell of the sweep of drops", cell, DROP_BAR, "ms")
     for name in ("pyramid", "pile"):
         if name in cases:
             samples = cases[name]["samples"]
             share = ratio(logged(samples), samples["physics"])
-            yield Held(f"{name}, logging and judging by physics", share, RATIO_BAR, "")
+            yield Compared(f"{name}, logging and judging by physics", share, RATIO_BAR, "")
     balls = sorted((case["steps"], name) for name, case in cases.items() if "ball" in name)
     if len(balls) == 2:
         short, long = (cases[name] for _, name in balls)
         what = "a step of one ball, logging and judging"
-        yield Held(what, step_cost(long, short), BALL_BAR, "us")
+        yield Compared(what, step_cost(long, short), BALL_BAR, "us")
     if "pile" in cases:
         size = log_size(cases["pile"], PILE_STEPS)
-        yield Held(f"pile, log of {PILE_STEPS} steps, extrapolated", size, PILE_BAR, "MB")
+        yield Compared(f"pile, log of {PILE_STEPS} steps, extrapolated", size, PILE_BAR, "MB")

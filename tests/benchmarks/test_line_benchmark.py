@@ -103,20 +103,22 @@ def whole(scale: float) -> dict[str, Any]:
 
 
 def test_every_bar_is_held_at_its_number_and_missed_above() -> None:
-    names = [bar.what for bar in line_bars.held(whole(1.0))]
+    names = [bar.what for bar in line_bars.compared(whole(1.0))]
     assert len(names) == len(set(names)) == 9
-    assert not any(bar.missed for bar in line_bars.held(whole(0.99)))
-    assert [bar.what for bar in line_bars.held(whole(1.01)) if bar.missed] == names
+    assert not any(bar.missed for bar in line_bars.compared(whole(0.99)))
+    assert [bar.what for bar in line_bars.compared(whole(1.01)) if bar.missed] == names
 
 
 def test_what_was_not_measured_has_no_bar_and_no_number_keeps_none() -> None:
-    assert line_bars.held({"cases": {}, "commands": {}}) == []
-    assert line_bars.Held("a ratio", math.nan, 1.0, "").missed
+    assert line_bars.compared({"cases": {}, "commands": {}}) == []
+    assert line_bars.Compared("a ratio", math.nan, 1.0, "").missed
 
 
 def test_a_missed_bar_says_by_how_much() -> None:
-    assert str(line_bars.Held("a run", 3.25, 2.0, "s")).endswith("at most 2 s: missed by 1.25 s")
-    assert "missed" not in str(line_bars.Held("a run", 2.0, 2.0, "s"))
+    assert str(line_bars.Compared("a run", 3.25, 2.0, "s")).endswith(
+        "at most 2 s: missed by 1.25 s"
+    )
+    assert "missed" not in str(line_bars.Compared("a run", 2.0, 2.0, "s"))
 
 
 @pytest.mark.parametrize(("scale", "exit_code"), [(0.99, 0), (1.01, 1)])

@@ -125,4 +125,5 @@ def test_sizes_and_spans_have_three_digits_at_most() -> None:
     sizes = {0: "0 B", 999: "999 B", 999_999: "1 MB", 1_234_567: "1.23 MB", 5.6e10: "56 GB"}
     assert {count: byte_size(count) for count in sizes} == sizes
     spans = {0.4: "0 s", 59.6: "1 min 0 s", 72.4: "1 min 12 s", 7290.0: "2 h 1 min"}
+    spans |= {172799.0: "47 h 59 min", 172800.0: "2 days 0 h", 1e6: "11 days 13 h"}
     assert {seconds: time_span(seconds) for seconds in spans} == spans

@@ -3,7 +3,7 @@
     r_n <- max(0, r_n - u_n / W_nn),   r_t <- the nearest point of the disc of radius mu r_n to
                                               r_t - u_t / c,  c the largest response along a tangent
 one contact after the other, u always the velocity that all impulses so far leave. Its fixed points
-are the solutions. It shares no line with the solvers it is held against.
+are the solutions. It shares no line with the solvers it is compared with.
 """
 
 from __future__ import annotations

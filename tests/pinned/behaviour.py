@@ -1,7 +1,7 @@
 """What every shipped config does, pinned: last state hashes, verdicts, refusals of bad configs.
 
     python -m tests.pinned.behaviour --write before.json            # on the commit to hold on to
-    python -m tests.pinned.behaviour --compare before.json          # on the commit to be held
+    python -m tests.pinned.behaviour --compare before.json          # on the commit to be compared
     python -m tests.pinned.behaviour --compare before.json configs/chapter   # only a part
 
 A change of words that is meant goes through `renames.json`: a list of [pattern, replacement] pairs

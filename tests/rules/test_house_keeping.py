@@ -22,7 +22,7 @@ LONGEST_FILE = 400  # lines; beyond it a file does more than one thing
 # What several solvers are made of, and their declaration.
 SHARED_BY_SOLVERS = {"catalogue", "iteration", "row_update", "solver", "step_bound", "sweep"}
 # Folders of configs that claim something of physics, and what claims something else: maps look for
-# where bounds break, and what the fuzz found is held to its laws (`tests/property`).
+# where bounds break, and what the fuzz found is checked by its laws (`tests/property`).
 CLAIMING = ("chapter", "hard", "paw_check", "scenes")
 CLAIMING_ELSE = {"maps", "found"}
 

@@ -33,7 +33,7 @@ NEEDED = "friction needs it: at work it comes and goes with friction"
 SWEPT = "shipped scenes that require it are sweeps; timed is a scene of one cell"
 NONE = "no shipped scene requires it"
 IDLE = {  # in effects/sphere.yaml, with the reason why no config has it at work
-    "compound": "without it parts do not follow their body, and the scene flies apart",
+    "compound": "without it parts do not follow their body, and the scene diverges",
     "external_force": FORCES,
     "rotation": NEEDED,
     "contact_torque": NEEDED,

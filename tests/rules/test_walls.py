@@ -31,7 +31,7 @@ ROOMS = {
         *("errors", "clock", "record_tables", "durable_files", "geometry", "quantities", "cell"),
         *("engine", "arrow"),
     },
-    "problems": {"errors", "engine"},
+    "problems": {"errors", "quantities", "engine"},
     "measures": {"errors", "clock", "geometry", "quantities", "cell", "engine", "trace"},
     "figures": {
         *("errors", "durable_files", "geometry", "quantities", "cell", "trace", "measures"),

@@ -4,19 +4,21 @@ from __future__ import annotations
 
 import csv
 import json
+import shutil
 from fractions import Fraction
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 
+from lavendersim.errors import TraceError
 from lavendersim.experiment import load_experiment, load_experiment_text
 from lavendersim.experiment.sweeps.cost_grid import fragment_of, over_the_grid, settings_of
 from lavendersim.figures.work_precision import compose, draw_work_precision
+from lavendersim.measures.cost_table import CostRow
 from lavendersim.runner import open_run, run
 from lavendersim.runner.cost import Costed, take_cost
-from lavendersim.runner.cost_targets import answers
+from tests.older_runs import without_digests
 
 BALL = """\
 question: What does a bounce cost?
@@ -60,8 +62,8 @@ def costed(tmp_path_factory: pytest.TempPathFactory) -> Costed:
     return take_cost(load_experiment(config), folder / "runs")
 
 
-def rows_of(costed: Costed) -> dict[tuple[str, str], dict[str, Any]]:
-    return {(row["role"], row["timestep"]): row for row in costed.table["rows"]}
+def rows_of(costed: Costed) -> dict[tuple[str, str], CostRow]:
+    return {(row.role, row.timestep): row for row in costed.table.rows}
 
 
 def test_the_grid_is_the_product_of_its_lists_with_what_the_config_specifies_first() -> None:
@@ -104,22 +106,6 @@ def test_accuracies_are_asked_for_where_the_laws_are_of_order_two() -> None:
     assert [one.preset for one in settings if one.accuracy == 1e-3] == ["default"]
 
 
-def test_an_accuracy_answers_a_target() -> None:
-    """The cheapest that reaches it, by name and as what is to be pasted."""
-    plain = {"preset": "default", "solver": "adaptive", "timestep": "1/60", "sweeps": 50}
-    plain |= {"tolerance": 1e-9, "warm_start": True, "failed": "", "role": "grid"}
-    time = {"median": 2e6, "low": 2e6, "high": 2e6}
-    rows = [
-        {**plain, "accuracy": 1e-4, "error": 1e-4, "ns_per_second": time, "fragment": "asked"},
-        {**plain, "accuracy": None, "error": 1e-2, "ns_per_second": time, "fragment": "equal"},
-    ]
-    (answer,) = answers(rows, [1e-3])
-    assert answer["fragment"] == "asked"
-    assert answer["sentence"] == (
-        "0.1 % costs 2 ms per simulated second: adaptive, accuracy 1e-4, to 1e-9 m/s, warm"
-    )
-
-
 def test_a_fragment_gives_its_setting_and_states_no_more_than_it_must() -> None:
     asked = "{accuracy: 2e-3, slop: 1e-6}"  # and the grid has equal timesteps beside it
     for numerics in (
@@ -150,71 +136,82 @@ def test_errors_are_those_of_the_logs_the_worst_over_the_experiments_own_cells(
     costed: Costed,
 ) -> None:
     results = costed.finished.run.results()["cells"]
-    for place, row in enumerate(costed.table["rows"]):
+    for place, row in enumerate(costed.table.rows):
         cells = results[3 * place : 3 * place + 3]
         apexes = [cell["measures"]["apex"] for cell in cells]
-        assert row["error"] == max(apexes)
+        assert row.error == max(apexes)
         worst = cells[int(np.argmax(apexes))]["label"]
-        assert row["worst_at"] in worst
-        assert row["worst_residual"] == max(cell["worst_residual"] for cell in cells)
+        assert row.worst_at in worst
+        assert row.worst_residual == max(cell["worst_residual"] for cell in cells)
         # captured restitution is off by a share of what is fallen in a step: percents, not zero
-        assert 1e-4 < row["error"] < 1.0
+        assert 1e-4 < row.error < 1.0
 
 
 def test_a_setting_that_breaks_a_claim_has_failed_and_stays(costed: Costed) -> None:
     rows = rows_of(costed)
     coarse, fine = rows["grid", "1/60"], rows["grid", "1/240"]
-    assert "it hardly sinks in" in coarse["failed"]
-    assert coarse["error"] is not None
-    assert coarse["ns_per_second"]["median"] > 0.0
-    assert not coarse["front"]
+    assert "it hardly sinks in" in coarse.failed
+    assert coarse.error is not None
+    assert coarse.ns_per_second.median > 0.0
+    assert not coarse.front
     # the claim on the error itself is the axis of errors: all of them break it, none fails by it
-    assert fine["failed"] == ""
+    assert fine.failed == ""
 
 
 def test_times_are_kept_sample_by_sample_and_their_spread_is_that_of_the_samples(
     costed: Costed,
 ) -> None:
-    for row in costed.table["rows"]:
-        samples, spread = row["samples"], row["ns_per_second"]
-        assert len(samples) == 7 == costed.table["repeats"]
-        assert spread["median"] == sorted(samples)[3]
+    for row in costed.table.rows:
+        samples, spread = row.samples, row.ns_per_second
+        assert len(samples) == 7 == costed.table.repeats
+        assert spread.median == sorted(samples)[3]
         # P(all of seven lie on one side) = 2/128 < 1/20; of six or more on one side, 16/128
-        assert (spread["low"], spread["high"]) == (min(samples), max(samples))
-        assert row["timed_seconds"] == pytest.approx(3 * 0.6)
-        assert row["compile_s"] > 0.0
-    assert costed.table["machine"]["processor"]
+        assert (spread.low, spread.high) == (min(samples), max(samples))
+        assert row.timed_seconds == pytest.approx(3 * 0.6)
+        assert row.compile_s > 0.0
+    assert costed.table.machine["processor"]
 
 
 def test_a_run_of_a_grid_is_finished_and_holds_its_tables(costed: Costed) -> None:
     run_directory = costed.finished.run
     assert run_directory.finished
     assert open_run(None, run_directory.path.parent).path.name == run_directory.path.name
-    assert run_directory.cost() == json.loads((run_directory.path / "cost.json").read_text())
-    assert run_directory.cost() == costed.table
+    assert costed.table.as_data() == json.loads((run_directory.path / "cost.json").read_text())
+    assert run_directory.cost() == costed.table  # read again, to the last digit
     with (run_directory.path / "cost.csv").open(newline="") as file:
         written = list(csv.DictReader(file))
-    assert [float(row["error"]) for row in written] == [
-        row["error"] for row in costed.table["rows"]
-    ]
+    assert [float(row["error"]) for row in written] == [row.error for row in costed.table.rows]
     assert [float(row["median"]) for row in written] == [
-        row["ns_per_second"]["median"] for row in costed.table["rows"]
+        row.ns_per_second.median for row in costed.table.rows
     ]
+
+
+def test_a_table_of_costs_that_lacks_a_number_is_damaged(costed: Costed, tmp_path: Path) -> None:
+    whole = costed.finished.run.path
+    run = Path(shutil.copytree(whole, tmp_path / whole.name))
+    without_digests(run)  # as older runs are; else the digest says it
+    table = json.loads((run / "cost.json").read_text())
+    del table["rows"][1]["compile_s"]
+    (run / "cost.json").write_text(json.dumps(table))
+    with pytest.raises(
+        TraceError, match=r"cost\.json: damaged: rows\.1\.compile_s: field required$"
+    ):
+        open_run(run).cost()
 
 
 def test_the_answer_to_a_target_pasted_into_the_config_gives_that_error_again(
     costed: Costed, tmp_path: Path
 ) -> None:
-    reached, missed = costed.table["targets"]
-    assert reached["reached"]
-    assert reached["sentence"].startswith("50 % costs ")
-    row = costed.table["rows"][reached["row"]]
+    reached, missed = costed.table.targets
+    assert reached.reached
+    assert reached.sentence.startswith("50 % costs ")
+    row = costed.table.rows[reached.row]
     config = tmp_path / "pasted.yaml"
-    config.write_text(BALL.replace("numerics: {preset: chapter, slop: 0.002}\n", row["fragment"]))
+    config.write_text(BALL.replace("numerics: {preset: chapter, slop: 0.002}\n", row.fragment))
     results = run(config, tmp_path / "runs").run.results()["cells"]
-    assert max(cell["measures"]["apex"] for cell in results) == row["error"]
-    assert (missed["reached"], missed["fragment"]) == (False, None)
-    assert missed["sentence"].startswith("no setting of the grid reaches 1e-07 %: the nearest is ")
+    assert max(cell["measures"]["apex"] for cell in results) == row.error
+    assert (missed.reached, missed.fragment) == (False, None)
+    assert missed.sentence.startswith("no setting of the grid reaches 1e-07 %: the nearest is ")
 
 
 def test_the_figure_is_drawn_from_the_run_alone(costed: Costed, tmp_path: Path) -> None:
@@ -230,16 +227,16 @@ def test_against_itself_the_truth_is_an_eighth_of_the_finest_step(tmp_path: Path
     config = tmp_path / "ball.yaml"
     config.write_text(text)
     costed = take_cost(load_experiment(config), tmp_path / "runs")
-    truth = costed.table["truth"]
-    assert (truth["timestep"], truth["tolerance"]) == ("1/1920", 1e-12)
+    truth = costed.table.truth
+    assert (truth.timestep, truth.tolerance) == ("1/1920", 1e-12)
     cells = costed.finished.run.results()["cells"]
     true = [cell["measures"]["sinking"] for cell in cells[-3:]]
     assert "timestep=1/1920" in cells[-1]["label"]
-    for place, row in enumerate(costed.table["rows"]):  # the truth itself is no row
+    for place, row in enumerate(costed.table.rows):  # the truth itself is no row
         values = [cell["measures"]["sinking"] for cell in cells[3 * place : 3 * place + 3]]
         errors = [abs(value - one) / 0.1 for value, one in zip(values, true, strict=True)]
-        assert row["error"] == pytest.approx(max(errors), rel=1e-12)
-    assert len(costed.table["rows"]) == len(cells) // 3 - 1
+        assert row.error == pytest.approx(max(errors), rel=1e-12)
+    assert len(costed.table.rows) == len(cells) // 3 - 1
 
 
 def test_a_setting_that_flies_apart_is_timed_up_to_there_and_stays(tmp_path: Path) -> None:
@@ -250,13 +247,13 @@ def test_a_setting_that_flies_apart_is_timed_up_to_there_and_stays(tmp_path: Pat
     config = tmp_path / "ball.yaml"
     config.write_text(text)
     costed = take_cost(load_experiment(config), tmp_path / "runs")
-    for row in costed.table["rows"]:
-        assert "diverged: body ball" in row["failed"]
-        assert row["error"] is None
-        assert row["ns_per_second"]["median"] > 0.0
-        step = float(Fraction(row["timestep"]))
+    for row in costed.table.rows:
+        assert "diverged: body ball" in row.failed
+        assert row.error is None
+        assert row.ns_per_second.median > 0.0
+        step = float(Fraction(row.timestep))
         # whole steps before the one that diverged, in each of three cells
-        assert row["timed_seconds"] <= 3 * 0.1341
-        assert row["timed_seconds"] >= 3 * (0.1341 - 2.0 * step)
-    assert "all of them failed" in costed.table["targets"][0]["sentence"]
+        assert row.timed_seconds <= 3 * 0.1341
+        assert row.timed_seconds >= 3 * (0.1341 - 2.0 * step)
+    assert "all of them failed" in costed.table.targets[0].sentence
     assert "no error" in [text.get_text() for text in compose(costed.table).axes[0].texts]

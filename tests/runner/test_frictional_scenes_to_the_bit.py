@@ -3,7 +3,7 @@ kernel or a kept one, with one worker or two. The logs' bytes and the state's ha
 compared between the runs of this session; no number is stored.
 
 Three processes: one that finds no kernel and runs everything twice, one that finds the kernels, and
-one with two workers. That an edited engine finds none of them is held by `test_kernel_cache`.
+one with two workers. That an edited engine finds none of them is checked by `test_kernel_cache`.
 """
 
 from __future__ import annotations

@@ -84,7 +84,7 @@ def test_reset_gives_observation_and_info_at_time_zero(sim: lavendersim.Simulato
 
 
 def test_a_wrong_body_name_gets_the_nearest(sim: lavendersim.Simulator) -> None:
-    with pytest.raises(UsageError, match="no body is called bal; did you mean ball"):
+    with pytest.raises(UsageError, match='no body is called "bal"; did you mean "ball"'):
         sim.body_id("bal")
 
 

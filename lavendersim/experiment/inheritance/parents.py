@@ -13,12 +13,12 @@ from typing import Final
 
 from lavendersim.errors import UsageError
 from lavendersim.experiment.inheritance.merge import merged
-from lavendersim.experiment.inheritance.yaml_text import as_yaml
 from lavendersim.experiment.text.file import read_file
 from lavendersim.experiment.text.former import with_new_spellings
 from lavendersim.experiment.text.node import Mark, Node, key_mark
 from lavendersim.experiment.text.parse import parse
 from lavendersim.experiment.text.report import Report
+from lavendersim.experiment.text.yaml_text import as_yaml
 from lavendersim.quantities.found import found, quoted
 
 EXTENDS: Final = "extends"

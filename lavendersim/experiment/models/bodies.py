@@ -127,7 +127,7 @@ def _immovable_rules(at: Place, word: str) -> None:
             has = f"a {word} body has no {key.replace('_', ' ')}"
             at.refuse(mark, f"{key}: {at} is {word}; {has}")
     if mark := at.written("release"):
-        goes = "stays" if word == "fixed" else "goes its own way"
+        goes = "stays" if word == "fixed" else "its motion is prescribed"
         at.refuse(mark, f"release: {at} is {word} and {goes}; specify its position")
 
 

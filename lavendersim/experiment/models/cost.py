@@ -12,7 +12,7 @@ from typing import Annotated, Any, Final, Literal
 
 from pydantic import Field, Tag
 
-from lavendersim.cell.choices import Solver
+from lavendersim.cell.choices import Preset, Solver
 from lavendersim.cell.numerics import Accuracy, Sweeps, Timestep, Tolerance
 from lavendersim.experiment.models.overhead import TimedFrom, all_or_named, refuse_what_interrupts
 from lavendersim.experiment.models.tree import products
@@ -23,10 +23,9 @@ from lavendersim.quantities.model import ConfigModel
 from lavendersim.quantities.names import MeasureName
 from lavendersim.quantities.quantity import Quantity, either
 
-# Names of the grid's own axes.
-GRID_NAMES: Final = frozenset(
-    {"numerics", "preset", "timestep", "solver", "sweeps", "tolerance", "warm_start", "accuracy"}
-)
+# The numerics that a setting of the grid has, beside an accuracy.
+KNOBS: Final = ("timestep", "solver", "sweeps", "tolerance", "warm_start")
+GRID_NAMES: Final = frozenset(("numerics", "preset", *KNOBS, "accuracy"))  # of the grid's own axes
 FEWEST_REPEATS = 7  # of six samples the interval that holds the median is all of them
 FEW = "of fewer, one slow moment of the machine decides where the median lies"
 
@@ -81,12 +80,10 @@ class CostSpec(ConfigModel):
     """What accuracy costs in this scene: taken by `lavender cost`."""
 
     error: CostError = Field(description="what is wrong in a run, as a fraction")
-    presets: Annotated[tuple[Literal["chapter", "default"], ...], Field(min_length=1)] | None = (
-        Field(
-            default=None,
-            description="presets whose other numerics (the laws) are compared; none: the config's "
-            "alone",
-        )
+    presets: Annotated[tuple[Preset, ...], Field(min_length=1)] | None = Field(
+        default=None,
+        description="presets whose other numerics (the laws) are compared; none: the config's "
+        "alone",
     )
     timesteps: Annotated[tuple[Timestep, ...], Field(min_length=1)] = Field(
         default=(Fraction(1, 60), Fraction(1, 120), Fraction(1, 240), Fraction(1, 480)),

@@ -18,17 +18,14 @@ from fractions import Fraction
 from itertools import product
 from typing import Any, Final, Literal, NamedTuple, get_args
 
-import yaml
-
 from lavendersim.cell.choices import Solver
 from lavendersim.experiment.experiment import Experiment
 from lavendersim.experiment.load import load_experiment_text
-from lavendersim.experiment.models.cost import CostSpec
+from lavendersim.experiment.models.cost import KNOBS, CostSpec
 from lavendersim.experiment.models.steps import is_of_order_two
 from lavendersim.experiment.resolve.presets import DEFAULT, PRESETS, specified_numerics
-from lavendersim.quantities.scalars import Ratio, label
+from lavendersim.experiment.text.yaml_text import as_yaml
 
-KNOBS: Final = ("timestep", "solver", "sweeps", "tolerance", "warm_start")
 CHAPTER: Final = "chapter"  # name of a preset; its axis is `numerics`
 # They sweep until a residual is reached, however long that takes; all others take their sweeps.
 BY_TOLERANCE: Final = ("adaptive",)
@@ -132,21 +129,19 @@ def over_the_grid(experiment: Experiment, settings: list[Setting]) -> Experiment
         data["numerics"] = {k: v for k, v in data["numerics"].items() if k != "accuracy"}
     own = data.pop("sweep", None) or {}
     products = own if isinstance(own, tuple) else (own,)
-    data["sweep"] = [
+    data["sweep"] = tuple(
         {**_axes(setting.coordinates), **axes} for setting in settings for axes in products
-    ]
+    )
     head = f"# {experiment.name}: the settings of its section `cost`, as a sweep.\n"
     for override in experiment.options.overrides:
         head += f"# with --{' '.join(override.split())}\n"
-    swept = load_experiment_text(
-        head + _yaml(data, width=100, default_flow_style=None), str(experiment.path)
-    )
+    swept = load_experiment_text(head + as_yaml(data), str(experiment.path))
     return replace(swept, name=experiment.name)
 
 
 def _axes(coordinates: Mapping[str, Any]) -> dict[str, Any]:
     return {
-        name: {"path": name if name == "numerics" else f"numerics.{name}", "values": [value]}
+        name: {"path": name if name == "numerics" else f"numerics.{name}", "values": (value,)}
         for name, value in coordinates.items()
     }
 
@@ -160,19 +155,4 @@ def fragment_of(experiment: Experiment, setting: Setting) -> str:
     chosen |= _specified(experiment)[1]
     chosen |= {key: value for key, value in setting.knobs.items() if value != defaults[key]}
     whole = list(chosen) in ([], ["preset"])
-    numerics = {"numerics": setting.preset if whole else chosen}
-    return _yaml(numerics, width=4096, default_flow_style=True).strip()[1:-1] + "\n"
-
-
-def _yaml(data: Mapping[str, Any], **layout: Any) -> str:
-    """Return plain data as YAML that lavender reads back as the same."""
-    return str(yaml.safe_dump(_plain(data), sort_keys=False, allow_unicode=True, **layout))
-
-
-def _plain(value: Any) -> Any:
-    """Return a value with ratios as `1/480` and sequences as lists, nothing of it shared."""
-    if isinstance(value, Mapping):
-        return {key: _plain(inner) for key, inner in value.items()}
-    if isinstance(value, list | tuple):
-        return [_plain(inner) for inner in value]
-    return label(value) if isinstance(value, Ratio | Fraction) else value
+    return as_yaml({"numerics": setting.preset if whole else chosen})

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -79,7 +80,7 @@ def slip_distance(spec: specs.SlipDistance, trace: Trace) -> float:
     window = _window(trace, spec.last)
     if window is None:
         return NAN
-    return math.dist(*_ends(trace, spec.body, window)[0])
+    return _moved(trace, spec.body, window).length
 
 
 @measure(specs.Creep)
@@ -88,8 +89,8 @@ def creep(spec: specs.Creep, trace: Trace) -> float:
     window = _window(trace, spec.last)
     if window is None:
         return NAN
-    places, duration = _ends(trace, spec.body, window)
-    return math.dist(*places) / duration
+    moved = _moved(trace, spec.body, window)
+    return moved.length / moved.duration
 
 
 @measure(specs.EffectiveFriction)
@@ -104,14 +105,14 @@ def effective_friction(spec: specs.EffectiveFriction, trace: Trace) -> float:
     normal = half_space(trace.config.scene.bodies[spec.on].shape).normal
     pull = vector(trace.config.scene.gravity)
     into = -float(normal @ pull)
-    if window is None or window[1] - window[0] < 2 or into <= 0.0:
+    if window is None or window.last - window.first < 2 or into <= 0.0:
         return NAN
     along = pull + into * normal
     size = math.sqrt(float(along @ along))
     if size == 0.0:
         return NAN
-    half = (window[1] - window[0]) // 2
-    rows = [window[1] - 2 * half, window[1] - half, window[1]]
+    half = (window.last - window.first) // 2
+    rows = [window.last - 2 * half, window.last - half, window.last]
     places = trace.pose[rows, list(trace.bodies).index(spec.body), :3] @ (along / size)
     interval = half * one_timestep(trace, rows[0], rows[2], "effective_friction")
     acceleration = float(places[0] - 2.0 * places[1] + places[2]) / interval**2
@@ -135,19 +136,28 @@ def passed_through(spec: specs.PassedThrough, trace: Trace) -> float:
     return float(np.max(side * local[:, edge])) if outside[edge] > 0.0 else NAN
 
 
-def _window(trace: Trace, seconds: float) -> tuple[int, int] | None:
-    """Return the state in which the last window begins, and the last one."""
+class _Window(NamedTuple):
+    """The end of a run that is looked at, by its states."""
+
+    first: int
+    last: int
+
+
+class _Moved(NamedTuple):
+    """How far the centre of a body came in a window."""
+
+    length: float  # [m]
+    duration: float  # [s], counted in steps: logged times are whole nanoseconds
+
+
+def _window(trace: Trace, seconds: float) -> _Window | None:
+    """Return the last window; its first state is that in which it begins."""
     rows = np.flatnonzero(last_window(trace, seconds))
-    return (int(rows[0]) - 1, int(rows[-1])) if len(rows) and rows[0] > 0 else None
+    return _Window(int(rows[0]) - 1, int(rows[-1])) if len(rows) and rows[0] > 0 else None
 
 
-def _ends(trace: Trace, body: str, window: tuple[int, int]) -> tuple[tuple[Floats, Floats], float]:
-    """Return the centre [m] at both ends of a window, and the time [s] between them.
-
-    Time is counted in steps: logged times are whole nanoseconds.
-    """
-    first, last = window
-    column = list(trace.bodies).index(body)
-    steps = trace.step["step"]
-    places = (trace.pose[first, column, :3], trace.pose[last, column, :3])
-    return places, float(trace.clock.elapsed(steps[first], steps[last]))
+def _moved(trace: Trace, body: str, window: _Window) -> _Moved:
+    """Return how far a body came from the first to the last state of a window."""
+    places = trace.pose[list(window), list(trace.bodies).index(body), :3]
+    first, last = trace.step["step"][list(window)]
+    return _Moved(math.dist(*places), float(trace.clock.elapsed(first, last)))

@@ -1,6 +1,6 @@
 """The contact problem of a step, assembled for a file, is the one that the engine solved.
 
-W is held against unit impulses on the bodies, `free` and W together against the velocities that the
+W is compared with unit impulses on the bodies, `free` and W together with the velocities that the
 log has, and the engine's impulses on the assembled problem must miss the laws by what the step says
 of its own residual.
 """

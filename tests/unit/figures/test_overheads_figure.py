@@ -13,52 +13,26 @@ from matplotlib.figure import Figure
 from lavendersim.figures import draw, draw_overheads
 from lavendersim.figures.overheads import IDLE, MOVES, REQUIRED, compose
 from lavendersim.figures.style import STYLE
-
-
-def row(effect: str, overhead: float, half: float = 0.25, **others: Any) -> dict[str, Any]:
-    """One row of a table of overheads, `overhead` +- `half` ns."""
-    spread = {"median": overhead, "low": overhead - half, "high": overhead + half}
-    return {
-        "effect": effect,
-        "required": False,
-        "unit": "body",
-        "why_not": "",
-        "same_motion": True,
-        "within_noise": abs(overhead) <= half,
-        "overhead": spread,
-        "compile_s_off": 2.0,
-        "compile_s_on": 3.0,
-    } | others
-
-
-def gap(effect: str, why_not: str) -> dict[str, Any]:
-    return {"effect": effect, "required": True, "unit": "body", "why_not": why_not}
-
+from lavendersim.measures.overhead_table import OverheadTable
+from tests.made_overheads import gap, overhead_table, timed
 
 ROWS = (
-    row("drag", 2.5),
-    row("gravity", 400.0, required=True, same_motion=False),
-    row("step_log", 70.0, required=True),
-    row("friction", -0.1, unit="contact"),
+    timed("drag", 2.5),
+    timed("gravity", 400.0, required=True, same_motion=False),
+    timed("step_log", 70.0, required=True),
+    timed("friction", -0.1, unit="contact"),
     gap("rotation", "friction needs it"),
 )
 
 
-def table(*rows: dict[str, Any]) -> dict[str, Any]:
-    return {
-        "bodies": 1,
-        "contacts_per_step": 24.0,
-        "repeats": 9,
-        "processor": "A processor of the year 2000",
-        "rows": list(rows or ROWS),
-    }
+def table(*rows: dict[str, Any]) -> OverheadTable:
+    return overhead_table(*(rows or ROWS))
 
 
-def run_of(name: str, overheads: dict[str, Any] | None) -> Any:
-    results = {} if overheads is None else {"overheads": overheads}
+def run_of(name: str, overheads: OverheadTable | None) -> Any:
     return SimpleNamespace(
         name=name,
-        results=lambda: results,
+        overheads=lambda: overheads,
         cells=(),
         experiment=SimpleNamespace(
             name=name, config=SimpleNamespace(figure=None, overhead=object())
@@ -66,7 +40,7 @@ def run_of(name: str, overheads: dict[str, Any] | None) -> Any:
     )
 
 
-def page(*tables: tuple[str, dict[str, Any]]) -> Figure:
+def page(*tables: tuple[str, OverheadTable]) -> Figure:
     with style.context(STYLE, after_reset=True):
         figure = compose(tables)
         figure.canvas.draw()
@@ -119,7 +93,7 @@ def test_small_and_negative_overheads_are_on_the_page_beside_large_ones() -> Non
 
 
 def test_several_scenes_share_the_names_of_effects() -> None:
-    more = table(row("drag", 1.0), row("newton", 7.0))
+    more = table(timed("drag", 1.0), timed("newton", 7.0))
     figure = page(("sphere", table()), ("pile", more))
     assert len(figure.axes) == 3  # a panel a scene, and compile times
     places = {overhead: line.get_ydata()[0] for overhead, line in marks(figure.axes[1]).items()}
@@ -130,7 +104,7 @@ def test_several_scenes_share_the_names_of_effects() -> None:
 
 
 def test_compile_times_stand_beside_the_overheads() -> None:
-    axes = page(("sphere", table(row("drag", 1.0, compile_s_on=4.5)))).axes[1]
+    axes = page(("sphere", table(timed("drag", 1.0, compile_s_on=4.5)))).axes[1]
     lines = [(list(line.get_xdata()), list(line.get_ydata())) for line in axes.lines]
     assert ([4.5], [0]) in lines
     assert any(list(places) == [2.0, 2.0] for places, _ in lines)  # the plan's own

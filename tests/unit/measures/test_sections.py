@@ -57,7 +57,8 @@ def test_every_state_stands_in_one_section_with_its_contacts_and_pose(
 ) -> None:
     trace = log(seed)
     count, seen, touching = 0, [], []
-    for before, section in sections_of(trace, whole):
+    for section in sections_of(trace, whole):
+        before = section.before
         assert before == count
         again = 1 if before else 0  # a section begins with the last state before it
         numbers = section.step["step"]
@@ -82,7 +83,7 @@ def test_a_log_without_poses_or_contacts_has_sections_all_the_same() -> None:
     trace = log(3)
     trace.absent = {"/tf": "not recorded"}
     trace.contact = trace.contact[:0]
-    found = [section for _, section in sections_of(trace, True)]
+    found = list(sections_of(trace, True))
     assert sum(len(section.contact) for section in found) == 0
     assert {section.pose.shape[1] for section in found} == {0}
 

@@ -1,4 +1,4 @@
-"""Solvers are held against a reference where there is one, and only there."""
+"""Solvers are compared with a reference where there is one, and only there."""
 
 from __future__ import annotations
 

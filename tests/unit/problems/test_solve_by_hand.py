@@ -145,7 +145,7 @@ def test_a_solver_that_lies_is_not_believed(monkeypatch: pytest.MonkeyPatch) -> 
 
 
 def test_an_unknown_solver_is_reported_with_the_nearest() -> None:
-    with pytest.raises(UsageError, match="did you mean 'semismooth_newton'"):
+    with pytest.raises(UsageError, match='did you mean "semismooth_newton"'):
         solve(cube((0.0, 0.0, -1.0)), "semismoth_newton")
 
 

@@ -12,12 +12,13 @@ import pytest
 
 from lavendersim.experiment import load_experiment_text
 from lavendersim.experiment.sweeps.cost_grid import settings_of
-from lavendersim.figures.cost_looks import curves_of
+from lavendersim.measures.cost_table import CostRow
 from lavendersim.runner.accuracy import Accuracy
 from lavendersim.runner.cell_outcome import CellOutcome
 from lavendersim.runner.cost_errors import SettingRun, errors_of, orders_of, relative_error
 from lavendersim.runner.cost_targets import answers, front_of
 from lavendersim.runner.run_directory import RunCell
+from tests.made_costs import cost_table, row_data, spread
 
 BALL = """\
 scene:
@@ -61,14 +62,11 @@ def test_the_order_is_the_slope_between_neighbouring_timesteps_of_a_curve() -> N
             assert order == (expected if expected is None else pytest.approx(expected, rel=1e-12))
 
 
-def row(cost: float, error: float | None, failed: str = "", **more: Any) -> dict[str, Any]:
-    spread = {"median": cost, "low": cost - 1.0, "high": cost + 1.0}
-    return {
-        **{"role": "grid", "preset": "default", "solver": "adaptive", "timestep": "1/240"},
-        **{"sweeps": 8, "tolerance": None, "warm_start": True, "fragment": f"numerics: {cost}\n"},
-        **{"ns_per_second": spread, "error": error, "failed": failed},
-        **more,
-    }
+def row(cost: float, error: float | None, failed: str = "", **more: Any) -> CostRow:
+    """A setting that was timed, within 1 ns."""
+    more |= {"ns_per_second": spread(cost, cost - 1.0, cost + 1.0), "error": error}
+    given = row_data(fragment=f"numerics: {cost}\n") | more
+    return cost_table(given | {"failed": failed}).rows[0]
 
 
 def test_nothing_on_the_front_failed_or_is_dearer_and_no_better_than_another() -> None:
@@ -83,11 +81,11 @@ def test_nothing_on_the_front_failed_or_is_dearer_and_no_better_than_another() -
     ]
     assert front_of(rows) == [2, 0, 4]
     two, one = answers(rows, [0.2, 0.001])
-    assert two["sentence"] == (
+    assert two.sentence == (
         "20 % costs 50 ns per simulated second: adaptive, 240 Hz, 8 sweeps, warm"
     )
-    assert two["fragment"] == "numerics: 50.0\n"
-    assert one["sentence"] == (
+    assert two.fragment == "numerics: 50.0\n"
+    assert one.sentence == (
         "no setting of the grid reaches 0.1 %: the nearest is 1 % at 70 ns per simulated second: "
         "adaptive, 240 Hz, 8 sweeps, warm"
     )
@@ -129,17 +127,20 @@ CELL = FakeCell(0, "", {}, Path("cell.mcap"), "complete")
 def test_a_target_is_reached_by_what_is_just_as_good_but_by_no_failure() -> None:
     rows = [row(2e6, 0.01, failed="not met: it stands"), row(3.1e6, 0.01, warm_start=False)]
     (answer,) = answers(rows, [0.01])
-    assert answer["row"] == 1
-    assert answer["sentence"].startswith("1 % costs 3.1 ms per simulated second: ")
-    assert answer["sentence"].endswith("8 sweeps, cold")
+    assert answer.row == 1
+    assert answer.sentence.startswith("1 % costs 3.1 ms per simulated second: ")
+    assert answer.sentence.endswith("8 sweeps, cold")
 
 
-def test_curves_join_what_differs_in_the_knob_of_which_there_are_most() -> None:
+def test_an_accuracy_answers_a_target() -> None:
+    """The cheapest that reaches it, by name and as what is to be pasted."""
+    solved = {"tolerance": 1e-9, "timestep": "1/60"}
     rows = [
-        row(1.0, 0.1, timestep=step, sweeps=sweeps)
-        for step in ("1/60", "1/120")
-        for sweeps in (8, 2, 4)
+        row(2e6, 1e-4, accuracy=1e-4, fragment="asked", **solved),
+        row(2e6, 1e-2, fragment="equal", **solved),
     ]
-    curves = list(curves_of(rows))
-    assert [[one["sweeps"] for one in curve] for curve in curves] == [[2, 4, 8], [2, 4, 8]]
-    assert [{one["timestep"] for one in curve} for curve in curves] == [{"1/60"}, {"1/120"}]
+    (answer,) = answers(rows, [1e-3])
+    assert answer.fragment == "asked"
+    assert answer.sentence == (
+        "0.1 % costs 2 ms per simulated second: adaptive, accuracy 1e-4, to 1e-9 m/s, warm"
+    )

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from fractions import Fraction
 from typing import Any
 
 import pytest
 
 from lavendersim.experiment import load_experiment_text
-from lavendersim.figures.work_precision import compose
 from lavendersim.runner import cost_times, timed_engine
 from lavendersim.runner.cost_times import Clocked, times_of
 
@@ -163,36 +161,3 @@ def test_several_cells_of_a_setting_cost_their_mean(monkeypatch: pytest.MonkeyPa
     (cell,) = clocked().cells
     (times,) = times_of([Clocked([cell, cell], [STEPS, STEPS])], 0.0, 7, 1, silent)
     assert times.samples == pytest.approx([2000 * RATE] * 7, rel=1e-12)
-
-
-def test_the_caption_says_machine_clock_repeats_and_spread() -> None:
-    spread = {"median": 2e6, "low": 1.9e6, "high": 2.2e6}
-    row = {
-        **{"role": "specified", "preset": "default", "solver": "adaptive", "sweeps": 50},
-        **{"timestep": str(Fraction(1, 240)), "tolerance": 1e-9, "warm_start": True},
-        **{"ns_per_second": spread, "error": 1e-3, "failed": "", "front": True},
-    }
-    figure = compose(
-        {
-            "question": "What does it cost?",
-            "error": {"measure": "drift"},
-            "axes": [],
-            "cells_per_setting": 1,
-            "truth": None,
-            "repeats": 11,
-            "clock": "thread_time",
-            "machine": {"processor": "A processor of the year 2000"},
-            "rows": [row],
-            "targets": [{"target": 0.01, "sentence": "1 % costs 2 ms per simulated second"}],
-        }
-    )
-    caption = " ".join(" ".join(text.get_text() for text in figure.texts).split())
-    for part in (
-        "A processor of the year 2000",
-        "clock thread_time",
-        "Medians of 11 interleaved repeats",
-        "hold the median in 19 of 20 cases",
-        "Neither compilation nor logging is in any time",
-        "1 % costs 2 ms per simulated second",
-    ):
-        assert part in caption

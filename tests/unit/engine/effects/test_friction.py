@@ -4,8 +4,8 @@ Convex relaxation: friction comes with lifting, w_n = mu |w_t|. A block that sli
 v and touches with its whole face does not turn: all its corners have one velocity, and
     m (v_x - v) = -mu P,    m (v_z + g dt) = P,    v_z = mu v_x
     v_x = (v - mu g dt) / (1 + mu^2)
-Coulomb's law leaves v_x = v - mu g dt and v_z = 0. What a ball does, under the pyramid too, is held
-by `configs/scenes/friction_laws.yaml`.
+Coulomb's law leaves v_x = v - mu g dt and v_z = 0. What a ball does, under the pyramid too, is
+checked by `configs/scenes/friction_laws.yaml`.
 """
 
 from __future__ import annotations

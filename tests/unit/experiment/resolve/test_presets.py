@@ -1,4 +1,4 @@
-"""The chapter preset is frozen: the chapter's checks are held against these very numbers."""
+"""The chapter preset is frozen: the chapter's checks are compared with these very numbers."""
 
 from __future__ import annotations
 

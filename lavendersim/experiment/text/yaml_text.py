@@ -38,7 +38,8 @@ def _inline(value: Any) -> str:
         return f"[{', '.join(map(_inline, value))}]"
     if value is None or isinstance(value, bool):
         return json.dumps(value)
-    return _text(value) if isinstance(value, str) else repr(value)
+    # Of a ratio both are `1/480`; of a float `repr` has all its digits.
+    return _text(value) if isinstance(value, str) else str(value)
 
 
 def _text(text: str) -> str:

@@ -7,9 +7,9 @@ from typing import Any
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lavendersim.experiment.inheritance.yaml_text import as_yaml
 from lavendersim.experiment.text.parse import parse
 from lavendersim.experiment.text.report import Report
+from lavendersim.experiment.text.yaml_text import as_yaml
 from lavendersim.quantities.scalars import resolve
 
 # What YAML takes for something else when it stands without quotes; the rest is drawn.
