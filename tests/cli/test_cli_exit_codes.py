@@ -10,7 +10,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from command_line import lavender
+from command_line import lavender, started_lavender
 
 # Rests on another ball on the floor: one sweep cannot carry both, so its steps do not converge.
 ON_THE_BALL = """
@@ -19,7 +19,7 @@ ON_THE_BALL = """
 
 
 def test_a_good_run_exits_0_and_leaves_a_finished_run(drop: Path, tmp_path: Path) -> None:
-    done = lavender("run", drop, where=tmp_path)
+    done = started_lavender("run", drop, where=tmp_path)
     assert done.returncode == 0, done.stderr
     assert "pass  rebound" in done.stdout
     latest = tmp_path / "runs" / "latest"

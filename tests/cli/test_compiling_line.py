@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import json
-import os
 import shutil
 import subprocess
-import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
@@ -14,6 +12,7 @@ from typing import NamedTuple
 import pytest
 
 from tests.drop_config import DROP
+from tests.forked_python import python
 from tests.kept_kernels import parts_of
 
 Command = Callable[..., subprocess.CompletedProcess[str]]
@@ -24,15 +23,8 @@ def command_in(folder: Path, kernels: Path) -> Command:
 
     def command(*arguments: object, **environment: str) -> subprocess.CompletedProcess[str]:
         kept = {"LAVENDER_CACHE_DIR": str(kernels), "NO_COLOR": "1"}
-        return subprocess.run(
-            [sys.executable, "-m", "lavender_cli.main", *map(str, arguments)],
-            cwd=folder,
-            capture_output=True,
-            text=True,
-            env=os.environ | kept | environment,
-            timeout=120,
-            check=False,
-        )
+        words = ("-m", "lavender_cli.main", *arguments)
+        return python(*words, where=folder, **kept | environment)
 
     return command
 
