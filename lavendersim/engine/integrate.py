@@ -172,6 +172,31 @@ def make_turn(spec: Spec) -> Any:
     return turn_uneven if uneven else made_once(spec, "turn")[1]
 
 
+def make_turn_in_halves(spec: Spec) -> Any:
+    """Return `kernel(body, v, m, dt) -> solved`: the body's turn under torques, of order 2.
+
+    Half of the spin that the step gives is given before the turn, half after it.
+    """
+    integrate_rotation: Any = make_turn(spec)
+
+    def turn_in_halves(body, v, m, dt):
+        gained_x, gained_y, gained_z = v.wx - m.wx, v.wy - m.wy, v.wz - m.wz
+        twisted = gained_x != 0.0 or gained_y != 0.0 or gained_z != 0.0
+        # A spin that a step all but stops would cancel to its last digits, and turns nothing.
+        last = v.wx * v.wx + v.wy * v.wy + v.wz * v.wz
+        before = m.wx * m.wx + m.wy * m.wy + m.wz * m.wz
+        if not (twisted and STOPPED * last >= before):
+            return integrate_rotation(body, v, dt)
+        x, y, z = inertia_times(body, gained_x, gained_y, gained_z)
+        v.wx, v.wy, v.wz = m.wx + 0.5 * gained_x, m.wy + 0.5 * gained_y, m.wz + 0.5 * gained_z
+        solved = integrate_rotation(body, v, dt)
+        x, y, z = inverse_inertia_times(body, x, y, z)
+        v.wx, v.wy, v.wz = v.wx + 0.5 * x, v.wy + 0.5 * y, v.wz + 0.5 * z
+        return solved
+
+    return kernel(turn_in_halves, spec)
+
+
 def make_displace(spec: Spec) -> Any:
     """Return `kernel(body, v, m, dt) -> solved`: the body's displacement in the step."""
     turns = spec.has("rotation")
@@ -180,6 +205,7 @@ def make_displace(spec: Spec) -> Any:
     uneven, centred = spec.has("gyroscopic"), spec.has("contact_midpoint")
     twists = turns and midpoint  # torques of forces and springs; none: the same bits
     integrate_rotation: Any = make_turn(spec)
+    turn_in_halves: Any = make_turn_in_halves(spec) if turns else None
     turn_by_mean: Any = make_turn_by_mean(spec) if centred and uneven else None
     _, jump = made_once(spec, "add_spin")
 
@@ -229,7 +255,11 @@ def make_displace(spec: Spec) -> Any:
                     half = 0.5 * dt
                     turn(body, half * (m.wx + v.wx), half * (m.wy + v.wy), half * (m.wz + v.wz))
                     return True
-                if even or m.midway == 0:
+                if even:
+                    return integrate_rotation(body, v, dt)
+                if m.midway == 0:  # all but still: its contacts are those of the start
+                    if lasting:
+                        return turn_in_halves(body, v, m, dt)
                     return integrate_rotation(body, v, dt)
                 # Impulses changed its spin at the middle, and so its turn.
                 v.wx, v.wy, v.wz = m.wx, m.wy, m.wz
@@ -243,24 +273,8 @@ def make_displace(spec: Spec) -> Any:
         body.y += y
         body.z += z
         if twists:
-            gained_x, gained_y, gained_z = v.wx - m.wx, v.wy - m.wy, v.wz - m.wz
-            twisted = gained_x != 0.0 or gained_y != 0.0 or gained_z != 0.0
-            # A spin that a step all but stops would cancel to its last digits, and turns nothing.
-            last = v.wx * v.wx + v.wy * v.wy + v.wz * v.wz
-            before = m.wx * m.wx + m.wy * m.wy + m.wz * m.wz
-            twisted = twisted and STOPPED * last >= before
-            if m.carried == 0 and twisted:
-                # Half of what torques give before the turn and half after it: of order 2.
-                x, y, z = inertia_times(body, gained_x, gained_y, gained_z)
-                v.wx, v.wy, v.wz = (
-                    m.wx + 0.5 * gained_x,
-                    m.wy + 0.5 * gained_y,
-                    m.wz + 0.5 * gained_z,
-                )
-                solved = integrate_rotation(body, v, dt)
-                x, y, z = inverse_inertia_times(body, x, y, z)
-                v.wx, v.wy, v.wz = v.wx + 0.5 * x, v.wy + 0.5 * y, v.wz + 0.5 * z
-                return solved
+            if m.carried == 0:
+                return turn_in_halves(body, v, m, dt)
         if turns:
             return integrate_rotation(body, v, dt)
         return True
