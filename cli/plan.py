@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
     from rich.table import Table
 
+    from lavendersim.experiment import Experiment
     from lavendersim.scene.explanation import Explanation, ExplanationItem
 
 UNWRAPPED = 100_000  # columns: in a pipe no line is broken
@@ -50,12 +51,36 @@ def plan(
     sizes = expected_log_sizes(cells, plans, experiment.text)
     if as_json:
         tables = [one.as_data() for one in explained]
-        printing.as_json({**tables[0], "others": tables[1:], "expected_log_sizes": sizes})
+        numbers = [
+            {"path": one.path, "number": one.number, "formula": one.text, "place": one.mark[:2]}
+            for one in experiment.numbers()
+        ]
+        document = {**tables[0], "others": tables[1:], "expected_log_sizes": sizes}
+        printing.as_json(document | ({"formulas": numbers} if numbers else {}))
         return
     for one in explained:
         write(one, f"{experiment.name}: {one.title}")
+    for line in number_lines(experiment):
+        typer.echo(line)
     for line in size_lines(sizes, [cell.label for cell in cells]):
         typer.echo(line)
+
+
+def number_lines(experiment: Experiment) -> list[str]:
+    """Return the numbers that formulas gave, each with its formula and place; none without any.
+
+    Those that depend on a swept constant are listed for the first cell.
+    """
+    found = experiment.numbers()
+    if not found:
+        return []
+    first = experiment.cells()[0].label
+    lines = [f"numbers from formulas{f', of the first cell ({first})' if first else ''}"]
+    for one in found:
+        file = one.mark.file or str(experiment.path)
+        place = f"{file}:{one.mark.line}:{one.mark.column}"
+        lines.append(f"  {one.path} = {one.number!r}  from  {one.text}  at {place}")
+    return lines
 
 
 def size_lines(sizes: list[int], labels: list[str]) -> list[str]:

@@ -17,6 +17,7 @@ from lavendersim.experiment.models.cost import CostSpec
 from lavendersim.experiment.models.experiment import CellSource
 from lavendersim.experiment.models.overhead import OverheadSpec
 from lavendersim.experiment.resolve.cell import resolve_cell
+from lavendersim.experiment.resolve.formulas import Computed
 from lavendersim.experiment.resolve.placement import SceneError
 from lavendersim.experiment.sweeps.axes import SweepPoint
 from lavendersim.experiment.text.node import Node, Path, key_mark
@@ -33,7 +34,7 @@ _BESIDE: Final[dict[str, type[ConfigModel]]] = {
 
 def build_cell(root: Node, point: SweepPoint, report: Report) -> CellConfig | None:
     """Return the resolved config of one cell of the sweep, or None when something is wrong."""
-    tree = point.tree(root)
+    tree = point.tree(root, report)
     reading = Reading(tree, (), report)
     for name, model in _BESIDE.items():
         if (section := tree.entries.get(name)) is not None and section.entries:
@@ -80,9 +81,14 @@ class Cell:
         """What the file says of this cell: the tree with the swept values in their places."""
         return self._point.tree(self._root)
 
+    @property
+    def computed(self) -> list[Computed]:
+        """Numbers of this cell from formulas that take a swept constant."""
+        return self._point.computed(self._root)
+
     def defect(self, path: Path, message: str) -> Defect:
         """Return a defect at a key, an item or a swept value of this cell."""
-        swept = {axis.path: node for axis, node in self._point.choices}
+        swept = self._point.nodes
         if path in swept:
             mark = swept[path].mark
         else:

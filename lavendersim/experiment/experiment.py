@@ -9,7 +9,10 @@ from typing import Any
 from lavendersim.cell.choices import NO_MISTAKE
 from lavendersim.config_options import ConfigOptions
 from lavendersim.experiment.cell import Cell
+from lavendersim.experiment.models.axis import axis_paths
 from lavendersim.experiment.models.experiment import ExperimentConfig
+from lavendersim.experiment.models.tree import products
+from lavendersim.experiment.resolve.formulas import Computed
 from lavendersim.experiment.text.node import Node
 from lavendersim.measures.specs.always import Always
 from lavendersim.measures.specs.catalogue import MeasureSpec
@@ -28,6 +31,7 @@ class Experiment:
     tree: Node = field(repr=False, compare=False)  # with overrides, in this version's spelling
     _cells: tuple[Cell, ...] = field(repr=False)
     options: ConfigOptions
+    computed: tuple[Computed, ...] = ()  # numbers that are the same in every cell, by formulas
 
     @property
     def measures(self) -> dict[str, MeasureSpec]:
@@ -64,14 +68,14 @@ class Experiment:
     def switches_effects(self) -> bool:
         """Whether some cell switches an effect by hand, so that its plan may be refused."""
         return bool(self.config.effects.switches) or any(
-            path.startswith("effects.") for path in self.swept.values()
+            path.startswith("effects.") for path in self.swept
         )
 
     @property
     def mistakes(self) -> dict[str, list[Cell]]:
         """Each deliberate error, and the cells that make it."""
         found: dict[str, list[Cell]] = {}
-        if self.config.study.mistake == NO_MISTAKE and "study.mistake" not in self.swept.values():
+        if self.config.study.mistake == NO_MISTAKE and "study.mistake" not in self.swept:
             return found  # the file says nothing of mistakes: no cell need be looked at
         for cell in self._cells:
             if cell.config.study.mistake != NO_MISTAKE:
@@ -80,10 +84,17 @@ class Experiment:
 
     @property
     def swept(self) -> dict[str, str]:
-        """The path of every axis, by its name."""
-        sweep = self.config.sweep
-        products = (sweep,) if isinstance(sweep, dict) else sweep
-        return {name: axis.path for product in products for name, axis in product.items()}
+        """The name of the axis that varies each path."""
+        return {
+            path: name
+            for product in products(self.tree)
+            for name, axis in product.entries.items()
+            for path in axis_paths(axis)
+        }
+
+    def numbers(self) -> list[Computed]:
+        """Return what formulas gave in the first cell, with the formulas and their places."""
+        return [*self.computed, *self._cells[0].computed]
 
     def refined(self, divisor: int) -> Experiment:
         """Return the same experiment with every cell at timesteps of 1/divisor of its own."""

@@ -20,6 +20,7 @@ from lavendersim.experiment.inheritance.parents import with_parents
 from lavendersim.experiment.models.experiment import ExperimentConfig
 from lavendersim.experiment.models.tree import swept_values
 from lavendersim.experiment.own_measures import with_own_measures
+from lavendersim.experiment.resolve.formulas import with_numbers
 from lavendersim.experiment.sweeps import axes as sweep
 from lavendersim.experiment.sweeps.option_overrides import check_untouched, with_overrides
 from lavendersim.experiment.sweeps.reduced_length import at_reduced_length, check_reduced_length
@@ -93,6 +94,7 @@ def _load(
     root = tree = with_overrides(root, options.overrides, report)
     if not report.close_round():
         raise ConfigError(report.defects)
+    root, computed = with_numbers(root, report)
     check_reduced_length(root, report)
     root, shortened = at_reduced_length(root) if options.reduced else (root, False)
     root = with_solver(root, options.solver) if options.solver is not None else root
@@ -113,12 +115,12 @@ def _load(
         for axis, nodes in swept_values(root).items()
     }
     path, options = Path(name), options._replace(reduced=shortened)
-    return Experiment(path.stem, path, text, config, values, tree, made, options)
+    return Experiment(path.stem, path, text, config, values, tree, made, options, tuple(computed))
 
 
 def _check_first(root: Node, axes: sweep.Products, report: Report) -> ExperimentConfig | None:
     """Check the whole file, with the first value of every axis in its place."""
-    tree = next(sweep.points(axes), sweep.SweepPoint(())).tree(root)
+    tree = next(sweep.points(axes), sweep.SweepPoint(())).tree(root, report)
     config = Reading(tree, swept_values(root), report).read(ExperimentConfig)
     report.close_round()
     return config

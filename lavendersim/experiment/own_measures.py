@@ -14,6 +14,7 @@ from typing import Any, Final
 from pydantic import create_model
 
 from lavendersim.experiment.checks.reading import Reading
+from lavendersim.experiment.resolve.formulas import with_numbers
 from lavendersim.experiment.text.node import Node, graft
 from lavendersim.experiment.text.report import Report
 from lavendersim.experiment.text.yaml_text import as_yaml
@@ -69,5 +70,6 @@ def with_own_measures(root: Node, path: Path, report: Report) -> tuple[Node, str
     checked = graft(root, ("measure",), alone)
     section = create_model("OwnMeasures", __base__=ConfigModel, **fields)
     model = create_model("OwnSection", __base__=ConfigModel, measure=(section, ...))
+    checked, _ = with_numbers(checked, Report(""))  # what is wrong with formulas is said later
     Reading(checked, (), report).read(model, only=("measure",))
     return tree, f"# {path.name}, with kinds of {FILE} beside it.\n{as_yaml(tree.data)}"

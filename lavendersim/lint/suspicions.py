@@ -11,12 +11,14 @@ from lavendersim.experiment import Cell, Experiment
 from lavendersim.lint.crossing import crossing
 from lavendersim.lint.one_sided import one_sided
 from lavendersim.lint.overlaps import overlaps
-from lavendersim.lint.unused import unclaimed, unused_surfaces
+from lavendersim.lint.unused import unclaimed, unused_constants, unused_shapes, unused_surfaces
 
 OF_CELLS: Final[tuple[Callable[[Cell], Iterator[Defect]], ...]] = (one_sided, overlaps, crossing)
 OF_FILES: Final[tuple[Callable[[Experiment], Iterator[Defect]], ...]] = (
     unclaimed,
     unused_surfaces,
+    unused_shapes,
+    unused_constants,
 )
 MOST_CELLS: Final = 100  # that are looked at; a rule takes some 0.1 ms for a small one
 

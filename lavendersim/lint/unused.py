@@ -1,4 +1,4 @@
-"""What stands in a config and does nothing: surfaces that no body has; a run without a claim."""
+"""What stands in a config and does nothing: surfaces, shapes, constants; a run without a claim."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from lavendersim.errors import Defect
 from lavendersim.experiment import Experiment, key_mark
+from lavendersim.experiment.resolve.formulas import constants_of, used_constants
 from lavendersim.quantities.found import quoted
 
 
@@ -19,6 +20,26 @@ def unused_surfaces(experiment: Experiment) -> Iterator[Defect]:
             if not mark.file:  # a file that others extend has what each of them may use
                 sentence = f"surface {quoted(name)} is that of no body"
                 yield mark.defect(str(experiment.path), sentence)
+
+
+def unused_shapes(experiment: Experiment) -> Iterator[Defect]:
+    """Yield a defect at each named shape whose name stands nowhere else in the file."""
+    shapes = experiment.tree.get("scene", "shapes")
+    used = set(experiment.tree.texts) if shapes.entries else set()
+    for name in shapes.entries:
+        mark = key_mark(shapes, name)
+        if name not in used and not mark.file:
+            yield mark.defect(str(experiment.path), f"shape {quoted(name)} is that of no body")
+
+
+def unused_constants(experiment: Experiment) -> Iterator[Defect]:
+    """Yield a defect at each constant that no formula takes."""
+    constants = constants_of(experiment.tree)
+    used = used_constants(experiment.tree) if constants else set()
+    for name, (_, mark) in constants.items():
+        if name not in used and not mark.file:
+            sentence = f"constant {quoted(name)} is not used; a formula takes it as ${name}"
+            yield mark.defect(str(experiment.path), sentence)
 
 
 def unclaimed(experiment: Experiment) -> Iterator[Defect]:

@@ -7,14 +7,17 @@ so that only a true `<=` passes.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Final
+from fractions import Fraction
+from typing import Any, Final
 
 import numpy as np
 
 from lavendersim.measures.closed_forms import evaluate_form
 from lavendersim.measures.interfaces import Cell, Floats, Value
 from lavendersim.measures.specs.expectation import Equals, ExpectSpec
-from lavendersim.measures.verdict import NO_TOLERANCE, Outcome
+from lavendersim.measures.verdict import NO_TOLERANCE, Outcome, failure
+from lavendersim.quantities.formula import FormulaError, read_formula
+from lavendersim.quantities.scalars import exact
 
 
 def judge_cell(expectation: ExpectSpec, value: Value, cell: Cell) -> Outcome:
@@ -79,10 +82,14 @@ def _exactly(expectation: ExpectSpec, numbers: Floats, cell: Cell) -> Outcome:
 
 
 def _equals(expectation: ExpectSpec, numbers: Floats, cell: Cell) -> Outcome:
-    assert expectation.equals is not None
-    spec = expectation.equals
-    target, allowed = _allowed(spec, cell)
-    expected = f"{target!r} ({spec.closed_form.form})" if spec.closed_form else repr(target)
+    spec = expectation.agreement
+    assert spec is not None
+    try:
+        target, allowed = _allowed(spec, cell)
+    except FormulaError as error:
+        return failure(str(spec.value), str(error))
+    formula = spec.closed_form.form if spec.closed_form else spec.value
+    expected = f"{target!r} ({formula})" if isinstance(formula, str) else repr(target)
     excess = np.abs(numbers - target) - allowed
     return _worst(numbers, excess, expected, _tolerance_text(spec), allowed)
 
@@ -93,8 +100,33 @@ def _allowed(spec: Equals, cell: Cell) -> tuple[float, float]:
         target = evaluate_form(spec.closed_form, cell.config)
     else:
         assert spec.value is not None
-        target = spec.value
+        target = evaluated(spec.value, cell)
     return target, max(spec.absolute, spec.relative * abs(target))
+
+
+def evaluated(value: float | str, cell: Cell) -> float:
+    """Return an expected number; a formula with the cell's values of its axes.
+
+    FormulaError where the cell lacks an axis, or the formula has no value.
+    """
+    if not isinstance(value, str):
+        return value
+    formula = read_formula(value)
+    values: dict[str, Any] = {name: cell.coordinates.get(name) for name in formula.names}
+    if missing := sorted(name for name, number in values.items() if not _is_number(number)):
+        raise FormulaError(f"the cell has no number for axis ${missing[0]}")
+    return float(
+        formula.value(
+            {
+                name: number if isinstance(number, Fraction) else exact(number)
+                for name, number in values.items()
+            }
+        )
+    )
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float | Fraction) and not isinstance(value, bool)
 
 
 def _tolerance_text(spec: Equals) -> str:
@@ -139,8 +171,11 @@ def room(expectation: ExpectSpec, value: Value, cell: Cell) -> float | None:
     A value that changes by more may change the verdict.
     """
     numbers = np.atleast_1d(np.asarray(value, dtype=float))
-    if expectation.equals is not None:
-        return _allowed(expectation.equals, cell)[1]
+    if expectation.agreement is not None:
+        try:
+            return _allowed(expectation.agreement, cell)[1]
+        except FormulaError:
+            return None
     if expectation.exactly is not None:
         return 0.0
     bounds = [expectation.at_most, expectation.at_least, *(expectation.between or ())]

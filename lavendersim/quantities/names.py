@@ -29,5 +29,8 @@ MeasureName = Annotated[str, AfterValidator(partial(_known, "measure"))]
 AxisName = Annotated[str, AfterValidator(partial(_known, "axis"))]
 SurfaceName = Annotated[str, AfterValidator(partial(_known, "surface"))]
 
+# A constant's name: it stands in formulas, where `-` subtracts.
+ConstantName = Annotated[str, StringConstraints(pattern=r"^[A-Za-z_][A-Za-z0-9_]*$", max_length=64)]
+
 # A new name: it appears in sweep paths (no dots), in log topics, file names and test ids.
 NewName = Annotated[str, StringConstraints(pattern=r"^[A-Za-z_][A-Za-z0-9_-]*$", max_length=64)]

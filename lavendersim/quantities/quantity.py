@@ -22,6 +22,7 @@ from pydantic import (
 )
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
+from lavendersim.quantities.formula import FormulaError, read_formula
 from lavendersim.quantities.found import found
 from lavendersim.quantities.scalars import exact, label
 from lavendersim.quantities.units import advice
@@ -36,6 +37,8 @@ _LARGEST: Final[dict[str, float]] = {
     "s": 9e9,  # a log counts nanoseconds in 64 bits
 }
 RATIO_PATTERN = r"^[-+]?[0-9]+/[0-9]+$"
+# What an editor can tell of `1/480`, `2 * $r`, `sqrt(2)`: such characters, an operator among them.
+FORMULA_PATTERN = r"^([-+*/(),.$ 0-9A-Za-z_]*[$*/(+-][-+*/(),.$ 0-9A-Za-z_]*|pi|deg)$"
 
 
 def refusal(expected: str, value: object, hint: str = "") -> PydanticCustomError:
@@ -156,7 +159,7 @@ class Quantity:
     def __get_pydantic_json_schema__(
         self, schema: CoreSchema, handler: GetJsonSchemaHandler
     ) -> dict[str, Any]:
-        """Describe the number, and the ratio of two whole numbers as its other spelling."""
+        """Describe the number, and formulas and ratios as its other spellings."""
         number: dict[str, Any] = {"type": "integer" if self.whole else "number"}
         bounds = {
             "minimum": self.minimum,
@@ -165,9 +168,22 @@ class Quantity:
             "exclusiveMaximum": self.below,
         }
         number |= {name: bound for name, bound in bounds.items() if bound is not None}
-        if self.whole:
-            return number
-        return {"anyOf": [number, {"type": "string", "pattern": RATIO_PATTERN}]}
+        return {"anyOf": [number, {"type": "string", "pattern": FORMULA_PATTERN}]}
+
+
+class NumberOrFormula(Quantity):
+    """A number, or a formula that takes axes of the sweep, as text: `2 * $length`."""
+
+    def check(self, value: object) -> Any:
+        """Return the number as float or the text of the formula, or raise the refusal."""
+        if not isinstance(value, str):
+            return super().check(value)
+        try:
+            if read_formula(value).names:
+                return value
+        except FormulaError:
+            pass
+        raise refusal("a number or a formula", value, advice(value, self.unit))
 
 
 def _ratio(text: str) -> Fraction:

@@ -92,7 +92,7 @@ def advice(value: object, unit: str) -> str:
     if _GROUPED.match(text):
         return f"; write {re.sub(r'[_ ]', '', text).replace(chr(39), '')}"
     if _EXPRESSION.search(text) and any(letter.isdigit() for letter in text):
-        return "; nothing is calculated in a config, write the number itself"
+        return "; a formula has numbers, $constants, + - * / ** and functions such as sqrt"
     return ""
 
 

@@ -40,7 +40,7 @@ class Prepared(NamedTuple):
                 experiment.text,
                 directory / "cells" / log,
                 plan,
-                seeds.of(cell.coordinates),
+                seeds.of(cell),
                 experiment.always,
                 experiment.measures,
                 (CellOfLog(cell.index, cell.label, cell.coordinates),),

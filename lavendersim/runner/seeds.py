@@ -5,10 +5,9 @@ Only the jitter of a grid is drawn; a resolved cell holds the places that came o
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from typing import Any
+from collections.abc import Iterator
 
-from lavendersim.experiment import Experiment
+from lavendersim.experiment import Cell, Experiment, Node
 
 NONE = "none, nothing is drawn at random"
 
@@ -17,23 +16,18 @@ class Seeds:
     """The seeds of an experiment, cell by cell."""
 
     def __init__(self, experiment: Experiment) -> None:
-        # Of the text: `experiment.config` holds the first value of every axis, which is not that of
-        # cells whose product leaves the axis alone.
-        self._arrangements = experiment.tree.get("scene", "arrangements").entries
-        self._paths = experiment.swept
+        arrangements = experiment.tree.get("scene", "arrangements").entries
+        self._jittered = any(
+            arrangement.get("kind").text == "grid" for arrangement in arrangements.values()
+        )
 
-    def of(self, coordinates: Mapping[str, Any]) -> str:
+    def of(self, cell: Cell) -> str:
         """Return `ball: 1, rod: 7` for the arrangements that are jittered, or that none is."""
-        values = {
-            self._paths[axis]: value for axis, value in coordinates.items() if axis in self._paths
-        }
-        return ", ".join(self._drawn(values)) or NONE
+        drawn = ", ".join(_drawn(cell.tree)) if self._jittered else ""
+        return drawn or NONE
 
-    def _drawn(self, swept: Mapping[str, Any]) -> Iterator[str]:
-        for name, arrangement in self._arrangements.items():
-            jitter, seed = (
-                swept.get(f"scene.arrangements.{name}.{key}", arrangement.get(key).number or 0)
-                for key in ("jitter", "seed")
-            )
-            if jitter:
-                yield f"{name}: {int(seed)}"
+
+def _drawn(tree: Node) -> Iterator[str]:
+    for name, arrangement in tree.get("scene", "arrangements").entries.items():
+        if arrangement.get("jitter").number:
+            yield f"{name}: {int(arrangement.get('seed').number or 0)}"

@@ -28,7 +28,7 @@ def about_something_else(experiment: Experiment) -> str:
         return f"makes a deliberate error ({', '.join(experiment.mistakes)})"
     if not experiment.expectations and experiment.always is None:
         return "judges nothing"
-    swept = [path for path in experiment.swept.values() if path.startswith("numerics")]
+    swept = [path for path in experiment.swept if path.startswith("numerics")]
     if own := [path for path in swept if path != "numerics.timestep"]:
         return f"varies {', '.join(own)}"
     preset, specified = specified_numerics(experiment.tree)

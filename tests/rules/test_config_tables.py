@@ -36,7 +36,7 @@ MODELS = [model for model in models_below(ExperimentConfig) if model not in ELSE
 def test_every_model_has_a_table_or_is_described_in_words() -> None:
     tables = re.findall(r"<!-- \w+: ([\w ]+) -->", TEXT)
     shown = {name for names in tables for name in names.split()}
-    in_words = {"ArrangedBody", "Axis", "AxisAngle", "Effects", "Reduced", "Window"}
+    in_words = {"ArrangedBody", "AxisAngle", "Effects", "Reduced", "Window"}
     of_effects = {
         model.__name__ for key in SCENE_KEYS for model in models_below(Annotated[key.type, ""])
     }

@@ -26,7 +26,7 @@ GRAVITY = "{path: scene.gravity, values: [1]}"
 def seeds(text: str) -> list[str]:
     experiment = load_experiment_text(text, "cloud.yaml")
     found = Seeds(experiment)
-    return [found.of(cell.coordinates) for cell in experiment.cells()]
+    return [found.of(cell) for cell in experiment.cells()]
 
 
 def test_an_arrangement_that_is_jittered_has_its_seed_named() -> None:

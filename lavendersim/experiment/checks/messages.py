@@ -101,11 +101,13 @@ def _sentence(
     if kind == "extra_forbidden" or step == "[key]":
         mark = key_mark(root.get(*holder) or root, str(path[-1]))
         if kind == "extra_forbidden":
-            hint = nearest(step, _keys_at(models, holder))
+            misplaced = getattr(models.get(holder), "MISPLACED", {}).get(step)
+            hint = f"; {misplaced}" if misplaced else nearest(step, _keys_at(models, holder))
             return mark, f"unknown key {quoted(step)} in {place_of(holder)}{hint}"
         if kind == "lavender":
             return mark, f"{name_of(holder)}: {context['sentence']}"
-        rule = 'use up to 64 letters, digits, "_" and "-", starting with a letter'
+        signs = '"_"' if holder == ("constants",) else '"_" and "-"'
+        rule = f"use up to 64 letters, digits, {signs}, starting with a letter"
         return mark, f"{quoted(path[-1])} cannot be a name; {rule}"
     if kind == "missing":
         if isinstance(step, int):

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Final
+from typing import Annotated, Final
 
 from pydantic import ConfigDict, Field, Tag
 
 from lavendersim.cell.choices import Preset, Switch
 from lavendersim.cell.numerics import Numerics
 from lavendersim.experiment.models.always import AlwaysSection
+from lavendersim.experiment.models.axis import Axis
 from lavendersim.experiment.models.claims import expectation_rules, measure_rules
 from lavendersim.experiment.models.cost import CostSpec
 from lavendersim.experiment.models.events import Event
@@ -23,7 +24,7 @@ from lavendersim.figures.specs.catalogue import FigureSpec
 from lavendersim.measures.specs.catalogue import MeasureSpec
 from lavendersim.measures.specs.expectation import ExpectSpec
 from lavendersim.quantities.model import ConfigModel
-from lavendersim.quantities.names import NewName
+from lavendersim.quantities.names import ConstantName, NewName
 from lavendersim.quantities.quantity import Quantity, either
 
 # Solvers that no sweep visits contact by contact.
@@ -62,15 +63,6 @@ class Effects(ConfigModel):
         return self.__pydantic_extra__
 
 
-class Axis(ConfigModel):
-    """One quantity that is varied: the path of a value in this file and the values it takes."""
-
-    path: str = Field(description="such as scene.bodies.ball.mass or numerics.timestep")
-    values: tuple[Any, ...] = Field(
-        min_length=1, description="one cell per value; ratios are kept exactly"
-    )
-
-
 Product = dict[NewName, Axis]
 SweepOf = Annotated[
     Annotated[Product, Tag("product")] | Annotated[tuple[Product, ...], Tag("union")],
@@ -84,6 +76,10 @@ SweepOf = Annotated[
 class CellSource(ConfigModel):
     """The part of a config that a sweep can reach and that decides what is simulated."""
 
+    constants: dict[ConstantName, Annotated[float, Quantity()]] = Field(
+        default={},
+        description="name: a number, or a formula of others; `$name` wherever a number is expected",
+    )
     scene: Scene = Field(description="gravity, surfaces and bodies")
     events: tuple[Event, ...] = Field(default=(), description="changes during the run")
     numerics: NumericsOf = Field(

@@ -10,6 +10,7 @@ from lavendersim.cell.surface import Surface
 from lavendersim.engine.effects import SCENE_KEYS
 from lavendersim.experiment.models.arrangements import Arrangement
 from lavendersim.experiment.models.bodies import Body
+from lavendersim.experiment.models.shapes import Shape
 from lavendersim.experiment.models.tree import (
     MOST_BODIES,
     after_the_end,
@@ -122,6 +123,9 @@ class Scene(declared("Scene", ConfigModel, SCENE_KEYS)):  # type: ignore[misc]
     )
     surfaces: dict[NewName, Surface] = Field(
         default={}, description="name: properties, for several bodies"
+    )
+    shapes: dict[NewName, Shape] = Field(
+        default={}, description="name: a shape, for `shape: name` of several bodies, or to sweep"
     )
     bodies: dict[NewName, Body] = Field(description="name of the body: its properties")
     arrangements: dict[NewName, Arrangement] = Field(

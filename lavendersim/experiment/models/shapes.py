@@ -7,9 +7,10 @@ where its centre of mass stands.
 from __future__ import annotations
 
 from abc import abstractmethod
-from typing import TYPE_CHECKING, Annotated, Final, Literal, Union
+from typing import TYPE_CHECKING, Annotated, Any, Final, Literal, Union
 
-from pydantic import Field, Tag
+from pydantic import Field, GetJsonSchemaHandler, Tag
+from pydantic_core import CoreSchema
 
 from lavendersim.cell.shapes import PRIMITIVES, Plane, Primitive
 from lavendersim.quantities.kinds import kind_of
@@ -22,6 +23,20 @@ from lavendersim.quantities.quantity import (
     Vector3,
     either,
 )
+
+
+class OrName:
+    """Lets an editor take a name of `scene.shapes` where a shape is expected.
+
+    A name is replaced by its shape before a config is validated (`resolve.named_shapes`).
+    """
+
+    def __get_pydantic_json_schema__(
+        self, schema: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        """Describe the shape, or a name."""
+        return {"anyOf": [handler(schema), {"type": "string"}]}
+
 
 MOST_POINTS = 256  # of a hull: features of contacts are counted in eight bits
 MOST_PARTS = 256
@@ -117,4 +132,4 @@ if TYPE_CHECKING:
     Shape = Plane | Primitive | Polyhedral | Compound
 else:
     Solid = Union[(*SIMPLE, Compound)]
-    Shape = Annotated[Union[(Plane, Solid)], Field(discriminator="kind")]  # noqa: UP007
+    Shape = Annotated[Union[(Plane, Solid)], Field(discriminator="kind"), OrName()]  # noqa: UP007

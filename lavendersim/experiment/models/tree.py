@@ -12,6 +12,7 @@ from functools import lru_cache
 from typing import Final, NamedTuple
 
 from lavendersim.engine.effects import MOTION_KEYS
+from lavendersim.experiment.models.axis import axis_values
 from lavendersim.experiment.text.node import Node, Path
 from lavendersim.experiment.text.place import Place, place_of
 
@@ -121,7 +122,7 @@ def swept_values(root: Node) -> dict[str, list[Node]]:
     values: dict[str, list[Node]] = {}
     for product in products(root):
         for axis, node in product.entries.items():
-            values.setdefault(axis, []).extend(node.get("values").items)
+            values.setdefault(axis, []).extend(axis_values(node))
     return values
 
 

@@ -50,7 +50,7 @@ def with_overrides(root: Node, overrides: Sequence[str], report: Report) -> Node
 
 def check_untouched(root: Node, axes: Sequence[Sequence[SweptAxis]], report: Report) -> None:
     """Note values that were set where an axis varies them."""
-    varied = {axis.path: axis.name for product in axes for axis in product}
+    varied = {path: axis.name for product in axes for axis in product for path in axis.paths}
     for path, name in varied.items():
         mark = root.get(*path).mark
         if mark.file.startswith("--"):

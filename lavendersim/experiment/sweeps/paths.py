@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, get_origin
+from typing import Any, Final, get_origin
 
 from lavendersim.experiment.checks.annotations import (
     Model,
@@ -20,7 +20,9 @@ from lavendersim.experiment.text.node import Node, Path
 from lavendersim.experiment.text.report import Report
 from lavendersim.quantities.found import nearest, quoted
 
-SWEPT_SECTIONS = ("scene", "events", "numerics", "duration", "effects", "study")
+# Keys whose value may be the name of an entry of a section of the scene.
+NAMED: Final = {"surface": "surfaces", "shape": "shapes"}
+SWEPT_SECTIONS = ("constants", "scene", "events", "numerics", "duration", "effects", "study")
 
 
 class _NoPath(Exception):  # noqa: N818 - carries the sentence; never leaves this module
@@ -47,10 +49,11 @@ def _resolve(path: str, root: Node) -> Path:
     for step in steps:
         annotation, key = _enter(annotation, node, step, ".".join(map(str, found)))
         node = node.get(key)
-        if key == "surface" and node.text:
-            node = root.get("scene", "surfaces", node.text) or node
+        if key in NAMED and node.text:
+            node = root.get("scene", NAMED[key], node.text) or node
         found.append(key)
-    if not _takes_value(annotation):
+    by_name = found[-1] in NAMED and root.get("scene", NAMED[str(found[-1])])
+    if not by_name and not _takes_value(annotation):
         raise _NoPath(f"{path} is a mapping; name one value inside it")
     return tuple(found)
 

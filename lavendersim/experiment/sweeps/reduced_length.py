@@ -6,6 +6,7 @@ reduced: {duration: 5.0}
 
 from __future__ import annotations
 
+from lavendersim.experiment.models.axis import axis_paths
 from lavendersim.experiment.models.tree import products
 from lavendersim.experiment.text.node import Node, graft, key_mark
 from lavendersim.experiment.text.report import Report
@@ -27,9 +28,9 @@ def check_reduced_length(root: Node, report: Report) -> None:
         report.add(shorter.mark, sentence)
     for product in products(root):
         for axis, node in product.entries.items():
-            path = node.get("path")
-            if path.text == "duration":
-                report.add(path.mark, f"{axis}: a reduced length and a swept one; keep one")
+            if "duration" in axis_paths(node):
+                mark = (node.get("path") or node.get("paths")).mark
+                report.add(mark, f"{axis}: a reduced length and a swept one; keep one")
 
 
 def at_reduced_length(root: Node) -> tuple[Node, bool]:

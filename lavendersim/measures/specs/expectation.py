@@ -33,11 +33,12 @@ from lavendersim.measures.specs.base import ClosedForm
 from lavendersim.measures.specs.selection import Selection
 from lavendersim.quantities.model import ConfigModel
 from lavendersim.quantities.names import AxisName, MeasureName
-from lavendersim.quantities.quantity import Quantity, sentence_error
+from lavendersim.quantities.quantity import NumberOrFormula, Quantity, sentence_error
 
 # How the name of a `fails` begins that says what lavender does not hold, but should.
 KNOWN_FAILURE: Final = "known failure"
 Number = Annotated[float, Quantity()]
+Expected = Annotated[float | str, NumberOrFormula()]
 Tolerance = Annotated[float, Quantity(minimum=0)]
 Aggregate = Literal["max", "min", "mean"]
 
@@ -45,10 +46,17 @@ CELL_JUDGEMENTS = ("between", "at_most", "at_least", "exactly", "equals", "row")
 SWEEP_JUDGEMENTS = ("increasing", "decreasing", "ratio", "order", "crosses")
 
 
+NO_TOLERANCE: Final = "expected relative or absolute above 0; use `exactly` for no tolerance"
+
+
 class Equals(ConfigModel):
     """Agreement with a number or a closed form, within a relative and/or an absolute tolerance."""
 
-    value: Number | None = Field(default=None, description="the number, in the measure's unit")
+    value: Expected | None = Field(
+        default=None,
+        description="the number, in the measure's unit, or a formula of constants and axes: "
+        "`5/7 * $g * sin($slope)`",
+    )
     closed_form: ClosedForm | None = Field(default=None, description="or the formula that gives it")
     relative: Tolerance = Field(default=0.0, description="allowed |difference / expected| [-]")
     absolute: Tolerance = Field(default=0.0, description="allowed |difference|, measure's unit")
@@ -58,10 +66,11 @@ class Equals(ConfigModel):
         if (self.value is None) == (self.closed_form is None):
             raise sentence_error("expected exactly one of value, closed_form")
         if self.relative == 0.0 and self.absolute == 0.0:
-            raise sentence_error(
-                "expected relative or absolute above 0; use `exactly` for no tolerance"
-            )
+            raise sentence_error(NO_TOLERANCE)
         return self
+
+
+EqualsOf = Equals | Expected
 
 
 class Trend(ConfigModel):
@@ -142,7 +151,16 @@ class ExpectSpec(ConfigModel):
     at_most: Number | None = Field(default=None, description="upper bound, measure's unit")
     at_least: Number | None = Field(default=None, description="lower bound, measure's unit")
     exactly: Number | None = Field(default=None, description="this number, bit for bit")
-    equals: Equals | None = Field(default=None, description="a number or closed form, tolerance")
+    equals: EqualsOf | None = Field(
+        default=None,
+        description="a number or a formula, with `relative` or `absolute` beside it; or a mapping",
+    )
+    relative: Tolerance = Field(
+        default=0.0, description="of an `equals` that is no mapping: |difference / expected| [-]"
+    )
+    absolute: Tolerance = Field(
+        default=0.0, description="of an `equals` that is no mapping: |difference|, measure's unit"
+    )
     row: Literal["increasing", "decreasing"] | None = Field(
         default=None, description="the numbers of a measure that gives a row strictly rise or fall"
     )
@@ -170,10 +188,27 @@ class ExpectSpec(ConfigModel):
             kinds = ", ".join((*CELL_JUDGEMENTS, *SWEEP_JUDGEMENTS))
             found = ", ".join(given) if given else "none"
             raise sentence_error(f"expected exactly one judgement of {kinds}; found {found}")
+        self._check_tolerance()
         for bounds in (self.between, self.crosses and self.crosses.between):
             if bounds and bounds[0] > bounds[1]:
                 raise sentence_error("expected the lower bound first in `between`")
         return self
+
+    def _check_tolerance(self) -> None:
+        given = self.relative > 0.0 or self.absolute > 0.0
+        if isinstance(self.equals, float | str):
+            if not given:
+                raise sentence_error(NO_TOLERANCE)
+        elif given:
+            where = "inside it" if self.equals is not None else "beside `equals`"
+            raise sentence_error(f"relative and absolute stand {where}")
+
+    @property
+    def agreement(self) -> Equals | None:
+        """What `equals` says, in either of its forms."""
+        if isinstance(self.equals, float | str):
+            return Equals(value=self.equals, relative=self.relative, absolute=self.absolute)
+        return self.equals
 
     @property
     def known_failure(self) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from types import SimpleNamespace
 from typing import Any
 
@@ -266,3 +267,27 @@ def test_the_margin_is_the_share_of_the_bound_that_is_left(
 ) -> None:
     (verdict,) = verdicts(expect(**claim), cell(value))
     assert verdict.margin == pytest.approx(margin)
+
+
+LAW = {"equals": "2 * $m + 0.5", "absolute": 0.25}
+
+
+def test_a_formula_is_the_expected_number_of_each_cell() -> None:
+    assert passed(expect(**LAW), cell(4.5, m=2))
+    assert not passed(expect(**LAW), cell(4.5, m=3))
+    found = verdicts(expect(**LAW), cell(2.5, m=1), cell(9.0, m=4), cell(6.5, m=Fraction(3)))
+    assert [one.passed for one in found] == [True, False, True]
+    assert found[1].expected == "8.5 (2 * $m + 0.5)"
+
+
+def test_a_formula_of_an_axis_that_the_cell_lacks_fails() -> None:
+    (verdict,) = verdicts(expect(**LAW), cell(4.5))
+    assert not verdict.passed
+    assert "the cell has no number for axis $m" in verdict.message
+
+
+def test_a_formula_without_a_value_in_a_cell_fails_there() -> None:
+    law = {"equals": "1 / ($m - 1)", "relative": 0.1}
+    found = verdicts(expect(**law), cell(1.0, m=1), cell(1.0, m=2))
+    assert [one.passed for one in found] == [False, True]
+    assert "divides by zero" in found[0].message
