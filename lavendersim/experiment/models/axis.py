@@ -30,7 +30,7 @@ _SOURCES: Final = ("values", *_SPANS)
 DIGITS: Final = 12  # of a geometric value that is no exact number
 
 
-class Span(ConfigModel):
+class Interval(ConfigModel):
     """Evenly spaced values: `steps` steps from the first to the last, which both are values."""
 
     begin: Annotated[float, Quantity()] = Field(alias="from", description="first value")
@@ -81,10 +81,10 @@ class Axis(ConfigModel):
     values: tuple[Any, ...] | None = Field(
         default=None, min_length=1, description="one cell per value; ratios are kept exactly"
     )
-    range: Span | None = Field(
+    range: Interval | None = Field(
         default=None, description="instead of `values`: equal steps, {from, to, steps}"
     )
-    geometric: Span | None = Field(
+    geometric: Interval | None = Field(
         default=None, description="instead of `values`: equal factors, {from, to, steps}"
     )
 
