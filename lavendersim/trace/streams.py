@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from copy import copy
 from fractions import Fraction
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -168,6 +168,22 @@ class Poses:
         return chunk.filled()
 
 
+class Before(NamedTuple):
+    """The poses that the steps of a part begin with, from the state before the first."""
+
+    before: NDArray[np.float64]  # (bodies, 7)
+    following: NDArray[np.float64]  # (steps - 1, bodies, 7)
+
+
+class Touched(NamedTuple):
+    """The steps of a part that have contacts recorded."""
+
+    step: Rows
+    contacts: Rows  # of all of them, by step
+    counts: Rows  # of contacts, by step
+    poses: Before | None = None  # where contacts are expected by them
+
+
 class Points:
     """`/contacts`: a cloud of points in a message."""
 
@@ -190,14 +206,14 @@ class Points:
         sizes: Rows = counted.touched * (len(self._cloud) + contacts * self.form.size)
         return sizes
 
-    def part(self, counted: Counted, first: int, last: int) -> Any:
+    def part(self, counted: Counted, first: int, last: int) -> Touched:
         """Return the rows and contacts of the steps that have them recorded."""
         return _touched(counted, first, last)
 
-    def encode(self, prologue: bytes, parts: Sequence[Any], size: int) -> Laid:
+    def encode(self, prologue: bytes, parts: Sequence[Touched], size: int) -> Laid:
         """Return the bytes of a chunk and its index."""
         chunk = Chunk(prologue, size)
-        for step, contacts, counts in parts:
+        for step, contacts, counts, _ in parts:
             starts = chunk.end + cumulative(len(self._cloud) + counts * self.form.size)
             length = counts * self.form.size
             heads = heads_of(step, _record_length(self._cloud, length), length)
@@ -234,26 +250,26 @@ class ContactColumns:
         sizes: Rows = counted.touched * (STEP_OF_COLUMNS + contacts * WORD * len(self.form.names))
         return sizes
 
-    def part(self, counted: Counted, first: int, last: int) -> Any:
+    def part(self, counted: Counted, first: int, last: int) -> Touched:
         """Return the rows and contacts of the steps that have them recorded.
 
         And the poses of the state before, and those of the steps, where contacts are expected by
         them.
         """
         if self._bodies is None:
-            return *_touched(counted, first, last), None
+            return _touched(counted, first, last)
         pose = counted.block.pose
         before = pose[first - 1] if first else counted.before
-        poses = pose[0] if before is None else before, pose[first : last - 1]
-        return *_touched(counted, first, last), poses
+        poses = Before(pose[0] if before is None else before, pose[first : last - 1])
+        return _touched(counted, first, last)._replace(poses=poses)
 
-    def encode(self, prologue: bytes, parts: Sequence[Any], size: int) -> Laid:
+    def encode(self, prologue: bytes, parts: Sequence[Touched], size: int) -> Laid:
         """Return the bytes of a chunk and its index."""
-        steps = [step for step, _, _, _ in parts if len(step)]
+        steps = [part.step for part in parts if len(part.step)]
         numbers = np.concatenate([step["step"] for step in steps])
         times = np.concatenate([step["time_ns"] for step in steps])
-        counts = np.concatenate([counts for _, _, counts, _ in parts])
-        rows = [contacts for _, contacts, _, _ in parts]
+        counts = np.concatenate([part.counts for part in parts])
+        rows = [part.contacts for part in parts]
         constants = Constants(float(self._clock.lengths(numbers[:1])[0]), self._slop)
         group = ContactGroup(numbers, times, counts, rows, self._starts(parts, counts))
         body = message_of(group, self.form, constants)
@@ -264,24 +280,25 @@ class ContactColumns:
         np.concatenate(pieces, out=data)
         return data.data, [Messages(layout.CHANNELS[COLUMNS], entries)]
 
-    def _starts(self, parts: Sequence[Any], counts: Rows) -> Starts | None:
+    def _starts(self, parts: Sequence[Touched], counts: Rows) -> Starts | None:
         """Return where bodies are at the start of each step of some parts."""
         if self._bodies is None:
             return None
-        poses = [(before[None], following) for _, _, _, (before, following) in parts]
-        positions = [pose[:, :, :3] for part in poses for pose in part]
+        known = [part.poses for part in parts if part.poses is not None]
+        poses = [pose for one in known for pose in (one.before[None], one.following)]
+        positions = [pose[:, :, :3] for pose in poses]
         rows = np.repeat(np.arange(len(counts)), counts)
         return Starts(self._bodies, np.concatenate(positions).astype(np.float64), rows)
 
 
-def _touched(counted: Counted, first: int, last: int) -> tuple[Rows, Rows, Rows]:
-    """Return rows, contacts and their counts of the steps that have contacts recorded."""
+def _touched(counted: Counted, first: int, last: int) -> Touched:
+    """Return the steps that have contacts recorded, with these."""
     step, start = counted.block.step[first:last], counted.contact_start[first : last + 1]
     contacts, counts = counted.block.contact[start[0] : start[-1]], np.diff(start)
     touched = counted.touched[first:last]
     if touched.all():
-        return step, contacts, counts
-    return step[touched], contacts[np.repeat(touched, counts)], counts[touched]
+        return Touched(step, contacts, counts)
+    return Touched(step[touched], contacts[np.repeat(touched, counts)], counts[touched])
 
 
 def _plotted(topic: str, values: NDArray[Any]) -> NDArray[np.float64]:
