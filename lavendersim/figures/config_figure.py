@@ -14,7 +14,7 @@ from lavendersim.figures import panels
 from lavendersim.figures.drawing import describe, draw_levels, legend, limit
 from lavendersim.figures.page import Page, blank, legend_below, write
 from lavendersim.figures.registration import FUNCTIONS
-from lavendersim.figures.series import series_of
+from lavendersim.figures.series import looks_of, series_of
 from lavendersim.figures.specs.catalogue import FigureSpec
 from lavendersim.figures.style import PANEL_HEIGHT, PANEL_WIDTH
 from lavendersim.measures.interfaces import Cell
@@ -79,7 +79,8 @@ def _shared_entries(spec: FigureSpec, cells: Sequence[Cell]) -> int:
     split = {panel.series for panel in spec.panels}
     if len(split) != 1 or None in split:
         return 0
-    entries = len(series_of(cells, spec.panels[0].series))
+    all_series = series_of(cells, spec.panels[0].series)
+    entries = sum(look.named for look in looks_of(all_series))
     return entries if entries > FEW_ENTRIES else 0
 
 

@@ -65,15 +65,15 @@ def draw_band(
     axes.plot(
         band.places,
         band.mean,
-        linestyle="-" if joined else "none",
-        linewidth=0.9,
+        linestyle="-" if joined or look.joined else "none",
+        linewidth=1.4 if look.joined else 0.9,
         color=look.colour,
         marker=look.marker,
         markersize=size,
         markeredgecolor="white",
         markeredgewidth=0.6,
         markevery=1 + len(band.places) // MANY_MARKERS if joined else None,
-        label=label,
+        label=label if look.named else None,
         zorder=3,
     )
 

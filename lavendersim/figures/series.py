@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from fractions import Fraction
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from lavendersim.figures.style import MOST_MARKED, Look, look, sequential
 from lavendersim.measures.interfaces import Cell, Floats
 from lavendersim.quantities.scalars import label
 
@@ -16,6 +18,7 @@ class Series(NamedTuple):
 
     label: str
     cells: list[Cell]
+    number: float | None = None  # the value of the axis that splits them, where it is a number
 
 
 class Band(NamedTuple):
@@ -43,9 +46,30 @@ def series_of(cells: Sequence[Cell], axis: str | None, label: str = "") -> list[
     split = by_value([cell for cell in cells if axis in cell.coordinates], axis)
     return [
         # Names of solvers are read, not typed, in a figure.
-        Series(template.replace("{}", value.replace("_", " ")) + _mark(members), members)
+        Series(
+            template.replace("{}", value.replace("_", " ")) + _mark(members),
+            members,
+            _number(members[0].coordinates[axis]),
+        )
         for value, members in split.items()
     ]
+
+
+def _number(value: object) -> float | None:
+    is_number = isinstance(value, int | float | Fraction) and not isinstance(value, bool)
+    return float(value) if is_number else None  # type: ignore[arg-type]
+
+
+def looks_of(all_series: Sequence[Series]) -> list[Look]:
+    """Return how each series is drawn: many numbers as lines of a sequential scale, by their rank.
+
+    Up to five series, and those of names, have a colour and a marker each.
+    """
+    numbers = [one.number for one in all_series if one.number is not None]
+    if len(all_series) <= MOST_MARKED or len(numbers) < len(all_series):
+        return [look(index) for index in range(len(all_series))]
+    ordered = sorted(numbers)
+    return [sequential(ordered.index(number), len(ordered)) for number in numbers]
 
 
 def _mark(cells: Sequence[Cell]) -> str:
@@ -88,5 +112,5 @@ def swept_path(experiment: Any, axis: str) -> str | None:
     sweep = experiment.config.sweep
     for product in (sweep,) if isinstance(sweep, dict) else sweep:
         if axis in product:
-            return str(product[axis].path)
+            return str(product[axis].every_path[0])
     return None

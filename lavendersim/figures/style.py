@@ -50,7 +50,9 @@ class Look(NamedTuple):
     """How one series is drawn."""
 
     colour: str
-    marker: str
+    marker: str  # "" for none
+    named: bool = True  # whether the legend has it
+    joined: bool = False  # its points by a line, which is all there is to see without a marker
 
 
 LOOKS: Final[tuple[Look, ...]] = (
@@ -63,6 +65,26 @@ LOOKS: Final[tuple[Look, ...]] = (
     Look("#000000", "X"),
     Look("#B3A600", "*"),  # yellow, darkened to be seen on white
 )
+
+
+MOST_MARKED: Final = 5  # series of numbers with a colour and a marker each
+# Red, green, blue of cividis, dark to light; the lightest part is lost on white and left out.
+SEQUENTIAL: Final = ((0, 34, 78), (59, 73, 108), (112, 113, 115), (165, 156, 116), (195, 179, 105))
+
+
+def sequential(rank: int, count: int) -> Look:
+    """Return the look of the line whose value is the rank-th (from 0) of several, in rising order.
+
+    The legend has the lowest, the highest and the one in the middle.
+    """
+    place = rank / (count - 1) * (len(SEQUENTIAL) - 1)
+    low = min(int(place), len(SEQUENTIAL) - 2)
+    between = zip(SEQUENTIAL[low], SEQUENTIAL[low + 1], strict=True)
+    named = (0, (count - 1) // 2, count - 1)
+    channels = (round(one + (place - low) * (other - one)) for one, other in between)
+    return Look(
+        "#" + "".join(f"{channel:02X}" for channel in channels), "", rank in named, joined=True
+    )
 
 
 def look(index: int) -> Look:

@@ -41,6 +41,8 @@ _BLANKS: Final = " \t\n"
 FIXED: Final = {"pi": math.pi, "deg": math.pi / 180}
 FUNCTIONS: Final[Mapping[str, Callable[..., Any]]] = {
     "sqrt": math.sqrt,
+    "exp": math.exp,
+    "log": math.log,
     "sin": math.sin,
     "cos": math.cos,
     "tan": math.tan,

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from command_line import lavender
 
-from lavender_cli.plan import write
+from lavender_cli.plan import number_lines, write
 from lavendersim.engine.collide import SHAPE_PAIRS
 from lavendersim.engine.effects import EFFECTS
 from lavendersim.experiment import load_experiment
@@ -140,3 +140,26 @@ def test_show_tells_each_plan_of_a_run(drop: Path, tmp_path: Path) -> None:
     shown = lavender("show", where=tmp_path).stdout
     assert re.findall(r"^plan.*$", shown, re.M) == ["plan of f=on", "plan of f=off"]
     assert shown.count("overridden by hand: restitution forced off") == 1
+
+
+FORMULAS = """
+constants: {r: 0.1, m: 2 * $r}
+scene:
+  bodies: {ball: {shape: {kind: sphere, radius: $r}, mass: $m, position: [0, 0, 1]}}
+duration: 0.1
+always: {}
+sweep: {r: {path: constants.r, values: [0.2, 0.3]}}
+"""
+
+
+def test_numbers_of_formulas_are_listed_with_their_places(tmp_path: Path) -> None:
+    config = tmp_path / "made.yaml"
+    config.write_text(FORMULAS)
+    lines = number_lines(load_experiment(config))
+    assert lines == [
+        "numbers from formulas, of the first cell (r=0.2)",
+        f"  constants.m = 0.4  from  2 * $r  at {config}:2:24",
+        f"  scene.bodies.ball.shape.radius = 0.2  from  $r  at {config}:4:49",
+        f"  scene.bodies.ball.mass = 0.4  from  $m  at {config}:4:60",
+    ]
+    assert number_lines(load_experiment(STACK)) == []

@@ -88,6 +88,11 @@ class Axis(ConfigModel):
         default=None, description="instead of `values`: equal factors, {from, to, steps}"
     )
 
+    @property
+    def every_path(self) -> tuple[str, ...]:
+        """All paths, the first first."""
+        return ((self.path,) if self.path is not None else ()) + tuple(self.paths)
+
     @classmethod
     def rules(cls, at: Place) -> None:
         """There are paths, said in one way, and values, said in one way."""

@@ -26,10 +26,10 @@ PRESCRIBE_MOTION: Final = tuple(key.name for key in MOTION_KEYS)
 def members(arrangement: Node) -> int:
     """Return how many bodies an arrangement has."""
     kind = arrangement.get("kind").text
-    if kind == "tower":
+    if kind in ("tower", "row", "ring"):
         return _whole(arrangement.get("count"))
-    if kind == "pyramid":
-        rows = _whole(arrangement.get("base_count"))
+    if kind in ("pyramid", "rack"):
+        rows = _whole(arrangement.get("base_count" if kind == "pyramid" else "rows"))
         return rows * (rows + 1) // 2
     counts = arrangement.get("counts").items
     if kind != "grid" or len(counts) != 3:
@@ -57,7 +57,8 @@ def _body_paths(root: Node) -> dict[str, Path]:
         left -= count
         path = (*ARRANGEMENTS, name, "body")
         for number in range(1, count + 1):
-            paths.setdefault(member_name(name, number), path)
+            own = number == 1 and arrangement.get("first").entries
+            paths.setdefault(member_name(name, number), (*path[:-1], "first") if own else path)
     return paths
 
 
@@ -80,6 +81,8 @@ def described(root: Node) -> Iterator[tuple[str, Node]]:
     for name, arrangement in root.get(*ARRANGEMENTS).entries.items():
         if body := arrangement.get("body"):
             yield name, body
+        if (first := arrangement.get("first")) and first.entries:
+            yield member_name(name, 1), first
 
 
 def prescribes_motion(body: Node) -> str | None:

@@ -258,7 +258,8 @@ class _Pass:
             elif axis in self._constants and (
                 axis not in self._swept or self._swept[axis].axis != axis
             ):
-                sentence = f"${axis} is a constant and an axis of something else; rename one"
+                instead = f"let the axis vary constants.{axis}, or rename one"
+                sentence = f"${axis} is a constant and an axis of another path; {instead}"
                 self._report.add(node.mark, f"equals: {sentence}")
 
     def _not_named(self, formula: Formula) -> str | None:

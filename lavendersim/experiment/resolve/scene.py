@@ -18,7 +18,7 @@ from lavendersim.experiment.models.tree import (
     PRESCRIBE_MOTION,
     member_name,
 )
-from lavendersim.experiment.resolve.arrangements import centres
+from lavendersim.experiment.resolve.arrangements import centres, turns_of
 from lavendersim.experiment.resolve.placement import below, released_position
 from lavendersim.experiment.resolve.shape import quaternion_of, resolve_shape
 from lavendersim.geometry.quaternions import IDENTITY, Quaternion, product, to_body, to_world
@@ -40,12 +40,19 @@ def resolve_scene(scene: Scene, timestep: Fraction, duration: float) -> CellScen
     for name, arrangement in scene.arrangements.items():
         with below(*ARRANGEMENTS, name, "body"):
             one = _matter(arrangement.body, scene)
+        first = one
+        if arrangement.first is not None:
+            with below(*ARRANGEMENTS, name, "first"):
+                first = _matter(arrangement.first, scene)
         assert not isinstance(one.shape, Plane)
         places = centres(arrangement, one.shape, one.orientation)
+        turns = turns_of(arrangement)
         for number, position in enumerate(places, start=1):
-            member = member_name(name, number)
-            bodies[member] = one.model_copy(update={"position": position})
-            written[member] = quaternion_of(arrangement.body.orientation)
+            member, turn = member_name(name, number), turns[number - 1] if turns else IDENTITY
+            placed, source = (first, arrangement.first) if number == 1 else (one, arrangement.body)
+            bodies[member] = _turned(placed, turn, position)
+            as_written = quaternion_of((source or arrangement.body).orientation)
+            written[member] = as_written if turn == IDENTITY else product(turn, as_written)
     forces = tuple(_force(force, duration) for force in scene.forces)
 
     def turned(name: str, vector: Vector3) -> Vector3:
@@ -58,6 +65,16 @@ def resolve_scene(scene: Scene, timestep: Fraction, duration: float) -> CellScen
         gravity=gravity, bodies=bodies, forces=forces, **by_effect
     )
     return resolved
+
+
+def _turned(body: CellBody, turn: Quaternion, position: Vector3) -> CellBody:
+    """Return a body at its place, with its velocities turned about the origin of the world."""
+    changes: dict[str, object] = {"position": position}
+    if turn != IDENTITY:
+        changes["orientation"] = product(turn, body.orientation)
+        changes["velocity"] = to_world(turn, body.velocity)
+        changes["angular_velocity"] = to_world(turn, body.angular_velocity)
+    return body.model_copy(update=changes)
 
 
 def gravity_vector(gravity: float | Vector3 | TiltedGravity) -> Vector3:

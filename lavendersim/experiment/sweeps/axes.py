@@ -15,6 +15,7 @@ from typing import Any
 
 from lavendersim.experiment.models.axis import axis_values
 from lavendersim.experiment.models.tree import products
+from lavendersim.experiment.resolve.first_members import with_first_members
 from lavendersim.experiment.resolve.formulas import CONSTANTS, Computed, with_numbers_of_cell
 from lavendersim.experiment.resolve.named_shapes import with_named_shapes
 from lavendersim.experiment.resolve.presets import with_named_preset, with_preset
@@ -79,7 +80,7 @@ class SweepPoint:
         root = self._grafted(root)
         if self._sweeps_constants:
             root, _ = with_numbers_of_cell(root, report)
-        return with_preset(with_named_shapes(root, report))
+        return with_preset(with_named_shapes(with_first_members(root), report))
 
     def computed(self, root: Node) -> list[Computed]:
         """Return the numbers of formulas that take a constant that is swept."""

@@ -10,9 +10,9 @@ import numpy as np
 from lavendersim.figures.drawing import draw_band, draw_ideal, ticks_at_values
 from lavendersim.figures.ideal import ideal_line
 from lavendersim.figures.registration import draws
-from lavendersim.figures.series import Band, band_along, series_of, swept_path
+from lavendersim.figures.series import Band, band_along, looks_of, series_of, swept_path
 from lavendersim.figures.specs.measure_against_axis import MeasureAgainstAxis
-from lavendersim.figures.style import DARK, GREY, look
+from lavendersim.figures.style import DARK, GREY
 from lavendersim.measures.interfaces import Cell
 from lavendersim.measures.sweep_judgements import along_axis, first_rise
 from lavendersim.measures.values import Values
@@ -74,6 +74,7 @@ def draw_panel(
     shown = [cell for cell in cells if panel.axis in cell.coordinates]
     drawn: set[tuple[float, ...]] = set()
     all_series = series_of(shown, panel.series, panel.series_label)
+    looks = looks_of(all_series)
     for index, series in enumerate(all_series):
         band = band_along(
             series.cells,
@@ -95,7 +96,7 @@ def draw_panel(
                 label = panel.ideal.label if not drawn else None
                 draw_ideal(axes, places * panel.x_factor, ideal * panel.factor, label)
                 drawn.add(key)
-        draw_band(axes, band, look(index), series.label, size=marker_size(index, len(all_series)))
+        draw_band(axes, band, looks[index], series.label, size=marker_size(index, len(all_series)))
         ticks_at_values(axes, band.places)
         if index == 0:
             _draw_orders(axes, panel.orders, band)

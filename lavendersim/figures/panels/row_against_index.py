@@ -10,9 +10,8 @@ from matplotlib.ticker import MaxNLocator
 
 from lavendersim.figures.drawing import draw_band
 from lavendersim.figures.registration import draws
-from lavendersim.figures.series import band_of_rows, series_of
+from lavendersim.figures.series import band_of_rows, looks_of, series_of
 from lavendersim.figures.specs.row_against_index import RowAgainstIndex
-from lavendersim.figures.style import look
 from lavendersim.measures.interfaces import Cell, Floats
 from lavendersim.measures.values import Values
 
@@ -22,10 +21,11 @@ def draw_panel(
     axes: Any, panel: RowAgainstIndex, cells: Sequence[Cell], values: Values, experiment: Any
 ) -> None:
     """Draw one panel onto the axes."""
-    for index, series in enumerate(series_of(cells, panel.series, panel.series_label)):
+    all_series = series_of(cells, panel.series, panel.series_label)
+    for series, look in zip(all_series, looks_of(all_series), strict=True):
         rows = [_shown(values.row(panel.measure, cell), panel) for cell in series.cells]
         band = band_of_rows(rows, panel.first_index, panel.factor)
-        draw_band(axes, band, look(index), series.label, joined=True)
+        draw_band(axes, band, look, series.label, joined=True)
     axes.xaxis.set_major_locator(MaxNLocator(integer=True, steps=[1, 2, 5, 10]))
 
 

@@ -9,9 +9,8 @@ import numpy as np
 
 from lavendersim.figures.drawing import draw_ideal
 from lavendersim.figures.registration import draws
-from lavendersim.figures.series import series_of
-from lavendersim.figures.specs.time_series import TimeSeries
-from lavendersim.figures.style import look
+from lavendersim.figures.series import looks_of, series_of
+from lavendersim.figures.specs.time_series import OF_STEPS, POSITIONS, TimeSeries
 from lavendersim.measures.closed_forms import evaluate_form
 from lavendersim.measures.columns import (
     clearance_by_step,
@@ -34,7 +33,9 @@ def draw_panel(
     axes: Any, panel: TimeSeries, cells: Sequence[Cell], values: Values, experiment: Any
 ) -> None:
     """Draw one panel onto the axes."""
-    for index, series in enumerate(series_of(cells, panel.series, panel.series_label)):
+    all_series = series_of(cells, panel.series, panel.series_label)
+    looks = looks_of(all_series)
+    for index, series in enumerate(all_series):
         for number, cell in enumerate(series.cells):
             time, quantity = window_of(panel, cell.trace())
             axes.plot(
@@ -42,13 +43,13 @@ def draw_panel(
                 quantity * panel.factor,
                 # a force is the average over the step that ends at its time
                 drawstyle="steps-pre" if panel.column == "normal_force" else "default",
-                color=look(index).colour,
+                color=looks[index].colour,
                 linewidth=1.0,
-                marker=look(index).marker,
+                marker=looks[index].marker,
                 markersize=3.5,
                 markevery=max(1, len(time) // MOST_MARKERS),
                 markeredgecolor="none",
-                label=series.label if number == 0 else None,
+                label=series.label if number == 0 and looks[index].named else None,
                 zorder=3,
             )
             if panel.ideal is not None and index == number == 0 and len(time):
@@ -82,6 +83,13 @@ def quantity_of(panel: TimeSeries, trace: Trace) -> Floats:
         if panel.column not in (trace.step.dtype.names or ()):
             return np.full(len(trace.step), np.nan)  # nothing could touch, or no friction
         return np.asarray(trace.step[panel.column], dtype=np.float64)
+    if panel.column in OF_STEPS:
+        return np.asarray(trace.step[panel.column], dtype=np.float64)
+    if panel.column in POSITIONS:
+        assert panel.body is not None
+        column = list(trace.bodies).index(panel.body)
+        coordinates: Floats = trace.pose[:, column, POSITIONS.index(panel.column)]
+        return coordinates
     if panel.column == "clearance":
         assert panel.body is not None
         assert panel.above is not None

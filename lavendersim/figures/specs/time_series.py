@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, Final, Literal
+from typing import Annotated, Final, Literal, Self
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from lavendersim.figures.specs.base import Ideal, Number, Panel
 from lavendersim.quantities.names import BodyName, PlaneName
-from lavendersim.quantities.quantity import Quantity
+from lavendersim.quantities.quantity import Quantity, sentence_error
 from lavendersim.quantities.readings import CONTACTS, POSES, SUMS, Readings
 
 Column = Literal[
@@ -23,7 +23,14 @@ Column = Literal[
     "dissipation",
     "drift",
     "overlap",
+    "position_x",
+    "position_y",
+    "position_z",
+    "kinetic_energy",
+    "potential_energy",
 ]
+POSITIONS: Final = ("position_x", "position_y", "position_z")
+OF_STEPS: Final = ("kinetic_energy", "potential_energy")
 
 
 OF_COLUMNS: Final = {
@@ -32,6 +39,7 @@ OF_COLUMNS: Final = {
     "clearance": POSES,
     "drift": POSES,
     "overlap": POSES,
+    **dict.fromkeys(POSITIONS, POSES),
 }
 
 
@@ -48,10 +56,13 @@ class TimeSeries(Panel):
     column: Column = Field(
         description="penetration [m], normal_force [N], clearance [m], energy [J], residual [m/s], "
         "drift [m] of any centre from its place at 0.5 s, overlap [m] of any two bodies, from "
-        "poses, signorini [m/s], cone [N s], dissipation [J]: the worst contact's violation"
+        "poses, signorini [m/s], cone [N s], dissipation [J]: the worst contact's violation; "
+        "position_x, position_y, position_z [m] of a body's centre; kinetic_energy, "
+        "potential_energy [J] of the scene"
     )
     body: BodyName | None = Field(
-        default=None, description="the body, for penetration, normal_force and clearance"
+        default=None,
+        description="the body, for penetration, normal_force; of clearance, positions",
     )
     above: PlaneName | None = Field(default=None, description="the plane, for clearance")
     start: Literal["run", "first_contact"] = Field(
@@ -66,3 +77,11 @@ class TimeSeries(Panel):
     ideal: Ideal | None = Field(default=None, description="the constant it approaches")
     factor: Number = Field(default=1.0, description="multiplies the values for display")
     x_factor: Number = Field(default=1.0, description="multiplies the time for display (1000: ms)")
+
+    @model_validator(mode="after")
+    def _of_a_body(self) -> Self:
+        if self.column in (*POSITIONS, "clearance") and self.body is None:
+            raise sentence_error(f"column {self.column} is of a body; expected key `body`")
+        if self.column == "clearance" and self.above is None:
+            raise sentence_error("column clearance is above a plane; expected key `above`")
+        return self

@@ -15,6 +15,7 @@ from matplotlib import style
 from synthetic import RESIDUAL, SyntheticCell, ball_and_floor, spinning_log, trace_of
 
 from lavendersim.errors import TraceError
+from lavendersim.experiment.models.axis import Axis
 from lavendersim.figures import draw
 from lavendersim.figures.config_figure import compose
 from lavendersim.figures.specs.catalogue import FigureSpec
@@ -66,7 +67,7 @@ def cells() -> list[SyntheticCell]:
 
 
 def experiment(*panels: dict[str, Any]) -> Any:
-    sweep = {"speed": SimpleNamespace(path="scene.bodies.ball.velocity.2")}
+    sweep = {"speed": Axis(path="scene.bodies.ball.velocity.2", values=(1.0,))}
     return SimpleNamespace(
         name="some_experiment",
         measures=MEASURES,

@@ -38,6 +38,7 @@ VALUES = {
     "flips": 1,
     "along": (0.0, 0.0, 1.0),
     "part": "natural_map",
+    "level": 0.1,
 }
 
 

@@ -125,3 +125,82 @@ def test_ten_thousand_bodies_are_resolved_in_seconds() -> None:
     cell = load(grid).cells()[0]
     assert len(cell.config.as_dict()["scene"]["bodies"]) == 10_001
     assert len(cell.digest) == 64
+
+
+BALL = "{shape: {kind: sphere, radius: 0.1}, mass: 1}"
+
+
+def test_a_row_stands_side_by_side_along_its_line() -> None:
+    places = positions(
+        f"{{kind: row, count: 3, origin: [1, 0, 2], along: [0, 2, 0], body: {BRICK}}}"
+    )
+    np.testing.assert_allclose(places, [[1, 0.2 * k, 2] for k in range(3)], atol=1e-15)
+
+
+def test_a_row_may_have_a_spacing_for_each_two_neighbours() -> None:
+    places = positions(f"{{kind: row, count: 4, spacing: [0.2, 0.3, 0.5], body: {BALL}}}")
+    np.testing.assert_allclose(places[:, 0], [0, 0.2, 0.5, 1.0], atol=1e-15)
+    even = positions(f"{{kind: row, count: 3, spacing: 0.4, body: {BALL}}}")
+    np.testing.assert_allclose(even[:, 0], [0, 0.4, 0.8], atol=1e-15)
+
+
+@pytest.mark.parametrize("axis", [(0, 0, 1), (0, 0, -1), (1, 0, 0), (1, 2, -3)])
+def test_a_ring_is_a_regular_polygon_about_its_axis(axis: tuple[int, int, int]) -> None:
+    centre = np.array([1.0, 2.0, 3.0])
+    ring = (
+        f"{{kind: ring, count: 5, radius: 2, centre: [1, 2, 3], axis: {list(axis)}, body: {BALL}}}"
+    )
+    spokes = positions(ring) - centre
+    np.testing.assert_allclose(np.linalg.norm(spokes, axis=1), 2, atol=1e-14)
+    np.testing.assert_allclose(spokes @ np.array(axis, float), 0, atol=1e-14)
+    following = np.roll(spokes, -1, axis=0)
+    # 360/5 degrees from each to the next, right-handed about the axis
+    np.testing.assert_allclose(
+        (spokes * following).sum(axis=1), 4 * np.cos(2 * np.pi / 5), atol=1e-13
+    )
+    turning = np.cross(spokes, following) @ (np.array(axis) / np.linalg.norm(axis))
+    np.testing.assert_allclose(turning, 4 * np.sin(2 * np.pi / 5), atol=1e-13)
+
+
+def test_bodies_of_a_ring_may_turn_with_their_place() -> None:
+    body = BALL.replace("mass", "velocity: [3, 0, 0], mass")
+    found = bodies(f"{{kind: ring, count: 4, radius: 1, turned: true, body: {body}}}")
+    outwards = [np.dot(one["position"], one["velocity"]) for one in found.values()]
+    np.testing.assert_allclose(outwards, 3, atol=1e-14)  # each flies away from the centre
+    halves = [one["orientation"][0] for one in found.values()]
+    np.testing.assert_allclose(halves, np.cos(np.pi / 4 * np.arange(4)), atol=1e-15)
+
+
+def test_a_rack_of_balls_touches_in_equal_triangles() -> None:
+    places = positions(f"{{kind: rack, rows: 4, tip: [1, 0, 0.1], body: {BALL}}}")
+    assert len(places) == 10
+    assert list(places[0]) == [1, 0, 0.1]
+    distances = np.linalg.norm(places[:, None] - places[None, :], axis=2)
+    touching = np.abs(distances - 0.2) < 1e-15 * 8
+    assert touching.sum() == 2 * 18  # 3 n (n - 1)/2 pairs of neighbours in a triangle of n rows
+    assert distances[~touching & ~np.eye(10, dtype=bool)].min() > 0.3
+
+
+def test_the_first_body_differs_by_its_own_keys_alone() -> None:
+    first = "{velocity: [1, 0, 0], density: 1000}"
+    found = bodies(f"{{kind: row, count: 3, gap: 0.1, first: {first}, body: {BALL}}}")
+    one, two, three = found.values()
+    assert (one["velocity"], two["velocity"]) == ([1, 0, 0], [0, 0, 0])
+    assert one["mass"] == pytest.approx(1000 * 4 / 3 * np.pi * 0.001, rel=1e-15)
+    assert (two["mass"], three["mass"], one["shape"]) == (1, 1, two["shape"])
+
+
+def test_the_first_body_may_be_fixed() -> None:
+    found = bodies(f"{{kind: row, count: 2, gap: 0.1, first: {{fixed: true}}, body: {BALL}}}")
+    assert [one["fixed"] for one in found.values()] == [True, False]
+
+
+def test_the_first_body_can_be_swept() -> None:
+    axis = "sweep: {v: {path: scene.arrangements.pile.first.velocity.0, values: [1, 2]}}"
+    row = f"{{kind: row, count: 2, gap: 0.1, first: {{velocity: [0, 0, 0]}}, body: {BALL}}}"
+    cells = load(row, axis).cells()
+    found = [cell.config.scene.bodies for cell in cells]
+    assert [(one["pile_1"].velocity[0], one["pile_2"].velocity[0]) for one in found] == [
+        (1, 0),
+        (2, 0),
+    ]
