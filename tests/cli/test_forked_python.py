@@ -75,3 +75,11 @@ def test_a_variable_that_imports_may_read_starts_an_interpreter(tmp_path: Path) 
     kept = python("-c", look, where=tmp_path, LAVENDER_CACHE_DIR=str(tmp_path / "kernels"))
     assert kept.stdout == "True\n"
     assert python("-c", look, where=tmp_path, NUMBA_OPT="1").stdout == "False\n"
+
+
+def test_a_variable_that_is_gone_is_gone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    look = "import os; print('NO_COLOR' in os.environ)"
+    monkeypatch.setenv("NO_COLOR", "1")
+    assert python("-c", look, where=tmp_path).stdout == "True\n"
+    monkeypatch.delenv("NO_COLOR")
+    assert python("-c", look, where=tmp_path).stdout == "False\n"
