@@ -25,12 +25,13 @@ def started(*arguments: object, where: Path, **_: str) -> subprocess.CompletedPr
     )  # fmt: skip
 
 
-@pytest.mark.parametrize("form", ["module", "code"])
+@pytest.mark.parametrize("form", ["module", "code", "file"])
 def test_it_sees_what_a_started_one_sees(
     form: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    (tmp_path / "seen_of_a_process.py").write_text(SEEN)
-    words = ("-m", "seen_of_a_process") if form == "module" else ("-c", SEEN)
+    file = tmp_path / "seen_of_a_process.py"
+    file.write_text(SEEN)
+    words = {"module": ("-m", file.stem), "code": ("-c", SEEN), "file": (file,)}[form]
     monkeypatch.setenv("NO_COLOR", "1")
     forked = python(*words, "a", "b c", where=tmp_path)
     expected = started(*words, "a", "b c", where=tmp_path)
