@@ -2,7 +2,7 @@
 
 A process of its own takes a second of the processor until lavender, numba and scipy are imported,
 and the suite starts hundreds. Each one here is forked from a server that has imported them, before
-it has run anything; from then on it is what `python -m MODULE` and `python -c CODE` are: its own
+it has run anything; from then on it is what `python FILE`, `-m MODULE` and `-c CODE` are: its own
 memory, directory, environment, streams, `__main__` and exit code. What such a start itself does
 (imports, their time, interpreters with other paths) is claimed with real processes elsewhere; so
 is an environment that modules read as they are imported (see `LATE`).
@@ -34,7 +34,7 @@ ROOT = Path(__file__).parents[1]
 def python(
     *arguments: object, where: Path | None = None, **environment: str
 ) -> subprocess.CompletedProcess[str]:
-    """Run `python -m MODULE ...` or `python -c CODE ...` in a directory; returns how it ended."""
+    """Run `python FILE ...`, `-m MODULE ...` or `-c CODE ...` in a directory, to its end."""
     words, required = [str(each) for each in arguments], os.environ | environment
     place = Path.cwd() if where is None else where
     server = _server(os.getpid())
@@ -104,7 +104,8 @@ def _preload() -> None:
     for module in pkgutil.iter_modules(lavender_cli.__path__, "lavender_cli."):
         if module.name != "lavender_cli.main":  # `python -m` is to import it as `__main__`
             importlib.import_module(module.name)
-    for room in ("experiment", "lint", "measures", "runner", "scene", "trace"):
+    importlib.import_module("rerun")
+    for room in ("experiment", "figures", "lint", "measures", "runner", "scene", "trace"):
         package = importlib.import_module(f"lavendersim.{room}")
         for module in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
             importlib.import_module(module.name)
@@ -145,15 +146,18 @@ def _become(task: dict[str, Any]) -> int:
     os.environ.clear()
     os.environ.update(task["environment"])
     os.chdir(task["where"])
-    option, target, *rest = task["words"]
-    sys.path[0] = task["where"] if option == "-m" else ""
+    first, *rest = task["words"]
     try:
-        if option == "-m":
-            sys.argv = [target, *rest]
-            runpy.run_module(target, run_name="__main__", alter_sys=True)
+        if first == "-m":
+            sys.path[0], sys.argv = task["where"], rest
+            runpy.run_module(rest[0], run_name="__main__", alter_sys=True)
+        elif first == "-c":
+            code, *rest = rest
+            sys.path[0], sys.argv = "", ["-c", *rest]
+            exec(compile(code, "<string>", "exec"), {"__name__": "__main__"})
         else:
-            sys.argv = ["-c", *rest]
-            exec(compile(target, "<string>", "exec"), {"__name__": "__main__"})
+            sys.path[0], sys.argv = str(Path(first).parent), task["words"]
+            runpy.run_path(first, run_name="__main__")
     except SystemExit as end:
         if isinstance(end.code, str):
             print(end.code, file=sys.stderr)

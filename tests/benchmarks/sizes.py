@@ -118,7 +118,9 @@ def samples(case: Case, repeats: int) -> list[tuple[float, float]]:
             return command(folder, words[0], *(words[1:] or ("case.yaml",)))
 
         *before, measured = case.verbs
-        for words in before or [measured]:
+        if measured[0] == "run":  # the first one compiles
+            before = [measured]
+        for words in before:
             verb(words)
         return [verb(measured) for _ in range(repeats)]
 

@@ -12,6 +12,7 @@ from __future__ import annotations
 import hashlib
 import json
 import resource
+import signal
 import sys
 import zlib
 from collections.abc import Callable
@@ -39,6 +40,7 @@ from lavendersim.trace.wire import Template
 from lavendersim.trace.writer import DESCRIPTION, ENDING, RESOLVED, TIMESTEP_CHANGES
 
 MEMORY = 3 * 1024**3  # [byte] of addresses; 1.4 GB of them are libraries
+LONGEST = 120  # [s] of ten verbs, on a busy machine
 COLUMNS = layout.CHANNELS["/contact_columns"]
 
 
@@ -248,7 +250,8 @@ def every_verb(run: Path, other: Path, log: Path) -> dict[str, Done]:
 
 
 def main() -> None:
-    """Plant a log, put it to every verb, print what became of each."""
+    """Plant a log, put it to every verb, print what became of each; ended where that takes long."""
+    signal.alarm(LONGEST)
     run, other, kind = Path(sys.argv[1]), Path(sys.argv[2]), sys.argv[3]
     log = plant(run, kind) if kind in KINDS else logs(run)[0]
     resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))

@@ -25,12 +25,13 @@ def started(*arguments: object, where: Path, **_: str) -> subprocess.CompletedPr
     )  # fmt: skip
 
 
-@pytest.mark.parametrize("form", ["module", "code"])
+@pytest.mark.parametrize("form", ["module", "code", "file"])
 def test_it_sees_what_a_started_one_sees(
     form: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    (tmp_path / "seen_of_a_process.py").write_text(SEEN)
-    words = ("-m", "seen_of_a_process") if form == "module" else ("-c", SEEN)
+    file = tmp_path / "seen_of_a_process.py"
+    file.write_text(SEEN)
+    words = {"module": ("-m", file.stem), "code": ("-c", SEEN), "file": (file,)}[form]
     monkeypatch.setenv("NO_COLOR", "1")
     forked = python(*words, "a", "b c", where=tmp_path)
     expected = started(*words, "a", "b c", where=tmp_path)
@@ -75,3 +76,11 @@ def test_a_variable_that_imports_may_read_starts_an_interpreter(tmp_path: Path) 
     kept = python("-c", look, where=tmp_path, LAVENDER_CACHE_DIR=str(tmp_path / "kernels"))
     assert kept.stdout == "True\n"
     assert python("-c", look, where=tmp_path, NUMBA_OPT="1").stdout == "False\n"
+
+
+def test_a_variable_that_is_gone_is_gone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    look = "import os; print('NO_COLOR' in os.environ)"
+    monkeypatch.setenv("NO_COLOR", "1")
+    assert python("-c", look, where=tmp_path).stdout == "True\n"
+    monkeypatch.delenv("NO_COLOR")
+    assert python("-c", look, where=tmp_path).stdout == "False\n"

@@ -7,15 +7,13 @@ from __future__ import annotations
 
 import json
 import shutil
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 from damaged_runs import DRAWN, made
 from strange_logs import KINDS
 
-LONGEST = 120  # [s] of ten verbs, 5 s of them the start; a busy machine
+from tests.forked_python import python
 
 
 @pytest.fixture(scope="module")
@@ -26,13 +24,7 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def _done(whole: Path, kind: str, folder: Path) -> dict[str, dict[str, object]]:
     run = folder / whole.name
     shutil.copytree(whole, run)
-    called = subprocess.run(
-        [sys.executable, Path(__file__).parent / "strange_logs.py", run, whole, kind],
-        capture_output=True,
-        text=True,
-        timeout=LONGEST,
-        check=False,
-    )
+    called = python(Path(__file__).parent / "strange_logs.py", run, whole, kind)
     assert called.returncode == 0, called.stderr[-2000:]
     found: dict[str, dict[str, object]] = json.loads(called.stdout)
     return found

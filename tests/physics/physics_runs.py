@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
+from shared_plan import shared_spec
 
 from lavendersim.engine.records import DIVERGED, RUNNING
 from lavendersim.experiment import load_experiment_text
@@ -41,8 +42,9 @@ def run_config(text: str) -> list[Course]:
     cells = load_experiment_text(text, "test.yaml").cells()
     courses = []
     for cell, plan in zip(cells, shared_plans(cells), strict=True):
-        scene = build(cell.config, plan.spec)
-        engine = scene.engine(plan.spec)
+        spec = shared_spec(plan)
+        scene = build(cell.config, spec)
+        engine = scene.engine(spec)
         changes = EventQueue(engine, scene, cell.config.events)
         blocks, done, last = [], 0, cell.config.steps
         while True:

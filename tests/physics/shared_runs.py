@@ -8,6 +8,7 @@ from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
 import numpy as np
+from shared_plan import shared_spec
 
 from lavendersim.engine.records import DIVERGED
 from lavendersim.experiment import load_experiment_text
@@ -44,10 +45,10 @@ def run_scenes(texts: Mapping[str, str]) -> dict[str, States]:
     cells = [load_experiment_text(text, f"{name}.yaml").cells()[0] for name, text in texts.items()]
     plans = shared_plans(cells)
     assert len({id(plan) for plan in plans}) == 1, "the scenes choose between laws"
-    found = {}
+    spec, found = shared_spec(plans[0]), {}
     for name, cell in zip(texts, cells, strict=True):
-        scene = build(cell.config, plans[0].spec)
-        engine = scene.engine(plans[0].spec)
+        scene = build(cell.config, spec)
+        engine = scene.engine(spec)
         count, last = len(scene.names), cell.config.steps
         states, rows = [], []
         for number in range(last + 1):

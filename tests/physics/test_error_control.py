@@ -19,9 +19,12 @@ from test_rolling_discs_at_second_order import DISC, UP, WHEEL
 
 from lavendersim.engine.engine import Rows
 from lavendersim.engine.records import DIVERGED, ROWS_FULL
+from lavendersim.engine.spec import Spec
 from lavendersim.engine.step_doubling import MOST_SUBSTEPS
 from lavendersim.experiment import load_experiment_text
+from lavendersim.experiment.cell import Cell
 from lavendersim.runner.cell import divergence
+from lavendersim.runner.plans import shared_plans
 from lavendersim.scene.build import build
 from lavendersim.scene.plan import plan_of
 
@@ -215,6 +218,13 @@ def test_what_is_exact_takes_the_longest_substeps() -> None:
     assert (states.step["rejected"] == 0).all()
 
 
+def spec_beside_the_scenes(cell: Cell) -> Spec:
+    """Return the spec of a cell in a sweep with the scenes of this file, which is compiled."""
+    texts = [asking(known.text, ACCURACIES[0]) for known in scenes().values()]
+    cells = [load_experiment_text(text, "x.yaml").cells()[0] for text in texts]
+    return shared_plans([cell, *cells])[0].spec
+
+
 def rows_of(text: str, block_steps: int, capacity: int = 0) -> tuple[Any, list[Rows]]:
     """Return the engine after a run and its rows; capacity: rows of contacts from the start."""
     (cell,) = load_experiment_text(text, "x.yaml").cells()
@@ -274,8 +284,9 @@ def test_a_sleeping_body_wakes_within_a_substep() -> None:
 def test_a_run_that_cannot_be_so_accurate_ends_with_a_sentence() -> None:
     text = asking(WHEEL.text(120, 1.0, 1.0, "midpoint_contact"), 1e-9, ", smallest_timestep: 1e-3")
     (cell,) = load_experiment_text(text, "x.yaml").cells()
-    scene = build(cell.config, plan_of(cell.config).spec)
-    engine = scene.engine(plan_of(cell.config).spec)
+    spec = spec_beside_the_scenes(cell)
+    scene = build(cell.config, spec)
+    engine = scene.engine(spec)
     assert engine.advance(cell.config.steps) == DIVERGED
     begin = engine.bodies[1].copy()
     sentence = divergence(scene, engine)
@@ -295,8 +306,9 @@ def test_a_step_of_too_many_substeps_ends_with_a_sentence() -> None:
     text = asking(WHEEL.text(1, 1.0, 1.0, "midpoint_contact"), 1e-9)
     text = text.replace(f"timestep: {LONGEST}", "timestep: 1")
     (cell,) = load_experiment_text(text, "x.yaml").cells()
-    scene = build(cell.config, plan_of(cell.config).spec)
-    engine = scene.engine(plan_of(cell.config).spec)
+    spec = spec_beside_the_scenes(cell)
+    scene = build(cell.config, spec)
+    engine = scene.engine(spec)
     while (status := engine.advance(1)) == ROWS_FULL:
         engine.take_rows()
     assert status == DIVERGED

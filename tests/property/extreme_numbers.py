@@ -31,7 +31,7 @@ from lavendersim.experiment.cell import Cell
 from lavendersim.experiment.text.node import Node
 from lavendersim.experiment.text.parse import parse
 from lavendersim.experiment.text.report import Report
-from lavendersim.runner import run
+from lavendersim.runner import cell_jobs, run
 from lavendersim.runner.checks import check
 from lavendersim.runner.log_size import expected_log_sizes
 from lavendersim.runner.plans import distinct, shared_plans
@@ -183,7 +183,7 @@ def _outcome(text: str, folder: Path, wide: Widening | None) -> End:
         return End("complete")
     few = property(lambda cell: min(STEPS, STEPS_OF(cell)))
     with (
-        mock.patch("lavendersim.runner.plans.shared_plans", wide),
+        mock.patch.object(cell_jobs, "shared_plans", wide),
         mock.patch.object(CellConfig, "steps", few),
     ):
         finished = run(experiment, folder, overheads=False)
