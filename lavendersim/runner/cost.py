@@ -109,7 +109,8 @@ def take_cost(
         write_whole(finished.run.path / COST, text_of(data), flush=False)
         _write_csv(finished.run.path / COST_TABLE, data["rows"])
 
-    finished = run(grid, root, jobs, progress, overheads=False, closing=closing)
+    overrides = experiment.options.overrides  # the grid's text has them
+    finished = run(grid, root, jobs, progress, overheads=False, closing=closing, in_text=overrides)
     return Costed(finished, tables[0])
 
 

@@ -93,13 +93,16 @@ MOST_NAME, MOST_OVERRIDE = 150, 40  # characters of a directory's name, for what
 Closing = Callable[[Finished, list[dict[str, Any]]], None]
 
 
-def make_directory(experiment: Experiment, root: Path) -> Path:
-    """Make a new directory for a run; never an existing one."""
+def make_directory(experiment: Experiment, root: Path, in_text: Sequence[str] = ()) -> Path:
+    """Make a new directory for a run; never an existing one.
+
+    in_text: overrides that the experiment's text has already; its name says them, too.
+    """
     now = datetime.now(UTC).strftime("%Y%m%dT%H%M%SZ")
     options = experiment.options
     read = "\n".join((experiment.text, *options.overrides))
     digest = hashlib.sha256(read.encode("utf-8", "surrogatepass")).hexdigest()[:8]
-    changed = map(_short, options.overrides)
+    changed = map(_short, (*in_text, *options.overrides))
     name = "-".join(filter(None, (experiment.name, options.solver, *changed)))[:MOST_NAME]
     root.mkdir(parents=True, exist_ok=True)
     # A name that sorts by age even when several runs start within one second.
@@ -132,6 +135,7 @@ def run(
     tags: Sequence[str] = (),
     executor: Executor | None = None,
     is_predicted: bool = False,
+    in_text: Sequence[str] = (),
 ) -> Finished:
     """Run every cell of an experiment and judge its expectations; take overheads where it asks.
 
@@ -142,6 +146,7 @@ def run(
     of `always` ends there, with a readable log; the others go on. executor: runs the cells in place
     of `jobs` processes, anything with the interface of `concurrent.futures`; see `remote`.
     is_predicted: what it takes is known (`prediction`); else logs that fill the disk are warned of.
+    in_text: overrides that the experiment's text has already, for the name of the directory.
     """
     from .cell_jobs import prepare
     from .log_size import log_space
@@ -161,7 +166,7 @@ def run(
             progress.warning(space.warning(root))
     logs = set(prepared.logs)
     before = unfinished_run(experiment, root, logs, progress.note) if resume else None
-    directory = before.path if before else make_directory(experiment, root)
+    directory = before.path if before else make_directory(experiment, root, in_text)
     with run_lock(directory):
         done = take_over(before, logs, progress.note) if before else {}
         if tags:

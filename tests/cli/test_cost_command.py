@@ -54,6 +54,8 @@ def test_what_is_set_stands_in_every_setting_of_the_grid(costed: Path, tmp_path:
     (table,) = json.loads(done.stdout)
     assert table["duration"] == 0.4
     assert "e" in table["axes"]
+    named = Path(table["run"]).name
+    assert "-drop-duration=0.4-e=" in named  # as the directory of `run --set` is
     run = open_run(Path(table["run"]) if Path(table["run"]).exists() else tmp_path / table["run"])
     bodies = [cell.config.scene.bodies["ball"] for cell in run.experiment.cells()]
     assert {one.surface.restitution for one in bodies} == {0.5}

@@ -191,6 +191,48 @@ def test_dask_gives_the_cells_of_a_killed_worker_to_others(cluster: Any, tmp_pat
     assert contents(found.run) == whole
 
 
+OWN_MEASURE = '''\
+from lavendersim.measures import Trace, own_measure
+from lavendersim.quantities.names import BodyName
+
+
+@own_measure
+def highest(trace: Trace, body: BodyName) -> float:
+    """Greatest height [m] of a body's centre."""
+    return float(trace.pose[:, trace.bodies.index(body), 2].max())
+'''
+EXTENDED = """\
+extends: ../base.yaml
+measure: {top: {kind: highest, body: ball}}
+expect: [{name: it is as high as its start, measure: top, between: [0.149999, 0.150001]}]
+"""
+
+
+def test_workers_of_dask_take_measures_of_a_file_for_a_config_that_extends_another(
+    cluster: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from distributed import Client
+
+    (tmp_path / "base.yaml").write_text(MANY)
+    folder = tmp_path / "cases"
+    folder.mkdir()
+    (folder / "measures.py").write_text(OWN_MEASURE)
+    config = folder / "tops.yaml"
+    config.write_text(EXTENDED)
+    whole = run(config, tmp_path / "whole")
+    here = Path.cwd()
+    monkeypatch.chdir(folder)  # a name that means nothing where the workers were started
+    with Client(cluster, set_as_default=False) as client:
+        found = run("tops.yaml", tmp_path / "runs", executor=client.get_executor(pure=False))
+    monkeypatch.chdir(here)
+    assert contents(found.run) == contents(whole.run)
+    # A ball of radius 0.1 m is released 0.05 m above the floor: its centre is highest at first.
+    tops = [found.run.taken[index]["top"] for index in range(len(found.run.cells))]
+    assert tops == pytest.approx([0.15] * 40, abs=1e-12)
+    judged = [one.passed for one in found.verdicts if one.name == "it is as high as its start"]
+    assert judged == [True] * 40
+
+
 def part_of_dask(*words: object) -> subprocess.Popen[bytes]:
     """Start a scheduler or a worker of Dask in a process of its own."""
     command = [sys.executable, "-m", *map(str, words), "--no-dashboard"]
