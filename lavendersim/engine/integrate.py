@@ -15,7 +15,7 @@ from .compile import kernel
 from .effects import made_once
 from .effects.gyroscopic import make_turn_by_mean
 from .records import NOT_FINITE, TURNS_TOO_FAST
-from .rotation import inertia_times, inverse_inertia_times, is_round, turn
+from .rotation import inertia_times, inverse_inertia_times, is_round, orient, turn
 from .row_terms import row_terms
 from .spec import Spec
 
@@ -27,6 +27,9 @@ LASTING = 3  # through the whole step, and its surfaces do not approach as it be
 
 # A spin whose square shrinks by this in a step is all but stopped: 64 times slower [-].
 STOPPED = 4096.0
+# Where a turn changes the spin that a body gains by more than this, the step is too long for what
+# is stiff in it (a needle about its long axis), and halves are no nearer than the whole [-].
+LIKE = 0.1
 
 
 def keeps_motion(spec: Spec) -> bool:
@@ -175,7 +178,9 @@ def make_turn(spec: Spec) -> Any:
 def make_turn_in_halves(spec: Spec) -> Any:
     """Return `kernel(body, v, m, dt) -> solved`: the body's turn under torques, of order 2.
 
-    Half of the spin that the step gives is given before the turn, half after it.
+    Half of the spin that the step gives is given before the turn, half after it; all of it before,
+    where the body turns so far that the halves would be unlike: with moments of inertia a million
+    to one the second would drive it about the axis that resists least.
     """
     integrate_rotation: Any = make_turn(spec)
 
@@ -187,10 +192,19 @@ def make_turn_in_halves(spec: Spec) -> Any:
         before = m.wx * m.wx + m.wy * m.wy + m.wz * m.wz
         if not (twisted and STOPPED * last >= before):
             return integrate_rotation(body, v, dt)
+        whole_x, whole_y, whole_z = v.wx, v.wy, v.wz
+        w, i, j, k = body.qw, body.qx, body.qy, body.qz
         x, y, z = inertia_times(body, gained_x, gained_y, gained_z)
         v.wx, v.wy, v.wz = m.wx + 0.5 * gained_x, m.wy + 0.5 * gained_y, m.wz + 0.5 * gained_z
         solved = integrate_rotation(body, v, dt)
         x, y, z = inverse_inertia_times(body, x, y, z)
+        off = (x - gained_x) ** 2 + (y - gained_y) ** 2 + (z - gained_z) ** 2
+        gained = gained_x * gained_x + gained_y * gained_y + gained_z * gained_z
+        if off > LIKE * LIKE * gained:
+            body.qw, body.qx, body.qy, body.qz = w, i, j, k
+            orient(body)
+            v.wx, v.wy, v.wz = whole_x, whole_y, whole_z
+            return integrate_rotation(body, v, dt)
         v.wx, v.wy, v.wz = v.wx + 0.5 * x, v.wy + 0.5 * y, v.wz + 0.5 * z
         return solved
 

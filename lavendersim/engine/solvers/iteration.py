@@ -100,8 +100,8 @@ def make_solve(spec: Spec, name: str, iteration: Iteration) -> Any:
             largest, worst = residual(contacts, count, velocities)
         report(params, counters, sweeps, largest, worst)
 
-    solve.__name__ = name  # as `lavender plan` lists them
-    solve.__qualname__ += f"_{name}"
+    solve.__name__ = name  # as `lavender plan` lists them, and as symbols are called
+    solve.__qualname__ = f"{make_solve.__name__}.<locals>.{name}"
     return kernel(solve, spec)
 
 
