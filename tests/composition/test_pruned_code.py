@@ -31,10 +31,10 @@ NO_KERNEL = {
 }
 # Whose code is more or less by what the compiler inlines: a body that is called from one place is
 # copied there, the same body beside another (`frictionless_contact`) is called. A condition more
-# (`kinematic`, `capture_in_sweeps`) is some 50 bytes, which the layout of a loop may outweigh. So are one kernel more
-# behind gravity's and one term more in a row's target: of 27 kB, 50 to 550 bytes less with them.
-# Without them there is less to compile all the same, and the code is not larger by more than a copy
-# or two of a kernel: what an average kernel takes, twice.
+# (`kinematic`, `capture_in_sweeps`) is some 50 bytes, which the layout of a loop may outweigh. So
+# are one kernel more behind gravity's and one term more in a row's target: of 27 kB, 50 to 550
+# bytes less with them. Without them there is less to compile all the same, and the code is not
+# larger by more than a copy or two of a kernel: what an average kernel takes, twice.
 INLINED_DIFFERENTLY = {
     *("frictionless_contact", "kinematic", "capture_in_sweeps"),
     *("external_force", "drag", "stabilisation", "compliance", "restitution"),
