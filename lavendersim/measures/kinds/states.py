@@ -54,7 +54,7 @@ def _crossing(above: Floats, times: Floats, spec: specs.FirstPassage) -> float:
     """Return when `above` first changes its sign; a state on the level has not crossed yet."""
     before, after = above[:-1], above[1:]
     rises, falls = (before < 0.0) & (after >= 0.0), (before > 0.0) & (after <= 0.0)
-    crosses = {"rising": rises, "falling": falls, "either": rises | falls}[spec.way]
+    crosses = {"rising": rises, "falling": falls, "either": rises | falls}[spec.crossing]
     for row in np.flatnonzero(crosses):
         share = before[row] / (before[row] - after[row])
         time = float(times[row] + share * (times[row + 1] - times[row]))

@@ -61,7 +61,7 @@ class FirstPassage(_OfBodies):
     kind: Literal["first_passage"]
     along: Direction = Field(description="direction, world frame; is normalised")
     level: Annotated[float, Quantity("m")] = Field(description="[m] what is crossed")
-    way: Literal["rising", "falling", "either"] = Field(
+    crossing: Literal["rising", "falling", "either"] = Field(
         default="either", description="which crossings count"
     )
     after: Seconds = Field(default=0.0, description="[s] only crossings after this time")

@@ -58,10 +58,10 @@ def passage(level: float, **keys: Any) -> Any:
 
 def test_a_passage_is_where_the_line_between_two_states_crosses() -> None:
     assert passage(0.0, body="one") == pytest.approx(0.005, rel=1e-12)
-    assert passage(0.0, body="one", way="rising") == pytest.approx(0.01 + 0.01 / 3, rel=1e-12)
+    assert passage(0.0, body="one", crossing="rising") == pytest.approx(0.01 + 0.01 / 3, rel=1e-12)
     assert passage(0.5, body="one", after=0.005) == pytest.approx(0.015, rel=1e-12)
     assert math.isnan(passage(9.0, body="one"))
-    assert math.isnan(passage(0.0, body="two", way="falling"))
+    assert math.isnan(passage(0.0, body="two", crossing="falling"))
 
 
 def test_passages_are_counted_over_bodies() -> None:
