@@ -31,7 +31,7 @@ from lavendersim.cell.shapes import (
     Plane,
     Sphere,
 )
-from lavendersim.cell.surface import Surface
+from lavendersim.cell.surface import PairedSurface, PairProperties, Partner, Surface
 
 __all__ = [
     "CAPTURE_IN_SWEEPS",
@@ -60,6 +60,9 @@ __all__ = [
     "Mistake",
     "Numerics",
     "Order",
+    "PairProperties",
+    "PairedSurface",
+    "Partner",
     "Plane",
     "Preset",
     "Release",

@@ -8,7 +8,7 @@ from typing import Annotated
 from pydantic import Field
 
 from lavendersim.cell.shapes import CellShape
-from lavendersim.cell.surface import Surface
+from lavendersim.cell.surface import PairedSurface, Surface
 from lavendersim.engine.effects import BODY_KEYS, MOTION_KEYS
 from lavendersim.quantities.model import ConfigModel, ResolvedModel, declared
 from lavendersim.quantities.names import PlaneName
@@ -46,7 +46,7 @@ class BodyOwn(declared("BodyOwn", Constrained, MOTION_KEYS), Constrained):  # ty
     mass: float | None  # [kg]; None where `fixed`
     density: float | None  # [kg/m^3] as written
     inertia: Vector3 | None  # [kg m^2] about the axes of its frame; None where `fixed`
-    surface: Surface
+    surface: PairedSurface | Surface
     position: Vector3  # [m] centre of mass; of a plane: its point nearest to the origin
     release: Release | None  # as written; `position` follows from it
     orientation: Quaternion  # unit quaternion w x y z, its frame to world

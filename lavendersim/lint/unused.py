@@ -7,19 +7,28 @@ from collections.abc import Iterator
 from lavendersim.errors import Defect
 from lavendersim.experiment import Experiment, key_mark
 from lavendersim.experiment.resolve.formulas import constants_of, used_constants
+from lavendersim.experiment.text.node import ABSENT, Node, graft
 from lavendersim.quantities.found import quoted
 
 
 def unused_surfaces(experiment: Experiment) -> Iterator[Defect]:
-    """Yield a defect at each named surface whose name stands nowhere else in the file."""
+    """Yield a defect at each named surface whose name stands nowhere else in the file.
+
+    That a pair of surfaces names it gives it to no body.
+    """
     surfaces = experiment.tree.get("scene", "surfaces")
-    used = set(experiment.tree.texts) if surfaces.entries else set()
+    used = set(_without_pairs(experiment.tree).texts) if surfaces.entries else set()
     for name in surfaces.entries:
         if name not in used:
             mark = key_mark(surfaces, name)
             if not mark.file:  # a file that others extend has what each of them may use
                 sentence = f"surface {quoted(name)} is that of no body"
                 yield mark.defect(str(experiment.path), sentence)
+
+
+def _without_pairs(tree: Node) -> Node:
+    pairs = tree.get("scene", "surface_pairs")
+    return graft(tree, ("scene", "surface_pairs"), ABSENT) if pairs else tree
 
 
 def unused_shapes(experiment: Experiment) -> Iterator[Defect]:

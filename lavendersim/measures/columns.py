@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -74,8 +74,8 @@ def impulses(contacts: Rows) -> Floats:
     return total
 
 
-def friction_of(contacts: Rows, surfaces: list[Surface]) -> Floats:
-    """Return mu of each contact by the config, where it changes with the motion by the log.
+def of_pairs(contacts: Rows, surfaces: list[Surface], value: Callable[[Surface], float]) -> Floats:
+    """Return a value of each contact's two surfaces, mixed.
 
     surfaces: of the bodies by their rows.
     """
@@ -88,9 +88,21 @@ def friction_of(contacts: Rows, surfaces: list[Surface]) -> Floats:
     present[pair] = True
     for one in np.flatnonzero(present):
         a, b = divmod(int(one), len(different))
-        between = mixed(different[a], different[b])
-        table[one] = np.nan if shares.varies_friction(between) else between.friction
-    mu: Floats = table[pair]
+        table[one] = value(mixed(different[a], different[b]))
+    values: Floats = table[pair]
+    return values
+
+
+def friction_of(contacts: Rows, surfaces: list[Surface]) -> Floats:
+    """Return mu of each contact by the config, where it changes with the motion by the log.
+
+    surfaces: of the bodies by their rows.
+    """
+    mu = of_pairs(
+        contacts,
+        surfaces,
+        lambda pair: np.nan if shares.varies_friction(pair) else pair.friction,
+    )
     return np.where(np.isnan(mu), contacts["friction"], mu) if np.isnan(mu).any() else mu
 
 

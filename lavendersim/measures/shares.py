@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from lavendersim.cell import Surface
+from lavendersim.cell.mixing import mixed
 from lavendersim.engine.effects import EFFECTS
 from lavendersim.measures.interfaces import Floats, Rows, Trace
 
@@ -70,11 +71,14 @@ def _stored_at_first(trace: Trace) -> float:
     From where the first step found them; what it meets on its way has no penetration.
     """
     contacts = trace.contact[trace.contact["step"] == 1] if "/contacts" not in trace.absent else []
-    compliances = [trace.config.scene.bodies[name].surface.compliance for name in trace.bodies]
+    surfaces = [trace.config.scene.bodies[name].surface for name in trace.bodies]
     found: dict[tuple[int, int, int], float] = {}
+    compliances: dict[tuple[int, int], float] = {}
     for row in contacts:
-        key = (row["body_a"], row["body_b"], row["feature"])
-        compliance = compliances[row["body_a"]] + compliances[row["body_b"]]
+        pair, key = (row["body_a"], row["body_b"]), (row["body_a"], row["body_b"], row["feature"])
+        if pair not in compliances:
+            compliances[pair] = mixed(surfaces[pair[0]], surfaces[pair[1]]).compliance
+        compliance = compliances[pair]
         if compliance > 0.0:
             depth = max(-float(row["separation"]), 0.0)
             found.setdefault(key, 0.5 * depth * depth / compliance)

@@ -22,6 +22,8 @@ from lavendersim.experiment.sweeps.cost_grid import Setting
 from lavendersim.measures import Values, judge
 from lavendersim.measures.closed_forms import evaluate_form
 from lavendersim.measures.specs.base import ClosedForm
+from lavendersim.scene.classes import class_pairs
+from lavendersim.scene.colliders import colliders
 
 from .cell_outcome import CellOutcome
 from .cost_targets import ROUND_OFF
@@ -200,7 +202,7 @@ def orders_of(settings: Sequence[Setting], errors: Sequence[float]) -> list[floa
 def law_of(config: CellConfig) -> str:
     """Name the law whose problem is solved: what no timestep and no sweep can improve."""
     numerics = config.numerics
-    surfaces = [body.surface for body in config.scene.bodies.values()]
+    surfaces = [pair.surface for pair in class_pairs(colliders([*config.scene.bodies.values()]))]
     compliant = any(surface.compliance for surface in surfaces)
     laws = ["compliant contacts" if compliant else "rigid contacts"]
     if any(surface.friction for surface in surfaces):

@@ -30,10 +30,18 @@ class Key:
 
 @dataclass(frozen=True, kw_only=True)
 class SurfaceKey(Key):
-    """A property of surfaces; a contact has one value of it, mixed of those of its two surfaces."""
+    """A property of surfaces; a contact has one value of it, mixed of those of its two surfaces.
+
+    The last clause of `doc` says how, behind a semicolon.
+    """
 
     mix: Callable[[float, float], float]
     needs: str = ""  # another of the same surface, which is above 0 where this one is
+
+    @property
+    def meaning(self) -> str:
+        """Unit and meaning of one value, however it came about."""
+        return self.doc.rpartition("; ")[0] or self.doc
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -141,7 +141,7 @@ def _expected(item: ErrorDetails, node: Node) -> str:
     kind, context, value = item["type"], item.get("ctx", {}), item["input"]
     if kind not in _EXPECTED:
         return f"{item['msg']}, found {found(value)}"  # of a type that a plug-in brings
-    plural = "" if 1 in context.values() else "s"
+    plural = "" if 1 in (context.get("min_length"), context.get("max_length")) else "s"
     expected = f"expected {_EXPECTED[kind].format(**context, s=plural)}"
     if kind in ("too_short", "too_long"):
         return f"{expected}, {_count(node)}"

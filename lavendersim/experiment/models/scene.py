@@ -11,6 +11,7 @@ from lavendersim.engine.effects import SCENE_KEYS
 from lavendersim.experiment.models.arrangements import Arrangement
 from lavendersim.experiment.models.bodies import Body
 from lavendersim.experiment.models.shapes import Shape
+from lavendersim.experiment.models.surface_pairs import SurfacePair
 from lavendersim.experiment.models.tree import (
     MOST_BODIES,
     after_the_end,
@@ -123,6 +124,10 @@ class Scene(declared("Scene", ConfigModel, SCENE_KEYS)):  # type: ignore[misc]
     )
     surfaces: dict[NewName, Surface] = Field(
         default={}, description="name: properties, for several bodies"
+    )
+    surface_pairs: dict[NewName, SurfacePair] = Field(
+        default={},
+        description="name: two surfaces, and properties of their contacts that are not mixed",
     )
     shapes: dict[NewName, Shape] = Field(
         default={}, description="name: a shape, for `shape: name` of several bodies, or to sweep"

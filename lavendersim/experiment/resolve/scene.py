@@ -21,6 +21,7 @@ from lavendersim.experiment.models.tree import (
 from lavendersim.experiment.resolve.arrangements import centres, turns_of
 from lavendersim.experiment.resolve.placement import below, released_position
 from lavendersim.experiment.resolve.shape import quaternion_of, resolve_shape
+from lavendersim.experiment.resolve.surface_pairs import with_partners
 from lavendersim.geometry.quaternions import IDENTITY, Quaternion, product, to_body, to_world
 from lavendersim.geometry.vectors import unit
 from lavendersim.quantities.quantity import Vector3
@@ -114,7 +115,9 @@ def _body(body: Body, scene: Scene, gravity: Vector3, timestep: Fraction) -> Cel
 
 def _matter(body: Body | ArrangedBody, scene: Scene) -> CellBody:
     """Return a body that stands at the origin; its velocities are as written."""
-    surface = scene.surfaces[body.surface] if isinstance(body.surface, str) else body.surface
+    surface = body.surface
+    if isinstance(surface, str):
+        surface = with_partners(surface, scene.surfaces[surface], scene.surface_pairs)
     prescribed = any(getattr(body, key) for key in PRESCRIBE_MOTION)
     fixed = body.fixed or prescribed or isinstance(body.shape, Plane)
     orientation, axes = quaternion_of(body.orientation), IDENTITY

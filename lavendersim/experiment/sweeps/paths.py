@@ -16,6 +16,7 @@ from lavendersim.experiment.checks.annotations import (
     names_of,
 )
 from lavendersim.experiment.models.experiment import CellSource
+from lavendersim.experiment.models.surface_pairs import paired
 from lavendersim.experiment.text.node import Node, Path
 from lavendersim.experiment.text.report import Report
 from lavendersim.quantities.found import nearest, quoted
@@ -50,12 +51,22 @@ def _resolve(path: str, root: Node) -> Path:
         annotation, key = _enter(annotation, node, step, ".".join(map(str, found)))
         node = node.get(key)
         if key in NAMED and node.text:
+            if key == "surface" and len(found) + 1 < len(steps):
+                _refuse_paired(node.text, root, path, ".".join(steps[len(found) + 1 :]))
             node = root.get("scene", NAMED[key], node.text) or node
         found.append(key)
     by_name = found[-1] in NAMED and root.get("scene", NAMED[str(found[-1])])
     if not by_name and not _takes_value(annotation):
         raise _NoPath(f"{path} is a mapping; name one value inside it")
     return tuple(found)
+
+
+def _refuse_paired(surface: str, root: Node, path: str, key: str) -> None:
+    """A body's own copy of a surface has no name, and would leave the pairs that name it."""
+    if pair := paired(root, surface):
+        instead = f"scene.surfaces.{surface}.{key} or scene.surface_pairs.{pair}.{key}"
+        reason = f"which {pair} of surface_pairs names"
+        raise _NoPath(f"{path} enters {quoted(surface)}, {reason}; expected {instead}")
 
 
 def _enter(annotation: Any, node: Node, step: str, where: str) -> tuple[Any, str | int]:

@@ -18,7 +18,7 @@ from __future__ import annotations
 import numpy as np
 
 from lavendersim.geometry.bodies import inverse_mass
-from lavendersim.measures.columns import friction_of
+from lavendersim.measures.columns import friction_of, of_pairs
 from lavendersim.measures.interfaces import Floats, Rows, Trace
 from lavendersim.measures.registration import measure
 from lavendersim.measures.specs.optimality import Optimality
@@ -38,12 +38,13 @@ def optimality(spec: Optimality, trace: Trace) -> Floats:
     if len(steps) == 0 or "target" not in contacts.dtype.names:
         return np.array([NAN])
     bodies = [trace.config.scene.bodies[name] for name in trace.bodies]
+    surfaces = [one.surface for one in bodies]
     dt = trace.clock.lengths(steps)
     residual = np.asarray(trace.step["residual"])[np.searchsorted(trace.step["step"], steps)]
     if "gamma" in (contacts.dtype.names or ()):
         gamma = np.asarray(contacts["gamma"])
     else:
-        gamma = _summed(contacts, [one.surface.compliance for one in bodies]) / dt**2
+        gamma = of_pairs(contacts, surfaces, lambda pair: pair.compliance) / dt**2
     least = _summed(contacts, [inverse_mass(one) for one in bodies])
     pushed = (contacts["inverse_effective_mass"] + gamma) * contacts["impulse_n"]
     away = contacts["normal_velocity"] + contacts["target"] + gamma * contacts["impulse_n"]
@@ -52,7 +53,7 @@ def optimality(spec: Optimality, trace: Trace) -> Floats:
         np.maximum(np.abs(np.minimum(pushed, away)) - residual, 0.0),
     ]
     if "impulse_t1" in (contacts.dtype.names or ()):
-        mu = friction_of(contacts, [one.surface for one in bodies])
+        mu = friction_of(contacts, surfaces)
         cone, sliding = _friction(trace, contacts, least, mu)
         violations += [cone, np.maximum(sliding - residual, 0.0)]
     return np.array([float(np.max(one)) for one in violations])

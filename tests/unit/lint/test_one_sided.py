@@ -58,3 +58,19 @@ def test_a_named_surface_is_pointed_at_where_it_stands_and_a_swept_one_counts() 
 def test_the_larger_of_two_needs_no_partner() -> None:
     bounces = SLIDES.replace("friction: 0.5", "restitution: 0.5")
     assert found(config(bounces)) == []
+
+
+NAMED_FLOOR = "    floor: {shape: {kind: plane}, surface: ice}\n"
+NAMED = "  surfaces: {ice: {restitution: 0}, rubber: {friction: 0.5}}\n"
+PAIR = "  surface_pairs: {wet: {between: [ice, rubber], %s}}\n"
+
+
+def test_friction_that_is_written_of_the_pair_is_meant() -> None:
+    rubber = SLIDES.replace("{friction: 0.5}", "rubber")
+    (defect,) = found(config(rubber, floor=NAMED_FLOOR, surfaces=NAMED))
+    assert "touches floor" in defect.message
+    friction = NAMED + PAIR % "friction: 0.1"
+    assert found(config(rubber, floor=NAMED_FLOOR, surfaces=friction)) == []
+    restitution = NAMED + PAIR % "restitution: 0.1"
+    (defect,) = found(config(rubber, floor=NAMED_FLOOR, surfaces=restitution))
+    assert "touches floor" in defect.message

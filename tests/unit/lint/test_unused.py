@@ -15,6 +15,12 @@ def test_a_surface_of_no_body_is_pointed_at() -> None:
     assert (defect.line, defect.message) == (2, 'surface "rubber" is that of no body')
 
 
+def test_a_surface_that_a_pair_alone_names_is_that_of_no_body() -> None:
+    pairs = "  surface_pairs: {hard: {between: [rubber, steel], friction: 0.1}}\n"
+    (defect,) = found(config(BALL % "steel", surfaces=SURFACES + pairs))
+    assert defect.message == 'surface "rubber" is that of no body'
+
+
 def test_a_surface_that_a_sweep_chooses_is_used() -> None:
     sweep = "sweep: {s: {path: scene.bodies.ball.surface, values: [rubber, steel]}}\nalways: {}\n"
     assert found(config(BALL % "steel", surfaces=SURFACES, rest=sweep)) == []

@@ -23,7 +23,7 @@ def log_with(
     friction: bool = True,
     numerics: Any = MappingProxyType({}),
     friction_of_surfaces: float = 0.5,
-    **surface: float,
+    **surface: Any,
 ) -> Any:
     """One contact of ball and floor in step 1, that sticks and carries 1 N s but for `row`."""
     floor = {"shape": {"kind": "plane", "normal": [0.0, 0.0, 1.0], "offset": 0.0}}
@@ -118,6 +118,15 @@ def test_compliance_gives_way_by_gamma_lambda() -> None:
     row = {"normal_velocity": -0.02}
     assert violations(row, compliance=1e-6)[COMPLEMENTARY] == pytest.approx(0.0, abs=1e-15)
     assert violations(row)[COMPLEMENTARY] == pytest.approx(0.02)
+
+
+def test_compliance_and_friction_of_a_pair_take_the_place_of_what_its_surfaces_mix_to() -> None:
+    partner = {"surface": "alike", "friction": 0.5, "compliance": 2e-6}
+    paired = {"friction_of_surfaces": 0.0, "name": "alike", "partners": [partner]}
+    row = {"normal_velocity": -0.02}
+    assert violations(row, **paired) == pytest.approx([0.0] * 4, abs=1e-15)
+    assert violations(row, friction_of_surfaces=0.0)[COMPLEMENTARY] == pytest.approx(0.02)
+    assert violations({}, friction_of_surfaces=0.0)[CONE] == pytest.approx(0.15)  # 0.3 N s / 2 kg
 
 
 def test_friction_is_that_of_the_config_whatever_the_log_says_of_it() -> None:
