@@ -5,7 +5,8 @@ v is the slip speed at which the step begins, before forces act; mu_k the pair's
 its `static_friction`, v_s its `stribeck_velocity`, at which half of the difference is left. The
 falling coefficient is Stribeck's, the algebraic form that of Hess and Soom (1990; cited as
 background, not opened): no exponential, whose last bit differs between machines. Each step solves
-Coulomb's law with the coefficient that its beginning gives (lagged), so no solver knows of it.
+Coulomb's law with the coefficient that its beginning gives (lagged), so no solver knows of it, and
+the motion of what slides is of first order in the timestep; what rests holds up to mu_s at any.
 
 A pair's static coefficient is the geometric mean of its surfaces', as the kinetic one is. Without
 kinetic friction a contact has no tangents to hold it by: a surface with the one alone is refused.
