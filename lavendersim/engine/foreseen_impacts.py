@@ -21,6 +21,7 @@ from .approach import (
     make_slowest,
 )
 from .compile import kernel
+from .effects import made_once
 from .records import TOUCHING
 from .spec import Spec
 
@@ -65,6 +66,7 @@ def make_foresee(spec: Spec) -> Any:
     turns, bend = spec.has("rotation"), make_bend(spec)
     restitution, compliance = spec.has("restitution"), spec.has("compliance")
     springs = spec.has("contact_spring")
+    falls, restitution_at = made_once(spec, "restitution_at")
 
     def foresee(contact, pair, bodies, motion, params, met):
         left = params.dt
@@ -83,8 +85,11 @@ def make_foresee(spec: Spec) -> Any:
         gap = contact.phi if contact.phi > TOUCHING else 0.0
         if soft and gap == 0.0:
             return False
+        e_at = e
         if gap == 0.0 and v < 0.0:
-            return is_impact(-v, least, dv, 0.0 if met else most, e, params)
+            if falls:
+                e_at = restitution_at(e, pair, -v)
+            return is_impact(-v, least, dv, 0.0 if met else most, e_at, params)
         # What leaves a gap, whatever holds its bodies, is no contact of this part.
         if v > least + most and contact.phi + left * (v - 0.5 * most) > params.slop:
             contact.waits = 1
@@ -96,7 +101,9 @@ def make_foresee(spec: Spec) -> Any:
                 slow = GLANCING * most
         if squared > 0.0 and (v < 0.0 or a < 0.0):
             speed = sqrt(squared)
-            if is_impact(speed, least, dv, slow, e, params):
+            if falls:
+                e_at = restitution_at(e, pair, speed)
+            if is_impact(speed, least, dv, slow, e_at, params):
                 # The root that comes first, in the form that does not cancel.
                 due = (v + speed) / -a if v > 0.0 else 2.0 * gap / (speed - v)
                 ahead = gap > 0.0 or due >= FLIGHT * params.timestep

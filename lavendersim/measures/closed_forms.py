@@ -105,13 +105,14 @@ def inverse_effective_mass(cell: CellConfig, a: CellBody, b: CellBody) -> float:
 def newton_impulse(cell: CellConfig, a: CellBody, b: CellBody) -> float:
     """Return Newton's impulse j [N s]; exactly 0 for a pair that separates."""
     k_n = inverse_effective_mass(cell, a, b)
-    return max(0.0, -(1.0 + pair_restitution(a, b)) * normal_velocity(a, b) / k_n)
+    before = normal_velocity(a, b)
+    return max(0.0, -(1.0 + pair_restitution(a, b, -before)) * before / k_n)
 
 
 def newton_separation_velocity(cell: CellConfig, a: CellBody, b: CellBody) -> float:
     """Return v_n [m/s] after the impact: -e v_n, or v_n itself for a pair that separates."""
     before = normal_velocity(a, b)
-    return -pair_restitution(a, b) * before if before < 0.0 else before
+    return -pair_restitution(a, b, -before) * before if before < 0.0 else before
 
 
 def impact_speed(cell: CellConfig, moving: CellBody, plane: CellBody) -> float:
@@ -122,12 +123,24 @@ def impact_speed(cell: CellConfig, moving: CellBody, plane: CellBody) -> float:
 def drop_impulse(cell: CellConfig, moving: CellBody, plane: CellBody) -> float:
     """Return the impulse [N s] that turns the impact speed v into e v."""
     speed = impact_speed(cell, moving, plane)
-    return (1.0 + pair_restitution(moving, plane)) * mass_of(moving) * speed
+    return (1.0 + pair_restitution(moving, plane, speed)) * mass_of(moving) * speed
 
 
 def rebound_height(cell: CellConfig, moving: CellBody, plane: CellBody) -> float:
-    """Return e^2 h [m]."""
-    return pair_restitution(moving, plane) ** 2 * clearance(moving, plane)
+    """Return e^2 h [m], e that of the approach speed."""
+    return bounce_height(cell, moving, plane, 1)
+
+
+def bounce_height(cell: CellConfig, moving: CellBody, plane: CellBody, bounce: int) -> float:
+    """Return the clearance [m] of a dropped body after its bounce of this number, 1 the first."""
+    pair, height = mixed(moving.surface, plane.surface), clearance(moving, plane)
+    if pair.yield_speed == 0.0:
+        return float(pair.restitution ** (2 * bounce) * height)
+    speed = impact_speed(cell, moving, plane)
+    for _ in range(bounce):
+        e = pair_restitution(moving, plane, speed)
+        speed, height = e * speed, e * e * height
+    return height
 
 
 def release_height(cell: CellConfig, moving: CellBody, plane: CellBody) -> float:
@@ -156,9 +169,12 @@ def steady_penetration_above_slop(cell: CellConfig, moving: CellBody, plane: Cel
     return float(left * indentation / (1.0 - left * (1.0 - cell.numerics.stabilisation_gain)))
 
 
-def pair_restitution(a: CellBody, b: CellBody) -> float:
-    """Return e of a contact between two bodies."""
-    return float(mixed(a.surface, b.surface).restitution)
+def pair_restitution(a: CellBody, b: CellBody, speed: float) -> float:
+    """Return e of a contact between two bodies that approach each other with a speed [m/s]."""
+    pair = mixed(a.surface, b.surface)
+    if 0.0 < pair.yield_speed < speed:
+        return float(pair.restitution * (pair.yield_speed / speed) ** 0.25)
+    return float(pair.restitution)
 
 
 def _pull(cell: CellConfig, plane: CellBody) -> float:

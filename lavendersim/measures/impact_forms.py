@@ -84,7 +84,7 @@ def _impulse(
     k_n = inverse_mass(moving) + float(cross @ inverse @ cross)
     at_point = velocity + np.cross(moving.angular_velocity, lever)
     v_n = float(normal @ at_point)
-    size = max(0.0, -(1.0 + pair_restitution(moving, ground)) * v_n / k_n)
+    size = max(0.0, -(1.0 + pair_restitution(moving, ground, -v_n)) * v_n / k_n)
     impulse: Floats = size * normal
     if friction == 0.0:
         return impulse, lever

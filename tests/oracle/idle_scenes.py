@@ -190,6 +190,7 @@ CASES: dict[str, tuple[str, ...]] = {
     "pairwise_impacts": ("flying brick",),
     "speculative": ("flying brick",),
     "fast_bodies": ("slow balls",),
+    "falling_restitution": ("balls", "balls, default"),
     "restitution": ("plastic balls",),
     "capture_in_sweeps": ("plastic balls, mistaken",),
     "impact_energy": ("slow frictionless impacts", "slow frictional impacts"),

@@ -28,7 +28,7 @@ SECTIONS = {
     "rows": (
         *("contact_torque", "friction", "frictionless_contact"),
         *("stabilisation", "compliance", "restitution", "surface_velocity", "capture_in_sweeps"),
-        *("cohesion", "contact_spring", "static_friction"),
+        *("cohesion", "contact_spring", "static_friction", "falling_restitution"),
     ),
     "impacts-at-the-surface": ("impact_time", "impact_energy"),
     "impacts-in-order": ("impact_order", "pairwise_impacts"),

@@ -20,6 +20,7 @@ AT_WORK = {
         *("drag", "kinematic", "torsional_friction", "rolling_friction", "surface_velocity"),
         "cohesion",
     ),
+    "effects/falling_restitution.yaml": ("falling_restitution",),
     "effects/pile.yaml": ("broad_phase", "fast_bodies"),
     "effects/sphere.yaml": ("frictionless_contact", "restitution"),
     "effects/spring.yaml": ("spring",),

@@ -55,6 +55,7 @@ ELSEWHERE = {
     },
     "restitution": {
         "engine/effects/capture_in_sweeps.py": "makes a mistake with it",
+        "engine/effects/falling_restitution.py": "lowers its coefficient",
         "engine/effects/fast_bodies.py": "captured, it gives energy",
         "engine/effects/impact_energy.py": "takes the place of its law",
         "engine/foreseen_impacts.py": "a rebound tells an impact from a lasting contact",

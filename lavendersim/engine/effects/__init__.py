@@ -38,6 +38,7 @@ NAMES: Final = (
     "error_control",
     "speculative",
     "fast_bodies",
+    "falling_restitution",
     "restitution",
     "capture_in_sweeps",
     "impact_energy",

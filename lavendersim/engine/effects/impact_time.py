@@ -31,7 +31,10 @@ def decide(facts: Facts) -> Decision:
 def make_foresee(spec):
     """Return `kernel(contact, params)`: when the surfaces meet in free flight, and how fast."""
 
+    from . import made_once
+
     ordered, springs = spec.has("impact_order"), spec.has("contact_spring")
+    falls, restitution_at = made_once(spec, "restitution_at")
 
     def foresee(contact, params):
         dt = params.dt
@@ -51,7 +54,10 @@ def make_foresee(spec):
         rest = dt - tau
         if rest <= 0.0:
             return
-        separation_speed = contact.e * approach_speed
+        e = contact.e
+        if falls:
+            e = restitution_at(e, contact, approach_speed)
+        separation_speed = e * approach_speed
         # A flight that outlasts the step, or a plastic impact worth the name.
         flies_on = 2.0 * separation_speed > -a * rest
         change = contact.dv_n
@@ -59,7 +65,7 @@ def make_foresee(spec):
             change *= params.timestep / dt
         if flies_on or approach_speed > SLOWEST * abs(change):
             contact.tau, contact.approach_speed = tau, approach_speed
-            contact.separation_speed = separation_speed
+            contact.separation_speed, contact.e = separation_speed, e
             contact.after = a * rest if flies_on else 0.0
             if contact.after == 0.0 and a != 0.0:
                 contact.separation_speed = 0.0
@@ -73,7 +79,10 @@ def make_predict_impacts(spec):
     Of a body's contacts the first to meet is the impact, with those that meet at the same place
     within the slop; later ones are treated from that time on.
     """
+    from . import made_once
+
     foresee, springs = make_foresee(spec), spec.has("contact_spring")
+    falls, _ = made_once(spec, "restitution_at")
 
     def predict_impacts(contacts, count, motion, params):
         dt = params.dt
@@ -103,6 +112,8 @@ def make_predict_impacts(spec):
             gap = contact.phi + first * (v + 0.5 * a * first)
             if contact.tau < dt and gap <= params.slop:
                 contact.is_impact = 1
+                if falls:
+                    contact.e_impact = contact.e if contact.separation_speed > 0.0 else 0.0
                 contact.target = -(contact.separation_speed + contact.after)
             elif gap > params.slop:
                 contact.target = (gap - params.slop) / (dt - first)

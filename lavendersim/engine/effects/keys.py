@@ -70,6 +70,11 @@ def larger(one: float, other: float) -> float:
     return max(one, other)
 
 
+def smaller_above_zero(one: float, other: float) -> float:
+    """Return the smaller of two surfaces' values that are above 0; 0 where none is."""
+    return min(one, other) if min(one, other) > 0.0 else max(one, other)
+
+
 def in_series(one: float, other: float) -> float:
     """Return the sum, as the compliances of two springs in series add."""
     return one + other

@@ -25,10 +25,17 @@ def decide(facts: Facts) -> Decision:
 
 def make(spec):
     """Return `kernel(contact, pair, params)`."""
+    from . import made_once
+
+    falls, restitution_at = made_once(spec, "restitution_at")
 
     def captured(contact, pair, params):
         if -contact.v_n_pre > params.restitution_speed:
-            contact.target += pair.restitution * contact.v_n_pre
+            e = pair.restitution
+            if falls:
+                e = restitution_at(e, pair, -contact.v_n_pre)
+                contact.e_impact = e
+            contact.target += e * contact.v_n_pre
 
     def noted(contact, pair, params):
         contact.e = pair.restitution

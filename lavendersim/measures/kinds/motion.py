@@ -10,7 +10,7 @@ import numpy as np
 from lavendersim.cell import Box, Plane
 from lavendersim.geometry.bodies import rotation_of, vector
 from lavendersim.geometry.shapes import half_space
-from lavendersim.measures.closed_forms import clearance, pair_restitution
+from lavendersim.measures.closed_forms import bounce_height
 from lavendersim.measures.columns import (
     body_columns,
     clearance_by_step,
@@ -29,6 +29,7 @@ NAN = float("nan")
 def apex_error(spec: specs.ApexError, trace: Trace) -> float:
     """Return |apex / (e^(2 k) h) - 1| after bounce k; NaN if the run does not reach it.
 
+    Where e falls with the approach speed, e^(2 k) is the product of the bounces' own squares.
     The apex is the vertex of the parabola through the highest sample of a flight and its
     neighbours, UsageError where the timestep changes among them. A flight begins where the sampled
     clearance has a valley.
@@ -47,8 +48,7 @@ def apex_error(spec: specs.ApexError, trace: Trace) -> float:
     apex = parabola_vertex(*(float(height) for height in heights[top - 1 : top + 2]))
     bodies = trace.config.scene.bodies
     moving, plane = bodies[spec.body], bodies[spec.above]
-    restitution = pair_restitution(moving, plane)
-    ideal = restitution ** (2 * spec.bounce) * clearance(moving, plane)
+    ideal = bounce_height(trace.config, moving, plane, spec.bounce)
     return abs(apex / ideal - 1.0) if ideal > 0.0 else NAN
 
 
