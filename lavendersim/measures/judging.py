@@ -119,22 +119,29 @@ def _claims(
 def _checks(always: Always | None, cells: Sequence[Any]) -> list[Claim]:
     """Return the checks of every step: cell by cell, in the order of CHECKS."""
     names = checks_of(always)
-    nodes = {name: nodes_of(f"{PREFIX}{name}", cells, {}) for name in names}
     return [
-        Claim(name, nodes[name][index], (cell,))
-        for index, cell in enumerate(cells)
+        Claim(name, _node(f"{PREFIX}{name}", place), (cell,))
+        for cell, place in zip(cells, _places_of(cells, {}), strict=True)
         for name in names
     ]
 
 
 def nodes_of(name: str, cells: Sequence[Any], selection: Mapping[str, Any]) -> list[str]:
     """Return the node of a claim in each of some cells: what tells them apart behind its name."""
+    return [_node(name, place) for place in _places_of(cells, selection)]
+
+
+def _places_of(cells: Sequence[Any], selection: Mapping[str, Any]) -> list[str]:
+    """Return what tells each of some cells from the others; empty where nothing does."""
     axes = telling_axes(cells, selection)
-    places = [
+    return [
         coordinates_text(cell.coordinates, [axis for axis in cell.coordinates if axis in axes])
         for cell in cells
     ]
-    return [f"{name} at {place}" if place else name for place in places]
+
+
+def _node(name: str, place: str) -> str:
+    return f"{name} at {place}" if place else name
 
 
 def _judged(claim: Claim, values: Values, outcomes: AlwaysOutcomes) -> Verdict:
