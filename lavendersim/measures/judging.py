@@ -149,7 +149,7 @@ def _judged(claim: Claim, values: Values, outcomes: AlwaysOutcomes) -> Verdict:
         outcome = outcomes[claim.cells[0].index][claim.name]
         return _verdict(f"{PREFIX}{claim.name}", claim, outcome, "")
     outcome = _outcome(claim.expectation, claim.cells, values)
-    return _verdict(claim.name, claim, outcome, f" ({claim.expectation.measure})")
+    return _verdict(claim.name, claim, outcome, claim.expectation.measure)
 
 
 def _outcome(expectation: ExpectSpec, cells: Sequence[Cell], values: Values) -> Outcome:
@@ -174,16 +174,7 @@ def _path(cells: Sequence[Cell]) -> str:
     return str(cells[0].path if len(cells) == 1 else cells[0].path.parent)
 
 
-def _verdict(name: str, claim: Claim, outcome: Outcome, of_what: str) -> Verdict:
-    path = _path(claim.cells)
-    lines = [
-        f"{claim.node}: {'passed' if outcome.passed else 'FAILED'}",
-        f"  measured   {outcome.measured!r}{of_what}",
-        f"  expected   {outcome.expected}",
-        f"  tolerance  {outcome.tolerance}",
-    ]
-    lines += [f"  because    {outcome.reason}"] if outcome.reason else []
-    lines += [f"  log        {path}"] if path else []
+def _verdict(name: str, claim: Claim, outcome: Outcome, measure: str) -> Verdict:
     return Verdict(
         name=name,
         node=claim.node,
@@ -191,8 +182,10 @@ def _verdict(name: str, claim: Claim, outcome: Outcome, of_what: str) -> Verdict
         measured=outcome.measured,
         expected=outcome.expected,
         tolerance=outcome.tolerance,
-        message="\n".join(lines),
-        path=path,
+        said="",
+        path=_path(claim.cells),
         follows=outcome.follows,
         margin=outcome.margin,
+        measure=measure,
+        reason=outcome.reason,
     )
