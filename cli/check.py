@@ -78,7 +78,7 @@ def check(
             for cell in finished.run.cells
         ]
         verdicts += [
-            {"experiment": experiment.name, **verdict._asdict()} for verdict in finished.verdicts
+            {"experiment": experiment.name, **verdict.row} for verdict in finished.verdicts
         ]
         if as_json:
             continue

@@ -56,7 +56,7 @@ def _lines(name: str) -> Iterator[Any]:
             if line := state.line():
                 typer.echo(f"{name}: {line}", err=True)
 
-    Thread(target=show, daemon=True).start()
+    _thread(show).start()
     try:
         yield Progress(
             compiling=compiling,
@@ -77,20 +77,37 @@ def _terminal(name: str) -> Iterator[Any]:
     from lavendersim.runner import Progress
 
     state, console = ShownState(name), Console(stderr=True)
+    stopped = Event()
     with Live(
         get_renderable=lambda: state.drawn(console),
         console=console,
-        refresh_per_second=PER_SECOND,
+        auto_refresh=False,  # by a thread of ours, whose name says so
         transient=True,
-    ):
-        yield Progress(
-            compiling=state.compiling,
-            compiled=state.compiled,
-            running=state.running,
-            timing=state.timing,
-            warning=_warn(name),
-            note=_note(name),
-        )
+    ) as live:
+
+        def show() -> None:
+            while not stopped.wait(1.0 / PER_SECOND):
+                live.refresh()
+
+        thread = _thread(show)
+        thread.start()
+        try:
+            yield Progress(
+                compiling=state.compiling,
+                compiled=state.compiled,
+                running=state.running,
+                timing=state.timing,
+                warning=_warn(name),
+                note=_note(name),
+            )
+        finally:
+            stopped.set()
+            thread.join()
+
+
+def _thread(show: Callable[[], None]) -> Thread:
+    """Return the thread that shows a run; beside one of this name processes may be forked."""
+    return Thread(target=show, name="lavender display", daemon=True)
 
 
 def _warn(name: str) -> Callable[[str], None]:

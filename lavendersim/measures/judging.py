@@ -119,22 +119,29 @@ def _claims(
 def _checks(always: Always | None, cells: Sequence[Any]) -> list[Claim]:
     """Return the checks of every step: cell by cell, in the order of CHECKS."""
     names = checks_of(always)
-    nodes = {name: nodes_of(f"{PREFIX}{name}", cells, {}) for name in names}
     return [
-        Claim(name, nodes[name][index], (cell,))
-        for index, cell in enumerate(cells)
+        Claim(name, _node(f"{PREFIX}{name}", place), (cell,))
+        for cell, place in zip(cells, _places_of(cells, {}), strict=True)
         for name in names
     ]
 
 
 def nodes_of(name: str, cells: Sequence[Any], selection: Mapping[str, Any]) -> list[str]:
     """Return the node of a claim in each of some cells: what tells them apart behind its name."""
+    return [_node(name, place) for place in _places_of(cells, selection)]
+
+
+def _places_of(cells: Sequence[Any], selection: Mapping[str, Any]) -> list[str]:
+    """Return what tells each of some cells from the others; empty where nothing does."""
     axes = telling_axes(cells, selection)
-    places = [
+    return [
         coordinates_text(cell.coordinates, [axis for axis in cell.coordinates if axis in axes])
         for cell in cells
     ]
-    return [f"{name} at {place}" if place else name for place in places]
+
+
+def _node(name: str, place: str) -> str:
+    return f"{name} at {place}" if place else name
 
 
 def _judged(claim: Claim, values: Values, outcomes: AlwaysOutcomes) -> Verdict:
@@ -142,7 +149,7 @@ def _judged(claim: Claim, values: Values, outcomes: AlwaysOutcomes) -> Verdict:
         outcome = outcomes[claim.cells[0].index][claim.name]
         return _verdict(f"{PREFIX}{claim.name}", claim, outcome, "")
     outcome = _outcome(claim.expectation, claim.cells, values)
-    return _verdict(claim.name, claim, outcome, f" ({claim.expectation.measure})")
+    return _verdict(claim.name, claim, outcome, claim.expectation.measure)
 
 
 def _outcome(expectation: ExpectSpec, cells: Sequence[Cell], values: Values) -> Outcome:
@@ -167,16 +174,7 @@ def _path(cells: Sequence[Cell]) -> str:
     return str(cells[0].path if len(cells) == 1 else cells[0].path.parent)
 
 
-def _verdict(name: str, claim: Claim, outcome: Outcome, of_what: str) -> Verdict:
-    path = _path(claim.cells)
-    lines = [
-        f"{claim.node}: {'passed' if outcome.passed else 'FAILED'}",
-        f"  measured   {outcome.measured!r}{of_what}",
-        f"  expected   {outcome.expected}",
-        f"  tolerance  {outcome.tolerance}",
-    ]
-    lines += [f"  because    {outcome.reason}"] if outcome.reason else []
-    lines += [f"  log        {path}"] if path else []
+def _verdict(name: str, claim: Claim, outcome: Outcome, measure: str) -> Verdict:
     return Verdict(
         name=name,
         node=claim.node,
@@ -184,8 +182,10 @@ def _verdict(name: str, claim: Claim, outcome: Outcome, of_what: str) -> Verdict
         measured=outcome.measured,
         expected=outcome.expected,
         tolerance=outcome.tolerance,
-        message="\n".join(lines),
-        path=path,
+        said="",
+        path=_path(claim.cells),
         follows=outcome.follows,
         margin=outcome.margin,
+        measure=measure,
+        reason=outcome.reason,
     )

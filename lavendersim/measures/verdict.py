@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
 NO_TOLERANCE: Final = "none"
 
@@ -28,10 +28,37 @@ class Verdict(NamedTuple):
     measured: float  # the decisive number: of a row, or of several cells, the worst
     expected: str
     tolerance: str
-    message: str
+    said: str  # all of its message, where that is not of the numbers alone
     path: str  # of the log, or of the logs' directory when several are compared
     follows: bool = False  # failed because the cell did not complete
     margin: float = float("nan")  # share of the bound that is left; NaN where there is no such
+    measure: str = ""  # what was judged
+    reason: str = ""  # where it failed, when the numbers do not say it
+
+    @property
+    def message(self) -> str:
+        """Everything that a person needs; of many verdicts it is longer than what it is made of."""
+        if self.said:
+            return self.said
+        lines = [
+            f"{self.node}: {'passed' if self.passed else 'FAILED'}",
+            f"  measured   {self.measured!r}{f' ({self.measure})' if self.measure else ''}",
+            f"  expected   {self.expected}",
+            f"  tolerance  {self.tolerance}",
+        ]
+        lines += [f"  because    {self.reason}"] if self.reason else []
+        lines += [f"  log        {self.path}"] if self.path else []
+        return "\n".join(lines)
+
+    @property
+    def row(self) -> dict[str, Any]:
+        """What tables say of it."""
+        given = self._asdict()
+        del given["measure"], given["reason"]
+        return {
+            "message" if name == "said" else name: self.message if name == "said" else value
+            for name, value in given.items()
+        }
 
 
 def failure(expected: str, reason: str, follows: bool = False) -> Outcome:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import Any, ClassVar, Protocol
+from functools import cache
+from typing import Any, ClassVar, Protocol, Self
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationInfo, create_model, model_validator
 
@@ -41,6 +42,19 @@ class ResolvedModel(BaseModel):
     """A part of a resolved config."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
+
+    @classmethod
+    def of(cls, **values: Any) -> Self:
+        """Return a model of values that are right, which nothing checks: one for every field.
+
+        Which fields were given is the same for all of them, and kept once.
+        """
+        return cls.model_construct(_fields_of(cls), **values)
+
+
+@cache
+def _fields_of(model: type[BaseModel]) -> set[str]:
+    return set(model.model_fields)
 
 
 class DeclaredKey(Protocol):

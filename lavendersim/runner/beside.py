@@ -1,16 +1,14 @@
 """One process beside this one, which does tasks in their order while this one goes on.
 
-It is forked while this process has no other thread, so it begins with all that this one has in
-memory: nothing is imported or read again. Where that is not to be had (another system than Linux, a
-single core, a thread that runs), or where it has died, tasks are done here when results are taken.
+It is forked, so it begins with all that this one has in memory: nothing is imported or read again.
+Where that is not to be had (see `forking`; a single core), or where it has died, tasks are done
+here when results are taken.
 """
 
 from __future__ import annotations
 
 import os
 import signal
-import sys
-import threading
 import warnings
 from collections import deque
 from collections.abc import Callable, Iterator
@@ -18,6 +16,7 @@ from contextlib import suppress
 from multiprocessing import get_context
 from typing import Any, Generic, TypeVar
 
+from .forking import may_fork
 from .workers import PATIENCE, end_with_parent, serve
 
 Task = TypeVar("Task")
@@ -117,5 +116,4 @@ def _begin(pipe: Any, others: Any, function: Callable[[Any], Any], prepare: Any)
 
 
 def _may_fork() -> bool:
-    alone = threading.active_count() == 1
-    return sys.platform == "linux" and alone and len(os.sched_getaffinity(0)) > 1
+    return may_fork() and len(os.sched_getaffinity(0)) > 1

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from pathlib import Path
 from time import perf_counter
-from typing import Any, NamedTuple
+from typing import Any, Final, NamedTuple
 
 from lavendersim.engine.compile import compiler_is_off
 from lavendersim.engine.kernel_store import directory
@@ -16,12 +16,14 @@ from lavendersim.errors import UsageError
 
 from .cell import CellJob, compile_kernel, failed, run_and_measure
 from .cell_outcome import EndedCell
+from .forking import may_fork
 from .progress import Compilation, Progress, Tally
 from .workers import Death, Retried, work
 
 # Cells that would take less [s] than this one after the other are run in this process: each other
 # process imports numba and loads kernels for 1 to 2 s of processor time before its first step.
 WORTH_PROCESSES = 4.0
+FORKED: Final = 0.05  # of it: a process that is forked takes 0.02 to 0.05 s to begin and to end
 
 
 def outcomes_of(
@@ -42,9 +44,10 @@ def outcomes_of(
     # The first cell of each plan runs here: it leaves the kernel where other processes find it.
     ordered = sorted(jobs, key=lambda job: first[job.plan.choices] is not job)
     done, taken = 0, 0.0  # and what they took [s]
+    worth = WORTH_PROCESSES * (FORKED if may_fork() else 1.0)
     while done < len(ordered):
         left = len(ordered) - done
-        if workers > 1 and done >= len(first) and taken / done * left > WORTH_PROCESSES:
+        if workers > 1 and done >= len(first) and taken / done * left > worth:
             break
         job = ordered[done]
         compiles = done < len(first) and not is_compiled(job.plan.spec)

@@ -37,7 +37,7 @@ class JudgedAgain(NamedTuple):
                 {"label": cell.label, "status": cell.status, "measures": one.values}
                 for cell, one in rows
             ],
-            "checks": [verdict._asdict() for verdict in self.verdicts],
+            "checks": [verdict.row for verdict in self.verdicts],
             "passed": self.good,
         }
         plain: dict[str, Any] = json.loads(json.dumps(finite(table, str)))

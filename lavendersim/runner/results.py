@@ -56,7 +56,7 @@ def write_results(
         "cells": (finite(row, str) for row in rows),
         # Cells share kernels, so what compiling costs is a number of the run.
         "compile_s": compile_seconds(finished),
-        "checks": (finite(verdict._asdict(), str) for verdict in finished.verdicts),
+        "checks": (finite(verdict.row, str) for verdict in finished.verdicts),
         "passed": finished.good,
         **({} if overheads is None else {"overheads": finite(overheads.as_data(), str)}),
     }

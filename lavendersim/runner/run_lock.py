@@ -18,6 +18,8 @@ try:
 except ImportError:  # Windows
     fcntl = None  # type: ignore[assignment]
 
+_locked: set[int] = set()  # handles of the directories that this process has locked
+
 
 @contextmanager
 def run_lock(directory: Path) -> Iterator[None]:
@@ -26,6 +28,7 @@ def run_lock(directory: Path) -> Iterator[None]:
         yield
         return
     handle = os.open(directory, os.O_RDONLY)
+    _locked.add(handle)
     try:
         try:
             fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -33,4 +36,15 @@ def run_lock(directory: Path) -> Iterator[None]:
             raise UsageError(f"{directory}: another process runs its cells") from None
         yield
     finally:
+        _locked.remove(handle)
         os.close(handle)
+
+
+def _begin_forked() -> None:
+    """Let the lock end with the process that took it, whatever was forked of it."""
+    while _locked:
+        os.close(_locked.pop())
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_begin_forked)

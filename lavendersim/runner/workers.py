@@ -2,17 +2,20 @@
 
 A task whose process dies is done once more; where that one dies too, its death is its result, and
 the other tasks go on. Each process has a pipe and a task ahead, so that it does not wait for this
-one between two short tasks.
+one between two short tasks. A forked one has all tasks in memory, and is sent their indices; to one
+that is spawned the tasks themselves are sent.
 """
 
 from __future__ import annotations
 
 import ctypes
+import gc
 import os
 import pickle
 import signal
 import sys
 import traceback
+import warnings
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
@@ -22,6 +25,7 @@ from queue import SimpleQueue
 from threading import Thread
 from typing import Any, Final, Generic, NamedTuple, TypeVar
 
+from .forking import may_fork
 from .interruption import handled
 
 Task = TypeVar("Task")
@@ -91,15 +95,36 @@ def work(
 class _Worker:
     """A process, and what it was given."""
 
-    def __init__(self, function: Callable[[Any], Any]) -> None:
-        # Spawned, never forked: numba's threads do not survive a fork.
-        context = get_context("spawn")
+    def __init__(
+        self,
+        function: Callable[[Any], Any],
+        tasks: Sequence[Any],
+        others: Sequence[Connection],
+    ) -> None:
+        """others: this process's ends of the pipes of other ones, of which a fork has copies."""
+        self._tasks = tasks
+        self._forked = may_fork()
+        context: Any = get_context("fork" if self._forked else "spawn")
         self.pipe, other = context.Pipe()
-        self.process = context.Process(target=serve, args=(other, function), daemon=True)
-        self.process.start()
+        if self._forked:
+            target: Any = _serve_forked
+            arguments: Any = (other, function, tasks, [self.pipe, *others])
+        else:
+            target, arguments = serve, (other, function)
+        self.process = context.Process(target=target, args=arguments, daemon=True)
+        with warnings.catch_warnings():
+            # Python 3.12 warns of threads in a forked process: see `forking`.
+            warnings.simplefilter("ignore", DeprecationWarning)
+            self.process.start()
         other.close()  # so that the pipe ends with the process
         self.given: deque[int] = deque()
         self.ready = False
+
+    def give(self, index: int) -> None:
+        """Hand over a task."""
+        self.given.append(index)
+        with suppress(OSError):  # it died: its pipe says so where results are read
+            self.pipe.send(index if self._forked else self._tasks[index])
 
     def death(self) -> Death:
         self.process.join()
@@ -125,7 +150,8 @@ class _Crew(Generic[Task, Result]):
         self._stillborn = 0
 
     def results(self, workers: int) -> Iterator[tuple[Task, Result | Death]]:
-        self._workers = [_Worker(self._function) for _ in range(workers)]
+        for _ in range(workers):
+            self._start()
         while self._waiting or any(worker.given for worker in self._workers):
             for ahead in range(1, AHEAD + 1):
                 for worker in self._workers:
@@ -153,10 +179,11 @@ class _Crew(Generic[Task, Result]):
         """
         least = PLENTY * len(self._workers) if ahead > 1 else 0
         if len(self._waiting) > least and len(worker.given) < ahead:
-            index = self._waiting.popleft()
-            worker.given.append(index)
-            with suppress(OSError):  # it died: its pipe says so where results are read
-                worker.pipe.send(self._tasks[index])
+            worker.give(self._waiting.popleft())
+
+    def _start(self) -> None:
+        others = [worker.pipe for worker in self._workers]
+        self._workers.append(_Worker(self._function, self._tasks, others))
 
     def _replace(self, worker: _Worker) -> Iterator[tuple[Task, Death]]:
         """Start another process in the place of a dead one; yield a task that it dies of again."""
@@ -178,7 +205,7 @@ class _Crew(Generic[Task, Result]):
             self._stillborn += not worker.ready
             if self._stillborn >= STILLBORN:
                 raise RuntimeError(f"no process can be started: the last one {death.how}")
-        self._workers.append(_Worker(self._function))
+        self._start()
 
     def dismiss(self) -> None:
         """Let the processes end by themselves, with what they do at their end."""
@@ -196,6 +223,19 @@ class _Crew(Generic[Task, Result]):
             worker.process.kill()
             worker.process.join()
             worker.pipe.close()
+
+
+def _serve_forked(
+    pipe: Connection,
+    function: Callable[[Any], Any],
+    tasks: Sequence[Any],
+    parents: Sequence[Connection],
+) -> None:
+    """Do the tasks whose indices come through the pipe."""
+    for one in parents:  # else another process's pipe would not end with the parent
+        one.close()
+    gc.freeze()  # a collection would write to, and so copy, every page of what is shared
+    serve(pipe, lambda index: function(tasks[index]))
 
 
 def serve(pipe: Connection, function: Callable[[Any], Any]) -> None:

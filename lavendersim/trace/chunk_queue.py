@@ -22,7 +22,16 @@ from lavendersim.trace.container import Closed, Container
 # as long in all; where others use the cores, too, it takes longer.
 COMPRESSORS: Final = min(4, os.cpu_count() or 1)
 MOST_WAITING: Final = 64 * 1024 * 1024
-_threads = ThreadPoolExecutor(COMPRESSORS, "trace")
+_threads = ThreadPoolExecutor(COMPRESSORS, "lavender trace")
+
+
+def _begin_forked() -> None:
+    global _threads
+    _threads = ThreadPoolExecutor(COMPRESSORS, "lavender trace")  # no thread is forked along
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_begin_forked)
 
 
 class _Slot:

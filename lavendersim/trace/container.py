@@ -15,6 +15,7 @@ import zlib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import lru_cache
+from itertools import groupby
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -46,6 +47,7 @@ from lavendersim.trace.whole import MAGIC, LogDigest
 LIBRARY = "lavender"
 CRC_KEY = "crc32"
 COMPRESSION_LEVEL = 1
+LONG = 64 * 1024  # [byte] of a record that is not copied to be written with others
 
 _of_thread = threading.local()
 
@@ -161,6 +163,7 @@ class Container:
         self.index = FileIndex()
         self._path = path
         self._stream = path.open("wb")
+        self._unwritten: list[bytes] = []  # records that go with the next chunk
         self._registered: list[Registered] = []
         self._crc = 0
         self._sha256 = FileDigest()
@@ -188,8 +191,8 @@ class Container:
         self.index.channels.update({channel.id: channel for channel in records.channels})
         self._registered.append(records)
 
-    def write_chunk(self, one: Closed) -> None:
-        """Write a chunk with its message indexes, and flush."""
+    def write_chunk(self, one: Closed, flush: bool = True) -> None:
+        """Write a chunk with its message indexes; flush: now, not with what is written next."""
         chunk, messages = one.chunk, one.messages
         *head, data = pieces_of(chunk)
         opening = b"".join(head)
@@ -206,14 +209,14 @@ class Container:
         entry.message_index_offsets = offsets
         entry.message_index_length = position - self._offset - length
         self.index.chunks.append(entry)
-        for piece in (opening, data, b"".join(indexes)):
-            self._write(piece)  # the data, which is large, as it is
-        with named(self._path):
-            self._stream.flush()
+        for piece in (opening, data, *indexes):
+            self._write(piece)
+        if flush:
+            self._flush()
 
     def finish(self) -> LogDigest:
         """Write DataEnd, the summary and the footer, and close the file; returns what it is."""
-        records = self._crc
+        records = self.crc
         self._write(to_bytes(DataEnd(records)))
         start = self._offset
         index = self.index
@@ -241,19 +244,33 @@ class Container:
     @property
     def crc(self) -> int:
         """CRC of all bytes so far; `finish` writes it into DataEnd."""
+        self._flush()
         return self._crc
 
     def abandon(self) -> None:
         """Close the file as it stands: without `finish` it is a killed run."""
-        with named(self._path):
-            self._stream.close()
+        if self._stream.closed:
+            return
+        try:
+            self._flush()
+        finally:
+            with named(self._path):
+                self._stream.close()
 
     def _write(self, data: bytes) -> None:
-        self._crc = zlib.crc32(data, self._crc)
-        self._sha256.update(data)
+        self._unwritten.append(data)
         self._offset += len(data)
+
+    def _flush(self) -> None:
+        """Hand what was written to the system: many short records in one call, long ones alone."""
+        unwritten, self._unwritten = self._unwritten, []
         with named(self._path):
-            self._stream.write(data)
+            for long, pieces in groupby(unwritten, lambda piece: len(piece) > LONG):
+                for data in pieces if long else (b"".join(pieces),):
+                    self._crc = zlib.crc32(data, self._crc)
+                    self._sha256.update(data)
+                    self._stream.write(data)
+            self._stream.flush()
 
 
 def index_of(chunk: Chunk, offset: int, length: int) -> ChunkIndex:

@@ -6,6 +6,7 @@ Of the file's bytes as they stand, so that `sha256sum` of anybody gives the same
 from __future__ import annotations
 
 import hashlib
+import os
 from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Final
 
@@ -13,7 +14,16 @@ from typing import Final
 # than that, which is all of a short log, is summed where it is asked for.
 BESIDE: Final = 1024 * 1024
 # One thread for all files: parts of each are summed in their order. It sums a GB/s, compressed.
-_thread = ThreadPoolExecutor(1, "digest")
+_thread = ThreadPoolExecutor(1, "lavender digest")
+
+
+def _begin_forked() -> None:
+    global _thread
+    _thread = ThreadPoolExecutor(1, "lavender digest")  # no thread is forked along
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_begin_forked)
 
 
 class FileDigest:

@@ -188,7 +188,7 @@ class TraceWriter:
         self._queue.drain()
         for stream in self._open.values():
             if stream.size:
-                self._container.write_chunk(stream.close())
+                self._container.write_chunk(stream.close(), flush=False)  # the log ends with them
         self._describe(ENDING, {"status": status})
         digest = self._container.finish()
         index, described, written = self._container.index, self._metadata, self._as_written

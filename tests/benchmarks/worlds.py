@@ -13,7 +13,7 @@ the cores take together or the process that plans and judges takes alone. A quie
 better.
 
 --share: of the numbers of cells; what starting processes takes weighs more in fewer cells, and
-where all of them take less than `executor.WORTH_PROCESSES` none is started.
+where all of them are too short for it (`executor.WORTH_PROCESSES`) none is started.
 """
 
 from __future__ import annotations

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -14,17 +15,25 @@ from small_configs import write
 
 import lavendersim
 from lavendersim.figures.config_figure import compose
-from lavendersim.runner import Progress, executor
+from lavendersim.runner import Progress, executor, workers
 from lavendersim.runner.workers import AHEAD, Death, Retried, work
+
+
+@pytest.fixture(autouse=True, params=["forked", "spawned"])
+def way(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Start processes in either way, whatever threads pytest has."""
+    if request.param == "forked" and sys.platform != "linux":
+        pytest.skip("processes are forked on Linux")
+    monkeypatch.setattr(workers, "may_fork", lambda: request.param == "forked")
 
 
 def test_every_task_is_done_once_by_any_number_of_processes(tmp_path: Path) -> None:
     before = set(psutil.Process().children())  # such as the server that other tests fork from
-    for workers in (1, 3):
-        notes = tmp_path / str(workers)
+    for count in (1, 3):
+        notes = tmp_path / str(count)
         notes.mkdir()
         tasks = [Task(number, notes) for number in range(5 * AHEAD)]
-        found = list(work(squared, tasks, workers))
+        found = list(work(squared, tasks, count))
         assert sorted(task.number for task, _ in found) == [*range(5 * AHEAD)]
         assert all(result == task.number**2 for task, result in found)
         assert len(list(notes.iterdir())) == len(tasks)

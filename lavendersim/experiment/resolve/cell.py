@@ -19,7 +19,7 @@ def resolve_cell(source: CellSource) -> CellConfig:
     """
     assert isinstance(source.numerics, NumericsSource)  # its preset is merged in (`with_preset`)
     numerics = shared(Numerics.model_construct(**dict(source.numerics)))
-    return CellConfig.model_construct(
+    return CellConfig.of(
         scene=resolve_scene(source.scene, numerics.timestep, source.duration),
         events=tuple(map(_event, source.events)),
         numerics=numerics,

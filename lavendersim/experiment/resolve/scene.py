@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from fractions import Fraction
+from typing import Any
 
 from lavendersim.cell.body import CellBody
 from lavendersim.cell.scene import CellForce, CellScene
@@ -40,11 +41,11 @@ def resolve_scene(scene: Scene, timestep: Fraction, duration: float) -> CellScen
             bodies[name] = _body(body, scene, gravity, timestep)
     for name, arrangement in scene.arrangements.items():
         with below(*ARRANGEMENTS, name, "body"):
-            one = _matter(arrangement.body, scene)
+            one = CellBody.of(**_matter(arrangement.body, scene))
         first = one
         if arrangement.first is not None:
             with below(*ARRANGEMENTS, name, "first"):
-                first = _matter(arrangement.first, scene)
+                first = CellBody.of(**_matter(arrangement.first, scene))
         assert not isinstance(one.shape, Plane)
         places = centres(arrangement, one.shape, one.orientation)
         turns = turns_of(arrangement)
@@ -62,9 +63,7 @@ def resolve_scene(scene: Scene, timestep: Fraction, duration: float) -> CellScen
         return vector if before == after else to_body(after, to_world(before, vector))
 
     by_effect = {key.name: key.resolve(getattr(scene, key.name), turned) for key in SCENE_KEYS}
-    resolved: CellScene = CellScene.model_construct(
-        gravity=gravity, bodies=bodies, forces=forces, **by_effect
-    )
+    resolved: CellScene = CellScene.of(gravity=gravity, bodies=bodies, forces=forces, **by_effect)
     return resolved
 
 
@@ -96,8 +95,8 @@ def gravity_vector(gravity: float | Vector3 | TiltedGravity) -> Vector3:
 
 
 def _body(body: Body, scene: Scene, gravity: Vector3, timestep: Fraction) -> CellBody:
-    resolved = _matter(body, scene)
-    shape = resolved.shape
+    matter = _matter(body, scene)
+    shape = matter["shape"]
     if isinstance(shape, Plane):
         x, y, z = shape.normal
         position: Vector3 = (x * shape.offset, y * shape.offset, z * shape.offset)
@@ -105,16 +104,17 @@ def _body(body: Body, scene: Scene, gravity: Vector3, timestep: Fraction) -> Cel
         plane = scene.bodies[body.release.above].shape
         assert isinstance(plane, Plane)
         position = released_position(
-            body.release, plane, shape, resolved.orientation, gravity, timestep
+            body.release, plane, shape, matter["orientation"], gravity, timestep
         )
     else:
         assert body.position is not None
         position = body.position
-    return resolved.model_copy(update={"position": position, "release": body.release})
+    placed: CellBody = CellBody.of(**matter | {"position": position, "release": body.release})
+    return placed
 
 
-def _matter(body: Body | ArrangedBody, scene: Scene) -> CellBody:
-    """Return a body that stands at the origin; its velocities are as written."""
+def _matter(body: Body | ArrangedBody, scene: Scene) -> dict[str, Any]:
+    """Return the values of a body that stands at the origin; its velocities are as written."""
     surface = body.surface
     if isinstance(surface, str):
         surface = with_partners(surface, scene.surfaces[surface], scene.surface_pairs)
@@ -140,21 +140,20 @@ def _matter(body: Body | ArrangedBody, scene: Scene) -> CellBody:
         return vector if axes == IDENTITY else to_body(axes, vector)
 
     by_effect = {key.name: key.resolve(getattr(body, key.name), turned) for key in BODY_KEYS}
-    resolved: CellBody = CellBody.model_construct(
-        shape=shape,
-        fixed=fixed,
-        mass=mass,
-        density=body.density,
-        inertia=inertia,
-        surface=shared(surface),
-        position=_ORIGIN,
-        release=None,
-        orientation=orientation,
-        velocity=body.velocity,
-        angular_velocity=body.angular_velocity,
+    return {
+        "shape": shape,
+        "fixed": fixed,
+        "mass": mass,
+        "density": body.density,
+        "inertia": inertia,
+        "surface": shared(surface),
+        "position": _ORIGIN,
+        "release": None,
+        "orientation": orientation,
+        "velocity": body.velocity,
+        "angular_velocity": body.angular_velocity,
         **by_effect,
-    )
-    return resolved
+    }
 
 
 def _force(force: Force, duration: float) -> CellForce:

@@ -54,6 +54,13 @@ def test_cells_that_differ_in_a_mass_have_the_same_numerics_and_surfaces() -> No
     assert one.scene.bodies["ball"].surface is other.scene.bodies["ball"].surface
 
 
+def test_which_fields_bodies_were_given_is_kept_once() -> None:
+    """Bodies have all of them; a set for each takes 700 bytes."""
+    bodies = [body for cell in prepared(8).cells for body in cell.config.scene.bodies.values()]
+    assert len({id(body.model_fields_set) for body in bodies}) == 1
+    assert bodies[0].model_fields_set == set(type(bodies[0]).model_fields)
+
+
 def test_parts_that_differ_in_a_bit_are_not_taken_for_equal() -> None:
     plus, minus = (Surface.model_construct(friction=zero) for zero in (0.0, -0.0))
     assert plus == minus

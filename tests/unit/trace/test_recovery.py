@@ -6,10 +6,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from sample import run, split, write
+from sample import AS_WRITTEN, CONFIG, METADATA, run, split, write
 
 from lavendersim.errors import TraceError, UsageError
-from lavendersim.trace import Block, Trace, open_trace, recover
+from lavendersim.trace import Block, Trace, TraceWriter, open_trace, recover
 from lavendersim.trace.reader import INCOMPLETE
 
 STEPS = 1000  # three groups
@@ -99,6 +99,18 @@ def test_a_killed_run_is_read_without_being_rewritten(tmp_path: Path, block: Blo
     assert "unfinished" in trace.damage
     assert 0 < len(trace.step) < STEPS
     assert_prefix(trace, block, len(trace.step))
+
+
+def test_what_closed_is_in_the_file_while_the_run_goes_on(tmp_path: Path, block: Block) -> None:
+    """A kill calls nothing: the file is what it was at that moment."""
+    path = tmp_path / "running.mcap"
+    writer = TraceWriter(path, CONFIG, AS_WRITTEN, METADATA)
+    writer.append(block)
+    writer._queue.drain()
+    found = path.read_bytes()
+    writer.abandon()
+    assert path.read_bytes() == found
+    assert len(open_trace(path, allow_incomplete=True).step) > STEPS // 2
 
 
 def test_a_log_is_recovered_beside_itself_and_to_no_file_that_exists(
