@@ -19,6 +19,7 @@ from typing import Any
 from .approach import CREEP, FAR, make_rate, make_slowest
 from .collide.shapes import make_radius, make_support
 from .compile import kernel
+from .contact_lists import make_list_contacts
 from .impact_rows import make_keep_present
 from .records import PLANE, SPHERE, TOUCHING
 from .spec import Spec
@@ -28,8 +29,6 @@ from .vectors import Vec3, dot, minus, plus, position
 FLUSH = 10.0
 # Normals whose cosine is larger are one.
 ALONG = 1.0 - 1e-12
-# Contacts of a part of which each is compared with each.
-MOST = 512
 
 
 def make_drop_flush(spec: Spec) -> Any:
@@ -42,7 +41,7 @@ def make_drop_flush(spec: Spec) -> Any:
         return None
     support, radius = make_support(spec), make_radius(spec)
     rate, slowest = make_rate(spec), make_slowest(spec)
-    keep_present = make_keep_present(spec)
+    keep_present, list_contacts = make_keep_present(spec), make_list_contacts(spec)
     sleeps = spec.has("sleeping")
 
     def passes(state, contact, other, workspace, params, least):
@@ -82,14 +81,29 @@ def make_drop_flush(spec: Spec) -> Any:
 
     is_movable = kernel(is_movable, spec)
 
+    def rests_beside(state, contact, i, workspace, params, least):
+        # Whether what body i of the contact touches besides makes the contact one to pass over.
+        contacts, lists = state.contacts, workspace.contact_lists
+        flush = False
+        if is_movable(state.bodies[i]):
+            entry = lists.first[i]
+            while entry >= 0:
+                other = contacts[entry // 2]
+                entry = lists.following[entry]
+                if other.pair == contact.pair or other.phi > params.slop + TOUCHING:
+                    continue
+                if passes(state, contact, other, workspace, params, least):
+                    flush, other.passed_on = True, 1
+        return flush
+
+    rests_beside = kernel(rests_beside, spec)
+
     def drop_flush(state, count, workspace, params):
         bodies, contacts, motion = state.bodies, state.contacts, state.motion
-        if count > MOST:
-            return count
+        listed = False
         for c in range(count):
             contact = contacts[c]
             row = state.pairs[contact.pair]
-            flush = False
             ajar = contact.phi > params.slop and contact.located != FAR
             ajar = ajar and not (bodies[row.a].shape == SPHERE and bodies[row.b].shape == SPHERE)
             if contact.rate >= -CREEP and not ajar:
@@ -97,19 +111,14 @@ def make_drop_flush(spec: Spec) -> Any:
             if bodies[row.a].shape != PLANE and bodies[row.b].shape != PLANE:
                 least = slowest(contact, bodies, motion)
                 if contact.rate < -least or ajar:
-                    for o in range(count):
-                        other = contacts[o]
-                        if other.pair == contact.pair or other.phi > params.slop + TOUCHING:
-                            continue
-                        joins = other.a == contact.a or other.b == contact.a
-                        joins = joins and is_movable(bodies[contact.a])
-                        if not joins:
-                            joins = other.a == contact.b or other.b == contact.b
-                            joins = joins and is_movable(bodies[contact.b])
-                        if joins and passes(state, contact, other, workspace, params, least):
-                            flush, other.passed_on = True, 1
-            if flush:
-                contact.waits = 1
+                    if not listed:
+                        list_contacts(contacts, count, workspace.contact_lists)
+                        listed = True
+                    flush = rests_beside(state, contact, contact.a, workspace, params, least)
+                    if rests_beside(state, contact, contact.b, workspace, params, least):
+                        flush = True
+                    if flush:
+                        contact.waits = 1
         return keep_present(contacts, count)
 
     return kernel(drop_flush, spec)

@@ -18,6 +18,7 @@ import numpy as np
 from .collide.broad.broad_phase import allocate_broad_phase
 from .collide.convex.hull_geometry import HullGeometry
 from .collide.scratch import Scratch, allocate_scratch
+from .contact_lists import ContactLists, allocate_contact_lists
 from .integrate import keeps_motion
 from .ordering import Ordering, allocate_ordering
 from .record_layout import (
@@ -73,6 +74,7 @@ class Workspace(NamedTuple):
     trial: Trial
     middle: Middle
     ordering: Ordering
+    contact_lists: ContactLists  # of each body, `flush_contacts`
     islands: np.ndarray  # (n,) int64 label of a body's island, `islands`
     solver: Any  # what the solver allocates
     free_velocities: np.ndarray  # (n,) as velocities: before any contact impulse, `problem_log`
@@ -147,6 +149,7 @@ def allocate_workspace(
             np.zeros(centred, state.velocities.dtype),
         ),
         ordering=allocate_ordering(bodies, 0),
+        contact_lists=allocate_contact_lists(0, 0),
         islands=np.zeros(bodies if spec.has("sleeping") else 0, np.int64),
         solver=(),
         free_velocities=np.zeros(bodies if spec.has("problem_log") else 0, state.velocities.dtype),
@@ -159,8 +162,10 @@ def allocate_workspace(
 def for_contacts(spec: Spec, workspace: Workspace, state: State) -> Workspace:
     """Return the workspace with room for the contacts of a state."""
     bodies, capacity = len(state.bodies), len(state.contacts)
+    listed = (bodies, capacity) if spec.has("impact_order") else (0, 0)
     return workspace._replace(
         ordering=allocate_ordering(bodies, capacity),
+        contact_lists=allocate_contact_lists(*listed),
         solver=SOLVERS[spec.solver].allocate(spec, bodies, capacity),
     )
 

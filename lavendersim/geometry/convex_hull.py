@@ -45,6 +45,8 @@ def convex_hull(points: Sequence[Vector3]) -> Polyhedron:
         raise FlatError
     groups = _faces(found.simplices.tolist(), found.equations.tolist(), extent)
     loops = [_loop(points, members, normal, extent) for normal, members in groups]
+    # Of points on an edge that are a rounding off it, Qhull makes triangles that turn anyhow.
+    loops = [loop for loop in loops if len(loop) > 2]
     used = sorted({corner for loop in loops for corner in loop})
     corners = tuple(points[corner] for corner in used)
     number = {corner: row for row, corner in enumerate(used)}
@@ -76,24 +78,31 @@ def _faces(
 def _loop(
     points: Sequence[Vector3], members: Iterable[int], normal: Vector3, extent: float
 ) -> list[int]:
-    """Return the corners of one face in order, by Andrew's monotone chain in its plane."""
+    """Return the corners of one face in order, by Graham's scan (1972) about its middle.
+
+    Seen from inside, what lies on the line of an edge and beyond its ends comes before or after
+    them, however its coordinates are rounded: it is measured against its own neighbours.
+    """
     least = min(range(3), key=lambda axis: abs(normal[axis]))
     helper = [0.0, 0.0, 0.0]
     helper[least] = 1.0
     u = unit(cross((helper[0], helper[1], helper[2]), normal))
     v = cross(normal, u)
     flat = sorted((dot(points[row], u), dot(points[row], v), row) for row in members)
+    x, y = (math.fsum(point[axis] for point in flat) / len(flat) for axis in (0, 1))
+    flat.sort(key=lambda point: math.atan2(point[1] - y, point[0] - x))
+    # The farthest from any place is a corner.
+    first = max(range(len(flat)), key=lambda k: math.hypot(flat[k][0] - x, flat[k][1] - y))
     # A corner closer than this to the line of its neighbours is none of the face.
     straight = SAME_PLANE * extent
-    chain: list[list[tuple[float, float, int]]] = []
-    for ordered in (flat, flat[::-1]):
-        half: list[tuple[float, float, int]] = []
-        for point in ordered:
-            while len(half) > 1 and _bulge(half[-2], half[-1], point) <= straight:
-                half.pop()
-            half.append(point)
-        chain.append(half[:-1])
-    return [row for half in chain for _, _, row in half]
+    loop: list[tuple[float, float, int]] = []
+    for point in (*flat[first:], *flat[: first + 1]):
+        while len(loop) > 1 and _bulge(loop[-2], loop[-1], point) <= straight:
+            loop.pop()
+        loop.append(point)
+    loop.pop()  # the first again
+    begin = loop.index(min(loop))
+    return [row for _, _, row in (*loop[begin:], *loop[:begin])]
 
 
 def _bulge(

@@ -6,17 +6,29 @@ With y = x^k - (v^k + s e_n) / softness + A h, A-times the gradient of a convex 
 (for symmetric A; of others only the slope along a step is used). So Newton's method with an exact
 search along each step finds y however redundant the contacts are:
     (softness I + L^T A L) z = -L^T G,   dh = -(P(y) - x^k + softness h + L z) / softness
-This is the engine's `solvers.newton` with A for the bodies. Rounds begin stiff, where a solution
-may be one round away; where that fails, soft, and stiffen.
+This is the engine's `solvers.newton` with A for the bodies, and its rounds. They begin stiff, where
+a solution may be one round away; where that fails, soft, and stiffen.
 """
 
 from __future__ import annotations
 
-from math import sqrt
 from typing import NamedTuple
 
 import numpy as np
 
+from lavendersim.engine.solvers.newton.rounds import (
+    EXACTNESS,
+    FAILURES,
+    LENGTHS,
+    SLOPE_LEFT,
+    STEPS_OF_A_ROUND,
+    after_failed,
+    after_kept,
+    begin_rounds,
+    is_at_minimum,
+    is_kept,
+    is_slow,
+)
 from lavendersim.problems.budget import Budget
 from lavendersim.problems.factorise import factorise
 from lavendersim.problems.friction_cone import derivative_root, project
@@ -29,20 +41,10 @@ from lavendersim.problems.scaled_problem import (
 )
 from lavendersim.problems.semismooth_newton import newton_steps
 
-# Softness of the first round, of the second where the first failed, and the least [-].
-FIRST_SOFTNESS, SOFTEST, STIFFEST = 1e-3, 1e-2, 1e-8
-# Softness falls by this factor from round to round, by its root after one that failed [-].
-CUT = 0.03
-FAILURES = 6
-# A round may leave the residual this much above the least so far; the first has to bring it below
-# this share of it [-].
-WORSE, FIRST = 10.0, 0.1
-# Newton steps of a round; by this one the gain has fallen to this share, or it is given up.
-MOST, LOOK_BACK, LOOKED_FOR = 24, 8, 0.1
-# A round ends when a step gains this share of what the residual is worth, or nothing but round-off.
-EXACTNESS, ROUND_OFF = 0.01, 1e-20
-# A length is good that leaves this share of the slope [-]; trials, and the longest [-].
-SLOPE_LEFT, TRIALS, LONGEST = 0.2, 40, 64.0
+# Softness of the first round [-].
+FIRST_SOFTNESS = 1e-3
+# The longest length of a step that is tried [-].
+LONGEST = 64.0
 # Below this residual a few full Newton steps may end it.
 NEAR, FINISHING = 3e-2, 8
 
@@ -67,26 +69,23 @@ class Line(NamedTuple):
 def newton_rounds(p: ScaledProblem, x: np.ndarray, budget: Budget, most: int = 60) -> Reached:
     """Return impulses and their residual after rounds of at most so many steps in all."""
     least = residual = scaled_residual(p, x, velocities(p, x))
-    softness, good, cut, failed, first = FIRST_SOFTNESS, SOFTEST / CUT, CUT, 0, True
+    rounds, first = begin_rounds(FIRST_SOFTNESS), True
     begun = budget.steps
     while residual > budget.tolerance and budget.steps - begun < most and not budget.spent:
-        v = velocities(p, x)
+        v, softness = velocities(p, x), rounds.softness
         worth = max(least, budget.tolerance)
         found, impulses = _round(p, x, v, softness, EXACTNESS * softness * worth * worth, budget)
         reached = scaled_residual(p, impulses, velocities(p, impulses))
-        if found and reached < (FIRST if first else WORSE) * least:
-            x, residual, good = impulses, reached, softness
+        if found and is_kept(reached, least, first):
+            x, residual = impulses, reached
             if residual < NEAR:
                 x, residual = newton_steps(p, x, budget, softness, FINISHING)
             least = min(least, residual)
-            softness = max(softness * cut, STIFFEST)
+            rounds = after_kept(rounds)
         else:
-            failed += 1
-            if failed > FAILURES:
+            rounds = after_failed(rounds, keeps_cut=rounds.failed == 0)
+            if rounds.failed > FAILURES:
                 break
-            if failed > 1:
-                cut = sqrt(cut)
-            softness = good * cut
         first = False
     return Reached(x, residual)
 
@@ -104,7 +103,7 @@ def _round(
     y, h = centre - pushed / softness, np.zeros_like(centre)
     soft = np.full(centre.shape, softness)
     impulses, first = project(y, p.mu), 0.0
-    for step in range(MOST):
+    for step in range(STEPS_OF_A_ROUND):
         gradient = impulses - centre + softness * h
         root = derivative_root(y, p.mu)
         reduced = np.matmul(np.matmul(root[p.rows].transpose(0, 2, 1), p.blocks), root[p.columns])
@@ -119,13 +118,13 @@ def _round(
         if budget.spent:
             return False, impulses
         line = Line(y, h, dy, dh, centre, p.mu, softness)
-        gain = -0.5 * line.slope(0.0)
-        first = first or gain
-        if gain <= max(enough, ROUND_OFF * first):
+        slope = line.slope(0.0)
+        first = first or slope
+        if is_at_minimum(slope, first, 2.0 * enough):  # a step gains half its slope
             return True, project(y + dy, p.mu)
-        if step == LOOK_BACK and gain > LOOKED_FOR * first:
+        if is_slow(step, slope, first):
             return False, impulses
-        length = _search(line, -2.0 * gain)
+        length = _search(line, slope)
         y, h = y + length * dy, h + length * dh
         impulses = project(y, p.mu)
     return False, impulses
@@ -141,7 +140,7 @@ def _search(line: Line, slope: float) -> float:
         low, high, at_low = high, 2.0 * high, at_high
         at_high = line.slope(high)
     length = high
-    for trial in range(TRIALS):
+    for trial in range(LENGTHS):
         if trial % 3 == 2 or not at_high > at_low:
             length = 0.5 * (low + high)
         else:

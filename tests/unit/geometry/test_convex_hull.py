@@ -47,6 +47,44 @@ def test_points_inside_on_faces_and_on_edges_are_no_corners() -> None:
     assert heights(hull, [(0.5, 0.5, 0.5)]).max() == pytest.approx(-0.5, abs=1e-15)
 
 
+def hull_of(points: np.ndarray) -> Polyhedron:
+    return convex_hull([tuple(point) for point in points.tolist()])
+
+
+# Coordinates are off by so much, as those that a program has turned or written as text are.
+NOISE = 1e-12
+SLACK = 3 * NOISE  # of a point and of the corners of a face, that lean it
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_what_prolongs_an_edge_is_a_corner_however_it_is_rounded(seed: int) -> None:
+    """A house: a cube, one edge or two prolonged, whose old ends are then within an edge."""
+    rng = np.random.default_rng(seed)
+    tips = [(0.0, 0.0, 2.0), (0.0, 1.0, 2.0)][: 1 + seed % 2]
+    # With both tips (0, 0, 1) and (0, 1, 1) are on edges; with one, (0, 1, 1) is a corner.
+    corners = {*CUBE, *tips} - {(x, y, 1.0) for x, y, _ in tips}
+    everything = np.array([*CUBE, *tips, (0.0, 0.0, 1.5), (0.0, 0.0, 0.25), (0.5, 0.0, 0.0)])
+    points = everything + rng.uniform(-NOISE, NOISE, everything.shape)
+    hull = hull_of(points[rng.permutation(len(points))])
+    assert heights(hull, points).max() < SLACK
+    assert {tuple(abs(round(x, 9)) for x in corner) for corner in hull.points} == corners
+    assert_closed(hull)
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_every_point_is_inside_the_hull(seed: int) -> None:
+    """Points of a lattice, most of them on lines and planes of others, turned or not, rounded."""
+    rng = np.random.default_rng(seed)
+    points = np.unique(rng.integers(-2, 3, size=(40, 3)), axis=0).astype(float)
+    if seed % 2:
+        turn, _ = np.linalg.qr(rng.normal(size=(3, 3)))
+        points = points @ turn.T
+    points += rng.uniform(-NOISE, NOISE, points.shape)
+    hull = hull_of(points)
+    assert heights(hull, points).max() < 10 * SLACK  # edges of 4 lean narrower faces
+    assert_closed(hull)
+
+
 @pytest.mark.parametrize("scale", [1e-3, 1.0, 1e3])
 def test_hull_of_random_points_holds_them_all(scale: float) -> None:
     points = (np.random.default_rng(7).normal(size=(60, 3)) * scale).tolist()

@@ -28,29 +28,16 @@ from ...spin_block import resists_turning
 from .envelope import lay_out
 from .minimise import make_assemble_mass, make_minimise
 from .response import make_projected_impulse, make_start
+from .rounds import EXACTNESS, FAILURES, SOFTEST, after_failed, after_kept, begin_rounds, is_kept
 from .torques import make_accept_torques, make_keep_torques, make_restore_torques
 
 # Newton steps in a call; fewer than these are not worth beginning.
 MOST_STEPS = 150
 FEWEST_STEPS = 12.0
-# Softness of the first round, of the second where the first failed, and the least [-].
+# Softness of the first round where contacts are taken to be at rest [-].
 STICKING = 1e-6
-SOFTEST = 1e-2
-STIFFEST = 1e-8
-# Softness falls by this factor from round to round, by its root after one that failed: the same
-# round again would fail again [-].
-CUT = 0.03
-# Rounds that may fail before sweeps go on.
-FAILURES = 6
-# A round may leave the largest residual this much above the least so far: it falls on average. What
-# is handed on is the least.
-WORSE = 10.0
 # Above this share of the residual before it, a round has stalled: it is the shifts that are off.
 STALLED = 0.3
-# The first round has to bring it down to this share, or what it took to be at rest slides.
-REST = 0.1
-# A round's impulses may be this share of the residual, squared, off the minimum's [-].
-EXACTNESS = 0.01
 # Multiplications per contact in a step, beside the factorisation.
 ASSEMBLY = 1000
 
@@ -148,6 +135,8 @@ def make_newton(spec: Spec):
     accept = make_accept(spec, set_impulse)
     restore_start = make_restore(spec, "start", set_impulse)
     restore_best = make_restore(spec, "best", set_impulse)
+    begin, kept = kernel(begin_rounds, spec), kernel(is_kept, spec)
+    go_on, go_softer = kernel(after_kept, spec), kernel(after_failed, spec)
 
     def newton(system, workspace, tolerance, allowance, sticking_guess):
         contacts, count, velocities = system.contacts, system.count, system.velocities
@@ -167,42 +156,40 @@ def make_newton(spec: Spec):
         least, _ = residual(contacts, count, velocities)
         now, stalls = least, False
         keep(contacts, count)
-        good, cut = SOFTEST / CUT, CUT
-        softness = STICKING if sticking_guess else SOFTEST
-        steps, failed, guess_holds = 0, 0, sticking_guess
+        rounds = begin(STICKING if sticking_guess else SOFTEST)
+        steps, guess_holds = 0, sticking_guess
         while steps < most:
             off = max(least, tolerance)
             at_rest = sticking_guess and steps == 0
+            softness = rounds.softness
             start(contacts, count, velocities, softness, at_rest, stalls)
             made, found = minimise(
                 contacts, count, size, workspace, EXACTNESS * softness * lightest * off * off
             )
             steps += made
-            better = False
+            keeps = False
             if found:  # impulses of no minimum would be as large as E
                 accept(contacts, count, velocities)
                 largest, _ = residual(contacts, count, velocities)
                 if largest <= tolerance:
                     now = least = largest
                     break
-                better = largest < (REST if at_rest else WORSE) * least
-                if better:
-                    stalls, now, good = largest > STALLED * now, largest, softness
+                keeps = kept(largest, least, at_rest)
+                if keeps:
+                    stalls, now = largest > STALLED * now, largest
                     if largest <= least:
                         least = largest
                         keep(contacts, count)
-                    softness = max(softness * cut, STIFFEST)
+                    rounds = go_on(rounds)
                 else:
                     restore_start(contacts, count, velocities)
-            if not better:
-                failed += 1
-                if failed > FAILURES:
+            if not keeps:
+                # What a guess of rest led to says nothing of how fast softness may fall.
+                rounds = go_softer(rounds, at_rest)
+                if rounds.failed > FAILURES:
                     break
                 if at_rest:
                     guess_holds = False
-                else:
-                    cut = sqrt(cut)
-                softness = good * cut
         if now > least:
             restore_best(contacts, count, velocities)
         return steps, guess_holds

@@ -19,22 +19,13 @@ from ...spin_block import resists_turning
 from .envelope import DOF, OF_A, OF_B, T1, T2, WX, WY, WZ, factorise, solve_factorised
 from .matrix import make_assemble
 from .response import make_fill_rows, make_projected_impulse, make_stiffness
+from .rounds import LENGTHS, SLOPE_LEFT, STEPS_OF_A_ROUND, is_at_minimum, is_slow
 from .torques import (
     make_advance_spin,
     make_directional_spin,
     make_gather_torque,
     make_torque_slope,
 )
-
-# Steps at most. The one that finds every contact in its final state is the last but one.
-MOST_STEPS = 24
-# By this step the gain of the next one has fallen to this share, or the round is given up [-].
-LOOK_BACK, LOOKED_FOR = 8, 0.1
-# Nothing is left to gain below this share of what the first step gains: round-off [-].
-ROUND_OFF = 1e-20
-# A length is good when it leaves this share of the slope along the step [-]; trials of it.
-SLOPE_LEFT = 0.2
-LENGTHS = 40
 
 
 def make_assemble_mass(spec: Spec):
@@ -140,6 +131,7 @@ def make_descend(spec: Spec, projected_impulse: Any, stiffness: Any, torques: bo
     spins = torques and resists_turning(spec)
     gather_torque = make_gather_torque(spec)
     torque_slope, advance_spin = make_torque_slope(spec), make_advance_spin(spec)
+    at_minimum, slow = kernel(is_at_minimum, spec), kernel(is_slow, spec)
 
     def multiply(workspace, x, p, i):
         # Row i of block p of M x.
@@ -224,7 +216,7 @@ def make_descend(spec: Spec, projected_impulse: Any, stiffness: Any, torques: bo
 
     def descend(contacts, count, size, workspace, enough, first):
         rows = DOF * size
-        for done in range(MOST_STEPS):
+        for done in range(STEPS_OF_A_ROUND):
             gather(contacts, count, size, workspace)
             assemble(contacts, count, size, workspace)
             if not factorise(size, workspace):
@@ -237,11 +229,10 @@ def make_descend(spec: Spec, projected_impulse: Any, stiffness: Any, torques: bo
                 slope += workspace.step[r] * workspace.gradient[r]
             if first == 0.0:
                 first = slope
-            if not slope < min(ROUND_OFF * first, -enough):
+            if at_minimum(slope, first, enough):
                 return done + 1, slope == slope
-            if done == LOOK_BACK:
-                if slope < LOOKED_FOR * first:
-                    return done + 1, False
+            if slow(done, slope, first):
+                return done + 1, False
             directional_derivative(contacts, count, workspace)
             length = choose_length(contacts, count, size, workspace, slope)
             for r in range(rows):
@@ -256,6 +247,6 @@ def make_descend(spec: Spec, projected_impulse: Any, stiffness: Any, torques: bo
                 contact.step_n = 0.0
                 if spins:
                     advance_spin(contact, length)
-        return MOST_STEPS, False
+        return STEPS_OF_A_ROUND, False
 
     return kernel(descend, spec)
