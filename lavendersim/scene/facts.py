@@ -25,9 +25,10 @@ def _body_facts(config: CellConfig) -> Iterator[BodyFacts]:
         events.setdefault(event.body, []).append(event)
     pushed = {force.body for force in config.scene.forces if any(force.force)}
     twisted = {force.body for force in config.scene.forces if any(force.torque)}
+    levers = {force.body for force in config.scene.forces if any(force.point)}
     acting = [one for effect in EFFECTS if effect.acts_on for one in effect.acts_on(config.scene)]
     pulled = {name for name, _ in acting}
-    turned = {name for name, turns in acting if turns}
+    turned = levers | {name for name, turns in acting if turns}
     for name, body in config.scene.bodies.items():
         inertia = body.inertia or (0.0, 0.0, 0.0)
         own = events.get(name, ())

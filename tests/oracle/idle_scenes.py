@@ -170,6 +170,7 @@ CASES: dict[str, tuple[str, ...]] = {
     "broad_phase": ("balls",),
     "gravity": ("drifting balls",),
     "external_force": ("frictional balls",),
+    "varying_force": ("frictional balls",),
     "drag": ("frictional balls",),
     "rotation": ("balls",),
     "gyroscopic": ("frictional balls", "flying brick"),  # round bodies; one that is not, nor turns

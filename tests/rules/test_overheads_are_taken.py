@@ -27,8 +27,9 @@ AT_WORK = {
         *("gravity", "friction", "warm_start", "projection", "step_log", "contact_log"),
     ),
     "effects/static_friction.yaml": ("gyroscopic", "static_friction"),
+    "effects/varying_force.yaml": ("varying_force",),
 }
-FORCES = "forces over time interrupt the steps that are timed"
+FORCES = "constant forces begin and end between steps, and interrupt the steps that are timed"
 NEEDED = "friction needs it: at work it comes and goes with friction"
 SWEPT = "shipped scenes that require it are sweeps; timed is a scene of one cell"
 NONE = "no shipped scene requires it"

@@ -18,6 +18,7 @@ from ..records import Field
 from ..spec import Spec
 from .decision import Decision, Facts
 from .keys import BodyKey, SceneKey, SurfaceKey
+from .time_functions import Terms
 
 Kernel = Any  # a compiled function
 Maker = Callable[..., Kernel]  # (spec, ...) -> kernel; what it is given beside the spec: see Hooks
@@ -62,13 +63,23 @@ class Fields:
     contact: Sequence[Field] = ()
     contact_with: Callable[[Spec], Sequence[Field]] | None = None  # that depend on other effects
     link: Sequence[Field] = ()  # of what joins two bodies, beside LINK
+    drive: Sequence[Field] = ()  # of a function of time that acts on a body, beside DRIVE
     cache: Sequence[Field] = ()  # of a contact, kept until the next step
     parameters: Sequence[Field] = ()  # of the run: the key of the numerics that has the same name
 
 
 # Hooks that several effects may have.
 CHAINED: Final = (
-    *("start_step", "accelerate", "prepare", "capture", "preload", "contact_row", "step_row"),
+    *(
+        "drive",
+        "start_step",
+        "accelerate",
+        "prepare",
+        "capture",
+        "preload",
+        "contact_row",
+        "step_row",
+    ),
 )
 
 
@@ -80,6 +91,7 @@ class Hooks:
     EFFECTS. Of the second group one effect has each: the step is made with it or without it.
     """
 
+    drive: Maker | None = None  # (drives, bodies, velocities, params, counters), in every part
     start_step: Maker | None = None  # (bodies, velocities), before forces act
     accelerate: Maker | None = None  # (body, velocity, params), before contacts are completed
     act_between: Maker | None = None  # (links, bodies, velocities, motion, params), after forces
@@ -90,6 +102,7 @@ class Hooks:
     contact_row: Maker | None = None  # (out, contact, va, vb): fills the columns of a contact
     step_row: Maker | None = None  # (row, bodies, counters): fills the columns of a step
 
+    work: Maker | None = None  # (bodies, params), in every part once poses have moved
     measure_speeds: Maker | None = None  # (bodies, velocities), before forces act
     refresh_inertia: Maker | None = None  # (bodies, velocities), when forces have acted
     place_parts: Maker | None = None  # (bodies), before collision detection
@@ -140,9 +153,20 @@ class Balance:
 
     pull: str = ""  # of a contact: impulse that draws its bodies together along n [N s]
     stored: str = ""  # of a step: energy that it stores [J]
+    work: str = ""  # of a step: work that it does on movable bodies from outside [J]
     varies_friction: str = ""  # surface key: where above 0, the logged coefficient is the one
     outer: tuple[str, ...] = ()  # of a step: impulse on movable bodies from others, x y z [N s]
     unlogged: Unlogged | None = None  # where a body has a key of the effect
+
+
+class Drive(NamedTuple):
+    """A function of time that acts on a body."""
+
+    body: int  # its row
+    terms: Terms
+    begin: float | None  # [s] it acts from the first step that starts then; None: at all times
+    end: float | None  # [s] and up to the first that starts then
+    values: Mapping[str, Any]  # of the fields that the effect adds
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -185,6 +209,7 @@ class Effect:
     body_keys: tuple[BodyKey, ...] = ()
     acts_on: Callable[[Any], Iterable[tuple[str, bool]]] | None = None  # bodies, whether it turns
     links: Callable[[Any, dict[str, int]], list[dict[str, Any]]] | None = None  # of a scene
+    drives: Callable[[Any, dict[str, int]], list[Drive]] | None = None  # of a scene
     row: RowTerms = RowTerms()
     balance: Balance = Balance()
     study_only: str = ""  # of a deliberate error, what it does: every run that has it says so
