@@ -1,6 +1,7 @@
 """Drives: functions of time that act on bodies, evaluated and integrated exactly within a step.
 
     value   f(t)
+    rates   its derivatives
     mean    1/h times the integral of f from t to t + h: the impulse of a force is exact, and no
             pulse is too short to be noticed
 of f(t) = g(t) + a sin(omega t + phi), g linear between knots (`effects.time_functions`). The mean
@@ -10,7 +11,7 @@ value there. Times are counted in steps from where the timestep last changed: no
 
 from __future__ import annotations
 
-from math import sin
+from math import cos, sin
 from typing import Any
 
 from .compile import kernel
@@ -70,6 +71,33 @@ def make_value(spec: Spec) -> Any:
         return f
 
     return kernel(value, spec)
+
+
+def make_rates(spec: Spec) -> Any:
+    """Return `kernel(drive, knots, t, after)`: three derivatives of f; at a bend those after it, or
+    before.
+    """
+    last_knot = make_last_knot(spec)
+
+    def rates(drive, knots, t, after):
+        k, first, second, third = last_knot(drive, knots, t), 0.0, 0.0, 0.0
+        if not after:
+            while k >= drive.first and knots[k].time == t:
+                k -= 1
+        if k == drive.first + drive.count - 1:
+            first = drive.slope
+        elif k >= drive.first:
+            one, other = knots[k], knots[k + 1]
+            first = (other.value - one.value) / (other.time - one.time)
+        if drive.amplitude != 0.0:
+            angle = drive.omega * t + drive.phase
+            swing = drive.amplitude * drive.omega * cos(angle)
+            first += swing
+            second = -drive.amplitude * drive.omega * drive.omega * sin(angle)
+            third = -drive.omega * drive.omega * swing
+        return first, second, third
+
+    return kernel(rates, spec)
 
 
 def make_mean(spec: Spec) -> Any:

@@ -85,7 +85,9 @@ def make_advance(spec: Spec) -> Any:
     driving = made_by(spec, "drive")
     driven = bool(driving)
     drive: Any = chain(driving, spec) if driven else None
-    works, work = made_once(spec, "work")
+    ending = made_by(spec, "end_part")
+    ends = bool(ending)
+    end_part: Any = chain(ending, spec) if ends else None
     starting = made_by(spec, "start_step")
     starts = bool(starting)
     start_step: Any = chain(starting, spec) if starts else None
@@ -231,8 +233,8 @@ def make_advance(spec: Spec) -> Any:
                 classify(contacts, count, motion, params)
             moved = counters.projection_sweeps > 0
             diverged, cause = integrate(bodies, velocities, motion, state.pseudo, moved, params.dt)
-            if works:
-                work(bodies, params)
+            if ends:
+                end_part(bodies, params)
             if ordered:
                 if length < left and diverged < 0:
                     counters.elapsed += length

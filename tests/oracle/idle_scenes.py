@@ -175,6 +175,7 @@ CASES: dict[str, tuple[str, ...]] = {
     "rotation": ("balls",),
     "gyroscopic": ("frictional balls", "flying brick"),  # round bodies; one that is not, nor turns
     "kinematic": ("balls",),
+    "prescribed_motion": ("frictional balls",),
     "contact_torque": ("spinning balls",),
     "frictionless_contact": ("frictional balls",),
     "friction": ("balls", "boxes"),

@@ -22,6 +22,7 @@ AT_WORK = {
     ),
     "effects/pile.yaml": ("broad_phase", "fast_bodies"),
     "effects/sphere.yaml": ("frictionless_contact", "restitution"),
+    "effects/prescribed_motion.yaml": ("prescribed_motion",),
     "effects/spring.yaml": ("spring",),
     "effects/stack.yaml": (
         *("gravity", "friction", "warm_start", "projection", "step_log", "contact_log"),

@@ -77,7 +77,7 @@ ASKED = {
     "degrees of freedom: what has an orientation, or moves though nothing moves it": {
         "rotation": (
             *("approach", "collide/broad/reach", "effects/drag", "effects/external_force"),
-            "effects/varying_force",
+            *("effects/prescribed_motion", "effects/varying_force"),
             *("effects/impact_order", "effects/pose_log", "effects/sleeping", "effects/spring"),
             *("effects/step_log", "error_estimate", "foreseen_impacts", "impact_location"),
             *("integrate", "midpoint_passes", "midpoint_rows", "solvers/newton/minimise"),
@@ -97,6 +97,7 @@ ASKED = {
         ),
         "contact_midpoint": (
             *("contact", "effects/contact_spring", "effects/friction", "effects/projection"),
+            "effects/prescribed_motion",
             *("integrate", "memory", "respond"),
         ),
         "impact_time": (

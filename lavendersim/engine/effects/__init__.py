@@ -25,6 +25,7 @@ NAMES: Final = (
     "rotation",
     "gyroscopic",
     "kinematic",
+    "prescribed_motion",
     "contact_torque",
     "frictionless_contact",
     "friction",

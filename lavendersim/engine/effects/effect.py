@@ -70,16 +70,8 @@ class Fields:
 
 # Hooks that several effects may have.
 CHAINED: Final = (
-    *(
-        "drive",
-        "start_step",
-        "accelerate",
-        "prepare",
-        "capture",
-        "preload",
-        "contact_row",
-        "step_row",
-    ),
+    *("drive", "end_part", "start_step", "accelerate", "prepare", "capture", "preload"),
+    *("contact_row", "step_row"),
 )
 
 
@@ -93,6 +85,7 @@ class Hooks:
 
     drive: Maker | None = None  # (drives, bodies, velocities, params, counters), in every part
     start_step: Maker | None = None  # (bodies, velocities), before forces act
+    end_part: Maker | None = None  # (bodies, params), once poses have moved
     accelerate: Maker | None = None  # (body, velocity, params), before contacts are completed
     act_between: Maker | None = None  # (links, bodies, velocities, motion, params), after forces
     link_row: Maker | None = None  # (row, links, bodies): fills the columns of a step
@@ -102,7 +95,7 @@ class Hooks:
     contact_row: Maker | None = None  # (out, contact, va, vb): fills the columns of a contact
     step_row: Maker | None = None  # (row, bodies, counters): fills the columns of a step
 
-    work: Maker | None = None  # (bodies, params), in every part once poses have moved
+    prescribe: Maker | None = None  # (body, velocity): a kinematic body's, when forces act
     measure_speeds: Maker | None = None  # (bodies, velocities), before forces act
     refresh_inertia: Maker | None = None  # (bodies, velocities), when forces have acted
     place_parts: Maker | None = None  # (bodies), before collision detection
@@ -210,6 +203,9 @@ class Effect:
     acts_on: Callable[[Any], Iterable[tuple[str, bool]]] | None = None  # bodies, whether it turns
     links: Callable[[Any, dict[str, int]], list[dict[str, Any]]] | None = None  # of a scene
     drives: Callable[[Any, dict[str, int]], list[Drive]] | None = None  # of a scene
+    moves: Callable[[Any], tuple[float, bool]] | None = (
+        None  # a body: speed [m/s], whether it turns
+    )
     row: RowTerms = RowTerms()
     balance: Balance = Balance()
     study_only: str = ""  # of a deliberate error, what it does: every run that has it says so

@@ -130,11 +130,11 @@ def make(spec):
     return kernel(varying_force, spec)
 
 
-def make_work(spec):
-    """Return `kernel(bodies, params)`: impulse and work of a part, once poses have moved."""
+def make_end_part(spec):
+    """Return `kernel(bodies, params)`: impulse and work of a part."""
     turns = spec.has("rotation")
 
-    def work(bodies, params):
+    def add_work(bodies, params):
         for i in range(bodies.shape[0]):
             body = bodies[i]
             if body.inv_m == 0.0:
@@ -158,7 +158,7 @@ def make_work(spec):
                     done += 2.0 * turned / real
             body.worked += done
 
-    return kernel(work, spec)
+    return kernel(add_work, spec)
 
 
 def make_step_row(spec):
@@ -211,5 +211,5 @@ EFFECT = Effect(
         work="force_work",
         outer=("force_impulse_x", "force_impulse_y", "force_impulse_z"),
     ),
-    hooks=Hooks(drive=make_drive, accelerate=make, work=make_work, step_row=make_step_row),
+    hooks=Hooks(drive=make_drive, accelerate=make, end_part=make_end_part, step_row=make_step_row),
 )
