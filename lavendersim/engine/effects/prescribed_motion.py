@@ -116,13 +116,71 @@ def _of_body(body: Any) -> Iterator[tuple[Terms, dict[str, Any]]]:
         )
 
 
+def make_lead_to_end(spec):
+    """Return `kernel(body, velocity, dt)`: the mean velocity and spin that lead to its end."""
+    turns = spec.has("rotation")
+
+    def lead_to_end(body, v, dt):
+        # The mean velocity and spin that lead there; a turn by the vector w dt is Cayley's.
+        v.vx, v.vy, v.vz = (
+            (body.to_x - body.x) / dt,
+            (body.to_y - body.y) / dt,
+            (body.to_z - body.z) / dt,
+        )
+        if turns:
+            w, x, y, z = body.qw, body.qx, body.qy, body.qz
+            qw, qx, qy, qz = body.to_qw, body.to_qx, body.to_qy, body.to_qz
+            share = 2.0 / (dt * (qw * w + qx * x + qy * y + qz * z))
+            v.wx = share * (qx * w - qw * x - qy * z + qz * y)
+            v.wy = share * (qy * w - qw * y - qz * x + qx * z)
+            v.wz = share * (qz * w - qw * z - qx * y + qy * x)
+
+    return kernel(lead_to_end, spec)
+
+
+def make_ends(spec):
+    """Return `kernel(drive, knots, t, arm, after, h) -> (v, spin)` of one end of a step.
+
+    arm: from the axis to the centre [m]; after: where the function bends there, behind the bend.
+    """
+    from ..drives import make_rates
+    from ..vectors import Vec3, cross, plus, scaled
+
+    turns, rates = spec.has("rotation"), make_rates(spec)
+
+    def ends(drive, knots, t, arm, after, h):
+        # Velocity of the centre and spin of one end, less h^2/12 of their second derivatives; the
+        # spin with h^2/12 of its cube more, by which Cayley's map turns less.
+        share = h * h / 12.0
+        first, second, third = rates(drive, knots, t, after)
+        flat = first - share * third
+        v = Vec3(flat * drive.dx, flat * drive.dy, flat * drive.dz)
+        spin = Vec3(0.0, 0.0, 0.0)
+        if turns:
+            if drive.angle != 0.0:
+                axis = Vec3(drive.ax, drive.ay, drive.az)
+                first, second = drive.angle * first, drive.angle * second
+                bent = first - share * (drive.angle * third - first * first * first)
+                across = cross(axis, arm)
+                # The third derivative of an arm r that turns by theta about the axis a:
+                # (theta_3 - theta_1^3) a x r + 3 theta_1 theta_2 a x (a x r).
+                v = plus(v, scaled(bent, across))
+                v = plus(v, scaled(-3.0 * share * first * second, cross(axis, across)))
+                spin = scaled(bent, axis)
+        return v, spin
+
+    return kernel(ends, spec)
+
+
 def make_drive(spec):
     """Return `kernel(drives, bodies, velocities, params, counters)`: where the part ends."""
-    from ..drives import make_begin_of_part, make_rates, make_value
+    from ..drives import make_begin_of_part, make_value
     from ..vectors import Vec3, cross, dot, plus, scaled
 
     turns, centred = spec.has("rotation"), spec.has("contact_midpoint")
-    begin_of_part, value, rates = make_begin_of_part(spec), make_value(spec), make_rates(spec)
+    begin_of_part, value = make_begin_of_part(spec), make_value(spec)
+    ends: Any = make_ends(spec) if centred else None
+    lead_to_end: Any = None if centred else make_lead_to_end(spec)
 
     def about(axis, angle, r):
         # r, turned about a unit axis (Rodrigues).
@@ -152,47 +210,6 @@ def make_drive(spec):
         body.to_qz = c * qz + z * qw + x * qy - y * qx
 
     turn_to = kernel(turn_to, spec)
-
-    def lead_to_end(body, v, dt):
-        # The mean velocity and spin that lead there; a turn by the vector w dt is Cayley's.
-        v.vx, v.vy, v.vz = (
-            (body.to_x - body.x) / dt,
-            (body.to_y - body.y) / dt,
-            (body.to_z - body.z) / dt,
-        )
-        if turns:
-            w, x, y, z = body.qw, body.qx, body.qy, body.qz
-            qw, qx, qy, qz = body.to_qw, body.to_qx, body.to_qy, body.to_qz
-            share = 2.0 / (dt * (qw * w + qx * x + qy * y + qz * z))
-            v.wx = share * (qx * w - qw * x - qy * z + qz * y)
-            v.wy = share * (qy * w - qw * y - qz * x + qx * z)
-            v.wz = share * (qz * w - qw * z - qx * y + qy * x)
-
-    lead_to_end = kernel(lead_to_end, spec)
-
-    def ends(drive, knots, t, arm, after, h):
-        # Velocity of the centre and spin of one end, less h^2/12 of their second derivatives; the
-        # spin with h^2/12 of its cube more, by which Cayley's map turns less.
-        share = h * h / 12.0
-        first, second, third = rates(drive, knots, t, after)
-        flat = first - share * third
-        v = Vec3(flat * drive.dx, flat * drive.dy, flat * drive.dz)
-        spin = Vec3(0.0, 0.0, 0.0)
-        if turns:
-            if drive.angle != 0.0:
-                axis = Vec3(drive.ax, drive.ay, drive.az)
-                first, second = drive.angle * first, drive.angle * second
-                bent = first - share * (drive.angle * third - first * first * first)
-                across = cross(axis, arm)
-                # The third derivative of an arm r that turns by theta about the axis a:
-                # (theta_3 - theta_1^3) a x r + 3 theta_1 theta_2 a x (a x r).
-                v = plus(v, scaled(bent, across))
-                v = plus(v, scaled(-3.0 * share * first * second, cross(axis, across)))
-                spin = scaled(bent, axis)
-        return v, spin
-
-    if centred:
-        ends = kernel(ends, spec)
 
     def drive_motion(drives, bodies, velocities, params, counters):
         begin, dt = begin_of_part(params, counters), params.dt
