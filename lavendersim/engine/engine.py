@@ -71,6 +71,7 @@ class Engine:
         templates: np.ndarray | None = None,
         hulls: HullGeometry | None = None,
         links: np.ndarray | None = None,
+        drives: Any = (),
         block_steps: int = BLOCK_STEPS,
     ) -> None:
         lacking = {
@@ -89,7 +90,9 @@ class Engine:
         self._initial_pose = poses
         self._kernel = advance_for(spec)
         capacity = max(4, min(4 * len(pairs), FIRST_CONTACTS))
-        self.state = memory.allocate_state(spec, bodies, velocities, pairs, links, capacity)
+        self.state = memory.allocate_state(
+            spec, bodies, velocities, pairs, links, capacity, drives=drives
+        )
         self.workspace = memory.allocate_workspace(spec, self.state, hulls, templates)
         self.log = self._allocate_log()
         # Looking up the types of forty arrays costs 6 us a call, and 1 ms for the first of an

@@ -57,6 +57,7 @@ def make_begin(spec: Spec, accelerate: Any) -> Any:
     torque = spec.has("rotation")
     kinematic, centred = spec.has("kinematic"), spec.has("contact_midpoint")
     note_change = make_note_change(spec)
+    prescribed, prescribe = made_once(spec, "prescribe")
 
     def begin(bodies, velocities, motion, params):
         for i in range(bodies.shape[0]):
@@ -68,6 +69,9 @@ def make_begin(spec: Spec, accelerate: Any) -> Any:
             if moves:
                 accelerate(body, v, params)
             if kinematic:
+                if prescribed:
+                    if body.kinematic == 1:
+                        prescribe(body, v)
                 moves = moves or body.kinematic == 1
             m.reach = 0.0
             if centred:

@@ -37,6 +37,13 @@ from .step_doubling import allocate_control, with_capacity
 _MOTION = dtype(MOTION)
 
 
+class Drives(NamedTuple):
+    """Functions of time that act on bodies."""
+
+    records: np.ndarray  # (d,) which body, what of it, and the function but for its knots
+    knots: np.ndarray  # (k,) time and value, those of each function side by side
+
+
 class State(NamedTuple):
     """The scene, from step to step; n bodies and parts, p pairs, m contacts at most."""
 
@@ -48,6 +55,7 @@ class State(NamedTuple):
     motion: np.ndarray  # (n,) MOTION: what a body did within the step
     pseudo: np.ndarray  # (n,) pseudo-velocities of the positional projection, as velocities
     links: np.ndarray  # what effects join two bodies by
+    drives: Any  # functions of time that act on bodies: Drives, or ()
     control: Any  # of the length of substeps: `step_doubling.Control`, or ()
 
 
@@ -100,6 +108,8 @@ def allocate_state(
     pairs: np.ndarray,
     links: np.ndarray | None,
     capacity: int,
+    *,
+    drives: Any = (),
 ) -> State:
     """Return the state of a scene with room for so many contacts."""
     moving = len(bodies) if keeps_motion(spec) else 0
@@ -113,6 +123,7 @@ def allocate_state(
         motion=np.zeros(moving, _MOTION),
         pseudo=np.zeros(projected, velocities.dtype),
         links=allocate_links(spec, 0) if links is None else links,
+        drives=drives,
         control=allocate_control(spec, bodies, velocities, capacity),
     )
 

@@ -17,6 +17,8 @@ from .effects import EFFECTS, effects_of, row_fields
 from .records import (
     BODY,
     CONTACT,
+    DRIVE,
+    KNOT,
     LINK,
     ORIENTED_BODY,
     PAIR,
@@ -28,7 +30,7 @@ from .records import (
 from .solvers.catalogue import SOLVERS
 from .spec import Spec
 
-Record = Literal["body", "velocity", "pair", "contact", "link", "cache"]
+Record = Literal["body", "velocity", "pair", "contact", "link", "drive", "cache"]
 
 
 @cache
@@ -96,6 +98,12 @@ def link_dtype(spec: Spec) -> np.dtype:
 
 
 @cache
+def drive_dtype(spec: Spec) -> np.dtype:
+    """Return the record of a function of time that acts on a body."""
+    return dtype(DRIVE, _of_effects(spec, "drive"))
+
+
+@cache
 def parameters_dtype() -> np.dtype:
     """Return the record of the parameters: the same in every engine."""
     return dtype(PARAMETERS, [field for effect in EFFECTS for field in effect.fields.parameters])
@@ -124,6 +132,16 @@ def allocate_pairs(spec: Spec, count: int) -> np.ndarray:
 def allocate_links(spec: Spec, count: int) -> np.ndarray:
     """Return zeroed records of what joins two bodies."""
     return np.zeros(count, link_dtype(spec))
+
+
+def allocate_drives(spec: Spec, count: int) -> np.ndarray:
+    """Return zeroed records of functions of time that act on bodies."""
+    return np.zeros(count, drive_dtype(spec))
+
+
+def allocate_knots(count: int) -> np.ndarray:
+    """Return zeroed records of their knots."""
+    return np.zeros(count, dtype(KNOT))
 
 
 def allocate_parameters() -> np.ndarray:

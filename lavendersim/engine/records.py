@@ -129,6 +129,28 @@ CONTACT: Final[list[Field]] = [
     ("lambda_n", F8),  # accumulated impulse on B along n, A gets the opposite [N s]
 ]
 
+# Position and orientation, quaternion w x y z.
+POSE: Final[list[Field]] = [(name, F8) for name in ("x", "y", "z", "qw", "qx", "qy", "qz")]
+
+# A function of time that acts on a body, by its `Terms` (`effects.time_functions`); an effect adds
+# what it drives.
+DRIVE: Final[list[Field]] = [
+    ("body", I8),
+    ("first", I8),  # of its knots
+    ("count", I8),
+    ("slope", F8),  # behind the last knot [1/s]
+    ("amplitude", F8),  # of its sine [-]
+    ("omega", F8),  # [rad/s]
+    ("phase", F8),  # [rad]
+    ("begin_step", I8),  # steps that are done when it begins to act, and when it ends
+    ("end_step", I8),
+]
+KNOT: Final[list[Field]] = [("time", F8), ("value", F8)]  # [s], [-]
+
+# When the timestep last changed: after how many steps, and at what time. Effects declare it that
+# count the time of a step.
+STRETCH: Final[list[Field]] = [("stretch_step", I8), ("stretch_begin", F8)]
+
 # Two bodies that an effect joins; it adds what it keeps of them.
 LINK: Final[list[Field]] = [("a", I8), ("b", I8), ("active", I8)]  # 0 once one of them is removed
 

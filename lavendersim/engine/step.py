@@ -1,5 +1,6 @@
 """The step on one screen: forces and contacts change velocities, then poses move (`make_advance`).
 
+drive        what is a function of time: the forces of the step, the motion of kinematic bodies
 accelerate   v += dt * forces; before contacts are looked for where the rest of the step needs the
              velocities before and after (`integrate.keeps_motion`), else once they are found
 collide      contacts at the pose the step begins with, and those the step may make
@@ -81,6 +82,12 @@ def make_advance(spec: Spec) -> Any:
     linked, act_between = made_once(spec, "act_between")
     _, log_links = made_once(spec, "link_row")
     finish: Any = make_finish(spec) if linked and keeps else None
+    driving = made_by(spec, "drive")
+    driven = bool(driving)
+    drive: Any = chain(driving, spec) if driven else None
+    ending = made_by(spec, "end_part")
+    ends = bool(ending)
+    end_part: Any = chain(ending, spec) if ends else None
     starting = made_by(spec, "start_step")
     starts = bool(starting)
     start_step: Any = chain(starting, spec) if starts else None
@@ -125,8 +132,6 @@ def make_advance(spec: Spec) -> Any:
                 if records:
                     if counters.step_rows == log.step.shape[0]:
                         return ROWS_FULL
-                if sleeps:
-                    measure_speeds(bodies, velocities)
             if controlled:
                 control = state.control.record[0]
                 if control.phase == NOTHING:
@@ -140,6 +145,11 @@ def make_advance(spec: Spec) -> Any:
                         abandon(state, params, counter, log.step)
                     params.dt = params.timestep
                     return ROWS_FULL
+            if driven:
+                drive(state.drives, bodies, velocities, params, counters)
+            if sleeps:
+                if begins:
+                    measure_speeds(bodies, velocities)
             if starts:
                 start_step(bodies, velocities)
             if keeps:
@@ -193,6 +203,8 @@ def make_advance(spec: Spec) -> Any:
                 if instant:
                     stand(velocities, motion)
                 elif length < left:
+                    if driven:
+                        drive(state.drives, bodies, velocities, params, counters)
                     begin(bodies, velocities, motion, params)
                     if linked:
                         act_between(state.links, bodies, velocities, motion, params)
@@ -221,6 +233,8 @@ def make_advance(spec: Spec) -> Any:
                 classify(contacts, count, motion, params)
             moved = counters.projection_sweeps > 0
             diverged, cause = integrate(bodies, velocities, motion, state.pseudo, moved, params.dt)
+            if ends:
+                end_part(bodies, params)
             if ordered:
                 if length < left and diverged < 0:
                     counters.elapsed += length

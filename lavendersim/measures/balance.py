@@ -78,7 +78,7 @@ class EnergyBalance:
             kinetic=step["kinetic_energy"],
             potential=step["potential_energy"],
             stored=stored,
-            work=changes.work_of_forces(trace),
+            work=changes.work_of_forces(trace) + shares.work(trace),
             events=changes.given_by_events(trace),
             lifted=_lifted(trace, sums),
             pulled=sums.pulled,

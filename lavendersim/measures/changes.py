@@ -1,4 +1,4 @@
-"""What the forces and events of a config put into each step of its log: work, energy, mass.
+"""What constant forces and events of a config put into each step of its log: work, energy, mass.
 
 Arrays have one entry per logged step; entry k belongs to the step that ends in state k, entry 0 to
 none. Forces and events act before the first step that starts at their time or later.
@@ -47,17 +47,17 @@ def masses(trace: Trace) -> Floats:
 
 
 def forces(trace: Trace) -> Floats:
-    """Return the sum of the forces of the config [N] in each step (n, 3)."""
+    """Return the sum of the constant forces of the config [N] in each step (n, 3)."""
     total = np.zeros((len(trace.step), 3))
-    for force in trace.config.scene.forces:
+    for force in _constant_forces(trace):
         total[_acting(trace, force)] += vector(force.force)
     return total
 
 
 def work_of_forces(trace: Trace) -> Floats:
-    """Return the work of the forces and torques of the config [J] in each step."""
+    """Return the work of the constant forces and torques of the config [J] in each step."""
     work = np.zeros(len(trace.step))
-    for force in trace.config.scene.forces:
+    for force in _constant_forces(trace):
         body = list(trace.bodies).index(force.body)
         acts = np.zeros(len(work), dtype=bool)
         acts[_acting(trace, force)] = True
@@ -124,6 +124,11 @@ def unknown_momentum(trace: Trace) -> np.ndarray:
         if (changes or event.remove) and row < len(unknown):
             unknown[row] = True
     return unknown
+
+
+def _constant_forces(trace: Trace) -> list[CellForce]:
+    """Return the forces on centres of mass in world axes; the impulse of others is in the log."""
+    return [force for force in trace.config.scene.forces if force.constant_at_centre]
 
 
 def _in_order(trace: Trace) -> list[CellEvent]:

@@ -15,6 +15,7 @@ from lavendersim.measures.interfaces import Floats, Rows, Trace
 
 PULLS = [effect.balance.pull for effect in EFFECTS if effect.balance.pull]
 STORED = [effect.balance.stored for effect in EFFECTS if effect.balance.stored]
+WORKING = [effect.balance.work for effect in EFFECTS if effect.balance.work]
 OUTER = [effect.balance.outer for effect in EFFECTS if effect.balance.outer]
 VARYING = [e.balance.varies_friction for e in EFFECTS if e.balance.varies_friction]
 
@@ -62,6 +63,14 @@ def stored(trace: Trace) -> Floats:
         total += trace.step[name]
     if "contact_energy" in _present(trace.step, STORED) and trace.step["step"][0] == 0:
         total[0] += _stored_at_first(trace)
+    return total
+
+
+def work(trace: Trace) -> Floats:
+    """Return the work of effects from outside in each logged step [J] (n,); 0 of the first row."""
+    total = np.zeros(len(trace.step))
+    for name in _present(trace.step, WORKING):
+        total[1:] += trace.step[name][1:]
     return total
 
 

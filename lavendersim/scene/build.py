@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 from math import inf, sqrt
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -23,6 +23,7 @@ from lavendersim.quantities.scalars import exact
 
 from .body_rows import body_table, pose_of
 from .colliders import colliders
+from .drive_tables import drive_tables
 from .pair_tables import pair_tables
 
 # Where nothing of a run is to be recorded: a window of steps that is empty.
@@ -47,6 +48,7 @@ class Scene(NamedTuple):
     hulls: HullGeometry
     forces: tuple[CellForce, ...]  # `events` lets them act
     links: np.ndarray  # what effects join bodies by
+    drives: Any  # functions of time that act on bodies: `memory.Drives`, or ()
     numerics: Numerics
 
     def engine(self, spec: Spec, block_steps: int | None = None) -> Engine:
@@ -62,6 +64,7 @@ class Scene(NamedTuple):
             templates=self.templates,
             hulls=self.hulls,
             links=self.links,
+            drives=self.drives,
             **extra,
         )
 
@@ -140,6 +143,7 @@ def build(config: CellConfig, spec: Spec) -> Scene:
         hulls=hulls,
         forces=config.scene.forces,
         links=link_table(config, spec, bodies),
+        drives=drive_tables(config, spec, clock),
         numerics=config.numerics,
     )
 

@@ -52,7 +52,11 @@ class EventQueue:
 
     def _event_changes(self, events: Sequence[CellEvent | CellTimestep]) -> Iterator[Change]:
         for done, timestep in self._scene.clock.changes:
-            yield Change(done, 0, lambda timestep=timestep: self._set_timestep(timestep))  # type: ignore[misc]
+            yield Change(
+                done,
+                0,
+                lambda timestep=timestep, done=done: self._set_timestep(timestep, done),  # type: ignore[misc]
+            )
         timed = sorted(events, key=lambda event: event.at)
         for order, event in enumerate(timed, start=1):
             if isinstance(event, CellTimestep):
@@ -67,13 +71,20 @@ class EventQueue:
         if not self._engine.spec.has("external_force"):
             return
         for force in forces:
+            if not force.constant_at_centre:
+                continue  # the step itself lets it act
             begin, end = self._after(force.begin), self._after(force.end)
             if begin < end:
                 yield Change(begin, 0, lambda force=force: self._begin(force))  # type: ignore[misc]
                 yield Change(end, 0, lambda force=force: self._end(force))  # type: ignore[misc]
 
-    def _set_timestep(self, timestep: Fraction) -> None:
-        set_timestep(self._engine.parameters, self._scene.numerics, timestep)
+    def _set_timestep(self, timestep: Fraction, done: int) -> None:
+        parameters, scene = self._engine.parameters, self._scene
+        set_timestep(parameters, scene.numerics, timestep)
+        parameters["stretch_step"], parameters["stretch_begin"] = (
+            done,
+            float(scene.clock.time(done)),
+        )
 
     def _begin(self, force: CellForce) -> None:
         self._acting.append(force)

@@ -25,22 +25,25 @@ def _body_facts(config: CellConfig) -> Iterator[BodyFacts]:
         events.setdefault(event.body, []).append(event)
     pushed = {force.body for force in config.scene.forces if any(force.force)}
     twisted = {force.body for force in config.scene.forces if any(force.torque)}
+    levers = {force.body for force in config.scene.forces if any(force.point)}
     acting = [one for effect in EFFECTS if effect.acts_on for one in effect.acts_on(config.scene)]
     pulled = {name for name, _ in acting}
-    turned = {name for name, turns in acting if turns}
+    moving = [effect.moves for effect in EFFECTS if effect.moves]
+    turned = levers | {name for name, turns in acting if turns}
     for name, body in config.scene.bodies.items():
         inertia = body.inertia or (0.0, 0.0, 0.0)
         own = events.get(name, ())
         speeds = [body.velocity, *(event.velocity or () for event in own)]
         spins = [body.angular_velocity, *(event.angular_velocity or () for event in own)]
+        driven = [moves(body) for moves in moving]
         yield BodyFacts(
             name=name,
             shape=body.shape.kind,
             movable=is_movable(body),
-            spins=any(any(spin) for spin in spins),
+            spins=any(any(spin) for spin in spins) or any(turns for _, turns in driven),
             round=inertia[0] == inertia[1] == inertia[2],
             kinematic=body.kinematic,
-            speed=max(hypot(*speed) for speed in speeds),
+            speed=max([*(hypot(*speed) for speed in speeds), *(speed for speed, _ in driven)]),
             size=bounding_radius(body.shape),
             least_size=_least_size(body.shape),
             config=body,

@@ -170,10 +170,12 @@ CASES: dict[str, tuple[str, ...]] = {
     "broad_phase": ("balls",),
     "gravity": ("drifting balls",),
     "external_force": ("frictional balls",),
+    "varying_force": ("frictional balls",),
     "drag": ("frictional balls",),
     "rotation": ("balls",),
     "gyroscopic": ("frictional balls", "flying brick"),  # round bodies; one that is not, nor turns
     "kinematic": ("balls",),
+    "prescribed_motion": ("frictional balls",),
     "contact_torque": ("spinning balls",),
     "frictionless_contact": ("frictional balls",),
     "friction": ("balls", "boxes"),

@@ -23,13 +23,15 @@ AT_WORK = {
     "effects/falling_restitution.yaml": ("falling_restitution",),
     "effects/pile.yaml": ("broad_phase", "fast_bodies"),
     "effects/sphere.yaml": ("frictionless_contact", "restitution"),
+    "effects/prescribed_motion.yaml": ("prescribed_motion",),
     "effects/spring.yaml": ("spring",),
     "effects/stack.yaml": (
         *("gravity", "friction", "warm_start", "projection", "step_log", "contact_log"),
     ),
     "effects/static_friction.yaml": ("gyroscopic", "static_friction"),
+    "effects/varying_force.yaml": ("varying_force",),
 }
-FORCES = "forces over time interrupt the steps that are timed"
+FORCES = "constant forces begin and end between steps, and interrupt the steps that are timed"
 NEEDED = "friction needs it: at work it comes and goes with friction"
 SWEPT = "shipped scenes that require it are sweeps; timed is a scene of one cell"
 NONE = "no shipped scene requires it"

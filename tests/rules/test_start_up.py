@@ -15,7 +15,10 @@ from lavendersim.engine.effects import NAMES
 DECLARATIONS = {
     *("lavendersim.engine", "lavendersim.engine.solvers"),
     *("lavendersim.engine.records", "lavendersim.engine.spec", "lavendersim.engine.effects"),
-    *(f"lavendersim.engine.effects.{part}" for part in ("decision", "effect", "keys")),
+    *(
+        f"lavendersim.engine.effects.{part}"
+        for part in ("decision", "effect", "keys", "time_functions")
+    ),
     *(f"lavendersim.engine.effects.{name}" for name in NAMES),
 }
 HEAVY = {"numba", "llvmlite", "matplotlib", "rerun", "numpy", "scipy", "h5py"}

@@ -36,6 +36,7 @@ ELSEWHERE = {
         "engine/effects/sleeping.py": "who is pushed does not sleep",
         "scene/events.py": "forces begin and end during the run",
     },
+    "varying_force": {"engine/effects/sleeping.py": "who is pushed does not sleep"},
     "compliance": {
         "engine/effects/pairwise_impacts.py": TIME,
         "engine/effects/fast_bodies.py": "springs give energy back",
@@ -77,6 +78,7 @@ ASKED = {
     "degrees of freedom: what has an orientation, or moves though nothing moves it": {
         "rotation": (
             *("approach", "collide/broad/reach", "effects/drag", "effects/external_force"),
+            *("effects/prescribed_motion", "effects/varying_force"),
             *("effects/impact_order", "effects/pose_log", "effects/sleeping", "effects/spring"),
             *("effects/step_log", "error_estimate", "foreseen_impacts", "impact_location"),
             *("integrate", "midpoint_passes", "midpoint_rows", "solvers/newton/minimise"),
@@ -96,6 +98,7 @@ ASKED = {
         ),
         "contact_midpoint": (
             *("contact", "effects/contact_spring", "effects/friction", "effects/projection"),
+            "effects/prescribed_motion",
             *("integrate", "memory", "respond"),
         ),
         "impact_time": (
@@ -137,6 +140,7 @@ ASKED = {
         "contact_log": ("respond",),
         "problem_log": ("memory",),
         "external_force": ("effects/sleeping", "scene/events"),
+        "varying_force": ("effects/sleeping",),
     },
     "a part of one solver": {
         "newton": ("effects/least_norm", "solvers/adaptive"),

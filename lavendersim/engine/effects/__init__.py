@@ -10,6 +10,8 @@ from ..records import Field
 from ..spec import Spec
 from .decision import BodyFacts, Decision, Facts, PairFacts
 from .effect import CHAINED, Choice, Column, Derived, Effect, Hooks, hook_names
+from .keys import TurnOf
+from .time_functions import TimeFunction
 
 # Order matters within a hook: kernels of one hook run in this order.
 NAMES: Final = (
@@ -17,11 +19,13 @@ NAMES: Final = (
     "broad_phase",
     "gravity",
     "external_force",
+    "varying_force",
     "drag",
     "spring",
     "rotation",
     "gyroscopic",
     "kinematic",
+    "prescribed_motion",
     "contact_torque",
     "frictionless_contact",
     "friction",
@@ -133,6 +137,8 @@ __all__ = [
     "Facts",
     "Hooks",
     "PairFacts",
+    "TimeFunction",
+    "TurnOf",
     "columns_of",
     "effects_of",
     "has_hook",

@@ -18,6 +18,7 @@ from ..records import Field
 from ..spec import Spec
 from .decision import Decision, Facts
 from .keys import BodyKey, SceneKey, SurfaceKey
+from .time_functions import Terms
 
 Kernel = Any  # a compiled function
 Maker = Callable[..., Kernel]  # (spec, ...) -> kernel; what it is given beside the spec: see Hooks
@@ -62,13 +63,15 @@ class Fields:
     contact: Sequence[Field] = ()
     contact_with: Callable[[Spec], Sequence[Field]] | None = None  # that depend on other effects
     link: Sequence[Field] = ()  # of what joins two bodies, beside LINK
+    drive: Sequence[Field] = ()  # of a function of time that acts on a body, beside DRIVE
     cache: Sequence[Field] = ()  # of a contact, kept until the next step
     parameters: Sequence[Field] = ()  # of the run: the key of the numerics that has the same name
 
 
 # Hooks that several effects may have.
 CHAINED: Final = (
-    *("start_step", "accelerate", "prepare", "capture", "preload", "contact_row", "step_row"),
+    *("drive", "end_part", "start_step", "accelerate", "prepare", "capture", "preload"),
+    *("contact_row", "step_row"),
 )
 
 
@@ -80,7 +83,9 @@ class Hooks:
     EFFECTS. Of the second group one effect has each: the step is made with it or without it.
     """
 
+    drive: Maker | None = None  # (drives, bodies, velocities, params, counters), in every part
     start_step: Maker | None = None  # (bodies, velocities), before forces act
+    end_part: Maker | None = None  # (bodies, params), once poses have moved
     accelerate: Maker | None = None  # (body, velocity, params), before contacts are completed
     act_between: Maker | None = None  # (links, bodies, velocities, motion, params), after forces
     link_row: Maker | None = None  # (row, links, bodies): fills the columns of a step
@@ -90,6 +95,7 @@ class Hooks:
     contact_row: Maker | None = None  # (out, contact, va, vb): fills the columns of a contact
     step_row: Maker | None = None  # (row, bodies, counters): fills the columns of a step
 
+    prescribe: Maker | None = None  # (body, velocity): a kinematic body's, when forces act
     measure_speeds: Maker | None = None  # (bodies, velocities), before forces act
     refresh_inertia: Maker | None = None  # (bodies, velocities), when forces have acted
     place_parts: Maker | None = None  # (bodies), before collision detection
@@ -141,9 +147,20 @@ class Balance:
 
     pull: str = ""  # of a contact: impulse that draws its bodies together along n [N s]
     stored: str = ""  # of a step: energy that it stores [J]
+    work: str = ""  # of a step: work that it does on movable bodies from outside [J]
     varies_friction: str = ""  # surface key: where above 0, the logged coefficient is the one
     outer: tuple[str, ...] = ()  # of a step: impulse on movable bodies from others, x y z [N s]
     unlogged: Unlogged | None = None  # where a body has a key of the effect
+
+
+class Drive(NamedTuple):
+    """A function of time that acts on a body."""
+
+    body: int  # its row
+    terms: Terms
+    begin: float | None  # [s] it acts from the first step that starts then; None: at all times
+    end: float | None  # [s] and up to the first that starts then
+    values: Mapping[str, Any]  # of the fields that the effect adds
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -186,6 +203,10 @@ class Effect:
     body_keys: tuple[BodyKey, ...] = ()
     acts_on: Callable[[Any], Iterable[tuple[str, bool]]] | None = None  # bodies, whether it turns
     links: Callable[[Any, dict[str, int]], list[dict[str, Any]]] | None = None  # of a scene
+    drives: Callable[[Any, dict[str, int]], list[Drive]] | None = None  # of a scene
+    moves: Callable[[Any], tuple[float, bool]] | None = (
+        None  # a body: speed [m/s], whether it turns
+    )
     row: RowTerms = RowTerms()
     balance: Balance = Balance()
     study_only: str = ""  # of a deliberate error, what it does: every run that has it says so

@@ -10,7 +10,10 @@ from .effect import Effect, Fields, Hooks, kernel
 
 def decide(facts: Facts) -> Decision:
     """On when a force or a torque acts on a movable body at some time."""
-    pushed = [body.name for body in facts.bodies if body.movable and (body.force or body.torque)]
+    constant = (
+        [one.body for one in facts.scene.forces if one.constant_at_centre] if facts.scene else []
+    )
+    pushed = [body.name for body in facts.bodies if body.movable and body.name in constant]
     if pushed:
         return Decision(True, f"{named(pushed)}: a force or torque from the config")
     return Decision(False, "no force or torque is specified")

@@ -62,6 +62,7 @@ class BodyKey(Key):
 
     resolve: Callable[[Any, Turn], Any] = as_written
     of_movable: bool = False  # a body that does not move has none
+    of_prescribed: bool = False  # only a body whose motion is prescribed has one, and no velocities
     prescribes_motion: bool = False  # a body where it is true moves whatever touches it, massless
 
 

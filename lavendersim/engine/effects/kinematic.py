@@ -32,7 +32,8 @@ EFFECT = Effect(
             name="kinematic",
             type=bool,
             default=False,
-            doc="true: keeps its velocity and angular velocity whatever touches it, no mass",
+            doc="true: keeps its velocity and angular velocity whatever touches it, or moves as "
+            "`motion` says; no mass",
             prescribes_motion=True,
         ),
     ),

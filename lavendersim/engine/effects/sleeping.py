@@ -66,13 +66,18 @@ def make_is_pushed(spec: Spec) -> Any:
     """Return `kernel(body) -> whether a force of the config acts on it, or a spring joins it`."""
     from . import effects_of
 
-    force, joins = spec.has("external_force"), any(effect.links for effect in effects_of(spec))
+    force, varying = spec.has("external_force"), spec.has("varying_force")
+    joins = any(effect.links for effect in effects_of(spec))
 
     def is_pushed(body):
         pushed = False
         if force:
             pushed = body.fx != 0.0 or body.fy != 0.0 or body.fz != 0.0
             pushed = pushed or body.tx != 0.0 or body.ty != 0.0 or body.tz != 0.0
+        if varying:
+            pushed = pushed or body.force_x != 0.0 or body.force_y != 0.0 or body.force_z != 0.0
+            pushed = pushed or body.torque_x != 0.0 or body.torque_y != 0.0
+            pushed = pushed or body.torque_z != 0.0
         if joins:
             pushed = pushed or body.joined == 1
         return pushed

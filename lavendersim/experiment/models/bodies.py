@@ -28,6 +28,7 @@ from lavendersim.quantities.quantity import (
 _CONSTRAIN = ("fixed", *PRESCRIBE_MOTION)
 _OF_MOVING = ("velocity", "angular_velocity")
 _OF_MOVABLE = ("mass", "density", "inertia", *(key.name for key in BODY_KEYS if key.of_movable))
+_OF_PRESCRIBED = tuple(key.name for key in BODY_KEYS if key.of_prescribed)
 _OF_PLACES = ("position", "release", "orientation")
 STATIC_HINT = "a body that never moves has fixed: true"
 
@@ -95,6 +96,7 @@ class _Matter(declared("Matter", _MatterOwn, BODY_KEYS), _MatterOwn):  # type: i
             elif constrained:
                 _immovable_rules(at, constrained[0])
             else:
+                _unprescribed_rules(at)
                 meaning = "[kg], or a density [kg/m^3], or fixed: true"
                 _exactly_one(at, ("mass", "density"), meaning)
                 _inertia_rules(at, kind)
@@ -121,7 +123,32 @@ class ArrangedBody(_Matter):
     )
 
 
+def _unprescribed_rules(at: Place) -> None:
+    """Refuse what only a body has whose motion is prescribed."""
+    for key in _OF_PRESCRIBED:
+        if mark := at.written(key):
+            words = " or ".join(f"{word}: true" for word in PRESCRIBE_MOTION)
+            at.refuse(mark, f"{key}: forces and contacts move {at}; expected {words} beside it")
+
+
+def _prescribed_rules(at: Place) -> None:
+    """Refuse velocities of a body whose motion is a function of time, and a second turn."""
+    for key in _OF_PRESCRIBED:
+        if not at.get(key).items:
+            continue
+        for other in _OF_MOVING:
+            if mark := at.written(other):
+                at.refuse(mark, f"{other}: {key} says how {at} moves; leave one of them out")
+        turns = [turn for one in at.get(key).items if (turn := one.get("turn"))]
+        for turn in turns[1:]:
+            at.refuse(turn.mark, f"turn: {at} has one already; a body turns about one axis")
+
+
 def _immovable_rules(at: Place, word: str) -> None:
+    if word in PRESCRIBE_MOTION:
+        _prescribed_rules(at)
+    else:
+        _unmoved_rules(at, word)
     for key in (*_OF_MOVABLE, *(_OF_MOVING if word == "fixed" else ())):
         if mark := at.written(key):
             has = f"a {word} body has no {key.replace('_', ' ')}"
@@ -129,6 +156,12 @@ def _immovable_rules(at: Place, word: str) -> None:
     if mark := at.written("release"):
         goes = "stays" if word == "fixed" else "its motion is prescribed"
         at.refuse(mark, f"release: {at} is {word} and {goes}; specify its position")
+
+
+def _unmoved_rules(at: Place, word: str) -> None:
+    for key in _OF_PRESCRIBED:
+        if mark := at.written(key):
+            at.refuse(mark, f"{key}: {at} is {word}; a {word} body has no {key}")
 
 
 def _inertia_rules(at: Place, kind: str) -> None:
@@ -155,7 +188,7 @@ def _plane_rules(at: Place) -> None:
     for key in PRESCRIBE_MOTION:
         if at.get(key).is_true:
             at.refuse(at.key(key), f"{key}: {always}")
-    for key in (*_OF_MOVABLE, *_OF_MOVING, *_OF_PLACES):
+    for key in (*_OF_MOVABLE, *_OF_MOVING, *_OF_PRESCRIBED, *_OF_PLACES):
         if mark := at.written(key):
             instead = "; its normal and offset say where it is" if key in _OF_PLACES else ""
             has = f"a plane has no {key.replace('_', ' ')}{instead}"

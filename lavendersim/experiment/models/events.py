@@ -87,6 +87,11 @@ def _change_rules(at: Place, body: Node) -> None:
     elif (key := prescribes_motion(target)) and at.get("scale_mass"):
         sentence = f'scale_mass: "{body.text}" is {key}; a {key} body has no mass'
         at.refuse(at.key("scale_mass"), sentence)
+    for motion in ("motion",) if target.get("motion").items else ():
+        for changed in ("teleport", "velocity", "angular_velocity"):
+            if mark := at.written(changed):
+                sentence = f'{changed}: {motion} says at all times where "{body.text}" is'
+                at.refuse(mark, f"{sentence}; an event cannot change it")
     if not any(at.get(key) for key in _CHANGES):
         changes = f"{', '.join(_CHANGES)} or remove"
         at.refuse(at.node.mark, f"{at} changes nothing; expected {changes}")

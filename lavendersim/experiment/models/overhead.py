@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, Tag
 
-from lavendersim.experiment.text.node import Path, key_mark
+from lavendersim.experiment.text.node import Node, Path, key_mark
 from lavendersim.experiment.text.place import Place
 from lavendersim.quantities.model import ConfigModel
 from lavendersim.quantities.quantity import Quantity, either
@@ -55,11 +55,22 @@ def refuse_what_interrupts(at: Place, expected: str, *others: Path) -> None:
     """Refuse what keeps a cell's steps from being timed in one go, and a beginning at its end."""
     for path in (*others, ("events",), ("scene", "forces")):
         other = at.root.get(*path)
-        if other.entries or other.items:
+        items = other.items
+        if path[-1] == "forces":
+            items = tuple(force for force in items if _interrupts(force))
+        if other.entries or items:
             found = ".".join(map(str, path))
-            sentence = f"{at}: expected {expected} without events and forces, found {found}"
+            sentence = (
+                f"{at}: expected {expected} without events and constant forces, found {found}"
+            )
             at.refuse(key_mark(at.root, str(at)), sentence)
     start, length = at.get("from"), at.root.get("duration").number
     if start.number is not None and length is not None and start.number >= length > 0:
         sentence = f"expected a time before the end (duration {length:g} s), found {start.number:g}"
         at.refuse(start.mark, f"from: {sentence}")
+
+
+def _interrupts(force: Node) -> bool:
+    """Tell whether a force begins and ends between steps; one that varies acts within them."""
+    point = any(item.number for item in force.get("point").items)
+    return not (force.get("factor").entries or force.get("frame").text == "body" or point)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 from pydantic import Field, Tag
 
 from lavendersim.cell.surface import Surface
-from lavendersim.engine.effects import SCENE_KEYS
+from lavendersim.engine.effects import SCENE_KEYS, TimeFunction
 from lavendersim.experiment.models.arrangements import Arrangement
 from lavendersim.experiment.models.bodies import Body
 from lavendersim.experiment.models.shapes import Shape
@@ -28,7 +28,7 @@ from lavendersim.experiment.text.place import Place
 from lavendersim.quantities.found import quoted
 from lavendersim.quantities.model import ConfigModel, declared
 from lavendersim.quantities.names import BodyName, NewName
-from lavendersim.quantities.quantity import Quantity, Vector, Vector3, either
+from lavendersim.quantities.quantity import Position, Quantity, Vector, Vector3, either
 
 GRAVITY = 9.81  # [m/s^2]
 
@@ -76,7 +76,7 @@ _ZERO = (0.0, 0.0, 0.0)
 
 
 class Force(ConfigModel):
-    """A force and a torque on one body, constant for a while; those of one body add."""
+    """A force and a torque on one body for a while, constant or not; those of one body add."""
 
     body: BodyName = Field(description="name of a movable body")
     begin: Annotated[float, Quantity("s", minimum=0)] = Field(
@@ -88,10 +88,21 @@ class Force(ConfigModel):
         description="[s] until the first step that starts then; none: to the end of the run",
     )
     force: Annotated[Vector3, Vector(3, Quantity("N"))] = Field(
-        default=_ZERO, description="[N] on the centre of mass, world frame"
+        default=_ZERO, description="[N] in the axes of `frame`, on `point`"
     )
     torque: Annotated[Vector3, Vector(3, Quantity("N m"))] = Field(
-        default=_ZERO, description="[N m] world frame, right-handed"
+        default=_ZERO, description="[N m] in the axes of `frame`, right-handed"
+    )
+    factor: TimeFunction | None = Field(
+        default=None, description="a function of time that multiplies both; none: 1"
+    )
+    point: Position = Field(
+        default=_ZERO,
+        description="[m] where the force acts, in the body's frame, whatever `frame` is; 0 is the "
+        "centre of mass",
+    )
+    frame: Literal["world", "body"] = Field(
+        default="world", description="`world`, or `body`: force and torque turn with the body"
     )
 
     @classmethod

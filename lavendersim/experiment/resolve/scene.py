@@ -10,7 +10,7 @@ from lavendersim.cell.body import CellBody
 from lavendersim.cell.scene import CellForce, CellScene
 from lavendersim.cell.shapes import CellShape, Plane
 from lavendersim.cell.shared_parts import shared
-from lavendersim.engine.effects import BODY_KEYS, SCENE_KEYS
+from lavendersim.engine.effects import BODY_KEYS, SCENE_KEYS, TurnOf
 from lavendersim.experiment.models.bodies import ArrangedBody, Body
 from lavendersim.experiment.models.scene import Force, Scene, TiltedGravity
 from lavendersim.experiment.models.tree import (
@@ -55,13 +55,13 @@ def resolve_scene(scene: Scene, timestep: Fraction, duration: float) -> CellScen
             bodies[member] = _turned(placed, turn, position)
             as_written = quaternion_of((source or arrangement.body).orientation)
             written[member] = as_written if turn == IDENTITY else product(turn, as_written)
-    forces = tuple(_force(force, duration) for force in scene.forces)
 
     def turned(name: str, vector: Vector3) -> Vector3:
         """Return a vector of a body's frame as written in the frame of its principal axes."""
         before, after = written[name], bodies[name].orientation
         return vector if before == after else to_body(after, to_world(before, vector))
 
+    forces = tuple(_force(force, duration, turned) for force in scene.forces)
     by_effect = {key.name: key.resolve(getattr(scene, key.name), turned) for key in SCENE_KEYS}
     resolved: CellScene = CellScene.of(gravity=gravity, bodies=bodies, forces=forces, **by_effect)
     return resolved
@@ -156,6 +156,8 @@ def _matter(body: Body | ArrangedBody, scene: Scene) -> dict[str, Any]:
     }
 
 
-def _force(force: Force, duration: float) -> CellForce:
+def _force(force: Force, duration: float, turned: TurnOf) -> CellForce:
     written = force.model_dump(by_alias=True, exclude_none=True)
+    for key in ("point", "force", "torque") if force.frame == "body" else ("point",):
+        written[key] = turned(force.body, written[key])
     return CellForce.model_validate({"to": duration} | written)
