@@ -20,7 +20,7 @@ AT_WORK = {
         *("drag", "kinematic", "torsional_friction", "rolling_friction", "surface_velocity"),
         "cohesion",
     ),
-    "effects/pile.yaml": ("broad_phase", "fast_bodies"),
+    "effects/pile.yaml": ("broad_phase", "fast_bodies", "packed_sweeps"),
     "effects/sphere.yaml": ("frictionless_contact", "restitution"),
     "effects/spring.yaml": ("spring",),
     "effects/stack.yaml": (
