@@ -135,7 +135,7 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
         counters.projection_sweeps = 0
         if projects and lasts:
             counters.projection_sweeps = project_positions(
-                contacts, order, count, velocities, state.pseudo, params
+                system, state.pseudo, workspace.solver, params
             )
         if centred:
             if midway:

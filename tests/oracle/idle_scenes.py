@@ -202,6 +202,7 @@ CASES: dict[str, tuple[str, ...]] = {
     "warm_start": ("cold balls",),
     "newton": ("single ball",),
     "least_norm": ("single ball",),
+    "packed_sweeps": ("adaptive balls",),
     "projection": ("balls",),
     "sleeping": ("frictional balls",),
     "step_log": ("balls",),

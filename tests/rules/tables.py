@@ -37,6 +37,7 @@ SECTIONS = {
     "torques-at-a-contact": ("torsional_friction", "rolling_friction"),
     "warm-start": ("warm_start",),
     "newtons-method": ("newton",),
+    "packed-sweeps": ("packed_sweeps",),
     "undetermined-forces": ("least_norm",),
     "projection": ("projection",),
     "integrate": ("rotation", "gyroscopic", "midpoint"),

@@ -21,7 +21,7 @@ AT_WORK = {
         "cohesion",
     ),
     "effects/falling_restitution.yaml": ("falling_restitution",),
-    "effects/pile.yaml": ("broad_phase", "fast_bodies"),
+    "effects/pile.yaml": ("broad_phase", "fast_bodies", "packed_sweeps"),
     "effects/sphere.yaml": ("frictionless_contact", "restitution"),
     "effects/prescribed_motion.yaml": ("prescribed_motion",),
     "effects/spring.yaml": ("spring",),

@@ -145,6 +145,7 @@ ASKED = {
     "a part of one solver": {
         "newton": ("effects/least_norm", "solvers/adaptive"),
         "least_norm": ("solvers/adaptive", "scene/plan"),
+        "packed_sweeps": ("solvers/packed/late",),
     },
 }
 

@@ -51,6 +51,7 @@ NAMES: Final = (
     "contact_spring",
     "warm_start",
     "newton",
+    "packed_sweeps",
     "least_norm",
     "projection",
     "sleeping",

@@ -67,6 +67,8 @@ class Facts(NamedTuple):
     compliance_law: str = "regularised"
     undetermined_forces: str = "as_solved"
     friction_cone: str = "disc"
+    order: str = "coloured"  # of contacts in a sweep
+    over_relaxation: float = 1.0
     solver: str = "adaptive"
     sleeping: bool = False
     events: bool = False  # something is changed during the run

@@ -12,6 +12,8 @@ and dropped.
 With every target at zero the solution is u = 0, and the pass ends before it begins.
 """
 
+from typing import Any
+
 from .decision import Decision, Facts
 from .effect import Effect, Fields, Hooks, kernel
 
@@ -24,18 +26,23 @@ def decide(facts: Facts) -> Decision:
 
 
 def make(spec):
-    """Return `kernel(contacts, order, count, velocities, pseudo, params) -> sweeps spent`."""
-    from ..contact import make_apply_impulse, make_normal_velocity
+    """Return `kernel(system, pseudo, workspace, params) -> sweeps made`."""
+    from ..contact import make_normal_velocity
     from ..row_terms import row_terms
+    from ..solvers.packed.apart import make_push_apart
+    from ..solvers.packed.late import FEWEST_CONTACTS, packs_late
 
     normal_velocity = make_normal_velocity(spec)
-    apply_impulse = make_apply_impulse(spec)
+    packs = packs_late(spec)
+    push_apart = _make_push_apart(spec)
+    push_apart_packed: Any = make_push_apart(spec) if packs else None
     torque = row_terms(spec).levers
     friction, midpoint = row_terms(spec).frictional, spec.has("midpoint")
     centred, springs = spec.has("contact_midpoint"), spec.has("contact_spring")
     controlled = spec.has("error_control")
 
-    def project_positions(contacts, order, count, velocities, pseudo, params):
+    def project_positions(system, pseudo, workspace, params):
+        contacts, count, velocities = system.contacts, system.count, system.velocities
         share, asked = params.projection, False
         if controlled:
             share *= params.dt / params.timestep
@@ -57,9 +64,8 @@ def make(spec):
             contact.inv_k_n = 1.0 / contact.k_n
             if contact.correction > 0.0:
                 asked = True
-        sweeps = 0
         if not asked:
-            return sweeps
+            return 0
         for i in range(pseudo.shape[0]):
             u = pseudo[i]
             u.vx, u.vy, u.vz = 0.0, 0.0, 0.0
@@ -69,9 +75,27 @@ def make(spec):
                 v = velocities[i]
                 u.jxx, u.jxy, u.jxz = v.jxx, v.jxy, v.jxz
                 u.jyy, u.jyz, u.jzz = v.jyy, v.jyz, v.jzz
-        for _ in range(params.projection_sweeps):
+        if packs:
+            if count >= FEWEST_CONTACTS:
+                packed = workspace.packed
+                return push_apart_packed(system, packed, pseudo, params.projection_sweeps)
+        return push_apart(system, pseudo, params.projection_sweeps)
+
+    return kernel(project_positions, spec)
+
+
+def _make_push_apart(spec):
+    """Return `kernel(system, pseudo, sweeps) -> sweeps made`, over the records of contacts."""
+    from ..contact import make_apply_impulse, make_normal_velocity
+
+    normal_velocity, apply_impulse = make_normal_velocity(spec), make_apply_impulse(spec)
+
+    def push_apart(system, pseudo, sweeps):
+        contacts, order = system.contacts, system.order
+        made = 0
+        for _ in range(sweeps):
             changed = False
-            for c in range(count):
+            for c in range(system.count):
                 contact = contacts[order[c]]
                 ua, ub = pseudo[contact.a], pseudo[contact.b]
                 missing = contact.correction - normal_velocity(contact, ua, ub)
@@ -81,12 +105,12 @@ def make(spec):
                 apply_impulse(contact, ua, ub, change)
                 if change != 0.0:
                     changed = True
-            sweeps += 1
+            made += 1
             if not changed:  # nor would anything in the sweeps that are left
                 break
-        return sweeps
+        return made
 
-    return kernel(project_positions, spec)
+    return kernel(push_apart, spec)
 
 
 EFFECT = Effect(

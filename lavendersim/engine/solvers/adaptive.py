@@ -26,7 +26,9 @@ from ..residual import make_residual
 from ..spec import Spec
 from .iteration import Iteration
 from .newton.envelope import allocate_envelope
-from .newton.method import make_newton
+from .newton.method import FEWEST_STEPS, MOST_STEPS, make_newton, step_cost
+from .packed.late import FIRST, Packing, make_sweep_late, packs_late
+from .packed.layout import PackedContacts, allocate_packed
 from .solver import Solver, no_workspace
 from .sweep import make_sweep
 
@@ -46,30 +48,46 @@ SHARPNESS = 0.01
 MOST_ENTRIES = 4_000_000
 
 
+class Swept(NamedTuple):
+    """What sweeps work in where no solve is finished by Newton's method."""
+
+    packed: PackedContacts
+
+
 def allocate(spec: Spec, bodies: int, contacts: int) -> Any:
     """Return the arrays this solver works in."""
-    if not spec.has("newton"):
-        return no_workspace(spec, bodies, contacts)
-    rows = 6 * bodies
-    return allocate_envelope(bodies, contacts, min(rows * (rows + 1) // 2, MOST_ENTRIES))
+    packed = allocate_packed(bodies, contacts, eight=True) if packs_late(spec) else None
+    if spec.has("newton"):
+        rows = 6 * bodies
+        entries = min(rows * (rows + 1) // 2, MOST_ENTRIES)
+        return allocate_envelope(bodies, contacts, entries, () if packed is None else packed)
+    return no_workspace(spec, bodies, contacts) if packed is None else Swept(packed)
 
 
 class Adaption(NamedTuple):
     """What the choice between sweeps and Newton's method carries, see `iteration.Carry`."""
 
     aim: float
+    packing: Packing
     sweeps: int  # made
     greatest: float  # change of the last sweep [m/s]
     earlier: float  # the same at the last look; 0: there was none [m/s]
     look: int  # sweeps made at the next look at how fast they converge
     pause: int  # sweeps between two of them
     sticking_guess: bool  # see `newton.method`
+    unknowns: int  # bodies of Newton's method; -1: not laid out in this solve
+    cost: float  # of a step [multiplications]
 
 
 def make(spec: Spec) -> Iteration:
     """Return the sweeps, and Newton's method between them."""
-    sweep = make_sweep(spec)
-    chooses = spec.has("least_norm")
+    packs, chooses = packs_late(spec), spec.has("least_norm")
+    put_back: Any = None
+    sweep: Any = None
+    if packs:
+        sweep, put_back = make_sweep_late(spec)
+    else:
+        sweep = make_sweep(spec)
 
     def prepare(system, workspace, params, counters):
         # None is a number below 0, whose logarithm would be no number of sweeps.
@@ -77,33 +95,45 @@ def make(spec: Spec) -> Iteration:
         if counters.sharpen == 1:
             aim *= SHARPNESS
         counters.sharpen = 0
-        return Adaption(aim, 0, 0.0, 0.0, LOOK, LOOK, True)
+        return Adaption(aim, Packing(FIRST, 0), 0, 0.0, 0.0, LOOK, LOOK, True, -1, 0.0)
 
     def sweep_and_count(system, workspace, params, counters, carry):
-        greatest = sweep(system, params)
+        packing = carry.packing
+        if packs:
+            greatest, packing = sweep(system, workspace.packed, params, packing)
+        else:
+            greatest = sweep(system, params)
         if chooses:
             counters.unchosen += greatest
-        made = carry.sweeps + 1
         return greatest, Adaption(
-            carry.aim, made, greatest, carry.earlier, carry.look, carry.pause, carry.sticking_guess
-        )
+            carry.aim, packing, carry.sweeps + 1, greatest, carry.earlier, carry.look,
+            carry.pause, carry.sticking_guess, carry.unknowns, carry.cost,
+        )  # fmt: skip
+
+    def finish(system, workspace, carry):
+        put_back(system, workspace.packed, carry.packing)
 
     return Iteration(
         kernel(sweep_and_count, spec),
         prepare=kernel(prepare, spec),
-        proceed=_make_proceed(spec) if spec.has("newton") else None,
+        proceed=_make_proceed(spec, put_back) if spec.has("newton") else None,
+        finish=kernel(finish, spec) if packs else None,
     )
 
 
-def _make_proceed(spec: Spec) -> Any:
+def _make_proceed(spec: Spec, put_back: Any) -> Any:
     newton, residual, chooses = make_newton(spec), make_residual(spec), spec.has("least_norm")
+    packs = put_back is not None
 
     def proceed(system, workspace, params, counters, carry):
         tolerance = max(params.tolerance, 0.0)
-        sweeps, greatest, aim = carry.sweeps, carry.greatest, carry.aim
+        sweeps, greatest, aim, packing = carry.sweeps, carry.greatest, carry.aim, carry.packing
         pause, sticking_guess = carry.pause, carry.sticking_guess
+        unknowns, cost = carry.unknowns, carry.cost
         ends = False
         if sweeps == params.sweeps - LAST and sweeps > LOOK:
+            if packs:
+                put_back(system, workspace.packed, packing)
             largest, _ = residual(system.contacts, system.count, system.velocities)
             ends = not largest <= tolerance
         if sweeps < carry.look and not ends:
@@ -117,19 +147,27 @@ def _make_proceed(spec: Spec) -> Any:
                 needed = min(log(aim / greatest) / rate, MOST_SWEEPS)
             if sweeps + needed > params.sweeps:
                 needed = max(needed, WORTH)
-            allowance = VISIT * system.count * needed
-            steps, sticking_guess = newton(
-                system, workspace, SHARPNESS * tolerance, allowance, sticking_guess
-            )
-            counters.newton_steps += steps
-            if steps > 0:
-                if chooses:
-                    counters.unchosen = inf
-                counters.sharpen = 1
-                aim = tolerance
-                # Where this was not the last call, sweeps must prepare the next one.
-                greatest, pause = 0.0, 4 * pause
-        return Adaption(aim, sweeps, greatest, greatest, look, pause, sticking_guess)
+            if unknowns < 0:
+                unknowns, cost = step_cost(system, workspace)
+            most = min(float(MOST_STEPS), VISIT * system.count * needed / cost)
+            if most >= FEWEST_STEPS:
+                if packs:
+                    put_back(system, workspace.packed, packing)
+                    packing = Packing(FIRST, 0)  # few sweeps follow
+                steps, sticking_guess = newton(
+                    system, workspace, unknowns, most, SHARPNESS * tolerance, sticking_guess
+                )
+                counters.newton_steps += steps
+                if steps > 0:
+                    if chooses:
+                        counters.unchosen = inf
+                    counters.sharpen = 1
+                    aim = tolerance
+                    # Where this was not the last call, sweeps must prepare the next one.
+                    greatest, pause = 0.0, 4 * pause
+        return Adaption(
+            aim, packing, sweeps, greatest, greatest, look, pause, sticking_guess, unknowns, cost
+        )
 
     return kernel(proceed, spec)
 

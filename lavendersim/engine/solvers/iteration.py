@@ -37,8 +37,8 @@ class Iteration(NamedTuple):
     prepare: kernel(system, workspace, params, counters) -> carry; None: a `Carry`.
     proceed: kernel(system, workspace, params, counters, carry) -> carry, after every sweep that
         did not end the solve, the last one too; None: nothing.
-    finish: kernel(system, workspace), before the residual is measured; None: the sweeps keep
-        impulses in the records of contacts, and the velocities consistent with them.
+    finish: kernel(system, workspace, carry), before the residual is measured; None: the sweeps
+        keep impulses in the records of contacts, and the velocities consistent with them.
     look_every: sweeps between two looks at the residual, one at the start included; 0: only the
         sweeps' changes say when. Methods whose changes may be small far from the solution need it.
     """
@@ -84,7 +84,7 @@ def make_solve(spec: Spec, name: str, iteration: Iteration) -> Any:
             measured = look or record_residuals
             if measured:
                 if finishes:
-                    finish(system, workspace)
+                    finish(system, workspace, carry)
                 largest, worst = residual(contacts, count, velocities)
             if record_residuals:
                 record_residual(params, counters, residual_rows, sweeps, largest)
@@ -96,7 +96,7 @@ def make_solve(spec: Spec, name: str, iteration: Iteration) -> Any:
                     measured = False
         if not measured:
             if finishes:
-                finish(system, workspace)
+                finish(system, workspace, carry)
             largest, worst = residual(contacts, count, velocities)
         report(params, counters, sweeps, largest, worst)
 

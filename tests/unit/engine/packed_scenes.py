@@ -58,6 +58,7 @@ SCENES = {
     "tower": lambda: _towers(1, 0.0),
     "towers": lambda: _towers(4, 2.0),
     "mixed": _mixed,
+    "many towers": lambda: _towers(14, 2.0),
 }
 
 

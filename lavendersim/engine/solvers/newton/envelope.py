@@ -8,7 +8,7 @@ tower's are two bodies long, a pyramid's as long as its base.
 
 from __future__ import annotations
 
-from typing import Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 
@@ -42,9 +42,10 @@ class Envelope(NamedTuple):
     change: np.ndarray  # (6 bodies,) of the velocities in this round: v - v^k
     mass: np.ndarray  # (bodies,) MASS, by position
     rows: np.ndarray  # (9, 6) rows n, t1, t2 of one contact: body A's, body B's, and scaled
+    packed: Any = ()  # what sweeps between two calls work in, where they pack contacts
 
 
-def allocate_envelope(bodies: int, contacts: int, capacity: int) -> Envelope:
+def allocate_envelope(bodies: int, contacts: int, capacity: int, packed: Any = ()) -> Envelope:
     """Return the arrays for so many bodies, contacts and matrix entries."""
     rows = DOF * bodies
     return Envelope(
@@ -61,6 +62,7 @@ def allocate_envelope(bodies: int, contacts: int, capacity: int) -> Envelope:
         np.zeros(rows),
         np.zeros(bodies, dtype(MASS)),
         np.zeros((9, DOF)),
+        packed,
     )
 
 

@@ -16,10 +16,10 @@ change their minds at a time, and stiffen.
 
 from __future__ import annotations
 
-from math import sqrt
+from math import inf, sqrt
 from typing import Any
 
-from ...compile import kernel
+from ...compile import inner, kernel
 from ...contact import make_apply_block
 from ...residual import make_residual
 from ...row_terms import row_terms
@@ -122,12 +122,25 @@ def make_keep(spec: Spec):
     return kernel(keep, spec)
 
 
-def make_newton(spec: Spec):
-    """Return `kernel(system, workspace, tolerance, allowance, sticking_guess)`.
+@inner
+def step_cost(system, workspace):
+    """Return (unknown bodies, multiplications of a step), infinite for what the arrays cannot hold.
 
-    It returns the number of steps, none when the system is larger than its arrays and no more than
-    fit into `allowance` multiplications, and whether the sticking guess, that all contacts are at
-    rest, still holds. Impulses, torques and velocities leave consistent with each other.
+    What it lays out in the workspace is what `make_newton`'s kernel begins with. No impulse is
+    read: it holds for a whole solve.
+    """
+    size, entries, work = lay_out(system.contacts, system.count, workspace)
+    if size == 0 or entries > workspace.values.shape[0]:
+        return size, inf
+    return size, float(work + ASSEMBLY * system.count)
+
+
+def make_newton(spec: Spec):
+    """Return `kernel(system, workspace, size, most, tolerance, sticking_guess)`.
+
+    size: of `step_cost`; most: steps. It returns the number of steps made and whether the sticking
+    guess, that all contacts are at rest, still holds. Impulses, torques and velocities leave
+    consistent with each other.
     """
     residual, start = make_residual(spec), make_start(spec)
     assemble_mass, minimise = make_assemble_mass(spec), make_minimise(spec)
@@ -138,16 +151,8 @@ def make_newton(spec: Spec):
     begin, kept = kernel(begin_rounds, spec), kernel(is_kept, spec)
     go_on, go_softer = kernel(after_kept, spec), kernel(after_failed, spec)
 
-    def newton(system, workspace, tolerance, allowance, sticking_guess):
+    def newton(system, workspace, size, most, tolerance, sticking_guess):
         contacts, count, velocities = system.contacts, system.count, system.velocities
-        size, entries, work = lay_out(contacts, count, workspace)
-        if size == 0:
-            return 0, sticking_guess
-        if entries > workspace.values.shape[0]:
-            return 0, sticking_guess
-        most = min(float(MOST_STEPS), allowance / (work + ASSEMBLY * count))
-        if most < FEWEST_STEPS:
-            return 0, sticking_guess
         assemble_mass(system.bodies, size, workspace)
         # A gain of dI^2 softness k / 2 is what an impulse dI off the minimum costs.
         lightest = 1.0 / contacts[0].k_n

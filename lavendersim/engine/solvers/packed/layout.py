@@ -81,13 +81,14 @@ def _lines(numbers: int) -> np.ndarray:
     return padded[begin : begin + numbers]
 
 
-def make_place(spec: Spec, eight: bool) -> Any:
-    """Return `kernel(slot) -> where its fields begin in the rows`."""
+def make_place(spec: Spec, eight: bool, fields: int) -> Any:
+    """Return `kernel(slot) -> where its fields begin in the rows`, of so many fields each."""
+    alone, group = -(-fields // LINE) * LINE, fields * WIDTH
 
     def place_alone(slot):
-        return slot * ALONE
+        return slot * alone
 
     def place_in_group(slot):
-        return slot // WIDTH * GROUP + slot % WIDTH
+        return slot // WIDTH * group + slot % WIDTH
 
     return kernel(place_in_group if eight else place_alone, spec)

@@ -57,8 +57,8 @@ def _factorise(v, factor):
     factor.zx, factor.zy, factor.zz = zx, zy, zz
 
 
-def _make_put_geometry(spec: Spec, eight: bool) -> Any:
-    """Return kernels that write axes, and one side of the turns."""
+def make_put_geometry(spec: Spec, eight: bool) -> Any:
+    """Return kernels that write an axis, a turn of a body, and one side of the turns."""
     step = WIDTH if eight else 1
 
     def put_axis(rows, at, x, y, z):
@@ -97,7 +97,7 @@ def _make_pack_contact(spec: Spec, eight: bool) -> Any:
     terms = row_terms(spec)
     compliant, frictionless = terms.compliant, terms.frictionless
     slip_velocity = make_slip_velocity(spec)
-    put_axis, put_turn, put_turns = _make_put_geometry(spec, eight)
+    put_axis, put_turn, put_turns = make_put_geometry(spec, eight)
     step = WIDTH if eight else 1
 
     def put(rows, at, field, value):
@@ -171,13 +171,21 @@ def _make_pack_bodies(spec: Spec) -> Any:
 
 def make_pack(spec: Spec, eight: bool) -> Any:
     """Return `kernel(system, packed) -> slots`."""
-    pack_bodies, pack_contact = _make_pack_bodies(spec), _make_pack_contact(spec, eight)
-    place = make_place(spec, eight)
+    return make_pack_rows(spec, eight, _make_pack_contact(spec, eight), FIELDS)
+
+
+def make_pack_rows(spec: Spec, eight: bool, pack_contact: Any, fields: int) -> Any:
+    """Return `kernel(system, packed) -> slots`, for rows of so many fields.
+
+    pack_contact: kernel(contact, velocities, rows, at, factor), writes the fields of one.
+    """
+    pack_bodies = _make_pack_bodies(spec)
+    place = make_place(spec, eight, fields)
 
     def fill(packed, begin, end, spare):
         for slot in range(begin, end):
             at = place(slot)
-            for field in range(FIELDS):
+            for field in range(fields):
                 put_one(packed.rows, at + field * WIDTH, 0.0)
             packed.first[slot], packed.second[slot] = spare, spare
 
@@ -219,16 +227,25 @@ def make_unpack(spec: Spec, eight: bool) -> Any:
 
     Impulses and velocities of the records; what is packed stays as it is.
     """
-    place, step = make_place(spec, eight), WIDTH if eight else 1
+    place, step = make_place(spec, eight, FIELDS), WIDTH if eight else 1
+    unpack_bodies = make_unpack_bodies(spec)
 
     def unpack(system, packed):
-        contacts, order, bodies = system.contacts, system.order, system.bodies
-        velocities = system.velocities
+        contacts, order = system.contacts, system.order
         for k in range(system.count):
             contact, at = contacts[order[k]], place(packed.slot[k])
             contact.lambda_n = take_one(packed.rows, at + LAMBDA_N * step)
             contact.lambda_1 = take_one(packed.rows, at + LAMBDA_1 * step)
             contact.lambda_2 = take_one(packed.rows, at + LAMBDA_2 * step)
+        unpack_bodies(system.bodies, system.velocities, packed)
+
+    return kernel(unpack, spec)
+
+
+def make_unpack_bodies(spec: Spec) -> Any:
+    """Return `kernel(bodies, velocities, packed)`: velocities of what moves."""
+
+    def unpack_bodies(bodies, velocities, packed):
         for i in range(bodies.shape[0]):
             if bodies[i].inv_m > 0.0:
                 v, at, start, own = velocities[i], i * STRIDE, packed.start[i], packed.factor[i]
@@ -242,4 +259,4 @@ def make_unpack(spec: Spec, eight: bool) -> Any:
                 v.wy = start.wy + own.yx * x + own.yy * y
                 v.wz = start.wz + own.zx * x + own.zy * y + own.zz * z
 
-    return kernel(unpack, spec)
+    return kernel(unpack_bodies, spec)

@@ -16,6 +16,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from ...compile import kernel
+from ...effects import made_once
 from ...row_terms import row_terms
 from ...spec import Spec
 from ...spin_block import resists_turning
@@ -78,7 +79,14 @@ def can_pack(spec: Spec) -> bool:
     """Whether contacts of this engine are blocks of a normal and a disc, and nothing else."""
     frictional = row_terms(spec).frictional and not resists_turning(spec)
     plain = not spec.over_relaxation and spec.order != "symmetric"
-    return frictional and plain and spec.friction_cone == "disc" and spec.operator == "bodies"
+    captured_once = not made_once(spec, "recapture")[0]
+    return (
+        frictional
+        and plain
+        and captured_once
+        and spec.friction_cone == "disc"
+        and spec.operator == "bodies"
+    )
 
 
 def _make_visit(spec: Spec, eight: bool) -> Any:
@@ -200,4 +208,9 @@ def make_packed_iteration(spec: Spec, eight: bool) -> Iteration:
     def sweep_packed(system, workspace, params, counters, carry):
         return sweep(workspace, carry.slots), carry
 
-    return Iteration(kernel(sweep_packed, spec), prepare=kernel(prepare, spec), finish=unpack)
+    def finish(system, workspace, carry):
+        unpack(system, workspace)
+
+    return Iteration(
+        kernel(sweep_packed, spec), prepare=kernel(prepare, spec), finish=kernel(finish, spec)
+    )

@@ -134,7 +134,7 @@ def test_impulses_are_back_in_their_records_before_the_residual_is_measured() ->
             workspace[0] += change
             return change, carry
 
-        def bring_back(system, workspace):
+        def bring_back(system, workspace, carry):
             contact = system.contacts[0]
             contact.w_n += workspace[0] - contact.lambda_n
             contact.lambda_n = workspace[0]

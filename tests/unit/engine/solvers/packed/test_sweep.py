@@ -173,6 +173,7 @@ def test_contacts_that_are_no_such_blocks_are_swept_as_records(solver: str) -> N
     for spec in (
         BLOCKS.including("torsional_friction"),
         BLOCKS.including("rolling_friction"),
+        BLOCKS.including("capture_in_sweeps"),
         BLOCKS.without("friction", "surface_velocity"),
         BLOCKS._replace(friction_cone="pyramid"),
         BLOCKS._replace(friction_cone="convex"),
