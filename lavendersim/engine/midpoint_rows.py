@@ -14,11 +14,11 @@ from .block import make_relative_velocity
 from .collide.manifold.point import manifold_normal
 from .collide.narrow_phase import make_manifold
 from .collide.records import UNBOUNDED, put_normal
-from .compile import kernel
+from .compile import inner, kernel
 from .contact import make_normal_velocity
 from .effects import made_once
 from .effects.gyroscopic import make_turn_midway
-from .records import PLANE, TOUCHING
+from .records import BOX, HULL, PLANE, TOUCHING
 from .rotation import half_turn, is_round
 from .row_terms import row_terms
 from .spec import Spec
@@ -36,6 +36,8 @@ FORCED, TURNED = 0.05, 0.5
 AJAR = 0.25
 # Contacts are looked for at the middle up to this share of a body's size apart.
 APART = 0.1
+# Least cosine of a contact's normal at the middle and at the start, if its feature is another.
+AGREES = 0.5
 # It slides throughout when the slip is so many times its change.
 SLIDES = 2.0
 
@@ -188,15 +190,45 @@ def make_stand_midway(spec: Spec) -> Any:
     return kernel(stand_midway, spec)
 
 
+@inner
+def has_flat_faces(body):
+    """Whether all its faces are flat: what is round leaves a face along that face's plane."""
+    return body.shape == BOX or body.shape == HULL
+
+
+def make_nearest(spec: Spec) -> Any:
+    """Return `kernel(contact, manifold, found) -> index` of the point nearest to a contact's place.
+
+    contact: as it was at the start. -1: the normal has turned away.
+    """
+
+    def nearest(contact, manifold, found):
+        best, least = -1, UNBOUNDED
+        n = manifold_normal(manifold)
+        if contact.at_nx * n[0] + contact.at_ny * n[1] + contact.at_nz * n[2] < AGREES:
+            return best
+        for k in range(found):
+            point = manifold.points[k]
+            dx, dy, dz = point.x - contact.at_x, point.y - contact.at_y, point.z - contact.at_z
+            squared = dx * dx + dy * dy + dz * dz
+            if squared < least:
+                best, least = k, squared
+        return best
+
+    return kernel(nearest, spec)
+
+
 def make_look(spec: Spec) -> Any:
     """Return `kernel(state, count, poses, workspace)`: contacts as they are where bodies stand.
 
-    A point that the manifold no longer has stays on its two bodies: see `stay`.
+    Flat faces that turn pass from face on face to edge on face: of a pair of them that has none of
+    its features any more each contact is at the nearest new one. Any other point that the manifold
+    no longer has stays on its two bodies: see `stay`.
     """
     manifold = make_manifold(spec, spec.shape_pairs)
     compound, place_parts = made_once(spec, "place_parts")
     swept, stay = spec.has("fast_bodies"), make_stay(spec)
-    ordered = spec.has("impact_order")
+    ordered, nearest = spec.has("impact_order"), make_nearest(spec)
 
     def look(state, count, poses, workspace):
         bodies, contacts = state.bodies, state.contacts
@@ -222,6 +254,10 @@ def make_look(spec: Spec) -> Any:
             found = 0
             if not passes_on:  # beyond a seam is another's face, not its edge
                 found = manifold(row.kind, a, b, margin + APART * size, scratch)
+            persists, flat = False, has_flat_faces(a) and has_flat_faces(b)
+            for c in range(first, last):
+                for k in range(found):
+                    persists = persists or points[k].feature == contacts[c].feature
             for c in range(first, last):
                 contact = contacts[c]
                 stay(contact, bodies, poses)
@@ -229,8 +265,8 @@ def make_look(spec: Spec) -> Any:
                 for k in range(found):
                     if points[k].feature == contact.feature:
                         best = k
-                if best < 0 and found == 1 and last == first + 1:
-                    best = 0
+                if flat and found > 0 and not persists:
+                    best = nearest(contact, scratch.manifold, found)
                 if best >= 0:
                     point = points[best]
                     contact.x, contact.y, contact.z = point.x, point.y, point.z
