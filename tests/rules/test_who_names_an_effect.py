@@ -99,7 +99,7 @@ ASKED = {
         ),
         "impact_time": (
             *("contact", "effects/cohesion", "effects/restitution", "effects/speculative"),
-            *("integrate", "midpoint_passes"),
+            *("effects/projection", "integrate", "midpoint_passes"),
         ),
         "impact_order": (
             *("effects/impact_time", "memory", "midpoint_geometry", "parts", "respond"),
