@@ -102,10 +102,12 @@ ASKED = {
             *("effects/projection", "integrate", "midpoint_passes"),
         ),
         "impact_order": (
-            *("effects/impact_time", "memory", "midpoint_geometry", "parts", "respond"),
-            "runner/log_size",
+            *("effects/impact_time", "effects/warm_start", "memory", "midpoint_geometry", "parts"),
+            *("respond", "runner/log_size"),
         ),
-        "error_control": ("effects/projection", "parts", "step", "step_doubling"),
+        "error_control": (
+            *("effects/projection", "effects/warm_start", "parts", "step", "step_doubling"),
+        ),
         "speculative": (
             *("collide/narrow_phase", "collide/pairs/box_box", "effects/contact_log"),
             "integrate",
