@@ -9,7 +9,7 @@ not meet. The directions looked at are the normals of what the body rests on:
 
 A step higher than that is met. Tiles that a fast body is still far from as the part begins are
 looked at likewise, whatever their gap does first: it is about to pass on to them, and at the middle
-of the step the edge of what it lies on (`midpoint_rows.make_look`) is not what carries it.
+of the step the edge of what it lies on (`midpoint_geometry.make_look`) is not what carries it.
 """
 
 from __future__ import annotations

@@ -12,17 +12,19 @@ from typing import Any
 from .compile import kernel
 from .contact import make_apply_start
 from .effects import made_once
+from .midpoint_geometry import (
+    make_keep_start,
+    make_look,
+    make_stand_midway,
+    make_stay,
+    make_take_kept,
+)
 from .midpoint_rows import (
     SAME,
     make_begin_slip,
     make_is_turning,
-    make_keep_start,
     make_lasting,
-    make_look,
     make_shift,
-    make_stand_midway,
-    make_stay,
-    make_take_kept,
     make_widen,
 )
 from .parts import make_forget_history

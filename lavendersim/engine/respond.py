@@ -4,6 +4,7 @@ append       each contact: frame, effective mass, what is captured once
 warm start   impulses of contacts that persist
 solve        velocities, and where impacts gained energy, once more
 log          the trace rows of contacts
+classify     how bodies move through the step: free, carried or in an impact
 project      pseudo-velocities that move poses out of what still penetrates
 """
 
@@ -15,7 +16,7 @@ from . import ordering
 from .compile import chain, kernel
 from .contact import make_append_contact, make_apply_start
 from .effects import made_by, made_once
-from .integrate import make_classify
+from .integrate import keeps_motion, make_classify
 from .midpoint_passes import make_midpoint_passes, make_stand_up
 from .midpoint_rows import make_lasting, make_stirs
 from .records import INSTANT
@@ -54,7 +55,8 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
     _, store_contacts = made_once(spec, "store")
     apply_start: Any = make_apply_start(spec) if warms else None
     watched, note = made_once(spec, "note_slip")
-    classify: Any = make_classify(spec) if watched else None
+    keeps = keeps_motion(spec)
+    classify: Any = make_classify(spec) if watched or keeps else None
     _, settle = made_once(spec, "limit_impacts", solve, classify)
     projects, project_positions = made_once(spec, "project")
     stores, contact_energy = made_once(spec, "contact_energy")
@@ -132,10 +134,12 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
             log_contacts(contacts, count, velocities, params, counters, log)
         if warms and lasts:
             store_contacts(contacts, count, bodies, cache, counters, params)
+        if keeps:
+            classify(contacts, count, motion, params)
         counters.projection_sweeps = 0
         if projects and lasts:
             counters.projection_sweeps = project_positions(
-                system, state.pseudo, workspace.solver, params
+                system, motion, state.pseudo, workspace.solver, params
             )
         if centred:
             if midway:
@@ -145,15 +149,18 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
 
 
 def make_pass_by(spec: Spec, log_contacts: Any) -> Any:
-    """Return `kernel(contacts, velocities, params, counters, log)`: the same for no contact."""
-    logs = spec.has("contact_log")
+    """Return `kernel(contacts, velocities, motion, params, counters, log)`: for no contact."""
+    logs, keeps = spec.has("contact_log"), keeps_motion(spec)
+    classify: Any = make_classify(spec) if keeps else None
 
-    def pass_by(contacts, velocities, params, counters, log):
+    def pass_by(contacts, velocities, motion, params, counters, log):
         counters.sweeps, counters.projection_sweeps = 0, 0
         counters.residual, counters.residual_contact = 0.0, -1
         counters.not_converged, counters.stronge, counters.sharpen = 0, 0, 0
         counters.cached, counters.contact_energy = 0, 0.0
         if logs:
             log_contacts(contacts, 0, velocities, params, counters, log)
+        if keeps:
+            classify(contacts, 0, motion, params)
 
     return kernel(pass_by, spec)

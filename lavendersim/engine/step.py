@@ -23,7 +23,6 @@ from .effects import BY_NAME, has_hook, made_by, made_once
 from .integrate import (
     keeps_motion,
     make_begin,
-    make_classify,
     make_finish,
     make_integrate,
     make_stand,
@@ -77,7 +76,6 @@ def make_advance(spec: Spec) -> Any:
     # With residuals recorded a step without contacts has its history, too.
     passes = touches and not record_residuals
     pass_by: Any = make_pass_by(spec, log_contacts) if passes else None
-    classify: Any = make_classify(spec) if keeps and touches else None
     integrate = make_integrate(spec)
     linked, act_between = made_once(spec, "act_between")
     _, log_links = made_once(spec, "link_row")
@@ -219,7 +217,7 @@ def make_advance(spec: Spec) -> Any:
                 passed = False
                 if passes:
                     if count == 0:
-                        pass_by(contacts, velocities, params, counters, log)
+                        pass_by(contacts, velocities, motion, params, counters, log)
                         passed = True
                 if not passed:
                     respond(state, count, workspace, params, counters, log)
@@ -229,8 +227,6 @@ def make_advance(spec: Spec) -> Any:
                     continue
             if ordered:
                 note_acceleration(bodies, velocities, motion, params)
-            if keeps and touches:
-                classify(contacts, count, motion, params)
             moved = counters.projection_sweeps > 0
             diverged, cause = integrate(bodies, velocities, motion, state.pseudo, moved, params.dt)
             if ends:

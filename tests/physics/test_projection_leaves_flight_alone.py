@@ -1,8 +1,13 @@
-"""A fall that ends just above the floor is flight: the projection has nothing to repair."""
+"""What flies, and reaches nothing, has nothing for the projection to repair.
+
+A fall that ends just above the floor; a ball hit late in a step, whose new velocity would
+take it into a wall in a whole step, and does not in the rest of this one.
+"""
 
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from physics_runs import GRAVITY, run_config
 
 # Gaps left after 6 steps of 1/60 s, about g dt^2/2 = 1.4 mm: with the new velocity alone the ball
@@ -29,3 +34,41 @@ def test_a_ball_just_above_the_floor_is_where_it_fell_to() -> None:
         heights = course.coordinates["height"] - 0.5 * GRAVITY * time**2
         # ten roundings of 2^-53 of a height of up to 0.2 m
         assert np.abs(course.height("ball") - heights).max() < 1e-15 * len(time)
+
+
+WAY = 1.0 / 60.0  # of a ball of 1 m/s in a step [m]
+AHEAD = 0.35 * WAY
+HIT = """\
+scene:
+  gravity: 0
+  surfaces: {elastic: {restitution: 1}}
+  bodies:
+    wall: {shape: {kind: plane, normal: [-1, 0, 0], offset: %r}, surface: elastic}
+    hit:
+      shape: {kind: sphere, radius: 0.1}
+      mass: 1.0
+      surface: elastic
+      position: [0, 0, 0]
+      velocity: [0, 1, 0]
+    striker:
+      shape: {kind: sphere, radius: 0.1}
+      mass: 1.0
+      surface: elastic
+      position: [%r, 0, 0]
+      velocity: [1, 1, 0]
+numerics: {timestep: 1/60, impacts: at_surface}
+duration: 1/60
+"""
+
+
+@pytest.mark.parametrize("share", [0.7, 0.9, 0.99])
+def test_a_ball_hit_late_in_a_step_is_not_pushed_off_the_wall_ahead(share: float) -> None:
+    """It is hit after `share` of the step, and takes over the speed of its equal along x.
+
+    Both move along the wall, so that the wall is looked at from the step's start.
+    """
+    (course,) = run_config(HIT % (-(AHEAD + 0.1), -(0.2 + share * WAY)))
+    hit, striker = (course.pose[-1, course.names.index(one), 0] for one in ("hit", "striker"))
+    # steps are solved to 1e-9 m/s, over a step
+    assert hit == pytest.approx((1.0 - share) * WAY, abs=1e-9 * WAY)
+    assert striker == pytest.approx(-0.2, abs=1e-9 * WAY)

@@ -81,11 +81,11 @@ ASKED = {
             *("effects/prescribed_motion", "effects/varying_force"),
             *("effects/impact_order", "effects/pose_log", "effects/sleeping", "effects/spring"),
             *("effects/step_log", "error_estimate", "foreseen_impacts", "impact_location"),
-            *("integrate", "midpoint_passes", "midpoint_rows", "solvers/newton/minimise"),
-            *("spring_midpoint", "step_doubling", "scene/events"),
+            *("integrate", "midpoint_geometry", "midpoint_passes", "midpoint_rows"),
+            *("solvers/newton/minimise", "spring_midpoint", "step_doubling", "scene/events"),
         ),
-        "gyroscopic": ("integrate", "midpoint_rows"),
-        "kinematic": ("effects/sleeping", "integrate", "midpoint_rows"),
+        "gyroscopic": ("integrate", "midpoint_geometry"),
+        "kinematic": ("effects/sleeping", "integrate", "midpoint_geometry"),
         "compound": (
             *("collide/broad/broad_phase", "collide/broad/fat_bounds", "collide/narrow_phase"),
             "impact_location",
@@ -103,20 +103,22 @@ ASKED = {
         ),
         "impact_time": (
             *("contact", "effects/cohesion", "effects/restitution", "effects/speculative"),
-            *("integrate", "midpoint_passes"),
+            *("effects/projection", "integrate", "midpoint_passes"),
         ),
         "impact_order": (
-            *("effects/impact_time", "memory", "midpoint_rows", "parts", "respond"),
-            "runner/log_size",
+            *("effects/impact_time", "effects/warm_start", "memory", "midpoint_geometry", "parts"),
+            *("respond", "runner/log_size"),
         ),
-        "error_control": ("effects/projection", "parts", "step", "step_doubling"),
+        "error_control": (
+            *("effects/projection", "effects/warm_start", "parts", "step", "step_doubling"),
+        ),
         "speculative": (
             *("collide/narrow_phase", "collide/pairs/box_box", "effects/contact_log"),
             "integrate",
         ),
         "fast_bodies": (
             *("block", "collide/narrow_phase", "collide/swept", "contact"),
-            *("effects/contact_midpoint", "midpoint_rows"),
+            *("effects/contact_midpoint", "midpoint_geometry", "midpoint_rows"),
         ),
         "contact_spring": (
             *("effects/impact_order", "effects/impact_time", "effects/pairwise_impacts"),

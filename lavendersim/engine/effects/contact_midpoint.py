@@ -2,7 +2,7 @@
 
     M (v_1 - v_0) = dt f + J(q_m)^T lambda,    J(q_m) (v_0 + v_1)/2 = 0
     x_1 = x_0 + dt (v_0 + v_1)/2
-q_m is the pose half way between the step's two ends, found by fixed point (`midpoint_rows`):
+q_m is the pose half way between the step's two ends, found by fixed point (`midpoint_geometry`):
 normal, contact point, levers and inertia are those of q_m. The scheme is symmetric in time, hence
 of order 2, and an ideal contact does no work in it: lambda . J(q_m) (v_0 + v_1)/2 = 0.
 A row asks this of v_1:

@@ -125,7 +125,7 @@ class Hooks:
     sweep_row: Maker | None = None  # (params, counters, rows, sweep, residual): after each sweep
     log_contacts: Maker | None = None  # made with (spec, kernels of contact_row); after the solve
     store: Maker | None = None  # (contacts, count, bodies, cache, counters, params)
-    project: Maker | None = None  # (system, pseudo, solver's workspace, params) -> sweeps
+    project: Maker | None = None  # (system, motion, pseudo, solver's workspace, params) -> sweeps
     turn: Maker | None = None  # (body, velocity, dt) -> whether the turn has a solution
     turn_uneven: Maker | None = None  # the same for unequal principal inertias
     add_spin: Maker | None = None  # (body, velocity, x, y, z, twice_spent): jump of spin

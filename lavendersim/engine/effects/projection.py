@@ -7,8 +7,9 @@ In substeps (`error_control`) the share is that of their length: what a step mov
 does not depend on their number.
 d_1 is the penetration after the velocity step, to first order. A pair that does not push moves by
 the mean of its old and new velocity where the integrator is `midpoint`, and v_n is that mean's: by
-the new one alone it would be moved out of an overlap that it never reaches. u is added to the poses
-and dropped.
+the new one alone it would be moved out of an overlap that it never reaches. So would a body with an
+impact within the step, which moves on its old velocity until then (`integrate`). u is added to the
+poses and dropped.
 With every target at zero the solution is u = 0, and the pass ends before it begins.
 """
 
@@ -25,8 +26,46 @@ def decide(facts: Facts) -> Decision:
     return Decision(False, "nothing can touch" if facts.projection > 0.0 else "projection is 0")
 
 
+def make_mean_rate(spec):
+    """Return `kernel(contact, va, vb, ma, mb, dt) -> v_n`, its mean where a body has an impact.
+
+    ma, mb: rows of `motion`, classified: each body's displacement is that of `integrate`.
+    """
+    from ..contact import make_normal_velocity
+    from ..integrate import AFTERWARDS
+
+    normal_velocity = make_normal_velocity(spec)
+
+    def flown(m, dt):
+        """Part of the velocity change by forces that its flight adds: see `integrate.displace`."""
+        rest = dt - m.tau
+        if m.carried == 0:
+            return 0.5 * (m.tau * m.tau - rest * rest) / (dt * dt)
+        if m.carried == AFTERWARDS:
+            return 0.5 * m.tau * m.tau / (dt * dt)
+        return 0.0
+
+    flown = kernel(flown, spec)
+
+    def mean_rate(contact, va, vb, ma, mb, dt):
+        v_n = normal_velocity(contact, va, vb)
+        mean, share_a, share_b = v_n, 0.0, 0.0
+        if ma.tau < dt:
+            mean += ma.tau / dt * (normal_velocity(contact, ma, vb) - v_n)
+            share_a = flown(ma, dt)
+        if mb.tau < dt:
+            mean += mb.tau / dt * (normal_velocity(contact, va, mb) - v_n)
+            share_b = flown(mb, dt)
+        x = share_b * mb.dvx - share_a * ma.dvx
+        y = share_b * mb.dvy - share_a * ma.dvy
+        z = share_b * mb.dvz - share_a * ma.dvz
+        return mean + contact.nx * x + contact.ny * y + contact.nz * z
+
+    return kernel(mean_rate, spec)
+
+
 def make(spec):
-    """Return `kernel(system, pseudo, workspace, params) -> sweeps made`."""
+    """Return `kernel(system, motion, pseudo, workspace, params) -> sweeps made`."""
     from ..contact import make_normal_velocity
     from ..row_terms import row_terms
     from ..solvers.packed.apart import make_push_apart
@@ -39,9 +78,11 @@ def make(spec):
     torque = row_terms(spec).levers
     friction, midpoint = row_terms(spec).frictional, spec.has("midpoint")
     centred, springs = spec.has("contact_midpoint"), spec.has("contact_spring")
+    at_surface = spec.has("impact_time")
+    mean_rate: Any = make_mean_rate(spec) if at_surface else None
     controlled = spec.has("error_control")
 
-    def project_positions(system, pseudo, workspace, params):
+    def project_positions(system, motion, pseudo, workspace, params):
         contacts, count, velocities = system.contacts, system.count, system.velocities
         share, asked = params.projection, False
         if controlled:
@@ -55,6 +96,11 @@ def make(spec):
                 elif centred:
                     if contact.lasts == 1:
                         v_n = 0.5 * (v_n + contact.middle_n)
+            if at_surface:
+                ma, mb = motion[contact.a], motion[contact.b]
+                if ma.tau < params.dt or mb.tau < params.dt:
+                    va, vb = velocities[contact.a], velocities[contact.b]
+                    v_n = mean_rate(contact, va, vb, ma, mb, params.dt)
             excess = -(contact.phi + v_n * params.dt) - params.slop
             if springs:
                 if contact.spring_compliance > 0.0:  # it rests where its force holds it

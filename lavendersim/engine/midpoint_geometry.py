@@ -1,0 +1,216 @@
+"""Where bodies and contacts stand at the middle of the step (`effects.contact_midpoint`).
+
+stand_midway   bodies, by the velocities found so far
+look, stay     contacts: those of the manifold there, or those of the start carried along
+keep_start     what the start had, to go back to
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from .collide.manifold.point import manifold_normal
+from .collide.narrow_phase import make_manifold
+from .collide.records import UNBOUNDED, put_normal
+from .compile import inner, kernel
+from .effects import made_once
+from .effects.gyroscopic import make_turn_midway
+from .records import BOX, HULL, PLANE, TOUCHING
+from .rotation import half_turn, is_round
+from .row_terms import row_terms
+from .spec import Spec
+
+# Contacts are looked for at the middle up to this share of a body's size apart.
+APART = 0.1
+# Least cosine of a contact's normal at the middle and at the start, if its feature is another.
+AGREES = 0.5
+
+
+def make_stand_midway(spec: Spec) -> Any:
+    """Return `kernel(bodies, velocities, motion, lead, poses, dt)`: bodies at the step's middle.
+
+    velocities: at the end, as far as they are known. poses: rows of the bodies at the start.
+    lead: velocities before any impulse; of uneven bodies their spin at the middle, which turns with
+    the body. Those of the last middle, replaced.
+    """
+    turns, uneven = spec.has("rotation"), spec.has("gyroscopic")
+    kinematic = spec.has("kinematic")
+    turn_midway: Any = make_turn_midway(spec) if uneven else None
+
+    def stand_midway(bodies, velocities, motion, lead, poses, dt):
+        for i in range(bodies.shape[0]):
+            v, m, free = velocities[i], motion[i], lead[i]
+            free.vx, free.vy, free.vz = m.vx, m.vy, m.vz
+            body, start = bodies[i], poses[i]
+            moves = start.inv_m > 0.0
+            if kinematic:
+                moves = moves or start.kinematic == 1
+            if not moves:
+                continue
+            quarter = 0.25 * dt
+            body.x = start.x + quarter * (m.vx + v.vx)
+            body.y = start.y + quarter * (m.vy + v.vy)
+            body.z = start.z + quarter * (m.vz + v.vz)
+            if turns:
+                even = True
+                if uneven:
+                    even = is_round(body)
+                if even:
+                    x, y, z = m.wx + v.wx, m.wy + v.wy, m.wz + v.wz
+                    body.qw, body.qx, body.qy, body.qz = start.qw, start.qx, start.qy, start.qz
+                    half_turn(body, 0.5 * x, 0.5 * y, 0.5 * z, dt)
+                else:
+                    turn_midway(body, start, m, free, v, dt)
+
+    return kernel(stand_midway, spec)
+
+
+@inner
+def has_flat_faces(body):
+    """Whether all its faces are flat: what is round leaves a face along that face's plane."""
+    return body.shape == BOX or body.shape == HULL
+
+
+def make_nearest(spec: Spec) -> Any:
+    """Return `kernel(contact, manifold, found) -> index` of the point nearest to a contact's place.
+
+    contact: as it was at the start. -1: the normal has turned away.
+    """
+
+    def nearest(contact, manifold, found):
+        best, least = -1, UNBOUNDED
+        n = manifold_normal(manifold)
+        if contact.at_nx * n[0] + contact.at_ny * n[1] + contact.at_nz * n[2] < AGREES:
+            return best
+        for k in range(found):
+            point = manifold.points[k]
+            dx, dy, dz = point.x - contact.at_x, point.y - contact.at_y, point.z - contact.at_z
+            squared = dx * dx + dy * dy + dz * dz
+            if squared < least:
+                best, least = k, squared
+        return best
+
+    return kernel(nearest, spec)
+
+
+def make_look(spec: Spec) -> Any:
+    """Return `kernel(state, count, poses, workspace)`: contacts as they are where bodies stand.
+
+    Flat faces that turn pass from face on face to edge on face: of a pair of them that has none of
+    its features any more each contact is at the nearest new one. Any other point that the manifold
+    no longer has stays on its two bodies: see `stay`.
+    """
+    manifold = make_manifold(spec, spec.shape_pairs)
+    compound, place_parts = made_once(spec, "place_parts")
+    swept, stay = spec.has("fast_bodies"), make_stay(spec)
+    ordered, nearest = spec.has("impact_order"), make_nearest(spec)
+
+    def look(state, count, poses, workspace):
+        bodies, contacts = state.bodies, state.contacts
+        scratch = workspace.collision
+        points = scratch.manifold.points
+        if compound:
+            place_parts(bodies)
+        first = 0
+        while first < count:
+            pair = contacts[first].pair
+            last, margin, passes_on = first, TOUCHING, False
+            while last < count and contacts[last].pair == pair:
+                margin = max(margin, abs(contacts[last].phi))
+                if ordered:
+                    passes_on = passes_on or contacts[last].passed_on == 1
+                last += 1
+            row = state.pairs[pair]
+            a, b = bodies[row.a], bodies[row.b]
+            # The middle may be apart where both ends touch: by less than the bodies' sizes.
+            size = a.bound if b.shape == PLANE else b.bound
+            if a.shape != PLANE and b.shape != PLANE:
+                size = min(a.bound, b.bound)
+            found = 0
+            if not passes_on:  # beyond a seam is another's face, not its edge
+                found = manifold(row.kind, a, b, margin + APART * size, scratch)
+            persists, flat = False, has_flat_faces(a) and has_flat_faces(b)
+            for c in range(first, last):
+                for k in range(found):
+                    persists = persists or points[k].feature == contacts[c].feature
+            for c in range(first, last):
+                contact = contacts[c]
+                stay(contact, bodies, poses)
+                best = -1
+                for k in range(found):
+                    if points[k].feature == contact.feature:
+                        best = k
+                if flat and found > 0 and not persists:
+                    best = nearest(contact, scratch.manifold, found)
+                if best >= 0:
+                    point = points[best]
+                    contact.x, contact.y, contact.z = point.x, point.y, point.z
+                    put_normal(contact, manifold_normal(scratch.manifold))
+                    if swept:
+                        contact.tangential_x, contact.tangential_y = 0.0, 0.0
+                        contact.tangential_z = 0.0
+            first = last
+
+    return kernel(look, spec)
+
+
+def make_stay(spec: Spec) -> Any:
+    """Return `kernel(contact, bodies, poses)`: the contact of the start, where the bodies stand."""
+    swept = spec.has("fast_bodies")
+
+    def stay(contact, bodies, poses):
+        body, before = bodies[contact.b], poses[contact.b]
+        if body.inv_m == 0.0:
+            body, before = bodies[contact.a], poses[contact.a]
+        contact.x = contact.at_x + (body.x - before.x)
+        contact.y = contact.at_y + (body.y - before.y)
+        contact.z = contact.at_z + (body.z - before.z)
+        contact.nx, contact.ny, contact.nz = contact.at_nx, contact.at_ny, contact.at_nz
+        if swept:
+            contact.tangential_x, contact.tangential_y = contact.at_tx, contact.at_ty
+            contact.tangential_z = contact.at_tz
+
+    return kernel(stay, spec)
+
+
+def make_keep_start(spec: Spec) -> Any:
+    """Return `kernel(contacts, count)`: keep geometry and impulses of the solve at the start."""
+    swept, friction = spec.has("fast_bodies"), row_terms(spec).frictional
+    terms = row_terms(spec)
+    torsional, rolling = terms.torsional, terms.rolling
+
+    def keep_start(contacts, count):
+        for c in range(count):
+            contact = contacts[c]
+            contact.at_x, contact.at_y, contact.at_z = contact.x, contact.y, contact.z
+            contact.at_nx, contact.at_ny, contact.at_nz = contact.nx, contact.ny, contact.nz
+            contact.kept_n = contact.lambda_n
+            if friction:
+                contact.kept_1, contact.kept_2 = contact.lambda_1, contact.lambda_2
+            if torsional:
+                contact.kept_psi_n = contact.psi_n
+            if rolling:
+                contact.kept_psi_1, contact.kept_psi_2 = contact.psi_1, contact.psi_2
+            if swept:
+                contact.at_tx, contact.at_ty = contact.tangential_x, contact.tangential_y
+                contact.at_tz = contact.tangential_z
+
+    return kernel(keep_start, spec)
+
+
+def make_take_kept(spec: Spec) -> Any:
+    """Return `kernel(contact)`: the impulses of the solve at the start."""
+    friction = row_terms(spec).frictional
+    terms = row_terms(spec)
+    torsional, rolling = terms.torsional, terms.rolling
+
+    def take_kept(contact):
+        contact.lambda_n = contact.kept_n
+        if friction:
+            contact.lambda_1, contact.lambda_2 = contact.kept_1, contact.kept_2
+        if torsional:
+            contact.psi_n = contact.kept_psi_n
+        if rolling:
+            contact.psi_1, contact.psi_2 = contact.kept_psi_1, contact.kept_psi_2
+
+    return kernel(take_kept, spec)
