@@ -8,12 +8,16 @@ from typing import Annotated
 import typer
 
 from lavender_cli import claims, printing
+from lavender_cli.completion import run_names
 from lavender_cli.run import Own, Runs
 
 
 def judge(
     run: Annotated[
-        Path | None, typer.Argument(metavar="[RUN]", help="Run directory; the latest by default.")
+        Path | None,
+        typer.Argument(
+            metavar="[RUN]", help="Run directory; the latest by default.", autocompletion=run_names
+        ),
     ] = None,
     runs: Runs = Path("runs"),
     own: Own = None,
