@@ -37,11 +37,10 @@ def starts() -> list[Start]:
 
 
 def start_named(name: str) -> Start:
-    """Return the config of a name. UsageError, with the nearest name, where there is none."""
+    """Return the config of a name. UsageError, with the nearest name or all, where there is none."""
     known = {start.name: start for start in starts()}
     if name not in known:
-        meant = nearest(name, [*known]) or f"; there are {', '.join(known)}"
-        raise UsageError(f"no starting config is called {quoted(name)}{meant}")
+        raise UsageError(f"no starting config is called {quoted(name)}{nearest(name, known)}")
     return known[name]
 
 

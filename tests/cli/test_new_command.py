@@ -45,7 +45,7 @@ def test_a_config_is_written_once_and_never_over_a_file(tmp_path: Path) -> None:
     ("words", "said"),
     [
         (("bonce",), 'no starting config is called "bonce"; did you mean "bounce"?'),
-        (("xyzzy",), f'no starting config is called "xyzzy"; there are {", ".join(NAMES)}'),
+        (("xyzzy",), f'no starting config is called "xyzzy"; valid here: {", ".join(NAMES)}'),
         (("bounce", "mine.txt"), "mine.txt: the name of a config ends in .yaml"),
         (("bounce", "none/mine.yaml"), "none: no such folder"),
     ],
