@@ -37,7 +37,7 @@ def starts() -> list[Start]:
 
 
 def start_named(name: str) -> Start:
-    """Return the config of a name. UsageError, with the nearest name or all, where there is none."""
+    """Return the config of a name. UsageError, with the nearest name or all, without one."""
     known = {start.name: start for start in starts()}
     if name not in known:
         raise UsageError(f"no starting config is called {quoted(name)}{nearest(name, known)}")
