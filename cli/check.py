@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from lavender_cli import printing, progress, solver_matrix, time_errors
+from lavender_cli import claims, printing, progress, solver_matrix, time_errors
 from lavender_cli.run import Configs, Jobs, Refine, Runs, Set, Strict, Sweep, overrides_of
 
 
@@ -35,9 +35,12 @@ def check(
     values: Set = None,
     axes: Sweep = None,
     strict: Strict = False,
+    verbose: claims.Verbose = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print the verdicts as JSON.")] = False,
 ) -> None:
-    """Run experiments and print every verdict, cell by cell. Exits 1 when one fails.
+    """Run experiments and print their verdicts: of each claim the count and the worst cell.
+
+    With -v: every verdict, cell by cell. Exits 1 when one fails.
 
     With --solver: a matrix of verdicts, case by solver. Exits 1 when a solver
     fails a case in more than what the case declares; a known failure is
@@ -82,12 +85,11 @@ def check(
         ]
         if as_json:
             continue
-        for verdict in finished.verdicts:
-            typer.echo(
-                f"{printing.mark(verdict.passed)}  {experiment.name}: {verdict.node}: "
-                f"{printing.digits(verdict.measured)}, expected {verdict.expected}"
-            )
-        printing.print_failures(finished)
+        count = len(finished.run.cells)
+        title = typer.style(experiment.name, bold=True)
+        typer.echo(f"{title}: {count} cell{'s' * (count != 1)}")
+        claims.print_claims(finished.verdicts, verbose)
+        claims.print_failures(finished.ended_early, finished.verdicts, verbose)
         if refine:
             time_errors.print_table(found)
     damaged: list[str] = []

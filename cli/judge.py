@@ -7,16 +7,21 @@ from typing import Annotated
 
 import typer
 
-from lavender_cli import printing
+from lavender_cli import claims, printing
+from lavender_cli.completion import run_names
 from lavender_cli.run import Own, Runs
 
 
 def judge(
     run: Annotated[
-        Path | None, typer.Argument(metavar="[RUN]", help="Run directory; the latest by default.")
+        Path | None,
+        typer.Argument(
+            metavar="[RUN]", help="Run directory; the latest by default.", autocompletion=run_names
+        ),
     ] = None,
     runs: Runs = Path("runs"),
     own: Own = None,
+    verbose: claims.Verbose = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print the verdicts as JSON.")] = False,
 ) -> None:
     """Measure and judge a run again from its logs alone; it may be one that was killed.
@@ -32,8 +37,8 @@ def judge(
         printing.as_json(judged.table())
     else:
         typer.echo(f"{typer.style(opened.name, bold=True)}  {opened.path}")
-        printing.print_claims(judged.verdicts)
-        printing.print_failures(judged)
+        claims.print_claims(judged.verdicts, verbose)
+        claims.print_failures(judged.ended_early, judged.verdicts, verbose)
     printing.report_damage(judged.damaged)
     if judged.damaged:
         raise typer.Exit(printing.DAMAGED)

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import re
+import shutil
+import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Final
 
 import typer
 
@@ -13,6 +16,7 @@ from lavender_cli.run import Runs
 if TYPE_CHECKING:
     from lavendersim.runner.listing import Listed, Wanted
 
+COLOUR: Final = re.compile(r"\x1b\[[0-9;]*m")  # takes no column
 Name = Annotated[
     list[str] | None,
     typer.Option("--name", metavar="NAME", help="Of these experiments; * and ? as in a shell."),
@@ -40,7 +44,10 @@ def ls(
     newer: Newer = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the runs as JSON.")] = False,
 ) -> None:
-    """List runs, oldest first. Exits 3 when a finished one has a damaged table or a cut log."""
+    """List runs and what they ask, oldest first.
+
+    Exits 3 when a finished one has a damaged table or a cut log.
+    """
     from lavendersim.runner.listing import listed
 
     wanted = wanted_of(name, verdict, tag, older, newer)
@@ -51,8 +58,9 @@ def ls(
         if not found:
             such = "such " if any(wanted) else ""
             typer.echo(f"{runs} holds no {such}run", err=True)
+        width = shutil.get_terminal_size().columns if sys.stdout.isatty() else None
         for one in found:
-            typer.echo(line_of(one))
+            typer.echo(with_question(line_of(one), one.question, width))
     damaged = [sentence for one in found for sentence in one.damaged]
     printing.report_damage(damaged)
     if damaged:
@@ -72,6 +80,20 @@ def line_of(one: Listed) -> str:
     tags = f"  [{' '.join(one.tags)}]" if one.tags else ""
     size = printing.byte_size(one.size)
     return f"{state}  {one.run.path}  {one.date:%Y-%m-%d %H:%M}  {cells:>10}  {size:>8}{tags}"
+
+
+def with_question(line: str, question: str, width: int | None) -> str:
+    """Return a line with its question, in a second one where a terminal is too narrow for both.
+
+    width: columns of the terminal; None: it is read by a program, and has the whole question.
+    """
+    words = " ".join(question.split())
+    if not words:
+        return line
+    if width is None or len(COLOUR.sub("", line)) + 2 + len(words) <= width:
+        return f"{line}  {words}"
+    room = max(width - 6, 1)
+    return f"{line}\n      {words if len(words) <= room else words[: room - 1] + '…'}"
 
 
 def wanted_of(

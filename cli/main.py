@@ -23,6 +23,8 @@ from lavender_cli import (
     ls,
     measures,
     merge,
+    new,
+    open,
     plan,
     plot,
     recover,
@@ -44,7 +46,6 @@ app = typer.Typer(
     name="lavender",
     help="A laboratory for rigid-body contact: run experiments, plot, replay and check them.",
     no_args_is_help=True,
-    add_completion=False,
     pretty_exceptions_enable=False,
     context_settings={
         "help_option_names": ["-h", "--help"],
@@ -52,9 +53,11 @@ app = typer.Typer(
     },
 )
 VERBS: tuple[Callable[..., None], ...] = (
+    new.new,
     run.run,
     merge.merge,
     plot.plot,
+    open.open_,
     replay.replay,
     check.check,
     plan.plan,
@@ -73,7 +76,7 @@ VERBS: tuple[Callable[..., None], ...] = (
     doctor.doctor,
 )
 for verb in VERBS:
-    app.command()(verb)
+    app.command(verb.__name__.rstrip("_"))(verb)
 
 
 def _version(asked: bool) -> None:
@@ -118,7 +121,7 @@ def main() -> None:
         # As other tools do: a reader that has seen enough ends the writer, without a message.
         signal.signal(signal.SIGPIPE, signal.SIG_DFL)
     try:
-        app()
+        app(prog_name="lavender")  # by which a shell asks for completions
     except LavenderError as error:
         typer.echo(str(error), err=True)
         sys.exit(error.exit_code)

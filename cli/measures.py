@@ -8,11 +8,15 @@ from typing import Annotated
 import typer
 
 from lavender_cli import printing
+from lavender_cli.completion import measure_kinds
 
 
 def measures(
     kind: Annotated[
-        str | None, typer.Argument(metavar="[KIND]", help="Print the parameters of one kind.")
+        str | None,
+        typer.Argument(
+            metavar="[KIND]", help="Print the parameters of one kind.", autocompletion=measure_kinds
+        ),
     ] = None,
     own: Annotated[
         Path | None,

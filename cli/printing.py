@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import json
-import re
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import typer
 
@@ -50,57 +49,11 @@ def time_span(seconds: float) -> str:
     return f"{minutes} min {rest} s" if minutes else f"{rest} s"
 
 
-class ClaimLine(NamedTuple):
-    """What became of one expectation in all its cells."""
-
-    passed: bool
-    text: str
-
-
-def summarise(verdicts: list[Any]) -> list[ClaimLine]:
-    """Return a line for each expectation, its cells counted together."""
-    groups: dict[str, list[Any]] = {}
-    for verdict in verdicts:
-        groups.setdefault(verdict.name, []).append(verdict)
-    lines = []
-    for name, group in groups.items():
-        passed = sum(verdict.passed for verdict in group)
-        shown = digits_between([verdict.measured for verdict in group])
-        count = f" in {passed} of {len(group)} cells" if len(group) > 1 else ""
-        text = f"{name}: {shown}, expected {_expected(group)}{count}"
-        lines.append(ClaimLine(passed == len(group), text))
-    return lines
-
-
-def _expected(group: list[Any]) -> str:
-    """Return what was expected; of a closed form whose value differs by cell, its name."""
-    texts = {verdict.expected for verdict in group}
-    named = re.search(r"\((\w+)\)$", group[0].expected)
-    if len(texts) == 1 or named is None:
-        return str(group[0].expected)
-    return f"the cell's {named.group(1)}"
-
-
 def mark(passed: bool) -> str:
     """Return a coloured word; typer drops the colour where NO_COLOR or a pipe requires it."""
     if passed:
         return typer.style("pass", fg=typer.colors.GREEN)
     return typer.style("FAIL", fg=typer.colors.RED, bold=True)
-
-
-def print_summary(finished: Any) -> None:
-    """Print what became of a run: one line per expectation, failures in full."""
-    print_costs(finished)
-    print_claims(finished.verdicts)
-    print_unjudged(finished)
-    print_failures(finished)
-    typer.echo(f"  logs  {finished.run.path}")
-
-
-def print_claims(verdicts: list[Any]) -> None:
-    """Print a line for each expectation."""
-    for passed, text in summarise(verdicts):
-        typer.echo(f"  {mark(passed)}  {text}")
 
 
 def print_unjudged(finished: Any) -> None:
@@ -171,17 +124,6 @@ def report_damage(sentences: list[str], refused: str = "") -> None:
         allow = "--allow-incomplete takes what is whole, and marks it"
         typer.echo(f"{refused}; {allow}", err=True)
         raise typer.Exit(DAMAGED)
-
-
-def print_failures(finished: Any) -> None:
-    """Print cells that ended early and the failed verdicts, the first few in full."""
-    for cell in finished.ended_early:
-        typer.echo(f"  {mark(False)}  {cell.label or 'the cell'}: {cell.status}")
-    failed = [verdict for verdict in finished.verdicts if not verdict.passed]
-    for verdict in failed[:FAILURES_SHOWN]:
-        typer.echo("\n".join(f"  {line}" for line in verdict.message.splitlines()))
-    if len(failed) > FAILURES_SHOWN:
-        typer.echo(f"  and {len(failed) - FAILURES_SHOWN} more failed, see results.json")
 
 
 @contextmanager

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from lavender_cli import printing
+from lavender_cli.completion import run_names
 from lavender_cli.run import AllowIncomplete, Runs
 
 if TYPE_CHECKING:
@@ -17,7 +18,11 @@ if TYPE_CHECKING:
 def replay(
     run: Annotated[
         Path | None,
-        typer.Argument(metavar="[RUN]", help="Run directory; the latest finished run by default."),
+        typer.Argument(
+            metavar="[RUN]",
+            help="Run directory; the latest finished run by default.",
+            autocompletion=run_names,
+        ),
     ] = None,
     other: Annotated[
         Path | None,

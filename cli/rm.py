@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from lavender_cli import printing
+from lavender_cli.completion import run_names
 from lavender_cli.ls import Name, Newer, Older, Tag, VerdictOption, line_of, wanted_of
 from lavender_cli.run import Runs
 
@@ -16,7 +17,11 @@ from lavender_cli.run import Runs
 def rm(
     named: Annotated[
         list[Path] | None,
-        typer.Argument(metavar="[RUN]...", help="Run directories; or options say which."),
+        typer.Argument(
+            metavar="[RUN]...",
+            help="Run directories; or options say which.",
+            autocompletion=run_names,
+        ),
     ] = None,
     runs: Runs = Path("runs"),
     name: Name = None,

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 import typer
 
-from lavender_cli import overheads, printing, progress, time_errors
+from lavender_cli import claims, overheads, printing, progress, time_errors
 from lavender_cli.drawing import Drawing
 from lavender_cli.prediction import Yes, confirm
 
@@ -193,7 +193,11 @@ def run(
 
 def _print(finished: Any, refined: Any) -> None:
     """Print what became of a run, and its time errors where they were taken."""
-    printing.print_summary(finished)
+    printing.print_costs(finished)
+    claims.print_claims(finished.verdicts)
+    printing.print_unjudged(finished)
+    claims.print_failures(finished.ended_early, finished.verdicts)
+    typer.echo(f"  logs  {finished.run.path}")
     if refined is not None:
         time_errors.print_table(refined)
     overheads.print_table(finished.run)

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import shlex
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
+from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import typer
 
-from lavender_cli import printing
+from lavender_cli import cell_lines, claims, printing
+from lavender_cli.completion import run_names
 from lavender_cli.replay import cell_of
 from lavender_cli.run import Runs
 
@@ -24,17 +25,22 @@ SECTIONS = ("plan", "shape pairs", "forced", "study-only", "recorded")
 
 def show(
     run: Annotated[
-        Path | None, typer.Argument(metavar="[RUN]", help="Run directory; the latest by default.")
+        Path | None,
+        typer.Argument(
+            metavar="[RUN]", help="Run directory; the latest by default.", autocompletion=run_names
+        ),
     ] = None,
     runs: Runs = Path("runs"),
     cell: Annotated[
         int | None,
         typer.Option("--cell", metavar="K", help="One cell, counted from 0: its log, its numbers."),
     ] = None,
+    verbose: claims.Verbose = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print the results as JSON.")] = False,
 ) -> None:
     """Show a run: its question, the effects it simulated, what it measured and its verdicts.
 
+    Of many cells the ranges and the worst, of claims the counts; with -v each of them.
     Exits 3 when one of its logs was cut or is damaged where the plan is read.
     """
     from lavendersim.runner import open_run
@@ -65,19 +71,11 @@ def show(
     logging = sum(row["steps"] * row["logging_us_per_step"] for row in results["cells"])
     compiling = f"compile {results.get('compile_s', float('nan')):.1f} s"
     typer.echo(f"cells  logging {logging / max(steps, 1):.2f} us/step, {compiling}")
-    for row in results["cells"]:
-        numbers = ", ".join(
-            f"{name} {printing.digits(value)}"
-            for name, value in row["measures"].items()
-            if isinstance(value, float | int)
-        )
-        typer.echo(
-            f"  {row['index']:4}  {row['label'] or '-'}  {row['status']}  "
-            f"physics {row['physics_us_per_step']:.2f} us/step  {accuracy(row)}  {numbers}"
-        )
+    cell_lines.print_cells(results["cells"], verbose)
     typer.echo("checks")
-    for verdict in results["checks"]:
-        typer.echo(f"  {printing.mark(verdict['passed'])}  {verdict['node']}")
+    judged = claims.of_table(results["checks"])
+    claims.print_claims(judged, verbose)
+    claims.print_failures([], judged, verbose)
     _end(logged.damaged)
 
 
@@ -165,14 +163,3 @@ def print_plan(plan: LoggedPlan, count: int) -> None:
             off.append(name)
     if off:
         typer.echo(f"  off: {', '.join(off)}")
-
-
-def accuracy(row: dict[str, Any]) -> str:
-    """Return how far the steps of a cell were solved, in words; nothing for runs of old."""
-    if "worst_residual" not in row:
-        return ""
-    worst = f"residual <= {printing.digits(float(row['worst_residual']))} m/s"
-    if not row["not_converged_steps"]:
-        return worst
-    tolerance = f"tolerance {printing.digits(row['tolerance'])} m/s"
-    return f"{worst} ({row['not_converged_steps']} of {row['steps']} steps above the {tolerance})"

@@ -47,7 +47,11 @@ def solve(
     ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print the results as JSON.")] = False,
 ) -> None:
-    """Solve contact problems of files. Exits 1 when one is solved by none of the solvers."""
+    """Solve contact problems of files. Exits 1 when one is solved by none of the solvers.
+
+    Of a folder what can be read is solved, and the rest is named: exits 3. A bad file that is
+    named itself is refused before anything is solved: exits 2.
+    """
     from lavendersim.errors import UsageError
     from lavendersim.problems.comparison import compare
     from lavendersim.problems.read import read_all
@@ -56,7 +60,9 @@ def solve(
         raise UsageError(f"--tolerance {tolerance:g}: expected a number above 0")
     solvers = _chosen(solver)
     # Every file is read before the first is solved, so a bad one leaves nothing half done.
-    problems = read_all(files)
+    problems, unreadable = read_all(files)
+    for sentence in unreadable:
+        typer.echo(f"left out: {sentence}", err=True)
     comparisons = []
     for comparison in compare(
         problems, solvers, tolerance, sweeps, curves=plot is not None, referenced=reference
@@ -78,13 +84,19 @@ def solve(
                 "tolerance": tolerance,
                 "problems": [_plain(each) for each in comparisons],
                 "figures": figures,
+                "unreadable": unreadable,
             }
         )
     else:
         for figure in figures:
             typer.echo(f"figure {figure}")
+    if unreadable:
+        total = len(unreadable) + len(problems)
+        typer.echo(f"{len(unreadable)} of {total} files could not be read", err=True)
     if not all(comparison.solved for comparison in comparisons):
         raise typer.Exit(1)
+    if unreadable:
+        raise typer.Exit(printing.DAMAGED)
 
 
 def _chosen(names: list[str]) -> list[str]:

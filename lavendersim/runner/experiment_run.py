@@ -316,6 +316,7 @@ def _write_index(
         del options["overrides"]  # as in earlier versions
     table = {
         "experiment": experiment.name,
+        "question": experiment.config.question,
         **options,
         "cells": (row_of(cell, *job) for cell, job in cells),
     }

@@ -20,10 +20,11 @@ _SIZES: Final = {"B": 1.0, "kB": 1e3, "MB": 1e6, "GB": 1e9, "TB": 1e12}
 
 
 class Listed(NamedTuple):
-    """A run as it is listed; of one with a damaged index name, cells and size are not known."""
+    """A run as it is listed; of one with a damaged index little more than its date is known."""
 
     run: Run
     name: str
+    question: str  # empty where its config has none, or an older version ran it
     date: datetime  # when it began
     cells: int
     size: int  # of its logs [B]
@@ -86,9 +87,10 @@ def listed_run(run: Run) -> Listed:
     passed: bool | None = None
     claims = 0
     damaged: list[str] = []
-    name, cells, rows = "", 0, {}
+    name, question, cells, rows = "", "", 0, {}
     try:
-        name, cells, rows = run.name, len(run.index_rows()), run.rows()
+        name, question, cells = run.name, run.question, len(run.index_rows())
+        rows = run.rows()
         if run.finished:  # another is listed as such; its logs are as they were left
             results = run.results()
             passed, claims = bool(results["passed"]), len(results["checks"])
@@ -97,7 +99,7 @@ def listed_run(run: Run) -> Listed:
         damaged = [str(error)]
     sizes = (_size(log, row) for log, row in rows.items())
     size, date, tags = sum(sizes), _date(run.path), tags_of(run)
-    return Listed(run, name, date, cells, size, tags, passed, claims, damaged)
+    return Listed(run, name, question, date, cells, size, tags, passed, claims, damaged)
 
 
 def tags_of(run: Run) -> tuple[str, ...]:

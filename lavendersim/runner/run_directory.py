@@ -120,6 +120,11 @@ class Run:
         """Name of the experiment: the stem of the file it was read from."""
         return str(self._index["experiment"])
 
+    @property
+    def question(self) -> str:
+        """What the experiment asks; empty where it says nothing, and of older runs."""
+        return str(self._index.get("question", ""))
+
     @cached_property
     def _index(self) -> dict[str, Any]:
         index = read_table(self.path / CELLS, "cells", ("index", "label", "file", "status"))

@@ -9,9 +9,11 @@ import shutil
 from pathlib import Path
 
 import pytest
+import typer
 from command_line import lavender
 from typer.testing import CliRunner, Result
 
+from lavender_cli.ls import with_question
 from lavender_cli.main import app
 from lavendersim.errors import UsageError
 from lavendersim.experiment import load_experiment
@@ -65,11 +67,32 @@ def test_a_line_says_how_a_run_ended_when_it_began_its_cells_and_its_size(runs: 
     lines = verb("ls", "--runs", runs).stdout.splitlines()
     size = sum(log.stat().st_size for log in (runs / NAMES[2]).glob("cells/*"))
     found = re.fullmatch(
-        rf"pass  {runs / NAMES[2]}  2026-03-01 00:00 +1 cell +([\d.]+) kB  \[kept v2\]", lines[2]
+        rf"pass  {runs / NAMES[2]}  2026-03-01 00:00 +1 cell +([\d.]+) kB  \[kept v2\]  How high\?",
+        lines[2],
     )
     assert found, lines[2]
     assert float(found[1]) * 1e3 == pytest.approx(size, rel=0.005)  # three digits
     assert [line[:4] for line in lines] == ["----", "pass", "pass", "pass"]
+
+
+def test_a_run_of_a_version_that_kept_no_question_is_listed_without(runs: Path) -> None:
+    index = runs / NAMES[0] / "cells.json"  # of a run that did not finish, so that it has no seal
+    table = json.loads(index.read_text())
+    del table["question"]
+    index.write_text(json.dumps(table))
+    lines = verb("ls", "--runs", runs).stdout.splitlines()
+    assert ["How high?" in line for line in lines] == [False, True, True, True]
+
+
+def test_a_question_that_a_terminal_has_no_room_for_stands_below_and_is_marked_as_cut() -> None:
+    line, question = typer.style("pass", fg="green") + "  runs/a", "How high\n  does it bounce?"
+    whole = "How high does it bounce?"
+    assert with_question(line, question, None) == f"{line}  {whole}"
+    room = len("pass  runs/a") + 2 + len(whole)
+    assert with_question(line, question, room) == f"{line}  {whole}"
+    assert with_question(line, question, room - 1) == f"{line}\n      {whole}"
+    assert with_question(line, question, 20) == f"{line}\n      How high does…"
+    assert with_question(line, "", 20) == line
 
 
 @pytest.mark.parametrize(

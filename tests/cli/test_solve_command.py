@@ -115,6 +115,35 @@ def test_every_bad_file_is_reported_before_anything_is_solved(where: Path) -> No
     ]
 
 
+def test_of_a_folder_what_can_be_read_is_solved_and_the_rest_is_named(where: Path) -> None:
+    (where / "short.dat").write_text(SLIDES[:-5])
+    (where / "not_one.hdf5").write_bytes(b"\x00\x01 no problem")
+    done = lavender("solve", ".", "-s", "projected_gauss_seidel", where=where)
+    titles = [line for line in done.stdout.splitlines() if not line.startswith(" ")]
+    assert [title.partition(":")[0] for title in titles] == ["coupled.dat", "slides.dat"]
+    left_out = [line for line in done.stderr.splitlines() if line.startswith("left out: ")]
+    assert [line.split()[2].partition(":")[0] for line in left_out] == ["not_one.hdf5", "short.dat"]
+    assert "2 of 4 files could not be read" in done.stderr
+    assert done.returncode == 3
+    as_data = lavender("solve", ".", "--json", where=where)
+    assert (as_data.returncode, len(strict(as_data.stdout)["unreadable"])) == (3, 2)
+
+
+def test_a_bad_file_that_is_named_is_refused_though_its_folder_is_too(where: Path) -> None:
+    (where / "short.dat").write_text(SLIDES[:-5])
+    for arguments in ((".", "short.dat"), ("short.dat", ".")):
+        done = lavender("solve", *arguments, where=where)
+        assert (done.returncode, done.stdout) == (2, "")
+        assert done.stderr.startswith("short.dat:4: ")
+
+
+def test_a_folder_of_which_nothing_can_be_read_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "short.dat").write_text(SLIDES[:-5])
+    done = lavender("solve", ".", where=tmp_path)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.startswith("short.dat:4: ")
+
+
 @pytest.mark.parametrize(
     ("arguments", "sentence"),
     [

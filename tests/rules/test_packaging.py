@@ -29,6 +29,29 @@ def test_types_are_announced() -> None:
         assert "py.typed" in data[name]
 
 
+def test_files_that_are_no_modules_are_installed_too() -> None:
+    data = PROJECT["tool"]["setuptools"]["package-data"]
+    installed = {
+        file
+        for name, patterns in data.items()
+        for pattern in patterns
+        for file in (ROOT / _folder(name)).glob(pattern)
+    }
+    there = {
+        file
+        for folder in PACKAGES
+        for file in (ROOT / folder).rglob("*")
+        if file.is_file() and file.suffix not in (".py", ".pyc", ".nbi", ".nbc")
+    }
+    assert there - installed == set()
+
+
+def _folder(package: str) -> str:
+    top, *below = package.split(".")
+    (folder,) = (folder for folder, name in PACKAGES.items() if name == top)
+    return "/".join([folder, *below])
+
+
 def test_the_lowest_dependencies_are_the_lower_bounds() -> None:
     """CI installs `.github/lowest.txt`: bounds that nobody installs are guesses."""
     pins = dict(line.split("==") for line in (ROOT / ".github/lowest.txt").read_text().split())

@@ -1,0 +1,64 @@
+"""Scenes of ten lines, as teachers, game developers and roboticists write in their first hour.
+
+All at the defaults, with `always: {}`. In this folder: those that run to their end, converge in
+every step and are warned of in nothing. In `not_yet`: those that do not; each says by itself what
+is wrong with it. One that does no longer belong there fails no test, and is moved by hand.
+"""
+
+from __future__ import annotations
+
+import re
+import warnings
+from pathlib import Path
+
+import pytest
+
+from lavendersim.runner import load_all, run
+
+HERE = Path(__file__).parent
+SCENES = sorted(HERE.glob("*.yaml"))
+NOT_YET = sorted((HERE / "not_yet").glob("*.yaml"))
+# A bound that was broken, by how much, whose, and when.
+STOPPED = re.compile(r"beyond bounds: \w+ \S+ m.*, at most \S+, .+, in step \d+ \(t = \S+ s\)")
+
+
+def named(files: list[Path]) -> pytest.MarkDecorator:
+    return pytest.mark.parametrize("file", files, ids=[file.stem for file in files])
+
+
+def test_there_are_scenes_of_ten_lines_or_so() -> None:
+    assert len(SCENES) >= 7
+    assert [file.name for file in SCENES + NOT_YET if len(file.read_text().split("\n")) > 15] == []
+
+
+@named(SCENES + NOT_YET)
+def test_a_scene_says_nothing_of_how_it_is_simulated(file: Path) -> None:
+    text = file.read_text()
+    assert text.startswith("question: ")
+    assert "numerics" not in text
+    assert "\nalways: {" in text
+    assert "stop: false" not in text
+
+
+@named(SCENES)
+def test_a_scene_runs_converges_and_is_warned_of_in_nothing(file: Path, tmp_path: Path) -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        (experiment,) = load_all([file], strict=True)
+        finished = run(experiment, tmp_path, 1)
+    assert [one.message for one in finished.verdicts if not one.passed] == []
+    assert finished.good
+    assert finished.not_converged == []
+
+
+@named(NOT_YET)
+def test_what_is_not_right_is_said_with_its_place(file: Path, tmp_path: Path) -> None:
+    (experiment,) = load_all([file], strict=True)
+    finished = run(experiment, tmp_path, 1)
+    for cell in finished.ended_early:
+        assert STOPPED.fullmatch(cell.status), cell.status
+    for outcome in finished.outcomes:
+        worst = outcome.accuracy
+        is_missed = worst.not_converged > 0
+        assert is_missed == (worst.worst_residual > worst.tolerance)
+        assert len(finished.not_converged) == int(is_missed)
