@@ -6,6 +6,7 @@ of one core of a desktop: within some three times for scenes of the docs' tables
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Final, NamedTuple
 
@@ -60,6 +61,24 @@ def is_short(experiment: Experiment, root: Path) -> bool:
     if seconds > min(WORTH_SAYING, LONGEST):
         return False
     return is_certainly_small(cells, free_bytes(root))
+
+
+def predicted_together(runs: Sequence[Experiment], root: Path, jobs: int = 1) -> Prediction | None:
+    """Return what the runs that one experiment leads to will take, one after the other.
+
+    None: each is certainly short. root, jobs: as of `predicted`.
+    """
+    if all(is_short(one, root) for one in runs):
+        return None
+    each = [predicted(one, root, jobs) for one in runs]
+    sizes = [one.space.size for one in each if one.space.size is not None]
+    return Prediction(
+        runs[0].name,
+        sum(one.cells for one in each),
+        sum(one.steps for one in each),
+        sum(one.seconds for one in each),
+        LogSpace(sum(sizes) if sizes else None, each[0].space.free),
+    )
 
 
 def predicted(experiment: Experiment, root: Path, jobs: int = 1) -> Prediction:
