@@ -62,6 +62,7 @@ def take_cost(
     progress: Progress = Progress(),  # noqa: B008 - immutable
     targets: Sequence[float] = (),
     repeats: int | None = None,
+    *,
     is_predicted: bool = False,
 ) -> Costed:
     """Run the grid of an experiment's `cost` section and time it.
