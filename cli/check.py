@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from lavender_cli import claims, printing, progress, solver_matrix, time_errors
+from lavender_cli.prediction import Yes, confirm, with_refined
 from lavender_cli.run import Configs, Jobs, Refine, Runs, Set, Strict, Sweep, overrides_of
 
 
@@ -36,6 +37,7 @@ def check(
     axes: Sweep = None,
     strict: Strict = False,
     verbose: claims.Verbose = False,
+    yes: Yes = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print the verdicts as JSON.")] = False,
 ) -> None:
     """Run experiments and print their verdicts: of each claim the count and the worst cell.
@@ -52,25 +54,29 @@ def check(
 
     overrides = overrides_of(values, axes)
     if solver:
+        from lavendersim.runner.solver_cases import about_something_else
         from lavendersim.runner.solver_matrix import chosen
 
         if overrides:
             raise UsageError("a matrix is of cases as they stand: leave out --set and --sweep")
         if refine:
             raise UsageError("--refine tells time errors of one solver: leave out --solver")
-        chosen(solver)  # a wrong name is refused before any file is read
+        solvers = chosen(solver)  # a wrong name is refused before any file is read
     experiments = load_all(configs, not full, overrides, strict)
     if report is not None:
         check_page_path(report)  # not after an hour of runs
     if solver:
+        cases = [one for one in experiments if not about_something_else(one)]
+        confirm(([one] * len(solvers) for one in cases), runs, jobs, yes)
         if not solver_matrix.check_solvers(experiments, solver, runs, jobs, report, as_json):
             raise typer.Exit(1)
         return
+    confirm((with_refined(one) if refine else [one] for one in experiments), runs, jobs, yes)
     good, verdicts, cells, results, refined = True, [], [], [], []
     for experiment in experiments:
         printing.warn_of_mistakes(experiment)
         with progress.reporting(experiment.name) as shown:
-            finished = run(experiment, runs, jobs, shown, overheads=False)
+            finished = run(experiment, runs, jobs, shown, overheads=False, is_predicted=True)
         good = good and finished.good
         results.append(finished)
         printing.warn_of_not_converged(finished)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from lavender_cli import printing, progress
+from lavender_cli.prediction import Yes, confirm
 from lavender_cli.run import Configs, Jobs, Runs, Set, Strict, Sweep, overrides_of
 
 if TYPE_CHECKING:
@@ -36,6 +37,7 @@ def cost(
     values: Set = None,
     axes: Sweep = None,
     runs: Runs = Path("runs"),
+    yes: Yes = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print the tables as JSON.")] = False,
 ) -> None:
     """Measure what accuracy costs: error and time over timestep, solver, sweeps and warm start.
@@ -44,7 +46,7 @@ def cost(
     """
     from lavendersim.errors import UsageError
     from lavendersim.runner import load_all
-    from lavendersim.runner.cost import check_cost, take_cost
+    from lavendersim.runner.cost import check_cost, grid_of, take_cost
     from lavendersim.runner.cost_targets import percentage
 
     sought = [percentage(target) for target in targets or ()]
@@ -58,10 +60,11 @@ def cost(
         raise UsageError(f"{configs[0]}: no config in this folder has a section cost")
     for experiment in experiments:
         check_cost(experiment, repeats)
+    confirm(([grid_of(one)] for one in experiments), runs, jobs, yes)
     tables, missed = [], False
     for experiment in experiments:
         with progress.reporting(experiment.name) as shown:
-            costed = take_cost(experiment, runs, jobs, shown, sought, repeats)
+            costed = take_cost(experiment, runs, jobs, shown, sought, repeats, is_predicted=True)
         run = costed.finished.run
         missed = missed or not all(target.reached for target in costed.table.targets)
         figures = []

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -21,15 +21,15 @@ Yes = Annotated[
 ]
 
 
-def confirm(experiments: Sequence[Any], runs: Path, jobs: int, yes: bool) -> None:
+def confirm(groups: Iterable[Sequence[Any]], runs: Path, jobs: int, yes: bool) -> None:
     """Say what runs will take where that is long, and ask. UsageError where nobody can be asked.
 
-    yes: nobody is asked.
+    groups: for each experiment what is run of it, one after the other. yes: nobody is asked.
     """
     from lavendersim.errors import UsageError
-    from lavendersim.runner.prediction import is_short, predicted
+    from lavendersim.runner.prediction import predicted_together
 
-    found = [predicted(one, runs, jobs) for one in experiments if not is_short(one, runs)]
+    found = [one for group in groups if (one := predicted_together(group, runs, jobs))]
     for one in found:
         if one.is_worth_saying:
             typer.echo(sentence_of(one), err=True)
@@ -44,6 +44,13 @@ def confirm(experiments: Sequence[Any], runs: Path, jobs: int, yes: bool) -> Non
         raise UsageError(f"{which}: {why}; nothing has begun: say --yes, or set {VARIABLE}=1")
     if not typer.confirm(f"{which}: {why}. Begin?", err=True):
         raise UsageError("nothing has begun")
+
+
+def with_refined(experiment: Any) -> list[Any]:
+    """Return what is run of an experiment for its time errors, too: see --refine."""
+    from lavendersim.measures.time_errors import DIVISORS
+
+    return [experiment.refined(divisor) for divisor in DIVISORS]
 
 
 def sentence_of(one: Prediction) -> str:

@@ -14,7 +14,7 @@ import typer
 
 from lavender_cli import claims, overheads, printing, progress, time_errors
 from lavender_cli.drawing import Drawing
-from lavender_cli.prediction import Yes, confirm
+from lavender_cli.prediction import Yes, confirm, with_refined
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
@@ -130,7 +130,8 @@ def run(
     command = _command(configs, overrides, "--resume", *where)
     good, tables, with_overheads = True, [], []
     if not resume:  # it was asked before
-        confirm(experiments, runs, jobs, yes)
+        each = (with_refined(one) if refine else [one] for one in experiments)
+        confirm(each, runs, jobs, yes)
     with Drawing(experiments if plot else ()) as drawing:
         for number, experiment in enumerate(experiments):
             whole = finished_run(experiment, runs) if resume else None

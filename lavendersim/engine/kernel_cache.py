@@ -20,6 +20,7 @@ from numba.core.runtime.nrt import rtsys
 from numba.core.serialize import dumps
 
 from . import kernel_store
+from .compile_lock import CompileLock
 from .compile_options import build
 from .identity import UnidentifiableError, identity
 from .kernel_parts import STORE, key_of
@@ -47,6 +48,7 @@ class KernelCache:
         self.misses = 0
         self.anew = False  # true: what is kept is not loaded but compiled again, with all its parts
         self._began = 0.0
+        self._lock = CompileLock()
 
     def _name(self) -> str:
         """Return what names of files begin with, whatever the types of the arguments."""
@@ -75,9 +77,13 @@ class KernelCache:
         self.used = self.key(signature)
         kept = self.used and self.cache_path.name and not self.anew
         payload = kernel_store.read(self.path(self.used)) if kept else None
+        if payload is None and kept:
+            self._lock.take(self.cache_path, self.used)
+            payload = kernel_store.read(self.path(self.used))  # another process may have made it
         if payload is None:
             self.misses += 1
             return None
+        self._lock.release()
         self.hits += 1
         # Numba's own cache readies the context to compile before it loads, a quarter of a second
         # that machine code does not need; of all that, arrays passed from Python need this.
@@ -98,6 +104,7 @@ class KernelCache:
             payload = dumps(result._reduce()) + _COMPILED.pack(*took)
             kernel_store.write(self.path(self.used), payload)
             kernel_store.make_room()
+        self._lock.release()
 
     def flush(self) -> None:
         """Forget nothing: entries are never wrong, only unused."""

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import hashlib
 import json
+from collections.abc import Hashable, Iterable
 from dataclasses import dataclass, field
-from functools import cached_property
 from typing import Any, Final
 
 from lavendersim.cell.config import CellConfig
@@ -20,6 +20,7 @@ from lavendersim.experiment.resolve.cell import resolve_cell
 from lavendersim.experiment.resolve.formulas import Computed
 from lavendersim.experiment.resolve.placement import SceneError
 from lavendersim.experiment.sweeps.axes import SweepPoint
+from lavendersim.experiment.sweeps.starts import class_of
 from lavendersim.experiment.text.node import Node, Path, key_mark
 from lavendersim.experiment.text.report import Report
 from lavendersim.quantities.model import ConfigModel
@@ -50,26 +51,47 @@ def build_cell(root: Node, point: SweepPoint, report: Report) -> CellConfig | No
         return None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Cell:
     """One cell of an experiment's sweep; its config is built when it is first asked for."""
 
     index: int
-    coordinates: dict[str, Any]  # axis -> swept value (ratios as Fractions)
-    label: str  # "e=0.8, timestep=1/480"; "" without a sweep
     _root: Node = field(repr=False, compare=False)
-    _point: SweepPoint = field(repr=False, compare=False)
+    _point: SweepPoint
     _name: str = field(repr=False, compare=False)  # of the file, for messages
     divisor: int = 1  # of the timestep that the file gives it
+    _built: CellConfig | None = field(default=None, init=False, repr=False, compare=False)
 
-    @cached_property
+    @property
+    def coordinates(self) -> dict[str, Any]:
+        """Axis -> swept value; ratios are Fractions."""
+        return self._point.coordinates
+
+    @property
+    def label(self) -> str:
+        """`e=0.8, timestep=1/480`; empty without a sweep."""
+        return self._point.label
+
+    @property
     def config(self) -> CellConfig:
         """The complete config of this cell; raises ConfigError where its values do not fit."""
-        report = Report(self._name)
-        config = build_cell(self._root, self._point, report)
-        if config is None:
-            raise ConfigError(report.defects)
-        return config if self.divisor == 1 else config.refined(self.divisor)
+        if self._built is None:
+            report = Report(self._name)
+            config = build_cell(self._root, self._point, report)
+            if config is None:
+                raise ConfigError(report.defects)
+            self.keep(config if self.divisor == 1 else config.refined(self.divisor))
+        assert self._built is not None
+        return self._built
+
+    def keep(self, config: CellConfig) -> None:
+        """Keep the config of this cell, which was built before."""
+        object.__setattr__(self, "_built", config)  # what is frozen is what the file says
+
+    @property
+    def likeness(self) -> tuple[Hashable, ...]:
+        """What it has in common with cells that differ in how bodies start alone."""
+        return self.divisor, *class_of(self._point)
 
     @property
     def file(self) -> str:
@@ -96,7 +118,7 @@ class Cell:
             mark = parent.items[last].mark if isinstance(last, int) else key_mark(parent, last)
         return mark.defect(self._name, message)
 
-    @cached_property
+    @property
     def digest(self) -> str:
         """sha256 (hex) of the resolved config; equal for equal simulations.
 
@@ -106,3 +128,11 @@ class Cell:
             self.config.as_dict(), separators=(",", ":"), ensure_ascii=False, allow_nan=False
         )
         return hashlib.sha256(canonical.encode()).hexdigest()
+
+
+def alike(cells: Iterable[Cell]) -> list[list[Cell]]:
+    """Return the cells in classes whose members differ in how bodies start alone."""
+    classes: dict[tuple[Hashable, ...], list[Cell]] = {}
+    for cell in cells:
+        classes.setdefault(cell.likeness, []).append(cell)
+    return list(classes.values())

@@ -6,7 +6,6 @@ checks. Checks work on trees, so that a defect in one section hides none in anot
 
 from __future__ import annotations
 
-import itertools
 import os
 from collections.abc import Sequence
 from pathlib import Path
@@ -25,6 +24,7 @@ from lavendersim.experiment.sweeps import axes as sweep
 from lavendersim.experiment.sweeps.option_overrides import check_untouched, with_overrides
 from lavendersim.experiment.sweeps.reduced_length import at_reduced_length, check_reduced_length
 from lavendersim.experiment.sweeps.solver_override import with_solver
+from lavendersim.experiment.sweeps.starts import is_valid, varies_starts
 from lavendersim.experiment.text.file import read_file
 from lavendersim.experiment.text.former import with_new_spellings
 from lavendersim.experiment.text.node import Node, key_mark
@@ -33,7 +33,8 @@ from lavendersim.experiment.text.report import Report
 from lavendersim.quantities.found import found
 
 # Checking a cell takes 0.3 ms. Of larger sweeps every axis is checked value by value up to as many
-# cells; what is left is checked when its cell is built.
+# cells, and beyond them where bodies start, by its type alone. What is left is checked when its
+# cell, or the first one like it, is built for a plan: before anything runs.
 MOST_CELLS_CHECKED = 1000
 
 
@@ -131,16 +132,19 @@ def _check_others(
 ) -> tuple[Cell, ...]:
     """Check the cells one by one and return them all; those that were built keep their config."""
     if report.defects or count > MOST_CELLS_CHECKED:
-        for point in itertools.islice(sweep.covering_points(axes), MOST_CELLS_CHECKED):
-            build_cell(root, point, report)
+        for number, (axis, point) in enumerate(sweep.covering_points(axes)):
+            if number < MOST_CELLS_CHECKED or not (
+                axis is None or not varies_starts(axis) or is_valid(point, axis, root)
+            ):
+                build_cell(root, point, report)
     cells: list[Cell] = []
     if report.defects:
         return ()
     for index, point in enumerate(sweep.points(axes)):
-        cell = Cell(index, point.coordinates, point.label, root, point, name)
+        cell = Cell(index, root, point, name)
         if count <= MOST_CELLS_CHECKED:
             config = build_cell(root, point, report)
             if config is not None:
-                cell.__dict__["config"] = config  # fills the cached property
+                cell.keep(config)
         cells.append(cell)
     return tuple(cells)

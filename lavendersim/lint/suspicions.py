@@ -52,7 +52,9 @@ def _telling(experiment: Experiment) -> Iterator[Cell]:
     count = 0
     for cell in experiment.cells():
         new = set(cell.coordinates.items()) - seen
-        if (new or cell.index == 0) and count < MOST_CELLS:
+        if new or cell.index == 0:
             seen |= new
             count += 1
             yield cell
+        if count == MOST_CELLS:
+            return

@@ -50,6 +50,11 @@ def check_cost(experiment: Experiment, repeats: int | None = None) -> None:
         raise UsageError(f"--repeats: expected {FEWEST_REPEATS} or more, found {repeats}; {FEW}")
 
 
+def grid_of(experiment: Experiment) -> Experiment:
+    """Return what is run to measure what accuracy costs: every setting, as a sweep."""
+    return over_the_grid(experiment, settings_of(experiment))
+
+
 def take_cost(
     experiment: Experiment,
     root: Path | str = RUNS,
@@ -57,16 +62,19 @@ def take_cost(
     progress: Progress = Progress(),  # noqa: B008 - immutable
     targets: Sequence[float] = (),
     repeats: int | None = None,
+    *,
+    is_predicted: bool = False,
 ) -> Costed:
     """Run the grid of an experiment's `cost` section and time it.
 
     jobs: processes that run and compile; times are taken in this one. targets, repeats: in place of
-    those of the config. The run is finished, and `latest`, when all of it is.
+    those of the config. The run is finished, and `latest`, when all of it is. is_predicted: see
+    `run`.
     """
     check_cost(experiment, repeats)
     assert experiment.config.cost is not None
     settings = settings_of(experiment)
-    grid = over_the_grid(experiment, settings)
+    grid = grid_of(experiment)
     tables: list[CostTable] = []
 
     def closing(finished: Finished, measured: list[dict[str, Any]]) -> None:
@@ -110,7 +118,16 @@ def take_cost(
         _write_csv(finished.run.path / COST_TABLE, data["rows"])
 
     overrides = experiment.options.overrides  # the grid's text has them
-    finished = run(grid, root, jobs, progress, overheads=False, closing=closing, in_text=overrides)
+    finished = run(
+        grid,
+        root,
+        jobs,
+        progress,
+        overheads=False,
+        closing=closing,
+        in_text=overrides,
+        is_predicted=is_predicted,
+    )
     return Costed(finished, tables[0])
 
 

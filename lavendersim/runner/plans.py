@@ -13,30 +13,56 @@ from typing import Any
 
 from lavendersim.errors import ConfigError, Defect
 from lavendersim.experiment import Experiment
-from lavendersim.experiment.cell import Cell
-from lavendersim.scene.plan import Plan, plan_of_cell, union
+from lavendersim.experiment.cell import Cell, alike
+from lavendersim.scene.plan import Plan, name_of, plan_of_cell, union
+from lavendersim.scene.starts_read import StartsRead
 
 
 def shared_plans(cells: Iterable[Cell]) -> list[Plan]:
     """Return the plan of each cell; equal choices give one and the same object.
 
+    Cells that differ in how bodies start alone are planned once where no decision reads that.
     Raises ConfigError with every key of the file's `effects` that cannot be, in any cell.
     """
-    own: list[Plan] = []
+    cells = list(cells)
+    own: dict[int, Plan] = {}  # by the ids of cells
+    made: list[Plan] = []
     known: dict[Any, Any] = {}
     defects: dict[Defect, None] = {}
-    for cell in cells:
-        try:
-            own.append(_shared(plan_of_cell(cell), known))
-        except ConfigError as error:
-            defects |= dict.fromkeys(error.defects)
+    for one in alike(cells):
+        for plan, members in _plans_of_class(one, defects):
+            made.append(_shared(plan, known))
+            own |= dict.fromkeys(map(id, members), made[-1])
     if defects:
         raise ConfigError(list(_first_of_each_place(defects)))
+    made.sort(key=lambda plan: plan.cells[0])  # reasons stand in the order of the cells
     groups: dict[tuple[Any, ...], list[Plan]] = {}
-    for plan in own:
+    for plan in made:
         groups.setdefault(plan.choices, []).append(plan)
     shared = {choices: union(group) for choices, group in groups.items()}
-    return [shared[plan.choices] for plan in own]
+    return [shared[own[id(cell)].choices] for cell in cells]
+
+
+def _plans_of_class(
+    cells: list[Cell], defects: dict[Defect, None]
+) -> Iterator[tuple[Plan, list[Cell]]]:
+    """Yield the plan of cells that differ in how bodies start alone; where it matters, of each.
+
+    defects: notes those of cells that have no plan.
+    """
+    starts = StartsRead()
+    for number, cell in enumerate(cells):
+        try:
+            plan = plan_of_cell(cell, starts=None if number else starts)
+        except ConfigError as error:
+            defects |= dict.fromkeys(error.defects)
+            if starts.any is False:
+                return  # the others are refused alike
+            continue
+        if starts.any is False:
+            yield plan.of(tuple(map(name_of, cells))), cells
+            return
+        yield plan, [cell]
 
 
 def _shared(plan: Plan, known: dict[Any, Any]) -> Plan:

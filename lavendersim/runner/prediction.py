@@ -6,10 +6,12 @@ of one core of a desktop: within some three times for scenes of the docs' tables
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Final, NamedTuple
 
 from lavendersim.experiment import Experiment
+from lavendersim.experiment.cell import alike
 from lavendersim.scene.expected_contacts import expected_contacts
 
 from .log_size import LogSpace, free_bytes, is_certainly_small, log_space
@@ -50,20 +52,39 @@ def is_short(experiment: Experiment, root: Path) -> bool:
 
     They are bounded by MOST_CONTACTS a body, as the bytes of `log_size` are.
     """
-    configs = [cell.config for cell in experiment.cells()]
-    seconds = PER_CELL * len(configs) + sum(
-        config.steps * (PER_STEP + PER_CONTACT * MOST_CONTACTS * len(config.scene.bodies))
-        for config in configs
-    )
+    cells = experiment.cells()
+    seconds = PER_CELL * len(cells)
+    for one in alike(cells):
+        config = one[0].config
+        contacts = MOST_CONTACTS * len(config.scene.bodies)
+        seconds += len(one) * config.steps * (PER_STEP + PER_CONTACT * contacts)
     if seconds > min(WORTH_SAYING, LONGEST):
         return False
-    return is_certainly_small(experiment.cells(), free_bytes(root))
+    return is_certainly_small(cells, free_bytes(root))
+
+
+def predicted_together(runs: Sequence[Experiment], root: Path, jobs: int = 1) -> Prediction | None:
+    """Return what the runs that one experiment leads to will take, one after the other.
+
+    None: each is certainly short. root, jobs: as of `predicted`.
+    """
+    if all(is_short(one, root) for one in runs):
+        return None
+    each = [predicted(one, root, jobs) for one in runs]
+    sizes = [one.space.size for one in each if one.space.size is not None]
+    return Prediction(
+        runs[0].name,
+        sum(one.cells for one in each),
+        sum(one.steps for one in each),
+        sum(one.seconds for one in each),
+        LogSpace(sum(sizes) if sizes else None, each[0].space.free),
+    )
 
 
 def predicted(experiment: Experiment, root: Path, jobs: int = 1) -> Prediction:
     """Return what a run of an experiment into a folder will take; jobs: its processes."""
     cells = experiment.cells()
-    steps = sum(cell.config.steps for cell in cells)
+    steps = sum(len(one) * one[0].config.steps for one in alike(cells))
     sampled = cells[:: max(1, len(cells) // TELLING)]
     work = sum(
         one.config.steps * (PER_STEP + PER_CONTACT * expected_contacts(one.config))

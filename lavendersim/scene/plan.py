@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+import itertools
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Final, NamedTuple
 
 from lavendersim.cell import CellConfig, CellEffects
@@ -16,6 +17,7 @@ from lavendersim.experiment.cell import Cell
 
 from .facts import facts_of
 from .overrides import Forced, OverrideError, override
+from .starts_read import StartsRead
 
 # What cells of one engine agree in. Numerics that choose between laws: no coefficient turns one
 # engine into another's; what the section `study` asks for is one more. Effects switched by hand: a
@@ -45,7 +47,10 @@ MOST_LABELS: Final = 4  # of cells in a sentence
 
 
 class CellName(NamedTuple):
-    """A cell of a sweep: its place and its label; a scene alone is cell 0 without a label."""
+    """A cell of a sweep: its place and its label; a scene alone is cell 0 without a label.
+
+    In order they stand as the cells do.
+    """
 
     number: int = 0
     label: str = ""
@@ -56,7 +61,8 @@ class CellName(NamedTuple):
         return self.label or str(self.number)
 
 
-Reasons = dict[str, tuple[CellName, ...]]  # reason -> cells
+CellNames = tuple[CellName, ...]
+Reasons = dict[str, CellNames]  # reason -> cells
 ALONE: Final = CellName()
 
 
@@ -89,6 +95,11 @@ class Plan(NamedTuple):
         """Return which cells require an effect or pair."""
         return self.required_by.get(name, ())
 
+    def of(self, cells: tuple[CellName, ...]) -> Plan:
+        """Return the plan of one cell as that of all that are decided alike."""
+        required = dict.fromkeys(self.required_by, cells)
+        return self._replace(cells=cells, required_by=required)
+
     def requirement(self, name: str) -> str:
         """Return which cells require an effect or pair, where it is some of them and not all."""
         requiring = self.requiring(name)
@@ -100,12 +111,20 @@ class Plan(NamedTuple):
         return f"required by {len(requiring)} of {len(self.cells)} cells: {'; '.join(labels)}"
 
 
-def plan_of(config: CellConfig, record: bool = True, cell: CellName = ALONE) -> Plan:
+def plan_of(
+    config: CellConfig,
+    record: bool = True,
+    cell: CellName = ALONE,
+    starts: StartsRead | None = None,
+) -> Plan:
     """Derive the plan of one cell from its config alone.
 
-    record: its steps are to be logged. Raises OverrideError where its `effects` cannot be.
+    record: its steps are to be logged. starts: notes whether it depends on how bodies start.
+    Raises OverrideError where its `effects` cannot be.
     """
     facts = facts_of(config, record)
+    if starts is not None:
+        facts = starts.watched(facts)
     derived = {effect.name: effect.decide(facts) for effect in EFFECTS}
     touching = _shape_pairs(facts)
     made = override(derived, touching, facts, config.effects)
@@ -132,13 +151,18 @@ def plan_of(config: CellConfig, record: bool = True, cell: CellName = ALONE) -> 
     )
 
 
-def plan_of_cell(cell: Cell, record: bool = True) -> Plan:
+def plan_of_cell(cell: Cell, record: bool = True, starts: StartsRead | None = None) -> Plan:
     """Derive the plan of a cell; raises ConfigError at the keys of its `effects` that cannot be."""
     try:
-        return plan_of(cell.config, record, CellName(cell.index, cell.label))
+        return plan_of(cell.config, record, name_of(cell), starts)
     except OverrideError as error:
         defects = [cell.defect(("effects", one.name), one.sentence) for one in error.refusals]
         raise ConfigError(sorted(defects)) from None  # in the order of the file
+
+
+def name_of(cell: Cell) -> CellName:
+    """Return what sentences call a cell."""
+    return CellName(cell.index, cell.label)
 
 
 def union(plans: Iterable[Plan]) -> Plan:
@@ -151,7 +175,8 @@ def union(plans: Iterable[Plan]) -> Plan:
     if len(plans) == 1:
         return first
     names = (*first.decisions, *first.shape_pairs)
-    reasons = {name: _reasons(plans, name) for name in names}
+    cells = tuple(sorted(cell for plan in plans for cell in plan.cells))
+    reasons = {name: _reasons(plans, name, cells) for name in names}
     joined = {name: _joined(plans, name, reasons[name]) for name in names}
     effects = {name: joined[name] for name in first.decisions}
     shape_pairs = {name: joined[name] for name in first.shape_pairs}
@@ -161,15 +186,19 @@ def union(plans: Iterable[Plan]) -> Plan:
         tolerance=any(plan.spec.tolerance for plan in plans),
         over_relaxation=any(plan.spec.over_relaxation for plan in plans),
     )
-    required_by = {
-        name: tuple(cell for plan in plans for cell in plan.requiring(name)) for name in names
-    }
+    required_by = {name: _together([one.requiring(name) for one in plans], cells) for name in names}
     forced = {name: how for plan in plans for name, how in plan.forced.items()}
     for name, how in list(forced.items()):
         if how == "forced on" and required_by[name]:
             del forced[name]  # on without being forced, for the cells that require it
-    cells = tuple(cell for plan in plans for cell in plan.cells)
     return Plan(spec, effects, first.choices, shape_pairs, forced, cells, required_by, reasons)
+
+
+def _together(parts: Sequence[CellNames], every: CellNames) -> CellNames:
+    """Return the cells of some plans in their order; every: those of all plans, kept once."""
+    if sum(map(len, parts)) == len(every):
+        return every
+    return tuple(sorted(itertools.chain.from_iterable(parts)))
 
 
 def _joined(plans: list[Plan], name: str, reasons: Reasons) -> Decision:
@@ -182,17 +211,17 @@ def _joined(plans: list[Plan], name: str, reasons: Reasons) -> Decision:
     return Decision(on, f"{first} (cell {cells[0].text}; {more} in other cells)")
 
 
-def _reasons(plans: list[Plan], name: str) -> Reasons:
+def _reasons(plans: list[Plan], name: str, every: CellNames) -> Reasons:
     """Return why an effect is on, where it is in any cell, else why off: rather required than
     forced on, rather forced off than not required.
     """
     on = any(plan.decided(name).on for plan in plans)
     agreeing = [plan for plan in plans if plan.decided(name).on == on]
     telling = [plan for plan in agreeing if (name in plan.forced) != on]
-    reasons: dict[str, list[CellName]] = {}
+    reasons: dict[str, list[CellNames]] = {}
     for plan in telling or agreeing:
-        reasons.setdefault(plan.decided(name).reason, []).extend(plan.cells)
-    return {reason: tuple(cells) for reason, cells in reasons.items()}
+        reasons.setdefault(plan.decided(name).reason, []).append(plan.cells)
+    return {reason: _together(parts, every) for reason, parts in reasons.items()}
 
 
 def _on(decisions: Mapping[str, Decision]) -> tuple[str, ...]:

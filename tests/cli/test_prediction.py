@@ -13,6 +13,7 @@ from lavender_cli.main import app
 from lavendersim.errors import UsageError
 from lavendersim.experiment import load_experiment
 from lavendersim.runner import prediction as predictions
+from lavendersim.runner.cost import grid_of
 from lavendersim.runner.prediction import PER_CELL, PER_CONTACT, PER_STEP, predicted
 
 # 96,000,000 steps a cell, 10 cells: an hour or so, and logs of hundreds of GB.
@@ -24,6 +25,48 @@ def long_one(drop: Path) -> Path:
     text = drop.read_text().replace("duration: 0.5", "duration: 400000")
     drop.write_text(text + LONG)
     return drop
+
+
+COST = """cost:
+  error: {measure: rebound}
+  solvers: [projected_gauss_seidel]
+  timesteps: [1/60, 1/240]
+  sweeps: [4]
+  warm_start: [true]
+"""
+
+
+@pytest.mark.parametrize(
+    ("words", "steps"),
+    [
+        (["run", "--refine"], 7 * 960),
+        (["check"], 960),
+        (["check", "--refine"], 7 * 960),  # at h, h/2 and h/4
+        (["check", "--solver", "jacobi,adaptive"], 2 * 960),
+    ],
+    ids=["run refined", "check", "check refined", "a matrix"],
+)
+def test_all_that_a_command_runs_is_counted(
+    long_one: Path, tmp_path: Path, words: list[str], steps: int
+) -> None:
+    if "--solver" in words:  # the chapter's numerics are of one solver
+        long_one.write_text(long_one.read_text().replace("numerics: chapter", "numerics: default"))
+    done = lavender(words[0], long_one, *words[1:], where=tmp_path)
+    assert done.returncode == 2
+    assert f"{steps * 10**6:,} steps, about " in done.stderr
+    assert done.stderr.splitlines()[-1].endswith("say --yes, or set LAVENDER_YES=1")
+    assert not (tmp_path / "runs").exists()
+
+
+def test_cost_counts_its_grid(long_one: Path, tmp_path: Path) -> None:
+    long_one.write_text(long_one.read_text() + COST)
+    settings = grid_of(load_experiment(long_one)).cells()
+    steps = sum(400_000 / cell.config.numerics.timestep for cell in settings)
+    done = lavender("cost", long_one, where=tmp_path)
+    assert done.returncode == 2
+    assert f"drop: {len(settings)} cells, {int(steps):,} steps, about " in done.stderr
+    assert done.stderr.splitlines()[-1].endswith("say --yes, or set LAVENDER_YES=1")
+    assert not (tmp_path / "runs").exists()
 
 
 def asked(config: Path, runs: Path, monkeypatch: pytest.MonkeyPatch, answer: str) -> Result:

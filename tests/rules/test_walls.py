@@ -187,6 +187,7 @@ BESIDE_THE_DOOR = {
     "lavendersim/trace/container.py": "logs grow for hours, and are readable after a kill",
     "lavendersim/runner/run_index.py": "a line for each cell that ends",
     "lavendersim/runner/run_lock.py": "opens a folder to lock it, writes nothing",
+    "lavendersim/engine/compile_lock.py": "an empty file to lock, which stays",
     "lavendersim/runner/unread_output.py": "opens the system's nowhere",
     "lavendersim/runner/leases.py": "what it makes has to fail where it is there",
     "lavendersim/runner/experiment_run.py": "a large table, aside by the door",

@@ -53,7 +53,7 @@ class SweptAxis:
 Products = tuple[tuple[SweptAxis, ...], ...]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class SweepPoint:
     """One cell of the sweep before it is resolved: of each axis, the index of its value."""
 
@@ -132,8 +132,10 @@ def axes_of(root: Node, report: Report) -> Products:
 def points(axes: Products) -> Iterator[SweepPoint]:
     """Yield all cells: product after product, the first axis slowest; one without a sweep."""
     for product in axes or ((),):
-        for indices in itertools.product(*(range(len(axis.values)) for axis in product)):
-            yield SweepPoint(tuple(zip(product, indices, strict=True)))
+        # of each value one pair, which all its cells have
+        choices = [[(axis, index) for index in range(len(axis.values))] for axis in product]
+        for point in itertools.product(*choices):
+            yield SweepPoint(point)
 
 
 def count(axes: Products) -> int:
@@ -141,15 +143,18 @@ def count(axes: Products) -> int:
     return sum(math.prod(len(axis.values) for axis in product) for product in axes or ((),))
 
 
-def covering_points(axes: Products) -> Iterator[SweepPoint]:
-    """Yield a few cells in which every value of every axis stands once, for large sweeps."""
+def covering_points(axes: Products) -> Iterator[tuple[SweptAxis | None, SweepPoint]]:
+    """Yield a few cells in which every value of every axis stands once, for large sweeps.
+
+    With the axis that each is there for; None: the cell of a product without axes.
+    """
     for product in axes or ((),):
         if not product:
-            yield SweepPoint(())
+            yield None, SweepPoint(())
         first = [(axis, 0) for axis in product]
-        for index, axis in enumerate(product):
-            for value in range(len(axis.values)):
-                yield SweepPoint((*first[:index], (axis, value), *first[index + 1 :]))
+        for place, axis in enumerate(product):
+            for index in range(len(axis.values)):
+                yield axis, SweepPoint((*first[:place], (axis, index), *first[place + 1 :]))
 
 
 def check_distinct(axes: Products, report: Report) -> None:
