@@ -83,10 +83,10 @@ def test_no_module_of_a_view_loads_the_engine(room: str) -> None:
     assert of_the_engine(loaded) <= DECLARATIONS
 
 
-def test_listing_runs_reads_no_config_and_no_log() -> None:
+def test_listing_runs_reads_no_config_and_no_log(tmp_path: Path) -> None:
     loaded = loaded_after(
         "from lavender_cli.main import main\n"
-        "sys.argv = ['lavender', 'ls', '--json']\n"
+        f"sys.argv = ['lavender', 'ls', '--json', '--runs', {str(tmp_path)!r}]\n"
         "try:\n    main()\nexcept SystemExit as done:\n    assert not done.code, done.code"
     )
     assert "lavendersim.runner.run_directory" in loaded
