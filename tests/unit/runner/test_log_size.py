@@ -64,15 +64,9 @@ def test_logged_sweeps_are_counted_as_the_most_there_may_be(tmp_path: Path) -> N
     assert all_done
 
 
-@pytest.mark.parametrize(
-    ("verb", "said"),
-    [
-        (["run", "--yes"], r"drop: 1 cell, 120 steps, about .* of logs \(.* are free\), about 0 s"),
-        (["check"], r"drop: its logs take about .* GB, more than a tenth of the .* are free in {}"),
-    ],
-)
+@pytest.mark.parametrize("verb", ["run", "check"])
 def test_logs_of_more_than_a_tenth_of_the_free_disk_are_warned_of(
-    verb: list[str], said: str, drop: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    verb: str, drop: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     experiment = load_experiment(drop)
     cells = experiment.cells()
@@ -85,7 +79,7 @@ def test_logs_of_more_than_a_tenth_of_the_free_disk_are_warned_of(
             return SimpleNamespace(total=10**15, used=0, free=free)
 
         monkeypatch.setattr(shutil, "disk_usage", disk_usage)
-        words = [*verb, str(drop), "--runs", str(tmp_path / "a" / "b")]
+        words = [verb, "--yes", str(drop), "--runs", str(tmp_path / "a" / "b")]
         done = CliRunner().invoke(app, words)
         assert done.exit_code == 0
         return "".join(
@@ -96,7 +90,8 @@ def test_logs_of_more_than_a_tenth_of_the_free_disk_are_warned_of(
 
     assert warned(10 * size + 10) == ""
     # in one sentence, once
-    assert re.fullmatch(said.format(f"{tmp_path}/a/b"), warned(10 * size - 10).removesuffix("\n"))
+    said = r"drop: 1 cell, 120 steps, about .* of logs \(.* are free\), about 0 s"
+    assert re.fullmatch(said, warned(10 * size - 10).removesuffix("\n"))
     assert warned(10**15) == ""
     # `runs` is asked where it will be, also before it is made
     assert asked[0] == tmp_path

@@ -87,6 +87,9 @@ def test_force_lasts_for_the_run_where_no_time_is_specified() -> None:
         "to": 2.0,
         "force": [1.0, 0.0, 0.0],
         "torque": [0.0, 0.0, 0.0],
+        "factor": None,
+        "point": [0.0, 0.0, 0.0],
+        "frame": "world",
     }
     assert (second["from"], second["to"], second["torque"]) == (1.0, 1.5, [0.0, 0.0, 2.0])
 
