@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from lavender_cli import overheads, printing, progress
-from lavender_cli.run import Runs
+from lavender_cli import printing, progress
+from lavender_cli.run import Runs, print_finished
 
 if TYPE_CHECKING:
     from lavendersim.runner.merge import Missing
@@ -45,8 +45,7 @@ def merge(
     if as_json:
         printing.as_json([{**found.run.results(), "run": found.run.path, "figures": figures}])
     else:
-        printing.print_summary(found)
-        overheads.print_table(found.run)
+        print_finished(found)
         for figure in figures:
             typer.echo(f"  figure {figure}")
     if not found.good:

@@ -178,7 +178,7 @@ def run(
                 tables.append(table)
                 take = figures.extend
             else:
-                drawing.say(partial(_print, finished, refined if refine else None))
+                drawing.say(partial(print_finished, finished, refined if refine else None))
             if drawn:
                 drawing.take(take)
     if plot and len(with_overheads) > 1:
@@ -192,7 +192,7 @@ def run(
         raise typer.Exit(1)
 
 
-def _print(finished: Any, refined: Any) -> None:
+def print_finished(finished: Any, refined: Any = None) -> None:
     """Print what became of a run, and its time errors where they were taken."""
     printing.print_costs(finished)
     claims.print_claims(finished.verdicts)

@@ -91,7 +91,7 @@ class Cell:
     @property
     def likeness(self) -> tuple[Hashable, ...]:
         """What it has in common with cells that differ in how bodies start alone."""
-        return self.divisor, *class_of(self._point)
+        return id(self._root), self.divisor, *class_of(self._point)
 
     @property
     def file(self) -> str:

@@ -136,7 +136,7 @@ def test_judge_gives_from_the_logs_the_verdicts_of_the_run(whole: Path, tmp_path
 def test_judge_fails_the_claims_on_a_damaged_log_and_says_so(whole: Path, tmp_path: Path) -> None:
     run = copied(whole, tmp_path)
     cut(logs(run)[0], 0.9)
-    done = verb("judge", run)
+    done = verb("judge", run, "-v")
     assert done.code == 3
     assert "unfinished, its end is missing" in done.stderr
     assert "a log that can answer" in done.stdout

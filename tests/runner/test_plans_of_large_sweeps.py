@@ -208,3 +208,16 @@ def test_a_cell_more_takes_little_memory() -> None:
         peaks.append(tracemalloc.get_traced_memory()[1])
         tracemalloc.stop()
     assert (peaks[1] - peaks[0]) / 10_000 <= 1_700.0
+
+
+def test_cells_of_other_experiments_are_no_class_of_its_cells() -> None:
+    """Without a sweep, too: each has its own bodies."""
+    ball = DROPS.partition("sweep:")[0]
+    box = ball.replace("{kind: sphere, radius: 0.1}", "{kind: box, size: [0.2, 0.2, 0.2]}")
+    cells = [
+        load_experiment_text(text.format(gravity="9.81"), "one.yaml").cells()[0]
+        for text in (ball, box)
+    ]
+    assert alike(cells) == [[cells[0]], [cells[1]]]
+    (plan,) = distinct(shared_plans(cells))
+    assert set(plan.spec.shape_pairs) == {"sphere_plane", "box_plane"}
