@@ -8,17 +8,11 @@ from typing import Annotated
 import typer
 
 from lavender_cli import printing
-from lavender_cli.completion import run_names
-from lavender_cli.run import AllowIncomplete, Runs
+from lavender_cli.run import AllowIncomplete, LatestRun, Runs
 
 
 def export(
-    run: Annotated[
-        Path | None,
-        typer.Argument(
-            metavar="[RUN]", help="Run directory; the latest by default.", autocompletion=run_names
-        ),
-    ] = None,
+    run: LatestRun = None,
     file_format: Annotated[
         str, typer.Option("--to", metavar="FORMAT", help="parquet, csv or arrow.")
     ] = "parquet",

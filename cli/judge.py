@@ -8,17 +8,11 @@ from typing import Annotated
 import typer
 
 from lavender_cli import claims, printing
-from lavender_cli.completion import run_names
-from lavender_cli.run import Own, Runs
+from lavender_cli.run import LatestRun, Own, Runs
 
 
 def judge(
-    run: Annotated[
-        Path | None,
-        typer.Argument(
-            metavar="[RUN]", help="Run directory; the latest by default.", autocompletion=run_names
-        ),
-    ] = None,
+    run: LatestRun = None,
     runs: Runs = Path("runs"),
     own: Own = None,
     verbose: claims.Verbose = False,

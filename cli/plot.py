@@ -8,19 +8,11 @@ from typing import Annotated
 import typer
 
 from lavender_cli import printing
-from lavender_cli.completion import run_names
-from lavender_cli.run import AllowIncomplete, Own, Runs
+from lavender_cli.run import AllowIncomplete, LatestRuns, Own, Runs
 
 
 def plot(
-    runs: Annotated[
-        list[Path] | None,
-        typer.Argument(
-            metavar="[RUN]...",
-            help="Run directories; the latest by default.",
-            autocompletion=run_names,
-        ),
-    ] = None,
+    runs: LatestRuns = None,
     root: Runs = Path("runs"),
     output: Annotated[
         Path | None,

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 import typer
 
 from lavender_cli import claims, overheads, printing, progress, time_errors
+from lavender_cli.completion import run_names
 from lavender_cli.drawing import Drawing
 from lavender_cli.prediction import Yes, confirm, with_refined
 
@@ -72,6 +73,20 @@ Own = Annotated[
     ),
 ]
 Runs = Annotated[Path, typer.Option("--runs", metavar="DIR", help="Where runs are kept.")]
+LatestRun = Annotated[
+    Path | None,
+    typer.Argument(
+        metavar="[RUN]", help="Run directory; the latest by default.", autocompletion=run_names
+    ),
+]
+LatestRuns = Annotated[
+    list[Path] | None,
+    typer.Argument(
+        metavar="[RUN]...",
+        help="Run directories; the latest by default.",
+        autocompletion=run_names,
+    ),
+]
 
 
 def run(

@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING, Annotated, NamedTuple
 import typer
 
 from lavender_cli import cell_lines, claims, printing
-from lavender_cli.completion import run_names
 from lavender_cli.replay import cell_of
-from lavender_cli.run import Runs
+from lavender_cli.run import LatestRun, Runs
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -24,12 +23,7 @@ SECTIONS = ("plan", "shape pairs", "forced", "study-only", "recorded")
 
 
 def show(
-    run: Annotated[
-        Path | None,
-        typer.Argument(
-            metavar="[RUN]", help="Run directory; the latest by default.", autocompletion=run_names
-        ),
-    ] = None,
+    run: LatestRun = None,
     runs: Runs = Path("runs"),
     cell: Annotated[
         int | None,

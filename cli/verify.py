@@ -3,24 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
 
 import typer
 
 from lavender_cli import printing
-from lavender_cli.completion import run_names
-from lavender_cli.run import Own, Runs
+from lavender_cli.run import LatestRuns, Own, Runs
 
 
 def verify(
-    runs: Annotated[
-        list[Path] | None,
-        typer.Argument(
-            metavar="[RUN]...",
-            help="Run directories; the latest by default.",
-            autocompletion=run_names,
-        ),
-    ] = None,
+    runs: LatestRuns = None,
     root: Runs = Path("runs"),
     own: Own = None,
 ) -> None:

@@ -114,3 +114,10 @@ def swept_path(experiment: Any, axis: str) -> str | None:
         if axis in product:
             return str(product[axis].every_path[0])
     return None
+
+
+def within(window: tuple[float, float] | None, time: Floats) -> Any:
+    """Return which times [s] a panel shows, as a mask; all without a window."""
+    if window is None:
+        return np.ones(len(time), dtype=bool)
+    return (time >= window[0]) & (time <= window[1])

@@ -9,7 +9,7 @@ import numpy as np
 
 from lavendersim.figures.drawing import draw_ideal
 from lavendersim.figures.registration import draws
-from lavendersim.figures.series import looks_of, series_of
+from lavendersim.figures.series import looks_of, series_of, within
 from lavendersim.figures.specs.time_series import OF_STEPS, POSITIONS, TimeSeries
 from lavendersim.measures.closed_forms import evaluate_form
 from lavendersim.measures.columns import (
@@ -67,9 +67,7 @@ def window_of(panel: TimeSeries, trace: Trace) -> tuple[Floats, Floats]:
         touching = _contacts(panel, trace)["step"]
         if len(touching):
             time = time - time[np.searchsorted(trace.step["step"], touching[0])]
-    known = ~np.isnan(quantity)
-    if panel.window is not None:
-        known &= (time >= panel.window[0]) & (time <= panel.window[1])
+    known = ~np.isnan(quantity) & within(panel.window, time)
     return time[known], quantity[known]
 
 

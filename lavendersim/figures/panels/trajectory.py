@@ -8,7 +8,7 @@ from typing import Any, Final
 import numpy as np
 
 from lavendersim.figures.registration import draws
-from lavendersim.figures.series import looks_of, series_of
+from lavendersim.figures.series import looks_of, series_of, within
 from lavendersim.figures.specs.trajectory import Trajectory
 from lavendersim.figures.style import look
 from lavendersim.measures.columns import body_columns
@@ -29,7 +29,7 @@ def draw_panel(
     for index, series in enumerate(all_series):
         for number, cell in enumerate(series.cells):
             trace = cell.trace()
-            shown = _rows(panel, np.asarray(trace.step["time"]))
+            shown = within(panel.window, np.asarray(trace.step["time"]))
             columns = body_columns(trace, panel.bodies)
             for place, column in enumerate(columns):
                 x, y = (trace.pose[shown, column, COORDINATES.index(c)] for c in (panel.x, panel.y))
@@ -44,9 +44,3 @@ def draw_panel(
                 axes.plot(x[:1], y[:1], color=one.colour, marker="o", markersize=5.0, zorder=4)
     if panel.equal:
         axes.set_aspect("equal", adjustable="datalim")
-
-
-def _rows(panel: Trajectory, time: Any) -> Any:
-    if panel.window is None:
-        return slice(None)
-    return (time >= panel.window[0]) & (time <= panel.window[1])
