@@ -43,8 +43,7 @@ scene:
   gravity: 0
   surfaces: {elastic: {restitution: 1}}
   bodies:
-    wall: {shape: {kind: plane, normal: [-1, 0, 0], offset: %r}, surface: elastic}
-    hit:
+%s    hit:
       shape: {kind: sphere, radius: 0.1}
       mass: 1.0
       surface: elastic
@@ -56,18 +55,37 @@ scene:
       surface: elastic
       position: [%r, 0, 0]
       velocity: [1, 1, 0]
-numerics: {timestep: 1/60, impacts: at_surface}
+%snumerics: {timestep: 1/60, impacts: at_surface}
 duration: 1/60
+"""
+WALL = f"""\
+    wall:
+      shape: {{kind: plane, normal: [-1, 0, 0], offset: {-(AHEAD + 0.1)!r}}}
+      surface: elastic
+"""
+BOULDER = f"""\
+    boulder:
+      shape: {{kind: sphere, radius: 10}}
+      fixed: true
+      surface: elastic
+      position: [{AHEAD + 0.1 + 10.0!r}, 0, 0]
 """
 
 
 @pytest.mark.parametrize("share", [0.7, 0.9, 0.99])
-def test_a_ball_hit_late_in_a_step_is_not_pushed_off_the_wall_ahead(share: float) -> None:
+@pytest.mark.parametrize("ahead", [(WALL, ""), ("", BOULDER)], ids=["body B", "body A"])
+def test_a_ball_hit_late_in_a_step_is_not_pushed_off_what_is_ahead(
+    share: float, ahead: tuple[str, str]
+) -> None:
     """It is hit after `share` of the step, and takes over the speed of its equal along x.
 
-    Both move along the wall, so that the wall is looked at from the step's start.
+    Both move along what is ahead, so that it is looked at from the step's start: a wall, of whose
+    contact the ball is body B, or a boulder, whose contact with the ball has it for body A.
     """
-    (course,) = run_config(HIT % (-(AHEAD + 0.1), -(0.2 + share * WAY)))
+    first, last = ahead
+    (course,) = run_config(HIT % (first, -(0.2 + share * WAY), last))
+    if last:
+        assert course.names.index("hit") < course.names.index("boulder")
     hit, striker = (course.pose[-1, course.names.index(one), 0] for one in ("hit", "striker"))
     # steps are solved to 1e-9 m/s, over a step
     assert hit == pytest.approx((1.0 - share) * WAY, abs=1e-9 * WAY)
