@@ -15,15 +15,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from lavendersim.cell.record import NONE
-from lavendersim.durable_files import flush_tree, write_in_pieces, write_whole, written_aside
+from lavendersim.durable_files import flush_tree, write_whole, written_aside
 from lavendersim.errors import UsageError
 from lavendersim.experiment import Experiment, load_experiment
 from lavendersim.experiment.cell import Cell
 from lavendersim.measures import Values, Verdict, judge, meant_to_end_early
 
+from .cells_index import CellsIndex, IndexRow, write_index
 from .environment import environment
 from .interruption import Interrupted, handled
-from .json_table import pieces_of, text_of
+from .json_table import text_of
 from .leftovers import remove_leftovers
 from .listing import TAGS, checked_tags
 from .progress import Progress
@@ -42,7 +43,7 @@ from .run_directory import (
     check_latest,
     point_latest,
 )
-from .run_index import ENDED, PENDING, as_row
+from .run_index import ENDED, PENDING
 from .run_lock import run_lock
 from .run_seal import DONE, seal_of
 
@@ -298,29 +299,23 @@ def _write_index(
     jobs: with the digest of the config of each.
     """
 
-    def row_of(cell: Cell, job: CellJob, config: str) -> dict[str, Any]:
+    def row_of(cell: Cell, job: CellJob, config: str) -> IndexRow:
         outcome = ended.get(job.path)
-        return {
-            "index": cell.index,
-            "label": cell.label,
-            "coordinates": {axis: _plain(value) for axis, value in cell.coordinates.items()},
-            "file": f"cells/{job.path.name}",
-            "status": outcome.status if outcome else PENDING,
-            "config": config,
-            "log": as_row(outcome.log if outcome else None),
-        }
+        return IndexRow(
+            cell.index,
+            cell.label,
+            f"cells/{job.path.name}",
+            outcome.status if outcome else PENDING,
+            config,
+            outcome.log if outcome else None,
+            {axis: _plain(value) for axis, value in cell.coordinates.items()},
+        )
 
     cells = zip(experiment.cells(), jobs, strict=True)
-    options = experiment.options.row
-    if not experiment.options.overrides:
-        del options["overrides"]  # as in earlier versions
-    table = {
-        "experiment": experiment.name,
-        "question": experiment.config.question,
-        **options,
-        "cells": (row_of(cell, *job) for cell, job in cells),
-    }
-    write_in_pieces(directory / CELLS, pieces_of(table), flush=False)
+    rows = (row_of(cell, *job) for cell, job in cells)
+    question = experiment.config.question
+    index = CellsIndex(experiment.name, question, experiment.options, rows)
+    write_index(directory / CELLS, index)
 
 
 def _write_resolved(path: Path, cells: Sequence[Cell]) -> list[str]:

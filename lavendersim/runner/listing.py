@@ -11,6 +11,7 @@ from typing import Any, Final, NamedTuple
 
 from lavendersim.errors import TraceError, UsageError
 
+from .cells_index import IndexRow
 from .run_directory import Run, list_runs
 
 TAGS: Final = "tags.txt"
@@ -87,7 +88,8 @@ def listed_run(run: Run) -> Listed:
     passed: bool | None = None
     claims = 0
     damaged: list[str] = []
-    name, question, cells, rows = "", "", 0, {}
+    name, question, cells = "", "", 0
+    rows: dict[Path, IndexRow] = {}
     try:
         name, question, cells = run.name, run.question, len(run.index_rows())
         rows = run.rows()
@@ -152,9 +154,9 @@ def _date(path: Path) -> datetime:
     return datetime.fromtimestamp(path.stat().st_mtime, UTC).replace(microsecond=0)
 
 
-def _size(log: Path, row: dict[str, Any]) -> int:
-    if known := row.get("log"):
-        return int(known["bytes"])
+def _size(log: Path, row: IndexRow) -> int:
+    if row.log is not None:
+        return row.log.size
     try:
         return log.stat().st_size
     except OSError:

@@ -38,7 +38,7 @@ def newest_run(experiment: Experiment, root: Path) -> Run | None:
 def _is_of(run: Run, experiment: Experiment) -> bool:
     try:
         return run.name == experiment.name and run.options == experiment.options
-    except (TraceError, KeyError):  # a damaged index is nothing to go on from
+    except TraceError:  # a damaged index is nothing to go on from
         return False
 
 
@@ -83,7 +83,7 @@ def take_over(run: Run, logs: Collection[str], note: Callable[[str], None]) -> d
     done: dict[str, EndedCell] = {}
     again = Counter[str]()
     for name in sorted(logs):
-        why = _why_again(run.path / "cells" / name, rows[name]["status"], ended.get(name))
+        why = _why_again(run.path / "cells" / name, rows[name].status, ended.get(name))
         if why:
             again[why] += 1
         else:

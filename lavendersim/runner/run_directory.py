@@ -13,7 +13,8 @@ from lavendersim.config_options import ConfigOptions
 from lavendersim.durable_files import flush_folder, write_whole
 from lavendersim.errors import TraceError, UsageError
 
-from .run_index import PENDING, add_ended, expected_of
+from .cells_index import CellsIndex, IndexRow, read_index, with_ended
+from .run_index import PENDING
 from .run_seal import DONE, read_sealed, sealed
 from .run_tables import read_table, renamed
 
@@ -118,20 +119,19 @@ class Run:
     @cached_property
     def name(self) -> str:
         """Name of the experiment: the stem of the file it was read from."""
-        return str(self._index["experiment"])
+        return self._index.experiment
 
     @property
     def question(self) -> str:
         """What the experiment asks; empty where it says nothing, and of older runs."""
-        return str(self._index.get("question", ""))
+        return self._index.question
 
     @cached_property
-    def _index(self) -> dict[str, Any]:
-        index = read_table(self.path / CELLS, "cells", ("index", "label", "file", "status"))
-        if self.finished and not sealed(self.path) and any("log" in row for row in index["cells"]):
+    def _index(self) -> CellsIndex:
+        index = read_index(self.path / CELLS)
+        if self.finished and not sealed(self.path) and index.has_digests:
             raise TraceError(f"{self.path / DONE}: damaged: it has lost the digests of the tables")
-        add_ended(index["cells"], self.path)
-        return index
+        return index._replace(cells=tuple(with_ended(index.cells, self.path)))
 
     @cached_property
     def cells(self) -> tuple[RunCell, ...]:
@@ -139,16 +139,16 @@ class Run:
         cells = {cell.index: cell for cell in self.experiment.cells()}
         return tuple(
             RunCell(
-                row["index"],
-                row["label"],
-                cells[row["index"]].coordinates,
-                self.path / row["file"],
-                row["status"],
-                cells[row["index"]].config if self.ran is not None else None,
+                row.index,
+                row.label,
+                cells[row.index].coordinates,
+                self.path / row.file,
+                row.status,
+                cells[row.index].config if self.ran is not None else None,
                 allow_incomplete=self.allow_incomplete,
-                expected=expected_of(row),
+                expected=row.expected,
             )
-            for row in self._index["cells"]
+            for row in self._index.cells
         )
 
     def damaged(self) -> list[str]:
@@ -163,31 +163,29 @@ class Run:
         found = []
         for log, row in self.logs().items():
             try:
-                check_closed(log, expected_of(row).digest)
+                check_closed(log, row.log)
             except TraceError as error:
                 found.append(str(error))
         return found
 
-    def logs(self) -> dict[Path, dict[str, Any]]:
+    def logs(self) -> dict[Path, IndexRow]:
         """Return the logs of the cells, with their rows of the index; of cells not begun none."""
         return {
-            file: row
-            for file, row in self.rows().items()
-            if row["status"] != PENDING or file.exists()
+            file: row for file, row in self.rows().items() if row.status != PENDING or file.exists()
         }
 
-    def rows(self) -> dict[Path, dict[str, Any]]:
+    def rows(self) -> dict[Path, IndexRow]:
         """Return the rows of the index by the logs, begun or not."""
-        return {self.path / row["file"]: row for row in self.index_rows()}
+        return {self.path / row.file: row for row in self._index.cells}
 
-    def index_rows(self) -> list[dict[str, Any]]:
+    def index_rows(self) -> tuple[IndexRow, ...]:
         """Return the rows of the index, one a cell."""
-        return list(self._index["cells"])
+        return tuple(self._index.cells)
 
     @property
     def options(self) -> ConfigOptions:
         """What its config was read with."""
-        return ConfigOptions.of_row(ConfigOptions().row | self._index)
+        return self._index.options
 
     @property
     def finished(self) -> bool:
@@ -207,9 +205,8 @@ class Run:
         keys = ("index", "label", "status")
         path = self.path / RESULTS
         table = renamed(read_table(path, "cells", (*keys, "measures")), "cells")
-        found, known = (
-            [[row[key] for key in keys] for row in one["cells"]] for one in (table, self._index)
-        )
+        found = [tuple(row[key] for key in keys) for row in table["cells"]]
+        known = [(row.index, row.label, row.status) for row in self._index.cells]
         if found != known or not isinstance(table.get("passed"), bool):
             raise TraceError(f"{path}: damaged: it has other cells than {CELLS}, or no verdict")
         return table

@@ -1,24 +1,22 @@
-"""Rows of the index of a run, `cells.json`: which log is whose, by digests; how cells ended.
+"""How cells of a run ended, one line a cell, `ended.jsonl`; digests of logs as JSON has them.
 
-While cells run, the index has them as pending, and two lines are appended to `ended.jsonl` for each
-that ends, the second with what was measured (`cell_outcome`): to write all of the index every time
-would take, of a sweep, the square of its cells. Who reads the index reads both. A line is one write
-by the process that ran the cell, so it is whole after a kill or is not counted. It is not flushed
-to the disk: after a power loss it may speak of a log that is cut, which its digest shows.
+While cells run, the index (`cells_index`) has them as pending, and two lines are appended here for
+each that ends, the second with what was measured (`cell_outcome`): to write all of the index every
+time would take, of a sweep, the square of its cells. Who reads the index reads both. A line is one
+write by the process that ran the cell, so it is whole after a kill or is not counted. It is not
+flushed to the disk: after a power loss it may speak of a log that is cut, which its digest shows.
 """
 
 from __future__ import annotations
 
 import json
 import os
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from lavendersim.errors import TraceError
-
 if TYPE_CHECKING:
-    from lavendersim.trace import ExpectedLog, LogDigest
+    from lavendersim.trace import LogDigest
 
 PENDING: Final = "pending"
 ENDED: Final = "ended.jsonl"
@@ -36,13 +34,6 @@ def digest_of(row: Mapping[str, Any] | None) -> LogDigest | None:
     from lavendersim.trace import LogDigest  # late, as is all of the trace
 
     return LogDigest(row["bytes"], int(row["crc32"], 16), row["sha256"]) if row else None
-
-
-def expected_of(row: Mapping[str, Any]) -> ExpectedLog:
-    """Return what a row of the index says of its log; nothing where an older version wrote it."""
-    from lavendersim.trace import ExpectedLog
-
-    return ExpectedLog(row.get("config", ""), digest_of(row.get("log")))
 
 
 def note_ended(log: Path, status: str, digest: LogDigest) -> None:
@@ -86,14 +77,3 @@ def kept_lines(directory: Path, names: Collection[str]) -> str:
     """Return the lines about the logs of these names, each whole."""
     rows = ended_rows(directory)
     return "".join(json.dumps(row) + "\n" for name, row in rows.items() if name in names)
-
-
-def add_ended(rows: Sequence[dict[str, Any]], directory: Path) -> None:
-    """Enter how cells of a run that goes on, or was killed, have ended so far."""
-    try:
-        ended = ended_rows(directory)
-        for row in rows:
-            if (one := ended.get(Path(row["file"]).name)) is not None:
-                row |= {"status": one["status"], "log": one["log"]}
-    except (ValueError, KeyError, TypeError) as error:
-        raise TraceError(f"{directory / ENDED}: damaged: {error}") from None

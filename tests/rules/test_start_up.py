@@ -96,5 +96,6 @@ def test_listing_runs_reads_no_config_and_no_log(tmp_path: Path) -> None:
         *("lavendersim.errors", "lavendersim.durable_files", "lavendersim.runner"),
         "lavendersim.config_options",  # a record of four fields
         *("lavendersim.runner.listing", "lavendersim.runner.run_directory"),
+        "lavendersim.runner.cells_index",
         *(f"lavendersim.runner.run_{part}" for part in ("index", "seal", "tables")),
     }

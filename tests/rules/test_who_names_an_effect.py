@@ -77,7 +77,7 @@ ELSEWHERE = {
 ASKED = {
     "degrees of freedom: what has an orientation, or moves though nothing moves it": {
         "rotation": (
-            *("approach", "collide/broad/reach", "effects/drag", "effects/external_force"),
+            *("applied_force", "approach", "collide/broad/reach", "effects/drag"),
             *("effects/prescribed_motion", "effects/varying_force"),
             *("effects/impact_order", "effects/pose_log", "effects/sleeping", "effects/spring"),
             *("effects/step_log", "error_estimate", "foreseen_impacts", "impact_location"),

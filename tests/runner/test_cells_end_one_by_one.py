@@ -81,7 +81,7 @@ def test_a_line_that_a_kill_cut_is_not_counted_and_a_damaged_one_is_refused(
     line = json.dumps({"file": "a.mcap", "status": "complete", "log": None})
     for text, status in ((line, "pending"), (line + "\n", "complete"), (line + "\n{", "complete")):
         (tmp_path / "ended.jsonl").write_text(text)
-        assert Run(tmp_path)._index["cells"][0]["status"] == status
+        assert Run(tmp_path).index_rows()[0].status == status
     (tmp_path / "ended.jsonl").write_text(line[1:] + "\n")
     with pytest.raises(TraceError, match=r"ended\.jsonl: damaged"):
-        Run(tmp_path)._index  # noqa: B018
+        Run(tmp_path).index_rows()

@@ -21,20 +21,15 @@ def decide(facts: Facts) -> Decision:
 
 def make(spec):
     """Return `kernel(body, velocity, params)`."""
-    from ..rotation import inverse_inertia_times
+    from ..applied_force import make_apply_force
+    from ..vectors import Vec3
 
-    turns = spec.has("rotation")
+    apply_force = make_apply_force(spec)
 
     def external_force(body, velocity, params):
-        scale = body.inv_m * params.dt
-        velocity.vx += body.fx * scale
-        velocity.vy += body.fy * scale
-        velocity.vz += body.fz * scale
-        if turns:
-            x, y, z = inverse_inertia_times(body, body.tx, body.ty, body.tz)
-            velocity.wx += x * params.dt
-            velocity.wy += y * params.dt
-            velocity.wz += z * params.dt
+        force = Vec3(body.fx, body.fy, body.fz)
+        torque = Vec3(body.tx, body.ty, body.tz)
+        apply_force(body, velocity, force, torque, params.dt)
 
     return kernel(external_force, spec)
 

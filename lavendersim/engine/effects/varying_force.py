@@ -112,20 +112,15 @@ def make_drive(spec):
 
 def make(spec):
     """Return `kernel(body, velocity, params)`."""
-    from ..rotation import inverse_inertia_times
+    from ..applied_force import make_apply_force
+    from ..vectors import Vec3
 
-    turns = spec.has("rotation")
+    apply_force = make_apply_force(spec)
 
     def varying_force(body, velocity, params):
-        scale = body.inv_m * params.dt
-        velocity.vx += body.force_x * scale
-        velocity.vy += body.force_y * scale
-        velocity.vz += body.force_z * scale
-        if turns:
-            x, y, z = inverse_inertia_times(body, body.torque_x, body.torque_y, body.torque_z)
-            velocity.wx += x * params.dt
-            velocity.wy += y * params.dt
-            velocity.wz += z * params.dt
+        force = Vec3(body.force_x, body.force_y, body.force_z)
+        torque = Vec3(body.torque_x, body.torque_y, body.torque_z)
+        apply_force(body, velocity, force, torque, params.dt)
 
     return kernel(varying_force, spec)
 
