@@ -7,8 +7,6 @@ file cannot be imported, and `compile` takes plain `njit`: slower to compile, wi
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator
-from contextlib import contextmanager
 from copy import copy
 from functools import partial
 from typing import Any, NamedTuple
@@ -21,20 +19,19 @@ from llvmlite.binding import (
     parse_assembly,
     parse_bitcode,
 )
-from numba.core import errors, types
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler, DefaultPassBuilder
 from numba.core.compiler_lock import global_compiler_lock
 from numba.core.compiler_machinery import PassManager, _pass_registry
 from numba.core.funcdesc import ExternalFunctionDescriptor, default_mangler
 from numba.core.itanium_mangler import mangle
-from numba.core.postproc import PostProcessor
 from numba.core.registry import CPUDispatcher
 from numba.core.sigutils import normalize_signature
 from numba.core.transforms import canonicalize_cfg
 from numba.core.typed_passes import NativeLowering
 from numba.core.typing.templates import make_concrete_template, signature
 
+from .compiler_shortcuts import packer_of, quick, shortened
 from .kernel_lowering import KernelLowering
 from .kernel_parts import STORE, KernelPart, key_of, symbol_of, with_called
 
@@ -152,7 +149,8 @@ def _prepare(state: Any, function: Any, symbol: str) -> None:
 
     context = state.targetctx  # made for this compilation alone
     context.mangler, context.declare_function = mangler, declare_function
-    state.typingctx = _quick(state.typingctx)
+    context.get_arg_packer = packer_of(context.data_model_manager)
+    state.typingctx = quick(state.typingctx)
 
 
 # Passes of numba's that serve closures, generators, literal arguments, array expressions and
@@ -174,35 +172,6 @@ NEEDLESS = frozenset(
         "DumpParforDiagnostics",
     }
 )
-
-
-@contextmanager
-def _shortened() -> Iterator[None]:
-    """Spare kernels what numba does for any function, while they are compiled.
-
-    Lifetimes of variables matter to generators and to counts of references. Its messages are no
-    one's, where it finds types by trying, and for each in colour it would set up the terminal.
-    """
-    whole = PostProcessor.run
-    scheme = getattr(errors, "HighlightColorScheme", None)  # only where colorama is installed
-    coloured = scheme and scheme._markup
-
-    def run(self: Any, emit_dels: bool = False, extend_lifetimes: bool = False) -> None:
-        if emit_dels or self.func_ir.is_generator or not hasattr(self.func_ir.func_id, "is_kernel"):
-            whole(self, emit_dels, extend_lifetimes)
-        else:
-            self.func_ir.blocks = canonicalize_cfg(self.func_ir.blocks)
-            self.func_ir.generator_info = None
-
-    PostProcessor.run = run  # type: ignore[method-assign]
-    if scheme:
-        scheme._markup = lambda self, message, *_: message
-    try:
-        yield
-    finally:
-        PostProcessor.run = whole  # type: ignore[method-assign]
-        if scheme:
-            scheme._markup = coloured
 
 
 class _Passes(PassManager):
@@ -232,30 +201,6 @@ def _pipeline(state: Any) -> PassManager:
             pipeline.add_pass(compiler_pass, description)
     pipeline.finalize()
     return pipeline
-
-
-_SCALARS = types.Number, types.Boolean, types.NoneType, types.Literal
-_resolved: dict[Any, Any] = {}
-
-
-def _quick(typingctx: Any) -> Any:
-    """Return a typing context that remembers what functions of scalars return.
-
-    Numba asks some twenty templates for the type of every sum of two numbers, each time.
-    """
-    quick = copy(typingctx)
-
-    def resolve_function_type(function: Any, args: Any, kws: Any) -> Any:
-        scalar = isinstance(function, types.Function) and not kws
-        if not scalar or not all(isinstance(kind, _SCALARS) for kind in args):
-            return typingctx.resolve_function_type(function, args, kws)
-        found = _resolved.get((function, args))
-        if found is None:
-            found = _resolved[function, args] = typingctx.resolve_function_type(function, args, kws)
-        return found
-
-    quick.resolve_function_type = resolve_function_type
-    return quick
 
 
 def _nothing() -> None:
@@ -365,7 +310,7 @@ class Kernel(CPUDispatcher):
 
     def compile(self, sig: Any) -> Any:
         """Compile for Python, which needs a door."""
-        with global_compiler_lock, _shortened():
+        with global_compiler_lock, shortened():
             args = tuple(normalize_signature(sig)[0])
             self.typingctx.refresh()
             self.targetctx.refresh()

@@ -1,0 +1,140 @@
+"""What numba does for any function and no kernel needs, or needs once: spared or remembered.
+
+Nothing of it changes an instruction of a kernel. Like `part_compiler` this leans on what numba
+keeps to itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager, nullcontext
+from copy import copy
+from typing import Any
+
+from numba.core import errors, ir, types
+from numba.core.datamodel.packer import ArgPacker
+from numba.core.errors import WarningsFixer  # type: ignore[attr-defined]
+from numba.core.postproc import PostProcessor
+from numba.core.transforms import canonicalize_cfg
+
+_postproc: Any = PostProcessor
+_instruction: Any = ir.Inst
+_warnings: Any = WarningsFixer
+if not (hasattr(_instruction, "_rec_list_vars") and hasattr(_warnings, "catch_warnings")):
+    raise ImportError("numba lists variables or catches warnings in another way")
+_VARIABLE, _INSTRUCTION, _ROW, _NAMED, _OTHER = range(5)
+_kinds: dict[type, int] = {}
+
+
+def _kind_of(value: type) -> int:
+    """Return what holds variables of the intermediate representation; remembered by class."""
+    families = enumerate((ir.Var, ir.Inst, (list, tuple), dict))
+    kind = next((kind for kind, classes in families if issubclass(value, classes)), _OTHER)  # type: ignore[arg-type]
+    _kinds[value] = kind
+    return kind
+
+
+def variables_of(_: Any, value: Any) -> list[Any]:
+    """Return the variables in a value, in the order of numba's own `Inst._rec_list_vars`."""
+    found: list[Any] = []
+    waiting = [iter((value,))]
+    while waiting:
+        for each in waiting[-1]:
+            kind = _kinds.get(type(each))
+            if kind is None:
+                kind = _kind_of(type(each))
+            if kind == _OTHER:
+                continue
+            if kind == _VARIABLE:
+                found.append(each)
+            elif kind == _INSTRUCTION:
+                found += each.list_vars()
+            else:
+                waiting.append(iter(each.values() if kind == _NAMED else each))
+                break
+        else:
+            waiting.pop()
+    return found
+
+
+def _as_they_come(*_: Any, **__: Any) -> AbstractContextManager[None]:
+    return nullcontext()
+
+
+@contextmanager
+def shortened() -> Iterator[None]:
+    """Spare kernels what numba does for any function, while they are compiled.
+
+    Lifetimes of variables matter to generators and to counts of references. Its messages are no
+    one's, where it finds types by trying, and for each in colour it would set up the terminal. For
+    each constraint on a type it would set Python's filters of warnings anew, to sort what is warned
+    of by line; a warning is given as it comes instead.
+    """
+    whole = _postproc.run
+    scheme = getattr(errors, "HighlightColorScheme", None)  # only where colorama is installed
+    coloured = scheme and scheme._markup
+    listed, caught = _instruction._rec_list_vars, _warnings.catch_warnings
+
+    def run(self: Any, emit_dels: bool = False, extend_lifetimes: bool = False) -> None:
+        if emit_dels or self.func_ir.is_generator or not hasattr(self.func_ir.func_id, "is_kernel"):
+            whole(self, emit_dels, extend_lifetimes)
+        else:
+            self.func_ir.blocks = canonicalize_cfg(self.func_ir.blocks)
+            self.func_ir.generator_info = None
+
+    _postproc.run = run
+    _instruction._rec_list_vars = variables_of
+    _warnings.catch_warnings = _as_they_come
+    if scheme:
+        scheme._markup = lambda self, message, *_: message
+    try:
+        yield
+    finally:
+        _postproc.run = whole
+        _instruction._rec_list_vars = listed
+        _warnings.catch_warnings = caught
+        if scheme:
+            scheme._markup = coloured
+
+
+_packers: dict[tuple[Any, tuple[Any, ...]], ArgPacker] = {}
+
+
+def packer_of(models: Any) -> Callable[[Any], ArgPacker]:
+    """Return what gives the packer of arguments of given types: one for all who call with them.
+
+    Numba asks for it some four times a call, and makes it anew each time.
+    """
+
+    def packer(kinds: Any) -> ArgPacker:
+        key = models, tuple(kinds)
+        found = _packers.get(key)
+        if found is None:
+            found = _packers[key] = ArgPacker(models, kinds)
+        return found
+
+    return packer
+
+
+_SCALARS = types.Number, types.Boolean, types.NoneType, types.Literal
+_resolved: dict[Any, Any] = {}
+
+
+def quick(typingctx: Any) -> Any:
+    """Return a typing context that remembers what functions of scalars return.
+
+    Numba asks some twenty templates for the type of every sum of two numbers, each time.
+    """
+    quick = copy(typingctx)
+
+    def resolve_function_type(function: Any, args: Any, kws: Any) -> Any:
+        scalar = isinstance(function, types.Function) and not kws
+        if not scalar or not all(isinstance(kind, _SCALARS) for kind in args):
+            return typingctx.resolve_function_type(function, args, kws)
+        found = _resolved.get((function, args))
+        if found is None:
+            found = _resolved[function, args] = typingctx.resolve_function_type(function, args, kws)
+        return found
+
+    quick.resolve_function_type = resolve_function_type
+    return quick
