@@ -124,7 +124,7 @@ def make_restore(spec: Spec) -> Any:
     warms, logs, sleeps = spec.has("warm_start"), spec.has("step_log"), spec.has("sleeping")
     turns = spec.has("rotation")
 
-    def keep_awake(kept, body):
+    def wake(kept, body):
         # Who woke in the substep is awake when it is made again.
         if kept.asleep == 1 and body.asleep == 0:
             kept.asleep, kept.rest, kept.inv_m = 0, 0.0, kept.own_inv_m
@@ -135,8 +135,9 @@ def make_restore(spec: Spec) -> Any:
                     kept.own_inv_iz,
                 )
 
-    if sleeps:
-        keep_awake = kernel(keep_awake, spec)
+    # A plain function among what a kernel names is no constant: the whole kernel would have no key,
+    # and be compiled again by every process.
+    keep_awake: Any = kernel(wake, spec) if sleeps else None
 
     def restore(state, params, counter, rows):
         control = state.control

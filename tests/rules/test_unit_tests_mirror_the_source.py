@@ -4,13 +4,16 @@
     lavendersim/engine/collide/pairs tests/unit/engine/collide/test_pairs_swapped.py
 
 A law of several packages is no unit's: it stands in tests/physics, tests/runner or their like.
+Every module has a test that is named after it, is a declaration, or is listed as one without.
 """
 
 from __future__ import annotations
 
+import ast
 from pathlib import Path
 
 import pytest
+from modules_without_tests import DECLARATIONS, WITHOUT_A_TEST
 from sources import ROOT
 
 PACKAGE = ROOT / "lavendersim"
@@ -51,3 +54,46 @@ def test_a_subject_is_found_by_whole_words_in_the_same_package(
     test: str, subject: str | None
 ) -> None:
     assert subject_of(UNIT / test) == (PACKAGE / subject if subject else None)
+
+
+def has_functions(module: Path) -> bool:
+    """Return whether a module defines a function, a method or a lambda."""
+    kinds = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)
+    return any(isinstance(node, kinds) for node in ast.walk(ast.parse(module.read_text())))
+
+
+def untested(modules: set[Path], tests: set[Path], excused: set[Path]) -> list[Path]:
+    """Return what is wrong: modules without a test or an excuse, and excuses that are no longer so.
+
+    An excuse is no longer so where a test is named after its module, or where the module is gone.
+    """
+    subjects = {subject_of(test) for test in tests}
+    return sorted((modules - subjects - excused) | (excused & subjects) | (excused - modules))
+
+
+def test_every_module_has_a_unit_test_or_is_listed_without() -> None:
+    modules = {file for file in PACKAGE.rglob("*.py") if file.name != "__init__.py"}
+    listed = [
+        PACKAGE / folder / f"{name}.py"
+        for folder, names in WITHOUT_A_TEST.items()
+        for name in names.split()
+    ]
+    declarations = {PACKAGE / name for name in DECLARATIONS}
+    assert len(listed) == len(set(listed))
+    assert not declarations & set(listed)
+    wrong = untested(modules, set(UNIT.rglob("test_*.py")), declarations | set(listed))
+    assert [str(module.relative_to(PACKAGE)) for module in wrong] == []
+
+
+@pytest.mark.parametrize("name", DECLARATIONS)
+def test_a_declaration_has_no_function(name: str) -> None:
+    assert not has_functions(PACKAGE / name)
+
+
+def test_a_missing_test_and_an_excuse_too_many_are_found() -> None:
+    writer, reader, gone = (PACKAGE / f"trace/{name}.py" for name in ("writer", "reader", "gone"))
+    tests = {UNIT / "trace/test_writer_read_by_rerun.py"}
+    assert untested({writer, reader}, tests, {reader}) == []
+    assert untested({writer, reader}, tests, set()) == [reader]
+    assert untested({writer, reader}, tests, {writer, reader}) == [writer]
+    assert untested({writer, reader}, tests, {reader, gone}) == [gone]

@@ -137,8 +137,18 @@ def test_every_kernel_of_every_config_has_one() -> None:
     """One that had none would be compiled anew in every process, and with it all that call it."""
     specs = {
         plan_of_cell(load_experiment(path).cells()[0]).spec
-        for folder in ("chapter", "scenes", "effects")
+        for folder in ("chapter", "scenes", "effects", "time")
         for path in sorted((CONFIGS / folder).glob("*.yaml"))
     }
     digests = {identity(make_advance(spec)).digest for spec in specs}
     assert len(digests) == len(specs)
+
+
+def test_kernels_of_substeps_have_one_whether_bodies_sleep_or_not() -> None:
+    """`accuracy` is a plan that runs for long; without a key each of its runs compiled it anew."""
+    (cell, *_) = load_experiment(CONFIGS / "time/accuracy_of_rolling.yaml").cells()
+    spec = plan_of_cell(cell).spec
+    assert spec.has("error_control")
+    assert not spec.has("sleeping")
+    awake, asleep = (make_advance(each) for each in (spec, spec.including("sleeping")))
+    assert identity(awake).digest != identity(asleep).digest

@@ -9,7 +9,6 @@ import sys
 from pathlib import Path
 
 import pytest
-from small_configs import RUN, python, run_in_new_process, write
 
 from lavendersim.engine import compile_options, kernel_store
 from lavendersim.engine.compile import inner
@@ -18,6 +17,7 @@ from lavendersim.engine.kernel_cache import KernelCache
 from lavendersim.engine.kernel_store import kept_kernels
 from lavendersim.engine.spec import Spec
 from tests.kept_kernels import of_scenes
+from tests.runner.small_configs import RUN, python, run_in_new_process, write
 
 
 @pytest.fixture

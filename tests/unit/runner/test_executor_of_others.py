@@ -16,12 +16,12 @@ from threading import Thread
 from typing import Any
 
 import pytest
-from run_contents import contents
-from small_configs import DROPS, write
 
 from lavendersim.errors import ConfigError, UsageError
 from lavendersim.experiment import load_experiment
 from lavendersim.runner import Progress, Run, remote, run
+from tests.runner.run_contents import contents
+from tests.runner.small_configs import DROPS, write
 
 MANY = DROPS.replace("[0.2, 0.5, 0.8]", str([round(0.1 + i / 100, 2) for i in range(40)]))
 

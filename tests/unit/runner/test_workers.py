@@ -11,12 +11,12 @@ from typing import Any
 import psutil
 import pytest
 from deadly_tasks import Task, dies_at_one_half, dies_once_at_one_half, exits, meets, squared
-from small_configs import write
 
 import lavendersim
 from lavendersim.figures.config_figure import compose
 from lavendersim.runner import Progress, executor, workers
 from lavendersim.runner.workers import AHEAD, Death, Retried, work
+from tests.runner.small_configs import write
 
 
 @pytest.fixture(autouse=True, params=["forked", "spawned"])

@@ -15,14 +15,14 @@ import time
 from pathlib import Path
 
 import pytest
-from run_contents import contents
-from small_configs import DROPS, write
 
 from lavendersim.errors import TraceError, UsageError
 from lavendersim.experiment import load_experiment
 from lavendersim.runner import Finished, Run, run
 from lavendersim.runner.merge import Missing, merge
 from lavendersim.runner.shards import ShardRun, part_of, run_shard
+from tests.runner.run_contents import contents
+from tests.runner.small_configs import DROPS, write
 
 KILLS = int(os.environ.get("LAVENDER_TEST_KILLS", "2"))
 WORKERS = 8

@@ -10,12 +10,12 @@ from typing import Any
 
 import numpy as np
 import pytest
-from small_configs import write
 
 import lavendersim
 from lavendersim.runner import Finished
 from lavendersim.runner.accuracy import Accuracy
 from lavendersim.runner.results import convergence_notices
+from tests.runner.small_configs import write
 
 # Two balls, one on the other: W = [[1, -1], [-1, 2]]/m. One sweep without an impulse to start from
 # stops the lower ball, then has it carry half of the upper one's g dt: the lower contact is left

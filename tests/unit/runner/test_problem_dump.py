@@ -6,7 +6,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from small_configs import write
 
 import lavendersim
 from lavendersim.errors import ConfigError
@@ -14,6 +13,7 @@ from lavendersim.problems.fclib import read_fclib
 from lavendersim.runner import Finished, load_all, problem_dump
 from lavendersim.scene.build import build
 from lavendersim.scene.plan import plan_of
+from tests.runner.small_configs import write
 
 # The ball flies for the first steps, then slides, and pushes the other one along.
 PUSH = """\

@@ -6,7 +6,6 @@ from pathlib import Path
 from threading import Event, Thread
 
 import pytest
-from small_configs import DROPS, write
 
 import lavendersim
 from lavendersim.engine.engine import BLOCK_STEPS
@@ -15,6 +14,7 @@ from lavendersim.runner import Progress
 from lavendersim.runner.cell import CellJob
 from lavendersim.runner.plans import shared_plans
 from lavendersim.runner.progress import Moment, Tally
+from tests.runner.small_configs import DROPS, write
 
 LONG = DROPS.replace("duration: 0.5", "duration: 60").replace("[0.2, 0.5, 0.8]", "[0.2, 0.5]")
 

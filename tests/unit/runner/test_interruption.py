@@ -10,10 +10,10 @@ import time
 from pathlib import Path
 
 import pytest
-from small_configs import write
 
 from lavendersim import open_run, open_trace
 from lavendersim.errors import TraceError
+from tests.runner.small_configs import write
 
 # Fifty million steps: minutes on any machine.
 ENDLESS = """\

@@ -8,10 +8,10 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from small_configs import DROPS, write
 
 import lavendersim
 from lavendersim.errors import ConfigError, UsageError
+from tests.runner.small_configs import DROPS, write
 
 
 def test_runs_within_one_second_do_not_share_a_directory(tmp_path: Path) -> None:

@@ -15,8 +15,6 @@ from pathlib import Path
 from typing import NoReturn
 
 import pytest
-from run_contents import contents
-from small_configs import DROPS, write
 
 from lavendersim import open_run
 from lavendersim.errors import TraceError, UsageError
@@ -24,6 +22,8 @@ from lavendersim.experiment import load_experiment
 from lavendersim.runner import Progress, Run, finished_run, list_runs, run
 from lavendersim.runner.run_lock import run_lock
 from tests.property.killed_runs import CONFIGS, prepared, wrong_when_resumed
+from tests.runner.run_contents import contents
+from tests.runner.small_configs import DROPS, write
 
 KILLS = int(os.environ.get("LAVENDER_TEST_KILLS", "2"))
 

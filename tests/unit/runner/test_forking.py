@@ -9,7 +9,6 @@ import threading
 from pathlib import Path
 
 import pytest
-from small_configs import write
 
 import lavendersim
 from lavendersim.errors import UsageError
@@ -18,6 +17,7 @@ from lavendersim.runner.forking import OWN, may_fork
 from lavendersim.runner.run_lock import run_lock
 from lavendersim.trace import file_digest, writer
 from lavendersim.trace.encode import Streams
+from tests.runner.small_configs import write
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="processes are forked on Linux")
 

@@ -9,7 +9,6 @@ from typing import Any
 
 import pytest
 from numba.core.registry import cpu_target
-from small_configs import DROPS, RUN, copy_package, python, run_in_new_process, write
 
 from lavendersim.cell import CellConfig
 from lavendersim.engine import compile_options
@@ -20,6 +19,7 @@ from lavendersim.experiment import load_experiment_text
 from lavendersim.scene.build import build
 from lavendersim.scene.plan import plan_of
 from tests.kept_kernels import of_scenes
+from tests.runner.small_configs import DROPS, RUN, copy_package, python, run_in_new_process, write
 
 
 @pytest.fixture(scope="module")
