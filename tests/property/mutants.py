@@ -66,7 +66,7 @@ OF_FILES = {
     "foreseen_impacts.py": ("tests/physics/test_impacts_in_order.py",),
     "stronge.py": ("configs/scenes/rod_end.yaml",),
 }
-LIMIT = 240.0  # [s] of the tests of a mutant, which may never end
+LIMIT = 120.0  # [s] of the tests of a mutant, which may never end
 FIRST = 1800.0  # [s] of all tests on what is whole, with kernels cold
 UNUSED = ("-k", "not coal")  # another library's distances, which is not always there
 SEEN, UNSEEN, ENDLESS, BROKEN = "seen", "unseen", "never ends", "broken"
