@@ -50,6 +50,7 @@ class Reference(NamedTuple):
     difference: float  # largest between velocities of those that reached it, relative [-]
 
 
+@np.errstate(all="ignore")  # of extreme numbers, as in `solve`
 def reference(problem: ContactProblem, tolerance: float = TOLERANCE) -> Reference:
     """Solve a problem by every family; `tolerance` is what `scaled` residuals have to reach."""
     starts = (None, *[_along_the_normals(problem)] * (len(FAMILIES) - 1))
@@ -76,6 +77,7 @@ def reference(problem: ContactProblem, tolerance: float = TOLERANCE) -> Referenc
     return Reference(kind, f"{kind}: {status}", velocities[best], solutions, difference)
 
 
+@np.errstate(all="ignore")
 def relative_difference(problem: ContactProblem, first: np.ndarray, second: np.ndarray) -> float:
     """Return |u1 - u2| / max(|u1|, |u2|, |q|), 0 where all are 0."""
     longest = max(float(np.linalg.norm(u)) for u in (first, second, problem.q))

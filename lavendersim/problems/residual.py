@@ -119,6 +119,7 @@ def own_scales(problem: ContactProblem) -> np.ndarray:
     return scales
 
 
+@np.errstate(over="ignore", invalid="ignore")  # of extreme numbers: what is not finite stays so
 def contact_velocities(problem: ContactProblem, impulses: np.ndarray) -> np.ndarray:
     """Return u, (n, 3) [m/s], with what regularisation and targets add to its normal rows."""
     u = problem.q

@@ -100,5 +100,7 @@ def scaled_residual(p: ScaledProblem, x: np.ndarray, v: np.ndarray) -> float:
     shifted = v / p.s[:, None]
     shifted[:, 0] += p.mu * np.hypot(shifted[:, 1], shifted[:, 2])
     pushed = p.common * p.s[:, None] * x
+    if p.q == 0.0:  # its squares are below the least number: nothing to compare with
+        return float("inf")
     off = float(np.linalg.norm(pushed - project(pushed - shifted, p.mu))) * (p.length / p.q)
     return off if np.isfinite(off) else float("inf")

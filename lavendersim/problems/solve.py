@@ -76,6 +76,9 @@ SOLVERS: dict[str, Solver] = {
 }
 
 
+# A problem of extreme numbers has squares and ratios beyond all numbers. What comes of them is
+# judged as any other: not finite, or not solved.
+@np.errstate(all="ignore")
 def solve(
     problem: ContactProblem,
     solver: str = "auto",

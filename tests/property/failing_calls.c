@@ -1,13 +1,15 @@
-/* Stands before the C library and lets the n-th call that touches a folder fail.
+/* Stands before the C library and lets the n-th call that touches a folder fail, or kills before it.
  *
  * Preloaded (LD_PRELOAD). Counted are calls by a path below the folder, and by a descriptor that was
  * opened by such a path. `failing_calls_arm` sets the folder, the number of the call, from 0, and
- * the error; a negative number counts alone.
+ * the error; a negative number counts alone. In place of the error -1 kills the process (SIGKILL)
+ * before the call is made.
  */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <signal.h>
 #include <stdarg.h>
 #include <stdatomic.h>
 #include <string.h>
@@ -39,6 +41,7 @@ static int fails(const char *name) {
     long number = atomic_fetch_add(&count, 1);
     if (number != failing) return 0;
     failed_call = name;
+    if (failure < 0) raise(SIGKILL);
     errno = failure;
     return 1;
 }

@@ -24,10 +24,13 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from tests.property.killed_runs import SHARED
+
 SOURCE = Path(__file__).with_suffix(".c")
 LIBRARY = "LAVENDER_TEST_FAILING_CALLS"  # where the library is, in the process that has it before
 ERRORS = (errno.ENOSPC, errno.EIO, errno.EACCES)
 CODES = {errno.ENOSPC: 6, errno.EIO: 6, errno.EACCES: 2}  # docs/commands.md, exit codes
+KILLED = -1  # in place of an error
 LATE = ("unlink",)  # of what is left over: a run may go on without
 
 
@@ -39,14 +42,16 @@ class Found(NamedTuple):
     said: str
 
 
-def preloaded(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
-    """Run this module in a process that has the library before the C library."""
+def preloaded(
+    folder: Path, *arguments: str, module: str = "tests.property.failing_calls"
+) -> subprocess.CompletedProcess[str]:
+    """Run a module in a process that has the library before the C library."""
     library = folder / "failing_calls.so"
     compiler = shutil.which("cc") or shutil.which("gcc") or "cc"
     make = [compiler, "-shared", "-fPIC", "-O1", "-o", library, SOURCE, "-ldl"]
     subprocess.run([str(one) for one in make], check=True)
     return subprocess.run(
-        [sys.executable, "-m", "tests.property.failing_calls", *arguments],
+        [sys.executable, "-m", module, *arguments],
         env=os.environ | {"LD_PRELOAD": str(library), LIBRARY: str(library), "NO_COLOR": "1"},
         cwd=Path(__file__).parents[2],
         stdout=subprocess.PIPE,
@@ -58,24 +63,27 @@ def preloaded(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]
 class Runs:
     """A folder with a finished run, in which runs fail."""
 
-    def __init__(self, top: Path) -> None:
+    def __init__(self, top: Path, text: str = SHARED) -> None:
         from lavendersim.runner import run
-        from tests.property.killed_runs import SHARED
         from tests.runner.run_contents import contents
 
         self.library = ctypes.CDLL(os.environ[LIBRARY])
         self.library.failing_calls_which.restype = ctypes.c_char_p
         self.top, self.config = top, top / "drops.yaml"
-        self.config.write_text(SHARED)
+        self.config.write_text(text)
         self.whole = contents(run(self.config, top / "whole").run)
 
     def failing(self, number: int, error: int) -> tuple[Path, Found]:
-        """Let the command run, in a new folder with a run in it, whose n-th call fails."""
+        """Let the command run, in a new folder with a run in it, whose n-th call fails.
+
+        error: `KILLED` kills it before the call.
+        """
         from lavendersim.runner import run
 
         runs = self.top / f"{number}-{error}"
         run(self.config, runs)
         said, failed = self.top / "stderr", self.top / "call"
+        failed.write_text("")
         process = os.fork()
         if process == 0:
             self._run(runs, (number, error), said, failed)

@@ -159,12 +159,12 @@ def wrong_when_read(case: Case, folder: Path, how: tuple[int, float, bool]) -> I
         (("verify", earlier.path), {0}),
         (("verify", left.path), {0} if left.finished else {0, 2, 3}),
     ):
-        yield from _wrong_verb(codes, *verb)
+        yield from wrong_verb(codes, *verb)
     copy = folder / "copy"
     shutil.copytree(left.path, copy, symlinks=True)
     logs = {path: path.read_bytes() for path in copy.glob("cells/*.mcap")}
     if logs:
-        yield from _wrong_verb({0, 3, 5}, "recover", copy)
+        yield from wrong_verb({0, 3, 5}, "recover", copy)
     if any(path.read_bytes() != data for path, data in logs.items()):
         yield "recover changed a log"
     last = run(case.config, runs, jobs, resume=resume and not left.finished).run
@@ -176,7 +176,7 @@ def wrong_when_read(case: Case, folder: Path, how: tuple[int, float, bool]) -> I
         hidden = [path for path in runs.rglob(".*") if path.name != ".lock"]
         if hidden:
             yield f"left: {hidden}"
-    yield from _wrong_verb({0}, "verify", last.path)
+    yield from wrong_verb({0}, "verify", last.path)
 
 
 def finished(runs: Path) -> list[Run]:
@@ -184,7 +184,8 @@ def finished(runs: Path) -> list[Run]:
     return [one for one in list_runs(runs) if one.finished]
 
 
-def _wrong_verb(codes: set[int], *arguments: object) -> Iterator[str]:
+def wrong_verb(codes: set[int], *arguments: object) -> Iterator[str]:
+    """Yield what is wrong with a command that is to exit with one of these codes."""
     from lavender_cli.main import app
 
     done = CliRunner().invoke(app, [str(one) for one in arguments])

@@ -51,6 +51,19 @@ def test_a_link_that_a_killed_process_left_half_made_goes_with_the_next_run(
     assert sorted(path.name for path in root.glob(".*")) == [f".latest-{os.getppid()}"]
 
 
+def test_what_a_run_left_that_was_killed_before_its_index_goes_with_the_next_run(
+    tmp_path: Path,
+) -> None:
+    root = tmp_path / "runs"
+    killed, others = root / "20260101T000000Z-drop-01234567", root / "of_others"
+    for folder in (killed, others):
+        folder.mkdir(parents=True)
+        (folder / ".resolved.1-1.unfinished.json").touch()
+    lavendersim.run(write(tmp_path), root=root)
+    assert [*killed.iterdir()] == []
+    assert [path.name for path in others.iterdir()] == [".resolved.1-1.unfinished.json"]
+
+
 @pytest.mark.parametrize(
     ("right", "wrong"),
     [
