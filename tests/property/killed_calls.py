@@ -21,7 +21,13 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from tests.property.failing_calls import KILLED, LIBRARY, Runs, preloaded
-from tests.property.killed_runs import READ, finished, wrong_verb
+from tests.property.killed_runs import (
+    READ,
+    finished,
+    half_written,
+    wrong_verb,
+    wrong_when_recovered,
+)
 from tests.runner.run_contents import contents
 
 
@@ -60,12 +66,7 @@ def _wrong_when_read(runs: Runs, where: Path) -> Iterator[str]:
     yield from wrong_verb({0} if left.finished else {2, 3}, "show", left.path)
     yield from wrong_verb({0} if left.finished else {0, 2, 3}, "verify", left.path)
     copy = runs.top / "copy"
-    shutil.copytree(left.path, copy, symlinks=True)
-    logs = {path: path.read_bytes() for path in copy.glob("cells/*.mcap")}
-    if logs:
-        yield from wrong_verb({0, 3, 5}, "recover", copy)
-    if any(path.read_bytes() != data for path, data in logs.items()):
-        yield "recover changed a log"
+    yield from wrong_when_recovered(left, copy)
     shutil.rmtree(copy)
 
 
@@ -78,7 +79,7 @@ def _wrong_after(runs: Runs, where: Path, resume: bool) -> Iterator[str]:
         yield "the run after it holds something else"
     if contents(list_runs(where)[0]) != runs.whole:
         yield "the run before it has changed"
-    if left := [path for path in where.rglob(".*") if path.name != ".lock"]:
+    if left := half_written(where):
         yield f"left: {left}"
     yield from wrong_verb({0}, "verify", last.path)
 

@@ -160,23 +160,30 @@ def wrong_when_read(case: Case, folder: Path, how: tuple[int, float, bool]) -> I
         (("verify", left.path), {0} if left.finished else {0, 2, 3}),
     ):
         yield from wrong_verb(codes, *verb)
-    copy = folder / "copy"
+    yield from wrong_when_recovered(left, folder / "copy")
+    last = run(case.config, runs, jobs, resume=resume and not left.finished).run
+    if contents(last) != case.whole:
+        yield "the run after it holds something else"
+    if contents(earlier) != case.whole:
+        yield "the run before it has changed"
+    if resume and (hidden := half_written(runs)):
+        yield f"left: {hidden}"
+    yield from wrong_verb({0}, "verify", last.path)
+
+
+def wrong_when_recovered(left: Run, copy: Path) -> Iterator[str]:
+    """Yield what is wrong after a copy of a run is recovered; the copy is there afterwards."""
     shutil.copytree(left.path, copy, symlinks=True)
     logs = {path: path.read_bytes() for path in copy.glob("cells/*.mcap")}
     if logs:
         yield from wrong_verb({0, 3, 5}, "recover", copy)
     if any(path.read_bytes() != data for path, data in logs.items()):
         yield "recover changed a log"
-    last = run(case.config, runs, jobs, resume=resume and not left.finished).run
-    if contents(last) != case.whole:
-        yield "the run after it holds something else"
-    if contents(earlier) != case.whole:
-        yield "the run before it has changed"
-    if resume:
-        hidden = [path for path in runs.rglob(".*") if path.name != ".lock"]
-        if hidden:
-            yield f"left: {hidden}"
-    yield from wrong_verb({0}, "verify", last.path)
+
+
+def half_written(runs: Path) -> list[Path]:
+    """Return the files below a folder of runs that are written aside, but for locks."""
+    return [path for path in runs.rglob(".*") if path.name != ".lock"]
 
 
 def finished(runs: Path) -> list[Run]:

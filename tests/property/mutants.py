@@ -165,7 +165,7 @@ def kept(path: Path | None) -> dict[tuple[str, ...], dict[str, str]]:
 
 
 def main() -> int:
-    """Break what is asked for, and say what the tests see; exits 1 where one was not tried."""
+    """Break what is asked for, and say what the tests see; exits 1 where tests could not run."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--count", type=int, default=20)
     parser.add_argument("--seed", type=int, default=1)
