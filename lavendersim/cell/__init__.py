@@ -14,7 +14,14 @@ from lavendersim.cell.choices import (
     Switch,
 )
 from lavendersim.cell.config import CellConfig, CellEffects, CellStudy
-from lavendersim.cell.events import CellEvent, CellTimestep
+from lavendersim.cell.events import (
+    AnyEvent,
+    CellEvent,
+    CellGravity,
+    CellTimestep,
+    changes_of_bodies,
+    changes_of_gravity,
+)
 from lavendersim.cell.numerics import Numerics
 from lavendersim.cell.record import CellRecord, TimeWindow
 from lavendersim.cell.scene import CellForce, CellScene
@@ -36,6 +43,7 @@ from lavendersim.cell.surface import PairedSurface, PairProperties, Partner, Sur
 __all__ = [
     "CAPTURE_IN_SWEEPS",
     "NO_MISTAKE",
+    "AnyEvent",
     "Box",
     "Capsule",
     "CellBody",
@@ -44,6 +52,7 @@ __all__ = [
     "CellEffects",
     "CellEvent",
     "CellForce",
+    "CellGravity",
     "CellHull",
     "CellPart",
     "CellRecord",
@@ -71,4 +80,6 @@ __all__ = [
     "Surface",
     "Switch",
     "TimeWindow",
+    "changes_of_bodies",
+    "changes_of_gravity",
 ]

@@ -13,7 +13,7 @@ from functools import lru_cache
 from typing import Any
 
 from lavendersim.cell.choices import Mistake, Switch
-from lavendersim.cell.events import CellEvent, CellTimestep
+from lavendersim.cell.events import AnyEvent, CellTimestep
 from lavendersim.cell.numerics import Numerics
 from lavendersim.cell.record import CellRecord
 from lavendersim.cell.scene import CellScene
@@ -44,7 +44,7 @@ class CellConfig(ResolvedModel):
     """One cell of an experiment, complete."""
 
     scene: CellScene
-    events: tuple[CellEvent | CellTimestep, ...]
+    events: tuple[AnyEvent, ...]
     numerics: Numerics
     duration: float  # [s]
     record: CellRecord

@@ -230,6 +230,15 @@ class Engine:
         if self.spec.has("sleeping"):
             sleeping.wake_around(self.bodies, body)
 
+    def wake_all(self) -> None:
+        """Wake every body that sleeps: something has changed that all feel."""
+        if self.spec.has("sleeping"):
+            sleeping.wake_rows(self.bodies, self.bodies["asleep"] == 1)
+
+    def list_pairs_anew(self) -> None:
+        """Let the broad phase list its pairs again: what it writes into them has changed."""
+        self.workspace.broad_phase.state["listed"] = 0
+
     def remove(self, body: int) -> None:
         """Take a body out for good: it stays where it is, and takes part in nothing."""
         self.wake(body)
@@ -240,7 +249,7 @@ class Engine:
         if self.spec.has("broad_phase"):
             templates = removal.make_untouchable(self.bodies, self.workspace.templates, rows)
             self.workspace = self.workspace._replace(templates=templates)
-            self.workspace.broad_phase.state["listed"] = 0
+            self.list_pairs_anew()
         else:
             pairs = removal.pairs_without(self.state.pairs, rows)
             self.state = self.state._replace(pairs=pairs)

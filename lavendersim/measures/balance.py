@@ -35,6 +35,7 @@ import math
 
 import numpy as np
 
+from lavendersim.cell import changes_of_gravity
 from lavendersim.geometry.bodies import is_movable, mass_of, vector
 from lavendersim.geometry.shapes import bounding_radius
 from lavendersim.measures import changes, shares
@@ -107,16 +108,18 @@ def momentum_imbalance(trace: Trace, sums: ContactSums, passes: Passes = OVER_LO
 
 
 def _own_weight(trace: Trace) -> float:
-    """Return the sum of m |g| times the radius of each movable body [J]."""
-    pull = math.hypot(*trace.config.scene.gravity)
-    bodies = [one for one in trace.config.scene.bodies.values() if is_movable(one)]
+    """Return the sum of m |g| times the radius of each movable body [J], |g| its largest."""
+    scene = trace.config.scene
+    strengths = [one.gravity for one in changes_of_gravity(trace.config.events)]
+    pull = max(math.hypot(*one) for one in (scene.gravity, *strengths))
+    bodies = [one for one in scene.bodies.values() if is_movable(one)]
     return pull * sum(mass_of(one) * bounding_radius(one.shape) for one in bodies)
 
 
 def _lifted(trace: Trace, sums: ContactSums) -> Floats:
     """Return the most that the projection can lift in each step [J]."""
-    pull = math.hypot(*trace.config.scene.gravity)
-    if trace.config.numerics.projection == 0.0 or pull == 0.0:
+    pull = changes.strength_of_gravity(trace)
+    if trace.config.numerics.projection == 0.0 or not np.any(pull):
         return np.zeros(len(trace.step))
     lifted: Floats = pull * changes.masses(trace) * sums.opened
     return lifted

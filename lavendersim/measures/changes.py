@@ -6,11 +6,15 @@ none. Forces and events act before the first step that starts at their time or l
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
-from lavendersim.cell import CellEvent, CellForce
+from lavendersim.cell import CellForce, changes_of_bodies, changes_of_gravity
+from lavendersim.errors import UsageError
 from lavendersim.geometry.bodies import is_movable, mass_of, principal_inertia, vector
 from lavendersim.geometry.rotations import turns_between
+from lavendersim.measures import shares
 from lavendersim.measures.interfaces import Floats, Trace
 from lavendersim.quantities.scalars import exact
 
@@ -21,14 +25,9 @@ def first_starting_at(trace: Trace, time: float) -> int:
     return int(np.searchsorted(trace.step["step"], done + 1))
 
 
-def events_of_bodies(trace: Trace) -> list[CellEvent]:
-    """Return the events that change a body, in the order of the config."""
-    return [event for event in trace.config.events if isinstance(event, CellEvent)]
-
-
 def removals(trace: Trace) -> dict[str, int]:
     """Return the row of the first step without it, for each body that is removed."""
-    gone = [event for event in events_of_bodies(trace) if event.remove]
+    gone = [event for event in changes_of_bodies(trace.config.events) if event.remove]
     return {event.body: first_starting_at(trace, event.at) for event in gone}
 
 
@@ -37,7 +36,7 @@ def masses(trace: Trace) -> Floats:
     bodies = trace.config.scene.bodies.items()
     movable = {name: mass_of(body) for name, body in bodies if is_movable(body)}
     total = np.full(len(trace.step), sum(movable.values()))
-    for event in _in_order(trace):
+    for event in changes_of_bodies(trace.config.events):
         scale = 0.0 if event.remove else event.scale_mass
         if scale is not None and event.body in movable:
             before = movable[event.body]
@@ -46,11 +45,47 @@ def masses(trace: Trace) -> Floats:
     return total
 
 
+def gravity(trace: Trace) -> Floats:
+    """Return gravity [m/s^2] in each step (n, 3)."""
+    pull = np.tile(vector(trace.config.scene.gravity), (len(trace.step), 1))
+    for event in changes_of_gravity(trace.config.events):
+        pull[first_starting_at(trace, event.at) :] = event.gravity
+    return pull
+
+
+def strength_of_gravity(trace: Trace) -> Floats | float:
+    """Return |g| [m/s^2], in each step (n,) where events change it."""
+    if changes_of_gravity(trace.config.events):
+        strength: Floats = np.sqrt((gravity(trace) ** 2).sum(axis=1))
+        return strength
+    return math.hypot(*trace.config.scene.gravity)
+
+
+def constant_gravity(trace: Trace, measure: str, first: int = 0) -> Floats:
+    """Return gravity [m/s^2] (3,) in the steps from a row on; UsageError where it changes.
+
+    measure: what needs it, in words.
+    """
+    different = {one.tobytes(): one for one in gravity(trace)[first:]}
+    if len(different) > 1:
+        begin, end = (float(trace.step["time"][row]) for row in (first, -1))
+        raise UsageError(
+            f"{measure} takes one gravity, and an event changes it from {begin:.9g} to {end:.9g} s"
+        )
+    return next(iter(different.values()))
+
+
 def forces(trace: Trace) -> Floats:
-    """Return the sum of the constant forces of the config [N] in each step (n, 3)."""
+    """Return the sum of the constant forces of the config [N] in each step (n, 3).
+
+    Where events change gravity, the change of the weight of everything movable is one of them.
+    """
     total = np.zeros((len(trace.step), 3))
     for force in _constant_forces(trace):
         total[_acting(trace, force)] += vector(force.force)
+    if changes_of_gravity(trace.config.events):
+        change = gravity(trace) - vector(trace.config.scene.gravity)
+        total += masses(trace)[:, None] * change
     return total
 
 
@@ -62,7 +97,7 @@ def work_of_forces(trace: Trace) -> Floats:
         acts = np.zeros(len(work), dtype=bool)
         acts[_acting(trace, force)] = True
         displacement = np.diff(trace.pose[:, body, :3], axis=0, prepend=trace.pose[:1, body, :3])
-        for event in _in_order(trace):
+        for event in changes_of_bodies(trace.config.events):
             row = first_starting_at(trace, event.at)
             if event.teleport is None or event.body != force.body:
                 continue
@@ -70,7 +105,15 @@ def work_of_forces(trace: Trace) -> Floats:
                 displacement[row] -= vector(event.teleport) - trace.pose[row - 1, body, :3]
         done = displacement @ vector(force.force)
         if any(force.torque):
-            done = done + _turns(trace.pose[:, body, 3:]) @ vector(force.torque)
+            turns = _turns(trace.pose[:, body, 3:])
+            for event in changes_of_bodies(trace.config.events):
+                row = first_starting_at(trace, event.at)
+                if event.orientation is None or event.body != force.body:
+                    continue
+                if 0 < row < len(turns):  # it turns from where the event has put it
+                    ends = np.array([event.orientation, trace.pose[row, body, 3:]])
+                    turns[row] = _turns(ends)[1]
+            done = done + turns @ vector(force.torque)
         work += np.where(acts, done, 0.0)
     return work
 
@@ -81,14 +124,17 @@ def given_by_events(trace: Trace) -> Floats:
     A teleport gives -m g . (new - old), exactly. A new velocity gives what it carries, less what
     the body had, which is in no log: at most all of it. A mass that becomes s times as large gives
     (s - 1) times the body's energy: its potential part exactly, its kinetic part no more than the
-    scene's. A body that is removed is one whose mass becomes 0 times as large.
+    scene's. A body that is removed is one whose mass becomes 0 times as large. A new orientation
+    leaves the angular velocity: it gives at most the ratio of the largest to the least principal
+    inertia, less 1, times the scene's kinetic energy. A new surface gives what its springs store
+    in the penetration that they find. New gravity gives -(new - old) . sum m x, exactly.
     """
-    given = np.zeros(len(trace.step))
-    gravity = vector(trace.config.scene.gravity)
+    given = _given_by_gravity(trace) + _given_by_surfaces(trace)
+    pull = gravity(trace)
     bodies = trace.config.scene.bodies
     scaled = dict.fromkeys(bodies, 1.0)
     moved: dict[tuple[str, int], Floats] = {}  # where an event of the same time put it
-    for event in _in_order(trace):
+    for event in changes_of_bodies(trace.config.events):
         name, row = event.body, first_starting_at(trace, event.at)
         body = bodies[name]
         scale = 0.0 if event.remove else event.scale_mass
@@ -100,13 +146,17 @@ def given_by_events(trace: Trace) -> Floats:
         mass = mass_of(body) * scaled[name]
         if scale is not None:
             kinetic = float(trace.step["kinetic_energy"][row - 1]) if scale > 1.0 else 0.0
-            given[row] += (scale - 1.0) * (kinetic - mass * float(gravity @ place))
+            given[row] += (scale - 1.0) * (kinetic - mass * float(pull[row] @ place))
             scaled[name] *= scale
             mass *= scale
         if event.teleport is not None:
             target = vector(event.teleport)
-            given[row] -= mass * float(gravity @ (target - place))
+            given[row] -= mass * float(pull[row] @ (target - place))
             moved[name, row] = target
+        if event.orientation is not None:
+            moments = principal_inertia(body)
+            ratio = float(np.max(moments)) / float(np.min(moments))
+            given[row] += (ratio - 1.0) * float(trace.step["kinetic_energy"][row - 1])
         if event.velocity is not None:
             given[row] += 0.5 * mass * float(np.square(event.velocity).sum())
         if event.angular_velocity is not None:
@@ -115,10 +165,55 @@ def given_by_events(trace: Trace) -> Floats:
     return given
 
 
+def _given_by_gravity(trace: Trace) -> Floats:
+    """Return what changes of gravity give before each step [J], exactly.
+
+    One before the first step has acted in the first state of the log.
+    """
+    given = np.zeros(len(trace.step))
+    pull = gravity(trace)
+    for event in changes_of_gravity(trace.config.events):
+        row = first_starting_at(trace, event.at)
+        if trace.clock.steps_until(exact(event.at)) > 0 and 0 < row < len(given):
+            held = np.array(list(_masses_before(trace, row).values()))
+            moment = held @ trace.pose[row - 1, :, :3]
+            given[row] = -float((pull[row] - pull[row - 1]) @ moment)
+    return given
+
+
+def _masses_before(trace: Trace, row: int) -> dict[str, float]:
+    """Return the mass of each body [kg] in the step before that of a row; 0 of what is not movable.
+
+    In the order of the bodies of the log.
+    """
+    bodies = trace.config.scene.bodies
+    movable = {name for name in trace.bodies if is_movable(bodies[name])}
+    held = {name: mass_of(bodies[name]) if name in movable else 0.0 for name in trace.bodies}
+    for event in changes_of_bodies(trace.config.events):
+        if first_starting_at(trace, event.at) < row:
+            held[event.body] *= 0.0 if event.remove else (event.scale_mass or 1.0)
+    return held
+
+
+def _given_by_surfaces(trace: Trace) -> Floats:
+    """Return what springs of new surfaces store in the penetration they find, by step [J].
+
+    They find it as the step's contacts begin; what its bodies meet on their way has none.
+    """
+    given = np.zeros(len(trace.step))
+    found: set[int] = set()
+    for event in changes_of_bodies(trace.config.events):
+        row = first_starting_at(trace, event.at)
+        if event.surface is not None and 0 < row < len(given) and row not in found:
+            found.add(row)
+            given[row] = shares.stored_as_found(trace, int(trace.step["step"][row]))
+    return given
+
+
 def unknown_momentum(trace: Trace) -> np.ndarray:
     """Return in which steps an event changed a momentum that no log has."""
     unknown = np.zeros(len(trace.step), dtype=bool)
-    for event in _in_order(trace):
+    for event in changes_of_bodies(trace.config.events):
         row = first_starting_at(trace, event.at)
         changes = event.velocity is not None or event.scale_mass is not None
         if (changes or event.remove) and row < len(unknown):
@@ -129,11 +224,6 @@ def unknown_momentum(trace: Trace) -> np.ndarray:
 def _constant_forces(trace: Trace) -> list[CellForce]:
     """Return the forces on centres of mass in world axes; the impulse of others is in the log."""
     return [force for force in trace.config.scene.forces if force.constant_at_centre]
-
-
-def _in_order(trace: Trace) -> list[CellEvent]:
-    """Return the events of bodies by their time; those of one time in the order of the config."""
-    return sorted(events_of_bodies(trace), key=lambda event: event.at)
 
 
 def _acting(trace: Trace, force: CellForce) -> slice:

@@ -9,10 +9,11 @@ import numpy as np
 from lavendersim.cell import Sphere, Surface
 from lavendersim.cell.mixing import mixed
 from lavendersim.errors import UsageError
-from lavendersim.geometry.bodies import is_movable, mass_of, vector
+from lavendersim.geometry.bodies import is_movable, mass_of
 from lavendersim.geometry.rotations import rotation_matrix, unit_quaternion
 from lavendersim.geometry.shapes import extent, half_space
 from lavendersim.measures import shares
+from lavendersim.measures.changes import constant_gravity
 from lavendersim.measures.interfaces import Floats, Rows, Trace
 
 
@@ -93,11 +94,12 @@ def of_pairs(contacts: Rows, surfaces: list[Surface], value: Callable[[Surface],
     return values
 
 
-def friction_of(contacts: Rows, surfaces: list[Surface]) -> Floats:
-    """Return mu of each contact by the config, where it changes with the motion by the log.
-
-    surfaces: of the bodies by their rows.
-    """
+def friction_of(trace: Trace, contacts: Rows) -> Floats:
+    """Return mu of each contact by the config; by the log where it changes during the run."""
+    if shares.surfaces_change(trace.config):
+        logged: Floats = contacts["friction"]
+        return logged
+    surfaces = [trace.config.scene.bodies[name].surface for name in trace.bodies]
     mu = of_pairs(
         contacts,
         surfaces,
@@ -177,11 +179,14 @@ def angular_momentum(trace: Trace) -> Floats:
 def energy_at_rest(trace: Trace, body: str, plane: str, clearance: float) -> float:
     """Return the potential energy [J] of a scene whose only movable body rests on a plane.
 
+    UsageError where an event changes gravity, and the energy with it.
+
     clearance: of the body in the first state [m], by which its potential energy there is larger.
     """
     scene = trace.config.scene
     normal = half_space(scene.bodies[plane].shape).normal
-    weight = mass_of(scene.bodies[body]) * -float(normal @ vector(scene.gravity))
+    pull = constant_gravity(trace, "energy above that at rest")
+    weight = mass_of(scene.bodies[body]) * -float(normal @ pull)
     return float(trace.step["potential_energy"][0]) - weight * clearance
 
 

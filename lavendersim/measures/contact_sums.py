@@ -92,8 +92,7 @@ def excesses(trace: Trace, contacts: Rows) -> Floats:
     excess: Floats = np.maximum(-pushed, 0.0)
     pressing = np.maximum(pushed, 0.0)
     if "impulse_t1" in names:
-        bodies = trace.config.scene.bodies
-        mu = friction_of(contacts, [bodies[name].surface for name in trace.bodies])
+        mu = friction_of(trace, contacts)
         first, second = np.abs(contacts["impulse_t1"]), np.abs(contacts["impulse_t2"])
         pyramid = trace.config.numerics.friction_cone == "pyramid"
         size = np.maximum(first, second) if pyramid else _length(first, second)

@@ -8,10 +8,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from lavendersim.cell import Surface
+from lavendersim.cell import CellConfig, Surface, changes_of_bodies
 from lavendersim.cell.mixing import mixed
 from lavendersim.engine.effects import EFFECTS
 from lavendersim.measures.interfaces import Floats, Rows, Trace
+from lavendersim.quantities.scalars import exact
 
 PULLS = [effect.balance.pull for effect in EFFECTS if effect.balance.pull]
 STORED = [effect.balance.stored for effect in EFFECTS if effect.balance.stored]
@@ -23,6 +24,11 @@ VARYING = [e.balance.varies_friction for e in EFFECTS if e.balance.varies_fricti
 def varies_friction(surface: Surface) -> bool:
     """Whether the coefficient between two surfaces, mixed, changes with their motion."""
     return any(getattr(surface, key) > 0.0 for key in VARYING)
+
+
+def surfaces_change(config: CellConfig) -> bool:
+    """Whether an event changes the surface of a body: the log has then what contacts obeyed."""
+    return any(event.surface is not None for event in changes_of_bodies(config.events))
 
 
 def _present(rows: Rows, names: list[str]) -> list[str]:
@@ -62,7 +68,7 @@ def stored(trace: Trace) -> Floats:
     for name in _present(trace.step, STORED):
         total += trace.step[name]
     if "contact_energy" in _present(trace.step, STORED) and trace.step["step"][0] == 0:
-        total[0] += _stored_at_first(trace)
+        total[0] += stored_as_found(trace, 1)
     return total
 
 
@@ -74,16 +80,19 @@ def work(trace: Trace) -> Floats:
     return total
 
 
-def _stored_at_first(trace: Trace) -> float:
-    """Return what contacts store as the run begins [J]: the state before the first step has none.
+def stored_as_found(trace: Trace, step: int) -> float:
+    """Return what contacts store as a step begins [J]: of the first one no state before it has it.
 
-    From where the first step found them; what it meets on its way has no penetration.
+    From where the step found them; what it meets on its way has no penetration.
     """
-    contacts = trace.contact[trace.contact["step"] == 1] if "/contacts" not in trace.absent else []
-    surfaces = [trace.config.scene.bodies[name].surface for name in trace.bodies]
+    if "/contacts" in trace.absent:
+        return 0.0
+    every = trace.contact
+    first, last = (int(np.searchsorted(every["step"], step, side)) for side in ("left", "right"))
+    surfaces = _surfaces_in(trace, step)
     found: dict[tuple[int, int, int], float] = {}
     compliances: dict[tuple[int, int], float] = {}
-    for row in contacts:
+    for row in every[first:last]:
         pair, key = (row["body_a"], row["body_b"]), (row["body_a"], row["body_b"], row["feature"])
         if pair not in compliances:
             compliances[pair] = mixed(surfaces[pair[0]], surfaces[pair[1]]).compliance
@@ -92,6 +101,15 @@ def _stored_at_first(trace: Trace) -> float:
             depth = max(-float(row["separation"]), 0.0)
             found.setdefault(key, 0.5 * depth * depth / compliance)
     return sum(found.values())
+
+
+def _surfaces_in(trace: Trace, step: int) -> list[Surface]:
+    """Return the surface of each body in a step, by its row."""
+    bodies = {name: trace.config.scene.bodies[name].surface for name in trace.bodies}
+    for event in changes_of_bodies(trace.config.events):
+        if event.surface is not None and trace.clock.steps_until(exact(event.at)) < step:
+            bodies[event.body] = event.surface
+    return list(bodies.values())
 
 
 def outer_impulse(trace: Trace) -> Floats:

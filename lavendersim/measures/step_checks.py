@@ -23,10 +23,11 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from lavendersim.cell import changes_of_bodies
 from lavendersim.geometry.bodies import is_movable
 from lavendersim.geometry.shapes import thickness
 from lavendersim.measures.balance import EnergyBalance, momentum_imbalance
-from lavendersim.measures.changes import events_of_bodies, first_starting_at
+from lavendersim.measures.changes import first_starting_at
 from lavendersim.measures.contact_sums import ContactSums, contacts_of_log, excesses
 from lavendersim.measures.interfaces import Floats, Rows, Trace
 from lavendersim.measures.specs.always import CHECKS, DERIVED, FINITE, NONE, Always
@@ -151,7 +152,7 @@ def _speed(trace: Trace, sums: ContactSums, passes: Passes) -> Numbers:
 
 def _moved(trace: Trace) -> NDArray[np.bool_] | None:
     """Return in which steps the config put which body elsewhere (n - 1, bodies); None: in none."""
-    jumps = [event for event in events_of_bodies(trace) if event.teleport]
+    jumps = [event for event in changes_of_bodies(trace.config.events) if event.teleport]
     if not jumps:
         return None
     moved = np.zeros((len(trace.step) - 1, len(trace.bodies)), bool)

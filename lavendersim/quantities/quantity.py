@@ -51,6 +51,13 @@ def sentence_error(sentence: str) -> PydanticCustomError:
     return PydanticCustomError("lavender", "{sentence}", {"sentence": sentence})
 
 
+class _Form(Discriminator):
+    """A discriminator that is equal to itself alone: a type that has it may be one of a union."""
+
+    __eq__ = object.__eq__
+    __hash__ = object.__hash__
+
+
 def either(expected: str, form: Mapping[type, str] | Callable[[Any], str | None]) -> Discriminator:
     """Return the discriminator of a field that has several forms; `form` names the tag of one.
 
@@ -63,7 +70,7 @@ def either(expected: str, form: Mapping[type, str] | Callable[[Any], str | None]
             return form(value)
         return form.get(dict if isinstance(value, BaseModel) else type(value), form.get(object))
 
-    return Discriminator(
+    return _Form(
         tag_of,
         custom_error_type="form",
         custom_error_message=expected,

@@ -34,7 +34,7 @@ FRICTION, TORSIONAL, ANGULAR_N, ROLLING, ANGULAR_T1, ANGULAR_T2 = range(15, 21)
 # Columns of what the kernel fills for each step.
 NOT_FINITE, DEEPEST, EXCESS, OUTER_X, OUTER_Y, OUTER_Z, SIZE, OPENED, PULLED = range(9)
 EXPONENT: Final = 0x7FF << 52  # of a float64 that is not finite all these bits are set
-VARIES: Final = -1.0  # in place of a coefficient that changes with the motion
+VARIES: Final = -1.0  # in place of a coefficient that changes during the run
 
 
 def nan_or_larger(one, other):
@@ -145,11 +145,12 @@ class RunningSums:
         number = {surface: row for row, surface in enumerate(different)}
         rows = [(number[body.surface], is_movable(body)) for body in known]
         self._of_body = np.array(rows, np.float64).reshape(-1, 2)
+        changing = shares.surfaces_change(config)
         self._mu = np.zeros((len(different), len(different)))
         for i, one in enumerate(different):
             for j, other in enumerate(different[: i + 1]):  # mixed alike in either order
                 between = mixed(one, other)
-                varies = shares.varies_friction(between)
+                varies = changing or shares.varies_friction(between)
                 self._mu[i, j] = self._mu[j, i] = VARIES if varies else between.friction
         numerics = config.numerics
         pyramid = numerics.friction_cone == "pyramid"

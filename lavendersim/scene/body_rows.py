@@ -69,15 +69,20 @@ def body_table(
             _fill(record, ("pqw", "pqx", "pqy", "pqz"), row.part.orientation)
             pose = part_pose(pose, row.part)
         _fill(record, ("owner",), (row.owner,))
-        for effect in EFFECTS:
-            if effect.body_values:
-                values = effect.body_values(row.body)
-                _fill(record, values, values.values())
+        fill_effects(record, row.body)
         _fill(record, ("x", "y", "z", "qw", "qx", "qy", "qz"), pose)
         names = [f"r{i}{j}" for i in range(3) for j in range(3)]
         _fill(record, names, rotation_matrix(pose[3:]).ravel())
         assert k == row.owner or row.part is not None
     return bodies, hull_geometry(polyhedra)
+
+
+def fill_effects(record: np.void, body: CellBody) -> None:
+    """Fill the fields that effects bring, by the keys that they declare."""
+    for effect in EFFECTS:
+        if effect.body_values:
+            values = effect.body_values(body)
+            _fill(record, values, values.values())
 
 
 def _fill(record: np.void, names: Iterable[str], values: Iterable[Any]) -> None:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from fractions import Fraction
 from math import inf, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from lavendersim.cell import CellConfig, CellForce, CellRecord, Numerics
+from lavendersim.cell import CellBody, CellConfig, CellForce, CellRecord, Numerics
 from lavendersim.clock import Clock
 from lavendersim.engine.collide.convex.hull_geometry import HullGeometry
 from lavendersim.engine.effects import effects_of
@@ -19,12 +20,15 @@ from lavendersim.engine.record_layout import (
     allocate_velocities,
 )
 from lavendersim.engine.spec import Spec
+from lavendersim.quantities.quantity import Vector3
 from lavendersim.quantities.scalars import exact
 
 from .body_rows import body_table, pose_of
+from .classes import RowClass
 from .colliders import colliders
 from .drive_tables import drive_tables
 from .pair_tables import pair_tables
+from .stages import later_forms
 
 # Where nothing of a run is to be recorded: a window of steps that is empty.
 _NO_STEPS = (1, 0)
@@ -50,6 +54,8 @@ class Scene(NamedTuple):
     links: np.ndarray  # what effects join bodies by
     drives: Any  # functions of time that act on bodies: `memory.Drives`, or ()
     numerics: Numerics
+    described: Mapping[str, CellBody]  # the bodies as the run begins
+    classes: tuple[RowClass, ...]  # of the rows of `templates`
 
     def engine(self, spec: Spec, block_steps: int | None = None) -> Engine:
         """Return an engine at the scene's initial state."""
@@ -93,6 +99,13 @@ def _parameters(config: CellConfig, clock: Clock) -> np.ndarray:
     return parameters
 
 
+def set_gravity(parameters: np.ndarray, numerics: Numerics, gravity: Vector3) -> None:
+    """Write gravity [m/s^2] and what is made of it into parameters that have their timestep."""
+    p = parameters[0]
+    p["gx"], p["gy"], p["gz"] = gravity
+    _set_restitution_speed(p, numerics)
+
+
 def set_timestep(parameters: np.ndarray, numerics: Numerics, timestep: Fraction) -> None:
     """Write a timestep [s] and what is made of it into parameters that have their gravity.
 
@@ -100,6 +113,11 @@ def set_timestep(parameters: np.ndarray, numerics: Numerics, timestep: Fraction)
     """
     p = parameters[0]
     p["dt"] = float(timestep)
+    _set_restitution_speed(p, numerics)
+
+
+def _set_restitution_speed(p: np.void, numerics: Numerics) -> None:
+    """Write the approach speed below which nothing rebounds, in multiples of |g| dt."""
     gravity = (float(p[f"g{axis}"]) for axis in "xyz")
     magnitude = sqrt(sum(g * g for g in gravity))  # a power raises where this is infinite
     p["restitution_speed"] = numerics.restitution_threshold * magnitude * p["dt"]
@@ -129,22 +147,25 @@ def build(config: CellConfig, spec: Spec) -> Scene:
         velocity["vx"], velocity["vy"], velocity["vz"] = body.velocity
         if turns:
             velocity["wx"], velocity["wy"], velocity["wz"] = body.angular_velocity
-    pairs, templates = pair_tables(spec, rows, bodies)
+    later = [one for forms in later_forms(config).values() for one in forms]
+    tables = pair_tables(spec, rows, bodies, later)
     clock = config.clock
     return Scene(
         names=list(config.scene.bodies),
         bodies=bodies,
         velocities=velocities,
-        pairs=pairs,
+        pairs=tables.pairs,
         parameters=_parameters(config, clock),
         poses=poses,
         clock=clock,
-        templates=templates,
+        templates=tables.templates,
         hulls=hulls,
         forces=config.scene.forces,
         links=link_table(config, spec, bodies),
         drives=drive_tables(config, spec, clock),
         numerics=config.numerics,
+        described=config.scene.bodies,
+        classes=tables.classes,
     )
 
 

@@ -8,14 +8,22 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
+from functools import partial
 from math import fsum
 from typing import NamedTuple
 
-from lavendersim.cell import CellEvent, CellForce, CellTimestep
+import numpy as np
+
+from lavendersim.cell import AnyEvent, CellEvent, CellForce, CellGravity
 from lavendersim.engine.engine import Engine
+from lavendersim.geometry.rotations import rotation_matrix
+from lavendersim.quantities.quantity import Quaternion, Vector3
 from lavendersim.quantities.scalars import exact
 
-from .build import Scene, set_timestep
+from .body_rows import fill_effects
+from .build import Scene, set_gravity, set_timestep
+from .colliders import colliders
+from .pair_tables import list_materials, mix_again
 
 
 class Change(NamedTuple):
@@ -29,9 +37,7 @@ class Change(NamedTuple):
 class EventQueue:
     """The changes of one run, in the order of their time."""
 
-    def __init__(
-        self, engine: Engine, scene: Scene, events: Sequence[CellEvent | CellTimestep]
-    ) -> None:
+    def __init__(self, engine: Engine, scene: Scene, events: Sequence[AnyEvent]) -> None:
         self._engine, self._scene = engine, scene
         self._acting: list[CellForce] = []
         changes = [*self._force_changes(scene.forces), *self._event_changes(events)]
@@ -50,22 +56,23 @@ class EventQueue:
         """Return how many steps are done when a time [s], as written, is reached."""
         return self._scene.clock.steps_until(exact(time))
 
-    def _event_changes(self, events: Sequence[CellEvent | CellTimestep]) -> Iterator[Change]:
+    def _event_changes(self, events: Sequence[AnyEvent]) -> Iterator[Change]:
         for done, timestep in self._scene.clock.changes:
             yield Change(
                 done,
                 0,
                 lambda timestep=timestep, done=done: self._set_timestep(timestep, done),  # type: ignore[misc]
             )
+        of_bodies = BodyEvents(self._engine, self._scene)
         timed = sorted(events, key=lambda event: event.at)
         for order, event in enumerate(timed, start=1):
-            if isinstance(event, CellTimestep):
-                continue
-            yield Change(
-                self._after(event.at),
-                order,
-                lambda event=event: apply_event(self._engine, self._scene, event),  # type: ignore[misc]
-            )
+            if isinstance(event, CellGravity):
+                apply = partial(self._set_gravity, event.gravity)
+            elif isinstance(event, CellEvent):
+                apply = partial(of_bodies.apply, event)
+            else:
+                continue  # the clock has the timesteps
+            yield Change(self._after(event.at), order, apply)
 
     def _force_changes(self, forces: Sequence[CellForce]) -> Iterator[Change]:
         if not self._engine.spec.has("external_force"):
@@ -86,6 +93,10 @@ class EventQueue:
             float(scene.clock.time(done)),
         )
 
+    def _set_gravity(self, gravity: Vector3) -> None:
+        set_gravity(self._engine.parameters, self._scene.numerics, gravity)
+        self._engine.wake_all()
+
     def _begin(self, force: CellForce) -> None:
         self._acting.append(force)
         self._set_force(force.body)
@@ -104,28 +115,69 @@ class EventQueue:
                 body[f"t{axis}"] = fsum(force.torque[k] for force in acting)
 
 
-def apply_event(engine: Engine, scene: Scene, event: CellEvent) -> None:
-    """Apply one event. A body that jumps loses the impulses cached for its contacts.
+class BodyEvents:
+    """Applies events of bodies; it knows the bodies as events have made them so far."""
 
-    `contact_cache: clear` drops every cached impulse: the next solve starts from zero everywhere.
-    """
-    index = scene.names.index(event.body)
-    if event.remove:
-        engine.remove(index)
-        return
-    engine.wake(index)
-    body, velocity = engine.bodies[index], engine.velocities[index]
-    if event.scale_mass is not None:
-        body["inv_m"] /= event.scale_mass
-        if engine.spec.has("rotation"):
-            for axis in "xyz":
-                body[f"inv_i{axis}"] /= event.scale_mass
-    if event.velocity is not None:
-        velocity["vx"], velocity["vy"], velocity["vz"] = event.velocity
-    if event.angular_velocity is not None and engine.spec.has("rotation"):
-        velocity["wx"], velocity["wy"], velocity["wz"] = event.angular_velocity
-    if event.teleport is not None:
-        body["x"], body["y"], body["z"] = event.teleport
-        engine.forget_contacts(index)
-    elif event.contact_cache == "clear":
-        engine.forget_contacts()
+    def __init__(self, engine: Engine, scene: Scene) -> None:
+        self._engine, self._scene = engine, scene
+        self._bodies = dict(scene.described)
+
+    def apply(self, event: CellEvent) -> None:
+        """Apply one event. A body that is put elsewhere loses the impulses of its contacts.
+
+        `contact_cache: clear` drops every cached impulse: the next solve starts from zero
+        everywhere.
+        """
+        engine, index = self._engine, self._scene.names.index(event.body)
+        if event.remove:
+            engine.remove(index)
+            return
+        engine.wake(index)
+        body, velocity = engine.bodies[index], engine.velocities[index]
+        if event.scale_mass is not None:
+            body["inv_m"] /= event.scale_mass
+            if engine.spec.has("rotation"):
+                for axis in "xyz":
+                    body[f"inv_i{axis}"] /= event.scale_mass
+        if event.velocity is not None:
+            velocity["vx"], velocity["vy"], velocity["vz"] = event.velocity
+        if event.angular_velocity is not None and engine.spec.has("rotation"):
+            velocity["wx"], velocity["wy"], velocity["wz"] = event.angular_velocity
+        if event.teleport is not None:
+            body["x"], body["y"], body["z"] = event.teleport
+        if event.orientation is not None:
+            orient(body, event.orientation)
+        if event.teleport is not None or event.orientation is not None:
+            engine.forget_contacts(index)
+        elif event.contact_cache == "clear":
+            engine.forget_contacts()
+        if event.changes_contacts:
+            self._bodies[event.body] = event.after(self._bodies[event.body])
+            self._change_surface(index)
+
+    def _change_surface(self, index: int) -> None:
+        """Write what a body's surface is now, and what its contacts are to obey."""
+        engine, scene = self._engine, self._scene
+        described = list(self._bodies.values())
+        rows = colliders(described)
+        for record, row in zip(engine.bodies, rows, strict=True):
+            if row.owner == index:
+                fill_effects(record, row.body)
+        if engine.spec.has("broad_phase"):
+            list_materials(engine.bodies, rows, scene.classes, index)
+            engine.list_pairs_anew()
+        else:
+            mix_again(engine.state.pairs, rows, index)
+
+
+def orient(body: np.void, orientation: Quaternion) -> None:
+    """Write an orientation into a body's record, and its matrix where it has one."""
+    names = body.dtype.names or ()
+    quaternion = np.asarray(orientation, float)
+    quaternion = quaternion / np.linalg.norm(quaternion)
+    values = dict(zip(("qw", "qx", "qy", "qz"), quaternion, strict=True))
+    matrix = rotation_matrix(quaternion)
+    values |= {f"r{i}{j}": matrix[i, j] for i in range(3) for j in range(3)}
+    for name, value in values.items():
+        if name in names:
+            body[name] = value

@@ -5,23 +5,25 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import hypot
 
-from lavendersim.cell import CellConfig, CellEvent, CellShape
+from lavendersim.cell import (
+    CellConfig,
+    CellEvent,
+    CellShape,
+    changes_of_bodies,
+    changes_of_gravity,
+)
 from lavendersim.engine.effects import EFFECTS, BodyFacts, Facts, PairFacts
 from lavendersim.geometry.bodies import is_movable
 from lavendersim.geometry.shapes import bounding_radius
 
-from .classes import class_pairs
+from .classes import RowPair, class_pairs
 from .colliders import colliders, parts_of
-
-
-def changes_of_bodies(config: CellConfig) -> list[CellEvent]:
-    """Return the events that change a body."""
-    return [event for event in config.events if isinstance(event, CellEvent)]
+from .stages import later_forms, stages_of
 
 
 def _body_facts(config: CellConfig) -> Iterator[BodyFacts]:
     events: dict[str, list[CellEvent]] = {}
-    for event in changes_of_bodies(config):
+    for event in changes_of_bodies(config.events):
         events.setdefault(event.body, []).append(event)
     pushed = {force.body for force in config.scene.forces if any(force.force)}
     twisted = {force.body for force in config.scene.forces if any(force.torque)}
@@ -30,23 +32,26 @@ def _body_facts(config: CellConfig) -> Iterator[BodyFacts]:
     pulled = {name for name, _ in acting}
     moving = [effect.moves for effect in EFFECTS if effect.moves]
     turned = levers | {name for name, turns in acting if turns}
+    later = later_forms(config)
     for name, body in config.scene.bodies.items():
         inertia = body.inertia or (0.0, 0.0, 0.0)
         own = events.get(name, ())
         speeds = [body.velocity, *(event.velocity or () for event in own)]
         spins = [body.angular_velocity, *(event.angular_velocity or () for event in own)]
+        placed = any(event.orientation is not None for event in own)
         driven = [moves(body) for moves in moving]
         yield BodyFacts(
             name=name,
             shape=body.shape.kind,
             movable=is_movable(body),
-            spins=any(any(spin) for spin in spins) or any(turns for _, turns in driven),
+            spins=any(any(spin) for spin in spins) or any(turns for _, turns in driven) or placed,
             round=inertia[0] == inertia[1] == inertia[2],
             kinematic=body.kinematic,
             speed=max([*(hypot(*speed) for speed in speeds), *(speed for speed, _ in driven)]),
             size=bounding_radius(body.shape),
             least_size=_least_size(body.shape),
             config=body,
+            later=later.get(name, ()),
             force=name in pushed,
             torque=name in twisted,
             pulled=name in pulled,
@@ -61,18 +66,31 @@ def _least_size(shape: CellShape) -> float:
     return min(sizes) if sizes else bounding_radius(shape)
 
 
+def _pairs_over_time(config: CellConfig) -> tuple[list[RowPair], int]:
+    """Return the pairs of classes of all stages, each once; and how many pairs of rows may touch.
+
+    No event lets bodies touch that could not before: the number is that of any stage.
+    """
+    of_stages = [class_pairs(colliders(list(one.values()))) for one in stages_of(config)]
+    pairs = list(of_stages[0])
+    for later in of_stages[1:]:
+        known = {pair[:4] for pair in pairs}
+        pairs.extend(pair for pair in later if pair[:4] not in known)
+    return pairs, sum(pair.row_pairs for pair in of_stages[0])
+
+
 def facts_of(config: CellConfig, record: bool = True) -> Facts:
     """Reduce a config to what the effects' predicates ask; record: it is to be logged."""
     names = list(config.scene.bodies)
-    rows = colliders(list(config.scene.bodies.values()))
     numerics = config.numerics
-    pairs = class_pairs(rows)
+    pairs, row_pairs = _pairs_over_time(config)
+    owners = [row.owner for row in colliders(list(config.scene.bodies.values()))]
     return Facts(
         bodies=tuple(_body_facts(config)),
         pairs=tuple(
             PairFacts(
-                a=names[rows[pair.a].owner],
-                b=names[rows[pair.b].owner],
+                a=names[owners[pair.a]],
+                b=names[owners[pair.b]],
                 shape_pair=pair.shape_pair,
                 row_pairs=pair.row_pairs,
                 surface=pair.surface,
@@ -80,10 +98,11 @@ def facts_of(config: CellConfig, record: bool = True) -> Facts:
             for pair in pairs
         ),
         gravity=config.scene.gravity,
+        later_gravity=tuple(one.gravity for one in changes_of_gravity(config.events)),
         stabilisation_gain=numerics.stabilisation_gain,
         projection=numerics.projection if numerics.projection_sweeps else 0.0,
         warm_start=numerics.warm_start,
-        pair_count=sum(pair.row_pairs for pair in pairs),
+        pair_count=row_pairs,
         speculative=numerics.speculative,
         impacts=numerics.impacts,
         simultaneous_impacts=numerics.simultaneous_impacts,
@@ -98,7 +117,7 @@ def facts_of(config: CellConfig, record: bool = True) -> Facts:
         over_relaxation=numerics.over_relaxation,
         scene=config.scene,
         sleeping=numerics.sleeping,
-        events=bool(changes_of_bodies(config)),
+        events=bool(changes_of_bodies(config.events)),
         record=record,
         residuals=config.record.residuals != "none",
         problems=config.record.problems != "none",

@@ -3,6 +3,7 @@
 The step is composed of the kernels that the effects of a `Spec` have for its hooks (`Hooks`).
 """
 
+from dataclasses import replace
 from importlib import import_module
 from typing import Any, Final, Literal
 
@@ -72,6 +73,11 @@ BY_NAME: Final = {effect.name: effect for effect in EFFECTS}
 SURFACE_KEYS: Final = tuple(key for effect in EFFECTS for key in effect.surface_keys)
 SCENE_KEYS: Final = tuple(key for effect in EFFECTS for key in effect.scene_keys)
 BODY_KEYS: Final = tuple(key for effect in EFFECTS for key in effect.body_keys)
+EVENT_KEYS: Final = tuple(
+    replace(key, type=key.type | None, default=None, doc=f"{key.doc}; none: as before")
+    for key in BODY_KEYS
+    if key.by_event
+)
 MOTION_KEYS: Final = tuple(key for key in BODY_KEYS if key.prescribes_motion)
 
 
@@ -126,6 +132,7 @@ __all__ = [
     "BY_NAME",
     "CHAINED",
     "EFFECTS",
+    "EVENT_KEYS",
     "MOTION_KEYS",
     "SCENE_KEYS",
     "SURFACE_KEYS",

@@ -23,9 +23,15 @@ class BodyFacts(NamedTuple):
     pulled: bool = False  # an effect with keys of its own in the scene pulls it
     twisted: bool = False  # and turns it
     config: Any = None  # the body as the config of the cell has it
+    later: tuple[Any, ...] = ()  # and as events make it, where they change its surface
     force: bool = False  # a force acts on it at some time
     torque: bool = False
     parts: int = 0  # of a compound
+
+    @property
+    def forms(self) -> tuple[Any, ...]:
+        """The body as the config has it and as events make it, in their order."""
+        return (self.config, *self.later)
 
 
 class PairFacts(NamedTuple):
@@ -52,10 +58,11 @@ class Facts(NamedTuple):
 
     bodies: tuple[BodyFacts, ...]
     pairs: tuple[PairFacts, ...]
-    gravity: tuple[float, float, float]
+    gravity: tuple[float, float, float]  # as the run begins
     stabilisation_gain: float
     projection: float
     warm_start: bool
+    later_gravity: tuple[tuple[float, float, float], ...] = ()  # as events make it
     pair_count: int = 0  # pairs of bodies that may touch
     speculative: bool = False
     impacts: str = "captured"

@@ -64,10 +64,12 @@ def _source_of_energy(facts: Facts) -> str:
             return f"a force between bodies acts on {body.name}"
         if body.kinematic and (body.spins or body.speed > 0.0):
             return f"{body.name} moves as its velocity says"
-        if body.config is not None and any(body.config.surface_velocity):
+        if any(one is not None and any(one.surface_velocity) for one in body.forms):
             return f"the surface of {body.name} moves"
     if facts.events:
         return "events change bodies"
+    if facts.later_gravity:
+        return "events change gravity"
     if facts.stabilisation_gain > 0.0:
         return "stabilisation pushes bodies apart"
     for pair in facts.pairs:

@@ -8,6 +8,10 @@ def decide(facts: Facts) -> Decision:
     """On when gravity is not zero."""
     if any(facts.gravity):
         return Decision(True, "gravity is ({:g}, {:g}, {:g}) m/s^2".format(*facts.gravity))
+    for later in facts.later_gravity:
+        if any(later):
+            vector = "({:g}, {:g}, {:g}) m/s^2".format(*later)
+            return Decision(True, f"gravity is zero at first, and {vector} later")
     return Decision(False, "gravity is zero")
 
 

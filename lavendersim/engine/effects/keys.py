@@ -63,6 +63,7 @@ class BodyKey(Key):
     resolve: Callable[[Any, Turn], Any] = as_written
     of_movable: bool = False  # a body that does not move has none
     of_prescribed: bool = False  # only a body whose motion is prescribed has one, and no velocities
+    by_event: bool = False  # an event may change it during the run
     prescribes_motion: bool = False  # a body where it is true moves whatever touches it, massless
 
 

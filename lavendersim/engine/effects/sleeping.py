@@ -109,6 +109,11 @@ def wake_around(bodies: np.ndarray, row: int) -> None:
         chosen &= bodies["island"] == bodies["island"][row]
     elif bodies["inv_m"][row] > 0.0:
         return
+    wake_rows(bodies, chosen)
+
+
+def wake_rows(bodies: np.ndarray, chosen: np.ndarray) -> None:
+    """Give sleeping rows their masses back, between steps; chosen: (bodies,) bool."""
     bodies["asleep"][chosen], bodies["rest"][chosen] = 0, 0.0
     for name in ("inv_m", "inv_ix", "inv_iy", "inv_iz"):
         if name in (bodies.dtype.names or ()):

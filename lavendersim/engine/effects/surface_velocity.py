@@ -26,7 +26,9 @@ def body_values(body: Any) -> dict[str, float]:
 
 def decide(facts: Facts) -> Decision:
     """On when a surface moves and some contact has friction."""
-    moving = [body.name for body in facts.bodies if any(body.config.surface_velocity)]
+    moving = [
+        body.name for body in facts.bodies if any(any(one.surface_velocity) for one in body.forms)
+    ]
     if not moving:
         return Decision(False, "no surface moves in its body")
     if any(pair.surface.friction > 0.0 for pair in facts.pairs):
@@ -62,6 +64,7 @@ EFFECT = Effect(
             doc="[m/s] of the surface in the body's frame, as of a conveyor's belt; what of it "
             "lies along a contact's normal says nothing",
             resolve=resolve,
+            by_event=True,
         ),
     ),
     balance=Balance(

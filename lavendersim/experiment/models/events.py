@@ -1,4 +1,4 @@
-"""Events as written: changes to one body, or of the timestep, at a time of the run."""
+"""Events as written: changes to one body, of gravity or of the timestep, at a time of the run."""
 
 from __future__ import annotations
 
@@ -7,6 +7,10 @@ from typing import Annotated, Final, Literal
 from pydantic import Field
 
 from lavendersim.cell.numerics import Timestep
+from lavendersim.engine.effects import EVENT_KEYS
+from lavendersim.experiment.models.bodies import SurfaceOf
+from lavendersim.experiment.models.gravity import Gravity
+from lavendersim.experiment.models.shapes import Orientation
 from lavendersim.experiment.models.tree import (
     Removal,
     after_the_end,
@@ -18,22 +22,30 @@ from lavendersim.experiment.models.tree import (
 from lavendersim.experiment.text.node import ABSENT, Node
 from lavendersim.experiment.text.place import Place
 from lavendersim.quantities.found import near
-from lavendersim.quantities.model import ConfigModel
+from lavendersim.quantities.model import ConfigModel, declared
 from lavendersim.quantities.names import BodyName
 from lavendersim.quantities.quantity import AngularVelocity, Position, Quantity, Velocity
 
-# What an event may do to a body; `remove` stands alone.
-_CHANGES: Final = ("scale_mass", "teleport", "velocity", "angular_velocity", "contact_cache")
+# What an event may change of the whole run; each is an event of its own.
+_OF_RUN: Final = ("timestep", "gravity")
+# What it may do to a body: only to one that moves, or to any; `remove` stands alone.
+_OF_MOVING: Final = ("scale_mass", "teleport", "orientation", "velocity", "angular_velocity")
+_OF_ANY: Final = ("surface", *(key.name for key in EVENT_KEYS))
+_CHANGES: Final = (*_OF_MOVING, *_OF_ANY, "contact_cache")
 _EVERY_CHANGE: Final = (*_CHANGES, "remove")
+_MOVES: Final = {"teleport": "a teleport", "orientation": "a new orientation"}
 
 
-class Event(ConfigModel):
-    """A change to one body, or of the timestep, before the first step that starts at `at`."""
-
+class _Event(ConfigModel):
     at: Annotated[float, Quantity("s", minimum=0)] = Field(description="[s] simulated time")
     body: BodyName | None = Field(
         default=None,
-        description="a body that is not fixed; required but for a timestep, and `remove` takes any",
+        description="a body that is not fixed; required but for gravity and a timestep; `remove`, "
+        "`surface` and what moves in a surface take any",
+    )
+    gravity: Gravity | None = Field(
+        default=None,
+        description="[m/s^2] from then on, as of the scene; an event of its own, without a body",
     )
     timestep: Timestep | None = Field(
         default=None,
@@ -45,11 +57,18 @@ class Event(ConfigModel):
     teleport: Position | None = Field(
         default=None, description="[m] new centre of mass; drops the body's cached impulses"
     )
+    orientation: Orientation | None = Field(
+        default=None,
+        description="new orientation, as of a body; drops the body's cached impulses",
+    )
     velocity: Velocity | None = Field(
         default=None, description="[m/s] new velocity of the centre of mass"
     )
     angular_velocity: AngularVelocity | None = Field(
         default=None, description="[rad/s] new angular velocity, world frame"
+    )
+    surface: SurfaceOf | None = Field(
+        default=None, description="new surface: a name of one of `scene.surfaces`, or properties"
     )
     contact_cache: Literal["keep", "clear"] | None = Field(
         default=None,
@@ -61,14 +80,20 @@ class Event(ConfigModel):
         description="true: the body takes part in nothing more; no event or force may follow",
     )
 
+
+class Event(declared("Event", _Event, EVENT_KEYS), _Event):  # type: ignore[misc]
+    """A change to one body, or of the whole run, before the first step that starts at `at`."""
+
     @classmethod
     def rules(cls, at: Place) -> None:
         """It happens in the run, to a body that is there and can take it, or to the timestep."""
         body, time = at.get("body"), at.get("at").number
         after_the_end(at, "at")
-        if at.written("timestep"):
-            reason = f"{at} changes the timestep; what happens to a body is an event of its own"
-            _alone(at, ("body", *_EVERY_CHANGE), reason)
+        of_run = next((key for key in _OF_RUN if at.written(key)), None)
+        if of_run is not None:
+            others = (*(key for key in _OF_RUN if key != of_run), "body", *_EVERY_CHANGE)
+            reason = f"{at} changes the {of_run}; what happens to a body is an event of its own"
+            _alone(at, others, reason)
         elif body.content is None:
             _lacks_body(at)
         elif at.get("remove").is_true:
@@ -82,13 +107,18 @@ class Event(ConfigModel):
 
 def _change_rules(at: Place, body: Node) -> None:
     target = bodies_of(at.root).get(body.text or "", ABSENT)
-    if what := immovable(target, prescribed=False):
+    of_any = any(at.get(key) for key in _OF_ANY)
+    moving = next((key for key in _OF_MOVING if at.get(key)), None)
+    what = immovable(target, prescribed=False)
+    if what and of_any and moving:
+        at.refuse(at.key(moving), f'{moving}: "{body.text}" is {what}; expected a movable body')
+    elif what and not of_any:
         at.refuse(body.mark, f'body: "{body.text}" is {what}; expected a movable body')
     elif (key := prescribes_motion(target)) and at.get("scale_mass"):
         sentence = f'scale_mass: "{body.text}" is {key}; a {key} body has no mass'
         at.refuse(at.key("scale_mass"), sentence)
     for motion in ("motion",) if target.get("motion").items else ():
-        for changed in ("teleport", "velocity", "angular_velocity"):
+        for changed in ("teleport", "orientation", "velocity", "angular_velocity"):
             if mark := at.written(changed):
                 sentence = f'{changed}: {motion} says at all times where "{body.text}" is'
                 at.refuse(mark, f"{sentence}; an event cannot change it")
@@ -96,15 +126,16 @@ def _change_rules(at: Place, body: Node) -> None:
         changes = f"{', '.join(_CHANGES)} or remove"
         at.refuse(at.node.mark, f"{at} changes nothing; expected {changes}")
     cache = at.get("contact_cache")
-    if cache.text == "keep" and at.get("teleport"):
-        at.refuse(cache.mark, "contact_cache: a teleport always clears the body's cached contacts")
+    moved = next((one for key, one in _MOVES.items() if at.get(key)), None)
+    if cache.text == "keep" and moved:
+        at.refuse(cache.mark, f"contact_cache: {moved} always clears the body's cached contacts")
 
 
 def _lacks_body(at: Place) -> None:
-    """Without a body there is only a timestep to change; a misspelt key is refused elsewhere."""
-    unknown = at.node.entries.keys() - {"at", "body", "timestep", *_EVERY_CHANGE}
-    if not at.node.incomplete and not any(near(key, ("body", "timestep")) for key in unknown):
-        at.lacks("body", "name of a body, or else a timestep")
+    """Without a body there is only the run to change; a misspelt key is refused elsewhere."""
+    unknown = at.node.entries.keys() - {"at", "body", *_OF_RUN, *_EVERY_CHANGE}
+    if not at.node.incomplete and not any(near(key, ("body", *_OF_RUN)) for key in unknown):
+        at.lacks("body", "name of a body, or else a timestep or gravity")
 
 
 def _alone(at: Place, others: tuple[str, ...], reason: str) -> None:

@@ -1,15 +1,16 @@
-"""The `scene` of a config as written: gravity, surfaces, bodies, arrangements and forces."""
+"""The `scene` of a config as written: surfaces, bodies, arrangements and forces."""
 
 from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import Field, Tag
+from pydantic import Field
 
 from lavendersim.cell.surface import Surface
 from lavendersim.engine.effects import SCENE_KEYS, TimeFunction
 from lavendersim.experiment.models.arrangements import Arrangement
 from lavendersim.experiment.models.bodies import Body
+from lavendersim.experiment.models.gravity import GRAVITY, Gravity
 from lavendersim.experiment.models.shapes import Shape
 from lavendersim.experiment.models.surface_pairs import SurfacePair
 from lavendersim.experiment.models.tree import (
@@ -28,49 +29,7 @@ from lavendersim.experiment.text.place import Place
 from lavendersim.quantities.found import quoted
 from lavendersim.quantities.model import ConfigModel, declared
 from lavendersim.quantities.names import BodyName, NewName
-from lavendersim.quantities.quantity import Position, Quantity, Vector, Vector3, either
-
-GRAVITY = 9.81  # [m/s^2]
-
-
-class TiltedGravity(ConfigModel):
-    """Gravity by its angle from -z: a flat floor is an incline that goes down along the azimuth."""
-
-    magnitude: Annotated[float, Quantity("m/s^2", minimum=0)] = Field(
-        default=GRAVITY, description="[m/s^2]"
-    )
-    tilt_degrees: Annotated[float, Quantity("degree", minimum=0, maximum=180)] | None = Field(
-        default=None,
-        description="[degree] angle from -z; 0 where neither this nor `slope` is given",
-    )
-    slope: Annotated[float, Quantity(minimum=0)] | None = Field(
-        default=None, description="tangent of that angle, instead of `tilt_degrees`"
-    )
-    azimuth_degrees: Annotated[float, Quantity("degree")] = Field(
-        default=0.0, description="[degree] from x towards y: the direction in which it goes down"
-    )
-
-    @classmethod
-    def rules(cls, at: Place) -> None:
-        """An angle is written once."""
-        tilt, slope = at.written("tilt_degrees"), at.written("slope")
-        if tilt and slope:
-            at.refuse(max(tilt, slope), "gravity specifies both tilt_degrees and slope; keep one")
-
-
-Gravity = Annotated[
-    Annotated[
-        float,
-        Quantity("m/s^2", minimum=0, hint="a number is the magnitude along -z"),
-        Tag("magnitude"),
-    ]
-    | Annotated[Vector3, Vector(3, Quantity("m/s^2")), Tag("vector")]
-    | Annotated[TiltedGravity, Tag("tilted")],
-    either(
-        "a number, a list of 3 numbers [m/s^2] or {slope: ...}",
-        {dict: "tilted", tuple: "vector", list: "vector", object: "magnitude"},
-    ),
-]
+from lavendersim.quantities.quantity import Position, Quantity, Vector, Vector3
 
 _ZERO = (0.0, 0.0, 0.0)
 

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from lavendersim.cell.config import CellConfig, CellEffects, CellStudy
-from lavendersim.cell.events import CellEvent, CellTimestep
 from lavendersim.cell.numerics import Numerics
 from lavendersim.cell.record import CellRecord
 from lavendersim.cell.shared_parts import shared
-from lavendersim.experiment.models.events import Event
 from lavendersim.experiment.models.experiment import CellSource, NumericsSource
+from lavendersim.experiment.resolve.events import resolve_event
 from lavendersim.experiment.resolve.scene import resolve_scene
 
 
@@ -19,9 +18,10 @@ def resolve_cell(source: CellSource) -> CellConfig:
     """
     assert isinstance(source.numerics, NumericsSource)  # its preset is merged in (`with_preset`)
     numerics = shared(Numerics.model_construct(**dict(source.numerics)))
+    scene, frames = resolve_scene(source.scene, numerics.timestep, source.duration)
     return CellConfig.of(
-        scene=resolve_scene(source.scene, numerics.timestep, source.duration),
-        events=tuple(map(_event, source.events)),
+        scene=scene,
+        events=tuple(resolve_event(event, source.scene, frames) for event in source.events),
         numerics=numerics,
         duration=source.duration,
         record=shared(CellRecord.model_validate(source.record.model_dump(by_alias=True))),
@@ -32,12 +32,3 @@ def resolve_cell(source: CellSource) -> CellConfig:
         ),
         study=shared(CellStudy(mistake=source.study.mistake)),
     )
-
-
-def _event(event: Event) -> CellEvent | CellTimestep:
-    if event.body is None:  # the rules of `Event` let no other one stand
-        assert event.timestep is not None
-        return CellTimestep(at=event.at, timestep=event.timestep)
-    kept = event.contact_cache or ("keep" if event.teleport is None else "clear")
-    settled = {"contact_cache": kept, "remove": bool(event.remove)}
-    return CellEvent.model_validate(event.model_dump(exclude={"timestep"}) | settled)

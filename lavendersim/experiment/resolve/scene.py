@@ -1,8 +1,7 @@
-"""Resolving a scene: bodies in their principal frames, gravity as a vector, forces in time."""
+"""Resolving a scene: bodies in their principal frames, forces in time."""
 
 from __future__ import annotations
 
-import math
 from fractions import Fraction
 from typing import Any
 
@@ -12,7 +11,7 @@ from lavendersim.cell.shapes import CellShape, Plane
 from lavendersim.cell.shared_parts import shared
 from lavendersim.engine.effects import BODY_KEYS, SCENE_KEYS, TurnOf
 from lavendersim.experiment.models.bodies import ArrangedBody, Body
-from lavendersim.experiment.models.scene import Force, Scene, TiltedGravity
+from lavendersim.experiment.models.scene import Force, Scene
 from lavendersim.experiment.models.tree import (
     ARRANGEMENTS,
     BODIES,
@@ -20,9 +19,11 @@ from lavendersim.experiment.models.tree import (
     member_name,
 )
 from lavendersim.experiment.resolve.arrangements import centres, turns_of
+from lavendersim.experiment.resolve.frames import Frames
+from lavendersim.experiment.resolve.gravity import gravity_vector
 from lavendersim.experiment.resolve.placement import below, released_position
 from lavendersim.experiment.resolve.shape import quaternion_of, resolve_shape
-from lavendersim.experiment.resolve.surface_pairs import with_partners
+from lavendersim.experiment.resolve.surface_pairs import surface_of
 from lavendersim.geometry.quaternions import IDENTITY, Quaternion, product, to_body, to_world
 from lavendersim.geometry.vectors import unit
 from lavendersim.quantities.quantity import Vector3
@@ -30,7 +31,7 @@ from lavendersim.quantities.quantity import Vector3
 _ORIGIN: Vector3 = (0.0, 0.0, 0.0)
 
 
-def resolve_scene(scene: Scene, timestep: Fraction, duration: float) -> CellScene:
+def resolve_scene(scene: Scene, timestep: Fraction, duration: float) -> tuple[CellScene, Frames]:
     """Fill in what the file leaves open; raises SceneError with the path of what to change."""
     gravity = gravity_vector(scene.gravity)
     bodies: dict[str, CellBody] = {}
@@ -56,15 +57,12 @@ def resolve_scene(scene: Scene, timestep: Fraction, duration: float) -> CellScen
             as_written = quaternion_of((source or arrangement.body).orientation)
             written[member] = as_written if turn == IDENTITY else product(turn, as_written)
 
-    def turned(name: str, vector: Vector3) -> Vector3:
-        """Return a vector of a body's frame as written in the frame of its principal axes."""
-        before, after = written[name], bodies[name].orientation
-        return vector if before == after else to_body(after, to_world(before, vector))
-
+    frames = Frames(written, bodies)
+    turned = frames.vector
     forces = tuple(_force(force, duration, turned) for force in scene.forces)
     by_effect = {key.name: key.resolve(getattr(scene, key.name), turned) for key in SCENE_KEYS}
     resolved: CellScene = CellScene.of(gravity=gravity, bodies=bodies, forces=forces, **by_effect)
-    return resolved
+    return resolved, frames
 
 
 def _turned(body: CellBody, turn: Quaternion, position: Vector3) -> CellBody:
@@ -75,23 +73,6 @@ def _turned(body: CellBody, turn: Quaternion, position: Vector3) -> CellBody:
         changes["velocity"] = to_world(turn, body.velocity)
         changes["angular_velocity"] = to_world(turn, body.angular_velocity)
     return body.model_copy(update=changes)
-
-
-def gravity_vector(gravity: float | Vector3 | TiltedGravity) -> Vector3:
-    """Return gravity [m/s^2]; a number is its magnitude along -z."""
-    if isinstance(gravity, tuple):
-        return gravity
-    if not isinstance(gravity, TiltedGravity):
-        return (0.0, 0.0, 0.0 - gravity)
-    if gravity.slope is not None:
-        down = 1.0 / math.hypot(1.0, gravity.slope)
-        along = gravity.slope * down
-    else:
-        angle = math.radians(gravity.tilt_degrees or 0.0)
-        down, along = math.cos(angle), math.sin(angle)
-    azimuth = math.radians(gravity.azimuth_degrees)
-    x, y = along * math.cos(azimuth), along * math.sin(azimuth)
-    return (gravity.magnitude * x, gravity.magnitude * y, -gravity.magnitude * down)
 
 
 def _body(body: Body, scene: Scene, gravity: Vector3, timestep: Fraction) -> CellBody:
@@ -115,9 +96,7 @@ def _body(body: Body, scene: Scene, gravity: Vector3, timestep: Fraction) -> Cel
 
 def _matter(body: Body | ArrangedBody, scene: Scene) -> dict[str, Any]:
     """Return the values of a body that stands at the origin; its velocities are as written."""
-    surface = body.surface
-    if isinstance(surface, str):
-        surface = with_partners(surface, scene.surfaces[surface], scene.surface_pairs)
+    surface = surface_of(body.surface, scene)
     prescribed = any(getattr(body, key) for key in PRESCRIBE_MOTION)
     fixed = body.fixed or prescribed or isinstance(body.shape, Plane)
     orientation, axes = quaternion_of(body.orientation), IDENTITY

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from lavendersim.cell.surface import PairedSurface, PairProperties, Partner, Surface
+from lavendersim.experiment.models.scene import Scene
 from lavendersim.experiment.models.surface_pairs import SurfacePair
 
 
@@ -21,3 +22,10 @@ def with_partners(name: str, surface: Surface, pairs: Mapping[str, SurfacePair])
     own = {key: getattr(surface, key) for key in Surface.model_fields}
     resolved: PairedSurface = PairedSurface(name=name, partners=tuple(partners), **own)
     return resolved
+
+
+def surface_of(written: str | Surface, scene: Scene) -> Surface:
+    """Return a surface by its name or as it stands."""
+    if isinstance(written, str):
+        return with_partners(written, scene.surfaces[written], scene.surface_pairs)
+    return written

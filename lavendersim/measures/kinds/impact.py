@@ -9,8 +9,9 @@ import math
 
 import numpy as np
 
-from lavendersim.geometry.bodies import is_movable, mass_of, vector
-from lavendersim.measures.changes import events_of_bodies
+from lavendersim.cell import changes_of_bodies
+from lavendersim.geometry.bodies import is_movable, mass_of
+from lavendersim.measures.changes import constant_gravity
 from lavendersim.measures.columns import (
     clearance_by_step,
     contacts_of,
@@ -126,7 +127,7 @@ def impulse_balance(spec: specs.ImpulseBalance, trace: Trace) -> float:
     movable bodies cancel), M the movable mass, p the logged momentum. NaN without any impulse,
     and where an event changes a mass or removes one.
     """
-    events = events_of_bodies(trace)
+    events = changes_of_bodies(trace.config.events)
     bodies = trace.config.scene.bodies
     gone = [bodies[event.body] for event in events if event.remove]
     if any(event.scale_mass is not None for event in events) or any(map(is_movable, gone)):
@@ -150,7 +151,7 @@ def impulse_balance(spec: specs.ImpulseBalance, trace: Trace) -> float:
     steps = trace.step["step"]
     time = float(trace.clock.elapsed(steps[first - 1], steps[last]))
     gained = momenta[last] - momenta[first - 1]
-    gap = impulse + mass * time * vector(trace.config.scene.gravity) - gained
+    gap = impulse + mass * time * constant_gravity(trace, "impulse_balance") - gained
     return math.sqrt(float(gap @ gap)) / size
 
 

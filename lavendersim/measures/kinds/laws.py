@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from lavendersim.geometry.bodies import is_movable, mass_of, vector
+from lavendersim.geometry.bodies import is_movable, mass_of
 from lavendersim.measures import changes
 from lavendersim.measures.columns import (
     angular_momentum,
@@ -30,17 +30,20 @@ def force_error(spec: specs.ForceError, trace: Trace) -> float:
 
     Of one body all contacts count, and m is its mass as configured; of the scene those between
     movable and fixed bodies, since the others cancel, and m is what can move in that step. NaN
-    without gravity or a movable body, and for a run shorter than the window.
+    without gravity or a movable body, and for a run shorter than the window; UsageError where
+    an event changes gravity within it.
     """
     bodies = trace.config.scene.bodies
-    gravity = vector(trace.config.scene.gravity)
-    pull = math.sqrt(float(gravity @ gravity))
     names = [spec.body] if spec.body else [name for name, one in bodies.items() if is_movable(one)]
     carried = np.array([name in names for name in trace.bodies])
     rows = np.flatnonzero(last_window(trace, spec.last))
+    if len(rows) == 0:
+        return NAN
+    gravity = changes.constant_gravity(trace, "force_error", int(rows[0]))
+    pull = math.sqrt(float(gravity @ gravity))
     masses = changes.masses(trace)[rows]
     weight = pull * (np.full(len(rows), mass_of(bodies[spec.body])) if spec.body else masses)
-    if not np.all(weight > 0.0) or len(rows) == 0:
+    if not np.all(weight > 0.0):
         return NAN
     contacts = trace.contact
     first = np.searchsorted(contacts["step"], trace.step["step"][rows[0]])

@@ -10,6 +10,7 @@ import numpy as np
 from lavendersim.cell import Box, Plane
 from lavendersim.geometry.bodies import rotation_of, vector
 from lavendersim.geometry.shapes import half_space
+from lavendersim.measures.changes import constant_gravity
 from lavendersim.measures.closed_forms import bounce_height
 from lavendersim.measures.columns import (
     body_columns,
@@ -99,11 +100,11 @@ def effective_friction(spec: specs.EffectiveFriction, trace: Trace) -> float:
 
     a is the second difference of the positions at beginning, middle and end of the window, which
     is exact for a constant acceleration. NaN when gravity does not pull towards the plane,
-    UsageError where the timestep changes within the window.
+    UsageError where the timestep or gravity changes within the window.
     """
     window = _window(trace, spec.last)
     normal = half_space(trace.config.scene.bodies[spec.on].shape).normal
-    pull = vector(trace.config.scene.gravity)
+    pull = constant_gravity(trace, "effective_friction", window.first + 1 if window else 1)
     into = -float(normal @ pull)
     if window is None or window.last - window.first < 2 or into <= 0.0:
         return NAN

@@ -53,7 +53,7 @@ def optimality(spec: Optimality, trace: Trace) -> Floats:
         np.maximum(np.abs(np.minimum(pushed, away)) - residual, 0.0),
     ]
     if "impulse_t1" in (contacts.dtype.names or ()):
-        mu = friction_of(contacts, surfaces)
+        mu = friction_of(trace, contacts)
         cone, sliding = _friction(trace, contacts, least, mu)
         violations += [cone, np.maximum(sliding - residual, 0.0)]
     return np.array([float(np.max(one)) for one in violations])
