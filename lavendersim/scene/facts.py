@@ -38,13 +38,12 @@ def _body_facts(config: CellConfig) -> Iterator[BodyFacts]:
         own = events.get(name, ())
         speeds = [body.velocity, *(event.velocity or () for event in own)]
         spins = [body.angular_velocity, *(event.angular_velocity or () for event in own)]
-        placed = any(event.orientation is not None for event in own)
         driven = [moves(body) for moves in moving]
         yield BodyFacts(
             name=name,
             shape=body.shape.kind,
             movable=is_movable(body),
-            spins=any(any(spin) for spin in spins) or any(turns for _, turns in driven) or placed,
+            spins=any(any(spin) for spin in spins) or any(turns for _, turns in driven),
             round=inertia[0] == inertia[1] == inertia[2],
             kinematic=body.kinematic,
             speed=max([*(hypot(*speed) for speed in speeds), *(speed for speed, _ in driven)]),
@@ -57,6 +56,7 @@ def _body_facts(config: CellConfig) -> Iterator[BodyFacts]:
             pulled=name in pulled,
             twisted=name in turned,
             parts=len(parts_of(body.shape)),
+            reoriented=any(event.orientation is not None for event in own),
         )
 
 

@@ -55,7 +55,7 @@ def cell(said: Mapping[str, Any]) -> CellConfig:
     scene["bodies"] = {name: body(entry) for name, entry in scene["bodies"].items()}
     scene["forces"] = [{"from": 0.0, "to": math.inf} | dict(force) for force in scene["forces"]]
     events = [
-        event if "timestep" in event else EVENT | dict(event) for event in said.get("events", ())
+        event if "body" not in event else EVENT | dict(event) for event in said.get("events", ())
     ]
     numerics = {"timestep": "1/100"} | dict(said.get("numerics", {}))
     return made_cell(**scene, numerics=numerics, events=events)

@@ -27,6 +27,7 @@ class BodyFacts(NamedTuple):
     force: bool = False  # a force acts on it at some time
     torque: bool = False
     parts: int = 0  # of a compound
+    reoriented: bool = False  # an event gives it a new orientation
 
     @property
     def forms(self) -> tuple[Any, ...]:

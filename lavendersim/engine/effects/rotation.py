@@ -32,6 +32,8 @@ def _turned_by(body: BodyFacts, touches: bool, frictional: set[Kind], resisting:
     """Return what turns a body, or nothing."""
     if body.spins:
         return "initial angular velocity" if body.movable else "kinematic and turning"
+    if body.reoriented:
+        return "an event turns it"
     if not body.movable:
         return ""
     if body.torque:

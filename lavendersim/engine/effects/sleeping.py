@@ -9,7 +9,7 @@ Asleep, a body is as a fixed one: its inverse mass is kept aside and reads 0, so
 accelerates, pushes or moves it. Contacts between bodies that cannot move are not made, solved or
 logged; the island begins cold when it wakes, as a whole: when a body faster than `sleep_speed` or a
 moving kinematic one makes a contact with it, a force acts on it, or an event changes one of its
-bodies. Nothing else can take its supports away: they are asleep with it, or fixed.
+bodies, or gravity. Nothing else can take its supports away: they are asleep with it, or fixed.
 """
 
 from __future__ import annotations
@@ -108,13 +108,17 @@ def wake_around(bodies: np.ndarray, row: int) -> None:
     if chosen[row]:
         chosen &= bodies["island"] == bodies["island"][row]
     elif bodies["inv_m"][row] > 0.0:
-        return
+        chosen[:] = False
     wake_rows(bodies, chosen)
 
 
 def wake_rows(bodies: np.ndarray, chosen: np.ndarray) -> None:
-    """Give sleeping rows their masses back, between steps; chosen: (bodies,) bool."""
-    bodies["asleep"][chosen], bodies["rest"][chosen] = 0, 0.0
+    """Give sleeping rows their masses back, between steps; chosen: (bodies,) bool.
+
+    Nobody has rested since what changed: who was about to fall asleep would do so in the next step,
+    which it begins at rest, and hang in the air where its support is gone.
+    """
+    bodies["asleep"][chosen], bodies["rest"] = 0, 0.0
     for name in ("inv_m", "inv_ix", "inv_iy", "inv_iz"):
         if name in (bodies.dtype.names or ()):
             bodies[name][chosen] = bodies[f"own_{name}"][chosen]

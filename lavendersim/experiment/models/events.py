@@ -91,9 +91,10 @@ class Event(declared("Event", _Event, EVENT_KEYS), _Event):  # type: ignore[misc
         after_the_end(at, "at")
         of_run = next((key for key in _OF_RUN if at.written(key)), None)
         if of_run is not None:
-            others = (*(key for key in _OF_RUN if key != of_run), "body", *_EVERY_CHANGE)
-            reason = f"{at} changes the {of_run}; what happens to a body is an event of its own"
-            _alone(at, others, reason)
+            other = next((key for key in _OF_RUN if key != of_run and at.get(key)), None)
+            keys = (other,) if other else ("body", *_EVERY_CHANGE)
+            what = f"a change of {other}" if other else "what happens to a body"
+            _alone(at, keys, f"{at} changes the {of_run}; {what} is an event of its own")
         elif body.content is None:
             _lacks_body(at)
         elif at.get("remove").is_true:

@@ -9,6 +9,7 @@ import pytest
 from laboratory import body, config, plane, resolved
 
 from lavendersim.cell import CellRecord, TimeWindow
+from lavendersim.engine.engine import Engine
 from lavendersim.engine.spec import Spec
 from lavendersim.scene.build import Scene, build, residual_window
 from lavendersim.scene.events import EventQueue
@@ -30,7 +31,7 @@ def event(at: float, name: str = "ball", **values) -> dict:
     changes = ("scale_mass", "teleport", "velocity", "angular_velocity")
     return {
         "at": at, "body": name, "contact_cache": "keep", "remove": False,
-        **{key: values.get(key) for key in changes},
+        **dict.fromkeys(changes), **values,
     }  # fmt: skip
 
 
@@ -45,11 +46,13 @@ class Bench:
         self.cell = config(cell)
         self.scene: Scene = build(self.cell, SPEC)
         self.forgotten: list = []
+        self.woken: list = []
         engine = SimpleNamespace(
             spec=SPEC, bodies=self.scene.bodies, velocities=self.scene.velocities,
             parameters=self.scene.parameters,
             forget_contacts=lambda *body: self.forgotten.append(body),
-            wake=lambda index: None,
+            wake=self.woken.append, wake_all=lambda: self.woken.append("all"),
+            state=SimpleNamespace(pairs=self.scene.pairs),
         )  # fmt: skip
         self.queue = EventQueue(engine, self.scene, self.cell.events)
 
@@ -120,6 +123,76 @@ def test_mass_and_inertia_are_scaled_together() -> None:
     bench.queue.apply_due(0)
     for name in ("inv_m", "inv_ix", "inv_iy", "inv_iz"):
         assert bench.scene.bodies[1][name] == before[name] / 4.0
+
+
+def test_gravity_changes_with_what_is_made_of_it_and_wakes_everybody() -> None:
+    bench = Bench(events=[{"at": 0.25, "gravity": [3.0, 0.0, -4.0]}], gravity=-9.81)
+    parameters = bench.scene.parameters[0]
+    bench.queue.apply_due(2)
+    assert (parameters["gz"], bench.woken) == (-9.81, [])
+    bench.queue.apply_due(3)
+    assert [float(parameters[f"g{axis}"]) for axis in "xyz"] == [3.0, 0.0, -4.0]
+    assert parameters["restitution_speed"] == 2.0 * 5.0 * 0.1
+    assert bench.woken == ["all"]
+
+
+def test_an_orientation_is_written_with_its_matrix_and_its_contacts_are_forgotten() -> None:
+    """(1, 0, 0, 1) / sqrt(2): a quarter turn about z takes x to y."""
+    bench = Bench(events=[event(0.1, orientation=[1.0, 0.0, 0.0, 1.0])])
+    bench.queue.apply_due(1)
+    ball = bench.scene.bodies[1]
+    found = np.array([[ball[f"r{i}{j}"] for j in range(3)] for i in range(3)])
+    np.testing.assert_allclose(found, [[0, -1, 0], [1, 0, 0], [0, 0, 1]], atol=3e-16)
+    assert [float(ball[k]) for k in ("qw", "qx", "qy", "qz")] == pytest.approx(
+        [0.5**0.5, 0.0, 0.0, 0.5**0.5], rel=1e-15
+    )
+    assert (bench.forgotten, bench.woken) == ([(1,)], [1])
+
+
+FRICTIONAL = Spec(
+    effects=("contact_torque", "friction", "rotation", "surface_velocity"),
+    shape_pairs=("sphere_plane", "sphere_sphere"),
+)
+
+
+@pytest.mark.parametrize("broad", [False, True])
+@pytest.mark.parametrize("name", ["floor", "ball"])
+def test_a_new_surface_is_mixed_into_every_pair_of_its_body_and_no_other(
+    name: str, broad: bool
+) -> None:
+    """0.5 and 0.5 mix to 0.5, 0.5 and 0.08 to 0.2; the floor says nothing of belt and ball."""
+    spec = FRICTIONAL._replace(effects=(*FRICTIONAL.effects, *(("broad_phase",) if broad else ())))
+    events = [event(0.1, name, surface={"friction": 0.08}, surface_velocity=[0.0, 2.0, 0.0])]
+    bodies = {
+        "floor": plane(friction=0.5),
+        "ball": body(BALL, friction=0.5),
+        "belt": body(BALL, friction=0.5, kinematic=True),
+    }
+    cell = config(resolved(bodies, timestep="1/10") | {"events": events})
+    engine = build(cell, spec).engine(spec)
+    before = [friction_of(engine, row, 1) for row in (0, 2)]
+    if broad:
+        engine.workspace.broad_phase.state["listed"] = 1
+    EventQueue(engine, build(cell, spec), cell.events).apply_due(1)
+    assert before == [0.5, 0.5]
+    # the root of 0.04: two roundings
+    assert friction_of(engine, 0, 1) == pytest.approx(0.2, rel=4e-16)
+    belt_and_ball = 0.5 if name == "floor" else 0.2
+    assert friction_of(engine, 2, 1) == pytest.approx(belt_and_ball, rel=4e-16)
+    row = list(bodies).index(name)
+    assert [float(engine.bodies[row][k]) for k in ("sx", "sy", "sz")] == [0.0, 2.0, 0.0]
+    if broad:
+        assert engine.workspace.broad_phase.state["listed"][0] == 0
+
+
+def friction_of(engine: Engine, one: int, other: int) -> float:
+    """Return the coefficient of the pair of two rows as the engine has it."""
+    if engine.spec.has("broad_phase"):
+        a, b = (int(engine.bodies[row]["material"]) for row in (one, other))
+        return float(engine.workspace.templates[a, b]["friction"])
+    pairs = engine.state.pairs
+    rows = [{int(line["a"]), int(line["b"])} == {one, other} for line in pairs]
+    return float(pairs[rows]["friction"][0])
 
 
 def test_plan_knows_what_is_pushed_twisted_and_thrown() -> None:

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from laboratory import Bench, box, plane, planned, resolved, sphere
 
-from lavendersim.cell import CellEvent
-from lavendersim.scene.events import apply_event
+from lavendersim.cell import CellEvent, CellGravity
+from lavendersim.scene.events import BodyEvents, EventQueue
 
 G, DT = 9.81, 1.0 / 240.0
 SLEEP_TIME = 0.1
@@ -24,6 +24,10 @@ EVENT = CellEvent(
 
 def happens(**changes) -> CellEvent:
     return EVENT.model_copy(update=changes)
+
+
+def apply(bench: Bench, event: CellEvent) -> None:
+    BodyEvents(bench.engine, bench.scene).apply(event)
 
 
 def stack(ball=(50.0, 0.0, 50.0), velocity=(0.0, 0.0, 0.0), sleeping=True, **numerics) -> Bench:
@@ -115,11 +119,35 @@ def test_an_island_at_rest_again_sleeps_again() -> None:
 
 def test_what_stood_on_a_body_taken_away_falls() -> None:
     bench = slept()
-    apply_event(bench.engine, bench.scene, happens(body="low", teleport=(9.0, 0.0, 0.1)))
+    apply(bench, happens(body="low", teleport=(9.0, 0.0, 0.1)))
     bench.run(24)
     # 0.1 s of free fall: g t^2 / 2 = 0.049 m, less a step of it at most
     assert bench.engine.bodies["z"][HIGH] < 0.5 - 0.5 * G * (23 * DT) ** 2
     assert LONE in asleep(bench)
+
+
+@pytest.mark.parametrize("change", [{"remove": True}, {"teleport": (9.0, 0.0, 0.1)}])
+def test_what_was_about_to_fall_asleep_falls_with_its_support(change: dict) -> None:
+    """Whenever its support goes, before, as or after it falls asleep, a box falls from then on."""
+    for steps in range(20, 30):
+        bench = stack()
+        bench.run(steps)
+        apply(bench, happens(body="low", **change))
+        bench.run(24)
+        # the free fall of 24 steps, exact under constant gravity but for what creeps before
+        assert bench.engine.bodies["z"][HIGH] < 0.5 - 0.5 * G * (23 * DT) ** 2, steps
+
+
+def test_gravity_that_turns_wakes_everybody_and_keeps_nobody_at_rest() -> None:
+    """At any time before, as or after they fall asleep: upwards, all fly."""
+    for steps in (20, 23, 24, 25, 40):
+        bench = stack()
+        bench.run(steps)
+        queue = EventQueue(bench.engine, bench.scene, [CellGravity(at=0.0, gravity=(0, 0, 5.0))])
+        queue.apply_due(0)
+        bench.run(24)
+        risen = bench.engine.bodies["z"][LOW : LONE + 1] - [0.1, 0.3, 0.5, 0.1]
+        assert risen.min() > 0.5 * 5.0 * (23 * DT) ** 2, steps
 
 
 @pytest.mark.parametrize(
@@ -130,7 +158,7 @@ def test_whoever_slept_beside_a_removed_body_wakes(removed, left) -> None:
     bench = slept()
     row = bench.scene.names.index(removed)
     place = bench.engine.bodies[["x", "y", "z"]][row].item()
-    apply_event(bench.engine, bench.scene, happens(body=removed, remove=True))
+    apply(bench, happens(body=removed, remove=True))
     assert asleep(bench) == left
     bodies, velocities = bench.engine.bodies, bench.engine.velocities
     assert (bodies["inv_m"][row], bodies["own_inv_m"][row], bodies["kinematic"][row]) == (0, 0, 0)
@@ -157,7 +185,7 @@ def test_a_force_wakes_and_keeps_awake_as_long_as_it_acts(force) -> None:
 
 def test_a_changed_velocity_wakes() -> None:
     bench = slept()
-    apply_event(bench.engine, bench.scene, happens(body="high", velocity=(0.0, 0.0, 1.0)))
+    apply(bench, happens(body="high", velocity=(0.0, 0.0, 1.0)))
     bench.run(1)
     assert asleep(bench) == [LONE]
     assert bench.engine.bodies["z"][HIGH] > 0.5 + 0.9 * DT
@@ -165,7 +193,7 @@ def test_a_changed_velocity_wakes() -> None:
 
 def test_a_changed_mass_is_the_mass_it_wakes_with() -> None:
     bench = slept()
-    apply_event(bench.engine, bench.scene, happens(body="high", scale_mass=4.0))
+    apply(bench, happens(body="high", scale_mass=4.0))
     assert asleep(bench) == [LONE]
     assert bench.engine.bodies["inv_m"][HIGH] == 0.25
     rows = bench.run(5)
@@ -244,9 +272,9 @@ def test_what_loses_its_last_spring_may_sleep() -> None:
     bench = tied()
     bench.run(40)
     assert asleep(bench) == []  # what springs join does not sleep
-    apply_event(bench.engine, bench.scene, happens(body="left", remove=True))
+    apply(bench, happens(body="left", remove=True))
     bench.run(40)
     assert asleep(bench) == [one]
-    apply_event(bench.engine, bench.scene, happens(body="right", remove=True))
+    apply(bench, happens(body="right", remove=True))
     bench.run(40)
     assert asleep(bench) == [one, both]

@@ -1,8 +1,6 @@
-"""Gravity by its tilt, surfaces, kinematic bodies, drag, forces and events as they are resolved."""
+"""Surfaces, kinematic bodies, drag, forces and events as they are resolved."""
 
 from __future__ import annotations
-
-import math
 
 import pytest
 
@@ -25,33 +23,6 @@ duration: 2.0
 def resolved(scene: str = "gravity: 9.81", body: str = "", rest: str = "") -> dict:
     text = TEXT.format(scene=scene, body=body, rest=rest)
     return load_experiment_text(text, "forms.yaml").cells()[0].config.as_dict()
-
-
-def gravity(specified: str) -> list[float]:
-    return resolved(f"gravity: {specified}")["scene"]["gravity"]
-
-
-def test_tilt_of_zero_is_plain_gravity() -> None:
-    assert gravity("{}") == [0.0, 0.0, -9.81]
-    assert gravity("{magnitude: 3.7}") == [0.0, 0.0, -3.7]
-
-
-@pytest.mark.parametrize("slope", [0.0, 0.4995, 2.0])
-@pytest.mark.parametrize("azimuth", [0.0, 45.0, 157.5])
-def test_slope_is_the_ratio_of_gravity_along_and_into_the_floor(
-    slope: float, azimuth: float
-) -> None:
-    x, y, z = gravity(f"{{slope: {slope}, azimuth_degrees: {azimuth}}}")
-    # each component: three roundings
-    assert math.hypot(x, y) / -z == pytest.approx(slope, rel=1e-15)
-    assert math.sqrt(x * x + y * y + z * z) == pytest.approx(9.81, rel=1e-15)
-    if slope:
-        assert math.degrees(math.atan2(y, x)) == pytest.approx(azimuth, abs=1e-13)
-
-
-def test_tilt_in_degrees_is_the_slope_of_its_tangent() -> None:
-    tilted = gravity("{magnitude: 5, tilt_degrees: 30, azimuth_degrees: 90}")
-    assert tilted == pytest.approx([0.0, 2.5, -2.5 * math.sqrt(3.0)], abs=1e-15)
 
 
 def test_kinematic_body_has_no_mass_and_is_moved_by_nothing() -> None:
