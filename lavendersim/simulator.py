@@ -158,7 +158,7 @@ class Simulator:
             "collision": {"contacts": np.column_stack(columns)},
             "bodies": {
                 "position": pose[:, :3].copy(),  # centre of mass [m]
-                "orientation": pose[:, 3:].copy(),  # quaternion w x y z, body to world
+                "orientation": pose[:, 3:7].copy(),  # quaternion w x y z, body to world
                 "velocity": np.column_stack([velocities[n] for n in ("vx", "vy", "vz")]),
                 "angular_velocity": np.column_stack([velocities[n] for n in ("wx", "wy", "wz")])
                 if turning

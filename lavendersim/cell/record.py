@@ -6,7 +6,13 @@ import re
 from functools import partial
 from typing import Annotated, Any, Final, Literal
 
-from pydantic import Field, PlainValidator, WithJsonSchema
+from pydantic import (
+    Field,
+    PlainValidator,
+    SerializerFunctionWrapHandler,
+    WithJsonSchema,
+    model_serializer,
+)
 
 from lavendersim.quantities.model import ResolvedModel
 from lavendersim.quantities.quantity import refusal
@@ -69,3 +75,11 @@ class CellRecord(ResolvedModel):
     # logs of older versions have all of both, and do not say so
     contacts: Recorded = ALL
     poses: Recorded = ALL
+    velocities: bool = False  # of the steps whose poses are recorded; absent where false
+
+    @model_serializer(mode="wrap")
+    def _written(self, serialize: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        written: dict[str, Any] = serialize(self)
+        if not self.velocities:
+            written.pop("velocities", None)
+        return written

@@ -34,7 +34,10 @@ FIRST_CONTACTS = 1024
 
 
 class Rows(NamedTuple):
-    """Trace rows of some steps: structured arrays, and poses of shape (steps, bodies, 7)."""
+    """Trace rows of some steps: structured arrays, and poses of shape (steps, bodies, 7).
+
+    With `velocity_log` the row of a pose goes on with velocities: (steps, bodies, 13).
+    """
 
     step: np.ndarray
     pose: np.ndarray

@@ -94,7 +94,7 @@ class Log(NamedTuple):
     """Rows of the trace; counters say how many are in use."""
 
     step: np.ndarray  # (steps,)
-    pose: np.ndarray  # (steps, n, 7) x y z qw qx qy qz
+    pose: np.ndarray  # (steps, n, 7) x y z qw qx qy qz; (steps, n, 13) with `velocity_log`
     contact: np.ndarray  # (rows,)
     residual: np.ndarray  # (rows,) of sweeps
     pose_bits: np.ndarray  # `pose` as uint64, for the hash of the state
@@ -189,6 +189,8 @@ def allocate_log(spec: Spec, state: State, poses: np.ndarray, steps: int, sweeps
     capacity, velocities = len(state.contacts), state.velocities
     # A quarter of the worst case: full columns end a block early, they lose nothing.
     contact_rows = max(capacity, steps * capacity // 4) if steps else 0
+    if spec.has("velocity_log"):
+        poses = np.hstack([poses, np.zeros((len(poses), 6))])
     pose = np.repeat(poses[None], steps, axis=0)
     return Log(
         step=np.zeros(steps, step_row_dtype(spec)),

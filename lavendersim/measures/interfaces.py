@@ -46,6 +46,10 @@ class Trace(Protocol):
         """Yield the rows of `pose` in parts with the numbers of their steps."""
 
     @property
+    def velocity(self) -> Any:
+        """Rows, bodies, 6: vx vy vz [m/s], wx wy wz [rad/s], world axes; UsageError without any."""
+
+    @property
     def residual(self) -> Any:
         """Structured rows: step, sweep, residual [m/s]; LavenderError as for contacts."""
 

@@ -28,7 +28,8 @@ class Section(NamedTuple):
     clock: Clock
     absent: Mapping[str, str]
     before: int = 0  # states of the log before it; of its own the first is the last of these
-    residual: Any = ()  # no measure of a single step needs sweeps
+    residual: Any = ()  # no measure of a single step needs sweeps, nor velocities
+    velocity: Any = ()
     status: str = "complete"
 
     def steps_in_parts(self) -> Iterator[Rows]:

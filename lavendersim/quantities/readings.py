@@ -10,6 +10,7 @@ from lavendersim.quantities.model import ConfigModel
 Readings = frozenset[str]  # keys of the section `record`
 CONTACTS: Final = frozenset({"contacts"})
 POSES: Final = frozenset({"poses"})
+VELOCITIES: Final = frozenset({"poses", "velocities"})  # those of the steps whose poses are
 SUMS: Final[Readings] = frozenset()  # what `/step` has, which every log has of every step
 EVERYTHING: Final = CONTACTS | POSES
 

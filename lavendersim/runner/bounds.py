@@ -24,6 +24,7 @@ from lavendersim.measures.step_checks import CheckedSteps, StepChecks
 from lavendersim.measures.step_passes import Passes
 from lavendersim.record_tables import joined
 from lavendersim.trace import Block
+from lavendersim.trace.layout import POSE
 
 from . import step_passes_kernel
 from .contact_sums_kernel import RunningSums
@@ -70,7 +71,7 @@ class Bounds:
             again = 1
             step = joined([self._last[0], step])
             pose = np.concatenate([self._last[1], pose])
-        part = Section(step, block.contact, pose, *self._cell)
+        part = Section(step, block.contact, pose[:, :, :POSE], *self._cell)
         self._last = step[-1:].copy(), pose[-1:].copy()
         checked = list(self._checks.over(part))
         first: tuple[int, CheckedSteps] | None = None

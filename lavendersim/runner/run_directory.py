@@ -212,7 +212,7 @@ class Run:
         return table
 
     def table(self, name: str) -> Table:
-        """Return `cells`, `verdicts`, or of all logs `step`, `pose` or `contact`, as a table.
+        """Return `cells`, `verdicts`, or of all logs `step`, `pose`, `velocity` or `contact`.
 
         Arrow, pandas, polars and DuckDB read it. UsageError for another name, or where there is
         none.

@@ -119,6 +119,7 @@ def facts_of(config: CellConfig, record: bool = True) -> Facts:
         sleeping=numerics.sleeping,
         events=bool(changes_of_bodies(config.events)),
         record=record,
+        velocities=config.record.velocities,
         residuals=config.record.residuals != "none",
         problems=config.record.problems != "none",
         timestep=float(config.clock.longest),

@@ -14,7 +14,8 @@ class Block(NamedTuple):
     """Many steps of a run, as numpy arrays; the columns are listed in `schema`.
 
     step: structured (n,). contact: structured, rows grouped by `step` ascending. pose: (n, bodies,
-    7), x y z [m] and qw qx qy qz. residual: structured `step`, `sweep`, `residual`; may be empty.
+    7), x y z [m] and qw qx qy qz; (n, bodies, 13) with vx vy vz [m/s] and wx wy wz [rad/s] behind
+    them, for a log of velocities. residual: structured `step`, `sweep`, `residual`; may be empty.
     """
 
     step: NDArray[Any]

@@ -132,6 +132,19 @@ def decode_poses(
     return _sequence(template, rows), words[:, :, [0, 1, 2, 6, 3, 4, 5]].astype(np.float64)
 
 
+def decode_velocities(
+    chunk: ChunkContent, template: Template, bodies: int
+) -> tuple[Rows, NDArray[np.float64]]:
+    """Return steps (n,) and velocities (n, bodies, 6) of a chunk; template: that of their topic."""
+    entries = chunk.messages[layout.CHANNELS["/velocities"]]
+    rows = _matching(template, chunk.data, entries["offset"])
+    shape = (len(rows), bodies, layout.VELOCITY)
+    if not bodies:
+        return _sequence(template, rows), np.empty(shape)
+    words = np.ascontiguousarray(template.take(rows, "velocity")).view("<f8").reshape(shape)
+    return _sequence(template, rows), words.astype(np.float64)
+
+
 @lru_cache(maxsize=8)
 def message_class(name: str, descriptors: bytes) -> Any:
     """Return the class of a protobuf message by its descriptors."""

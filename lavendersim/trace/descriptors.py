@@ -108,6 +108,27 @@ def transforms_schema() -> bytes:
     return _bundle(*_geometry(), one, many)
 
 
+def velocities_schema() -> bytes:
+    """Return the descriptor set of lavender.Velocities: a velocity and a spin of each body."""
+    file = _file(
+        "lavender/Velocities.proto",
+        "lavender",
+        ("google/protobuf/timestamp.proto", "foxglove/Vector3.proto"),
+    )
+    one = [
+        ("body", 1, Field.TYPE_STRING),
+        ("velocity", 2, Field.TYPE_MESSAGE, ".foxglove.Vector3"),
+        ("angular_velocity", 3, Field.TYPE_MESSAGE, ".foxglove.Vector3"),
+    ]
+    _message(file, "Velocity", one)
+    many = [
+        ("timestamp", 1, Field.TYPE_MESSAGE, ".google.protobuf.Timestamp"),
+        ("bodies", 2, Field.TYPE_MESSAGE, ".lavender.Velocity", "repeated"),
+    ]
+    _message(file, "Velocities", many)
+    return _bundle(*_geometry()[:2], file)
+
+
 def point_cloud_schema() -> bytes:
     """Return the descriptor set of foxglove.PointCloud."""
     pose = _foxglove("Pose", "Vector3", "Quaternion")

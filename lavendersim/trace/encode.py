@@ -2,7 +2,7 @@
 
     columns  | rows of contacts, for `/contact_columns`; a chunk makes one message of them
     points   | /contacts: head, point, point, ..              | next step ..
-    poses    | /tf                                            | next step ..
+    poses    | /tf [/velocities]                              | next step ..
     light    | /step /plot.. [/residuals: head, row, row, ..] | next step ..
 
 Of a block only sizes are counted as it comes in; a chunk keeps the rows of its steps as they stand
@@ -62,7 +62,7 @@ def encoders(
     return Streams(
         ContactColumns(contact) if touches else nothing,
         Points(bodies, contact) if touches else nothing,
-        Poses(bodies) if "/tf" in topics else nothing,
+        Poses(bodies, "/velocities" in topics) if "/tf" in topics else nothing,
         Light(step, residual, topics),
     )
 
@@ -96,7 +96,8 @@ def checked(
     """
     if (block.step.dtype, block.contact.dtype, block.residual.dtype) != columns:
         raise ValueError("a block has other columns than the first one")
-    if block.pose.shape != (len(block.step), bodies, layout.POSE):
+    width = layout.POSE + (layout.VELOCITY if "/velocities" in topics else 0)
+    if block.pose.shape != (len(block.step), bodies, width):
         raise ValueError(f"poses have shape {block.pose.shape}")
     for topic, rows in (("/contacts", block.contact), ("/residuals", block.residual)):
         if len(rows) and topic not in topics:

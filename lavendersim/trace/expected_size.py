@@ -52,6 +52,8 @@ def expected_size(
     numbers = content.step_columns * WORD * SHARE_OF_STEP
     if "/tf" in topics:
         numbers += content.moving * layout.POSE * WORD * SHARE_OF_POSE
+    if "/velocities" in topics:
+        numbers += content.moving * layout.VELOCITY * WORD * SHARE_OF_POSE
     if "/contacts" in topics:
         row = np.dtype(list(content.contact_columns))
         point = point_form(row).size + WORD * len(column_form(row).names)

@@ -22,6 +22,7 @@ from lavendersim.trace.schema import (
     CONTACT_COLUMNS,
     MULTI_ARRAY_DEFINITION,
     STRING_DEFINITION,
+    VELOCITY_MEANINGS,
     Column,
 )
 from lavendersim.trace.streams import Light
@@ -50,7 +51,12 @@ def form_of(
     if "/tf" in topics:
         form = descriptors.transforms_schema()
         schema = Schema(2, form, "protobuf", "foxglove.FrameTransforms")
-        poses = Registered.of([schema], [_channel("/tf", 2, "protobuf")])
+        schemas, channels = [schema], [_channel("/tf", 2, "protobuf")]
+        if "/velocities" in topics:
+            form = descriptors.velocities_schema()
+            schemas.append(Schema(8, form, "protobuf", "lavender.Velocities"))
+            channels.append(_channel("/velocities", 8, "protobuf", VELOCITY_MEANINGS))
+        poses = Registered.of(schemas, channels)
     if "/contacts" in topics:
         form = descriptors.point_cloud_schema()
         schema = Schema(3, form, "protobuf", "foxglove.PointCloud")

@@ -21,6 +21,7 @@ RECORD_HEADER = 9  # opcode and length
 MESSAGE_HEADER = 22  # channel, sequence, log time, publish time
 FIXED32 = 5  # protobuf wire type
 POSE = 7  # x y z qw qx qy qz
+VELOCITY = 6  # vx vy vz wx wy wz, behind a pose where they are logged
 
 # channel of every topic; fixed, so that chunks of equal runs are equal
 CHANNELS = {
@@ -33,6 +34,7 @@ CHANNELS = {
     "/plot/penetration": 7,
     "/plot/log10_residual": 8,
     "/contact_columns": 9,
+    "/velocities": 10,
 }
 
 
@@ -106,6 +108,21 @@ def _transforms_layout(bodies: tuple[str, ...]) -> Template:
         one.message(4, _doubles(3, "pose")).message(5, _doubles(4, "pose"))
         body.message(1, one)
     return record("/tf", body)
+
+
+def velocities_layout(bodies: Sequence[str]) -> Template:
+    """Return the layout of /velocities; slot `velocity` has vx vy vz wx wy wz of each in turn."""
+    return _velocities_layout(tuple(bodies))
+
+
+@lru_cache(maxsize=64)
+def _velocities_layout(bodies: tuple[str, ...]) -> Template:
+    body = Template().timestamp(1)
+    for name in bodies:
+        one = Template().string(1, name)
+        one.message(2, _doubles(3, "velocity")).message(3, _doubles(3, "velocity"))
+        body.message(2, one)
+    return record("/velocities", body)
 
 
 def residual_row_layout(columns: Sequence[Column]) -> Template:

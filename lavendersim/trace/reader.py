@@ -83,6 +83,8 @@ class Trace:
             self.clock = _clock(description["timestep"], description.get(TIMESTEP_CHANGES, "[]"))
             # topic -> why this log does without it; logs before there was a choice have them all
             self.absent = reasons_of(json.loads(description.get(ABSENT, "{}")))
+            if source.schema(layout.CHANNELS["/velocities"]) is None:  # nor in older logs
+                self.absent.setdefault("/velocities", "record.velocities is false")
             # topic -> of which steps alone it has it; those are in `recorded_pose` and so on
             partly = partly_recorded(self.metadata.get(RECORDED, {}))
             self.partly = {t: why for t, why in partly.items() if t not in self.absent}
@@ -176,6 +178,35 @@ class Trace:
             for chunk in self._chunks("/tf"):
                 yield decode.decode_poses(chunk, form, count)
 
+    @cached_property
+    def velocity(self) -> NDArray[np.float64]:
+        """Velocities (rows, bodies, 6): vx vy vz [m/s], wx wy wz [rad/s]; the same rows as `step`.
+
+        UsageError for a log without /velocities, or of some steps alone.
+        """
+        for topic in ("/velocities", "/tf"):
+            if topic in self.absent:
+                raise UsageError(self.why_not(topic))
+        with damage(self.path, "/velocities"):
+            parts = list(self.velocities_in_parts())
+            steps = np.concatenate([np.empty(0, np.int64), *(steps for steps, _ in parts)])
+            if not np.array_equal(steps, self.step["step"]):
+                raise ValueError("it has other steps than it should")
+            empty = np.empty((0, len(self.bodies), layout.VELOCITY))
+            return np.concatenate([empty, *(velocities for _, velocities in parts)])
+
+    def velocities_in_parts(self) -> Iterator[tuple[NDArray[np.int64], NDArray[np.float64]]]:
+        """Yield recorded velocities (rows, bodies, 6) with the numbers of their steps; keep none.
+
+        Of the steps whose poses are recorded.
+        """
+        if not self.has("/velocities"):
+            raise UsageError(self.why_not("/velocities"))
+        with damage(self.path, "/velocities"):
+            form, count = layout.velocities_layout(self.bodies), len(self.bodies)
+            for chunk in self._chunks("/velocities"):
+                yield decode.decode_velocities(chunk, form, count)
+
     def recorded_rows(self, topic: str) -> NDArray[np.intp]:
         """Return the rows of `step` of which the log has a topic, /tf or /contacts."""
         steps = self.step["step"]
@@ -258,7 +289,7 @@ class Trace:
                 yield decode.decode_contacts(chunk, fields, stride, frame)
 
     def table(self, name: str) -> Table:
-        """Return `step`, `pose` or `contact` as a table for Arrow, pandas, polars or DuckDB.
+        """Return `step`, `pose`, `velocity` or `contact` for Arrow, pandas, polars or DuckDB.
 
         UsageError for another name, and where the log has no such topic.
         """

@@ -4,6 +4,7 @@
 |---|---|---|---|
 | `/robot_description` | std_msgs/msg/String | ros2msg, cdr | run: the URDF of the scene |
 | `/tf` | foxglove.FrameTransforms | protobuf | recorded step: pose of every body, world frame |
+| `/velocities` | lavender.Velocities | protobuf | message of `/tf`, with `record.velocities` |
 | `/contacts` | foxglove.PointCloud | protobuf | recorded step: where contacts are, also none |
 | `/contact_columns` | lavender.ContactColumns | protobuf | recorded steps: CONTACT_COLUMNS |
 | `/step` | lavender.Step | protobuf | step: STEP_COLUMNS |
@@ -80,6 +81,11 @@ CONTACT_COLUMNS = {
     for effect in EFFECTS
     for column in effect.contact_columns
     if column.name != OF_THE_MESSAGE
+}
+
+VELOCITY_MEANINGS = {
+    "velocity": "of the centre of mass, world axes [m/s]",
+    "angular_velocity": "world axes, right-handed [rad/s]",
 }
 
 # topic -> the column of /step it draws

@@ -20,6 +20,7 @@ from lavendersim.trace.message_form import (
     STEP,
     TIME,
     WORD,
+    MessageForm,
     columns_of_words,
     heads_of,
     message_form,
@@ -137,16 +138,22 @@ class Light:
 
 
 class Poses:
-    """`/tf`: the poses of all bodies in a message."""
+    """`/tf`: the poses of all bodies in a message; and their velocities in one behind it."""
 
-    def __init__(self, bodies: Sequence[str]) -> None:
-        columns = [layout.POSE * body + k for body in range(len(bodies)) for k in TF_ORDER]
-        words = {"pose": columns} if bodies else {}
-        self._tf = message_form(layout.transforms_layout(bodies), words, {})
+    def __init__(self, bodies: Sequence[str], velocities: bool = False) -> None:
+        width = layout.POSE + (layout.VELOCITY if velocities else 0)
+        rows = [width * body for body in range(len(bodies))]
+        columns = [row + k for row in rows for k in TF_ORDER]
+        self._forms = {"/tf": _of_bodies(layout.transforms_layout(bodies), "pose", columns)}
+        if velocities:
+            columns = [row + layout.POSE + k for row in rows for k in range(layout.VELOCITY)]
+            form = layout.velocities_layout(bodies)
+            self._forms["/velocities"] = _of_bodies(form, "velocity", columns)
+        self._size = sum(map(len, self._forms.values()))
 
     def sizes(self, counted: Counted) -> Rows:
         """Return the bytes of each step [B] (n,)."""
-        sizes: Rows = counted.posed * len(self._tf)
+        sizes: Rows = counted.posed * self._size
         return sizes
 
     def part(self, counted: Counted, first: int, last: int) -> Any:
@@ -159,13 +166,19 @@ class Poses:
         """Return the bytes of a chunk and its index."""
         chunk = Chunk(prologue, size)
         for step, pose in parts:
-            starts = chunk.end + np.arange(len(step) + 1) * len(self._tf)
-            words = np.ascontiguousarray(pose, np.float64).view(np.uint64)
-            heads = heads_of(step)
-            self._tf.fill(chunk.data, starts[:-1], words.reshape(len(step), -1), heads)
-            chunk.note("/tf", heads, starts[:-1])
-            chunk.end = int(starts[-1])
+            words = np.ascontiguousarray(pose, np.float64).view(np.uint64).reshape(len(step), -1)
+            heads, starts = heads_of(step), chunk.end + np.arange(len(step)) * self._size
+            for topic, form in self._forms.items():
+                form.fill(chunk.data, starts, words, heads)
+                chunk.note(topic, heads, starts)
+                starts = starts + len(form)
+            chunk.end += len(step) * self._size
         return chunk.filled()
+
+
+def _of_bodies(template: Template, slot: str, columns: Sequence[int]) -> MessageForm:
+    """Return the form of a message of all bodies; a scene without any has no such slot."""
+    return message_form(template, {slot: columns} if columns else {}, {})
 
 
 class Before(NamedTuple):

@@ -1,12 +1,12 @@
-"""The tables of a log for other programs: `step`, `pose` and `contact`, read part by part.
+"""The tables of a log for other programs: `step`, `pose`, `velocity`, `contact`, part by part.
 
 Columns are those that the log has, with the meanings that the effects declare. Bodies of contacts
-and poses are words: their names. Poses have a row for every body.
+and poses are words: their names. Poses and velocities have a row for every body.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -20,12 +20,17 @@ from lavendersim.trace.schema import CONTACT_COLUMNS, STEP_COLUMNS
 if TYPE_CHECKING:
     from lavendersim.trace.reader import Trace
 
+Parts = Callable[[], Iterator[tuple[Any, Any]]]  # steps (n,), and numbers (n, bodies, k) of them
 BODIES: Final = ("body_a", "body_b")  # of a contact, by name
 _TIME: Final = Field("time", "f8", "simulation time", "s")
 _STEP: Final = Field("step", "i8", "index of the step; 0 is the initial state")
 _POSE: Final = {
     **{axis: f"centre of mass, world {axis} [m]" for axis in "xyz"},
     **{f"q{part}": f"orientation, {part} of the unit quaternion" for part in "wxyz"},
+}
+_VELOCITY: Final = {
+    **{f"v{axis}": f"velocity of the centre of mass, world {axis} [m/s]" for axis in "xyz"},
+    **{f"w{axis}": f"angular velocity, world {axis} [rad/s]" for axis in "xyz"},
 }
 
 
@@ -76,25 +81,37 @@ def _of_contact(name: str, kind: str, bodies: list[str]) -> Field:
 def _pose(trace: Trace) -> Table:
     if not trace.has("/tf"):
         raise UsageError(trace.why_not("/tf"))
+    return _of_bodies(trace, "pose", trace.poses_in_parts, _POSE)
+
+
+def _velocity(trace: Trace) -> Table:
+    if not trace.has("/velocities"):
+        raise UsageError(trace.why_not("/velocities"))
+    return _of_bodies(trace, "velocity", trace.velocities_in_parts, _VELOCITY)
+
+
+def _of_bodies(trace: Trace, name: str, parts: Parts, columns: Mapping[str, str]) -> Table:
+    """Return a table with a row for every body of each step; columns: their meanings."""
     body = Field("body", "word", "name of the body", words=tuple(trace.bodies))
-    fields = [_STEP, _TIME, body, *(described(name, "f8", text) for name, text in _POSE.items())]
+    fields = [_STEP, _TIME, body, *(described(column, "f8", columns[column]) for column in columns)]
 
     def batches() -> Iterator[Batch]:
-        for steps, pose in trace.poses_in_parts():
-            rows, count = pose.shape[:2]
-            numbers = pose.reshape(rows * count, -1)
+        for steps, numbers in parts():
+            rows, count = numbers.shape[:2]
+            by_row = numbers.reshape(rows * count, -1)
             yield {
                 "step": np.repeat(steps, count),
                 "time": np.repeat(seconds(trace.clock.nanoseconds(steps)), count),
                 "body": np.tile(np.arange(count), rows),
-                **{name: numbers[:, k] for k, name in enumerate(_POSE)},
+                **{column: by_row[:, k] for k, column in enumerate(columns)},
             }
 
-    return Table("pose", fields, batches)
+    return Table(name, fields, batches)
 
 
 TABLES: Final[dict[str, Callable[[Trace], Table]]] = {
     "step": _step,
     "pose": _pose,
+    "velocity": _velocity,
     "contact": _contact,
 }

@@ -118,6 +118,8 @@ class TraceWriter:
         if unknown := absent.keys() - layout.CHANNELS.keys():
             raise ValueError(f"no topics of a log: {sorted(unknown)}")
         self._topics = layout.CHANNELS.keys() - absent.keys()
+        if not config.record.velocities:  # whoever says nothing of absent topics has every other
+            self._topics -= {"/velocities"}
         self._path, self._config, self._as_written = Path(path), config, as_written
         self._bodies = config.scene.bodies
         self._clock = config.clock
@@ -208,7 +210,7 @@ class TraceWriter:
         columns = block.step.dtype, block.contact.dtype, block.residual.dtype
         self._form = form = form_of(tuple(self._bodies), columns, frozenset(self._topics))
         if "/robot_description" in self._topics:
-            self._describe_geometry(block.pose[0].astype(np.float64))
+            self._describe_geometry(block.pose[0, :, : layout.POSE].astype(np.float64))
         for registered in form.streams:
             self._container.register(registered)
         self._encoders = encoders_of_cell(form.encoders, self._config)

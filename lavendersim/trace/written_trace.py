@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lavendersim.record_tables import widen, widened
-from lavendersim.trace import decode
+from lavendersim.trace import decode, layout
 from lavendersim.trace.blocks import Block
 from lavendersim.trace.contact_columns import column_form
 from lavendersim.trace.reader import RecordedPoses, Trace
@@ -61,9 +61,22 @@ class WrittenTrace(Trace):
         """The poses of the steps of which the log has them. UsageError for a log without /tf."""
         if not self.has("/tf"):
             return super().recorded_pose
-        poses = np.concatenate([block.pose for block in self._blocks])
+        poses = np.concatenate([block.pose[:, :, : layout.POSE] for block in self._blocks])
         rows = self.recorded_rows("/tf")
         return RecordedPoses(rows, poses if len(rows) == len(poses) else poses[rows])
+
+    @cached_property
+    def velocity(self) -> NDArray[np.float64]:
+        """Velocities (rows, bodies, 6): vx vy vz [m/s], wx wy wz [rad/s]; the same rows as `step`.
+
+        UsageError for a log without /velocities, or of some steps alone.
+        """
+        if {"/velocities", "/tf"} & self.absent.keys():
+            return super().velocity
+        velocities: NDArray[np.float64] = np.concatenate(
+            [block.pose[:, :, layout.POSE :] for block in self._blocks]
+        )
+        return velocities
 
     @cached_property
     def recorded_contact(self) -> NDArray[Any]:

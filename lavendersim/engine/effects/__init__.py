@@ -58,6 +58,7 @@ NAMES: Final = (
     "sleeping",
     "step_log",
     "pose_log",
+    "velocity_log",
     "contact_log",
     "residual_log",
     "problem_log",

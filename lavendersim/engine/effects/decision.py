@@ -81,6 +81,7 @@ class Facts(NamedTuple):
     sleeping: bool = False
     events: bool = False  # something is changed during the run
     record: bool = True  # the run is logged
+    velocities: bool = False  # and velocities of bodies with it
     residuals: bool = False  # and the residual of every sweep, for some steps
     problems: bool = False  # contact problems of some steps are dumped
     timestep: float = 0.0  # [s]

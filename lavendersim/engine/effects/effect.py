@@ -131,6 +131,7 @@ class Hooks:
     add_spin: Maker | None = None  # (body, velocity, x, y, z, twice_spent): jump of spin
     update_sleeping: Maker | None = None  # at the end of a step, see `sleeping`
     log_pose: Maker | None = None  # (body, row)
+    log_velocity: Maker | None = None  # (v, row): behind the pose of its body
     log_step: Maker | None = None  # made with (spec, log_pose, kernels of step_row)
 
 

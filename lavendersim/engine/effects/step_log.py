@@ -23,11 +23,13 @@ def make(spec: Spec, log_pose, loggers):
     """
     from ..compile import chain
     from ..rotation import inertia_times
+    from . import made_once
 
     rotation, tolerance = spec.has("rotation"), spec.tolerance
     sleeps = spec.has("sleeping")
     speeds = 6 if rotation else 3  # vx vy vz, wx wy wz: the first words of a velocity record
     log_more = chain(loggers, spec)
+    logs_velocity, log_velocity = made_once(spec, "log_velocity")
 
     def hash_into(state_hash, words, count):
         # FNV-1a over 64-bit words; -0.0 counts as 0.0, because no result may depend on it.
@@ -47,6 +49,8 @@ def make(spec: Spec, log_pose, loggers):
         for i in range(pose.shape[0]):
             body, v = bodies[i], velocities[i]
             log_pose(body, pose[i])
+            if logs_velocity:
+                log_velocity(v, pose[i])
             inv_m = body.inv_m
             if sleeps:
                 if body.asleep == 1:

@@ -53,6 +53,10 @@ class Record(ConfigModel):
         default=ALL, description="of which steps: all, every N, or {from, to} [s]"
     )
     poses: Steps = Field(default=ALL, description="of which steps: all, every N, or {from, to} [s]")
+    velocities: bool = Field(
+        default=False,
+        description="true: velocities and spins of all bodies, of the steps whose poses are",
+    )
     residuals: Residuals = Field(default="none", description="[m/s] residual of every sweep")
     problems: EveryOrNone = Field(
         default=NONE,

@@ -13,7 +13,7 @@ from lavendersim.experiment.text.node import Node
 from lavendersim.experiment.text.place import Place
 from lavendersim.figures.specs.catalogue import KINDS as PANELS
 from lavendersim.measures.specs.catalogue import KINDS as MEASURES
-from lavendersim.quantities.readings import EVERYTHING, Reader, Readings
+from lavendersim.quantities.readings import EVERYTHING, VELOCITIES, Reader, Readings
 
 
 def not_recorded(root: Node, taken: Readings) -> str | None:
@@ -42,6 +42,10 @@ def _refuse(at: Place, node: Node, kinds: Mapping[str, type[Reader]]) -> None:
     if kind.text is None or kind.text not in kinds:
         return
     given = {key: value.text for key, value in node.entries.items()}
-    reason = not_recorded(at.root, kinds[kind.text].reads(given))
+    taken = kinds[kind.text].reads(given)
+    if taken >= VELOCITIES and not at.root.get("record", "velocities").is_true:
+        sentence = f"kind: {kind.text} takes velocities, and record.velocities is false"
+        at.refuse(kind.mark, f"{sentence}; expected true")
+    reason = not_recorded(at.root, taken)
     if reason is not None:
         at.refuse(kind.mark, f"kind: {kind.text} {reason}; expected all")

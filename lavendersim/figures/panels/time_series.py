@@ -10,7 +10,7 @@ import numpy as np
 from lavendersim.figures.drawing import draw_ideal
 from lavendersim.figures.registration import draws
 from lavendersim.figures.series import looks_of, series_of, within
-from lavendersim.figures.specs.time_series import OF_STEPS, POSITIONS, TimeSeries
+from lavendersim.figures.specs.time_series import OF_STEPS, POSITIONS, SPEEDS, TimeSeries
 from lavendersim.measures.closed_forms import evaluate_form
 from lavendersim.measures.columns import (
     clearance_by_step,
@@ -88,6 +88,11 @@ def quantity_of(panel: TimeSeries, trace: Trace) -> Floats:
         column = list(trace.bodies).index(panel.body)
         coordinates: Floats = trace.pose[:, column, POSITIONS.index(panel.column)]
         return coordinates
+    if panel.column in SPEEDS:
+        assert panel.body is not None
+        column = list(trace.bodies).index(panel.body)
+        speeds: Floats = trace.velocity[:, column, SPEEDS.index(panel.column)]
+        return speeds
     if panel.column == "clearance":
         assert panel.body is not None
         assert panel.above is not None

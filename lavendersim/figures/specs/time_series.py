@@ -10,7 +10,7 @@ from pydantic import Field, model_validator
 from lavendersim.figures.specs.base import Ideal, Number, Panel
 from lavendersim.quantities.names import BodyName, PlaneName
 from lavendersim.quantities.quantity import Quantity, sentence_error
-from lavendersim.quantities.readings import CONTACTS, POSES, SUMS, Readings
+from lavendersim.quantities.readings import CONTACTS, POSES, SUMS, VELOCITIES, Readings
 
 Column = Literal[
     "penetration",
@@ -26,10 +26,20 @@ Column = Literal[
     "position_x",
     "position_y",
     "position_z",
+    "velocity_x",
+    "velocity_y",
+    "velocity_z",
+    "angular_velocity_x",
+    "angular_velocity_y",
+    "angular_velocity_z",
     "kinetic_energy",
     "potential_energy",
 ]
 POSITIONS: Final = ("position_x", "position_y", "position_z")
+SPEEDS: Final = (
+    *("velocity_x", "velocity_y", "velocity_z"),
+    *("angular_velocity_x", "angular_velocity_y", "angular_velocity_z"),
+)
 OF_STEPS: Final = ("kinetic_energy", "potential_energy")
 
 
@@ -40,6 +50,7 @@ OF_COLUMNS: Final = {
     "drift": POSES,
     "overlap": POSES,
     **dict.fromkeys(POSITIONS, POSES),
+    **dict.fromkeys(SPEEDS, VELOCITIES),
 }
 
 
@@ -57,12 +68,13 @@ class TimeSeries(Panel):
         description="penetration [m], normal_force [N], clearance [m], energy [J], residual [m/s], "
         "drift [m] of any centre from its place at 0.5 s, overlap [m] of any two bodies, from "
         "poses, signorini [m/s], cone [N s], dissipation [J]: the worst contact's violation; "
-        "position_x, position_y, position_z [m] of a body's centre; kinetic_energy, "
+        "position_x, position_y, position_z [m] of a body's centre, velocity_x and so on [m/s], "
+        "angular_velocity_x and so on [rad/s], with `record: {velocities: true}`; kinetic_energy, "
         "potential_energy [J] of the scene"
     )
     body: BodyName | None = Field(
         default=None,
-        description="the body, for penetration, normal_force; of clearance, positions",
+        description="the body, for penetration, normal_force; of clearance, positions, velocities",
     )
     above: PlaneName | None = Field(default=None, description="the plane, for clearance")
     start: Literal["run", "first_contact"] = Field(
@@ -80,7 +92,7 @@ class TimeSeries(Panel):
 
     @model_validator(mode="after")
     def _of_a_body(self) -> Self:
-        if self.column in (*POSITIONS, "clearance") and self.body is None:
+        if self.column in (*POSITIONS, *SPEEDS, "clearance") and self.body is None:
             raise sentence_error(f"column {self.column} is of a body; expected key `body`")
         if self.column == "clearance" and self.above is None:
             raise sentence_error("column clearance is above a plane; expected key `above`")

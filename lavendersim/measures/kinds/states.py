@@ -39,6 +39,28 @@ def position(spec: specs.PositionAt, trace: Trace) -> Value:
     return _reduced(trace.pose[row, columns, :3] @ _unit(spec.along), spec.reduce)
 
 
+@measure(specs.VelocityAt)
+def velocity(spec: specs.VelocityAt, trace: Trace) -> Value:
+    """Return v . along [m/s] of each body; NaN when the run ends before the time."""
+    return _of_velocity(spec, trace, slice(0, 3))
+
+
+@measure(specs.AngularVelocityAt)
+def angular_velocity(spec: specs.AngularVelocityAt, trace: Trace) -> Value:
+    """Return omega . along [rad/s] of each body; NaN when the run ends before the time."""
+    return _of_velocity(spec, trace, slice(3, 6))
+
+
+def _of_velocity(
+    spec: specs.VelocityAt | specs.AngularVelocityAt, trace: Trace, part: slice
+) -> Value:
+    row = _row(trace, spec.time)
+    columns = body_columns(trace, spec.chosen)
+    if row is None:
+        return _reduced(np.full(len(columns), NAN), spec.reduce)
+    return _reduced(trace.velocity[row, columns, part] @ _unit(spec.along), spec.reduce)
+
+
 @measure(specs.FirstPassage)
 def first_passage(spec: specs.FirstPassage, trace: Trace) -> Value:
     """Return the time [s] of each body's first crossing, NaN without one."""

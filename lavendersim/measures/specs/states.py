@@ -9,7 +9,7 @@ from pydantic import Field, model_validator
 from lavendersim.measures.specs.base import Measure, Seconds
 from lavendersim.quantities.names import BodyName
 from lavendersim.quantities.quantity import Direction, Quantity, sentence_error
-from lavendersim.quantities.readings import POSES, SUMS
+from lavendersim.quantities.readings import POSES, SUMS, VELOCITIES
 
 Reduction = Literal["row", "max", "min", "mean", "sum", "count"]
 
@@ -50,6 +50,33 @@ class PositionAt(_OfBodies):
         default=None,
         description="[s] first state then or later; the end of the run when absent",
     )
+
+
+class _VelocityAt(_OfBodies):
+    READS = VELOCITIES
+    along: Direction = Field(description="direction, world frame; is normalised")
+    time: Seconds | None = Field(
+        default=None,
+        description="[s] first state then or later; the end of the run when absent",
+    )
+
+
+class VelocityAt(_VelocityAt):
+    """Component [m/s] of the velocity of the centre of mass along a direction, at a time.
+
+    As the step that ends then leaves it; takes `record: {velocities: true}`.
+    """
+
+    kind: Literal["velocity"]
+
+
+class AngularVelocityAt(_VelocityAt):
+    """Component [rad/s] of the angular velocity along a direction, at a time.
+
+    As the step that ends then leaves it; takes `record: {velocities: true}`.
+    """
+
+    kind: Literal["angular_velocity"]
 
 
 class FirstPassage(_OfBodies):

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from lavendersim.cell import CellConfig
 from lavendersim.trace import Block, TraceWriter
 from lavendersim.trace.contact_columns import DERIVED
 from lavendersim.trace.schema import CONTACT_COLUMNS, STEP_COLUMNS
@@ -165,9 +166,10 @@ def write(
     blocks: list[Block],
     status: str | None = "complete",
     absent: Mapping[str, str] | None = None,
+    config: CellConfig = CONFIG,
 ) -> Path:
     """Write blocks as a log; status None leaves it as a killed run would."""
-    writer = TraceWriter(path, CONFIG, AS_WRITTEN, METADATA, absent)
+    writer = TraceWriter(path, config, AS_WRITTEN, METADATA, absent)
     for block in blocks:
         writer.append(block)
     if status is None:

@@ -51,6 +51,19 @@ def test_components_of_several_bodies_are_a_row_or_one_number() -> None:
     assert found == {"max": 4, "min": -2, "mean": 1, "sum": 2, "count": 2}
 
 
+def test_components_of_velocity_and_spin_are_those_that_the_log_has() -> None:
+    """Of the body's own six numbers, along a direction of any length; not by differences."""
+    moving = log(FALL)
+    moving.velocity = np.arange(48.0).reshape(4, 2, 6)  # vx vy vz wx wy wz of two, in four states
+    fast, along = "velocity", (3, 0, 4)
+    speed = specs.VelocityAt(kind=fast, along=along, body="two", time=0.02)
+    assert evaluate(speed, moving) == pytest.approx(0.6 * 30 + 0.8 * 32, rel=1e-15)
+    spin = specs.AngularVelocityAt(kind="angular_velocity", along=along, reduce="max")
+    assert evaluate(spin, moving) == pytest.approx(0.6 * 45 + 0.8 * 47, rel=1e-15)
+    late = specs.VelocityAt(kind=fast, along=along, body="one", time=0.04)
+    assert math.isnan(evaluate(late, moving))
+
+
 def passage(level: float, **keys: Any) -> Any:
     spec = specs.FirstPassage(kind="first_passage", along=(0, 0, 1), level=level, **keys)
     return evaluate(spec, log([[1, 0], [-1, 3], [2, 4], [5, 1]]))
