@@ -21,7 +21,7 @@ def export(
         typer.Option(
             "--table",
             metavar="NAME,...",
-            help="Some of cells, verdicts, step, pose, velocity, contact; all there are by default.",
+            help="Of cells, verdicts, step, pose, velocity, contact; all there are by default.",
         ),
     ] = None,
     output: Annotated[
