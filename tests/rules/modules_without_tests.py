@@ -41,9 +41,6 @@ WITHOUT_A_TEST = {
     "cell": """
         record scene surface
     """,
-    "cell/shapes": """
-        box capsule cylinder hull shape sphere
-    """,
     "comparison": """
         compare pairing
     """,
@@ -92,9 +89,6 @@ WITHOUT_A_TEST = {
     "engine/solvers/packed": """
         lane_memory lanes layout packing
     """,
-    ".": """
-        errors
-    """,
     "experiment/checks": """
         annotations messages reading
     """,
@@ -125,13 +119,9 @@ WITHOUT_A_TEST = {
     "figures/specs": """
         time_series trajectory
     """,
-    "geometry": """
-        bodies minkowski_sums support vectors
-    """,
     "measures": """
-        always balance cell_judgements changes columns controls elliptic interfaces
-        meanings not_finite overhead_table penetration selection solids step_checks
-        sweep_judgements values
+        always balance cell_judgements changes columns controls interfaces meanings
+        overhead_table step_checks sweep_judgements values
     """,
     "measures/kinds": """
         arithmetic convergence energy own spinning
