@@ -35,11 +35,8 @@ DECLARATIONS = {
 
 # Folder: modules, without `.py`. A debt, to be made shorter: nothing is added here.
 WITHOUT_A_TEST = {
-    "arrow": """
-        fields
-    """,
     "cell": """
-        record scene surface
+        surface
     """,
     "comparison": """
         compare pairing
@@ -130,11 +127,7 @@ WITHOUT_A_TEST = {
         always arithmetic base expectation kinematics laws own selection states
     """,
     "problems": """
-        budget factorise friction_cone interior_point matrices newton_rounds read
-        scaled_problem search tokens
-    """,
-    "quantities": """
-        found kinds model names quantity readings units
+        interior_point newton_rounds read search tokens
     """,
     "replay": """
         blueprint layer removal shapes timeline viewer
@@ -147,7 +140,7 @@ WITHOUT_A_TEST = {
         starting_configs step_passes_kernel timed_engine unread_output verification
     """,
     "scene": """
-        build candidates colliders drive_tables facts laws pair_tables starts_read
+        build drive_tables pair_tables
     """,
     "trace": """
         blocks contact_rows container decode descriptors encode expected_size
