@@ -87,23 +87,23 @@ WITHOUT_A_TEST = {
         lane_memory lanes layout packing
     """,
     "experiment/checks": """
-        annotations messages reading
+        messages reading
     """,
     "experiment": """
         experiment own_measures
     """,
     "experiment/models": """
         always arrangements axis bodies claims cost events experiment overhead record
-        recorded scene shapes steps study surface_pairs tree
+        recorded scene shapes steps study surface_pairs
     """,
     "experiment/resolve": """
-        cell first_members named_shapes shape
+        cell shape
     """,
     "experiment/sweeps": """
         cost_grid paths starts
     """,
     "experiment/text": """
-        file node parse place report syntax
+        parse
     """,
     "figures": """
         html_page ideal notebook report report_matrix series solver_marks style
