@@ -133,11 +133,10 @@ WITHOUT_A_TEST = {
         blueprint layer removal shapes timeline viewer
     """,
     "runner": """
-        bounds cell cell_jobs cell_outcome compile_times configs contact_sums_kernel
-        cost cost_errors dask_cluster environment experiment_run export judge_again
-        listing log_tables measured merge overhead_pairs prediction remote remove_runs
-        result_tables results run_index run_lock run_seal run_tables seeds solver_matrix
-        starting_configs step_passes_kernel timed_engine unread_output verification
+        bounds cell cell_jobs compile_times contact_sums_kernel cost cost_errors
+        dask_cluster experiment_run export judge_again listing log_tables merge
+        overhead_pairs remote remove_runs result_tables results solver_matrix
+        step_passes_kernel timed_engine verification
     """,
     "scene": """
         build drive_tables pair_tables
