@@ -39,7 +39,7 @@ WITHOUT_A_TEST = {
         surface
     """,
     "comparison": """
-        compare pairing
+        compare
     """,
     "engine": """
         approach compile_options contact_problem coupling difference_kernel drives
@@ -106,8 +106,7 @@ WITHOUT_A_TEST = {
         parse
     """,
     "figures": """
-        html_page ideal notebook report report_matrix series solver_marks style
-        thumbnail
+        ideal report report_matrix thumbnail
     """,
     "figures/panels": """
         free_rotation heat_map measure_against_axis measure_by_name row_against_index
@@ -117,8 +116,8 @@ WITHOUT_A_TEST = {
         time_series trajectory
     """,
     "measures": """
-        always balance cell_judgements changes columns controls interfaces meanings
-        overhead_table step_checks sweep_judgements values
+        always balance cell_judgements changes columns controls interfaces step_checks
+        sweep_judgements
     """,
     "measures/kinds": """
         arithmetic convergence energy own spinning
@@ -130,7 +129,7 @@ WITHOUT_A_TEST = {
         interior_point newton_rounds read search tokens
     """,
     "replay": """
-        blueprint layer removal shapes timeline viewer
+        blueprint removal timeline viewer
     """,
     "runner": """
         bounds cell cell_jobs compile_times contact_sums_kernel cost cost_errors
@@ -142,8 +141,7 @@ WITHOUT_A_TEST = {
         build drive_tables pair_tables
     """,
     "trace": """
-        blocks contact_rows container decode descriptors encode expected_size
-        former_config forms groups index layout limits message_form opening points
-        positions reader rebuild scan schema streams walk whole written_trace
+        contact_rows container decode descriptors encode forms groups index layout
+        opening reader rebuild scan schema streams walk whole written_trace
     """,
 }
