@@ -35,9 +35,6 @@ DECLARATIONS = {
 
 # Folder: modules, without `.py`. A debt, to be made shorter: nothing is added here.
 WITHOUT_A_TEST = {
-    "cell": """
-        surface
-    """,
     "comparison": """
         compare
     """,
@@ -94,13 +91,13 @@ WITHOUT_A_TEST = {
     """,
     "experiment/models": """
         always arrangements axis bodies claims cost events experiment overhead record
-        recorded scene shapes steps study surface_pairs
+        recorded scene shapes steps study
     """,
     "experiment/resolve": """
         cell shape
     """,
     "experiment/sweeps": """
-        cost_grid paths starts
+        cost_grid
     """,
     "experiment/text": """
         parse
@@ -126,22 +123,21 @@ WITHOUT_A_TEST = {
         always arithmetic base expectation kinematics laws own selection states
     """,
     "problems": """
-        interior_point newton_rounds read search tokens
+        interior_point newton_rounds search
     """,
     "replay": """
-        blueprint removal timeline viewer
+        blueprint removal viewer
     """,
     "runner": """
-        bounds cell cell_jobs compile_times contact_sums_kernel cost cost_errors
-        dask_cluster experiment_run export judge_again listing log_tables merge
-        overhead_pairs remote remove_runs result_tables results solver_matrix
-        step_passes_kernel timed_engine verification
+        bounds cell compile_times contact_sums_kernel cost cost_errors dask_cluster
+        experiment_run export judge_again listing log_tables merge overhead_pairs remote
+        result_tables results solver_matrix step_passes_kernel timed_engine verification
     """,
     "scene": """
-        build drive_tables pair_tables
+        build drive_tables
     """,
     "trace": """
-        contact_rows container decode descriptors encode forms groups index layout
-        opening reader rebuild scan schema streams walk whole written_trace
+        contact_rows container decode descriptors encode forms groups index opening
+        reader rebuild scan streams walk written_trace
     """,
 }
