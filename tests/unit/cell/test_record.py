@@ -35,7 +35,7 @@ def test_what_is_no_number_of_steps_is_refused(value: object) -> None:
     assert "every N with a whole number of steps N of 1 or more" in refused(EveryOrAll, value)
 
 
-def test_a_number_alone_is_told_as_the_text() -> None:
+def test_a_number_alone_is_reported_as_the_text() -> None:
     assert refused(EveryOrNone, 4).endswith('; did you mean "every 4"?')
     assert refused(EveryOrNone, "all").endswith('; did you mean "every 1"?')
 

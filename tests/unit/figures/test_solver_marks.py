@@ -8,7 +8,7 @@ from lavendersim.figures.style import LOOKS
 SOLVERS = [f"solver_{k}" for k in range(len(LOOKS) + 2)]
 
 
-def test_a_solver_is_told_from_every_other() -> None:
+def test_a_solver_looks_like_no_other() -> None:
     looks = [marks(SOLVERS, name) for name in SOLVERS]
     seen = {(one["color"], one["marker"], str(one["linestyle"])) for one in looks}
     assert len(seen) == len(looks)

@@ -1,4 +1,4 @@
-"""Looks of series: told apart in colour and in grey, and a scale whose lightness rises."""
+"""Looks of series: distinguished in colour and in grey, and a scale whose lightness rises."""
 
 from __future__ import annotations
 

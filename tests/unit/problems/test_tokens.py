@@ -1,4 +1,4 @@
-"""Words and numbers of a problem file; what does not fit is told with its place."""
+"""Words and numbers of a problem file; what does not fit is reported with its place."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def test_whole_numbers_that_do_not_fit(tmp_path: Path, text: str, sentence: str)
 
 
 @pytest.mark.parametrize("place", ["-1", "0.5", "3e9"])
-def test_a_place_that_is_none_is_told_where_it_stands(tmp_path: Path, place: str) -> None:
+def test_a_place_that_is_none_is_reported_where_it_stands(tmp_path: Path, place: str) -> None:
     found = tokens(tmp_path, f"0 1 2.5\n0 {place} 1")
     with pytest.raises(ProblemError, match=r"a\.dat:2:3: expected entries, each place a whole"):
         found.entries(2, 2, "entries")

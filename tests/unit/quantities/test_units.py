@@ -22,13 +22,13 @@ WRITE = "; units are SI and not written, write "
         ("1e3 mg", "kg", "0.001"),
     ],
 )
-def test_a_number_with_its_unit_is_told_in_si(text: str, unit: str, number: str) -> None:
+def test_a_number_with_its_unit_is_reported_in_si(text: str, unit: str, number: str) -> None:
     assert advice(text, unit) == WRITE + number
 
 
 def test_turns_a_minute_are_two_pi_over_sixty() -> None:
-    told = float(advice("60 rpm", "rad/s").removeprefix(WRITE))
-    assert told == pytest.approx(2.0 * math.pi, rel=1e-14)  # 15 digits are told
+    reported = float(advice("60 rpm", "rad/s").removeprefix(WRITE))
+    assert reported == pytest.approx(2.0 * math.pi, rel=1e-14)  # 15 digits are reported
 
 
 def test_a_frequency_is_its_period_as_an_exact_ratio() -> None:

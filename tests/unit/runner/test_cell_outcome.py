@@ -40,7 +40,7 @@ def test_a_cell_of_which_nothing_was_measured_has_not_ended_here(tmp_path: Path)
 
 
 @pytest.mark.parametrize("line", ["{}", '{"file": "a", "measured": {}}', "[]", "no JSON"])
-def test_a_damaged_line_is_told(tmp_path: Path, line: str) -> None:
+def test_a_damaged_line_is_reported(tmp_path: Path, line: str) -> None:
     (tmp_path / ENDED).write_text(line + "\n")
     with pytest.raises(TraceError, match=r"ended\.jsonl: damaged"):
         ended_cells(tmp_path)

@@ -37,14 +37,14 @@ def test_what_is_named_twice_is_found_once(tmp_path: Path) -> None:
     assert find_configs([base]) == [base]  # who names it means it
 
 
-def test_an_empty_folder_and_a_name_of_nothing_are_told(tmp_path: Path) -> None:
+def test_an_empty_folder_and_a_name_of_nothing_are_reported(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match=r"no \*\.yaml file in this folder"):
         find_configs([tmp_path])
     with pytest.raises(UsageError, match="no such file or folder"):
         find_configs([tmp_path / "none.yaml"])
 
 
-def test_defects_of_all_files_are_told_at_once(tmp_path: Path) -> None:
+def test_defects_of_all_files_are_reported_at_once(tmp_path: Path) -> None:
     (tmp_path / "good.yaml").write_text(DROP)
     (tmp_path / "bad.yaml").write_text(DROP.replace("duration: 0.5", "duration: long"))
     (tmp_path / "worse.yaml").write_text(DROP.replace("mass: 1.0", "mass: -1"))

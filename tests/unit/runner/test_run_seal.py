@@ -29,7 +29,7 @@ def test_files_that_are_not_there_have_no_line(run: Path) -> None:
     assert read_sealed(run / "results.json") == b"[1]"
 
 
-def test_a_table_that_was_changed_or_is_missing_is_told(run: Path) -> None:
+def test_a_table_that_was_changed_or_is_missing_is_reported(run: Path) -> None:
     (run / "results.json").write_text("[2]")
     with pytest.raises(TraceError, match=r"results\.json: changed since the run wrote it"):
         read_sealed(run / "results.json")
@@ -45,7 +45,7 @@ def test_a_table_under_no_seal_is_read_as_it_is(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("line", ["cells.json", "0" * 63 + "  a", "0" * 64 + " a", "\xff"])
-def test_a_damaged_seal_is_told(tmp_path: Path, line: str) -> None:
+def test_a_damaged_seal_is_reported(tmp_path: Path, line: str) -> None:
     (tmp_path / DONE).write_text(line + "\n", encoding="latin-1")
     with pytest.raises(TraceError, match="a line of it has no digest"):
         sealed(tmp_path)

@@ -23,7 +23,7 @@ def test_each_is_a_config_with_its_question_and_its_own_name_in_it(
     assert "mine.yaml" in path.read_text()
 
 
-def test_a_name_of_none_is_told_with_the_nearest() -> None:
+def test_a_name_of_none_is_reported_with_the_nearest() -> None:
     name = starts()[0].name
     assert start_named(name).name == name
     with pytest.raises(UsageError, match=f'did you mean "{name}"'):

@@ -26,7 +26,7 @@ def test_a_point_has_its_place_first_then_what_there_is_then_its_colour() -> Non
 
 
 def test_contacts_without_a_place_have_no_points() -> None:
-    with pytest.raises(TypeError, match=r"contacts lack the columns \['z'\]"):
+    with pytest.raises(TypeError, match=r"columns \['z'\]"):
         point_form(row("x", "y"))
 
 

@@ -1,4 +1,4 @@
-"""A closed log is as it was written to the byte: each byte changed, cut or exchanged is told."""
+"""A closed log is as it was written to the byte: no byte changes, is cut or exchanged unseen."""
 
 from __future__ import annotations
 
