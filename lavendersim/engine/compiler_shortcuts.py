@@ -6,6 +6,7 @@ keeps to itself.
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from copy import copy
@@ -95,6 +96,24 @@ def shortened() -> Iterator[None]:
         _warnings.catch_warnings = caught
         if scheme:
             scheme._markup = coloured
+
+
+_signatures: dict[tuple[Any, ...], inspect.Signature] = {}
+
+
+def with_signature(function: Any) -> Any:
+    """Return a function with its signature noted, for which numba asks twice of every kernel.
+
+    To find it is two thirds of what it takes to compose kernels. What a factory makes again, for
+    another spec, has the same code, and so the same names of arguments.
+    """
+    defaults = function.__defaults__, tuple((function.__kwdefaults__ or {}).items())
+    key = function.__code__, *defaults
+    found = _signatures.get(key)
+    if found is None:
+        found = _signatures[key] = inspect.signature(function)
+    function.__signature__ = found
+    return function
 
 
 _packers: dict[tuple[Any, tuple[Any, ...]], ArgPacker] = {}

@@ -18,7 +18,7 @@ from typing import Any
 
 from .approach import make_note_acceleration
 from .collide import narrow_phase
-from .compile import chain, composing, kernel
+from .compile import chain, composing, kernel, uncollected
 from .effects import BY_NAME, has_hook, made_by, made_once
 from .integrate import (
     keeps_motion,
@@ -272,7 +272,7 @@ def kernels_of(spec: Spec) -> dict[str, list[str]]:
 
     Module names are relative to the engine: `effects.friction`, `solvers.adaptive`, `step`.
     """
-    with composing() as composed:
+    with uncollected(), composing() as composed:
         make_advance(spec)
     engine = __name__.rpartition(".")[0] + "."
     kernels: dict[str, list[str]] = {}
@@ -284,7 +284,8 @@ def kernels_of(spec: Spec) -> dict[str, list[str]]:
 @cache
 def advance_for(spec: Spec) -> Any:
     """Return the kernel of `spec`, from this process, from disk, or composed anew."""
-    return cached(make_advance, spec)
+    with uncollected():
+        return cached(make_advance, spec)
 
 
 def is_compiled(spec: Spec) -> bool:

@@ -35,17 +35,8 @@ DECLARATIONS = {
 
 # Folder: modules, without `.py`. A debt, to be made shorter: nothing is added here.
 WITHOUT_A_TEST = {
-    "arrow": """
-        fields
-    """,
-    "cell": """
-        record scene surface
-    """,
-    "cell/shapes": """
-        box capsule cylinder hull shape sphere
-    """,
     "comparison": """
-        compare pairing
+        compare
     """,
     "engine": """
         approach compile_options contact_problem coupling difference_kernel drives
@@ -92,31 +83,27 @@ WITHOUT_A_TEST = {
     "engine/solvers/packed": """
         lane_memory lanes layout packing
     """,
-    ".": """
-        errors
-    """,
     "experiment/checks": """
-        annotations messages reading
+        messages reading
     """,
     "experiment": """
         experiment own_measures
     """,
     "experiment/models": """
         always arrangements axis bodies claims cost events experiment overhead record
-        recorded scene shapes steps study surface_pairs tree
+        recorded scene shapes steps study
     """,
     "experiment/resolve": """
-        cell first_members named_shapes shape
+        cell shape
     """,
     "experiment/sweeps": """
-        cost_grid paths starts
+        cost_grid
     """,
     "experiment/text": """
-        file node parse place report syntax
+        parse
     """,
     "figures": """
-        html_page ideal notebook report report_matrix series solver_marks style
-        thumbnail
+        ideal report report_matrix thumbnail
     """,
     "figures/panels": """
         free_rotation heat_map measure_against_axis measure_by_name row_against_index
@@ -125,13 +112,9 @@ WITHOUT_A_TEST = {
     "figures/specs": """
         time_series trajectory
     """,
-    "geometry": """
-        bodies minkowski_sums support vectors
-    """,
     "measures": """
-        always balance cell_judgements changes columns controls elliptic interfaces
-        meanings not_finite overhead_table penetration selection solids step_checks
-        sweep_judgements values
+        always balance cell_judgements changes columns controls interfaces step_checks
+        sweep_judgements
     """,
     "measures/kinds": """
         arithmetic convergence energy own spinning
@@ -140,28 +123,21 @@ WITHOUT_A_TEST = {
         always arithmetic base expectation kinematics laws own selection states
     """,
     "problems": """
-        budget factorise friction_cone interior_point matrices newton_rounds read
-        scaled_problem search tokens
-    """,
-    "quantities": """
-        found kinds model names quantity readings units
+        interior_point newton_rounds search
     """,
     "replay": """
-        blueprint layer removal shapes timeline viewer
+        blueprint removal viewer
     """,
     "runner": """
-        bounds cell cell_jobs cell_outcome compile_times configs contact_sums_kernel
-        cost cost_errors dask_cluster environment experiment_run export judge_again
-        listing log_tables measured merge overhead_pairs prediction remote remove_runs
-        result_tables results run_index run_lock run_seal run_tables seeds solver_matrix
-        starting_configs step_passes_kernel timed_engine unread_output verification
+        bounds cell compile_times contact_sums_kernel cost cost_errors dask_cluster
+        experiment_run export judge_again listing log_tables merge overhead_pairs remote
+        result_tables results solver_matrix step_passes_kernel timed_engine verification
     """,
     "scene": """
-        build candidates colliders drive_tables facts laws pair_tables starts_read
+        build drive_tables
     """,
     "trace": """
-        blocks contact_rows container decode descriptors encode expected_size
-        former_config forms groups index layout limits message_form opening points
-        positions reader rebuild scan schema streams walk whole written_trace
+        contact_rows container decode descriptors encode forms groups index opening
+        reader rebuild scan streams walk written_trace
     """,
 }

@@ -56,6 +56,12 @@ def test_a_subject_is_found_by_whole_words_in_the_same_package(
     assert subject_of(UNIT / test) == (PACKAGE / subject if subject else None)
 
 
+def test_every_file_of_tests_has_a_name_of_its_own() -> None:
+    """Pytest imports them by it: of two `test_solids.py` it refuses one, and nothing is run."""
+    names = [test.name for test in (ROOT / "tests").rglob("test_*.py")]
+    assert sorted({name for name in names if names.count(name) > 1}) == []
+
+
 def has_functions(module: Path) -> bool:
     """Return whether a module defines a function, a method or a lambda."""
     kinds = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)

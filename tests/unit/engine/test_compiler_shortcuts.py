@@ -1,5 +1,6 @@
 """What kernels are spared while they are compiled gives what numba's own code gives."""
 
+import inspect
 import warnings
 from types import FunctionType
 
@@ -68,3 +69,25 @@ def test_a_warning_while_types_are_found_is_given() -> None:
         with fixer.catch_warnings("kernel.py", 3):
             warnings.warn(NumbaWarning("slow"), stacklevel=1)
     assert [str(each.message) for each in given] == ["slow"]
+
+
+def _made(scale: float, more: float):
+    def kernel(rows, count, by=more, *, also=scale):
+        return rows[count] * scale * by * also
+
+    return kernel
+
+
+def test_signatures_are_those_that_inspect_finds_also_with_other_defaults() -> None:
+    for scale, more in ((1.0, 2.0), (3.0, 2.0), (1.0, 5.0)):
+        found = shortcuts.with_signature(_made(scale, more))
+        assert inspect.signature(found) == inspect.signature(_made(scale, more))
+        assert found([4.0], 0) == 4.0 * scale * more * scale
+    plain = shortcuts.with_signature(_loop)
+    assert list(inspect.signature(plain).parameters) == ["rows", "count", "pair"]
+
+
+def test_kernels_of_one_code_share_a_signature() -> None:
+    one, other = (shortcuts.with_signature(_made(1.0, 2.0)) for _ in range(2))
+    assert one.__signature__ is other.__signature__
+    assert one is not other

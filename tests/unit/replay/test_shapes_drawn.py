@@ -1,0 +1,33 @@
+"""The geometry of bodies as it is drawn: planes by their half space, all else in pieces."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from lavendersim.replay.shapes import shapes
+from tests.made_cells import ORIGIN, UPRIGHT, made_cell
+
+BALL = {"kind": "sphere", "radius": 0.25}
+PARTS = [
+    {"shape": BALL, "position": [0.0, 0.0, z], "orientation": UPRIGHT} for z in (-1.0, 0.0, 1.0)
+]
+CELL = made_cell(
+    {
+        "wall": {"shape": {"kind": "plane", "normal": [0.0, 1.0, 0.0], "offset": -2.0}},
+        "ball": {"shape": BALL},
+        "slab": {"shape": {"kind": "box", "size": [2.0, 2.0, 1.0]}, "fixed": True},
+        "beads": {"shape": {"kind": "compound", "parts": PARTS, "centre": ORIGIN, "axes": UPRIGHT}},
+    }
+)
+
+
+def test_bodies_in_their_order_with_what_is_drawn_of_them() -> None:
+    wall, ball, slab, beads = shapes(CELL)
+    assert [one.name for one in (wall, ball, slab, beads)] == list(CELL.scene.bodies)
+    assert (wall.kind, wall.pieces, wall.bounding_radius) == ("plane", (), 0.0)
+    assert np.asarray(wall.normal).tolist() == [0.0, 1.0, 0.0]
+    assert wall.offset == -2.0
+    assert (ball.kind, len(ball.pieces), ball.bounding_radius) == ("sphere", 1, 0.25)
+    assert [one.fixed for one in (wall, ball, slab, beads)] == [True, False, True, False]
+    assert len(beads.pieces) == 3
+    assert beads.bounding_radius == 1.25

@@ -1,0 +1,68 @@
+"""What a run will take, by its steps and cells; which runs are not worth a word."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from lavendersim.experiment import Experiment, load_experiment_text
+from lavendersim.runner.log_size import LogSpace
+from lavendersim.runner.prediction import (
+    LONGEST,
+    PER_CELL,
+    PER_STEP,
+    WORTH_SAYING,
+    Prediction,
+    is_short,
+    predicted,
+    predicted_together,
+)
+from tests.drop_config import DROP
+
+
+def drop(duration: str, cells: int = 1) -> Experiment:
+    """Return drops of a ball."""
+    values = ", ".join(str(0.01 * (k + 1)) for k in range(cells))
+    sweep = f"sweep: {{e: {{path: scene.bodies.ball.surface.restitution, values: [{values}]}}}}\n"
+    text = DROP.replace("duration: 0.5", f"duration: {duration}")
+    return load_experiment_text(text + (sweep if cells > 1 else ""), "drop.yaml")
+
+
+def test_a_drop_is_short_and_an_hour_of_it_is_not(tmp_path: Path) -> None:
+    assert is_short(drop("0.5"), tmp_path)
+    assert not is_short(drop("200000"), tmp_path)
+
+
+def test_twice_the_cells_are_twice_the_steps_and_the_time(tmp_path: Path) -> None:
+    one, two = predicted(drop("1", 2), tmp_path), predicted(drop("1", 4), tmp_path)
+    assert (one.cells, two.cells) == (2, 4)
+    assert two.steps == 2 * one.steps
+    assert two.seconds == pytest.approx(2.0 * one.seconds, rel=1e-12)
+    assert one.seconds >= one.steps * PER_STEP + 2 * PER_CELL
+
+
+def test_processes_share_cells_and_no_more_than_there_are(tmp_path: Path) -> None:
+    experiment = drop("1", 4)
+    alone = predicted(experiment, tmp_path).seconds
+    assert predicted(experiment, tmp_path, jobs=2).seconds == pytest.approx(alone / 2, rel=1e-12)
+    assert predicted(experiment, tmp_path, jobs=9).seconds == pytest.approx(alone / 4, rel=1e-12)
+
+
+def test_runs_one_after_the_other_take_their_sum(tmp_path: Path) -> None:
+    assert predicted_together([drop("0.5")], tmp_path) is None
+    runs = [drop("200000"), drop("0.5")]
+    whole = predicted_together(runs, tmp_path)
+    assert whole is not None
+    each = [predicted(one, tmp_path) for one in runs]
+    assert whole.steps == sum(one.steps for one in each)
+    assert whole.seconds == pytest.approx(sum(one.seconds for one in each), rel=1e-12)
+    assert whole.name == runs[0].name
+
+
+def test_an_hour_is_asked_about_and_a_minute_worth_saying() -> None:
+    space = LogSpace(None, 1)
+    small = Prediction("a", 1, 1, WORTH_SAYING, space)
+    assert not small.is_worth_saying
+    assert not small._replace(seconds=LONGEST).is_long
+    assert small._replace(seconds=LONGEST + 1.0).is_long
