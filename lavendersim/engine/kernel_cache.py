@@ -24,6 +24,7 @@ from .compile_lock import CompileLock
 from .compile_options import build
 from .identity import UnidentifiableError, identity
 from .kernel_parts import STORE, key_of
+from .separate_code import load
 from .spec import Spec
 
 
@@ -88,7 +89,9 @@ class KernelCache:
         # Numba's own cache readies the context to compile before it loads, a quarter of a second
         # that machine code does not need; of all that, arrays passed from Python need this.
         rtsys.initialize(target_context)
-        return CompileResult._rebuild(target_context, *pickle.loads(payload))
+        separate, kernel = pickle.loads(payload)
+        load(separate, target_context.codegen())
+        return CompileResult._rebuild(target_context, *kernel)
 
     def compiled(self) -> Compiled | None:
         """Return what the kernel used last took to compile; None where none is kept."""
@@ -101,7 +104,8 @@ class KernelCache:
         STORE.begin(anew=False)
         if self.cache_path.name and self.used:
             # Reading a pickle ends where it ends: what follows it is not in the way.
-            payload = dumps(result._reduce()) + _COMPILED.pack(*took)
+            kernel = result.library.separate, result._reduce()
+            payload = dumps(kernel) + _COMPILED.pack(*took)
             kernel_store.write(self.path(self.used), payload)
             kernel_store.make_room()
         self._lock.release()
