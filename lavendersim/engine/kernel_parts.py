@@ -38,6 +38,7 @@ class KernelPart:
         called: tuple[KernelPart, ...],
         key: str,
         raises: bool,
+        *,
         separate: bool = False,
     ) -> None:
         self.symbol, self.returns, self.bitcode, self.called = symbol, returns, bitcode, called
@@ -171,7 +172,7 @@ class PartStore:
                 return None
             called.append(part)
         code = zlib.decompress(bitcode)
-        whole = KernelPart(symbol, returns, code, tuple(called), key, raises, separate)
+        whole = KernelPart(symbol, returns, code, tuple(called), key, raises, separate=separate)
         self._parts[key] = whole
         return whole
 

@@ -101,7 +101,7 @@ class PartCode(_Linking):
                 function.linkage = Linkage.internal
         bitcode = module.as_bitcode()
         called = tuple(self.parts)
-        return KernelPart(symbol, returns, bitcode, called, key, self.raises, separate)
+        return KernelPart(symbol, returns, bitcode, called, key, self.raises, separate=separate)
 
 
 class KernelObject(_Linking):

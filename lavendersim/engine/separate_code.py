@@ -127,7 +127,7 @@ def _compiled(part: KernelPart, codegen: Any) -> SeparateCode:
 
 
 def _separate(part: KernelPart, codegen: Any) -> SeparateCode:
-    found = STORE.code(part)
+    found: SeparateCode | None = STORE.code(part)
     if found is None:
         found = _compiled(part, codegen)
         STORE.keep_code(part, found)
