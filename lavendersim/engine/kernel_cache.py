@@ -24,7 +24,6 @@ from .compile_lock import CompileLock
 from .compile_options import build
 from .identity import UnidentifiableError, identity
 from .kernel_parts import STORE, key_of
-from .separate_code import load
 from .spec import Spec
 
 
@@ -86,6 +85,8 @@ class KernelCache:
             return None
         self._lock.release()
         self.hits += 1
+        from .separate_code import load  # late: nothing is kept where parts are not compiled
+
         # Numba's own cache readies the context to compile before it loads, a quarter of a second
         # that machine code does not need; of all that, arrays passed from Python need this.
         rtsys.initialize(target_context)
