@@ -79,16 +79,16 @@ class SeparateCode(NamedTuple):
         thirty: what is called inside of a module LLVM hands over no others, and so does this.
         """
         values = [f"{kind} %a{place}" for place, kind in enumerate(self.types)]
-        taken = ", ".join(values[place] for place in self.read)
+        handed = ", ".join(values[place] for place in self.read)
         if inward:
             given = [
                 value if place in self.read else f"{kind} poison"
                 for place, (kind, value) in enumerate(zip(self.types, values, strict=True))
             ]
-            outer, inner = (taken, f"{symbol}{ENTRY}"), (", ".join(given), symbol)
+            outer, inner = (handed, f"{symbol}{ENTRY}"), (", ".join(given), symbol)
             types = self.types
         else:
-            outer, inner = (", ".join(values), symbol), (taken, f"{symbol}{ENTRY}")
+            outer, inner = (", ".join(values), symbol), (handed, f"{symbol}{ENTRY}")
             types = tuple(self.types[place] for place in self.read)
         return (
             f'declare i32 @"{inner[1]}"({", ".join(types)})\n'
