@@ -20,5 +20,6 @@ def parts_of(folder: Path, other: Path) -> None:
     In it every kernel is compiled, in half of the time that an empty folder takes.
     """
     other.mkdir()
-    for part in folder.glob("*.part"):
-        shutil.copy(part, other)
+    for file in folder.iterdir():
+        if file.suffix in (".part", ".object"):
+            shutil.copy(file, other)

@@ -70,6 +70,20 @@ def compiling() -> Iterator[None]:
         yield
 
 
+# Steps of spheres take a tenth of a microsecond, and their kernels little time to compile.
+ROUND = frozenset({"sphere_plane", "sphere_sphere"})
+
+
+def separate(kernel: Any, spec: Spec) -> Any:
+    """Return a kernel that is optimised with what it calls and without its callers.
+
+    For what is large, is called a few times a step and is the same in many plans (`separate_code`).
+    """
+    if Kernel is not None and not ROUND.issuperset(spec.shape_pairs):
+        kernel.separate = True
+    return kernel
+
+
 # Lists that want to know what is composed: (module, name of the kernel).
 _listeners: list[list[tuple[str, str]]] = []
 

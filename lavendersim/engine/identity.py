@@ -51,15 +51,20 @@ def identity(kernel: Any) -> Identity:
     """Return the identity of a kernel; raises UnidentifiableError where it calls what has none."""
     known = _identities.get(kernel)
     if known is None:
-        known = _identities[kernel] = _identity_of(kernel.py_func)
+        known = _identities[kernel] = _identity_of(kernel.py_func, is_separate(kernel))
     return known
 
 
-def _identity_of(function: Any) -> Identity:
+def is_separate(kernel: Any) -> bool:
+    """Whether a kernel is optimised without its callers."""
+    return bool(getattr(kernel, "separate", False))
+
+
+def _identity_of(function: Any, separate: bool) -> Identity:
     code = function.__code__
     digest, names, stores = _of_code(code)
     named = f"{function.__module__}.{function.__qualname__}"  # symbols carry it
-    parts = [named, digest, _of_value(function.__defaults__)]
+    parts = [named, digest, _of_value(function.__defaults__), f"separate {separate}"]
     values = {
         name: cell.cell_contents
         for name, cell in zip(code.co_freevars, function.__closure__ or (), strict=True)

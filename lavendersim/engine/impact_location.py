@@ -25,7 +25,7 @@ from .approach import (
 from .collide.manifold.point import manifold_normal
 from .collide.narrow_phase import make_manifold
 from .collide.records import put_normal
-from .compile import kernel
+from .compile import kernel, separate
 from .effects import made_once
 from .integrate import make_turn
 from .records import INSTANT, TOUCHING
@@ -178,4 +178,4 @@ def make_locate(spec: Spec) -> Any:
         bodies[i], bodies[j] = kept[PART_A], kept[PART_B]
         return max(when, SOONEST)
 
-    return kernel(locate, spec)
+    return separate(kernel(locate, spec), spec)

@@ -85,10 +85,14 @@ class KernelCache:
             return None
         self._lock.release()
         self.hits += 1
+        from .separate_code import load  # late: nothing is kept where parts are not compiled
+
         # Numba's own cache readies the context to compile before it loads, a quarter of a second
         # that machine code does not need; of all that, arrays passed from Python need this.
         rtsys.initialize(target_context)
-        return CompileResult._rebuild(target_context, *pickle.loads(payload))
+        separate, kernel = pickle.loads(payload)
+        load(separate, target_context.codegen())
+        return CompileResult._rebuild(target_context, *kernel)
 
     def compiled(self) -> Compiled | None:
         """Return what the kernel used last took to compile; None where none is kept."""
@@ -101,7 +105,8 @@ class KernelCache:
         STORE.begin(anew=False)
         if self.cache_path.name and self.used:
             # Reading a pickle ends where it ends: what follows it is not in the way.
-            payload = dumps(result._reduce()) + _COMPILED.pack(*took)
+            kernel = result.library.separate, result._reduce()
+            payload = dumps(kernel) + _COMPILED.pack(*took)
             kernel_store.write(self.path(self.used), payload)
             kernel_store.make_room()
         self._lock.release()

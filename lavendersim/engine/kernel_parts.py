@@ -13,7 +13,7 @@ import hashlib
 import itertools
 import pickle
 import zlib
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +23,7 @@ from . import kernel_store
 from .compile_options import build
 from .identity import UnidentifiableError, identity, is_plain, seen_of
 
+PART, OBJECT = ".part", ".object"
 _unnamed = itertools.count()
 
 
@@ -37,10 +38,14 @@ class KernelPart:
         called: tuple[KernelPart, ...],
         key: str,
         raises: bool,
+        *,
+        separate: bool = False,
     ) -> None:
         self.symbol, self.returns, self.bitcode, self.called = symbol, returns, bitcode, called
         self.key = key  # names the file it is kept in; empty where it has none
         self.raises = raises  # whether it may return with an exception
+        # Whether it is optimised without its callers; none whose code cannot be kept is.
+        self.separate = separate and bool(key) and is_plain(returns)
         self._reload_init: set[Any] = set()
 
     def _ensure_finalized(self) -> None:
@@ -58,10 +63,13 @@ class KernelPart:
         return module
 
 
-def with_called(parts: Iterable[KernelPart]) -> Iterator[KernelPart]:
+def with_called(
+    parts: Iterable[KernelPart], through: Callable[[KernelPart], bool] = lambda part: True
+) -> Iterator[KernelPart]:
     """Yield parts and all that they call, each once, in an order that follows from their code.
 
-    One symbol is one code, however often it was compiled.
+    through: whether what a part calls is yielded for it. One symbol is one code, however often it
+    was compiled.
     """
     seen: set[str] = set()
     waiting = list(parts)[::-1]
@@ -70,7 +78,18 @@ def with_called(parts: Iterable[KernelPart]) -> Iterator[KernelPart]:
         if part.symbol not in seen:
             seen.add(part.symbol)
             yield part
-            waiting += part.called[::-1]
+            if through(part):
+                waiting += part.called[::-1]
+
+
+def merged_into(parts: Iterable[KernelPart]) -> Iterator[KernelPart]:
+    """Yield of `with_called` what a caller is optimised with, and the separate parts it calls."""
+    yield from with_called(parts, lambda part: not part.separate)
+
+
+def separate_in(parts: Iterable[KernelPart]) -> Iterator[KernelPart]:
+    """Yield of `with_called` the separate parts."""
+    yield from (part for part in with_called(parts) if part.separate)
 
 
 def key_of(kernel: Any, arguments: tuple[Any, ...]) -> str:
@@ -89,12 +108,15 @@ class PartStore:
     def __init__(self) -> None:
         self._parts: dict[str, KernelPart] = {}
         self._new: set[str] = set()  # compiled since `begin`
+        self._codes: dict[str, Any] = {}  # object code of separate parts
+        self._new_codes: set[str] = set()
         self._anew = False
         self.alone = True  # whether no part was found since `begin` that was there before
 
     def begin(self, anew: bool) -> None:
         """Begin a kernel; with `anew` what is there is not used but compiled again."""
         self._new, self._anew, self.alone = set(), anew, True
+        self._new_codes = set()
 
     def find(self, key: str) -> KernelPart | None:
         """Return the part of a key, from this process or from disk."""
@@ -115,22 +137,42 @@ class PartStore:
         if kernel_store.directory()[0].name:
             keys = tuple(called.key for called in part.called)
             code = zlib.compress(part.bitcode, 1)
-            stored = part.symbol, part.returns, code, keys, part.raises
+            stored = part.symbol, part.returns, code, keys, part.raises, part.separate
             kernel_store.write(_path(part.key), pickle.dumps(stored))
+
+    def code(self, part: KernelPart) -> Any:
+        """Return the object code of a separate part, from this process or from disk, or None."""
+        key = part.key
+        if key in self._codes and (key in self._new_codes or not self._anew):
+            return self._codes[key]
+        kept = kernel_store.directory()[0].name and not self._anew
+        payload = kernel_store.read(_path(key, OBJECT)) if kept else None
+        if payload is None:
+            return None
+        self._codes[key] = pickle.loads(payload)
+        return self._codes[key]
+
+    def keep_code(self, part: KernelPart, code: Any) -> None:
+        """Remember the object code of a separate part, here and on disk."""
+        self._codes[part.key] = code
+        self._new_codes.add(part.key)
+        if kernel_store.directory()[0].name:
+            kernel_store.write(_path(part.key, OBJECT), pickle.dumps(code))
 
     def _load(self, key: str) -> KernelPart | None:
         """Return a part from disk with all that it calls; None where any of it is missing."""
         payload = kernel_store.read(_path(key)) if kernel_store.directory()[0].name else None
         if payload is None:
             return None
-        symbol, returns, bitcode, keys, raises = pickle.loads(payload)
+        symbol, returns, bitcode, keys, raises, separate = pickle.loads(payload)
         called = []
         for name in keys:
             part = self._parts.get(name) or self._load(name)
             if part is None:
                 return None
             called.append(part)
-        whole = KernelPart(symbol, returns, zlib.decompress(bitcode), tuple(called), key, raises)
+        code = zlib.decompress(bitcode)
+        whole = KernelPart(symbol, returns, code, tuple(called), key, raises, separate=separate)
         self._parts[key] = whole
         return whole
 
@@ -138,8 +180,8 @@ class PartStore:
 STORE = PartStore()
 
 
-def _path(key: str) -> Path:
-    return kernel_store.directory()[0] / f"{build()}-{key}.part"
+def _path(key: str, kind: str = PART) -> Path:
+    return kernel_store.directory()[0] / f"{build()}-{key}{kind}"
 
 
 def symbol_of(function: Any, key: str) -> str:

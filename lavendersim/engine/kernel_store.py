@@ -20,7 +20,7 @@ from .compile_options import build
 
 DIRECTORY_VARIABLE = "LAVENDER_CACHE_DIR"
 LIMIT = 400_000_000  # [byte] of all that is kept
-SUFFIXES = (".kernel", ".part")
+SUFFIXES = (".kernel", ".part", ".object")
 ANEW = "kernels are compiled anew in every process"
 
 

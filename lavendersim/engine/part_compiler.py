@@ -17,7 +17,6 @@ from llvmlite.binding import (
     create_new_function_pass_manager,
     llvm_version_info,
     parse_assembly,
-    parse_bitcode,
 )
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler, DefaultPassBuilder
@@ -33,7 +32,8 @@ from numba.core.typing.templates import make_concrete_template, signature
 
 from .compiler_shortcuts import packer_of, quick, shortened
 from .kernel_lowering import KernelLowering
-from .kernel_parts import STORE, KernelPart, key_of, symbol_of, with_called
+from .kernel_parts import STORE, KernelPart, key_of, symbol_of
+from .separate_code import merge, optimise, separate_code
 
 if llvm_version_info < (17, 0, 0):
     raise ImportError("pointers have types: a part serves one layout of records only")
@@ -90,7 +90,7 @@ class PartCode(_Linking):
                 passes.run(function, builder)
         self._final_module = module
 
-    def part(self, symbol: str, returns: Any, key: str) -> KernelPart:
+    def part(self, symbol: str, returns: Any, key: str, separate: bool) -> KernelPart:
         """Return the part; of its symbols other code sees only its own."""
         module = self._final_module
         for library in self._linking_libraries:  # of numba's own functions
@@ -100,32 +100,22 @@ class PartCode(_Linking):
             if not function.is_declaration and function.name != symbol:
                 function.linkage = Linkage.internal
         bitcode = module.as_bitcode()
-        return KernelPart(symbol, returns, bitcode, tuple(self.parts), key, self.raises)
+        called = tuple(self.parts)
+        return KernelPart(symbol, returns, bitcode, called, key, self.raises, separate=separate)
 
 
 class KernelObject(_Linking):
     """Code of a kernel that Python calls, with all its parts."""
 
     def finalize(self) -> None:
-        """Link every part, directly called or not, once."""
-        self._symbols = set()
-        for part in with_called(self.parts):
-            self._symbols.add(part.symbol)
-            self._final_module.link_in(parse_bitcode(part.bitcode))
+        """Link every part, directly called or not, once; call separate ones where they are."""
+        self.separate = separate_code(self.parts, self._codegen)
+        self._symbols = merge(self._final_module, self.parts, self._codegen)
         super().finalize()
 
     def _optimize_final_module(self) -> None:
-        """Optimise once: parts are called from here alone, so what is called once is merged whole.
-
-        Numba would do it twice, so that counts of references meet in one function. Kernels count
-        none, and are as fast after the first time.
-        """
-        for function in self._final_module.functions:
-            merged = function.name in self._symbols or function.linkage == Linkage.linkonce_odr
-            if merged and not function.is_declaration:
-                function.linkage = Linkage.internal
-        passes, builder = self._codegen._module_pass_manager()
-        passes.run(self._final_module, builder)
+        """Optimise once."""
+        optimise(self._final_module, self._symbols, self._codegen)
 
 
 def _prepare(state: Any, function: Any, symbol: str) -> None:
@@ -270,6 +260,7 @@ class Kernel(CPUDispatcher):
     def __init__(self, *arguments: Any, **named: Any) -> None:
         super().__init__(*arguments, **named)
         self.linked: dict[tuple[Any, ...], Linked] = {}  # by the types of the arguments
+        self.separate = False  # whether it is optimised without its callers (`separate_code`)
 
     def get_call_template(self, args: Any, kws: Any) -> Any:
         """Compile for a kernel that calls this one."""
@@ -304,7 +295,7 @@ class Kernel(CPUDispatcher):
         self._compiler.pipeline_class = partial(PartCompiler, self.py_func, symbol)
         result = self._compiler.compile(args, None)
         part: KernelPart = result.library.part(
-            result.fndesc.mangled_name, result.signature.return_type, key
+            result.fndesc.mangled_name, result.signature.return_type, key, self.separate
         )
         return part
 

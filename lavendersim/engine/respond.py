@@ -13,7 +13,7 @@ from __future__ import annotations
 from typing import Any
 
 from . import ordering
-from .compile import chain, kernel
+from .compile import chain, kernel, separate
 from .contact import make_append_contact, make_apply_start
 from .effects import made_by, made_once
 from .integrate import keeps_motion, make_classify
@@ -30,14 +30,14 @@ def make_solve(spec: Spec) -> Any:
     solve = SOLVERS[spec.solver].make(spec)
     chooses, choose_impulses = made_once(spec, "choose_impulses")
     if not chooses:
-        return solve
+        return separate(solve, spec)
 
     def solve_and_choose(system, workspace, params, counters, residual_rows):
         solve(system, workspace, params, counters, residual_rows)
         if counters.not_converged == 0 and system.count > 1:
             choose_impulses(system, workspace, params, counters)
 
-    return kernel(solve_and_choose, spec)
+    return separate(kernel(solve_and_choose, spec), spec)
 
 
 def make_respond(spec: Spec, log_contacts: Any) -> Any:
@@ -145,7 +145,7 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
             if midway:
                 stand_up(bodies, workspace.middle.poses)
 
-    return kernel(respond, spec)
+    return separate(kernel(respond, spec), spec)
 
 
 def make_pass_by(spec: Spec, log_contacts: Any) -> Any:

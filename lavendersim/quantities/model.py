@@ -17,7 +17,8 @@ class ConfigModel(BaseModel):
     learns which model reads it, and applies the model's rules there.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid", strict=True)
+    # Validators are made when first used: of a file's many possible models few are.
+    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, defer_build=True)
 
     # Keys that people write here and that stand elsewhere: what to write, for the message.
     MISPLACED: ClassVar[Mapping[str, str]] = {}
@@ -41,7 +42,7 @@ class ConfigModel(BaseModel):
 class ResolvedModel(BaseModel):
     """A part of a resolved config."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", defer_build=True)
 
     @classmethod
     def of(cls, **values: Any) -> Self:

@@ -9,8 +9,9 @@ from __future__ import annotations
 
 import pickle
 import re
+from collections.abc import Iterator
 from hashlib import sha256
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from llvmlite.binding import ObjectFileRef
 
@@ -41,26 +42,35 @@ def _parts(symbol: str) -> list[str]:
     return parts
 
 
-def _object_code(engine: Engine) -> bytes:
+def _object_codes(engine: Engine) -> list[bytes]:
+    """Return the object code of the kernel, and that of its separate parts."""
     (compiled,) = engine._kernel.overloads.values()
     if compiled.library._compiled_object:
-        return bytes(compiled.library._compiled_object)
-    # Loaded: what was kept holds a checksum, then a library, as (name, kind, (code, bitcode)).
-    kept = engine._kernel._cache
-    (_, _, (code, _)), *_ = pickle.loads(kept.path(kept.used).read_bytes()[32:])
-    return bytes(code)
+        separate, code = compiled.library.separate, compiled.library._compiled_object
+    else:
+        # Loaded: what was kept holds a checksum, the separate parts, and then a library, as
+        # (name, kind, (code, bitcode)).
+        kept = engine._kernel._cache
+        payload = pickle.loads(kept.path(kept.used).read_bytes()[32:])
+        separate, ((_, _, (code, _)), *_) = payload
+    return [bytes(code), *separate.values()]
+
+
+def _sections(engine: Engine) -> Iterator[Any]:
+    for code in _object_codes(engine):
+        yield from ObjectFileRef.from_data(code).sections()
 
 
 def text_of(engine: Engine) -> str:
     """Return the sha256 of an engine's instructions; without the names of symbols."""
-    sections = ObjectFileRef.from_data(_object_code(engine)).sections()
-    return sha256(b"".join(part.data() for part in sections if part.is_text())).hexdigest()
+    texts = (part.data() for part in _sections(engine) if part.is_text())
+    return sha256(b"".join(texts)).hexdigest()
 
 
 def code_of(engine: Engine) -> Code:
     """Read the object code of an engine that has made a step."""
     kernels, size = set(), 0
-    for section in ObjectFileRef.from_data(_object_code(engine)).sections():
+    for section in _sections(engine):
         size += section.size() if section.is_text() else 0
         if section.name() == b".strtab":
             for symbol in re.findall(r"_ZN08NumbaEnv(\w+)", section.data().decode("latin-1")):

@@ -13,12 +13,13 @@ where it draws.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Final, Union
+from typing import TYPE_CHECKING, Final
 
 from pydantic import Field
 
 from lavendersim.figures import specs
 from lavendersim.figures.specs.base import Panel
+from lavendersim.quantities.chosen_kind import one_of
 from lavendersim.quantities.kinds import all_kinds
 from lavendersim.quantities.model import ConfigModel
 
@@ -28,7 +29,7 @@ KINDS: Final = all_kinds(Panel, specs, GROUP)
 if TYPE_CHECKING:
     PanelSpec = Panel
 else:
-    PanelSpec = Annotated[Union[tuple(KINDS.values())], Field(discriminator="kind")]  # noqa: UP007
+    PanelSpec = one_of(KINDS)
 
 
 class FigureSpec(ConfigModel):

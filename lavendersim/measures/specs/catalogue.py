@@ -12,12 +12,11 @@ The module has the model and the function of each of its kinds, see
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Final, Union
-
-from pydantic import Field
+from typing import TYPE_CHECKING, Final
 
 from lavendersim.measures import specs
 from lavendersim.measures.specs.base import Measure
+from lavendersim.quantities.chosen_kind import one_of
 from lavendersim.quantities.kinds import all_kinds
 
 GROUP: Final = "lavendersim.measures"
@@ -26,4 +25,4 @@ KINDS: Final = all_kinds(Measure, specs, GROUP)
 if TYPE_CHECKING:
     MeasureSpec = Measure
 else:
-    MeasureSpec = Annotated[Union[tuple(KINDS.values())], Field(discriminator="kind")]  # noqa: UP007
+    MeasureSpec = one_of(KINDS)

@@ -21,7 +21,7 @@ from typing import Any
 
 import numpy as np
 
-from ...compile import inner, kernel
+from ...compile import inner, kernel, separate
 from ...records import TOUCHING
 from ...vectors import Vec3, cross, divided, dot, minus, negative, plus_scaled
 from ..convex.gjk import APART, make_gjk
@@ -245,7 +245,7 @@ def make(spec):
                 return nearest_contact(a, found, manifold)
         return keep_four(manifold.points, count, manifold_normal(manifold))
 
-    return kernel(box_box, spec)
+    return separate(kernel(box_box, spec), spec)
 
 
 PAIR = ShapePair("box_box", ("box", "box"), make)

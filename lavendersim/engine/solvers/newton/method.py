@@ -19,7 +19,7 @@ from __future__ import annotations
 from math import inf, sqrt
 from typing import Any
 
-from ...compile import inner, kernel
+from ...compile import inner, kernel, separate
 from ...contact import make_apply_block
 from ...residual import make_residual
 from ...row_terms import row_terms
@@ -199,4 +199,4 @@ def make_newton(spec: Spec):
             restore_best(contacts, count, velocities)
         return steps, guess_holds
 
-    return kernel(newton, spec)
+    return separate(kernel(newton, spec), spec)

@@ -1,0 +1,149 @@
+"""Code of separate parts: optimised once, kept as objects, loaded beside the kernels that call it.
+
+    parts of a whole kernel      respond   refresh   [locate]   [solve]   turn ...
+    optimised with the kernel    respond   refresh                        turn ...
+    each by itself, with all     locate: turn ...
+    that it calls                solve: factorise ...
+
+LLVM's time goes with the code that it reads, and most of that is the same in many plans. What is
+large and called a few times a step loses nothing by a call: such a part is optimised with what it
+calls, without its callers, and plans that have it share the outcome. Whether a part is separate is
+said where it is composed (`compile.separate`), never by what happens to be kept: the same plan has
+the same code in a cache of any state.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from typing import Any, NamedTuple
+
+from llvmlite.binding import (
+    Linkage,
+    ObjectFileRef,
+    create_new_module_pass_manager,
+    parse_assembly,
+    parse_bitcode,
+)
+
+from .kernel_parts import STORE, KernelPart, merged_into, separate_in
+
+ENTRY = ".separate"  # behind a part's symbol: that of its object
+NAME = re.compile(r'%(?:[-\w.$]+|"[^"]*")')  # of a value in LLVM's text
+_loaded: set[str] = set()  # symbols of separate parts that this process can call
+
+
+def optimise(module: Any, parts: set[str], codegen: Any) -> None:
+    """Optimise a module once, with parts of these symbols in it.
+
+    Parts are called from here alone, so what is called once is merged whole. Numba would optimise
+    twice, so that counts of references meet in one function. Kernels count none, and are as fast
+    after the first time.
+    """
+    for function in module.functions:
+        merged = function.name in parts or function.linkage == Linkage.linkonce_odr
+        if merged and not function.is_declaration:
+            function.linkage = Linkage.internal
+    passes, builder = codegen._module_pass_manager()
+    passes.run(module, builder)
+
+
+def merge(module: Any, parts: Iterable[KernelPart], codegen: Any) -> set[str]:
+    """Link parts, directly called or not, once each into a module; return their symbols.
+
+    Of a separate part, which is called from elsewhere, only what calls it is linked.
+    """
+    symbols = set()
+    for part in merged_into(parts):
+        symbols.add(part.symbol)
+        if part.separate:
+            text = _separate(part, codegen).adapter(part.symbol, inward=False)
+            linked = parse_assembly(text)
+        else:
+            linked = parse_bitcode(part.bitcode)
+        module.link_in(linked)
+    return symbols
+
+
+class SeparateCode(NamedTuple):
+    """A separate part as an object, which is called by those of its arguments that it reads."""
+
+    types: tuple[str, ...]  # LLVM's, of all arguments
+    read: tuple[int, ...]  # places of those that the object takes
+    code: bytes
+
+    def adapter(self, symbol: str, inward: bool) -> str:
+        """Return the part's own function, which calls the object; inward: the other way round.
+
+        Of some three hundred arguments, numbers of all arrays of the engine, a part reads some
+        thirty: what is called inside of a module LLVM hands over no others, and so does this.
+        """
+        values = [f"{kind} %a{place}" for place, kind in enumerate(self.types)]
+        handed = ", ".join(values[place] for place in self.read)
+        if inward:
+            given = [
+                value if place in self.read else f"{kind} poison"
+                for place, (kind, value) in enumerate(zip(self.types, values, strict=True))
+            ]
+            outer, inner = (handed, f"{symbol}{ENTRY}"), (", ".join(given), symbol)
+            types = self.types
+        else:
+            outer, inner = (", ".join(values), symbol), (handed, f"{symbol}{ENTRY}")
+            types = tuple(self.types[place] for place in self.read)
+        return (
+            f'declare i32 @"{inner[1]}"({", ".join(types)})\n'
+            f'define i32 @"{outer[1]}"({outer[0]}) alwaysinline {{\n'
+            f'  %r = call i32 @"{inner[1]}"({inner[0]})\n  ret i32 %r\n}}\n'
+        )
+
+
+def _argument_names(function: Any) -> list[str]:
+    """Return the names of a function's arguments as its text has them."""
+    return [NAME.findall(str(argument))[-1] for argument in function.arguments]
+
+
+def _compiled(part: KernelPart, codegen: Any) -> SeparateCode:
+    """Return the code of a part with all that it calls, but for separate parts."""
+    module = parse_bitcode(part.bitcode)
+    module.name, module.data_layout = part.symbol, codegen._data_layout
+    optimise(module, merge(module, part.called, codegen) - {part.symbol}, codegen)
+    function = module.get_function(part.symbol)
+    names = _argument_names(function)
+    body = str(function).split("{", 1)[1]
+    found = set(NAME.findall(body))
+    types = tuple(str(argument.type) for argument in function.arguments)
+    read = tuple(place for place, name in enumerate(names) if name in found)
+    made = SeparateCode(types, read, b"")
+    module.link_in(parse_assembly(made.adapter(part.symbol, inward=True)))
+    function = module.get_function(part.symbol)
+    function.linkage = Linkage.internal
+    function.add_function_attribute("alwaysinline")
+    passes = create_new_module_pass_manager()
+    passes.add_always_inliner_pass()
+    passes.add_global_dead_code_eliminate_pass()
+    passes.run(module, codegen._pass_builder())
+    module.verify()
+    return made._replace(code=codegen._tm.emit_object(module))
+
+
+def _separate(part: KernelPart, codegen: Any) -> SeparateCode:
+    found: SeparateCode | None = STORE.code(part)
+    if found is None:
+        found = _compiled(part, codegen)
+        STORE.keep_code(part, found)
+    return found
+
+
+def separate_code(parts: Iterable[KernelPart], codegen: Any) -> dict[str, bytes]:
+    """Return the object code of every separate part that parts call, by symbol; load it, too."""
+    found = {part.symbol: _separate(part, codegen).code for part in separate_in(parts)}
+    load(found, codegen)
+    return found
+
+
+def load(objects: dict[str, bytes], codegen: Any) -> None:
+    """Let kernels of this process call separate parts; what has one symbol is one code."""
+    for symbol, code in objects.items():
+        if symbol not in _loaded:
+            _loaded.add(symbol)
+            codegen._engine._ee.add_object_file(ObjectFileRef.from_data(code))
