@@ -67,21 +67,18 @@ PAIRS = (
 NEVER_ADDED = {"error_control", "impact_order", "packed_sweeps", "residual_log", "rotation"}
 CONFIGS = Path(__file__).parents[1] / "configs"
 CHAPTER = CONFIGS / "chapter"
-# Behind the scene above, each with pairs of shapes beside its own; the first that has what a scene
-# requires is taken.
-FAMILIES = {
-    ("time/ball_on_ball", "scenes/bullet", "time/corner_of_three_walls"): (),
-    ("chapter/timestep_and_compliance", "paw_check/two_movable_masses"): (),
-    ("scenes/pile", "scenes/pyramid"): (),
-    ("time/turntable", "time/ball_on_turntable", "time/slope", "time/disc_that_nods"): (),
-    ("time/cradle_with_gaps", "time/near_miss"): ("sphere_plane",),
-    ("time/accuracy_of_energy", "time/accuracy_of_rolling"): ("box_box", "box_plane"),
-    ("effects/varying_force",): (),
-    ("scenes/drop",): (),
-    ("scenes/oblique_impact",): (),
-    ("paw_check/off_centre_box",): (),
-    ("hard/tall/jenga",): (),
-}
+# Behind the scene above; the first that has what a scene requires is taken.
+FAMILIES = (
+    ("time/ball_on_ball", "scenes/bullet", "time/corner_of_three_walls"),
+    ("chapter/timestep_and_compliance", "paw_check/two_movable_masses"),
+    ("scenes/pile", "scenes/pyramid"),
+    ("time/turntable", "time/ball_on_turntable", "time/slope", "time/disc_that_nods"),
+    ("time/cradle_with_gaps", "time/near_miss"),
+    ("time/accuracy_of_energy", "time/accuracy_of_rolling"),
+    ("effects/varying_force",),
+    ("scenes/oblique_impact",),
+    ("hard/tall/jenga",),
+)
 
 
 def shared_spec(plan: Plan) -> Spec:
@@ -102,19 +99,15 @@ def shared_spec(plan: Plan) -> Spec:
 def _families() -> tuple[Plan, ...]:
     from lavendersim.runner.plans import distinct, shared_plans
 
-    (first,) = distinct(shared_plans(load_experiment_text(SCENE, "shared.yaml").cells()))
-    plans = [_with_pairs(first, PAIRS)]
-    for names, pairs in FAMILIES.items():
+    scene = load_experiment_text(SCENE, "shared.yaml").cells()
+    (first,) = distinct(shared_plans(scene))
+    plans = [first._replace(spec=first.spec._replace(shape_pairs=PAIRS))]
+    for names in FAMILIES:
         cells: list[Cell] = []
         for name in names:
             cells += load_experiment(CONFIGS / f"{name}.yaml", True).cells()
-        plans += [_with_pairs(plan, pairs) for plan in distinct(shared_plans(cells))]
+        plans += distinct(shared_plans(cells))
     return tuple(plans)
-
-
-def _with_pairs(plan: Plan, pairs: Iterable[str]) -> Plan:
-    more = tuple(sorted({*plan.spec.shape_pairs, *pairs}))
-    return plan._replace(spec=plan.spec._replace(shape_pairs=more))
 
 
 def with_shared_specs(plans: Iterable[Plan]) -> list[Plan]:
