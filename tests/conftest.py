@@ -8,7 +8,6 @@ import pytest
 from hypothesis.internal.conjecture import providers
 
 from tests.drop_config import DROP
-from tests.shared_plans import ConfigsSharePlans
 
 pytest_plugins = ["pytester"]
 
@@ -50,13 +49,9 @@ LIGHT = (
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Let files be handed out in the order that is made here, not by their numbers of tests.
-
-    And let shipped configs share plans, with each other and with tests of physics.
-    """
+    """Let files be handed out in the order that is made here, not by their numbers of tests."""
     if hasattr(config.option, "loadscopereorder"):
         config.option.loadscopereorder = False
-    config.pluginmanager.register(ConfigsSharePlans())
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

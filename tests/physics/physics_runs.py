@@ -5,13 +5,13 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
+from shared_plan import shared_spec
 
 from lavendersim.engine.records import DIVERGED, RUNNING
 from lavendersim.experiment import load_experiment_text
 from lavendersim.runner.plans import shared_plans
 from lavendersim.scene.build import build
 from lavendersim.scene.events import EventQueue
-from tests.shared_plans import shared_spec
 
 GRAVITY = 9.81  # [m/s^2], what a config has that states none
 

@@ -8,12 +8,12 @@ from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
 import numpy as np
+from shared_plan import shared_spec
 
 from lavendersim.engine.records import DIVERGED
 from lavendersim.experiment import load_experiment_text
 from lavendersim.runner.plans import shared_plans
 from lavendersim.scene.build import build
-from tests.shared_plans import shared_spec
 
 GRAVITY = 9.81  # [m/s^2], what a config has that specifies none
 
