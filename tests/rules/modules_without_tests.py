@@ -72,7 +72,7 @@ WITHOUT_A_TEST = {
         sphere_capsule sphere_cylinder sphere_plane sphere_sphere
     """,
     "engine/collide/shapes": """
-        box capsule cylinder hull polyhedron
+        box capsule cylinder polyhedron
     """,
     "engine/effects": """
         broad_phase capture_in_sweeps compliance contact_log contact_midpoint
@@ -151,7 +151,7 @@ WITHOUT_A_TEST = {
     """,
     "runner": """
         bounds cell cell_jobs cell_outcome compile_times configs contact_sums_kernel
-        cost cost_errors dask_cluster environment experiment_run export judge_again
+        cost cost_errors dask_cluster experiment_run export judge_again
         listing log_tables measured merge overhead_pairs prediction remote remove_runs
         result_tables results run_index run_lock run_seal run_tables seeds solver_matrix
         starting_configs step_passes_kernel timed_engine unread_output verification
