@@ -62,7 +62,7 @@ def loaded(tree: dict[str, Any]) -> tuple[Experiment, Spec]:
 
 
 def run(config: CellConfig, spec: Spec, steps: int, by_step: bool = False) -> Ended:
-    """Run a cell to its end, as a cell of an experiment is run; or with a call for each step."""
+    """Run a cell to its end, as a cell of an experiment is run; or one step at a time."""
     scene = build(config, spec)
     engine = scene.engine(spec, BLOCK)
     events = EventQueue(engine, scene, config.events)
