@@ -20,6 +20,7 @@ import numpy as np
 
 from lavendersim.cell import CellConfig
 from lavendersim.engine.engine import Engine, Rows
+from lavendersim.engine.records import PLANE
 from lavendersim.scene.build import Scene
 
 # Impulses add up from thousands of updates, each rounded by 1e-16 of what it is; on their way they
@@ -64,7 +65,7 @@ def state_of(engine: Engine, scene: Scene) -> State:
         _columns(velocities, ("vx", "vy", "vz")),
         _columns(velocities, ("wx", "wy", "wz")),
         _columns(bodies, ("fx", "fy", "fz")),
-        bodies["bound"].copy(),
+        np.where(bodies["shape"] == PLANE, 0.0, bodies["bound"]),  # of a plane none
         float(engine.parameters["dt"][0]),
     )
 

@@ -116,7 +116,7 @@ def test_scenes_have_all_that_drives_them() -> None:
     trees: list[dict[str, Any]] = []
     drawn(configs(FULL), 100, trees.append, 0)
     events = {key for tree in trees for event in tree["events"] for key in event}
-    assert {"timestep", "remove", "teleport", "velocity", "scale_mass"} <= events
+    assert {"timestep", "remove"} <= events
     scenes = [tree["scene"] for tree in trees]
     assert any("surface_pairs" in scene for scene in scenes)
     assert any(scene["springs"] for scene in scenes)
