@@ -65,7 +65,7 @@ def make_foresee(spec: Spec) -> Any:
     relative_speed, is_impact = make_relative_speed(spec), make_is_impact(spec)
     turns, bend = spec.has("rotation"), make_bend(spec)
     restitution, compliance = spec.has("restitution"), spec.has("compliance")
-    springs = spec.has("contact_spring")
+    springs, cohesive = spec.has("contact_spring"), spec.has("cohesion")
     falls, restitution_at = made_once(spec, "restitution_at")
 
     def foresee(contact, pair, bodies, motion, params, met):
@@ -90,8 +90,11 @@ def make_foresee(spec: Spec) -> Any:
             if falls:
                 e_at = restitution_at(e, pair, -v)
             return is_impact(-v, least, dv, 0.0 if met else most, e_at, params)
+        drawn = False  # as long as it is closed, however fast it opens
+        if cohesive:
+            drawn = pair.cohesion > 0.0 and contact.phi <= max(params.slop, TOUCHING)
         # What leaves a gap, whatever holds its bodies, is no contact of this part.
-        if v > least + most and contact.phi + left * (v - 0.5 * most) > params.slop:
+        if not drawn and v > least + most and contact.phi + left * (v - 0.5 * most) > params.slop:
             contact.waits = 1
         ahead = False
         squared = v * v - 2.0 * a * gap

@@ -65,9 +65,15 @@ def _place() -> tuple[Path, str]:
 
 
 def read(path: Path) -> bytes | None:
-    """Return what is kept in a file; None where it is absent or damaged."""
+    """Return what is kept in a file; None where it is absent, damaged or somebody else's.
+
+    A directory that vanishes while a process runs may be made again by others.
+    """
     try:
-        stored = path.read_bytes()
+        with path.open("rb") as file:
+            if os.name == "posix" and os.fstat(file.fileno()).st_uid != os.getuid():
+                return None
+            stored = file.read()
     except OSError:
         return None
     checksum, payload = stored[:32], stored[32:]
@@ -100,8 +106,11 @@ class Kept(NamedTuple):
 def kept_kernels() -> list[Kept]:
     """Return the compiled code on disk, what was used last at the end."""
     folder, own = directory()[0], build()
+    entries: list[os.DirEntry[str]] = []
+    with contextlib.suppress(OSError):  # a disk may go away while a process runs
+        entries = [*os.scandir(folder)] if folder.name else []
     found = []
-    for entry in os.scandir(folder) if folder.name else ():
+    for entry in entries:
         if entry.name.endswith(SUFFIXES):
             with contextlib.suppress(OSError):  # another process may delete it at any time
                 status = entry.stat()

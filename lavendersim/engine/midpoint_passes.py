@@ -79,6 +79,14 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
 
     restore = kernel(restore, spec)
 
+    def forget_load(free, motion):
+        # What contacts draw by themselves is noted anew with each row (`preload`), once.
+        for i in range(free.shape[0]):
+            before, m = free[i], motion[i]
+            m.dvx, m.dvy, m.dvz = before.vx - m.vx, before.vy - m.vy, before.vz - m.vz
+
+    forget_load = kernel(forget_load, spec)
+
     def midpoint_passes(state, count, workspace, params, counters, log):
         bodies, velocities, motion = state.bodies, state.velocities, state.motion
         contacts, cache, pairs = state.contacts, state.cache, state.pairs
@@ -108,6 +116,8 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
             stand_midway(bodies, velocities, motion, lead, poses, params.dt)
             look(state, count, poses, workspace)
             restore(velocities, free, lead, motion)
+            if loaded:
+                forget_load(free, motion)
             if carries_inertia:
                 refresh_inertia(bodies, velocities)
             for c in range(count):
@@ -139,6 +149,8 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
             # What is solved at the start is better than what is not solved at the middle.
             for i in range(bodies.shape[0]):
                 bodies[i], velocities[i] = poses[i], free[i]
+            if loaded:
+                forget_load(free, motion)
             if carries_inertia:
                 refresh_inertia(bodies, velocities)
             for c in range(count):
@@ -166,9 +178,16 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
         for i in range(motion.shape[0]):
             if motion[i].midway == 0:  # it flies, from the start of the step
                 v, before = velocities[i], free[i]
-                v.vx, v.vy, v.vz = before.vx, before.vy, before.vz
-                if turns:
-                    v.wx, v.wy, v.wz = before.wx, before.wy, before.wz
+                if loaded:  # by what draws it: `restore` gave it the spin of the middle
+                    if turns:
+                        spin, m = lead[i], motion[i]
+                        v.wx -= spin.wx - m.wx
+                        v.wy -= spin.wy - m.wy
+                        v.wz -= spin.wz - m.wz
+                else:
+                    v.vx, v.vy, v.vz = before.vx, before.vy, before.vz
+                    if turns:
+                        v.wx, v.wy, v.wz = before.wx, before.wy, before.wz
             elif turns:
                 v, spin, m = velocities[i], lead[i], motion[i]
                 m.mean_x = 0.5 * (spin.wx + v.wx)

@@ -90,14 +90,31 @@ def kernel_limit() -> int:
     return LIMIT
 
 
-def delete_kernels(current: bool) -> Kernels:
-    """Delete the compiled kernels of other versions, with `current` this one's; returns those."""
+class Deleted(NamedTuple):
+    """What was deleted, and why the rest was not."""
+
+    kernels: Kernels
+    left: Kernels
+    why: str  # of the first that is left, by the system
+
+
+def delete_kernels(current: bool) -> Deleted:
+    """Delete the compiled kernels of other versions, with `current` this one's.
+
+    Not those that the system will not let go: of a disk that can only be read, say.
+    """
     from lavendersim.engine.kernel_store import kept_kernels
 
-    deleted = [each for each in kept_kernels() if each.current == current]
-    for each in deleted:
-        each.path.unlink(missing_ok=True)
-    return Kernels.of(deleted)
+    deleted, left, why = [], [], ""
+    for each in (one for one in kept_kernels() if one.current == current):
+        try:
+            each.path.unlink(missing_ok=True)
+        except OSError as error:
+            left.append(each)
+            why = why or error.strerror or str(error)
+        else:
+            deleted.append(each)
+    return Deleted(Kernels.of(deleted), Kernels.of(left), why)
 
 
 def environment(*specs: Spec) -> dict[str, Any]:

@@ -11,15 +11,13 @@ import os
 import shutil
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import Final
 
 from lavendersim.errors import TraceError, UsageError
 
+from .leftovers import REMOVED
 from .listing import Listed, listed_run
 from .run_directory import LATEST, Run, list_runs, point_latest
 from .run_lock import run_lock
-
-REMOVED: Final = ".removed-"
 
 
 def removable(meant: Sequence[Listed], root: Path) -> list[Listed]:

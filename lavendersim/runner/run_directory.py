@@ -312,7 +312,7 @@ def point_latest(directory: Path, root: Path) -> None:
     """Move the `latest` link to a finished run in one step."""
     temporary = root / f".{LATEST}-{os.getpid()}"
     for left in root.glob(f".{LATEST}-*"):  # of a process that was killed between two calls
-        if left == temporary or not _is_running(left.name.rpartition("-")[2]):
+        if left == temporary or not is_running(left.name.rpartition("-")[2]):
             left.unlink(missing_ok=True)
     try:
         temporary.symlink_to(directory.name, target_is_directory=True)
@@ -326,7 +326,7 @@ def point_latest(directory: Path, root: Path) -> None:
     flush_folder(root)
 
 
-def _is_running(process: str) -> bool:
+def is_running(process: str) -> bool:
     """Whether a process of this number runs; where that cannot be asked, it may."""
     if os.name != "posix" or not process.isdecimal():
         return True

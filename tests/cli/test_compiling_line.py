@@ -145,6 +145,11 @@ def test_doctor_tells_kernels_in_use_from_stale_ones_and_deletes_either(
     assert "deleted        1 file, 2.5 MB, stale" in lavender("doctor", "--clean-stale").stdout
     assert set(kernels.iterdir()) - {kernels / LOCK} == own
     stale.write_bytes(b"")
-    lavender("doctor", "--clean")
+    left = tmp_path / "runs" / "20261125T000000Z-killed-0" / ".cells.0-0.unfinished.json"
+    left.parent.mkdir(parents=True)
+    left.write_bytes(bytes(2_500_000))
+    said = lavender("doctor", "--clean").stdout
+    assert "deleted        1 file, 2.5 MB, half written in runs" in said
+    assert [*left.parent.iterdir()] == []
     # The lock is empty, and whoever compiles may have it open.
     assert [file.name for file in kernels.iterdir()] == [LOCK]

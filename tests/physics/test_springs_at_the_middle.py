@@ -73,6 +73,17 @@ def stretched(ratio: float, stiffness: float, rate: int) -> str:
     return joined(bodies, link, rate, 1.0)
 
 
+def whirled() -> str:
+    """A small box is tied by a point well outside it: it swings in a hundredth of a step.
+
+    k r^2 dt^2/I = 1e6 0.04^2/(30^2 4e-5) = 4e4, I its moments of inertia, at most.
+    """
+    shape = "{kind: box, size: [0.004, 0.006, 0.02]}"
+    tied = f"{{shape: {shape}, mass: 1.0, surface: one, position: [3.9, 0.3, 0.2]}}"
+    link = spring("one", "body", 1e6, 1.0, ", point_b: [0, 0.02, 0.04]")
+    return joined({"one": anchor(), "body": tied}, link, 30, 0.4)
+
+
 STIFF = [(ratio, k) for ratio in (0.1, 1.0, 5.0) for k in (1e8, 1e12)]
 
 
@@ -111,6 +122,17 @@ def test_springs_at_points_off_the_centres_keep_energy(ran: dict[str, States], r
     assert np.ptp(states.step["spring_energy"]) > 1.0, "they do not swing"
     assert abs(states.spin[-1]).max() > 1.0, "they do not turn"
     np.testing.assert_allclose(energy(states), energy(states)[0], rtol=1e-10)
+
+
+@pytest.mark.xfail(
+    strict=True, reason="the fuzz found it: uneven bodies gain energy by levers of stiff springs"
+)
+def test_spring_at_a_lever_that_no_step_resolves_gives_no_energy() -> None:
+    """What it stores as the box begins at rest is all there is; it diverges in step 6."""
+    others = {"levers": levers(60), "damped": stretched(0.3, 300.0, 120), "box": box_on_lever(120)}
+    found = energy(run_scenes({**others, "whirled": whirled()})["whirled"])
+    # k (3.9 - 1)^2 / 2, and some for the lever.
+    assert found.max() <= 0.5 * 1e6 * 3.0**2
 
 
 def test_spring_at_the_corner_of_a_box_is_of_second_order(ran: dict[str, States]) -> None:

@@ -2,8 +2,8 @@
 
 Nothing is asked of accuracy here: a few sweeps at a thirtieth of a second solve little. What is
 asked holds for any sweep of any solver: contacts push, friction stays within its cone, the log is
-consistent with itself, a state that is no number ends the run and says whose it is, and the same
-run gives the same bits.
+consistent with itself, a state that is no number ends the run and says whose it is, the same run
+gives the same bits, in one piece or step by step, and what `fuzz_balances` says of each step.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import yaml
+from fuzz_balances import State, state_of, unbalanced
 
 from lavendersim.cell import CellConfig
 from lavendersim.engine.engine import Engine, Rows
@@ -21,6 +22,7 @@ from lavendersim.engine.records import DIVERGED, RUNNING
 from lavendersim.engine.spec import Spec
 from lavendersim.experiment.experiment import Experiment
 from lavendersim.experiment.load import load_experiment_text
+from lavendersim.quantities.scalars import exact
 from lavendersim.runner.cell import divergence
 from lavendersim.scene.build import Scene, build
 from lavendersim.scene.events import EventQueue
@@ -44,6 +46,7 @@ class Ended(NamedTuple):
     said: str
     scene: Scene
     engine: Engine
+    states: list[tuple[State, State]]  # before and after each step, where each is a call
 
 
 def text_of(tree: dict[str, Any]) -> str:
@@ -58,23 +61,26 @@ def loaded(tree: dict[str, Any]) -> tuple[Experiment, Spec]:
     return experiment, plan_of_cell(experiment.cells()[0]).spec
 
 
-def run(config: CellConfig, spec: Spec, steps: int) -> Ended:
-    """Run a cell to its end, as a cell of an experiment is run."""
+def run(config: CellConfig, spec: Spec, steps: int, by_step: bool = False) -> Ended:
+    """Run a cell to its end, as a cell of an experiment is run; or one step at a time."""
     scene = build(config, spec)
     engine = scene.engine(spec, BLOCK)
     events = EventQueue(engine, scene, config.events)
-    blocks, status, done = [], RUNNING, 0
+    blocks, status, done, states = [], RUNNING, 0, []
     while True:
         events.apply_due(done)
+        before = state_of(engine, scene) if by_step else None
         if done < steps:
-            status = engine.advance(events.next_stop(steps) - done)
+            status = engine.advance(1 if by_step else events.next_stop(steps) - done)
+        if before is not None and int(engine.counters["step"][0]) > done:
+            states.append((before, state_of(engine, scene)))
         done = int(engine.counters["step"][0])
         blocks.append(engine.take_rows())
         if status == DIVERGED or (status == RUNNING and done >= steps):
             break
     rows = Rows(*(np.concatenate(columns) for columns in zip(*blocks, strict=True)))
     said = divergence(scene, engine) if status == DIVERGED else ""
-    return Ended(rows, done, said, scene, engine)
+    return Ended(rows, done, said, scene, engine, states)
 
 
 def broken(tree: dict[str, Any], shared: Spec | None = None) -> list[str]:
@@ -99,7 +105,7 @@ def _broken(tree: dict[str, Any], shared: Spec | None) -> list[str]:
         return ["plan: it requires another engine than its plan's"]
     cell = experiment.cells()[0]
     config, steps = cell.config, cell.config.steps
-    one, other = run(config, spec, steps), run(config, spec, steps)
+    one, other = run(config, spec, steps), run(config, spec, steps, by_step=True)
     found = [
         f"equal runs: {name} differ"
         for name in Rows._fields
@@ -113,6 +119,7 @@ def _broken(tree: dict[str, Any], shared: Spec | None) -> list[str]:
         found += _counts(one, config)
         found += _contacts(one, config.numerics.friction_cone)
         found += _immovable(one, config)
+        found += unbalanced(config, other.rows, other.states, other.steps - bool(other.said))
     return found
 
 
@@ -216,10 +223,20 @@ def _contacts(run: Ended, cone: str) -> list[str]:
 
 
 def _immovable(run: Ended, config: CellConfig) -> list[str]:
-    """What is fixed stays where it is; what is kinematic keeps its velocity."""
-    found = []
+    """What is fixed or removed stays where it is; what is kinematic keeps its velocity."""
+    found, poses = [], run.rows.pose
+    removed = {event.body: event.at for event in config.events if getattr(event, "remove", False)}
     for k, (name, body) in enumerate(config.scene.bodies.items()):
-        if body.kinematic:
+        if name in removed:
+            first = run.scene.clock.steps_until(exact(removed[name]))
+            if (poses[first:, k] != poses[first : first + 1, k]).any():
+                found.append(f"immovable: {name} is removed, and moved")
+            rows = run.rows.contact[run.rows.contact["step"] > first]
+            if ((rows["body_a"] == k) | (rows["body_b"] == k)).any():
+                found.append(f"immovable: {name} is removed, and touched")
+        elif body.kinematic and body.motion:
+            continue  # `tests/physics/test_functions_of_time.py`
+        elif body.kinematic:
             velocity = [float(run.engine.velocities[k][f"v{axis}"]) for axis in "xyz"]
             if velocity != list(body.velocity):
                 found.append(f"immovable: {name} is kinematic, and its velocity changed")

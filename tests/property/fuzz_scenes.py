@@ -1,8 +1,9 @@
 """Random configs that a given plan can run, as the trees of their YAML files.
 
-Sizes are drawn over four decades, masses over six, and a body stands somewhere within reach of one
-before it, down to the same place: most overlap, many deeply. Nothing here is meant to be sensible;
-all of it is legal.
+Sizes are drawn over four decades, masses over six, in one scene of four over eight and eighteen. A
+body stands somewhere within reach of one before it, down to the same place: most overlap, many
+deeply. What drives them is drawn in `fuzz_drives`. Nothing here is meant to be sensible; all of it
+is legal.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ from fractions import Fraction
 from typing import Any, NamedTuple
 
 import numpy as np
+from fuzz_drives import events, forces, motion, paired, springs
 from hypothesis import strategies as st
 
 from lavendersim.engine.collide import SHAPE_PAIRS
@@ -45,6 +47,11 @@ SPARED = (
     *("broad_phase", "compliance", "compound", "drag", "external_force", "friction", "gravity"),
     *("kinematic", "problem_log", "projection", "residual_log", "restitution", "rolling_friction"),
     *("sleeping", "stabilisation", "surface_velocity", "torsional_friction", "warm_start"),
+)
+# Effects that may give energy, or give back what they stored.
+GIVING = (
+    *("cohesion", "compliance", "external_force", "prescribed_motion", "projection", "restitution"),
+    *("spring", "stabilisation", "surface_velocity", "varying_force"),
 )
 HULL = ((0.6, 0, -0.4), (-0.3, 0.5, -0.4), (-0.3, -0.5, -0.4), (0.1, 0.1, 0.7), (0.2, 0.3, 0.4))
 EDGES = (0.0, 1.0)  # of shares: hypothesis is fond of them, and so are defects
@@ -127,16 +134,31 @@ def plans(draw: Any) -> Drawn:
 class _Pen:
     """Draws the parts of one config."""
 
+    duration: float  # [s] of the run, once its timestep is drawn
+
     def __init__(self, draw: Any, plan: Drawn) -> None:
         self.draw, self.plan = draw, plan
+        self.wide = 3.0 if draw(st.integers(0, 3)) == 0 else 1.0  # decades of masses, times that
+        self.calm = draw(st.integers(0, 3)) == 3  # nothing but weight gives energy
 
     def has(self, effect: str) -> bool:
         """Whether the plan has an effect, and this time it is required."""
-        return effect in self.plan.effects and bool(self.draw(st.booleans()))
+        if effect not in self.plan.effects or (self.calm and effect in GIVING):
+            return False
+        return bool(self.draw(st.booleans()))
 
     def power(self, low: float, high: float) -> float:
         """Return ten to the power of something between."""
         return float(10.0 ** self.draw(st.floats(low, high, allow_subnormal=False, width=32)))
+
+    def signed(self, low: float, high: float) -> float:
+        """Return a power of ten of either sign."""
+        return self.power(low, high) * float(self.draw(st.sampled_from((-1.0, 1.0))))
+
+    def some_vector(self, low: float, high: float) -> list[float]:
+        """Return a vector that is not zero."""
+        made = self.vector(self.power(low, high))
+        return made if any(made) else [10.0**low, 0.0, 0.0]
 
     def vector(self, size: float) -> list[float]:
         """Return a vector no longer than sqrt(3) sizes."""
@@ -182,15 +204,25 @@ class _Pen:
             made["torsional_friction"] = size * self.share()
         if self.has("rolling_friction"):
             made["rolling_friction"] = size * self.share()
+        if made.get("friction", 0.0) > 0.0 and self.has("static_friction"):
+            made["static_friction"] = made["friction"] * (1.0 + 2.0 * self.share())
+            made["stribeck_velocity"] = self.power(-4.0, 1.0)
+        if self.has("cohesion"):
+            made["cohesion"] = self.power(-3.0, 3.0)
         if self.has("restitution"):
             made["restitution"] = self.share()
+            if self.has("falling_restitution"):
+                made["yield_speed"] = self.power(-2.0, 1.0)
         if self.has("compliance"):
             made["compliance"] = self.power(-9.0, -2.0)
+            if self.has("contact_spring"):
+                made["damping_ratio"] = 2.0 * self.share()
         return made
 
     def body(self, first: bool, near: tuple[np.ndarray, float]) -> tuple[dict[str, Any], float]:
         """Return a body within reach of another one (its centre and size), and its size."""
-        size = self.power(-2.0, 2.0)
+        decades = 2.0 if self.wide == 1.0 else 4.0
+        size = self.power(-decades, decades)
         place = near[0] + (near[1] + size) * np.array(self.draw(vector)) * self.share()
         body: dict[str, Any] = {
             "shape": self.shape(self.draw(st.sampled_from(self.plan.shapes)), size),
@@ -203,11 +235,13 @@ class _Pen:
         way = self.draw(st.integers(0, 7))
         if way == 0 and not first:
             return {**body, "fixed": True}, size
+        if way == 1 and not first and self.has("prescribed_motion"):
+            return {**body, "kinematic": True, "motion": motion(self, self.duration)}, size
         body["velocity"] = self.vector(self.power(-2.0, 2.0))
         body["angular_velocity"] = self.vector(self.power(-2.0, 2.0))
-        if way == 1 and not first and "kinematic" in self.plan.effects:
+        if way == 1 and not first and "kinematic" in self.plan.effects and not self.calm:
             return {**body, "kinematic": True}, size
-        body["mass"] = self.power(-3.0, 3.0)
+        body["mass"] = self.power(-3.0 * self.wide, 3.0 * self.wide)
         if self.has("drag"):
             names = ("linear", "quadratic", "angular")
             body["drag"] = {name: self.power(-3.0, 1.0) * self.share() for name in names}
@@ -240,30 +274,13 @@ class _Pen:
             "sleep_time": 0.2 * self.share(),
         }
 
-    def forces(self, movable: list[str], duration: float) -> list[dict[str, Any]]:
-        """Return what pushes and twists for a while."""
-        if not self.has("external_force"):
-            return []
-        body, begin = self.draw(st.sampled_from(movable)), 0.5 * duration * self.share()
-        push, twist = self.vector(self.power(-3.0, 4.0)), self.vector(self.power(-3.0, 3.0))
-        return [{"body": body, "from": begin, "to": duration, "force": push, "torque": twist}]
-
-    def events(self, movable: list[str], duration: float) -> list[dict[str, Any]]:
-        """Return a sudden change of one body."""
-        body, kind = self.draw(st.sampled_from(movable)), self.draw(st.integers(0, 7))
-        changes: dict[int, dict[str, Any]] = {
-            0: {"scale_mass": self.power(-3.0, 3.0)},
-            1: {"teleport": self.vector(1.0)},
-            2: {"velocity": self.vector(10.0), "contact_cache": "clear"},
-        }
-        change = changes.get(kind, {})
-        return [{"at": duration * self.share(), "body": body, **change}] if change else []
-
 
 @st.composite
 def configs(draw: Any, plan: Drawn) -> dict[str, Any]:
     """Two to eight bodies, for 20 to 60 steps, as the tree of a config."""
     pen = _Pen(draw, plan)
+    numerics = pen.numerics()
+    pen.duration = float(draw(st.integers(20, 60)) * Fraction(numerics["timestep"]))
     bodies: dict[str, Any] = {}
     places = [(np.zeros(3), 0.0)]
     for k in range(draw(st.integers(2, 8))):
@@ -273,19 +290,22 @@ def configs(draw: Any, plan: Drawn) -> dict[str, Any]:
     if draw(st.booleans()):
         shape = {"kind": "plane", "offset": -pen.power(-2.0, 1.0)}
         bodies["floor"] = {"shape": shape, "surface": pen.surface(1.0)}
-    numerics = pen.numerics()
-    duration = float(draw(st.integers(20, 60)) * Fraction(numerics["timestep"]))
     movable = [name for name, body in bodies.items() if "mass" in body]
     gravity = pen.vector(pen.power(-1.0, 2.0)) if pen.has("gravity") else [0.0, 0.0, 0.0]
+    named = paired(pen, bodies)
+    pushed = forces(pen, movable, pen.duration)
+    times = {"timestep": numerics["timestep"], "duration": pen.duration}
     return {
         "scene": {
+            **named,
             "gravity": gravity,
             "bodies": bodies,
-            "forces": pen.forces(movable, duration),
+            "forces": pushed,
+            "springs": springs(pen, bodies, movable),
         },
-        "events": pen.events(movable, duration),
+        "events": [] if pen.calm else events(pen, bodies, movable, pushed, times),
         "numerics": numerics,
-        "duration": duration,
+        "duration": pen.duration,
         "record": {
             "residuals": "all" if pen.has("residual_log") else "none",
             "problems": "none",  # few scenes can be written as FCLIB files

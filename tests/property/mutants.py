@@ -64,6 +64,7 @@ OF_FILES = {
         "tests/physics/test_pairwise_impacts.py",
     ),
     "foreseen_impacts.py": ("tests/physics/test_impacts_in_order.py",),
+    "integrate.py": ("tests/physics/test_divergence.py",),
     "stronge.py": ("configs/scenes/rod_end.yaml",),
 }
 LIMIT = 120.0  # [s] of the tests of a mutant, which may never end

@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 import pytest
 import yaml
-from fuzz import drawn_plans, finds, first_config
+from fuzz import drawn, drawn_plans, finds, first_config
 from fuzz_laws import broken, loaded, run
-from fuzz_scenes import EVERY, FULL, SOLIDS, Drawn
+from fuzz_scenes import EVERY, FULL, SOLIDS, Drawn, configs
 from idle import compile_together
 
 from lavendersim.engine.collide import SHAPE_PAIRS
@@ -79,19 +79,55 @@ BREAKS = {  # a change of a log, and the law that it breaks
     "counts": lambda rows: rows.step["contact_count"].__iadd__(1),
     "unit": lambda rows: rows.contact["nz"].__imul__(1.1),
     "finite": lambda rows: rows.step["kinetic_energy"].fill(np.nan),
+    "momentum": lambda rows: rows.contact["impulse_n"].__imul__(1.001),
+    "penetration": lambda rows: rows.step["max_penetration"][2:].__iadd__(1.0),
+    "equal runs": lambda rows: rows.pose.__imul__(1.0 + 1e-15),
 }
 
 
 @pytest.mark.parametrize("law", BREAKS)
 def test_each_law_bites(law: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    def bent(*arguments: Any) -> Any:
-        ended = run(*arguments)
-        BREAKS[law](ended.rows)
+    def bent(*arguments: Any, by_step: bool = False) -> Any:
+        ended = run(*arguments, by_step=by_step)
+        if by_step or law != "equal runs":
+            BREAKS[law](ended.rows)
         return ended
 
     assert broken(_fall()) == []
     monkeypatch.setattr("fuzz_laws.run", bent)
     assert law in {said.split(":")[0] for said in broken(_fall())}
+
+
+def test_what_is_removed_neither_moves_nor_touches(monkeypatch: pytest.MonkeyPatch) -> None:
+    tree = _fall() | {"events": [{"at": 0.05, "body": "ball", "remove": True}]}
+
+    def bent(*arguments: Any, by_step: bool = False) -> Any:
+        ended = run(*arguments, by_step=by_step)
+        ended.rows.pose[20:, 0] += 1.0
+        return ended
+
+    assert broken(tree) == []
+    monkeypatch.setattr("fuzz_laws.run", bent)
+    assert "immovable: ball is removed, and moved" in broken(tree)
+
+
+def test_scenes_have_all_that_drives_them() -> None:
+    """Of a hundred configs each has some of what the fuzz draws beside bodies."""
+    trees: list[dict[str, Any]] = []
+    drawn(configs(FULL), 100, trees.append, 0)
+    events = {key for tree in trees for event in tree["events"] for key in event}
+    assert {"timestep", "remove"} <= events
+    scenes = [tree["scene"] for tree in trees]
+    assert any("surface_pairs" in scene for scene in scenes)
+    assert any(scene["springs"] for scene in scenes)
+    assert any("factor" in force for scene in scenes for force in scene["forces"])
+    bodies = [body for scene in scenes for body in scene["bodies"].values()]
+    assert any("motion" in body for body in bodies)
+    surfaces = [body["surface"] for body in bodies if isinstance(body["surface"], dict)]
+    keys = {key for surface in surfaces for key in surface}
+    assert keys >= {"static_friction", "cohesion", "yield_speed", "damping_ratio", "compliance"}
+    masses = [body["mass"] for body in bodies if "mass" in body]
+    assert max(masses) / min(masses) > 1e9
 
 
 def test_a_state_that_is_no_number_is_reported_as_a_divergence() -> None:

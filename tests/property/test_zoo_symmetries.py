@@ -15,6 +15,7 @@ Projection is swept until nothing changes: what a few sweeps leave depends on th
 from __future__ import annotations
 
 import copy
+from fractions import Fraction
 from typing import Any
 
 import convex
@@ -23,7 +24,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from laboratory import body
-from zoo import GRAVITY, NOWHERE, SHAPES, SOME, bench, impulses, run, unit, vector, zoos
+from zoo import GRAVITY, NOWHERE, NUMERICS, SHAPES, SOME, bench, impulses, run, unit, vector, zoos
 
 STEPS = 10
 SOLVED = {"tolerance": 1e-13, "sweeps": 3000, "projection_sweeps": 5000}
@@ -171,3 +172,149 @@ def test_two_bodies_listed_the_other_way_round_get_opposite_impulses(kinds, most
     np.testing.assert_allclose(
         on_row_one(other), -np.array(on_row_one(plain)), atol=2.0 * lighter * known
     )
+
+
+MIRROR = np.array([-1.0, 1.0, 1.0])  # across x
+# What turns is seen turning as before about x, and the other way about y and z.
+TURNED = -MIRROR
+
+
+def mirrored_turn(quaternion: Any) -> list[float]:
+    """Return an orientation as a mirror shows it, of a frame that is seen in it, too."""
+    return [float(quaternion[0]), *(TURNED * np.array(quaternion[1:])).tolist()]
+
+
+def mirrored_shape(described: dict[str, Any]) -> dict[str, Any]:
+    """Return a resolved shape in the mirror; its principal frame is that of the image."""
+    if described["kind"] == "hull":
+        points = [(MIRROR * np.array(point)).tolist() for point in described["points"]]
+        # Counter-clockwise from outside is clockwise in the mirror.
+        faces = [list(reversed(face)) for face in described["faces"]]
+        return {**described, "points": points, "faces": faces}
+    if described["kind"] != "compound":
+        return described
+    parts = [
+        {
+            "shape": mirrored_shape(part["shape"]),
+            "position": (MIRROR * np.array(part["position"])).tolist(),
+            "orientation": mirrored_turn(part["orientation"]),
+        }
+        for part in described["parts"]
+    ]
+    return {**described, "parts": parts}
+
+
+def mirrored(bodies: dict[str, Any]) -> dict[str, Any]:
+    """Return the world that a mirror shows."""
+    seen = moved(
+        bodies,
+        position=lambda x: MIRROR * x,
+        velocity=lambda v: MIRROR * v,
+        angular_velocity=lambda w: TURNED * w,
+        orientation=mirrored_turn,
+    )
+    for described in seen.values():
+        described["shape"] = mirrored_shape(described["shape"])
+    return seen
+
+
+@EITHER
+@pytest.mark.parametrize("floor", [False, True], ids=["free", "on a floor"])
+@given(st.data())
+@SOME
+def test_a_world_in_a_mirror_moves_as_its_image(kinds, most, known, floor, data):
+    """No turn of the world shows a cross product of the wrong hand; a mirror does."""
+    bodies = data.draw(zoos(kinds, (2, most), floor=floor))
+    gravity = GRAVITY if floor else NOWHERE
+    plain, image = motion(bodies, gravity), motion(mirrored(bodies), gravity)
+    np.testing.assert_allclose(image[:, :3], MIRROR * plain[:, :3], atol=known)
+    np.testing.assert_allclose(image[:, 3:], TURNED * plain[:, 3:], atol=known / 0.1)
+
+
+LENGTHS = ("radius", "length", "size", "points", "position", "offset")  # keys of shapes [m]
+
+
+def scaled(value: Any, factor: float) -> Any:
+    """Return a number, or what is nested of numbers, times a factor."""
+    if isinstance(value, list | tuple):
+        return [scaled(one, factor) for one in value]
+    return factor * value
+
+
+def scaled_shape(described: dict[str, Any], length: float) -> dict[str, Any]:
+    """Return a shape so many times as large."""
+    return {
+        key: [{**scaled_shape(part, length), "shape": scaled_shape(part["shape"], length)}
+              for part in value] if key == "parts"
+        else scaled(value, length) if key in LENGTHS else value
+        for key, value in described.items()
+    }  # fmt: skip
+
+
+def in_units(bodies: dict[str, Any], mass: float, length: float, time: float) -> dict[str, Any]:
+    """Return a world whose numbers are those of units so many times smaller."""
+    seen = moved(
+        bodies,
+        position=lambda x: length * x,
+        velocity=lambda v: length / time * v,
+        angular_velocity=lambda w: w / time,
+    )
+    for described in seen.values():
+        described["shape"] = scaled_shape(described["shape"], length)
+        if described["mass"] is not None:
+            described["mass"] *= mass
+            described["inertia"] = scaled(described["inertia"], mass * length**2)
+    return seen
+
+
+SPEEDS = ("tolerance", "restitution_threshold", "sleep_speed")  # keys of numerics [m/s]
+
+
+def numerics_in_units(length: float, time: float) -> dict[str, Any]:
+    """Return the numerics of the runs in other units."""
+    plain = {**NUMERICS, **SOLVED}
+    changed = {key: length / time * plain[key] for key in SPEEDS}
+    changed |= {key: length * plain[key] for key in ("slop", "cache_distance")}
+    changed["timestep"] = str(Fraction(plain["timestep"]) * Fraction(time))
+    return {**plain, **changed}
+
+
+def motion_in_units(bodies: Any, gravity: Any, units: tuple[float, float, float]) -> np.ndarray:
+    """Return velocities and spins after the run in other units, in those of the plain one."""
+    mass, length, time = units
+    seen = in_units(bodies, mass, length, time)
+    numerics = numerics_in_units(length, time)
+    world = bench(seen, scaled(list(gravity), length / time**2), **numerics)
+    world.run(STEPS)
+    movable = [i for i, b in enumerate(bodies.values()) if b["mass"] is not None]
+    return np.hstack([world.velocity[movable] / (length / time), world.spin[movable] * time])
+
+
+@EITHER
+@pytest.mark.parametrize("floor", [False, True], ids=["free", "on a floor"])
+@given(st.data())
+@SOME
+def test_masses_in_other_units_change_no_bit_of_the_motion(kinds, most, known, floor, data):
+    """By a power of two, which rounds nothing: no mass stands in the engine as a number."""
+    bodies = data.draw(zoos(kinds, (2, most), floor=floor))
+    gravity = GRAVITY if floor else NOWHERE
+    exponent = data.draw(st.integers(-20, 20))
+    seen = motion_in_units(bodies, gravity, (2.0**exponent, 1.0, 1.0))
+    np.testing.assert_array_equal(seen, motion(bodies, gravity))
+
+
+@EITHER
+@pytest.mark.parametrize("floor", [False, True], ids=["free", "on a floor"])
+@given(st.data())
+@SOME
+def test_lengths_and_times_in_other_units_show_the_same_motion(kinds, most, known, floor, data):
+    """TOUCHING [m] and the ends of fixed points [m/s] stay what they are, up to eight times others.
+
+    A gap so small that only one of the two worlds takes it for none is not among those drawn.
+    """
+    bodies = data.draw(zoos(kinds, (2, most), floor=floor))
+    gravity = GRAVITY if floor else NOWHERE
+    length, time = (2.0 ** data.draw(st.integers(-3, 3)) for _ in range(2))
+    seen, plain = motion_in_units(bodies, gravity, (1.0, length, time)), motion(bodies, gravity)
+    np.testing.assert_allclose(seen[:, :3], plain[:, :3], atol=known)
+    np.testing.assert_allclose(seen[:, 3:], plain[:, 3:], atol=known / 0.1)

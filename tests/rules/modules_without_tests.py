@@ -63,7 +63,7 @@ WITHOUT_A_TEST = {
         sphere_capsule sphere_cylinder sphere_plane sphere_sphere
     """,
     "engine/collide/shapes": """
-        box capsule cylinder hull polyhedron
+        box capsule cylinder polyhedron
     """,
     "engine/effects": """
         broad_phase capture_in_sweeps compliance contact_log contact_midpoint

@@ -54,6 +54,7 @@ ELSEWHERE = {
         "engine/effects/projection.py": SPRING,
         "engine/midpoint_rows.py": SPRING,
     },
+    "cohesion": {"engine/foreseen_impacts.py": "what opens is drawn as long as it is closed"},
     "restitution": {
         "engine/effects/capture_in_sweeps.py": "makes a mistake with it",
         "engine/effects/falling_restitution.py": "lowers its coefficient",
@@ -125,6 +126,7 @@ ASKED = {
             *("effects/projection", "foreseen_impacts", "impact_rows", "midpoint_rows"),
         ),
         "compliance": ("foreseen_impacts",),
+        "cohesion": ("foreseen_impacts",),
         "restitution": ("foreseen_impacts",),
         "projection": ("integrate", "memory"),
         "surface_velocity": ("effects/static_friction",),

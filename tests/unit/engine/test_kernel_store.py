@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 import subprocess
@@ -10,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+from lavendersim import durable_files
 from lavendersim.engine import compile_options, kernel_store
 from lavendersim.engine.compile import inner
 from lavendersim.engine.compile_lock import NAME
@@ -155,3 +157,45 @@ def test_two_processes_may_write_the_same_kernel_at_once(tmp_path: Path) -> None
     third = run_in_new_process(config, tmp_path / "third", LAVENDER_CACHE_DIR=str(kernels))
     assert logs == [third["logs"]] * 2
     assert file.stat().st_mtime_ns == written
+
+
+def test_a_store_that_vanishes_costs_time_and_nothing_else(
+    store: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A disk that is taken away, then one that others put in its place."""
+    monkeypatch.setattr(kernel_store, "write", lambda path, payload: None)
+    store.rename(store.with_name("elsewhere"))
+    assert keep("first").misses == 1
+    assert kept_kernels() == []
+    store.write_text("no directory")
+    assert keep("second").misses == 1
+    assert kept_kernels() == []
+
+
+@pytest.mark.skipif(os.name != "posix", reason="owners of POSIX")
+def test_a_kernel_that_somebody_else_wrote_is_not_loaded(
+    store: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The directory was this user's when the process began, and may have been made again since."""
+    keep("plan")
+    assert keep("plan").hits == 1
+    ours = os.getuid()
+    monkeypatch.setattr(os, "getuid", lambda: ours + 1)
+    assert keep("plan").hits == 0
+
+
+@pytest.mark.parametrize("error", [errno.ENOSPC, errno.EROFS, errno.EIO])
+def test_a_store_that_cannot_be_written_costs_time_and_nothing_else(
+    store: Path, monkeypatch: pytest.MonkeyPatch, error: int
+) -> None:
+    def fails(*_: object, **__: object) -> None:
+        raise OSError(error, os.strerror(error))
+
+    keep("earlier")
+    with monkeypatch.context() as patch:
+        patch.setattr(durable_files, "_write", fails)
+        patch.setattr(Path, "unlink", fails)
+        patch.setattr(os, "utime", fails)
+        patch.setattr(kernel_store, "LIMIT", 0)
+        assert (keep("earlier").hits, keep("later").misses) == (1, 1)
+    assert names_in(store) == {Spec(effects=("earlier",)).digest()}

@@ -23,6 +23,7 @@ BALL = "a: {shape: {kind: sphere, radius: 0.5}, mass: 1, position: [0, 0, 0.5]}"
 MEANT = {
     "hard/control/gain_of_one.yaml",
     "hard/degenerate/same_place.yaml",
+    "hard/found/cohesion_of_what_turns.yaml",
     "hard/found/sweeps_of_a_step_solved_anew.yaml",
     "hard/found/torque_beyond_its_cone.yaml",
     "hard/overlap/pyramid_pressed.yaml",

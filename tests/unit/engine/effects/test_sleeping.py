@@ -98,6 +98,27 @@ def test_falling_asleep_costs_no_potential_energy() -> None:
     np.testing.assert_allclose(energy, G * (0.1 + 0.3 + 0.5 + 0.1 + 0.1 + 0.0), rtol=1e-9)
 
 
+@pytest.mark.parametrize("axis", range(3))
+def test_who_wakes_turns_by_its_own_moment_about_each_axis(axis: int) -> None:
+    """Lifted off the floor with a torque about one of its axes: w = tau t/I of its solid."""
+    size = (0.1, 0.2, 0.3)  # [m], three moments of inertia
+    bodies = {"floor": plane(), "block": box(size, (0.0, 0.0, 0.15))}
+    cell = resolved(bodies, (0.0, 0.0, -G), sleeping=True, sleep_time=SLEEP_TIME)
+    bench = Bench(cell, spec=stack().spec)
+    bench.run(40)
+    assert asleep(bench) == [1]
+    block = bench.engine.bodies[1]
+    moment = sum(edge**2 for i, edge in enumerate(size) if i != axis) / 12.0  # of 1 kg
+    # 4 g up; corners, 0.19 m off the axis at most, go down by less: its contacts push no more.
+    torque, steps = moment * G / 0.19, 10
+    block["fz"], block["t" + "xyz"[axis]] = 5.0 * G, torque
+    bench.run(steps)
+    expected = np.zeros(3)
+    expected[axis] = torque * steps * DT / moment
+    # Ten sums, turned to the body's axes and back; the other moments differ from it by 0.3.
+    np.testing.assert_allclose(bench.spin[1], expected, atol=1e-12 * expected[axis])
+
+
 def test_a_ball_wakes_the_island_it_hits_and_no_other() -> None:
     # 40 steps to fall asleep, then 2 m at 10 m/s: it arrives after 48 steps.
     bench = slept(ball=(-2.5, 0.0, 0.9), velocity=(10.0, 0.0, 0.0))
