@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Final
 
 import typer
 
 from lavender_cli.printing import CELLS_SHOWN, digits, mark
+from lavendersim.runner.limits_reached import limits_in_words
 
 if TYPE_CHECKING:
     from lavendersim.runner.run_results import CellResult
@@ -60,6 +62,11 @@ def summary_of(rows: Sequence[CellResult]) -> list[str]:
             f"{steps} steps of {len(missed)} cells above the tolerance, most at "
             f"{most.label}: {most.not_converged_steps} of {most.steps}"
         )
+    counts: Counter[str] = Counter()
+    for row in rows:
+        counts.update(row.at_limit)
+    if counts:
+        lines.append(limits_in_words(counts))
     for name in dict.fromkeys(name for row in rows for name in row.measures):
         lines += _range(name, [(row.measures.get(name), row.label) for row in rows])
     return lines
@@ -98,6 +105,8 @@ def _number(value: float | str) -> float:
 def accuracy(row: CellResult) -> str:
     """Return how far the steps of a cell were solved, in words."""
     worst = f"residual <= {digits(row.worst_residual)} m/s"
+    if row.at_limit:
+        worst += f"  {limits_in_words(row.at_limit)}"
     if not row.not_converged_steps:
         return worst
     tolerance = f"tolerance {digits(row.tolerance)} m/s"

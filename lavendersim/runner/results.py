@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from lavendersim.durable_files import write_whole
 
 from .accuracy import PARTS, Accuracy
+from .limits_reached import limits_in_words
 from .run_directory import RESULTS, TABLE, Run
 from .run_results import CellResult, RunResults
 
@@ -47,6 +48,7 @@ def write_results(
                 outcome.accuracy.worst_residual,
                 outcome.accuracy.not_converged,
                 _violations(outcome.accuracy),
+                outcome.accuracy.at_limit,
             )
         )
     results = RunResults(
@@ -85,7 +87,10 @@ def compile_seconds(finished: Finished) -> float:
 
 
 def convergence_notices(finished: Finished) -> list[str]:
-    """Return a sentence for every cell with steps that did not converge to its tolerance."""
+    """Return sentences for every cell with steps that did not converge to its tolerance.
+
+    And for those in which an algorithm took all its iterations.
+    """
     notices = []
     for cell, outcome in zip(finished.run.cells, finished.outcomes, strict=True):
         accuracy = outcome.accuracy
@@ -96,6 +101,9 @@ def convergence_notices(finished: Finished) -> list[str]:
                 f"ended above the tolerance {accuracy.tolerance:g} m/s, "
                 f"worst {accuracy.worst_residual:.2g} m/s"
             )
+        if accuracy.at_limit:
+            where = f"[{cell.label}]" if cell.label else ""
+            notices.append(f"{finished.run.name}{where}: {limits_in_words(accuracy.at_limit)}")
     return notices
 
 

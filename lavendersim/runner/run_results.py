@@ -19,6 +19,7 @@ from lavendersim.errors import TraceError
 from lavendersim.measures.verdict import Verdict
 
 from .json_table import finite
+from .limits_reached import AT_LIMIT
 from .run_tables import read_table, renamed
 
 NOT_FINITE: Final = {"nan": math.nan, "inf": math.inf, "-inf": -math.inf}
@@ -43,6 +44,8 @@ class CellResult:
     worst_residual: float  # of any step [m/s]
     not_converged_steps: int  # that ended above the tolerance
     violations: Mapping[str, float | str | None] = field(default_factory=dict)  # by WORST columns
+    # How often an algorithm took all its iterations, by columns of /step; none where it never did.
+    at_limit: Mapping[str, int] = field(default_factory=dict)
 
     @property
     def as_json(self) -> dict[str, Any]:
@@ -60,6 +63,7 @@ class CellResult:
             "worst_residual": self.worst_residual,
             "not_converged_steps": self.not_converged_steps,
             **self.violations,
+            **self.at_limit,
         }
         plain: dict[str, Any] = finite(row, str)
         return plain
@@ -175,6 +179,7 @@ def _cell_of(row: Mapping[str, Any]) -> CellResult:
         float(row["worst_residual"]),
         int(row["not_converged_steps"]),
         columns,
+        {name: int(row[name]) for name in AT_LIMIT if name in row},
     )
 
 

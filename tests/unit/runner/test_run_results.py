@@ -14,6 +14,7 @@ import pytest
 from lavendersim.errors import TraceError
 from lavendersim.measures.verdict import Verdict
 from lavendersim.runner.run_results import CellResult, RunResults, mean_per_step, read_results
+from lavendersim.runner.run_tables import FORMER_NAMES
 
 VERDICT = Verdict("low", "low at e=1", True, 0.5, "at most 1 m", "none", "", "a.mcap", False, 0.5)
 WORST = {"worst_cone": math.inf, "worst_cone_contact": "a and b", "worst_dissipation": None}
@@ -28,6 +29,7 @@ ROW = {
     **{"physics_us_per_step": 1.0, "logging_us_per_step": 1.0, "compile_s": 0.0},
     **{"tolerance": None, "worst_residual": 0.0, "not_converged_steps": 0},
 }
+FORMER = {name: former for former, name in FORMER_NAMES.items()}
 TABLE = {"experiment": "drop", "cells": [ROW], "checks": [], "passed": True}
 
 
@@ -64,6 +66,14 @@ def test_by_key_results_are_the_plain_data_of_the_file(tmp_path: Path) -> None:
     assert (len(RESULTS), RESULTS.get("nothing"), "passed" in RESULTS) == (8, None, True)
 
 
+def test_what_took_all_its_iterations_is_a_column_only_then(tmp_path: Path) -> None:
+    often = dataclasses.replace(CELLS[0], at_limit={"gjk_not_converged": 3})
+    dataclasses.replace(RESULTS, cells=(often, CELLS[0])).write(tmp_path / "one.json")
+    rows = json.loads((tmp_path / "one.json").read_text())["cells"]
+    assert [row.get("gjk_not_converged") for row in rows] == [3, None]
+    assert read_results(tmp_path / "one.json").cells == (often, CELLS[0])
+
+
 def test_results_cannot_be_changed() -> None:
     with pytest.raises(dataclasses.FrozenInstanceError):
         CELLS[0].steps = 3  # type: ignore[misc]
@@ -80,7 +90,7 @@ def test_results_of_an_older_version_have_former_names_and_fewer_columns(tmp_pat
     row = {key: value for key, value in ROW.items() if key != "not_converged_steps"}
     check = {"name": "low", "node": "low", "passed": True, "measured": "nan", "expected": "1"}
     check |= {"tolerance": "none", "message": "low: passed"}
-    table = TABLE | {"cells": [row | {"unsolved_steps": 3}], "checks": [check]}
+    table = TABLE | {"cells": [row | {FORMER["not_converged_steps"]: 3}], "checks": [check]}
     (tmp_path / "results.json").write_text(json.dumps(table))
     read = read_results(tmp_path / "results.json")
     assert (read.cells[0].not_converged_steps, read.cells[0].violations) == (3, {})
