@@ -29,13 +29,40 @@ numerics: {timestep: 1/240}
 duration: 0.05
 """
 # In another process: kernels of this one have the budget that they were made with.
-STARVED = """
+BUDGET = """
 import sys
 from lavendersim.engine.collide.convex import epa, gjk
 gjk.ROUNDS, epa.EPA_VERTICES = 1, 5
+"""
+STARVED = f"""{BUDGET}
 from lavender_cli.main import main
 sys.argv = ["lavender", *sys.argv[1:]]
 main()
+"""
+# Rows of a block end before its steps do where contacts are many: the step is begun again.
+IN_BLOCKS = f"""{BUDGET}
+import json
+from lavendersim import load_experiment
+from lavendersim.scene.build import build
+from lavendersim.scene.plan import plan_of_cell
+experiment = load_experiment("log.yaml")
+cell = experiment.cells()[0]
+config = cell.config
+plan = plan_of_cell(cell)
+table = []
+for block in (1, 5, 1000):
+    engine = build(config, plan.spec).engine(plan.spec, block)
+    engine.advance(0)
+    counts, again = [], 0
+    while engine.counters["step"][0] < config.steps:
+        before = int(engine.counters["step"][0])
+        engine.advance(config.steps - before)
+        made = int(engine.counters["step"][0]) - before
+        again += made < block
+        rows = engine.take_rows().step
+        counts += [[int(row["gjk_not_converged"]), int(row["epa_not_converged"])] for row in rows]
+    table.append([again, counts])
+print(json.dumps(table))
 """
 
 
@@ -62,6 +89,15 @@ def test_counts_of_blocks_of_steps_add_up() -> None:
     assert accuracy.at_limit == {}
     step["gjk_not_converged"] = [0, 2, 0, 1]
     assert accuracy.after(step).after(step).at_limit == {"gjk_not_converged": 6}
+
+
+def test_a_step_that_is_begun_again_counts_once(tmp_path: Path) -> None:
+    (tmp_path / "log.yaml").write_text(LOG)
+    done = lavender(["-c", IN_BLOCKS], where=tmp_path)
+    single, five, all_at_once = json.loads(done.stdout)
+    assert five[0] > 1  # blocks ended before their steps: the last alone does so by itself
+    assert single[1] == five[1] == all_at_once[1]
+    assert any(count > 0 for step in single[1] for count in step)
 
 
 @pytest.mark.parametrize("starved", [False, True])
