@@ -3,20 +3,23 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from typing import Any, Final
+from collections import Counter
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, Final
 
 import typer
 
 from lavender_cli.printing import CELLS_SHOWN, digits, mark
+from lavendersim.runner.limits_reached import limits_in_words
+
+if TYPE_CHECKING:
+    from lavendersim.runner.run_results import CellResult
 
 ENDED_SHOWN: Final = 5
 _SINGLE: Final = (int, float, str)  # not a row of numbers
-_INFINITE: Final = ("inf", "-inf")  # as the table has them
-Row = Mapping[str, Any]  # of a cell in results.json
 
 
-def print_cells(rows: Sequence[Row], verbose: bool) -> None:
+def print_cells(rows: Sequence[CellResult], verbose: bool) -> None:
     """Print the cells of a run: each of up to CELLS_SHOWN or where verbose, else all together."""
     if verbose or len(rows) <= CELLS_SHOWN:
         for row in rows:
@@ -27,49 +30,51 @@ def print_cells(rows: Sequence[Row], verbose: bool) -> None:
     typer.echo("  -v lists each cell, results.csv has them as a table")
 
 
-def line_of(row: Row) -> str:
+def line_of(row: CellResult) -> str:
     """Return the line of a cell."""
     numbers = ", ".join(
         f"{name} {digits(value)}"
-        for name, value in row["measures"].items()
-        if isinstance(value, float | int)
+        for name, value in row.measures.items()
+        if isinstance(value, float | int) and math.isfinite(value)
     )
     return (
-        f"  {row['index']:4}  {row['label'] or '-'}  {row['status']}  "
-        f"physics {row['physics_us_per_step']:.2f} us/step  {accuracy(row)}  {numbers}"
+        f"  {row.index:4}  {row.label or '-'}  {row.status}  "
+        f"physics {row.physics_us_per_step:.2f} us/step  {accuracy(row)}  {numbers}"
     )
 
 
-def summary_of(rows: Sequence[Row]) -> list[str]:
+def summary_of(rows: Sequence[CellResult]) -> list[str]:
     """Return lines of many cells: how they ended, cost, accuracy, and of each measure the range."""
-    ended = [row for row in rows if row["status"] != "complete"]
+    ended = [row for row in rows if row.status != "complete"]
     lines = [f"{len(rows) - len(ended)} of {len(rows)} complete"]
-    lines += [f"{mark(False)}  {row['label']}: {row['status']}" for row in ended[:ENDED_SHOWN]]
+    lines += [f"{mark(False)}  {row.label}: {row.status}" for row in ended[:ENDED_SHOWN]]
     if len(ended) > ENDED_SHOWN:
         lines.append(f"and {len(ended) - ENDED_SHOWN} more ended early")
-    costs = [(row["physics_us_per_step"], row["label"]) for row in rows]
+    costs = [(row.physics_us_per_step, row.label) for row in rows]
     lines += _range("physics", costs, " us/step")
-    if "worst_residual" in rows[0]:
-        worst = max(rows, key=_residual)
-        shown = digits(float(worst["worst_residual"]))
-        lines.append(f"residual <= {shown} m/s, largest at {worst['label']}")
-        missed = [row for row in rows if row["not_converged_steps"]]
-        if missed:
-            most = max(missed, key=lambda row: row["not_converged_steps"] / max(row["steps"], 1))
-            steps = sum(row["not_converged_steps"] for row in missed)
-            lines.append(
-                f"{steps} steps of {len(missed)} cells above the tolerance, most at "
-                f"{most['label']}: {most['not_converged_steps']} of {most['steps']}"
-            )
-    for name in dict.fromkeys(name for row in rows for name in row["measures"]):
-        lines += _range(name, [(row["measures"].get(name), row["label"]) for row in rows])
+    worst = max(rows, key=_residual)
+    lines.append(f"residual <= {digits(worst.worst_residual)} m/s, largest at {worst.label}")
+    missed = [row for row in rows if row.not_converged_steps]
+    if missed:
+        most = max(missed, key=lambda row: row.not_converged_steps / max(row.steps, 1))
+        steps = sum(row.not_converged_steps for row in missed)
+        lines.append(
+            f"{steps} steps of {len(missed)} cells above the tolerance, most at "
+            f"{most.label}: {most.not_converged_steps} of {most.steps}"
+        )
+    counts: Counter[str] = Counter()
+    for row in rows:
+        counts.update(row.at_limit)
+    if counts:
+        lines.append(limits_in_words(counts))
+    for name in dict.fromkeys(name for row in rows for name in row.measures):
+        lines += _range(name, [(row.measures.get(name), row.label) for row in rows])
     return lines
 
 
-def _residual(row: Row) -> float:
+def _residual(row: CellResult) -> float:
     """Return the worst residual of a cell; one that is not a number is the largest of all."""
-    value = float(row["worst_residual"])
-    return math.inf if math.isnan(value) else value
+    return math.inf if math.isnan(row.worst_residual) else row.worst_residual
 
 
 def _range(name: str, taken: Sequence[tuple[Any, str]], unit: str = "") -> list[str]:
@@ -93,16 +98,16 @@ def _range(name: str, taken: Sequence[tuple[Any, str]], unit: str = "") -> list[
 
 
 def _number(value: float | str) -> float:
-    """Return a number of the table; NaN for a text, which says why there is none."""
-    return math.nan if isinstance(value, str) and value not in _INFINITE else float(value)
+    """Return a number of the results; NaN for a text, which says why there is none."""
+    return math.nan if isinstance(value, str) else float(value)
 
 
-def accuracy(row: Row) -> str:
-    """Return how far the steps of a cell were solved, in words; nothing for runs of old."""
-    if "worst_residual" not in row:
-        return ""
-    worst = f"residual <= {digits(float(row['worst_residual']))} m/s"
-    if not row["not_converged_steps"]:
+def accuracy(row: CellResult) -> str:
+    """Return how far the steps of a cell were solved, in words."""
+    worst = f"residual <= {digits(row.worst_residual)} m/s"
+    if row.at_limit:
+        worst += f"  {limits_in_words(row.at_limit)}"
+    if not row.not_converged_steps:
         return worst
-    tolerance = f"tolerance {digits(row['tolerance'])} m/s"
-    return f"{worst} ({row['not_converged_steps']} of {row['steps']} steps above the {tolerance})"
+    tolerance = f"tolerance {digits(row.tolerance)} m/s"
+    return f"{worst} ({row.not_converged_steps} of {row.steps} steps above the {tolerance})"

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from typing import Annotated, Any, Final, NamedTuple
 
 import typer
@@ -24,7 +24,7 @@ Verbose = Annotated[
 
 
 class Judged(NamedTuple):
-    """A verdict as it is printed, from memory or from the table of results."""
+    """A verdict as it is printed."""
 
     name: str
     node: str
@@ -38,22 +38,6 @@ class Judged(NamedTuple):
     def place(self) -> str:
         """The cell, as its node has it; empty where the claim is on no cell alone."""
         return self.node.removeprefix(self.name).removeprefix(" at ")
-
-
-def of_table(rows: Iterable[Mapping[str, Any]]) -> list[Judged]:
-    """Return the verdicts of `results.json`; those of older runs have no margins."""
-    return [
-        Judged(
-            row["name"],
-            row["node"],
-            bool(row["passed"]),
-            float(row["measured"]),
-            row["expected"],
-            row["message"],
-            float(row.get("margin", "nan")),
-        )
-        for row in rows
-    ]
 
 
 class ClaimLine(NamedTuple):

@@ -149,7 +149,8 @@ def _residual(number: float | None, form: str) -> str:
 
 
 def _cells(row: CostRow) -> tuple[str, ...]:
-    from lavendersim.runner.cost_targets import effort_of, percent, short_time, steps_of
+    from lavendersim.quantities.short_times import short_time
+    from lavendersim.runner.cost_targets import effort_of, percent, steps_of
 
     spread = row.ns_per_second
     name, start = f"{row.solver:28} {row.preset:7}", "warm" if row.warm_start else "cold"
@@ -159,10 +160,12 @@ def _cells(row: CostRow) -> tuple[str, ...]:
         row.worst_at,
         "" if row.order is None else f"{row.order:.1f}",
         f"{row.worst_residual:.1e}" if row.worst_residual is not None else "not finite",
-        "" if spread is None else short_time(spread.median),
+        "" if spread is None else short_time(spread.median / 1e9),
         ""
         if spread is None
-        else f"{short_time(spread.lower_quartile)} to {short_time(spread.upper_quartile)}",
+        else " to ".join(
+            short_time(one / 1e9) for one in (spread.lower_quartile, spread.upper_quartile)
+        ),
     )
 
 

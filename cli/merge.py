@@ -43,7 +43,8 @@ def merge(
 
         figures = draw(found.run, found.run.path / "figures")
     if as_json:
-        printing.as_json([{**found.run.results(), "run": found.run.path, "figures": figures}])
+        results = found.run.results().as_json
+        printing.as_json([{**results, "run": found.run.path, "figures": figures}])
     else:
         print_finished(found)
         for figure in figures:

@@ -154,9 +154,9 @@ def run(
                 name = experiment.name
                 typer.echo(f"{name}: finished, nothing to resume: {whole.path}", err=True)
                 results = whole.results()
-                good = good and bool(results["passed"])
+                good = good and results.passed
                 if as_json:
-                    tables.append({**results, "run": whole.path, "figures": []})
+                    tables.append({**results.as_json, "run": whole.path, "figures": []})
                 continue
             printing.warn_of_mistakes(experiment)
             with _resumable(command), ExitStack() as open_now:
@@ -187,7 +187,8 @@ def run(
             take: Callable[[list[Path]], None] = _print_figures
             if as_json:
                 figures: list[Path] = []
-                table = {**finished.run.results(), "run": finished.run.path, "figures": figures}
+                results = finished.run.results()
+                table = {**results.as_json, "run": finished.run.path, "figures": figures}
                 if refine:
                     table["time_errors"] = time_errors.as_table(refined)
                 tables.append(table)

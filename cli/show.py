@@ -38,6 +38,7 @@ def show(
     Exits 3 when one of its logs was cut or is damaged where the plan is read.
     """
     from lavendersim.runner import open_run
+    from lavendersim.runner.run_results import mean_per_step
 
     opened = open_run(run, runs)
     if cell is not None:
@@ -45,7 +46,7 @@ def show(
         return
     results = opened.results()
     if as_json:
-        printing.as_json(results)
+        printing.as_json(results.as_json)
         _end(opened.cut())
         return
     experiment = opened.experiment
@@ -61,30 +62,27 @@ def show(
     logged = plans_of(opened.cells)
     for plan in logged.plans:
         print_plan(plan, len(opened.cells))
-    steps = sum(row["steps"] for row in results["cells"])
-    logging = sum(row["steps"] * row["logging_us_per_step"] for row in results["cells"])
-    compiling = f"compile {results.get('compile_s', float('nan')):.1f} s"
-    typer.echo(f"cells  logging {logging / max(steps, 1):.2f} us/step, {compiling}")
-    cell_lines.print_cells(results["cells"], verbose)
+    logging = mean_per_step(results.cells, "logging_us_per_step")
+    typer.echo(f"cells  logging {logging:.2f} us/step, compile {results.compile_s:.1f} s")
+    cell_lines.print_cells(results.cells, verbose)
     typer.echo("checks")
-    judged = claims.of_table(results["checks"])
-    claims.print_claims(judged, verbose)
-    claims.print_failures([], judged, verbose)
+    claims.print_claims(results.checks, verbose)
+    claims.print_failures([], results.checks, verbose)
     _end(logged.damaged)
 
 
 def _show_cell(opened: Run, number: int, as_json: bool) -> None:
     """Print where the log of a cell is, what replays it, and what was measured of it."""
     cell = cell_of(opened, number)
-    row = next(row for row in opened.results()["cells"] if row["index"] == cell.index)
+    row = next(row for row in opened.results().cells if row.index == cell.index)
     command = f"lavender replay {shlex.quote(str(opened.path))} --cell {number}"
     if as_json:
-        printing.as_json({**row, "log": cell.path, "replay": command})
+        printing.as_json({**row.as_json, "log": cell.path, "replay": command})
     else:
         typer.echo(f"{typer.style(cell.label or opened.name, bold=True)}  {cell.status}")
         typer.echo(f"log     {cell.path}")
         typer.echo(f"replay  {command}")
-        for name, value in row["measures"].items():
+        for name, value in row.measures.items():
             shown = printing.digits(value) if isinstance(value, float | int) else value
             typer.echo(f"  {name}  {shown}")
     damage = cell.damage()

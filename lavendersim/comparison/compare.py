@@ -14,12 +14,12 @@ from lavendersim.runner import Run
 from lavendersim.runner.environment import PACKAGES
 from lavendersim.runner.json_table import finite
 from lavendersim.runner.run_directory import ENVIRONMENT
+from lavendersim.runner.run_results import RunResults, mean_per_step
 from lavendersim.runner.run_seal import read_sealed
 
 VERSIONS: Final = ("lavender", "engine source", "python", *PACKAGES)
 MACHINE: Final = ("system", "processor", "cores")
 COSTS: Final = ("physics_us_per_step", "logging_us_per_step")
-NUMBERS_OF_TEXT: Final = ("nan", "inf", "-inf")  # as results have what JSON has not
 
 
 class MeasureChange(NamedTuple):
@@ -112,6 +112,7 @@ def compare(a: Run, b: Run) -> Comparison:
         pair.a.release()
         pair.b.release()
     environments = _environment(a), _environment(b)
+    costs = {name: [mean_per_step(one.cells, name) for one in results] for name in COSTS}
     return Comparison(
         a,
         b,
@@ -122,7 +123,7 @@ def compare(a: Run, b: Run) -> Comparison:
         pairing,
         _measures(pairing, results),
         _verdicts(*results),
-        {name: (_mean(results[0], name), _mean(results[1], name)) for name in COSTS},
+        {name: (means[0], means[1]) for name, means in costs.items()},
         states,
     )
 
@@ -167,15 +168,13 @@ def _named(trees: tuple[Mapping[str, Any], ...], names: tuple[str, ...]) -> list
     return list(differences(a, b))
 
 
-def _measures(
-    pairing: Pairing, results: tuple[Mapping[str, Any], Mapping[str, Any]]
-) -> list[MeasureChange]:
-    rows = [{row["index"]: row["measures"] for row in one["cells"]} for one in results]
+def _measures(pairing: Pairing, results: tuple[RunResults, RunResults]) -> list[MeasureChange]:
+    rows = [{row.index: row.measures for row in one.cells} for one in results]
     changes = []
     for pair in pairing.pairs:
         mine, others = rows[0][pair.a.index], rows[1][pair.b.index]
         for name in dict.fromkeys((*mine, *others)):
-            ends = _number(mine.get(name, ABSENT)), _number(others.get(name, ABSENT))
+            ends = mine.get(name, ABSENT), others.get(name, ABSENT)
             # Why there is no number names the log, which is another file in another run.
             reasons = all(isinstance(end, str) and end != ABSENT for end in ends)
             if not reasons and not equal(*ends):
@@ -183,27 +182,14 @@ def _measures(
     return changes
 
 
-def _number(value: Any) -> Any:
-    if isinstance(value, list):
-        return [_number(item) for item in value]
-    return float(value) if value in NUMBERS_OF_TEXT else value
-
-
-def _verdicts(a: Mapping[str, Any], b: Mapping[str, Any]) -> list[VerdictChange]:
+def _verdicts(a: RunResults, b: RunResults) -> list[VerdictChange]:
     words = {True: "pass", False: "FAIL", None: ABSENT}
-    mine, others = ({one["node"]: one["passed"] for one in run["checks"]} for run in (a, b))
+    mine, others = ({one.node: one.passed for one in run.checks} for run in (a, b))
     return [
         VerdictChange(node, words[mine.get(node)], words[others.get(node)])
         for node in dict.fromkeys((*mine, *others))
         if mine.get(node) != others.get(node)
     ]
-
-
-def _mean(results: Mapping[str, Any], name: str) -> float:
-    """Return a cost of a step [us], the mean over all steps of all cells."""
-    steps = sum(row["steps"] for row in results["cells"])
-    total = sum(row["steps"] * row[name] for row in results["cells"])
-    return float(total / steps) if steps else float("nan")
 
 
 def _state(one: CellStates) -> dict[str, Any]:

@@ -85,28 +85,25 @@ def make_foresee(spec: Spec) -> Any:
         gap = contact.phi if contact.phi > TOUCHING else 0.0
         if soft and gap == 0.0:
             return False
-        e_at = e
-        if gap == 0.0 and v < 0.0:
-            if falls:
-                e_at = restitution_at(e, pair, -v)
-            return is_impact(-v, least, dv, 0.0 if met else most, e_at, params)
+        squared = v * v - 2.0 * a * gap
+        meets = gap == 0.0 and v < 0.0
+        speed = -v if meets else sqrt(max(squared, 0.0))
+        if falls:
+            e = restitution_at(e, pair, speed)
+        if meets:
+            return is_impact(speed, least, dv, 0.0 if met else most, e, params)
         drawn = False  # as long as it is closed, however fast it opens
         if cohesive:
             drawn = pair.cohesion > 0.0 and contact.phi <= max(params.slop, TOUCHING)
         # What leaves a gap, whatever holds its bodies, is no contact of this part.
         if not drawn and v > least + most and contact.phi + left * (v - 0.5 * most) > params.slop:
             contact.waits = 1
-        ahead = False
-        squared = v * v - 2.0 * a * gap
-        slow = most
+        ahead, slow = False, most
         if gap > params.slop:
             if bend(contact, bodies, motion) * left > BENDS * most:
                 slow = GLANCING * most
         if squared > 0.0 and (v < 0.0 or a < 0.0):
-            speed = sqrt(squared)
-            if falls:
-                e_at = restitution_at(e, pair, speed)
-            if is_impact(speed, least, dv, slow, e_at, params):
+            if is_impact(speed, least, dv, slow, e, params):
                 # The root that comes first, in the form that does not cancel.
                 due = (v + speed) / -a if v > 0.0 else 2.0 * gap / (speed - v)
                 ahead = gap > 0.0 or due >= FLIGHT * params.timestep

@@ -216,6 +216,11 @@ COUNTERS: Final[list[Field]] = [
     ("cached_dt", F8),  # timestep the cached impulses belong to [s]
     ("sweeps", I8),  # sweeps spent in the last step
     ("stronge", I8),  # 1 when Stronge's law replaced Newton's in the last step
+    # Calls in the step that took all their iterations (`collide.iteration_limits`); impacts whose
+    # integration took all its parts (`stronge`).
+    ("gjk_not_converged", I8),
+    ("epa_not_converged", I8),
+    ("stronge_not_converged", I8),
     ("newton_steps", I8),  # of Newton's method since the start
     ("unchosen", F8),  # changes by sweeps since impulses were of least norm [m/s]
     ("chosen", F8),  # the largest impulse then, as the velocity it gives [m/s]

@@ -18,6 +18,7 @@ from typing import Any
 
 from .approach import make_note_acceleration
 from .collide import narrow_phase
+from .collide.iteration_limits import forget_limits, has_gjk, make_count_limits
 from .compile import chain, composing, kernel, uncollected
 from .effects import BY_NAME, has_hook, made_by, made_once
 from .integrate import (
@@ -100,6 +101,9 @@ def make_advance(spec: Spec) -> Any:
     end_span: Any = make_end_span(spec) if controlled else None
     abandon: Any = make_abandon(spec) if controlled else None
     stand: Any = make_stand(spec) if ordered else None
+    iterates = has_gjk(spec)
+    count_limits: Any = make_count_limits(spec) if iterates else None
+    limits_impacts = has_hook(spec, "limit_impacts")
     sleeps, measure_speeds = made_once(spec, "measure_speeds")
     _, wake = made_once(spec, "wake")
     _, update_sleeping = made_once(spec, "update_sleeping")
@@ -124,6 +128,10 @@ def make_advance(spec: Spec) -> Any:
                 begins = counters.parts == 0
             if begins:
                 params.timestep = params.dt
+                if iterates:
+                    counters.gjk_not_converged, counters.epa_not_converged = 0, 0
+                if limits_impacts:
+                    counters.stronge_not_converged = 0
             if ordered and not controlled:
                 params.dt = params.timestep - counters.elapsed
             if begins:
@@ -184,6 +192,8 @@ def make_advance(spec: Spec) -> Any:
                 if full == RUNNING and wake(bodies, contacts, count, params):
                     full = WOKEN
             if full != RUNNING:
+                if iterates:
+                    forget_limits(workspace.collision)
                 if keeps:
                     undo(velocities, motion)
                 if controlled:
@@ -221,6 +231,8 @@ def make_advance(spec: Spec) -> Any:
                         passed = True
                 if not passed:
                     respond(state, count, workspace, params, counters, log)
+            if iterates:
+                count_limits(workspace.collision, counters)
             if in_parts:
                 gather(counters)
                 if instant:

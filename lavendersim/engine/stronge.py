@@ -45,10 +45,10 @@ def make_direction(spec: Spec):
 
 
 def make_leave(spec: Spec):
-    """Return `kernel(contact, u_1, u_2) -> u_n` [m/s]: the separation speed.
+    """Return `kernel(contact, u_1, u_2) -> (u_n, ended)`: the separation speed [m/s].
 
-    u_1, u_2: slip when they meet; contact.approach_speed: how fast they do. 0.0
-    where restitution has not ended after MOST_PARTS.
+    u_1, u_2: slip when they meet; contact.approach_speed: how fast they do. 0.0 and False where
+    restitution has not ended after MOST_PARTS.
     """
     direction = make_direction(spec)
 
@@ -86,20 +86,20 @@ def make_leave(spec: Spec):
                     u_n, compressing = 0.0, False
                     u_1, u_2 = u_1 + rate_1 * step, u_2 + rate_2 * step
                     if contact.e == 0.0:
-                        return 0.0
+                        return 0.0, True
                     continue
                 work += (u_n + 0.5 * rate * step) * step
             else:
                 gain = (u_n + 0.5 * rate * step) * step
                 left = -contact.e * contact.e * work - back
                 if gain >= left:
-                    return sqrt(max(u_n * u_n + 2.0 * rate * left, 0.0))
+                    return sqrt(max(u_n * u_n + 2.0 * rate * left, 0.0)), True
                 back += gain
             u_n += rate * step
             u_1, u_2 = u_1 + rate_1 * step, u_2 + rate_2 * step
             if stops:
                 if u_1 * u_1 + u_2 * u_2 <= STOPPED * squared * part * part:
                     u_1, u_2 = 0.0, 0.0
-        return 0.0
+        return 0.0, False
 
     return kernel(leave, spec)

@@ -18,6 +18,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from lavendersim.errors import LavenderError, UsageError
 from lavendersim.figures.thumbnail import thumbnail
+from lavendersim.quantities.short_times import ON_PAGES, short_time
 
 WIDTH, HEIGHT = 160, 110  # dots of a picture, as `thumbnail` draws it
 
@@ -96,13 +97,8 @@ def range_of(numbers: Sequence[float]) -> str:
 
 
 def duration(seconds: float) -> str:
-    """Return a time in the unit that leaves digits before the point; nothing for none."""
-    if math.isnan(seconds):
-        return ""
-    for unit, size in (("s", 1.0), ("ms", 1e-3)):
-        if seconds >= size:
-            return f"{seconds / size:.3g} {unit}"
-    return f"{seconds * 1e6:.3g} \u00b5s"
+    """Return a time in words; nothing for none."""
+    return "" if math.isnan(seconds) else short_time(seconds, ON_PAGES)
 
 
 def count_of(things: Sized, name: str) -> str:

@@ -25,7 +25,7 @@ class Summary(NamedTuple):
     physics: float  # [us] a step
     passed: int
     claims: int
-    shown: Sequence[Mapping[str, Any]]  # verdicts, failed ones first
+    shown: Sequence[Any]  # verdicts, failed ones first
 
 
 def html_of(run: Any) -> str:
@@ -54,16 +54,16 @@ def _name(run: Any) -> str:
 
 def _summary(run: Any) -> Summary:
     results = run.results()
-    cells, checks = results["cells"], results["checks"]
-    steps = sum(row["steps"] for row in cells)
+    cells, checks = results.cells, results.checks
+    steps = sum(row.steps for row in cells)
     return Summary(
         cells=cells,
-        states=Counter(str(row["status"]) for row in cells),
+        states=Counter(row.status for row in cells),
         steps=steps,
-        physics=sum(row["steps"] * row["physics_us_per_step"] for row in cells) / max(steps, 1),
-        passed=sum(check["passed"] for check in checks),
+        physics=sum(row.steps * row.physics_us_per_step for row in cells) / max(steps, 1),
+        passed=sum(check.passed for check in checks),
         claims=len(checks),
-        shown=sorted(checks, key=lambda check: bool(check["passed"]))[:MOST_VERDICTS],
+        shown=sorted(checks, key=lambda check: check.passed)[:MOST_VERDICTS],
     )
 
 

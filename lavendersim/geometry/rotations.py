@@ -1,4 +1,4 @@
-"""Rotations of arrays: matrices and products of quaternions (w, x, y, z), body to world."""
+"""Rotations of arrays: matrices of quaternions (w, x, y, z), body to world."""
 
 from __future__ import annotations
 
@@ -29,13 +29,6 @@ def unit_quaternion(quaternion: npt.ArrayLike) -> Floats:
     """Return a quaternion at unit length."""
     numbers = np.asarray(quaternion, dtype=np.float64)
     return np.asarray(numbers / np.linalg.norm(numbers))
-
-
-def quaternion_product(one: Floats, other: Floats) -> Floats:
-    """Return the rotation that does `other` first, in the frame that `one` turns."""
-    w, v = one[0], one[1:]
-    real = w * other[0] - v @ other[1:]
-    return np.array([real, *(w * other[1:] + other[0] * v + np.cross(v, other[1:]))])
 
 
 def turns_between(before: Floats, after: Floats) -> tuple[Floats, Floats]:

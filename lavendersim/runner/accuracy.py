@@ -8,6 +8,8 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
+from .limits_reached import AT_LIMIT
+
 # Of what /step has the largest value, and the logged contact that has it.
 PARTS: Final = ("residual", "signorini", "cone", "dissipation")
 
@@ -26,6 +28,8 @@ class Accuracy(NamedTuple):
     tolerance: float | None = None  # [m/s] of the config; None: every step takes all its sweeps
     not_converged: int = 0  # steps whose solve ended above the tolerance
     worst: Mapping[str, Worst] = MappingProxyType({})  # by PARTS, those that the log has
+    # By AT_LIMIT: how often each took all its iterations; those that never did are missing.
+    at_limit: Mapping[str, int] = MappingProxyType({})
 
     def after(
         self, step: np.ndarray, contact: np.ndarray | None = None, names: Sequence[str] = ()
@@ -42,7 +46,15 @@ class Accuracy(NamedTuple):
             worst_residual=float(worst),
             not_converged=missed,
             worst={} if contact is None else self._worst(step, contact, names),
+            at_limit=self._at_limit(step),
         )
+
+    def _at_limit(self, step: np.ndarray) -> Mapping[str, int]:
+        found = dict(self.at_limit)
+        for column in AT_LIMIT:
+            if column in (step.dtype.names or ()) and (count := int(np.sum(step[column]))):
+                found[column] = found.get(column, 0) + count
+        return found
 
     def _worst(
         self, step: np.ndarray, contact: np.ndarray, names: Sequence[str]

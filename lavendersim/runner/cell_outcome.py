@@ -46,7 +46,8 @@ def note_measured(log: Path, ended: EndedCell) -> None:
         "status": outcome.status,
         "log": as_row(outcome.log),
         "outcome": outcome._replace(accuracy=None, log=None)._asdict(),  # type: ignore[arg-type]
-        "accuracy": outcome.accuracy._asdict() | {"worst": dict(outcome.accuracy.worst)},
+        "accuracy": outcome.accuracy._asdict()
+        | {"worst": dict(outcome.accuracy.worst), "at_limit": dict(outcome.accuracy.at_limit)},
         "measured": {
             index: [one.values, {name: list(found) for name, found in one.always.items()}]
             for index, one in measured.items()

@@ -8,6 +8,7 @@ from fractions import Fraction
 
 from lavendersim.errors import UsageError
 from lavendersim.measures.cost_table import CostAnswer, CostRow
+from lavendersim.quantities.short_times import short_time
 
 ROUND_OFF = 1e-13  # [-] some hundred operations of 2^-52 each; of two such errors none is better
 
@@ -83,15 +84,7 @@ def percent(share: float) -> str:
 
 def time_of(row: CostRow) -> str:
     """Return the cost of a setting in words."""
-    return f"{short_time(row.cost)} per simulated second"
-
-
-def short_time(nanoseconds: float) -> str:
-    """Return a time with two or three digits and the unit that suits it."""
-    for unit, size in (("s", 1e9), ("ms", 1e6), ("us", 1e3)):
-        if nanoseconds >= size:
-            return f"{nanoseconds / size:.3g} {unit}"
-    return f"{nanoseconds:.3g} ns"
+    return f"{short_time(row.cost / 1e9)} per simulated second"
 
 
 def name_of(row: CostRow) -> str:

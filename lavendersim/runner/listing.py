@@ -95,7 +95,7 @@ def listed_run(run: Run) -> Listed:
         rows = run.rows()
         if run.finished:  # another is listed as such; its logs are as they were left
             results = run.results()
-            passed, claims = bool(results["passed"]), len(results["checks"])
+            passed, claims = results.passed, len(results.checks)
             damaged = run.cut()
     except TraceError as error:
         damaged = [str(error)]

@@ -21,6 +21,7 @@ from lavendersim.measures.time_errors import DIVISORS, TimeError, time_error_of
 from .experiment_run import Finished, run
 from .progress import Progress
 from .run_directory import REFINED, TIME_ERRORS, RunCell
+from .run_results import CellResult
 
 # Gives a Progress for a run of some name.
 Reporting = Callable[[str], AbstractContextManager[Progress]]
@@ -60,7 +61,7 @@ def refine(finished: Finished, jobs: int = 1, reporting: Reporting = _silent) ->
         experiment = finished.run.experiment.refined(divisor)
         with reporting(f"{experiment.name} at 1/{divisor} of the timestep") as progress:
             runs.append(run(experiment, directory / REFINED, jobs, progress, overheads=False))
-    tables = [one.run.results()["cells"] for one in runs]
+    tables = [one.run.results().cells for one in runs]
     rows = [
         _refined(finished, name, place, [table[place] for table in tables])
         for name, spec in finished.run.experiment.measures.items()
@@ -71,14 +72,14 @@ def refine(finished: Finished, jobs: int = 1, reporting: Reporting = _silent) ->
     return rows
 
 
-def _refined(finished: Finished, name: str, place: int, cells: list[dict[str, Any]]) -> Refined:
+def _refined(finished: Finished, name: str, place: int, cells: list[CellResult]) -> Refined:
     cell = finished.run.cells[place]
     ended = [
-        f"at 1/{divisor} of the timestep: {row['status']}"
+        f"at 1/{divisor} of the timestep: {row.status}"
         for divisor, row in zip(DIVISORS, cells, strict=True)
-        if row["status"] != "complete"
+        if row.status != "complete"
     ]
-    values = [row["measures"].get(name, "no number") for row in cells]
+    values = [row.measures.get(name, "no number") for row in cells]
     found = time_error_of(ended or values)
     tolerance, claim = _room(finished, name, cell, values[0])
     return Refined(name, cell, found, tolerance, claim)

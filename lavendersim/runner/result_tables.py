@@ -9,7 +9,6 @@ measured is null, and `not_measured` says why.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, Final
@@ -20,12 +19,13 @@ from lavendersim.measures.judging import cells_of_claims
 from lavendersim.measures.meanings import meaning_of
 
 from .log_tables import key_fields
+from .run_results import CellResult
 
 if TYPE_CHECKING:
+    from lavendersim.measures.verdict import Verdict
+
     from .run_directory import Run
 
-# What the tables of results write for numbers that JSON does not have.
-NOT_FINITE: Final = {"nan": math.nan, "inf": math.inf, "-inf": -math.inf}
 ROWS_AT_ONCE: Final = 4096
 
 _STATE: Final = (
@@ -61,18 +61,18 @@ _VERDICT: Final = (
 
 def cells_table(run: Run) -> Table:
     """Return the table of cells. UsageError where the run did not finish."""
-    rows = run.results()["cells"]
-    experiment = run.experiment
-    places, checks = cells_of_claims(experiment), run.results()["checks"]
-    judged: dict[int, list[dict[str, Any]]] = {}
-    for check in checks:
-        if (index := places.get(check["node"])) is not None:
+    results = run.results()
+    rows, experiment = results.cells, run.experiment
+    places = cells_of_claims(experiment)
+    judged: dict[int, list[Verdict]] = {}
+    for check in results.checks:
+        if (index := places.get(check.node)) is not None:
             judged.setdefault(index, []).append(check)
     axes = {
         axis: _typed([cell.coordinates.get(axis) for cell in run.cells]) for axis in experiment.axes
     }
     measures = {
-        name: _typed([_number(row["measures"].get(name)) for row in rows])
+        name: _typed([_number(row.measures.get(name)) for row in rows])
         for name in experiment.measures
     }
     fields = distinct(
@@ -85,42 +85,36 @@ def cells_table(run: Run) -> Table:
                 for name, (kind, _) in measures.items()
             ],
             "of_measures": [_NOT_MEASURED],
-            "cost": [field for field in _COSTS if all(field.name in row for row in rows)],
+            "cost": [field for field in _COSTS if all(_has(row, field.name) for row in rows)],
         }
     )
     columns: list[Sequence[Any]] = [
         [cell.index for cell in run.cells],
         range(len(rows)),
         *(values for _, values in axes.values()),
-        [row["status"] for row in rows],
-        [row["steps"] for row in rows],
+        [row.status for row in rows],
+        [row.steps for row in rows],
         [_all_passed(judged.get(cell.index, [])) for cell in run.cells],
-        [[one["node"] for one in judged.get(c.index, []) if not one["passed"]] for c in run.cells],
+        [[one.node for one in judged.get(c.index, []) if not one.passed] for c in run.cells],
         *(values for _, values in measures.values()),
-        [_reasons(row["measures"]) for row in rows],
+        [_reasons(row.measures) for row in rows],
     ]
     costs = fields[len(columns) :]
-    columns += [[_number(row[_plain(field.name, rows)]) for row in rows] for field in costs]
+    columns += [[_cost(row, field.name) for row in rows] for field in costs]
     return Table("cells", fields, _batches(fields, columns, len(rows)))
 
 
 def verdicts_table(run: Run) -> Table:
     """Return the table of verdicts; those on several cells have no cell."""
-    checks = run.results()["checks"]
+    checks = run.results().checks
     places = cells_of_claims(run.experiment)
-    found = [places.get(check["node"]) for check in checks]
+    found = [places.get(check.node) for check in checks]
     order = {cell.index: place for place, cell in enumerate(run.cells)}
     fields = [*key_fields(run), *(field for field in _VERDICT)]
     columns: list[Sequence[Any]] = [
         found,
         [-1 if index is None else order[index] for index in found],
-        *(
-            [
-                _number(one.get(field.name)) if field.kind == "f8" else one.get(field.name)
-                for one in checks
-            ]
-            for field in _VERDICT
-        ),
+        *([getattr(one, field.name) for one in checks] for field in _VERDICT),
     ]
     return Table("verdicts", fields, _batches(fields, columns, len(checks)))
 
@@ -160,26 +154,26 @@ def _is_row(value: Any) -> bool:
 
 
 def _number(value: Any) -> Any:
-    """Return a number of the results; None for a sentence that says why there is none."""
+    """Return what was measured; None for a sentence that says why there is no number."""
     if isinstance(value, list):
         return [_number(item) for item in value]
-    if isinstance(value, str):
-        return NOT_FINITE.get(value)
-    return value
+    return None if isinstance(value, str) else value
 
 
 def _reasons(measures: Mapping[str, Any]) -> list[str]:
-    return [
-        f"{name}: {value}"
-        for name, value in measures.items()
-        if isinstance(value, str) and value not in NOT_FINITE
-    ]
+    return [f"{name}: {value}" for name, value in measures.items() if isinstance(value, str)]
 
 
-def _all_passed(checks: Sequence[Mapping[str, Any]]) -> bool | None:
-    return all(check["passed"] for check in checks) if checks else None
+def _all_passed(checks: Sequence[Verdict]) -> bool | None:
+    return all(check.passed for check in checks) if checks else None
 
 
-def _plain(name: str, rows: Sequence[Mapping[str, Any]]) -> str:
-    """Return the key of results that a column of costs is of, whose name may have been taken."""
-    return name if name in rows[0] else name.removeprefix("cost_")
+def _has(row: CellResult, name: str) -> bool:
+    """Whether a row has a cost; older versions wrote fewer."""
+    return name in row.violations or name in CellResult.__dataclass_fields__
+
+
+def _cost(row: CellResult, column: str) -> Any:
+    """Return the cost that a column is of, whose name may have been taken by a measure."""
+    name = column if _has(row, column) else column.removeprefix("cost_")
+    return row.violations[name] if name in row.violations else getattr(row, name)

@@ -6,11 +6,12 @@ import csv
 import io
 from typing import TYPE_CHECKING, Any
 
-from lavendersim.durable_files import write_in_pieces, write_whole
+from lavendersim.durable_files import write_whole
 
 from .accuracy import PARTS, Accuracy
-from .json_table import finite, pieces_of
+from .limits_reached import limits_in_words
 from .run_directory import RESULTS, TABLE, Run
+from .run_results import CellResult, RunResults
 
 if TYPE_CHECKING:
     from lavendersim.measures.overhead_table import OverheadTable
@@ -30,37 +31,37 @@ def write_results(
 ) -> None:
     """Write the tables of a finished run; numbers keep all their digits."""
     run = finished.run
-    rows = []
+    rows: list[CellResult] = []
     for cell, outcome, values in zip(run.cells, finished.outcomes, measured, strict=True):
         steps = max(outcome.steps, 1)
         rows.append(
-            {
-                "index": cell.index,
-                "label": cell.label,
-                "status": outcome.status,
-                "steps": outcome.steps,
-                "measures": values,
-                "physics_us_per_step": outcome.physics_ns / steps / 1000,
-                "logging_us_per_step": outcome.logging_ns / steps / 1000,
-                "compile_s": outcome.compile_ns / 1e9,
-                "tolerance": outcome.accuracy.tolerance,
-                "worst_residual": outcome.accuracy.worst_residual,
-                "not_converged_steps": outcome.accuracy.not_converged,
-                **_violations(outcome.accuracy),
-            }
+            CellResult(
+                cell.index,
+                cell.label,
+                outcome.status,
+                outcome.steps,
+                values,
+                outcome.physics_ns / steps / 1000,
+                outcome.logging_ns / steps / 1000,
+                outcome.compile_ns / 1e9,
+                outcome.accuracy.tolerance,
+                outcome.accuracy.worst_residual,
+                outcome.accuracy.not_converged,
+                _violations(outcome.accuracy),
+                outcome.accuracy.at_limit,
+            )
         )
-    table = {
-        "experiment": run.name,
-        "reduced": run.experiment.options.reduced,
-        "solver": run.experiment.options.solver,  # instead of the config's; none where it is that
-        "cells": (finite(row, str) for row in rows),
-        # Cells share kernels, so what compiling costs is a number of the run.
-        "compile_s": compile_seconds(finished),
-        "checks": (finite(verdict.row, str) for verdict in finished.verdicts),
-        "passed": finished.good,
-        **({} if overheads is None else {"overheads": finite(overheads.as_data(), str)}),
-    }
-    write_in_pieces(run.path / RESULTS, pieces_of(table), flush=False)
+    results = RunResults(
+        run.name,
+        run.experiment.options.reduced,
+        run.experiment.options.solver,
+        rows,
+        compile_seconds(finished),
+        finished.verdicts,
+        finished.good,
+        None if overheads is None else overheads.as_data(),
+    )
+    results.write(run.path / RESULTS)
     _write_csv(run, rows)
 
 
@@ -86,7 +87,10 @@ def compile_seconds(finished: Finished) -> float:
 
 
 def convergence_notices(finished: Finished) -> list[str]:
-    """Return a sentence for every cell with steps that did not converge to its tolerance."""
+    """Return sentences for every cell with steps that did not converge to its tolerance.
+
+    And for those in which an algorithm took all its iterations.
+    """
     notices = []
     for cell, outcome in zip(finished.run.cells, finished.outcomes, strict=True):
         accuracy = outcome.accuracy
@@ -97,19 +101,23 @@ def convergence_notices(finished: Finished) -> list[str]:
                 f"ended above the tolerance {accuracy.tolerance:g} m/s, "
                 f"worst {accuracy.worst_residual:.2g} m/s"
             )
+        if accuracy.at_limit:
+            where = f"[{cell.label}]" if cell.label else ""
+            notices.append(f"{finished.run.name}{where}: {limits_in_words(accuracy.at_limit)}")
     return notices
 
 
-def _write_csv(run: Run, rows: list[dict[str, Any]]) -> None:
+def _write_csv(run: Run, rows: list[CellResult]) -> None:
     names, axes = list(run.experiment.measures), list(run.experiment.axes)
     text = io.StringIO()
     writer = csv.writer(text)
     writer.writerow(["cell", *axes, "status", "steps", *names, *COSTS, *ACCURACY, *VIOLATIONS])
     for cell, row in zip(run.cells, rows, strict=True):
         coordinates = [str(cell.coordinates.get(axis, "")) for axis in axes]
-        values = [row["measures"].get(name, "") for name in names]
+        values = [row.measures.get(name, "") for name in names]
         writer.writerow(
-            [cell.label, *coordinates, row["status"], row["steps"], *values]
-            + [row[name] for name in (*COSTS, *ACCURACY, *VIOLATIONS)]
+            [cell.label, *coordinates, row.status, row.steps, *values]
+            + [getattr(row, name) for name in (*COSTS, *ACCURACY)]
+            + [row.violations[name] for name in VIOLATIONS]
         )
     write_whole(run.path / TABLE, text.getvalue(), flush=False)

@@ -15,6 +15,7 @@ from lavendersim.errors import TraceError, UsageError
 
 from .cells_index import CellsIndex, IndexRow, read_index, with_ended
 from .run_index import PENDING
+from .run_results import RunResults, read_results
 from .run_seal import DONE, read_sealed, sealed
 from .run_tables import read_table, renamed
 
@@ -192,8 +193,8 @@ class Run:
         """Whether the run came to its end."""
         return (self.path / DONE).exists()
 
-    def results(self) -> dict[str, Any]:
-        """Return the table of results as it was written. UsageError while there is none.
+    def results(self) -> RunResults:
+        """Return the results as they were written. UsageError while there are none.
 
         TraceError where it, or the index of the run, is not as it was written.
         """
@@ -202,14 +203,15 @@ class Run:
                 f"{self.path}: this run did not finish; its logs are in cells/, and "
                 f"`{RESUME}` goes on with it"
             )
-        keys = ("index", "label", "status")
         path = self.path / RESULTS
-        table = renamed(read_table(path, "cells", (*keys, "measures")), "cells")
-        found = [tuple(row[key] for key in keys) for row in table["cells"]]
-        known = [(row.index, row.label, row.status) for row in self._index.cells]
-        if found != known or not isinstance(table.get("passed"), bool):
-            raise TraceError(f"{path}: damaged: it has other cells than {CELLS}, or no verdict")
-        return table
+        results = read_results(path)
+        found, known = (
+            [(row.index, row.label, row.status) for row in rows]
+            for rows in (results.cells, self._index.cells)
+        )
+        if found != known:
+            raise TraceError(f"{path}: damaged: it has other cells than {CELLS}")
+        return results
 
     def table(self, name: str) -> Table:
         """Return `cells`, `verdicts`, or of all logs `step`, `pose`, `velocity` or `contact`.
@@ -232,12 +234,12 @@ class Run:
 
         TraceError where its table is damaged.
         """
-        if (data := self.results().get("overheads")) is None:
+        if (data := self.results().overheads) is None:
             return None
         from lavendersim.measures.overhead_table import OverheadTable  # late: see `RunCell.trace`
 
         try:
-            return OverheadTable.of(data)
+            return OverheadTable.of(dict(data))
         except (ValueError, KeyError, TypeError) as error:
             raise TraceError(f"{self.path / RESULTS}: damaged: overheads: {error}") from None
 

@@ -8,14 +8,14 @@ of it.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import Any
+from collections.abc import Iterator, Sequence
 
 from lavendersim.errors import LavenderError, TraceError
 from lavendersim.measures.own_file import NoSourceError
 
 from .judge_again import JudgedAgain, judge_again
 from .run_directory import REFINED, RESULTS, Run, list_runs
+from .run_results import CellResult, RunResults
 from .run_seal import read_sealed, sealed
 
 # What a verdict is compared by: a message has paths, and a run may have moved.
@@ -58,28 +58,29 @@ def _contents(run: Run) -> Iterator[str]:
         yield f"{run.path}: did not finish: {ended} of {len(judged.cells)} logs are whole"
         return
     results = run.results()
-    yield from _cells(run, judged, results["cells"])
+    yield from _cells(run, judged, results.cells)
     if not judged.damaged:
         yield from _verdicts(run, judged, results)
 
 
-def _cells(run: Run, judged: JudgedAgain, rows: list[dict[str, Any]]) -> Iterator[str]:
+def _cells(run: Run, judged: JudgedAgain, rows: Sequence[CellResult]) -> Iterator[str]:
     for cell, again, row in zip(judged.cells, judged.table()["cells"], rows, strict=True):
         if cell.damage():
             continue
         where = f"{run.path / RESULTS}: cell {cell.index}{f' ({cell.label})' if cell.label else ''}"
-        if row["status"] != again["status"]:
-            yield f"{where}: {row['status']!r}, its log says {again['status']!r}"
+        if row.status != again["status"]:
+            yield f"{where}: {row.status!r}, its log says {again['status']!r}"
+        written = row.as_json["measures"]
         for name, value in again["measures"].items():
-            stored = row["measures"].get(name, "nothing")
+            stored = written.get(name, "nothing")
             if stored != value:
                 yield f"{where}: {name} is {stored!r}, its log gives {value!r}"
 
 
-def _verdicts(run: Run, judged: JudgedAgain, results: dict[str, Any]) -> Iterator[str]:
-    table = judged.table()
-    for one, other in zip(results["checks"], table["checks"], strict=False):
-        if any(one.get(key) != other[key] for key in JUDGED):
+def _verdicts(run: Run, judged: JudgedAgain, results: RunResults) -> Iterator[str]:
+    table, checks = judged.table(), results["checks"]
+    for one, other in zip(checks, table["checks"], strict=False):
+        if any(one[key] != other[key] for key in JUDGED):
             yield f"{run.path / RESULTS}: {other['node']}: judged again it is another verdict"
-    if len(results["checks"]) != len(table["checks"]) or results["passed"] != table["passed"]:
+    if len(checks) != len(table["checks"]) or results.passed != table["passed"]:
         yield f"{run.path / RESULTS}: judged again the run has another verdict"

@@ -21,7 +21,8 @@ from lavendersim.engine.effects import EFFECTS
 from lavendersim.engine.record_layout import allocate_bodies
 from lavendersim.engine.spec import Spec
 from lavendersim.geometry.bodies import is_movable
-from lavendersim.geometry.rotations import quaternion_product, rotation_matrix
+from lavendersim.geometry.quaternions import product
+from lavendersim.geometry.rotations import rotation_matrix, unit_quaternion
 from lavendersim.geometry.shapes import bounding_radius
 
 from .colliders import Collider
@@ -40,8 +41,9 @@ def pose_of(body: CellBody) -> np.ndarray:
 def part_pose(pose: np.ndarray, part: CellPart) -> np.ndarray:
     """Return the pose of a part in the world by that of its owner."""
     position = pose[:3] + rotation_matrix(pose[3:]) @ np.asarray(part.position, float)
-    turn = quaternion_product(pose[3:], np.asarray(part.orientation, float))
-    return np.concatenate([position, turn / np.linalg.norm(turn)])
+    w, x, y, z = pose[3:].tolist()
+    turn = product((w, x, y, z), part.orientation)
+    return np.concatenate([position, unit_quaternion(turn)])
 
 
 def body_table(

@@ -6,13 +6,16 @@ A screen has some 50 lines; `-v` prints each cell and claim.
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 from command_line import lavender
 
 from lavender_cli.cell_lines import summary_of
-from lavender_cli.claims import Judged, of_table, print_claims, print_failures, summarise
+from lavender_cli.claims import Judged, print_claims, print_failures, summarise
+from lavendersim.runner.run_results import CellResult
 from tests.drop_config import DROP
 
 SCREEN = 50  # lines
@@ -28,20 +31,22 @@ def claim(name: str, cell: int, measured: float, bound: float = 1.0) -> Judged:
     return Judged(name, node, passed, measured, expected, message, 1.0 - measured / bound)
 
 
-def row(index: int, **changed: object) -> dict[str, object]:
-    """A cell in the table of results."""
-    made = {
-        "index": index,
-        "label": f"e={index}",
-        "status": "complete",
-        "steps": 100,
-        "measures": {"height": float(index)},
-        "physics_us_per_step": 0.5,
-        "worst_residual": 1e-9,
-        "not_converged_steps": 0,
-        "tolerance": 1e-6,
-    }
-    return made | changed
+def row(index: int, **changed: Any) -> CellResult:
+    """A cell in the results."""
+    made = CellResult(
+        index,
+        label=f"e={index}",
+        status="complete",
+        steps=100,
+        measures={"height": float(index)},
+        physics_us_per_step=0.5,
+        logging_us_per_step=0.1,
+        compile_s=0.0,
+        tolerance=1e-6,
+        worst_residual=1e-9,
+        not_converged_steps=0,
+    )
+    return replace(made, **changed)
 
 
 def test_a_line_has_the_count_the_range_and_the_cell_that_is_next_to_its_bound() -> None:
@@ -80,10 +85,7 @@ def test_checks_of_every_step_that_are_met_are_one_line_and_others_stand_alone()
 
 
 def test_verdicts_of_older_runs_have_no_margin_and_no_nearest() -> None:
-    table = [claim("low", cell, 0.5)._asdict() for cell in range(2)]
-    for one in table:
-        del one["margin"]
-    (line,) = summarise(of_table(table))
+    (line,) = summarise([claim("low", cell, 0.5)._replace(margin=math.nan) for cell in range(2)])
     assert line.text == "low: 0.5, expected at most 1 m in 2 of 2 cells"
 
 
@@ -106,11 +108,10 @@ def test_two_thousand_cells_with_failures_fit_on_a_screen(capsys: pytest.Capture
 
 def test_many_cells_are_ranges_with_their_places() -> None:
     rows = [row(cell) for cell in range(20)]
-    rows[7]["worst_residual"] = 2e-4
-    rows[7]["not_converged_steps"] = 3
-    rows[11]["not_converged_steps"] = 40
-    rows[5]["measures"] = {"height": "nan"}
-    rows[6]["measures"] = {"height": "no contact in 0.5 s"}
+    rows[7] = row(7, worst_residual=2e-4, not_converged_steps=3)
+    rows[11] = row(11, not_converged_steps=40)
+    rows[5] = row(5, measures={"height": math.nan})
+    rows[6] = row(6, measures={"height": "no contact in 0.5 s"})
     assert summary_of(rows) == [
         "20 of 20 complete",
         "physics  0.5 us/step",
@@ -122,7 +123,7 @@ def test_many_cells_are_ranges_with_their_places() -> None:
 
 
 def test_a_residual_that_is_no_number_is_the_largest() -> None:
-    rows = [row(0), row(1, worst_residual="nan"), row(2, worst_residual=3.0)]
+    rows = [row(0), row(1, worst_residual=math.nan), row(2, worst_residual=3.0)]
     assert "residual <= nan m/s, largest at e=1" in summary_of(rows)
 
 

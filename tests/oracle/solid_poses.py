@@ -91,12 +91,15 @@ def every_separation() -> Any:
     return cached(compose, EVERY_SHAPE._replace(solver=f"separations {_TEXT}"))
 
 
-def manifolds(sample: Sample, margin: float, spec: Spec = EVERY_SHAPE) -> list[poses.Manifold]:
-    """Return the manifold of every pose."""
+def manifolds(
+    sample: Sample, margin: float, spec: Spec = EVERY_SHAPE, scratch: Any = None
+) -> list[poses.Manifold]:
+    """Return the manifold of every pose; scratch: in place of a new one."""
     count = len(sample.first)
     found, normals = np.zeros(4 * count, dtype(POINT)), np.full((count, 3), np.nan)
     counts = np.zeros(count, np.int64)
-    scratch = allocate_scratch(hull_geometry(sample.hulls))
+    if scratch is None:
+        scratch = allocate_scratch(hull_geometry(sample.hulls))
     kind = SHAPE_PAIRS[sample.pair].kind
     every_pose(spec)(kind, sample.first, sample.second, found, normals, counts, margin, scratch)
     assert counts.max(initial=0) <= 4

@@ -24,7 +24,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from tests.property.killed_runs import SHARED
+from tests.property.killed_runs import SHARED, half_written
 
 SOURCE = Path(__file__).with_suffix(".c")
 LIBRARY = "LAVENDER_TEST_FAILING_CALLS"  # where the library is, in the process that has it before
@@ -143,8 +143,8 @@ def wrong(runs: Runs, number: int, error: int) -> Iterator[tuple[Found, str]]:
         last = run(runs.config, where, resume=True).run
         if contents(last) != runs.whole:
             yield found, "the run that goes on holds something else"
-        if left := [path for path in where.rglob(".*") if path.name != ".lock"]:
-            yield found, f"left: {left}"
+        if hidden := half_written(where):
+            yield found, f"left: {hidden}"
     finally:
         shutil.rmtree(where, ignore_errors=True)
 

@@ -39,6 +39,9 @@ FACE: list[Field] = [
     ("seen_by", I8),  # the last vertex that saw it from outside
 ]
 
+# Calls that took all their iterations, since they were counted last (`iteration_limits`).
+NOT_CONVERGED: list[Field] = [("gjk", I8), ("epa", I8)]
+
 # The plane of a face or cap.
 PLANE_OF_FEATURE: list[Field] = [
     ("nx", F8),  # outward unit normal

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..records import POINT, dtype
 from .convex.hull_geometry import HullGeometry, hull_geometry
-from .records import FACE, PLANE_OF_FEATURE, SEPARATION, VECTOR, VERTEX
+from .records import FACE, NOT_CONVERGED, PLANE_OF_FEATURE, SEPARATION, VECTOR, VERTEX
 
 # Points of one manifold before reduction: two polygons of at most eight vertices each.
 MANIFOLD_POINTS = 16
@@ -28,8 +28,8 @@ EPA_FACES = 1024
 
 
 # Looked up for each scene they would take half of what its scratch takes.
-_POINT, _VECTOR, _VERTEX, _PLANE, _SEPARATION, _FACE = map(
-    dtype, (POINT, VECTOR, VERTEX, PLANE_OF_FEATURE, SEPARATION, FACE)
+_POINT, _VECTOR, _VERTEX, _PLANE, _SEPARATION, _FACE, _NOT_CONVERGED = map(
+    dtype, (POINT, VECTOR, VERTEX, PLANE_OF_FEATURE, SEPARATION, FACE, NOT_CONVERGED)
 )
 
 
@@ -80,6 +80,7 @@ class Scratch(NamedTuple):
     weights: np.ndarray  # (SIMPLEX_VERTICES,) barycentric coordinates of the nearest point
     separation: np.ndarray  # (1,) SEPARATION, what GJK and EPA found
     best: np.ndarray  # (1,) SEPARATION, while `ascend` looks for a better one
+    not_converged: np.ndarray  # (1,) NOT_CONVERGED, calls since it was read last
     polytope: Polytope
     outline_a: Outline
     outline_b: Outline
@@ -126,6 +127,7 @@ def allocate_scratch(geometry: HullGeometry | None = None) -> Scratch:
         weights=np.zeros(SIMPLEX_VERTICES),
         separation=np.zeros(1, _SEPARATION),
         best=np.zeros(1, _SEPARATION),
+        not_converged=np.zeros(1, _NOT_CONVERGED),
         polytope=Polytope(
             vertices=np.zeros(EPA_VERTICES, _VERTEX),
             faces=np.zeros(EPA_FACES, _FACE),

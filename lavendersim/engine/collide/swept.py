@@ -83,6 +83,12 @@ def between_cores(a, found, grown, n):
     )
 
 
+def needs_separation(spec: Spec) -> bool:
+    """Whether a pair has a gap that its points do not hold."""
+    pairs = [SHAPE_PAIRS[name] for name in spec.shape_pairs]
+    return not all(pair.closed_form or "plane" in pair.shapes for pair in pairs)
+
+
 def make_gap(spec: Spec, manifold):
     """Return `kernel(kind, a, b, scratch) -> (distance, n)`.
 
@@ -90,8 +96,7 @@ def make_gap(spec: Spec, manifold):
     overlap.
     """
     # The general walk is a second or two of compiling: only where a pair needs it.
-    pairs = [SHAPE_PAIRS[name] for name in spec.shape_pairs]
-    if all(pair.closed_form or "plane" in pair.shapes for pair in pairs):
+    if not needs_separation(spec):
 
         def closed_gap(kind, a, b, scratch):
             count = manifold(kind, a, b, ANY_MARGIN, scratch)

@@ -57,7 +57,8 @@ def make_settle(spec: Spec, solve: Any, classify: Any) -> Any:
 
     classify: the kernel of `integrate` that says which bodies meet in an impact, and when.
 
-    Called after `solve`; sets counters.stronge to 1 where it took Stronge's law.
+    Called after `solve`; sets counters.stronge to 1 where it took Stronge's law, and
+    counts in counters.stronge_not_converged.
     """
     from ..block import make_slip_velocity
     from ..parts import make_forget_history
@@ -122,7 +123,9 @@ def make_settle(spec: Spec, solve: Any, classify: Any) -> Any:
             contact = contacts[c]
             if contact.is_impact == 1 and contact.separation_speed > 0.0:
                 gives = True
-                slower = leave(contact, contact.pre_1, contact.pre_2)
+                slower, ended = leave(contact, contact.pre_1, contact.pre_2)
+                if not ended:
+                    counters.stronge_not_converged += 1
                 contact.separation_speed = min(contact.separation_speed, slower)
         if not gives:
             return
@@ -156,6 +159,7 @@ def make_step_row(spec: Spec) -> Any:
 
     def log_stronge(row, bodies, counters):
         row.stronge = counters.stronge
+        row.stronge_not_converged = counters.stronge_not_converged
 
     return kernel(log_stronge, spec)
 
@@ -173,6 +177,12 @@ EFFECT = Effect(
     ),
     step_columns=(
         Column("stronge", "i8", "1 when Stronge's law of restitution replaced Newton's", number=19),
+        Column(
+            "stronge_not_converged",
+            "i8",
+            "impacts whose integration by Stronge's law took all its parts: they leave at 0 m/s",
+            number=46,
+        ),
     ),
     hooks=Hooks(note_slip=make_note, limit_impacts=make_settle, step_row=make_step_row),
 )

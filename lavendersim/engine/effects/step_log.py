@@ -15,6 +15,18 @@ def decide(facts: Facts) -> Decision:
     return Decision(False, "nothing of the run is logged")
 
 
+def _has_gjk(spec: Spec) -> bool:
+    from ..collide.iteration_limits import has_gjk  # late: it imports kernels
+
+    return has_gjk(spec)
+
+
+def _has_epa(spec: Spec) -> bool:
+    from ..collide.iteration_limits import has_epa
+
+    return has_epa(spec)
+
+
 def make(spec: Spec, log_pose, loggers):
     """Return `kernel(bodies, velocities, params, counters, log)`, at the end of a step.
 
@@ -30,6 +42,7 @@ def make(spec: Spec, log_pose, loggers):
     speeds = 6 if rotation else 3  # vx vy vz, wx wy wz: the first words of a velocity record
     log_more = chain(loggers, spec)
     logs_velocity, log_velocity = made_once(spec, "log_velocity")
+    gjk, epa = _has_gjk(spec), _has_epa(spec)
 
     def hash_into(state_hash, words, count):
         # FNV-1a over 64-bit words; -0.0 counts as 0.0, because no result may depend on it.
@@ -82,6 +95,10 @@ def make(spec: Spec, log_pose, loggers):
         row.residual_contact = counters.residual_row
         if tolerance:
             row.not_converged = counters.not_converged
+        if gjk:
+            row.gjk_not_converged = counters.gjk_not_converged
+        if epa:
+            row.epa_not_converged = counters.epa_not_converged
         row.residual = counters.residual
         log_bodies(bodies, velocities, row, poses[counters.step_rows], params)
         log_more(row, bodies, counters)
@@ -146,6 +163,20 @@ EFFECT = Effect(
             "1 when the residual stayed above the tolerance of the config",
             number=18,
             when=lambda spec: spec.tolerance,
+        ),
+        Column(
+            "gjk_not_converged",
+            "i8",
+            "distances of convex bodies for which GJK took all its iterations",
+            number=44,
+            when=_has_gjk,
+        ),
+        Column(
+            "epa_not_converged",
+            "i8",
+            "depths of convex bodies for which EPA ran out of vertices, or lost its mesh",
+            number=45,
+            when=_has_epa,
         ),
     ),
     channels=("/step",),

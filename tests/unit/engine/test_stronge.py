@@ -13,6 +13,7 @@ import numba
 import numpy as np
 import pytest
 
+from lavendersim.engine import stronge
 from lavendersim.engine.spec import Spec
 from lavendersim.engine.stronge import make_leave
 
@@ -26,14 +27,21 @@ def leave(contacts, u_1, u_2):
     return LEAVE(contacts[0], u_1, u_2)
 
 
-def speed(matrix: np.ndarray, mu: float, e: float, hit: float, slip: tuple[float, float]) -> float:
-    """Return what the kernel makes of K (rows n, t1, t2) and a velocity (-hit, *slip)."""
+def row_of(matrix: np.ndarray, mu: float, e: float, hit: float) -> np.ndarray:
+    """Return a contact with K (rows n, t1, t2) that meets at a speed."""
     contact = np.zeros(1, np.dtype([(name, "f8") for name in FIELDS]))
     inverse = np.linalg.inv(matrix[1:, 1:])
     values = (*matrix[0], inverse[0, 0], inverse[0, 1], inverse[1, 1], mu, hit, e)
     for name, value in zip(FIELDS, values, strict=True):
         contact[name] = value
-    return float(leave(contact, *slip))
+    return contact
+
+
+def speed(matrix: np.ndarray, mu: float, e: float, hit: float, slip: tuple[float, float]) -> float:
+    """Return what the kernel makes of K and a velocity (-hit, *slip)."""
+    found, ended = leave(row_of(matrix, mu, e, hit), *slip)
+    assert ended
+    return float(found)
 
 
 class Planar(NamedTuple):
@@ -122,3 +130,20 @@ def test_a_slip_that_turns_is_followed():
 def test_without_friction_it_is_newtons_law():
     matrix = np.diag([2.0, 3.0, 3.0])
     assert speed(matrix, 0.0, 0.7, 2.0, (1.0, 0.5)) == pytest.approx(1.4, abs=1e-13)
+
+
+@pytest.mark.parametrize(("parts", "ends"), [(stronge.PARTS - 2, False), (3 * stronge.PARTS, True)])
+def test_an_impact_that_takes_all_its_parts_says_so(
+    parts: int, ends: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Compression alone takes PARTS without friction, and restitution the share e of them."""
+    monkeypatch.setattr(stronge, "MOST_PARTS", parts)
+    short = make_leave(SPEC)
+
+    @numba.njit
+    def leave_soon(contacts):
+        return short(contacts[0], 1.0, 0.5)
+
+    found, ended = leave_soon(row_of(np.diag([2.0, 3.0, 3.0]), 0.0, 0.5, 2.0))
+    assert ended == ends
+    assert found == (pytest.approx(1.0, abs=1e-13) if ends else 0.0)

@@ -11,7 +11,7 @@ from laboratory import body, config, plane, resolved
 from lavendersim.cell import CellBody, CellPart, Sphere
 from lavendersim.engine.records import CAPSULE, COMPOUND, CYLINDER, HULL, SPHERE
 from lavendersim.engine.spec import Spec
-from lavendersim.geometry.rotations import quaternion_product, rotation_matrix
+from lavendersim.geometry.rotations import rotation_matrix
 from lavendersim.geometry.shapes import bounding_radius
 from lavendersim.scene.body_rows import part_pose
 from lavendersim.scene.build import Scene, build
@@ -97,15 +97,15 @@ def test_parts_stand_behind_all_bodies_in_the_pose_of_their_owner() -> None:
         assert [row["px"], row["py"], row["pz"]] == part["position"]
 
 
-def test_product_of_quaternions_is_that_of_their_matrices() -> None:
+def test_a_part_turns_with_its_owner() -> None:
     rng = np.random.default_rng(2)
     one, other = (q / np.linalg.norm(q) for q in rng.normal(size=(2, 4)))
-    together = rotation_matrix(quaternion_product(one, other))
-    np.testing.assert_allclose(together, rotation_matrix(one) @ rotation_matrix(other), atol=1e-15)
     ball = Sphere(kind="sphere", radius=1.0)
     part = CellPart(shape=ball, position=(0, 0, 2), orientation=tuple(other.tolist()))
     pose = part_pose(np.array([1, 0, 0, *one]), part)
     np.testing.assert_allclose(pose[:3], [1, 0, 0] + 2 * rotation_matrix(one)[:, 2], atol=1e-15)
+    together = rotation_matrix(one) @ rotation_matrix(other)
+    np.testing.assert_allclose(rotation_matrix(pose[3:]), together, atol=1e-15)
 
 
 def test_columns_of_effects_are_filled() -> None:

@@ -96,7 +96,8 @@ def make_epa(spec):
     """Return `kernel(a, b, offset, count, curved, scratch)`, which fills `scratch.separation`.
 
     The first `count` vertices of `scratch.simplex` come from GJK; curved: whether one of the cores
-    is round.
+    is round. Where vertices or faces run out, or round-off tears the mesh, it is filled with what
+    was found so far, and counted in `scratch.not_converged`.
     """
     difference, tetrahedron = make_difference(spec), make_tetrahedron(spec)
 
@@ -133,8 +134,11 @@ def make_epa(spec):
             grown = grow(polytope, vertex, face_count, seen)
             if grown < 0:
                 face_count = 0  # the mesh is torn: what was found so far must do
+                scratch.not_converged[0].epa += 1
                 break
             face_count = grown
+        else:
+            scratch.not_converged[0].epa += 1
         write_witness(polytope, found, face_count, chosen, least, slack)
 
     return kernel(epa, spec)

@@ -93,7 +93,8 @@ def make_gjk(spec):
 
     APART: `scratch.separation` is filled. FARTHER: the cores are more than `reach` apart [m],
     nothing else is known. OVERLAPPING (or touching): the first `count` vertices of
-    `scratch.simplex` hold the origin, to round-off.
+    `scratch.simplex` hold the origin, to round-off. APART after all ROUNDS, with what was found so
+    far, is counted in `scratch.not_converged`.
     """
     difference = make_difference(spec)
 
@@ -133,6 +134,8 @@ def make_gjk(spec):
             count = drop_weightless(vertices, count + 1, weights)
             if squared <= CLOSE * CLOSE * size * size:
                 return OVERLAPPING, count
+        else:
+            scratch.not_converged[0].gjk += 1
         write_separation(scratch.separation[0], v, sqrt(squared), vertices, weights, count)
         return APART, count
 

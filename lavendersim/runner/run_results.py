@@ -1,0 +1,198 @@
+"""The results of a run, `results.json`, as typed records: read and written here and nowhere else.
+
+A row of a cell says how it ended, what was measured of it, what its steps cost and how well they
+were solved. Numbers are numbers: the file, which has only those of JSON, has a text in place of NaN
+and the infinities.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import Any, Final
+
+from lavendersim.durable_files import write_in_pieces
+from lavendersim.errors import TraceError
+from lavendersim.measures.verdict import Verdict
+
+from .json_table import finite
+from .limits_reached import AT_LIMIT
+from .run_tables import read_table, renamed
+
+NOT_FINITE: Final = {"nan": math.nan, "inf": math.inf, "-inf": -math.inf}
+# Columns of the violations: the largest of each kind in any step, and the bodies whose contact has
+# it. What an older version did not write, and what is not logged, is missing or None.
+WORST: Final = "worst_"
+
+
+@dataclass(frozen=True, slots=True)
+class CellResult:
+    """What a run says of one of its cells."""
+
+    index: int  # in the sweep
+    label: str
+    status: str  # `complete`, or why not
+    steps: int
+    measures: Mapping[str, Any]  # by name: a number, a row of numbers, or why there is none
+    physics_us_per_step: float  # [us]
+    logging_us_per_step: float  # [us]
+    compile_s: float  # composing, compiling and loading its kernels [s]
+    tolerance: float | None  # that the config asks of a step [m/s]; None: all sweeps are taken
+    worst_residual: float  # of any step [m/s]
+    not_converged_steps: int  # that ended above the tolerance
+    violations: Mapping[str, float | str | None] = field(default_factory=dict)  # by WORST columns
+    # How often an algorithm took all its iterations, by columns of /step; none where it never did.
+    at_limit: Mapping[str, int] = field(default_factory=dict)
+
+    @property
+    def as_json(self) -> dict[str, Any]:
+        """The row as the file has it."""
+        row = {
+            "index": self.index,
+            "label": self.label,
+            "status": self.status,
+            "steps": self.steps,
+            "measures": dict(self.measures),
+            "physics_us_per_step": self.physics_us_per_step,
+            "logging_us_per_step": self.logging_us_per_step,
+            "compile_s": self.compile_s,
+            "tolerance": self.tolerance,
+            "worst_residual": self.worst_residual,
+            "not_converged_steps": self.not_converged_steps,
+            **self.violations,
+            **self.at_limit,
+        }
+        plain: dict[str, Any] = finite(row, str)
+        return plain
+
+
+@dataclass(frozen=True)
+class RunResults(Mapping[str, Any]):
+    """The results of a run.
+
+    By key (`results["cells"][0]["measures"]`) it gives what the file has, as plain data.
+    """
+
+    experiment: str  # the stem of the file that it was read from
+    reduced: bool  # whether slow cells were run at their reduced length
+    solver: str | None  # in place of the config's; None: the config's own
+    cells: Sequence[CellResult]  # in the order of the sweep
+    compile_s: float | None  # of the whole run, whose cells share kernels [s]
+    checks: Sequence[Verdict]
+    passed: bool  # whether every claim was met and every cell completed that should
+    overheads: Mapping[str, Any] | None = None  # as JSON has them, see `Run.overheads`
+
+    @cached_property
+    def as_json(self) -> dict[str, Any]:
+        """The table as the file has it."""
+        table = dict(self._pieces())
+        return table | {name: list(table[name]) for name in ("cells", "checks")}
+
+    def _pieces(self) -> Iterator[tuple[str, Any]]:
+        """Yield the entries of the table; rows are made while they are written."""
+        yield "experiment", self.experiment
+        yield "reduced", self.reduced
+        yield "solver", self.solver
+        yield "cells", (row.as_json for row in self.cells)
+        if self.compile_s is not None:
+            yield "compile_s", self.compile_s
+        yield "checks", (finite(verdict.row, str) for verdict in self.checks)
+        yield "passed", self.passed
+        if self.overheads is not None:
+            yield "overheads", finite(dict(self.overheads), str)
+
+    def __getitem__(self, key: str) -> Any:
+        """Return an entry of the file, as plain data."""
+        return self.as_json[key]
+
+    def __iter__(self) -> Iterator[str]:
+        """Yield the keys of the file."""
+        return iter(self.as_json)
+
+    def __len__(self) -> int:
+        """Return how many keys the file has."""
+        return len(self.as_json)
+
+    def write(self, path: Path) -> None:
+        """Write the table; numbers keep all their digits."""
+        from .json_table import pieces_of  # late: who lists runs writes none
+
+        write_in_pieces(path, pieces_of(dict(self._pieces())), flush=False)
+
+
+def read_results(path: Path) -> RunResults:
+    """Return the results of a finished run. TraceError where they are damaged."""
+    table = renamed(read_table(path, "cells", ("index", "label", "status", "measures")), "cells")
+    try:
+        if not isinstance(table["passed"], bool):
+            raise TypeError(f"passed is no yes or no: {table['passed']!r}")
+        return RunResults(
+            str(table["experiment"]),
+            bool(table.get("reduced", False)),
+            table.get("solver"),
+            tuple(map(_cell_of, table["cells"])),
+            table.get("compile_s"),
+            tuple(map(_verdict_of, table["checks"])),
+            table["passed"],
+            table.get("overheads"),
+        )
+    except KeyError as error:
+        raise TraceError(f"{path}: damaged: it has no {error}") from None
+    except (ValueError, TypeError, AttributeError) as error:
+        raise TraceError(f"{path}: damaged: {error}") from None
+
+
+def as_numbers(value: Any) -> Any:
+    """Return what was measured with numbers in place of the texts that the file has for them."""
+    if isinstance(value, str):
+        return NOT_FINITE.get(value, value)
+    if isinstance(value, list):
+        return [as_numbers(item) for item in value]
+    return value
+
+
+def mean_per_step(rows: Iterable[CellResult], column: str) -> float:
+    """Return a cost of a step [us], the mean over all steps of all cells; NaN without a step."""
+    steps, total = 0, 0.0
+    for row in rows:
+        steps += row.steps
+        total += row.steps * getattr(row, column)
+    return total / steps if steps else math.nan
+
+
+def _cell_of(row: Mapping[str, Any]) -> CellResult:
+    columns = {name: as_numbers(value) for name, value in row.items() if name.startswith(WORST)}
+    del columns["worst_residual"]
+    return CellResult(
+        row["index"],
+        row["label"],
+        row["status"],
+        int(row["steps"]),
+        {name: as_numbers(value) for name, value in row["measures"].items()},
+        float(row["physics_us_per_step"]),
+        float(row["logging_us_per_step"]),
+        float(row["compile_s"]),
+        None if row["tolerance"] is None else float(row["tolerance"]),
+        float(row["worst_residual"]),
+        int(row["not_converged_steps"]),
+        columns,
+        {name: int(row[name]) for name in AT_LIMIT if name in row},
+    )
+
+
+def _verdict_of(row: Mapping[str, Any]) -> Verdict:
+    return Verdict(
+        row["name"],
+        row["node"],
+        row["passed"],
+        float(row["measured"]),
+        row["expected"],
+        row["tolerance"],
+        said=row["message"],
+        path=row.get("path", ""),
+        follows=row.get("follows", False),
+        margin=float(row.get("margin", "nan")),  # older versions wrote none
+    )
