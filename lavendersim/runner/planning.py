@@ -41,7 +41,7 @@ class _Share(NamedTuple):
 class _Found(NamedTuple):
     """What a process found of its share."""
 
-    configs: list[CellConfig]  # none where some cell has no plan
+    configs: list[CellConfig | None]  # of cells that were built here; none where one has no plan
     decided: Decided
     logs: list[str]
 
@@ -71,16 +71,19 @@ def _by_others(shares: dict[int, _Share], workers: int) -> list[_Found]:
             part = _found(share)
         found[places[id(share)]] = part
         for cell, config in zip(share.cells, part.configs, strict=False):
-            cell.keep(config)
+            if config is not None:
+                cell.keep(config)
     return [found[first] for first in shares]
 
 
 def _found(share: _Share) -> _Found:
+    known = [cell.is_built for cell in share.cells]
     decisions = decided(share.cells)
     if decisions.defects:
         return _Found([], decisions, [])
-    configs = [cell.config for cell in share.cells]
-    return _Found(configs, decisions, [log_of(cell, share.source) for cell in share.cells])
+    logs = [log_of(cell, share.source) for cell in share.cells]
+    built = zip(share.cells, known, strict=True)
+    return _Found([None if before else cell.config for cell, before in built], decisions, logs)
 
 
 def log_of(cell: Cell, source: str) -> str:
