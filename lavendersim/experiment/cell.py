@@ -84,6 +84,11 @@ class Cell:
         assert self._built is not None
         return self._built
 
+    @property
+    def is_built(self) -> bool:
+        """Whether its config was built, or kept, before."""
+        return self._built is not None
+
     def keep(self, config: CellConfig) -> None:
         """Keep the config of this cell, which was built before."""
         object.__setattr__(self, "_built", config)  # what is frozen is what the file says

@@ -70,7 +70,8 @@ def load_experiment_text(
     """
     raw = text.encode("utf-8", "surrogatepass") if isinstance(text, str) else text
     options = ConfigOptions(reduced, solver, tuple(overrides))
-    return _load(raw, name, len(raw), options).refined(divisor)
+    experiment = _load(raw, name, len(raw), options)
+    return experiment if divisor == 1 else experiment.refined(divisor)
 
 
 def _load(

@@ -6,7 +6,6 @@ products that are the same simulation have one log, and whoever runs a cell, nam
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Iterable
 from pathlib import Path
 from typing import NamedTuple
@@ -17,7 +16,8 @@ from lavendersim.scene.plan import Plan
 
 from .cell import CellJob, CellOfLog, plan_in_log
 from .checks import check
-from .plans import distinct, shared_plans
+from .planning import planned
+from .plans import distinct
 from .seeds import Seeds
 
 
@@ -50,16 +50,16 @@ class Prepared(NamedTuple):
         ]
 
 
-def prepare(experiment: Experiment) -> Prepared:
-    """Return the cells of an experiment with their plans; an error where one cannot be run."""
+def prepare(experiment: Experiment, workers: int = 1) -> Prepared:
+    """Return the cells of an experiment with their plans; an error where one cannot be run.
+
+    workers: processes that many cells are planned in.
+    """
     from lavendersim.engine.compile_options import source_hash
 
     check(experiment)
     cells = experiment.cells()
-    source = source_hash()
-    return Prepared(
-        experiment, cells, shared_plans(cells), [_log_of(cell, source) for cell in cells]
-    )
+    return Prepared(experiment, cells, *planned(cells, source_hash(), workers))
 
 
 def different(jobs: Iterable[CellJob]) -> dict[Path, CellJob]:
@@ -69,7 +69,3 @@ def different(jobs: Iterable[CellJob]) -> dict[Path, CellJob]:
         same = found.get(job.path)
         found[job.path] = same._replace(cells=same.cells + job.cells) if same else job
     return found
-
-
-def _log_of(cell: Cell, source: str) -> str:
-    return hashlib.sha256(f"{cell.digest} {source}".encode()).hexdigest()[:16] + ".mcap"

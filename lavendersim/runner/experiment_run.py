@@ -157,7 +157,7 @@ def run(
     tags = checked_tags(tags)
     if executor is not None and experiment.config.record.problems != NONE:
         raise UsageError(f"{experiment.name}: record.problems is written by processes alone")
-    prepared = prepare(experiment)
+    prepared = prepare(experiment, jobs if executor is None else 1)
     root = Path(root)
     check_latest(root)
     remove_leftovers(root)
@@ -209,12 +209,15 @@ def complete(
     write_whole(directory / CONFIG, experiment.text, flush=False)
     configs = _write_resolved(directory / RESOLVED, cells)
     pending = prepared.jobs(directory)
-    ended, taken = _run_cells(experiment, pending, configs, done, (executor or jobs, progress))
+    ended, taken, index = _run_cells(
+        experiment, pending, configs, done, (executor or jobs, progress)
+    )
     outcomes = [ended[job.path]._replace(cell=job.cell) for job in pending]
     # A cell whose process died has no measures to draw, nor a log to take them from.
     lost = {outcome.cell for outcome in outcomes if not outcome.log}
     drawn = {index: one.values for index, one in taken.items() if index not in lost}
-    result = _judged(Run(directory, experiment, drawn), outcomes, taken)
+    run = Run(directory, experiment, drawn, written=index)
+    result = _judged(run, outcomes, taken)
     table = None
     if overheads and experiment.config.overhead is not None:
         table = take_overheads(experiment, jobs, progress.timing)
@@ -237,8 +240,8 @@ def _run_cells(
     configs: list[str],
     done: Mapping[str, EndedCell],
     how: tuple[int | Executor, Progress],
-) -> tuple[dict[Path, CellOutcome], dict[int, Measured]]:
-    """Return how cells ended by their logs, and what was measured by the cells' indices.
+) -> tuple[dict[Path, CellOutcome], dict[int, Measured], CellsIndex]:
+    """Return how cells ended by their logs, what was measured by the cells' indices, and the index.
 
     configs: the digests of theirs. done: those that ended before, by the names of their logs.
     how: in how many processes or by which executor, and who is shown it.
@@ -255,7 +258,7 @@ def _run_cells(
         taken |= one.measured
     directory = pending[0].path.parent.parent
     # The index stands from the start, so that an interrupted run can be listed and replayed.
-    _write_index(directory, experiment, zip(pending, configs, strict=True), ended)
+    write_index(directory / CELLS, _index_of(experiment, pending, configs, ended))
     left = [job for path, job in by_log.items() if path not in ended]
     try:  # what ends meanwhile is noted beside it: see `run_index`
         with handled():
@@ -272,8 +275,10 @@ def _run_cells(
         whole = f"{len(ended)} of {len(by_log)} cells are whole"
         raise Interrupted(f"{experiment.name}: {end}: {whole}, {directory}") from None
     finally:
-        _write_index(directory, experiment, zip(pending, configs, strict=True), ended)
-    return ended, taken
+        index = _index_of(experiment, pending, configs, ended)
+        index = index._replace(cells=tuple(index.cells))
+        write_index(directory / CELLS, index)
+    return ended, taken, index
 
 
 def _judged(run: Run, outcomes: list[CellOutcome], taken: Mapping[int, Measured]) -> Finished:
@@ -288,15 +293,15 @@ def _judged(run: Run, outcomes: list[CellOutcome], taken: Mapping[int, Measured]
     return Finished(run, outcomes, verdicts, raw)
 
 
-def _write_index(
-    directory: Path,
+def _index_of(
     experiment: Experiment,
-    jobs: Iterable[tuple[CellJob, str]],
+    jobs: Iterable[CellJob],
+    configs: Iterable[str],
     ended: dict[Path, CellOutcome],
-) -> None:
-    """Write which cell is in which file and how it ended; `pending` for those that did not.
+) -> CellsIndex:
+    """Return which cell is in which file and how it ended; `pending` for those that did not.
 
-    jobs: with the digest of the config of each.
+    configs: the digests of theirs. Rows are made while they are taken.
     """
 
     def row_of(cell: Cell, job: CellJob, config: str) -> IndexRow:
@@ -311,11 +316,8 @@ def _write_index(
             {axis: _plain(value) for axis, value in cell.coordinates.items()},
         )
 
-    cells = zip(experiment.cells(), jobs, strict=True)
-    rows = (row_of(cell, *job) for cell, job in cells)
-    question = experiment.config.question
-    index = CellsIndex(experiment.name, question, experiment.options, rows)
-    write_index(directory / CELLS, index)
+    rows = map(row_of, experiment.cells(), jobs, configs)
+    return CellsIndex(experiment.name, experiment.config.question, experiment.options, rows)
 
 
 def _write_resolved(path: Path, cells: Sequence[Cell]) -> list[str]:

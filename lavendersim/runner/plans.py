@@ -8,14 +8,23 @@ one union, and one compilation, a group.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from typing import Any
+import itertools
+from collections.abc import Hashable, Iterable, Iterator, Sequence
+from typing import Any, NamedTuple
 
 from lavendersim.errors import ConfigError, Defect
 from lavendersim.experiment import Experiment
 from lavendersim.experiment.cell import Cell, alike
-from lavendersim.scene.plan import Plan, name_of, plan_of_cell, union
+from lavendersim.scene.plan import CellName, Plan, name_of, plan_of_cell, union
 from lavendersim.scene.starts_read import StartsRead
+
+
+class Decided(NamedTuple):
+    """What was decided for some cells, each by itself."""
+
+    plans: list[Plan]  # those that differ in more than the cells they are of
+    of: list[int]  # of each cell, which of them; meaningless where there are defects
+    defects: tuple[Defect, ...]  # of cells that have no plan
 
 
 def shared_plans(cells: Iterable[Cell]) -> list[Plan]:
@@ -24,23 +33,58 @@ def shared_plans(cells: Iterable[Cell]) -> list[Plan]:
     Cells that differ in how bodies start alone are planned once where no decision reads that.
     Raises ConfigError with every key of the file's `effects` that cannot be, in any cell.
     """
+    return joined([decided(cells)])
+
+
+def decided(cells: Iterable[Cell]) -> Decided:
+    """Return what the plans of some cells are, each by itself; a part of a sweep will do."""
     cells = list(cells)
-    own: dict[int, Plan] = {}  # by the ids of cells
-    made: list[Plan] = []
-    known: dict[Any, Any] = {}
     defects: dict[Defect, None] = {}
+    found: dict[Hashable, tuple[int, Plan, list[CellName]]] = {}
+    places: dict[int, int] = {}  # by the ids of cells
     for one in alike(cells):
         for plan, members in _plans_of_class(one, defects):
-            made.append(_shared(plan, known))
-            own |= dict.fromkeys(map(id, members), made[-1])
+            place, _, names = found.setdefault(_decisions(plan), (len(found), plan, []))
+            names += plan.cells
+            places |= dict.fromkeys(map(id, members), place)
+    plans = [plan.of(tuple(sorted(names))) for _, plan, names in found.values()]
+    return Decided(plans, [places.get(id(cell), 0) for cell in cells], tuple(defects))
+
+
+def joined(parts: Sequence[Decided]) -> list[Plan]:
+    """Return the plan of each cell of a sweep, from what was decided for its parts, in order.
+
+    Raises ConfigError, see `shared_plans`.
+    """
+    defects = dict.fromkeys(itertools.chain.from_iterable(part.defects for part in parts))
     if defects:
         raise ConfigError(list(_first_of_each_place(defects)))
+    found: dict[Hashable, tuple[Plan, list[CellName]]] = {}
+    for part in parts:
+        for plan in part.plans:
+            found.setdefault(_decisions(plan), (plan, []))[1].extend(plan.cells)
+    made = [plan.of(tuple(sorted(names))) for plan, names in found.values()]
     made.sort(key=lambda plan: plan.cells[0])  # reasons stand in the order of the cells
     groups: dict[tuple[Any, ...], list[Plan]] = {}
     for plan in made:
         groups.setdefault(plan.choices, []).append(plan)
     shared = {choices: union(group) for choices, group in groups.items()}
-    return [shared[own[id(cell)].choices] for cell in cells]
+    return [shared[part.plans[place].choices] for part in parts for place in part.of]
+
+
+def _decisions(plan: Plan) -> Hashable:
+    """Return what a plan is, but for the cells that it is of.
+
+    Every plan decides on the same effects and pairs, in one order.
+    """
+    return (
+        plan.spec,
+        plan.choices,
+        *plan.decisions.values(),
+        *plan.shape_pairs.values(),
+        *plan.forced.items(),
+        *plan.required_by,
+    )
 
 
 def _plans_of_class(
@@ -63,18 +107,6 @@ def _plans_of_class(
             yield plan.of(tuple(map(name_of, cells))), cells
             return
         yield plan, [cell]
-
-
-def _shared(plan: Plan, known: dict[Any, Any]) -> Plan:
-    """Return a plan whose decisions are kept once for all cells that are decided alike.
-
-    Every plan decides on the same effects and pairs, in one order.
-    """
-    decisions, pairs = plan.decisions, plan.shape_pairs
-    return plan._replace(
-        decisions=known.setdefault(("effects", *decisions.values()), decisions),
-        shape_pairs=known.setdefault(("pairs", *pairs.values()), pairs),
-    )
 
 
 def distinct(plans: Iterable[Plan]) -> list[Plan]:

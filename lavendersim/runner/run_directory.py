@@ -104,6 +104,8 @@ class Run:
     ran: Experiment | None = field(default=None, repr=False, compare=False)
     taken: Mapping[int, Mapping[str, Any]] = field(default_factory=dict, repr=False, compare=False)
     allow_incomplete: bool = False
+    # The index as this process has just written it: it is not read again.
+    written: CellsIndex | None = field(default=None, repr=False, compare=False)
 
     @cached_property
     def experiment(self) -> Experiment:
@@ -129,6 +131,8 @@ class Run:
 
     @cached_property
     def _index(self) -> CellsIndex:
+        if self.written is not None:
+            return self.written
         index = read_index(self.path / CELLS)
         if self.finished and not sealed(self.path) and index.has_digests:
             raise TraceError(f"{self.path / DONE}: damaged: it has lost the digests of the tables")

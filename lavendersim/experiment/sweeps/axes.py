@@ -11,6 +11,7 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property
 from typing import Any
 
 from lavendersim.experiment.models.axis import axis_values
@@ -39,6 +40,16 @@ class SweptAxis:
     values: tuple[Node, ...]
     places: tuple[tuple[Path, tuple[Node, ...]], ...]
 
+    @cached_property
+    def coordinates(self) -> tuple[Any, ...]:
+        """Its values as cells hold them; made once, for each is that of many cells."""
+        return tuple(swept_value(node.data) for node in self.values)
+
+    @cached_property
+    def labels(self) -> tuple[str, ...]:
+        """What labels of cells say of its values: `e=0.8`."""
+        return tuple(f"{self.name}={label(value)}" for value in self.coordinates)
+
     @property
     def paths(self) -> tuple[Path, ...]:
         """The paths that it varies."""
@@ -62,7 +73,7 @@ class SweepPoint:
     @property
     def coordinates(self) -> dict[str, Any]:
         """Axis name -> swept value; ratios are Fractions."""
-        return {axis.name: swept_value(axis.values[k].data) for axis, k in self.choices}
+        return {axis.name: axis.coordinates[k] for axis, k in self.choices}
 
     @property
     def nodes(self) -> dict[Path, Node]:
@@ -72,7 +83,7 @@ class SweepPoint:
     @property
     def label(self) -> str:
         """The coordinates as text: `e=0.8, timestep=1/480`; empty without a sweep."""
-        return ", ".join(f"{name}={label(value)}" for name, value in self.coordinates.items())
+        return ", ".join(axis.labels[k] for axis, k in self.choices)
 
     def tree(self, root: Node, report: Report | None = None) -> Node:
         """Return the config of this cell; notes formulas without a number, shapes of no name."""
