@@ -1,9 +1,9 @@
 """Projected Gauss-Seidel by contact blocks: a contact's normal and disc in one packed visit.
 
 The sweeps of `projected_gauss_seidel`, to round-off, on contacts that are packed once a solve
-(`packed`). That pays from some three sweeps on. Where `can_pack` says no (without friction,
-another cone than the disc, what resists turning, sweeps that are over-relaxed or go there and
-back), the sweeps are those of `projected_gauss_seidel` over the records, to the bit.
+(`packed`). That pays from some three sweeps on. Elsewhere (without friction, another cone than the
+disc, what resists turning, sweeps that are over-relaxed or go there and back) the sweeps are those
+of `projected_gauss_seidel` over the records, to the bit.
 """
 
 from __future__ import annotations
