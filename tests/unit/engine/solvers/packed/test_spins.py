@@ -80,39 +80,51 @@ def test_balls_rest_on_a_slope_below_their_angle_of_rolling_and_roll_above_it() 
     np.testing.assert_allclose(bench.velocity[1:, 1:], 0.0, rtol=0, atol=6e-12)
 
 
+def laws_defects(solve: Solve, bodies: np.ndarray) -> np.ndarray:
+    """Return |k psi - proj(k psi - omega)| times the arm [m/s] of torsion and rolling, by contact.
+
+    From poses, inertias, normals and tangents; k: the response, of rolling its greatest.
+    """
+    defects = np.zeros((solve.count, 2))
+    for row, contact in zip(defects, solve.contacts, strict=True):
+        point, n, one, two = (
+            np.array([contact[f"{axis}{x}"] for x in "xyz"]) for axis in ("", "n", "t1", "t2")
+        )
+        response, spin, arm = np.zeros((3, 3)), np.zeros(3), 0.0
+        for sign, i in ((-1.0, contact["a"]), (1.0, contact["b"])):
+            body = bodies[i]
+            turn = np.array([[body[f"r{r}{c}"] for c in range(3)] for r in range(3)])
+            response += turn @ np.diag([body[f"inv_i{x}"] for x in "xyz"]) @ turn.T
+            spin += sign * np.array([solve.velocities[i][f"w{x}"] for x in "xyz"])
+            if body["inv_m"] > 0.0:
+                own = point + 0.5 * sign * contact["phi"] * n - [body[x] for x in "xyz"]
+                arm = max(arm, float(np.linalg.norm(own)))
+        across = np.stack([one, two])
+        for k, (axes, psi, c) in enumerate(
+            (
+                (n[None], [contact["psi_n"]], contact["torsional"]),
+                (across, [contact["psi_1"], contact["psi_2"]], contact["rolling"]),
+            )
+        ):
+            stiff = np.linalg.eigvalsh(axes @ response @ axes.T)[-1]
+            held, limit = stiff * np.array(psi), stiff * c * contact["lambda_n"]
+            moved = held - axes @ spin
+            size = np.linalg.norm(moved)
+            row[k] = arm * np.linalg.norm(held - moved * (limit / size if size > limit else 1.0))
+    return defects
+
+
 @pytest.mark.parametrize("eight", [False, True])
-def test_solved_torques_are_their_laws_fixed_points(eight: bool) -> None:
-    """After many sweeps each psi is what its law asks for at the velocities there are: none beyond
-    c lambda_n, on that limit against the spin where there is one. Written without `spin_block`.
+def test_torques_come_to_their_laws_written_without_the_engine(eight: bool) -> None:
+    """The residual of 2000 sweeps is below 1e-4 m/s; it is the largest defect of any law, so both
+    of these are below it, and above a hundred times that before any sweep.
     """
     terms = ("frictional", "levers", "torsional", "rolling", "frictionless", "shifted")
     spec = with_rows(*terms).without("newton")._replace(shape_pairs=())
-    solve = Solve(drawn(1)._replace(spec=spec), packed_solver(eight))
+    prepared = drawn(1)._replace(spec=spec)
+    solve = Solve(prepared, packed_solver(eight))
+    solve.run(0)
+    assert (laws_defects(solve, prepared.bodies).max(axis=0) > 1e-2).all()
     solve.run(2000)
-    assert solve.residual < 1e-10
-    contacts, w = solve.contacts, np.stack([solve.velocities[f"w{x}"] for x in "xyz"], axis=1)
-    relative = w[contacts["b"].astype(int)] - w[contacts["a"].astype(int)]
-    about = [
-        np.sum(relative * np.stack([contacts[f"{axis}{x}"] for x in "xyz"], axis=1), axis=1)
-        for axis in ("n", "t1", "t2")
-    ]
-    slow = 1e-8  # [rad/s] above what the residual allows at an arm of 0.1 m
-    for psi, spin, c in (
-        (contacts["psi_n"][:, None], about[0][:, None], contacts["torsional"]),
-        (
-            np.stack([contacts["psi_1"], contacts["psi_2"]], axis=1),
-            np.stack(about[1:], axis=1),
-            contacts["rolling"],
-        ),
-    ):
-        limit, size = c * contacts["lambda_n"], np.linalg.norm(psi, axis=1)
-        assert (size <= limit * (1.0 + 1e-15)).all()
-        speed = np.linalg.norm(spin, axis=1)
-        turns = (limit > 0.0) & (speed > slow)
-        assert np.count_nonzero(turns) > 5
-        assert np.count_nonzero((limit > 0.0) & ~turns) > 5
-        opposed = -spin[turns] / speed[turns][:, None] * limit[turns][:, None]
-        # The residual bounds the angle between them by 1e-10 / (0.1 m speed).
-        np.testing.assert_allclose(psi[turns], opposed, rtol=0, atol=0.2 * limit.max())
-        share = np.linalg.norm(psi[turns] - opposed, axis=1) * speed[turns] / limit[turns]
-        assert share.max() < slow
+    assert solve.residual < 1e-4
+    assert laws_defects(solve, prepared.bodies).max() <= solve.residual * (1.0 + 1e-9)
