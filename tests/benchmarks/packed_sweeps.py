@@ -1,13 +1,14 @@
 """What packed sweeps save of a step, by the number of bodies: the default with and without them.
 
     python -m tests.benchmarks.packed_sweeps [--layers 5 10 25] [--bases 13 20] [--steps 480]
-        [--surfaces rough turning smooth] [--repeats 1] [--check] [--json] [--output FILE.json]
+        [--surfaces frictional turning frictionless] [--repeats 1] [--check] [--json]
+        [--output FILE.json]
 
-Piles of forty spheres a layer fall into a box, pyramids stand from the start; of spheres that are
-rough, that resist turning as well, or that have no friction. Both engines of a
-scene go from its start to its end, ten steps of each in turn, in alternating order: each makes the
-motion that its own sweeps give. Time is the processor's own in this thread where the system counts
-it finely; compiling is apart. Beside it stand the median residual, and how deep anything overlaps
+Piles of forty spheres a layer fall into a box: spheres that are frictional, that resist turning as
+well, or that have no friction; pyramids stand from the start. Both engines of a scene go from its
+start to its end, ten steps of each in turn, in alternating order: each makes the motion that its
+own sweeps give. Time is the processor's own in this thread where the system counts it finely;
+compiling is apart. Beside it stand the median residual, and how deep anything overlaps
 at the end: what time is saved by must not be accuracy. With --check the exit code is 1 where a
 scene of FEWEST_BODIES and more takes more than BAR of the time without.
 """
@@ -34,9 +35,9 @@ from .scenes import Case, case
 LAYERS, BASES = (1, 5, 12, 25), (6, 13, 20)
 STEPS, BLOCK = 480, 10
 SURFACES = {
-    "rough": "{friction: 0.5}",  # as the scene has it
+    "frictional": "{friction: 0.5}",  # as the scene has it
     "turning": "{friction: 0.5, torsional_friction: 0.001, rolling_friction: 0.001}",
-    "smooth": "{friction: 0}",
+    "frictionless": "{friction: 0}",
 }
 # Of the time without. A pyramid at rest ends its solves before anything is packed.
 BAR = {"pile": 0.9, "pyramid": 1.05}
@@ -83,8 +84,8 @@ def text_of(kind: str, size: int, surface: str) -> str:
     if kind == "pyramid":
         return pyramid(size)
     text = pile(size)
-    assert SURFACES["rough"] in text
-    return text.replace(SURFACES["rough"], SURFACES[surface])
+    assert SURFACES["frictional"] in text
+    return text.replace(SURFACES["frictional"], SURFACES[surface])
 
 
 def measure(
@@ -119,13 +120,13 @@ def measure(
 def table(found: dict[str, Any]) -> str:
     """Return all scenes as a small table."""
     lines = [
-        f"{'scene':12} {'bodies':>6} {'contacts':>8} {'without':>9} {'with':>9} {'ratio':>6} "
+        f"{'scene':17} {'bodies':>6} {'contacts':>8} {'without':>9} {'with':>9} {'ratio':>6} "
         f"{'residual':>17} {'overlap':>13}   us by step; residual [m/s] and overlap [um] of both"
     ]
     for row in found["scenes"]:
         a, b = row["without"], row["with"]
         lines.append(
-            f"{row['scene']:12} {row['bodies']:6} {row['contacts']:8} {a['us_per_step']:9.1f} "
+            f"{row['scene']:17} {row['bodies']:6} {row['contacts']:8} {a['us_per_step']:9.1f} "
             f"{b['us_per_step']:9.1f} {row['ratio']:6.2f} "
             f"{a['residual']:8.1e} {b['residual']:8.1e} "
             f"{1e6 * a['overlap']:6.1f} {1e6 * b['overlap']:6.1f}"
@@ -140,7 +141,7 @@ def measure_all(
 ) -> dict[str, Any]:
     """Measure piles of so many layers with such surfaces, and pyramids of such bases."""
     scenes = [("pile", n, surface) for surface in surfaces for n in layers]
-    scenes += [("pyramid", n, "rough") for n in bases]
+    scenes += [("pyramid", n, "frictional") for n in bases]
     return {
         "steps": steps,
         "clock": clock()[0],

@@ -4,7 +4,7 @@ Where neighbours in the order of sweeps share no movable body, visiting eight at
 them in turn. Packed, a sweep reads what it needs of a contact and nothing else
 (`solvers.packed.layout`), in a third of the time of one over the records. To round-off it is the
 same sweep, in the same order, whatever contacts are made of: a normal alone, friction, torsional
-and rolling friction, compliance, moving surfaces, smooth pairs beside rough ones.
+and rolling friction, compliance, moving surfaces, frictionless pairs beside frictional ones.
 
 Packing costs what two sweeps over the records save: solves of one or two sweeps, or of few
 contacts, do without (`solvers.packed.late`). Below some two hundred bodies Newton's method finishes

@@ -55,7 +55,7 @@ NORMAL, ARM_A, ARM_B = range(0, 3 * AXIS, AXIS)
 (
     PER_MASS_A, PER_MASS_B, W_NORMAL, INV_K_NORMAL, K_NORMAL, SOFT, PRESSED,
 ) = range(3 * AXIS, 3 * AXIS + 7)  # fmt: skip
-SMOOTH = PRESSED + 1
+NORMAL_ALONE = PRESSED + 1
 LINE = 8  # numbers of a line of the processor's cache
 
 # Velocity of a body when the solve begins [m/s], [rad/s], and the lower triangle of L.
@@ -75,7 +75,7 @@ def begins(spec: Spec) -> Begins:
     """Return the fields of an engine's contacts, in numbers."""
     terms = row_terms(spec)
     if not terms.frictional:
-        return Begins(SMOOTH, SMOOTH, SMOOTH)
+        return Begins(NORMAL_ALONE, NORMAL_ALONE, NORMAL_ALONE)
     roll = BLOCK + (TORSION if terms.torsional else 0)
     return Begins(BLOCK, roll, roll + (ROLL if terms.rolling else 0))
 

@@ -92,15 +92,15 @@ def make_put_arms(spec: Spec, eight: bool) -> Any:
             put_axis(rows, arm_b, 0.0, 0.0, 0.0)
             return
         lever_a, lever_b = Vec3(0.0, 0.0, 0.0), Vec3(0.0, 0.0, 0.0)
-        smooth = not frictional
+        alone = not frictional
         if frictional:
             if frictionless:
-                smooth = contact.frictional == 0
+                alone = contact.frictional == 0
             n = Vec3(contact.nx, contact.ny, contact.nz)
             lever_a = cross(Vec3(contact.rax, contact.ray, contact.raz), n)
             lever_b = cross(Vec3(contact.rbx, contact.rby, contact.rbz), n)
         if frictionless:
-            if smooth:  # its levers leave out round-off
+            if alone:  # its levers leave out round-off
                 lever_a = Vec3(contact.lever_ax, contact.lever_ay, contact.lever_az)
                 lever_b = Vec3(contact.lever_bx, contact.lever_by, contact.lever_bz)
         put_turn(rows, arm_a, factor[contact.a], -1.0, lever_a)

@@ -31,7 +31,7 @@ def decided(count: int = FEWEST_BODIES, surface: Any = None, **numerics: Any):
         {"torsional_friction": 0.01},
         {"friction": 0.5, "rolling_friction": 0.01},
     ],
-    ids=lambda surface: " ".join(surface) or "smooth",
+    ids=lambda surface: " ".join(surface) or "frictionless",
 )
 def test_many_bodies_are_swept_packed_whatever_their_surfaces(surface: dict[str, float]) -> None:
     found = decided(surface=surface)

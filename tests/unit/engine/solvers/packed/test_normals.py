@@ -19,7 +19,7 @@ def test_velocities_carry_the_impulses_about_every_axis(eight: bool) -> None:
 
     A hundred roundings a visit, times the visits; impulses of some 10 N s on 0.5 kg and more.
     """
-    prepared = drawn(1, rough=False)
+    prepared = drawn(1, frictional=False)
     spec = with_rows("frictionless", "levers").without("newton")._replace(shape_pairs=())
     solve = Solve(prepared._replace(spec=spec), packed_solver(eight))
     solve.run(20)
@@ -47,7 +47,7 @@ def test_velocities_carry_the_impulses_about_every_axis(eight: bool) -> None:
 
 
 def _settling(packs: bool, shape: str) -> Bench:
-    """Return two hundred columns of two bodies on smooth ground, one step made, cold."""
+    """Return two hundred columns of two bodies on frictionless ground, one step made, cold."""
     bodies = {"floor": plane()}
     for k in range(200):
         for j, mass in enumerate((4.0, 1.0)):

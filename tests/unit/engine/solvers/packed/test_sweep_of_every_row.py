@@ -15,9 +15,9 @@ ROUND_OFF = 2.0**-53 * 100 * 100
 SPEED = 5.0  # [m/s]
 SPINS = [(), ("torsional",), ("rolling",), ("torsional", "rolling")]
 OTHERS = [(), ("frictionless", "compliant", "shifted")]
-ROUGH = [("frictional", "levers", *spins, *others) for spins in SPINS for others in OTHERS]
+FRICTIONAL = [("frictional", "levers", *spins, *others) for spins in SPINS for others in OTHERS]
 SOFT = [(), ("compliant",)]
-SMOOTH = [("frictionless", *turns, *soft) for turns in ((), ("levers",)) for soft in SOFT]
+FRICTIONLESS = [("frictionless", *turns, *soft) for turns in ((), ("levers",)) for soft in SOFT]
 PSI = {"torsional": ("psi_n",), "rolling": ("psi_1", "psi_2")}
 
 
@@ -62,7 +62,7 @@ def same(a: Solve, b: Solve, terms: tuple[str, ...], sweeps: int) -> None:
     assert b.residual == pytest.approx(a.residual, abs=10 * soft * allowed)
 
 
-@pytest.mark.parametrize("terms", ROUGH + SMOOTH, ids=" ".join)
+@pytest.mark.parametrize("terms", FRICTIONAL + FRICTIONLESS, ids=" ".join)
 def test_packed_sweeps_leave_what_sweeps_over_the_records_leave(terms: tuple[str, ...]) -> None:
     for seed in (1, 2, 3):
         prepared = problem(terms, seed)
@@ -79,7 +79,9 @@ def test_packed_sweeps_leave_what_sweeps_over_the_records_leave(terms: tuple[str
             assert records.velocities.tobytes() != packed.velocities.tobytes()  # it was packed
 
 
-@pytest.mark.parametrize("terms", [ROUGH[-1], ROUGH[4], SMOOTH[-1], SMOOTH[0]], ids=" ".join)
+@pytest.mark.parametrize(
+    "terms", [FRICTIONAL[-1], FRICTIONAL[4], FRICTIONLESS[-1], FRICTIONLESS[0]], ids=" ".join
+)
 def test_eight_at_a_time_give_the_bits_of_one_at_a_time(terms: tuple[str, ...]) -> None:
     prepared = problem(terms, 4)
     one, eight = (Solve(prepared, packed_solver(width)) for width in (False, True))
@@ -93,10 +95,10 @@ def test_eight_at_a_time_give_the_bits_of_one_at_a_time(terms: tuple[str, ...]) 
 
 def test_the_drawn_problems_have_what_could_go_wrong() -> None:
     """Rows of every kind side by side, on their limits and inside them."""
-    solve = Solve(problem(ROUGH[-1], 1), "adaptive")
+    solve = Solve(problem(FRICTIONAL[-1], 1), "adaptive")
     solve.run(20)
     contacts = solve.contacts
-    pressed, rough = contacts["lambda_n"] > 0.0, contacts["frictional"] == 1
+    pressed, frictional = contacts["lambda_n"] > 0.0, contacts["frictional"] == 1
     sizes = {
         "torsional": np.abs(contacts["psi_n"]),
         "rolling": np.hypot(contacts["psi_1"], contacts["psi_2"]),
@@ -106,15 +108,15 @@ def test_the_drawn_problems_have_what_could_go_wrong() -> None:
         limit, present = contacts[coefficient] * contacts["lambda_n"], contacts[coefficient] > 0.0
         assert (size > 0.999 * limit)[pressed & present].any()
         assert (size < 0.9 * limit)[pressed & present].any()
-        assert (pressed & rough & ~present).any()
+        assert (pressed & frictional & ~present).any()
         assert not size[~present].any()
-    assert (pressed & ~rough).any()
+    assert (pressed & ~frictional).any()
     assert (contacts["surface_1"] != 0.0).any()
     assert (contacts["gamma"] > 0.0).any()
     assert not pressed.all()
 
 
-@pytest.mark.parametrize("terms", [ROUGH[-1], SMOOTH[-1]], ids=" ".join)
+@pytest.mark.parametrize("terms", [FRICTIONAL[-1], FRICTIONLESS[-1]], ids=" ".join)
 def test_what_an_earlier_solve_left_in_the_arrays_does_not_matter(terms: tuple[str, ...]) -> None:
     clean, dirty = (Solve(problem(terms, 1), packed_solver(True)) for _ in range(2))
     dirty.workspace.rows[...] = np.nan
@@ -129,7 +131,7 @@ def test_what_an_earlier_solve_left_in_the_arrays_does_not_matter(terms: tuple[s
     assert clean.velocities.tobytes() == dirty.velocities.tobytes()
 
 
-@pytest.mark.parametrize("terms", [ROUGH[-1], SMOOTH[-1]], ids=" ".join)
+@pytest.mark.parametrize("terms", [FRICTIONAL[-1], FRICTIONLESS[-1]], ids=" ".join)
 def test_what_is_not_a_number_is_reported(terms: tuple[str, ...]) -> None:
     prepared = problem(terms, 1)
     for axis in ("vx", "wz"):
