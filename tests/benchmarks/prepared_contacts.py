@@ -21,7 +21,7 @@ from lavendersim.engine.kernel_cache import cached
 from lavendersim.engine.records import dtype
 from lavendersim.engine.solvers import SOLVER_NAMES
 from lavendersim.engine.solvers.catalogue import SOLVERS
-from lavendersim.engine.solvers.solver import ContactSystem
+from lavendersim.engine.solvers.solver import ContactSystem, Solver
 from lavendersim.engine.spec import Spec
 from lavendersim.experiment import load_experiment_text
 from lavendersim.scene.build import build
@@ -96,22 +96,27 @@ class Solve:
     """One solver on the contacts of one step, any number of times."""
 
     def __init__(
-        self, prepared: Prepared, solver: str, tolerance: float | None = None, anew: bool = False
+        self,
+        prepared: Prepared,
+        solver: str | Solver,
+        tolerance: float | None = None,
+        anew: bool = False,
     ) -> None:
-        """Compile or load the solver; anew: compile it in any case."""
-        self.name, self.count = solver, len(prepared.contacts)
+        """Compile or load the solver, the engine's by its name; anew: compile in any case."""
+        declared = SOLVERS[solver] if isinstance(solver, str) else solver
+        self.name, self.count = declared.name, len(prepared.contacts)
         self._prepared = prepared
-        spec = prepared.spec._replace(solver=solver, tolerance=tolerance is not None)
+        spec = prepared.spec._replace(solver=declared.name, tolerance=tolerance is not None)
         held = prepared.contacts.dtype
         fields = [(field, held[field].str[1:]) for field in held.names or ()]
-        self._initial = np.zeros(self.count, dtype(fields, SOLVERS[solver].contact_fields))
+        self._initial = np.zeros(self.count, dtype(fields, declared.contact_fields))
         for field, _ in fields:
             self._initial[field] = prepared.contacts[field]
         self.contacts, self.velocities = self._initial.copy(), prepared.velocities.copy()
         self._parameters, self._counters = prepared.parameters.copy(), prepared.counters.copy()
         self._parameters["tolerance"] = -1.0 if tolerance is None else tolerance
         self._parameters["sweeps"] = 0
-        self.workspace = SOLVERS[solver].allocate(spec, len(prepared.bodies), self.count)
+        self.workspace = declared.allocate(spec, len(prepared.bodies), self.count)
         system = ContactSystem(
             self.contacts, prepared.order, self.count, prepared.bodies, self.velocities
         )
@@ -119,7 +124,7 @@ class Solve:
         self._arguments = (
             system, self.workspace, self._parameters[0], self._counters[0], residual_rows
         )  # fmt: skip
-        kernel = cached(SOLVERS[solver].make, spec)
+        kernel = cached(declared.make, spec)
         kernel._cache.anew = anew
         begin = time.perf_counter()
         with compiling():

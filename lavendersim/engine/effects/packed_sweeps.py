@@ -3,7 +3,8 @@
 Where neighbours in the order of sweeps share no movable body, visiting eight at once is visiting
 them in turn. Packed, a sweep reads what it needs of a contact and nothing else
 (`solvers.packed.layout`), in a third of the time of one over the records. To round-off it is the
-same sweep, in the same order.
+same sweep, in the same order, whatever contacts are made of: a normal alone, friction, torsional
+and rolling friction, compliance, moving surfaces, frictionless pairs beside frictional ones.
 
 Packing costs what two sweeps over the records save: solves of one or two sweeps, or of few
 contacts, do without (`solvers.packed.late`). Below some two hundred bodies Newton's method finishes
@@ -18,7 +19,7 @@ FEWEST_BODIES = 200
 
 
 def decide(facts: Facts) -> Decision:
-    """On where the solver is adaptive, bodies are many and contacts are a normal and a disc."""
+    """On where the solver is adaptive and bodies are many, by sweeps that can be packed."""
     if facts.solver != "adaptive":
         return Decision(False, f"the solver is {facts.solver}")
     movable = sum(body.movable for body in facts.bodies)
@@ -32,12 +33,9 @@ def decide(facts: Facts) -> Decision:
         return Decision(False, f"over_relaxation is {facts.over_relaxation:g}")
     if facts.mistake == "capture_in_sweeps":
         return Decision(False, "restitution is captured anew in every sweep")
-    if not any(pair.surface.friction > 0.0 for pair in facts.pairs):
-        return Decision(False, "no contact has friction")
-    for pair in facts.pairs:
-        if pair.resists_turning:
-            return Decision(False, f"contacts of {pair.a} and {pair.b} resist turning")
+    if not facts.pairs:
+        return Decision(False, "nothing can touch")
     return Decision(True, f"{movable} movable bodies have contacts enough to visit eight at a time")
 
 
-EFFECT = Effect(name="packed_sweeps", decide=decide, per="contact", needs=("friction",))
+EFFECT = Effect(name="packed_sweeps", decide=decide, per="contact")

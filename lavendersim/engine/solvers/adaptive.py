@@ -56,7 +56,7 @@ class Swept(NamedTuple):
 
 def allocate(spec: Spec, bodies: int, contacts: int) -> Any:
     """Return the arrays this solver works in."""
-    packed = allocate_packed(bodies, contacts, eight=True) if packs_late(spec) else None
+    packed = allocate_packed(spec, bodies, contacts, eight=True) if packs_late(spec) else None
     if spec.has("newton"):
         rows = 6 * bodies
         entries = min(rows * (rows + 1) // 2, MOST_ENTRIES)

@@ -15,20 +15,24 @@ from ..spec import Spec
 from . import projected_gauss_seidel
 from .iteration import Iteration
 from .packed.layout import allocate_packed
-from .packed.sweep import can_pack, make_packed_iteration
+from .packed.sweep import are_blocks, can_pack, make_packed_iteration
 from .solver import Solver, no_workspace
+
+
+def _packs(spec: Spec) -> bool:
+    return are_blocks(spec) and can_pack(spec)
 
 
 def allocate(spec: Spec, bodies: int, contacts: int) -> Any:
     """Return the arrays this solver works in."""
-    if not can_pack(spec):
+    if not _packs(spec):
         return no_workspace(spec, bodies, contacts)
-    return allocate_packed(bodies, contacts, eight=True)
+    return allocate_packed(spec, bodies, contacts, eight=True)
 
 
 def make(spec: Spec) -> Iteration:
     """Return the sweeps over packed contacts, or those of `projected_gauss_seidel`."""
-    if can_pack(spec):
+    if _packs(spec):
         return make_packed_iteration(spec, eight=True)
     return projected_gauss_seidel.make(spec)
 

@@ -9,9 +9,7 @@ from __future__ import annotations
 from typing import Any
 
 from ...compile import kernel
-from ...row_terms import row_terms
 from ...spec import Spec
-from ...vectors import Vec3, cross
 from ..solver import ContactSystem
 from .lane_memory import (
     put_bodies,
@@ -23,30 +21,20 @@ from .lane_memory import (
     take_triples,
 )
 from .lanes import WIDTH, greater, lane, magnitude, positive, total, zeros
-from .layout import AXIS, make_place
-from .packing import make_pack_rows, make_put_geometry, make_unpack_bodies
+from .layout import ARM_A, ARM_B, NORMAL, PER_MASS_A, PER_MASS_B, make_place
+from .packing import make_pack_rows, make_put_arms, make_put_geometry, make_unpack_bodies
 
-# Fields, in numbers: the normal, what each body does about it, and one number each.
-NORMAL, ARM_A, ARM_B = range(0, 3 * AXIS, AXIS)
-PER_MASS_A, PER_MASS_B, CORRECTION, PER_K, PUSH = range(3 * AXIS, 3 * AXIS + 5)
+# Fields of one number each, behind the masses of a normal alone.
+CORRECTION, PER_K, PUSH = range(PER_MASS_B + 1, PER_MASS_B + 4)
 PUSHED = PUSH + 1
 
 
 def _make_pack_normal(spec: Spec) -> Any:
-    frictionless = row_terms(spec).frictionless
-    put_axis, put_turn, _ = make_put_geometry(spec, True)
+    (put_axis, _, _), put_arms = make_put_geometry(spec, True), make_put_arms(spec, True)
 
     def pack_normal(contact, velocities, rows, at, factor):
         put_axis(rows, at + NORMAL * WIDTH, contact.nx, contact.ny, contact.nz)
-        n = Vec3(contact.nx, contact.ny, contact.nz)
-        lever_a = cross(Vec3(contact.rax, contact.ray, contact.raz), n)
-        lever_b = cross(Vec3(contact.rbx, contact.rby, contact.rbz), n)
-        if frictionless:
-            if contact.frictional == 0:
-                lever_a = Vec3(contact.lever_ax, contact.lever_ay, contact.lever_az)
-                lever_b = Vec3(contact.lever_bx, contact.lever_by, contact.lever_bz)
-        put_turn(rows, at + ARM_A * WIDTH, factor[contact.a], -1.0, lever_a)
-        put_turn(rows, at + ARM_B * WIDTH, factor[contact.b], 1.0, lever_b)
+        put_arms(contact, factor, rows, at + ARM_A * WIDTH, at + ARM_B * WIDTH)
         put_one(rows, at + PER_MASS_A * WIDTH, contact.inv_m_a)
         put_one(rows, at + PER_MASS_B * WIDTH, contact.inv_m_b)
         put_one(rows, at + CORRECTION * WIDTH, contact.correction)

@@ -201,6 +201,19 @@ def where_greater(typing, a, b, x, y):
 
 
 @primitive
+def clamped(typing, x, limit):
+    """Return the number nearest to x of no greater magnitude than `limit`; a NaN stays."""
+
+    def emit(context, builder, sig, args):
+        x, limit = args
+        least = builder.fneg(limit)
+        x = builder.select(builder.fcmp_ordered("<", x, least), least, x)
+        return builder.select(builder.fcmp_ordered(">", x, limit), limit, x)
+
+    return signature(x, x, limit), emit
+
+
+@primitive
 def any_greater(typing, a, b):
     """Return whether a > b, in any lane."""
 

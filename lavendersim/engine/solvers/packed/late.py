@@ -12,8 +12,7 @@ from typing import Any, NamedTuple
 from ...compile import kernel
 from ...spec import Spec
 from ..sweep import make_sweep
-from .packing import make_pack, make_unpack
-from .sweep import can_pack, make_sweep_packed
+from .sweep import can_pack, make_pack, make_sweep_packed, make_unpack
 
 # Sweeps over the records before contacts are packed.
 FIRST = 2

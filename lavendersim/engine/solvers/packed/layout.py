@@ -11,6 +11,9 @@ For visits of one contact at a time its numbers lie together. For visits of eigh
 groups of eight contacts, the eight of each field side by side; a group is a run of consecutive
 contacts of the order, which ends before the first that shares a movable body with one of it, and is
 filled up with contacts of all 0.
+
+A contact has the fields that the engine's rows require: the block of a normal and a disc, behind it
+those of torsion and of rolling; or, in scenes without friction, a normal alone.
 """
 
 from __future__ import annotations
@@ -21,11 +24,12 @@ import numpy as np
 
 from ...compile import kernel
 from ...records import ANGULAR_VELOCITY, F8, VELOCITY, Field, dtype
+from ...row_terms import row_terms
 from ...spec import Spec
 from .lane_memory import STRIDE
 from .lanes import WIDTH
 
-# Fields, in numbers. Axes of the contact, x y z each:
+# Fields of a block, in numbers. Axes of the contact, x y z each:
 AXIS = 3
 N, T1, T2 = range(0, 3 * AXIS, AXIS)
 # L^T (r x axis) of body A, negative, and of body B, for the axes n, t1, t2.
@@ -35,15 +39,45 @@ TURN_A, TURN_B = 3 * AXIS, 6 * AXIS
     INV_M_A, INV_M_B, W_N, W_1, W_2, INV_K, K_N1, K_N2, I_11, I_12, I_22, INV_K_T, K_N, K_T, MU,
     GAMMA, LAMBDA_N, LAMBDA_1, LAMBDA_2,
 ) = range(9 * AXIS, 9 * AXIS + 19)  # fmt: skip
-FIELDS = LAMBDA_2 + 1
+BLOCK = LAMBDA_2 + 1
+# Torsion, behind the block: L^T n of body A, negative, and of body B, and one number each.
+TORSION_A, TORSION_B = 0, AXIS
+W_TORSION, INV_TORSION, C_TORSION, PSI_N, TORSION_SPEED = range(2 * AXIS, 2 * AXIS + 5)
+TORSION = TORSION_SPEED + 1
+# Rolling, behind both: the same of t1, t2.
+ROLL_A, ROLL_B = 0, 2 * AXIS
+(
+    W_ROLL_1, W_ROLL_2, H_11, H_12, H_22, INV_ROLL, C_ROLL, PSI_1, PSI_2, ROLL_SPEED,
+) = range(4 * AXIS, 4 * AXIS + 10)  # fmt: skip
+ROLL = ROLL_SPEED + 1
+# A normal alone: n, what each body does about it, and one number each.
+NORMAL, ARM_A, ARM_B = range(0, 3 * AXIS, AXIS)
+(
+    PER_MASS_A, PER_MASS_B, W_NORMAL, INV_K_NORMAL, K_NORMAL, SOFT, PRESSED,
+) = range(3 * AXIS, 3 * AXIS + 7)  # fmt: skip
+NORMAL_ALONE = PRESSED + 1
 LINE = 8  # numbers of a line of the processor's cache
-# Numbers from one contact to the next, and from one group of eight to the next.
-ALONE = -(-FIELDS // LINE) * LINE
-GROUP = FIELDS * WIDTH
 
 # Velocity of a body when the solve begins [m/s], [rad/s], and the lower triangle of L.
 START: Final[list[Field]] = [*VELOCITY, *ANGULAR_VELOCITY]
 FACTOR: Final[list[Field]] = [(name, F8) for name in ("xx", "yx", "yy", "zx", "zy", "zz")]
+
+
+class Begins(NamedTuple):
+    """Where the parts behind a block begin, and where the fields end; absent parts have none."""
+
+    torsion: int
+    roll: int
+    end: int
+
+
+def begins(spec: Spec) -> Begins:
+    """Return the fields of an engine's contacts, in numbers."""
+    terms = row_terms(spec)
+    if not terms.frictional:
+        return Begins(NORMAL_ALONE, NORMAL_ALONE, NORMAL_ALONE)
+    roll = BLOCK + (TORSION if terms.torsional else 0)
+    return Begins(BLOCK, roll, roll + (ROLL if terms.rolling else 0))
 
 
 class PackedContacts(NamedTuple):
@@ -59,11 +93,17 @@ class PackedContacts(NamedTuple):
     group_of: np.ndarray  # (bodies,) int64, last group with a contact of the body
 
 
-def allocate_packed(bodies: int, contacts: int, eight: bool) -> PackedContacts:
+def stride(spec: Spec, eight: bool) -> int:
+    """Return the numbers from one contact to the next, or from one group of eight to the next."""
+    fields = begins(spec).end
+    return fields * WIDTH if eight else _whole_lines(fields)
+
+
+def allocate_packed(spec: Spec, bodies: int, contacts: int, eight: bool) -> PackedContacts:
     """Return the arrays for so many bodies and contacts; memory is taken when it is used."""
     slots = WIDTH * contacts if eight else contacts  # at worst each contact has its own group
     return PackedContacts(
-        _lines(contacts * (GROUP if eight else ALONE)),
+        _lines(contacts * stride(spec, eight)),
         np.zeros(slots, np.int64),
         np.zeros(slots, np.int64),
         np.zeros(contacts, np.int64),
@@ -72,6 +112,10 @@ def allocate_packed(bodies: int, contacts: int, eight: bool) -> PackedContacts:
         np.zeros(bodies, dtype(FACTOR)),
         np.zeros(bodies, np.int64),
     )
+
+
+def _whole_lines(numbers: int) -> int:
+    return -(-numbers // LINE) * LINE
 
 
 def _lines(numbers: int) -> np.ndarray:
@@ -83,7 +127,7 @@ def _lines(numbers: int) -> np.ndarray:
 
 def make_place(spec: Spec, eight: bool, fields: int) -> Any:
     """Return `kernel(slot) -> where its fields begin in the rows`, of so many fields each."""
-    alone, group = -(-fields // LINE) * LINE, fields * WIDTH
+    alone, group = _whole_lines(fields), fields * WIDTH
 
     def place_alone(slot):
         return slot * alone

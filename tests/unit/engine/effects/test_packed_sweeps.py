@@ -7,7 +7,8 @@ from typing import Any
 import pytest
 from laboratory import plane, planned, resolved, sphere
 
-from lavendersim.engine.effects.packed_sweeps import FEWEST_BODIES
+from lavendersim.engine.effects.decision import BodyFacts, Facts
+from lavendersim.engine.effects.packed_sweeps import FEWEST_BODIES, decide
 
 GRAVITY = (0.0, 0.0, -9.81)
 
@@ -21,10 +22,27 @@ def decided(count: int = FEWEST_BODIES, surface: Any = None, **numerics: Any):
     return planned(cell).decisions["packed_sweeps"]
 
 
-def test_many_bodies_with_friction_are_swept_packed() -> None:
-    found = decided()
+@pytest.mark.parametrize(
+    "surface",
+    [
+        {"friction": 0.5},
+        {},
+        {"compliance": 1e-6},
+        {"torsional_friction": 0.01},
+        {"friction": 0.5, "rolling_friction": 0.01},
+    ],
+    ids=lambda surface: " ".join(surface) or "frictionless",
+)
+def test_many_bodies_are_swept_packed_whatever_their_surfaces(surface: dict[str, float]) -> None:
+    found = decided(surface=surface)
     assert found.on
     assert found.reason == "200 movable bodies have contacts enough to visit eight at a time"
+
+
+def test_bodies_that_nothing_can_touch_are_not_swept() -> None:
+    body = BodyFacts("ball", "sphere", movable=True, spins=False, round=True)
+    facts = Facts((body,) * FEWEST_BODIES, (), GRAVITY, 0.0, 0.2, True)
+    assert decide(facts) == (False, "nothing can touch")
 
 
 @pytest.mark.parametrize(
@@ -35,11 +53,6 @@ def test_many_bodies_with_friction_are_swept_packed() -> None:
         ({"friction_cone": "pyramid"}, "the friction cone is pyramid"),
         ({"order": "forward"}, "the order of sweeps is forward"),
         ({"over_relaxation": 1.3}, "over_relaxation is 1.3"),
-        ({"surface": {}}, "no contact has friction"),
-        (
-            {"surface": {"friction": 0.5, "rolling_friction": 0.01}},
-            "contacts of floor and ball_0 resist turning",
-        ),
     ],
     ids=str,
 )

@@ -76,8 +76,6 @@ def test_packed_sweeps_are_those_of_lanes_after_the_first_sweeps_over_the_record
     [
         ADAPTIVE.without("packed_sweeps"),
         ADAPTIVE._replace(solver="projected_gauss_seidel"),
-        ADAPTIVE.including("torsional_friction"),
-        ADAPTIVE.including("rolling_friction"),
         ADAPTIVE.including("capture_in_sweeps"),
         ADAPTIVE._replace(friction_cone="pyramid"),
         ADAPTIVE._replace(over_relaxation=True),

@@ -10,7 +10,7 @@ from packed_scenes import BLOCKS, SCENES, found, mechanics, natural_maps
 
 from lavendersim.engine.solvers.catalogue import SOLVERS
 from lavendersim.engine.solvers.packed.lanes import WIDTH
-from lavendersim.engine.solvers.packed.layout import FIELDS, INV_K, K_N, W_N
+from lavendersim.engine.solvers.packed.layout import BLOCK, INV_K, K_N, W_N
 from tests.benchmarks.prepared_contacts import Solve
 
 PACKED = ("block_gauss_seidel", "coloured_gauss_seidel")
@@ -146,7 +146,7 @@ def test_what_an_earlier_solve_left_in_the_arrays_does_not_matter() -> None:
     to rest; the greatest change of any lane says when sweeps are over.
     """
     clean, dirty = (Solve(found("towers"), "coloured_gauss_seidel", 1e-6) for _ in range(2))
-    fields = dirty.workspace.rows.reshape(-1, FIELDS, WIDTH)
+    fields = dirty.workspace.rows.reshape(-1, BLOCK, WIDTH)
     fields[:, [INV_K, K_N]], fields[:, W_N] = 1.0, -1.0  # pushed by 1 m/s, and never moved
     for array in (dirty.workspace.state, dirty.workspace.start, dirty.workspace.factor):
         array[...] = 7.0
