@@ -41,6 +41,7 @@ IDLE = {  # in effects/sphere.yaml, with the reason why no config has it at work
     "rotation": NEEDED,
     "contact_torque": NEEDED,
     "impact_order": "another law where a scene requires it; of one ball on a plane it is idle",
+    "sliding_stops": "another law where a scene requires it",
     "contact_spring": "another law where a scene requires it",
     "impact_energy": SWEPT,
     "stabilisation": "the default numerics, which all timed scenes have, project instead",

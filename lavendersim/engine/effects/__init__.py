@@ -39,6 +39,7 @@ NAMES: Final = (
     "impact_time",
     "impact_order",
     "pairwise_impacts",
+    "sliding_stops",
     "error_control",
     "speculative",
     "fast_bodies",

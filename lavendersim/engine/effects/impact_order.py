@@ -71,6 +71,7 @@ def make_order(spec: Spec) -> Any:
     from ..foreseen_impacts import make_follow, make_foresee
     from ..impact_location import make_locate
     from ..impact_rows import make_keep_present, make_mark_impact
+    from . import made_once
 
     expect = make_expect(spec)
     approach, foresee, follow = make_approach(spec), make_foresee(spec), make_follow(spec)
@@ -79,6 +80,7 @@ def make_order(spec: Spec) -> Any:
     edged = drop_flush is not None
     turns = spec.has("rotation")
     springs = spec.has("contact_spring")
+    stops, first_stop = made_once(spec, "first_stop")
 
     def first_due(contacts, count):
         first, due = -1, NEVER
@@ -112,11 +114,19 @@ def make_order(spec: Spec) -> Any:
 
     begin_order = kernel(begin_order, spec)
 
+    def until_stop(state, count, length, params, counters):
+        # The part that ends where sliding stops, if that comes first.
+        if stops:
+            return min(length, first_stop(state, count, params, counters))
+        return length
+
+    until_stop = kernel(until_stop, spec)
+
     def order(state, count, workspace, params, counters):
         bodies, motion, contacts = state.bodies, state.motion, state.contacts
         left = params.dt
         if not begin_order(state, count):
-            return count, left
+            return count, until_stop(state, count, left, params, counters)
         expect(state.contacts, count, bodies, motion, left)
         if edged:
             count = drop_flush(state, count, workspace, params)
@@ -140,7 +150,7 @@ def make_order(spec: Spec) -> Any:
             if contact.waits == 1:
                 waiting = True
         if not (meets or waiting):
-            return count, left
+            return count, until_stop(state, count, left, params, counters)
         rows = touching
         if meets:
             rows = mark_impact(contacts, count, state.pairs, bodies, motion, params.slop)
@@ -165,7 +175,8 @@ def make_order(spec: Spec) -> Any:
                 break
             due = locate(state, count, contact, workspace, params)
             contact.located, contact.due = LOCATED, due
-        return keep_present(contacts, count), length
+        count = keep_present(contacts, count)
+        return count, until_stop(state, count, length, params, counters)
 
     return kernel(order, spec)
 
