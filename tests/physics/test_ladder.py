@@ -44,12 +44,12 @@ def truth(start: float) -> Truth:
     h, angle, spin, t = RUNGE_KUTTA, start, 0.0, 0.0
     times, angles, leaves = [t], [angle], 0.0
     while angle > LAST:
-        held = math.sin(angle) > 2.0 / 3.0 * math.sin(start)
-        if held:
+        on_wall = math.sin(angle) > 2.0 / 3.0 * math.sin(start)
+        if on_wall:
             leaves = t
 
-        def rate(a: float, w: float, held: bool = held) -> tuple[float, float]:
-            return w, turning(a, w, held)
+        def rate(a: float, w: float, on_wall: bool = on_wall) -> tuple[float, float]:
+            return w, turning(a, w, on_wall)
 
         k1 = rate(angle, spin)
         k2 = rate(angle + 0.5 * h * k1[0], spin + 0.5 * h * k1[1])

@@ -83,18 +83,21 @@ def box_up_a_slope(v: float, degrees: float, mu: float) -> Scene:
 def ball_up_a_slope(v: float, degrees: float, mu: float) -> Scene:
     """It slides uphill, its slip reverses before it does, and it slides on downhill.
 
-    mu < 2/7 tan(angle): friction cannot make it roll. Beside it another goes the same way.
+    mu < 2/7 tan(angle): friction cannot make it roll.
     """
     along, across = pulls(degrees)
     first = Phase(0.0, 0.0, -v, along + mu * across)
     # slip v - R w: friction slows v by mu g', and w grows by 5/2 mu g'/R
     second = first.then(v / (along + 3.5 * mu * across), along - mu * across)
-    bodies = {"floor": PLANE, "body": body(BALL, RADIUS, -v), "other": body(BALL, RADIUS, -v, 2.0)}
+    bodies = {"floor": PLANE, "body": body(BALL, RADIUS, -v)}
     return Scene(bodies, f"friction: {mu}", f"{{tilt_degrees: {degrees}}}", [first, second])
 
 
 def ball_begins_to_roll(v: float, mu: float) -> Scene:
-    """The slip v - R w vanishes at v = 5/7 of what it was."""
+    """The slip v - R w vanishes at v = 5/7 of what it was. Beside it another goes the same way.
+
+    One ball on a level plane slides on in steps of one part: where it begins to roll is at order 2.
+    """
     first = Phase(0.0, 0.0, v, -mu * GRAVITY)
     bodies = {"floor": PLANE, "body": body(BALL, RADIUS, v), "other": body(BALL, RADIUS, v, 2.0)}
     second = first.then(v / (3.5 * mu * GRAVITY), 0.0)

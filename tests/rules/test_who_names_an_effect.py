@@ -106,8 +106,8 @@ ASKED = {
             *("effects/projection", "integrate", "midpoint_passes"),
         ),
         "impact_order": (
-            *("effects/impact_time", "effects/warm_start", "memory", "midpoint_geometry", "parts"),
-            *("respond", "runner/log_size"),
+            *("effects/impact_time", "effects/sliding_stops", "effects/warm_start", "memory"),
+            *("midpoint_geometry", "parts", "respond", "runner/log_size"),
         ),
         "error_control": (
             *("effects/projection", "effects/warm_start", "parts", "step", "step_doubling"),

@@ -28,12 +28,31 @@ from .effect import Choice, Column, Effect, Fields, Hooks, kernel
 
 # Rows of contacts that the parts of one step may have in all.
 WORK = 512
+# Of gravity along a plane: what is left of the normal's last digits.
+ROUND_OFF = 1e-12
 # So many contacts that a part looks at, and does not meet, count as one row.
 LOOKS = 16
 # An impact of more rows is not made by itself.
 CROWD = 64
 # Bodies that overlap by more are moved apart first: what they do has no order in time [m].
 OVERLAP = 5e-5
+
+
+def slides_back(facts: Facts) -> bool:
+    """Whether something may drive the one ball of a scene along its one plane, against friction.
+
+    Friction on it then changes within a step (`sliding_stops`).
+    """
+    surface = facts.pairs[0].surface
+    resists = surface.friction > 0.0 or facts.pairs[0].resists_turning
+    if not resists or facts.integrator != "midpoint_contact":
+        return False
+    if any(body.force or body.torque or body.pulled or body.twisted for body in facts.bodies):
+        return True
+    (plane,) = (body for body in facts.bodies if body.shape == "plane")
+    n, g = plane.config.shape.normal, facts.gravity
+    across = (g[1] * n[2] - g[2] * n[1], g[2] * n[0] - g[0] * n[2], g[0] * n[1] - g[1] * n[0])
+    return any(abs(part) > ROUND_OFF * max(map(abs, g)) for part in across)
 
 
 def decide(facts: Facts) -> Decision:
@@ -45,6 +64,8 @@ def decide(facts: Facts) -> Decision:
     only = facts.pairs[0]
     rigid = only.surface.compliance == 0.0  # where a spring begins to push is met in time
     if facts.pair_count == 1 and only.shape_pair == "sphere_plane" and rigid:
+        if slides_back(facts):
+            return Decision(True, "the ball may slide, or roll, to a stop and back on the plane")
         return Decision(False, "one ball and one plane: no impact follows another within a step")
     if facts.stabilisation_gain > 0.0:
         return Decision(False, "stabilisation_gain pushes by the step: it has no order in time")

@@ -6,9 +6,9 @@ after tau with speed |v_meet|,
 leave with -e v_meet, and end the step with v_n = -e v_meet + a (dt - tau): this is what the row
 requires. The bodies move on their old velocity until tau and on the new one from there; their
 other contacts require that the gap left at tau does not close in the rest of the step. What forces
-do in that rest counts as in `integrate.displace`: of bodies that fly on, their way is that of the
-mean velocity, v_n - a (dt - tau)/2; what is held moves by v_n. A flight so short that it would end
-within the step is no flight: the contact is then a plastic one.
+do in that rest counts as in `integrate.displace`: what flies on moves by its mean velocity there,
+v_n - a (dt - tau)/2; what is carried by v_n. A flight so short that it would end within the step is
+no flight: the contact is then a plastic one.
 """
 
 from math import sqrt
@@ -75,31 +75,31 @@ def make_foresee(spec):
     return kernel(foresee, spec)
 
 
-def make_hold(spec):
+def make_mark_carried(spec):
     """Return `kernel(contacts, count, motion, params)`: which bodies do not fly after an impact.
 
     They lie on what they touch as the step begins, or stay with what they met (`motion.carried`).
     """
     from ..integrate import AFTERWARDS, ALWAYS, IMPACT
 
-    def hold(contacts, count, motion, params):
+    def mark_carried(contacts, count, motion, params):
         for i in range(motion.shape[0]):
             motion[i].carried = 0
         for c in range(count):
             contact = contacts[c]
-            held = 0
+            how = 0
             if contact.is_impact == IMPACT:
                 if contact.separation_speed == 0.0:
-                    held = AFTERWARDS
+                    how = AFTERWARDS
             elif contact.phi <= params.slop:
-                held = ALWAYS
+                how = ALWAYS
             a, b = motion[contact.a], motion[contact.b]
             if contact.inv_m_a > 0.0:
-                a.carried = max(a.carried, held)
+                a.carried = max(a.carried, how)
             if contact.inv_m_b > 0.0:
-                b.carried = max(b.carried, held)
+                b.carried = max(b.carried, how)
 
-    return kernel(hold, spec)
+    return kernel(mark_carried, spec)
 
 
 def make_predict_impacts(spec):
@@ -113,7 +113,7 @@ def make_predict_impacts(spec):
 
     foresee, springs = make_foresee(spec), spec.has("contact_spring")
     falls, _ = made_once(spec, "restitution_at")
-    hold = make_hold(spec)
+    mark_carried = make_mark_carried(spec)
 
     def first_impact(contact, motion, dt):
         first = dt
@@ -154,7 +154,7 @@ def make_predict_impacts(spec):
                     if falls:
                         contact.e_impact = contact.e if contact.separation_speed > 0.0 else 0.0
                     contact.target = -(contact.separation_speed + contact.after)
-        hold(contacts, count, motion, params)
+        mark_carried(contacts, count, motion, params)
         for c in range(count):
             contact = contacts[c]
             if springs:

@@ -95,7 +95,7 @@ def make_first_stop(spec: Spec) -> Any:
     from . import made_once
 
     slowest, vanishes = make_slowest(spec), make_vanishes(spec)
-    terms, turns = row_terms(spec), spec.has("rotation")
+    terms = row_terms(spec)
     rolling, torsional = terms.rolling, terms.torsional
     moving_surface, surface_velocity = made_once(spec, "surface_velocity")
 
@@ -109,9 +109,8 @@ def make_first_stop(spec: Spec) -> Any:
         a, b = bodies[contact.a], bodies[contact.b]
         ma, mb, at = motion[contact.a], motion[contact.b], position(contact)
         v = relative_velocity(ma, mb)
-        if turns:
-            v = plus(v, cross(Vec3(mb.wx, mb.wy, mb.wz), minus(at, position(b))))
-            v = minus(v, cross(Vec3(ma.wx, ma.wy, ma.wz), minus(at, position(a))))
+        v = plus(v, cross(Vec3(mb.wx, mb.wy, mb.wz), minus(at, position(b))))
+        v = minus(v, cross(Vec3(ma.wx, ma.wy, ma.wz), minus(at, position(a))))
         if moving_surface:
             set_tangents(contact)
             surface_velocity(contact, a, b)
@@ -126,9 +125,8 @@ def make_first_stop(spec: Spec) -> Any:
         # In the last part [m/s^2].
         a, b, at = bodies[contact.a], bodies[contact.b], position(contact)
         rate = Vec3(b.ax - a.ax, b.ay - a.ay, b.az - a.az)
-        if turns:
-            rate = plus(rate, cross(Vec3(b.spin_ax, b.spin_ay, b.spin_az), minus(at, position(b))))
-            rate = minus(rate, cross(Vec3(a.spin_ax, a.spin_ay, a.spin_az), minus(at, position(a))))
+        rate = plus(rate, cross(Vec3(b.spin_ax, b.spin_ay, b.spin_az), minus(at, position(b))))
+        rate = minus(rate, cross(Vec3(a.spin_ax, a.spin_ay, a.spin_az), minus(at, position(a))))
         return across(normal(contact), rate)
 
     slip_rate = kernel(slip_rate, spec)
@@ -183,6 +181,7 @@ EFFECT = Effect(
     decide=decide,
     per="contact",
     needs=("impact_order", "contact_midpoint", "friction"),
+    overhead_with="friction",
     fields=Fields(
         body=[  # rate of its spin in the last part of a step [rad/s^2]
             ("spin_ax", "f8"),

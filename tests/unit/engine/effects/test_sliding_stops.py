@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 import pytest
-from laboratory import box, plane, planned, resolved
+from laboratory import box, plane, planned, resolved, sphere
 
 from lavendersim.engine.approach import NEVER
 from lavendersim.engine.effects.sliding_stops import LEFT_OVER, make_vanishes
@@ -67,3 +67,29 @@ def test_it_is_there_where_something_slides_and_a_step_has_parts() -> None:
     assert "sliding_stops" not in effects(0.0)
     assert "sliding_stops" not in effects(0.5, impacts="at_surface")
     assert "sliding_stops" not in effects(0.5, integrator="midpoint")
+
+
+@pytest.mark.parametrize(
+    ("gravity", "friction", "parts"),
+    [
+        ((0.0, 0.0, -9.81), 0.5, False),  # nothing drives the ball along the floor
+        ((3.0, 0.0, -9.0), 0.5, True),
+        ((3.0, 0.0, -9.0), 0.0, False),  # nothing changes where it turns round
+    ],
+)
+def test_one_ball_on_one_plane_has_parts_where_it_may_slide_back(gravity, friction, parts) -> None:
+    bodies = {
+        "floor": plane(friction=friction),
+        "ball": sphere(0.1, (0.0, 0.0, 0.1), friction=friction),
+    }
+    numerics = {"impacts": "in_order", "integrator": "midpoint_contact"}
+    found = planned(resolved(bodies, gravity, **numerics)).spec.effects
+    assert ("impact_order" in found, "sliding_stops" in found) == (parts, parts)
+
+
+def test_gravity_along_the_normal_of_a_tilted_plane_drives_nothing() -> None:
+    n = (math.sin(0.3), 0.0, math.cos(0.3))
+    bodies = {"floor": plane(n, friction=0.5), "ball": sphere(0.1, (0.0, 0.0, 1.0), friction=0.5)}
+    numerics = {"impacts": "in_order", "integrator": "midpoint_contact"}
+    gravity = tuple(-9.81 * part for part in n)
+    assert "impact_order" not in planned(resolved(bodies, gravity, **numerics)).spec.effects
