@@ -92,8 +92,8 @@ def make_foresee(spec: Spec) -> Any:
             if falls:
                 e_at = restitution_at(e, pair, -v)
             return is_impact(-v, least, dv, 0.0 if met else most, e_at, params)
-        # What leaves a gap, whatever holds its bodies, is no contact of this part. What turns may be
-        # pressed to a surface by another contact alone, as a ladder to a wall.
+        # What leaves a gap, whatever holds its bodies, is no contact of this part. Bodies that turn
+        # may be pressed to a surface by another contact alone, as a ladder to a wall.
         pressed = most
         if turns:
             bends = bend(contact, bodies, motion) * left
