@@ -30,6 +30,7 @@ ELSEWHERE = {
         "scene/laws.py": FACT,
         "scene/build.py": "its vector is a parameter of the run, with the other coefficients",
         "engine/effects/fast_bodies.py": "how fast bodies may fall",
+        "engine/effects/impact_order.py": "what drives a ball along a plane",
         "scene/expected_contacts.py": "how soon bodies have landed",
     },
     "external_force": {
