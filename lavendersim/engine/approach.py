@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import Any
 
 from .compile import inner, kernel
+from .effects import made_once
 from .records import PLANE, TOUCHING
 from .spec import Spec
 from .vectors import Vec3, dot, length, minus, position
@@ -77,6 +78,8 @@ def make_expect(spec: Spec) -> Any:
 def make_note_acceleration(spec: Spec) -> Any:
     """Return `kernel(bodies, velocities, motion, params)`, once a part of some length is solved."""
 
+    noted, note_rate = made_once(spec, "note_rate")
+
     def note_acceleration(bodies, velocities, motion, params):
         if params.dt < SHORT * params.timestep:
             return
@@ -85,6 +88,8 @@ def make_note_acceleration(spec: Spec) -> Any:
             body.ax = (v.vx - m.vx) / params.dt
             body.ay = (v.vy - m.vy) / params.dt
             body.az = (v.vz - m.vz) / params.dt
+            if noted:
+                note_rate(body, v, m, params.dt)
 
     return kernel(note_acceleration, spec)
 

@@ -32,6 +32,8 @@ SLOW = 1.0
 # Where the path of a contact bends by more than this share of what forces change, it is the motion
 # that brings surfaces together: they meet at a slower speed, in the same measure.
 BENDS, GLANCING = 0.05, 1.0 / 64.0
+# A contact that lasts has a gap of this share of what going round moves its surfaces by, at most.
+CLOSED = 1.0 / 64.0
 LAST = 1.0 - 1e-9  # first guess, in what is left of the step, where only shapes tell
 
 
@@ -95,8 +97,15 @@ def make_foresee(spec: Spec) -> Any:
         drawn = False  # as long as it is closed, however fast it opens
         if cohesive:
             drawn = pair.cohesion > 0.0 and contact.phi <= max(params.slop, TOUCHING)
-        # What leaves a gap, whatever holds its bodies, is no contact of this part.
-        if not drawn and v > least + most and contact.phi + left * (v - 0.5 * most) > params.slop:
+        # What leaves a gap, whatever holds its bodies, is no contact of this part. Bodies that turn
+        # may be pressed to a surface by another contact alone, as a ladder to a wall.
+        pressed = most
+        if turns:
+            bends = bend(contact, bodies, motion) * left
+            if contact.phi <= params.slop + CLOSED * bends * left:
+                pressed += bends
+        leaves = v > least + pressed and contact.phi + left * (v - 0.5 * pressed) > params.slop
+        if leaves and not drawn:
             contact.waits = 1
         ahead, slow = False, most
         if gap > params.slop:

@@ -23,7 +23,9 @@ from .spec import Spec
 AFTERWARDS = 1
 ALWAYS = 2
 LASTING = 3  # through the whole step, and its surfaces do not approach as it begins
-
+# CONTACT.is_impact: what sets the row's target.
+IMPACT = 1  # an impact, at its time
+AHEAD = 2  # a gap that bodies fly into after an impact of theirs: reached, if at all, at the end
 
 # A spin whose square shrinks by this in a step is all but stopped: 64 times slower [-].
 STOPPED = 4096.0
@@ -125,21 +127,23 @@ def make_classify(spec: Spec) -> Any:
     at_surface, centred = spec.has("impact_time"), spec.has("contact_midpoint")
 
     def classify(contacts, count, motion, params):
-        abrupt = False
+        abrupt, flown = False, False
         for i in range(motion.shape[0]):
             motion[i].carried, motion[i].tau = 0, params.dt
         for c in range(count):
             contact = contacts[c]
             if contact.lambda_n > 0.0:
                 a, b = motion[contact.a], motion[contact.b]
-                is_impact = False
+                kind = 0
                 if at_surface:
-                    is_impact = contact.is_impact == 1
-                if is_impact:
+                    kind = contact.is_impact
+                if kind == IMPACT:
                     a.tau, b.tau = min(a.tau, contact.tau), min(b.tau, contact.tau)
                     if contact.separation_speed == 0.0:  # plastic: what meets stays together
                         a.carried = max(a.carried, AFTERWARDS)
                         b.carried = max(b.carried, AFTERWARDS)
+                elif kind == AHEAD:
+                    flown, abrupt = True, True
                 else:
                     lasts = False
                     if centred:
@@ -147,6 +151,16 @@ def make_classify(spec: Spec) -> Any:
                     if not lasts:
                         a.carried, b.carried = ALWAYS, ALWAYS
                         abrupt = True
+        if at_surface:
+            if flown:  # what had its impact before flies on to it
+                for c in range(count):
+                    contact = contacts[c]
+                    if contact.lambda_n > 0.0 and contact.is_impact == AHEAD:
+                        a, b = motion[contact.a], motion[contact.b]
+                        if a.tau == params.dt:
+                            a.carried = ALWAYS
+                        if b.tau == params.dt:
+                            b.carried = ALWAYS
         if centred:
             for c in range(count):
                 contact = contacts[c]

@@ -78,12 +78,20 @@ def _pair(effect: Effect, reason: str, plans: Plans) -> EnginePair:
         through = "" if chosen[0] == name else f" through {chosen[0]}"
         return pair._replace(why_not=f"{section}.{key} chooses another law{through}")
     base = plans.logged if _is_log(effect) else plans.silent
-    together = (name, *(other.name for other in EFFECTS if other.overhead_with == name))
+    there = {name, *needs(name), *base.effects}
+    together = (
+        name,
+        *(
+            other.name
+            for other in EFFECTS
+            if other.overhead_with == name and there.issuperset(needs(other.name))
+        ),
+    )
     if not on:
         off = base.including(*needs(name))
         added = tuple(each for each in needs(name) if not base.has(each))
         return pair._replace(off=off, on=off.including(*together), on_top_of=added)
-    needing = [other for other in base.effects if name in needs(other)]
+    needing = [other for other in base.effects if name in needs(other) and other not in together]
     if needing and _is_log(effect):  # other logs: of a plan without any it is the first
         return pair._replace(off=plans.silent, on=plans.silent.including(*together))
     if needing:

@@ -26,6 +26,7 @@ LETS_IN: dict[str, tuple[Any, ...]] = {
     "impact_time": ("at_surface", "in_order"),
     "impact_order": ("in_order",),
     "pairwise_impacts": ("pairwise",),
+    "sliding_stops": (),
     "midpoint": ("midpoint", "midpoint_contact"),
     "contact_midpoint": ("midpoint_contact",),
     "contact_spring": ("spring",),

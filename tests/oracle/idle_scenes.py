@@ -190,6 +190,7 @@ CASES: dict[str, tuple[str, ...]] = {
     "impact_time": ("flying brick",),
     "impact_order": ("flying brick",),
     "pairwise_impacts": ("flying brick",),
+    "sliding_stops": ("flying brick",),
     "speculative": ("flying brick",),
     "fast_bodies": ("slow balls",),
     "falling_restitution": ("balls", "balls, default"),

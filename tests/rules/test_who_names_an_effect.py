@@ -30,6 +30,7 @@ ELSEWHERE = {
         "scene/laws.py": FACT,
         "scene/build.py": "its vector is a parameter of the run, with the other coefficients",
         "engine/effects/fast_bodies.py": "how fast bodies may fall",
+        "engine/effects/impact_order.py": "what drives a ball along a plane",
         "scene/expected_contacts.py": "how soon bodies have landed",
     },
     "external_force": {
@@ -107,8 +108,8 @@ ASKED = {
             *("effects/projection", "integrate", "midpoint_passes"),
         ),
         "impact_order": (
-            *("effects/impact_time", "effects/warm_start", "memory", "midpoint_geometry", "parts"),
-            *("respond", "runner/log_size"),
+            *("effects/impact_time", "effects/sliding_stops", "effects/warm_start", "memory"),
+            *("midpoint_geometry", "parts", "respond", "runner/log_size"),
         ),
         "error_control": (
             *("effects/projection", "effects/warm_start", "parts", "step", "step_doubling"),

@@ -40,6 +40,7 @@ NAMES: Final = (
     "impact_time",
     "impact_order",
     "pairwise_impacts",
+    "sliding_stops",
     "error_control",
     "speculative",
     "fast_bodies",

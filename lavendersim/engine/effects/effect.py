@@ -114,6 +114,8 @@ class Hooks:
     note_slip: Maker | None = None  # (contact, va, vb): the slip before the solve
     mark_impact: Maker | None = None  # (contacts, count, pairs, bodies, motion, slop) -> rows of it
     order_impacts: Maker | None = None  # (state, count, workspace, params, counters): see there
+    first_stop: Maker | None = None  # (state, count, params, counters) -> when sliding stops [s]
+    note_rate: Maker | None = None  # (body, velocity, motion, dt), once a part is solved
     predict_impacts: Maker | None = None  # (contacts, count, motion, params), before the solve
     keep_free: Maker | None = None  # (velocities, free), before any contact impulse acts
     match: Maker | None = None  # (contacts, count, bodies, cache, counters, params)

@@ -28,12 +28,31 @@ from .effect import Choice, Column, Effect, Fields, Hooks, kernel
 
 # Rows of contacts that the parts of one step may have in all.
 WORK = 512
+# Of gravity along a plane: what is left of the normal's last digits.
+ROUND_OFF = 1e-12
 # So many contacts that a part looks at, and does not meet, count as one row.
 LOOKS = 16
 # An impact of more rows is not made by itself.
 CROWD = 64
 # Bodies that overlap by more are moved apart first: what they do has no order in time [m].
 OVERLAP = 5e-5
+
+
+def slides_back(facts: Facts) -> bool:
+    """Whether something may drive the one ball of a scene along its one plane, against friction.
+
+    Friction on it then changes within a step (`sliding_stops`).
+    """
+    surface = facts.pairs[0].surface
+    resists = surface.friction > 0.0 or facts.pairs[0].resists_turning
+    if not resists or facts.integrator != "midpoint_contact":
+        return False
+    if any(body.force or body.torque or body.pulled or body.twisted for body in facts.bodies):
+        return True
+    (plane,) = (body for body in facts.bodies if body.shape == "plane")
+    n, g = plane.config.shape.normal, facts.gravity
+    across = (g[1] * n[2] - g[2] * n[1], g[2] * n[0] - g[0] * n[2], g[0] * n[1] - g[1] * n[0])
+    return any(abs(part) > ROUND_OFF * max(map(abs, g)) for part in across)
 
 
 def decide(facts: Facts) -> Decision:
@@ -45,6 +64,8 @@ def decide(facts: Facts) -> Decision:
     only = facts.pairs[0]
     rigid = only.surface.compliance == 0.0  # where a spring begins to push is met in time
     if facts.pair_count == 1 and only.shape_pair == "sphere_plane" and rigid:
+        if slides_back(facts):
+            return Decision(True, "the ball may slide, or roll, to a stop and back on the plane")
         return Decision(False, "one ball and one plane: no impact follows another within a step")
     if facts.stabilisation_gain > 0.0:
         return Decision(False, "stabilisation_gain pushes by the step: it has no order in time")
@@ -71,6 +92,7 @@ def make_order(spec: Spec) -> Any:
     from ..foreseen_impacts import make_follow, make_foresee
     from ..impact_location import make_locate
     from ..impact_rows import make_keep_present, make_mark_impact
+    from . import made_once
 
     expect = make_expect(spec)
     approach, foresee, follow = make_approach(spec), make_foresee(spec), make_follow(spec)
@@ -79,6 +101,7 @@ def make_order(spec: Spec) -> Any:
     edged = drop_flush is not None
     turns = spec.has("rotation")
     springs = spec.has("contact_spring")
+    stops, first_stop = made_once(spec, "first_stop")
 
     def first_due(contacts, count):
         first, due = -1, NEVER
@@ -112,11 +135,19 @@ def make_order(spec: Spec) -> Any:
 
     begin_order = kernel(begin_order, spec)
 
+    def until_stop(state, count, length, params, counters):
+        # The part that ends where sliding stops, if that comes first.
+        if stops:
+            return min(length, first_stop(state, count, params, counters))
+        return length
+
+    until_stop = kernel(until_stop, spec)
+
     def order(state, count, workspace, params, counters):
         bodies, motion, contacts = state.bodies, state.motion, state.contacts
         left = params.dt
         if not begin_order(state, count):
-            return count, left
+            return count, until_stop(state, count, left, params, counters)
         expect(state.contacts, count, bodies, motion, left)
         if edged:
             count = drop_flush(state, count, workspace, params)
@@ -140,7 +171,7 @@ def make_order(spec: Spec) -> Any:
             if contact.waits == 1:
                 waiting = True
         if not (meets or waiting):
-            return count, left
+            return count, until_stop(state, count, left, params, counters)
         rows = touching
         if meets:
             rows = mark_impact(contacts, count, state.pairs, bodies, motion, params.slop)
@@ -165,7 +196,8 @@ def make_order(spec: Spec) -> Any:
                 break
             due = locate(state, count, contact, workspace, params)
             contact.located, contact.due = LOCATED, due
-        return keep_present(contacts, count), length
+        count = keep_present(contacts, count)
+        return count, until_stop(state, count, length, params, counters)
 
     return kernel(order, spec)
 

@@ -5,8 +5,10 @@ after tau with speed |v_meet|,
     phi + v tau + a tau^2/2 = 0,   v_meet = -sqrt(v^2 - 2 a phi),
 leave with -e v_meet, and end the step with v_n = -e v_meet + a (dt - tau): this is what the row
 requires. The bodies move on their old velocity until tau and on the new one from there; their
-other contacts require that the gap left at tau does not close in the rest of the step. A flight so
-short that it would end within the step is no flight: the contact is then a plastic one.
+other contacts require that the gap left at tau does not close in the rest of the step. What forces
+do in that rest counts as in `integrate.displace`: what flies on moves by its mean velocity there,
+v_n - a (dt - tau)/2; what is carried by v_n. A flight so short that it would end within the step is
+no flight: the contact is then a plastic one.
 """
 
 from math import sqrt
@@ -73,50 +75,100 @@ def make_foresee(spec):
     return kernel(foresee, spec)
 
 
+def make_mark_carried(spec):
+    """Return `kernel(contacts, count, motion, params)`: which bodies do not fly after an impact.
+
+    They lie on what they touch as the step begins, or stay with what they met (`motion.carried`).
+    """
+    from ..integrate import AFTERWARDS, ALWAYS, IMPACT
+
+    def mark_carried(contacts, count, motion, params):
+        for i in range(motion.shape[0]):
+            motion[i].carried = 0
+        for c in range(count):
+            contact = contacts[c]
+            how = 0
+            if contact.is_impact == IMPACT:
+                if contact.separation_speed == 0.0:
+                    how = AFTERWARDS
+            elif contact.phi <= params.slop:
+                how = ALWAYS
+            a, b = motion[contact.a], motion[contact.b]
+            if contact.inv_m_a > 0.0:
+                a.carried = max(a.carried, how)
+            if contact.inv_m_b > 0.0:
+                b.carried = max(b.carried, how)
+
+    return kernel(mark_carried, spec)
+
+
 def make_predict_impacts(spec):
     """Return `kernel(contacts, count, motion, params)`: targets of impacts and of what is near.
 
     Of a body's contacts the first to meet is the impact, with those that meet at the same place
     within the slop; later ones are treated from that time on.
     """
+    from ..integrate import AHEAD, IMPACT
     from . import made_once
 
     foresee, springs = make_foresee(spec), spec.has("contact_spring")
     falls, _ = made_once(spec, "restitution_at")
+    mark_carried = make_mark_carried(spec)
+
+    def first_impact(contact, motion, dt):
+        first = dt
+        if contact.inv_m_a > 0.0:
+            first = min(first, motion[contact.a].tau)
+        if contact.inv_m_b > 0.0:
+            first = min(first, motion[contact.b].tau)
+        return first
+
+    first_impact = kernel(first_impact, spec)
+
+    def gap_at(contact, t, dt):
+        v, a = contact.v_n_pre - contact.dv_n, contact.dv_n / dt
+        return contact.phi + t * (v + 0.5 * a * t)
+
+    gap_at = kernel(gap_at, spec)
 
     def predict_impacts(contacts, count, motion, params):
-        dt = params.dt
+        dt, meets = params.dt, False
         for i in range(motion.shape[0]):
             motion[i].tau = dt
         for c in range(count):
             contact = contacts[c]
             foresee(contact, params)
             if contact.tau < dt:
+                meets = True
                 if contact.inv_m_a > 0.0:
                     motion[contact.a].tau = min(motion[contact.a].tau, contact.tau)
                 if contact.inv_m_b > 0.0:
                     motion[contact.b].tau = min(motion[contact.b].tau, contact.tau)
+        if not meets:
+            return
+        for c in range(count):
+            contact = contacts[c]
+            if contact.tau < dt:
+                if gap_at(contact, first_impact(contact, motion, dt), dt) <= params.slop:
+                    contact.is_impact = IMPACT
+                    if falls:
+                        contact.e_impact = contact.e if contact.separation_speed > 0.0 else 0.0
+                    contact.target = -(contact.separation_speed + contact.after)
+        mark_carried(contacts, count, motion, params)
         for c in range(count):
             contact = contacts[c]
             if springs:
                 if contact.spring_compliance > 0.0:
                     continue
-            first = dt
-            if contact.inv_m_a > 0.0:
-                first = min(first, motion[contact.a].tau)
-            if contact.inv_m_b > 0.0:
-                first = min(first, motion[contact.b].tau)
-            if first >= dt:
+            first = first_impact(contact, motion, dt)
+            if first >= dt or contact.is_impact == IMPACT:
                 continue
-            v, a = contact.v_n_pre - contact.dv_n, contact.dv_n / dt
-            gap = contact.phi + first * (v + 0.5 * a * first)
-            if contact.tau < dt and gap <= params.slop:
-                contact.is_impact = 1
-                if falls:
-                    contact.e_impact = contact.e if contact.separation_speed > 0.0 else 0.0
-                contact.target = -(contact.separation_speed + contact.after)
-            elif gap > params.slop:
-                contact.target = (gap - params.slop) / (dt - first)
+            gap, rest = gap_at(contact, first, dt), dt - first
+            if gap > params.slop:
+                contact.target = (gap - params.slop) / rest
+                if motion[contact.a].carried == 0 and motion[contact.b].carried == 0:
+                    contact.is_impact = AHEAD
+                    contact.target -= 0.5 * contact.dv_n / dt * rest
 
     return kernel(predict_impacts, spec)
 
@@ -134,7 +186,7 @@ EFFECT = Effect(
             ("approach_speed", "f8"),  # speed at which they meet [m/s]
             ("separation_speed", "f8"),  # speed at which they leave, by Newton's law [m/s]
             ("after", "f8"),  # what forces add to v_n from then to the end of the step [m/s]
-            ("is_impact", "i8"),  # 1 where the impact sets the row's target
+            ("is_impact", "i8"),  # IMPACT or AHEAD (`integrate`): what sets its target; else 0
         ],
     ),
     hooks=Hooks(predict_impacts=make_predict_impacts),
