@@ -175,8 +175,8 @@ def _given_by_gravity(trace: Trace) -> Floats:
     for event in changes_of_gravity(trace.config.events):
         row = first_starting_at(trace, event.at)
         if trace.clock.steps_until(exact(event.at)) > 0 and 0 < row < len(given):
-            held = np.array(list(_masses_before(trace, row).values()))
-            moment = held @ trace.pose[row - 1, :, :3]
+            loads = np.array(list(_masses_before(trace, row).values()))
+            moment = loads @ trace.pose[row - 1, :, :3]
             given[row] = -float((pull[row] - pull[row - 1]) @ moment)
     return given
 
@@ -188,11 +188,11 @@ def _masses_before(trace: Trace, row: int) -> dict[str, float]:
     """
     bodies = trace.config.scene.bodies
     movable = {name for name in trace.bodies if is_movable(bodies[name])}
-    held = {name: mass_of(bodies[name]) if name in movable else 0.0 for name in trace.bodies}
+    loads = {name: mass_of(bodies[name]) if name in movable else 0.0 for name in trace.bodies}
     for event in changes_of_bodies(trace.config.events):
         if first_starting_at(trace, event.at) < row:
-            held[event.body] *= 0.0 if event.remove else (event.scale_mass or 1.0)
-    return held
+            loads[event.body] *= 0.0 if event.remove else (event.scale_mass or 1.0)
+    return loads
 
 
 def _given_by_surfaces(trace: Trace) -> Floats:

@@ -9,7 +9,6 @@ from __future__ import annotations
 DECLARATIONS = {
     "cell/body.py": "fields of a resolved config",
     "cell/choices.py": "names of choices",
-    "cell/events.py": "fields of a resolved config",
     "cell/numerics.py": "fields of a resolved config",
     "cell/shapes/compound.py": "fields of a resolved config",
     "cell/shapes/plane.py": "fields of a resolved config",
@@ -90,7 +89,7 @@ WITHOUT_A_TEST = {
         experiment own_measures
     """,
     "experiment/models": """
-        always arrangements axis bodies claims cost events experiment overhead record
+        always arrangements axis bodies claims cost experiment overhead record
         recorded scene shapes steps study
     """,
     "experiment/resolve": """
@@ -113,7 +112,7 @@ WITHOUT_A_TEST = {
         time_series trajectory
     """,
     "measures": """
-        always balance cell_judgements changes columns controls interfaces step_checks
+        always balance cell_judgements columns controls interfaces step_checks
         sweep_judgements
     """,
     "measures/kinds": """
@@ -137,7 +136,7 @@ WITHOUT_A_TEST = {
         build drive_tables
     """,
     "trace": """
-        contact_rows container decode descriptors encode forms groups index opening
+        contact_rows container decode descriptors forms groups index opening
         reader rebuild scan streams walk written_trace
     """,
 }

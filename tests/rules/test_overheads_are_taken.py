@@ -61,6 +61,7 @@ NOT_ALONE = {
     "pairwise_impacts": CHOSEN,
     "error_control": "a key of the config asks for it: it is no overhead of equal timesteps",
     "sliding_stops": "it comes and goes with friction, and is timed with it",
+    "velocity_log": "it comes and goes with step_log, and is timed with it",
     "pose_log": "it comes and goes with step_log, and is timed with it",
 }
 SCENE_OF = {name: config for config, names in AT_WORK.items() for name in names} | dict.fromkeys(

@@ -50,9 +50,12 @@ def slides_back(facts: Facts) -> bool:
     if any(body.force or body.torque or body.pulled or body.twisted for body in facts.bodies):
         return True
     (plane,) = (body for body in facts.bodies if body.shape == "plane")
-    n, g = plane.config.shape.normal, facts.gravity
-    across = (g[1] * n[2] - g[2] * n[1], g[2] * n[0] - g[0] * n[2], g[0] * n[1] - g[1] * n[0])
-    return any(abs(part) > ROUND_OFF * max(map(abs, g)) for part in across)
+    n = plane.config.shape.normal
+    for g in (facts.gravity, *facts.later_gravity):
+        across = (g[1] * n[2] - g[2] * n[1], g[2] * n[0] - g[0] * n[2], g[0] * n[1] - g[1] * n[0])
+        if any(abs(part) > ROUND_OFF * max(map(abs, g)) for part in across):
+            return True
+    return False
 
 
 def decide(facts: Facts) -> Decision:

@@ -131,7 +131,8 @@ def make_first_stop(spec: Spec) -> Any:
 
     slip_rate = kernel(slip_rate, spec)
 
-    def turning_stops(contact, pair, bodies, motion, least, left, shortest):
+    def turning_stops(contact, pair, bodies, motion, least, span):
+        left, shortest = span
         a, b, ma, mb = bodies[contact.a], bodies[contact.b], motion[contact.a], motion[contact.b]
         spin = Vec3(mb.wx - ma.wx, mb.wy - ma.wy, mb.wz - ma.wz)
         rate = Vec3(b.spin_ax - a.spin_ax, b.spin_ay - a.spin_ay, b.spin_az - a.spin_az)
@@ -167,7 +168,7 @@ def make_first_stop(spec: Spec) -> Any:
                     rate = slip_rate(contact, bodies)
                     first = min(first, vanishes(s, rate, least, left, shortest))
             if rolling or torsional:
-                when = turning_stops(contact, pair, bodies, motion, least, left, shortest)
+                when = turning_stops(contact, pair, bodies, motion, least, (left, shortest))
                 first = min(first, when)
         if first < left:
             counters.spent += 1 + count

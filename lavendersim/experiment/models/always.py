@@ -56,8 +56,8 @@ def _unlogged(root: Node, check: str) -> Iterator[str]:
         if (unlogged := effect.balance.unlogged) is not None and unlogged.check == check
     ]
     changed = [(event.get("body").text or "", event) for event in root.get("events").items]
-    stated = [*described(root), *changed]
-    for (name, body), (effect, unlogged) in itertools.product(stated, leaving_out):
+    given = [*described(root), *changed]
+    for (name, body), (effect, unlogged) in itertools.product(given, leaving_out):
         if any(_is_given(body, key.name) for key in effect.body_keys):
             yield f"{unlogged.what.format(body=quoted(name))} is not in the log"
     if check == "momentum" and root.get("numerics", "sleeping").is_true:

@@ -47,9 +47,9 @@ def test_each_change_of_a_surface_begins_a_stage_whatever_the_order_in_the_file(
 
 def test_a_plan_has_what_only_a_later_surface_requires() -> None:
     assert not planned(cell()).decisions["friction"].on
-    rough = planned(cell(event(0.5, "floor", surface=WOOD.model_dump()))).decisions
-    assert rough["friction"].on
-    assert not rough["surface_velocity"].on
+    frictional = planned(cell(event(0.5, "floor", surface=WOOD.model_dump()))).decisions
+    assert frictional["friction"].on
+    assert not frictional["surface_velocity"].on
     belt = event(0.6, "floor", surface_velocity=list(BELT))
     assert planned(cell(belt, friction=0.5)).decisions["surface_velocity"].on
 

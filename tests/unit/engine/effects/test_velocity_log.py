@@ -50,8 +50,8 @@ def test_it_is_on_where_a_run_is_logged_with_velocities(velocities: bool, record
     cell["record"]["velocities"] = velocities
     decided = planned(cell, record).decisions["velocity_log"]
     assert decided.on == (velocities and record)
-    told = f"record.velocities is {str(velocities).lower()}"
-    assert decided.reason == (told if record else "nothing of the run is logged")
+    expected = f"record.velocities is {str(velocities).lower()}"
+    assert decided.reason == (expected if record else "nothing of the run is logged")
 
 
 def test_a_cell_without_velocities_is_written_as_by_earlier_versions() -> None:
