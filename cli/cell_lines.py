@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any, Final
 import typer
 
 from lavender_cli.printing import CELLS_SHOWN, digits, mark
-from lavendersim.runner.limits_reached import limits_in_words
 
 if TYPE_CHECKING:
     from lavendersim.runner.run_results import CellResult
@@ -66,6 +65,8 @@ def summary_of(rows: Sequence[CellResult]) -> list[str]:
     for row in rows:
         counts.update(row.at_limit)
     if counts:
+        from lavendersim.runner.limits_reached import limits_in_words  # late: `ls` reads no results
+
         lines.append(limits_in_words(counts))
     for name in dict.fromkeys(name for row in rows for name in row.measures):
         lines += _range(name, [(row.measures.get(name), row.label) for row in rows])
@@ -106,6 +107,8 @@ def accuracy(row: CellResult) -> str:
     """Return how far the steps of a cell were solved, in words."""
     worst = f"residual <= {digits(row.worst_residual)} m/s"
     if row.at_limit:
+        from lavendersim.runner.limits_reached import limits_in_words  # late: `ls` reads no results
+
         worst += f"  {limits_in_words(row.at_limit)}"
     if not row.not_converged_steps:
         return worst

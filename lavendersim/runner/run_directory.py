@@ -15,7 +15,6 @@ from lavendersim.errors import TraceError, UsageError
 
 from .cells_index import CellsIndex, IndexRow, read_index, with_ended
 from .run_index import PENDING
-from .run_results import RunResults, read_results
 from .run_seal import DONE, read_sealed, sealed
 from .run_tables import read_table, renamed
 
@@ -26,6 +25,8 @@ if TYPE_CHECKING:
     from lavendersim.measures.cost_table import CostTable
     from lavendersim.measures.overhead_table import OverheadTable
     from lavendersim.trace import ExpectedLog, Trace
+
+    from .run_results import RunResults
 
 CONFIG, RESOLVED = "config.yaml", "resolved.json"
 CELLS, RESULTS, TABLE = "cells.json", "results.json", "results.csv"
@@ -207,6 +208,8 @@ class Run:
                 f"{self.path}: this run did not finish; its logs are in cells/, and "
                 f"`{RESUME}` goes on with it"
             )
+        from .run_results import read_results  # late: see `RunCell.trace`
+
         path = self.path / RESULTS
         results = read_results(path)
         found, known = (
