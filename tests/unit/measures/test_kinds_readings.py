@@ -16,7 +16,7 @@ from lavendersim.measures.specs.arithmetic import OfMeasures
 from lavendersim.measures.specs.base import Measure
 from lavendersim.measures.specs.catalogue import KINDS
 from lavendersim.measures.specs.own import FromFile
-from lavendersim.quantities.readings import CONTACTS, EVERYTHING, POSES
+from lavendersim.quantities.readings import CONTACTS, EVERYTHING, POSES, VELOCITIES
 
 # Of a body that falls, bounces and comes to rest, 1.5 s at 100 Hz: longer than every window.
 HEIGHTS = [0.5, 0.3, 0.0, 0.1, 0.15, 0.1, *(0.0 for _ in range(145))]
@@ -54,12 +54,15 @@ BODIES: list[dict[str, Any]] = [
 ]
 
 
+TAKEN = {"contact": CONTACTS, "pose": POSES, "velocity": VELOCITIES}
+
+
 class Watched(SyntheticTrace):
     """A log that notes which of its tables are asked for."""
 
     def __getattribute__(self, name: str) -> Any:
-        if name in ("contact", "pose"):
-            self.__dict__.setdefault("asked", set()).add({"contact": "contacts"}.get(name, "poses"))
+        if name in TAKEN:
+            self.__dict__.setdefault("asked", set()).update(TAKEN[name])
         return super().__getattribute__(name)
 
     def contacts_in_parts(self) -> Any:
@@ -77,6 +80,7 @@ def watched(**body: Any) -> Watched:
     config = ball_and_floor(**body)
     config["scene"] |= TILTED
     made = Watched(step=step, contact=log.contact, pose=log.pose, resolved=config)
+    made.velocity = np.zeros((*log.pose.shape[:2], 6))
     made.__dict__["asked"] = set()
     return made
 

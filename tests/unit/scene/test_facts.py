@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 
-from lavendersim.scene.facts import changes_of_bodies, facts_of
+from lavendersim.cell import changes_of_bodies
+from lavendersim.scene.facts import facts_of
 from tests.made_cells import ORIGIN, UPRIGHT, made_cell
 
 BALL = {"kind": "sphere", "radius": 0.1}
@@ -40,7 +41,7 @@ def test_an_event_may_make_a_body_fast_or_let_it_turn() -> None:
     cell = made_cell({"ball": {"shape": BALL}}, events=[{**event, **kept}, steps])
     facts = facts_of(cell)
     assert (facts.bodies[0].speed, facts.bodies[0].spins, facts.events) == (7.0, True, True)
-    assert [one.body for one in changes_of_bodies(cell)] == ["ball"]
+    assert [one.body for one in changes_of_bodies(cell.events)] == ["ball"]
 
 
 def test_forces_push_and_twist_those_they_name() -> None:

@@ -25,7 +25,7 @@ SPEC = Spec(("friction", "rotation"), ("sphere_plane", "sphere_sphere"))
 
 
 def test_pairs_have_their_kind_and_what_their_surfaces_mix_to() -> None:
-    pairs, templates = pair_tables(SPEC, ROWS, allocate_bodies(SPEC, 3))
+    pairs, templates, _ = pair_tables(SPEC, ROWS, allocate_bodies(SPEC, 3))
     assert sorted(zip(*np.sort([pairs["a"], pairs["b"]], axis=0), strict=True)) == [
         *((0, 1), (0, 2), (1, 2)),
     ]
@@ -41,10 +41,22 @@ def test_pairs_have_their_kind_and_what_their_surfaces_mix_to() -> None:
 def test_a_broad_phase_has_a_template_for_each_two_classes() -> None:
     spec = SPEC.including("broad_phase")
     bodies = allocate_bodies(spec, 3)
-    pairs, templates = pair_tables(spec, ROWS, bodies)
+    pairs, templates, _ = pair_tables(spec, ROWS, bodies)
     assert len(pairs) == 3 * PAIRS_PER_BODY
     assert bodies["material"].tolist() == [0, 1, 1]
     assert templates["kind"][0, 0] == NO_PAIR  # two planes
     assert templates["kind"][0, 1] == templates["kind"][1, 0] == SHAPE_PAIRS["sphere_plane"].kind
     assert templates["swap"][0, 1] != templates["swap"][1, 0]
     assert templates["kind"][1, 1] == SHAPE_PAIRS["sphere_sphere"].kind
+
+
+def test_what_a_body_becomes_by_an_event_has_a_class_before_any_row_has() -> None:
+    """Ice on wood: sqrt(0.9 * 0) is 0; the plane, the balls, and a ball of ice."""
+    spec = SPEC.including("broad_phase")
+    bodies = allocate_bodies(spec, 3)
+    later = [made_body(BALL, surface={"friction": 0.0})]
+    _, templates, classes = pair_tables(spec, ROWS, bodies, later)
+    assert bodies["material"].tolist() == [0, 1, 1]
+    assert [one.surface.friction for one in classes] == [0.9, 0.4, 0.0]
+    assert templates["kind"][0, 2] == SHAPE_PAIRS["sphere_plane"].kind
+    assert templates["friction"][0, 2] == 0.0

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import re
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -96,3 +99,12 @@ def test_a_cut_log_gives_back_the_velocities_of_whole_groups(block: Block, tmp_p
     trace = open_trace(tmp_path / "whole.mcap", allow_incomplete=True)
     expected = np.ascontiguousarray(block.pose[: report.steps, :, 7:])
     assert trace.velocity.tobytes() == expected.tobytes()
+
+
+def test_rerun_checks_a_log_with_velocities_without_an_issue(block: Block, tmp_path: Path) -> None:
+    path = write(tmp_path / "run.mcap", [block], config=VELOCITIES)
+    command = [sys.executable, "-m", "rerun", "mcap", "check", "--full", str(path)]
+    report = subprocess.run(command, check=True, capture_output=True, text=True, timeout=60).stdout
+    listed = re.findall(r"^(\w+) +\d+ +\d+ +(/\S+) +(.+)$", report, re.M)
+    assert "/velocities" in {topic for _, topic, _ in listed}
+    assert {(status, issue.strip()) for status, _, issue in listed} == {("ok", "—")}

@@ -107,7 +107,7 @@ def test_a_stretch_of_time_is_named_as_the_config_has_it(tmp_path: Path) -> None
 def test_a_log_of_every_step_says_nothing_of_it(tmp_path: Path) -> None:
     trace = open_trace(write(tmp_path / "run.mcap", {"poses": "all"}, [run(3)]))
     assert "recorded" not in trace.metadata
-    assert trace.absent == {}
+    assert trace.absent == {"/velocities": "record.velocities is false"}
 
 
 def test_a_topic_that_is_absent_is_not_recorded_of_some_steps(tmp_path: Path) -> None:

@@ -83,7 +83,7 @@ def test_a_log_without_contacts_says_why(tmp_path: Path) -> None:
 
 
 def test_an_unknown_table_is_refused_with_those_there_are(log: Path) -> None:
-    with pytest.raises(UsageError, match="one of step, pose, contact"):
+    with pytest.raises(UsageError, match="one of step, pose, velocity, contact"):
         open_trace(log).table("contacts")
 
 

@@ -60,6 +60,7 @@ def test_rerun_checks_the_log_without_an_issue(log: Path) -> None:
     listed = re.findall(
         r"^(\w+) +\d+ +\d+ +(/\S+) +(.+)$", rerun("mcap", "check", "--full", log), re.M
     )
-    assert len(listed) == len(CHANNELS)
-    assert {topic for _, topic, _ in listed} == set(CHANNELS)
+    written = CHANNELS.keys() - {"/velocities"}  # of a log whose config says nothing of them
+    assert len(listed) == len(written)
+    assert {topic for _, topic, _ in listed} == written
     assert {(status, issue.strip()) for status, _, issue in listed} == {("ok", "—")}
