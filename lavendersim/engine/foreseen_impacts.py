@@ -98,9 +98,10 @@ def make_foresee(spec: Spec) -> Any:
         if cohesive:
             drawn = pair.cohesion > 0.0 and contact.phi <= max(params.slop, TOUCHING)
         # What leaves a gap, whatever holds its bodies, is no contact of this part. Bodies that turn
-        # may be pressed to a surface by another contact alone, as a ladder to a wall.
+        # may be pressed to a surface by another contact alone, as a ladder to a wall; what would
+        # rebound has to meet again as an impact.
         pressed = most
-        if turns:
+        if turns and e == 0.0:
             bends = bend(contact, bodies, motion) * left
             if contact.phi <= params.slop + CLOSED * bends * left:
                 pressed += bends

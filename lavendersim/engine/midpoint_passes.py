@@ -85,7 +85,8 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
             before, m = free[i], motion[i]
             m.dvx, m.dvy, m.dvz = before.vx - m.vx, before.vy - m.vy, before.vz - m.vz
 
-    forget_load = kernel(forget_load, spec)
+    if loaded:
+        forget_load = kernel(forget_load, spec)
 
     def midpoint_passes(state, count, workspace, params, counters, log):
         bodies, velocities, motion = state.bodies, state.velocities, state.motion

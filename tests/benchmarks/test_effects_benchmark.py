@@ -11,12 +11,12 @@ from tests.benchmarks import effects
 # Laws that the chapter's numerics exclude, and what needs them.
 OTHER_LAWS = {
     *("midpoint", "contact_midpoint", "contact_spring", "impact_time", "impact_order"),
-    *("speculative", "newton", "least_norm", "fast_bodies", "impact_energy"),
+    *("speculative", "newton", "least_norm", "fast_bodies", "impact_energy", "sliding_stops"),
 }
 # Nor does the default choose these.
 ASKED_FOR = {"error_control", "pairwise_impacts"}
 MISTAKES = {effect.name for effect in EFFECTS if effect.study_only}
-LOGS = {"step_log", "pose_log", "contact_log", "residual_log", "problem_log"}
+LOGS = {"step_log", "pose_log", "velocity_log", "contact_log", "residual_log", "problem_log"}
 
 
 def test_full_engines_have_every_effect_whose_law_the_numerics_have() -> None:

@@ -38,6 +38,7 @@ NO_KERNEL = {
 INLINED_DIFFERENTLY = {
     *("frictionless_contact", "kinematic", "capture_in_sweeps"),
     *("external_force", "drag", "stabilisation", "compliance", "restitution"),
+    *("contact_torque", "falling_restitution"),
 }
 # Without a pair that may touch there is nothing to compile. Code may be looked at where the effect
 # would be another law.

@@ -208,6 +208,7 @@ CASES: dict[str, tuple[str, ...]] = {
     "sleeping": ("frictional balls",),
     "step_log": ("balls",),
     "pose_log": ("balls",),
+    "velocity_log": ("balls",),
     "contact_log": ("balls",),
     "residual_log": ("balls", "adaptive balls"),
     "problem_log": ("balls",),

@@ -17,7 +17,7 @@ import time
 import traceback
 import warnings
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 from unittest import mock
@@ -34,6 +34,7 @@ from lavendersim.experiment.text.report import Report
 from lavendersim.runner import cell_jobs, run
 from lavendersim.runner.checks import check
 from lavendersim.runner.log_size import expected_log_sizes
+from lavendersim.runner.planning import Planned, planned
 from lavendersim.runner.plans import distinct, shared_plans
 from lavendersim.scene.explanation import explain_all
 from lavendersim.scene.plan import Plan, union
@@ -181,9 +182,13 @@ def _outcome(text: str, folder: Path, wide: Widening | None) -> End:
     expected_log_sizes(cells, plans, experiment.text)
     if wide is None:
         return End("complete")
+
+    def planned_wide(cells: Sequence[Cell], source: str, workers: int) -> Planned:
+        return planned(cells, source, workers)._replace(plans=wide(cells))
+
     few = property(lambda cell: min(STEPS, STEPS_OF(cell)))
     with (
-        mock.patch.object(cell_jobs, "shared_plans", wide),
+        mock.patch.object(cell_jobs, "planned", planned_wide),
         mock.patch.object(CellConfig, "steps", few),
     ):
         finished = run(experiment, folder, overheads=False)

@@ -186,7 +186,7 @@ def _penetration(config: CellConfig, rows: Rows, states: Any) -> list[str]:
             for s in (before, after)
         ]
         way = np.linalg.norm(poses[number, :, :3] - poses[number - 1, :, :3], axis=1)
-        cosine = np.abs((poses[number, :, 3:] * poses[number - 1, :, 3:]).sum(axis=1))
+        cosine = np.abs((poses[number, :, 3:7] * poses[number - 1, :, 3:7]).sum(axis=1))
         turn = 2.0 * np.arccos(np.minimum(cosine, 1.0))
         moved = before.dt * (flown[0] + flown[1]) + way + before.bound * turn
         reach = float(np.sort(moved)[-2:].sum())

@@ -151,7 +151,7 @@ def _ending(run: Ended, steps: int) -> list[str]:
     if not np.isfinite(kept).all():
         found.append("finite: a pose is no number")
     else:
-        length = np.linalg.norm(kept[:, :, 3:], axis=2)
+        length = np.linalg.norm(kept[:, :, 3:7], axis=2)
         if np.abs(length - 1.0).max() > ROUNDING:
             found.append(f"unit: a quaternion of length 1 {np.abs(length - 1.0).max():+g}")
     return found

@@ -50,6 +50,7 @@ IDLE = {  # in effects/sphere.yaml, with the reason why no config has it at work
     "sleeping": NONE,
     "residual_log": SWEPT,
     "problem_log": NONE,
+    "velocity_log": "a key of the config asks for it, of no scene that is timed",
 }
 CHOSEN = "a key of the config chooses between two laws; neither is an overhead of the other"
 NOT_ALONE = {
@@ -61,7 +62,6 @@ NOT_ALONE = {
     "pairwise_impacts": CHOSEN,
     "error_control": "a key of the config asks for it: it is no overhead of equal timesteps",
     "sliding_stops": "it comes and goes with friction, and is timed with it",
-    "velocity_log": "it comes and goes with step_log, and is timed with it",
     "pose_log": "it comes and goes with step_log, and is timed with it",
 }
 SCENE_OF = {name: config for config, names in AT_WORK.items() for name in names} | dict.fromkeys(

@@ -150,7 +150,8 @@ def make_first_stop(spec: Spec) -> Any:
                 when = min(when, one)
         return when
 
-    turning_stops = kernel(turning_stops, spec)
+    if rolling or torsional:
+        turning_stops = kernel(turning_stops, spec)
 
     def first_stop(state, count, params, counters):
         if count > CROWD or counters.spent + 1 + count > SPENT:
@@ -162,6 +163,9 @@ def make_first_stop(spec: Spec) -> Any:
             if contact.waits == 1 or contact.phi > params.slop:
                 continue
             pair, least = pairs[contact.pair], slowest(contact, bodies, motion)
+            # What nears or leaves is not pressed as the part begins: no friction of it can change.
+            if abs(contact.rate) > least:
+                continue
             if pair.friction > 0.0:
                 s = slip(contact, bodies, motion)
                 if dot(s, s) > least * least:

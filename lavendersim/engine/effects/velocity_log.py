@@ -34,7 +34,6 @@ EFFECT = Effect(
     decide=decide,
     per="body",
     needs=("pose_log",),
-    overhead_with="step_log",
     channels=("/velocities",),
     hooks=Hooks(log_velocity=make),
 )

@@ -3,18 +3,14 @@
 from __future__ import annotations
 
 from importlib.metadata import version
-from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
-from lavendersim.engine import kernel_store
 from lavendersim.runner.environment import (
     PACKAGES,
     Kernels,
-    delete_kernels,
-    kernels,
     machine,
     processor,
     versions,
@@ -38,20 +34,3 @@ def test_the_processor_has_a_name_and_the_machine_its_versions() -> None:
 def test_kernels_in_words(sizes: list[int], words: str) -> None:
     kept: Any = [SimpleNamespace(size=size) for size in sizes]
     assert str(Kernels.of(kept)) == words
-
-
-def test_only_kernels_that_are_meant_are_deleted(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def kept_kernels() -> list[Any]:
-        return [
-            SimpleNamespace(path=path, size=path.stat().st_size, current=path.stem == "now")
-            for path in sorted(tmp_path.iterdir())
-        ]
-
-    (tmp_path / "now.kernel").write_bytes(b"12")
-    (tmp_path / "old.kernel").write_bytes(b"123")
-    monkeypatch.setattr(kernel_store, "kept_kernels", kept_kernels)
-    assert kernels(current=True) == Kernels(1, 2)
-    assert delete_kernels(current=False) == Kernels(1, 3)
-    assert [path.name for path in tmp_path.iterdir()] == ["now.kernel"]
