@@ -224,7 +224,7 @@ def _contacts(run: Ended, cone: str) -> list[str]:
 
 def _immovable(run: Ended, config: CellConfig) -> list[str]:
     """What is fixed or removed stays where it is; what is kinematic keeps its velocity."""
-    found, poses = [], run.rows.pose
+    found, poses = [], run.rows.pose[:, :, :7]  # velocities may follow
     removed = {event.body: event.at for event in config.events if getattr(event, "remove", False)}
     for k, (name, body) in enumerate(config.scene.bodies.items()):
         if name in removed:

@@ -316,5 +316,7 @@ def test_lengths_and_times_in_other_units_show_the_same_motion(kinds, most, know
     gravity = GRAVITY if floor else NOWHERE
     length, time = (2.0 ** data.draw(st.integers(-3, 3)) for _ in range(2))
     seen, plain = motion_in_units(bodies, gravity, (1.0, length, time)), motion(bodies, gravity)
+    # Speeds of fixed points are 64 times others at the most, in units that differ by 8 in both.
+    known = max(known, 64 * FLAT[-1])
     np.testing.assert_allclose(seen[:, :3], plain[:, :3], atol=known)
     np.testing.assert_allclose(seen[:, 3:], plain[:, 3:], atol=known / 0.1)

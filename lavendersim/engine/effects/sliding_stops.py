@@ -131,7 +131,7 @@ def make_first_stop(spec: Spec) -> Any:
 
     slip_rate = kernel(slip_rate, spec)
 
-    def turning_stops(contact, pair, bodies, motion, least, span):
+    def when_turning_stops(contact, pair, bodies, motion, least, span):
         left, shortest = span
         a, b, ma, mb = bodies[contact.a], bodies[contact.b], motion[contact.a], motion[contact.b]
         spin = Vec3(mb.wx - ma.wx, mb.wy - ma.wy, mb.wz - ma.wz)
@@ -150,8 +150,9 @@ def make_first_stop(spec: Spec) -> Any:
                 when = min(when, one)
         return when
 
+    turning_stops: Any = None
     if rolling or torsional:
-        turning_stops = kernel(turning_stops, spec)
+        turning_stops = kernel(when_turning_stops, spec)
 
     def first_stop(state, count, params, counters):
         if count > CROWD or counters.spent + 1 + count > SPENT:
