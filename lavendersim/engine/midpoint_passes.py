@@ -79,14 +79,13 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
 
     restore = kernel(restore, spec)
 
-    def forget_load(free, motion):
+    def forget(free, motion):
         # What contacts draw by themselves is noted anew with each row (`preload`), once.
         for i in range(free.shape[0]):
             before, m = free[i], motion[i]
             m.dvx, m.dvy, m.dvz = before.vx - m.vx, before.vy - m.vy, before.vz - m.vz
 
-    if loaded:
-        forget_load = kernel(forget_load, spec)
+    forget_load: Any = kernel(forget, spec) if loaded else None
 
     def midpoint_passes(state, count, workspace, params, counters, log):
         bodies, velocities, motion = state.bodies, state.velocities, state.motion
