@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Final
 
 import typer
@@ -65,12 +65,16 @@ def summary_of(rows: Sequence[CellResult]) -> list[str]:
     for row in rows:
         counts.update(row.at_limit)
     if counts:
-        from lavendersim.runner.limits_reached import limits_in_words  # late: `ls` reads no results
-
-        lines.append(limits_in_words(counts))
+        lines.append(_limits(counts))
     for name in dict.fromkeys(name for row in rows for name in row.measures):
         lines += _range(name, [(row.measures.get(name), row.label) for row in rows])
     return lines
+
+
+def _limits(counts: Mapping[str, int]) -> str:
+    from lavendersim.runner.limits_reached import limits_in_words  # late: `ls` reads no results
+
+    return limits_in_words(counts)
 
 
 def _residual(row: CellResult) -> float:
@@ -107,9 +111,7 @@ def accuracy(row: CellResult) -> str:
     """Return how far the steps of a cell were solved, in words."""
     worst = f"residual <= {digits(row.worst_residual)} m/s"
     if row.at_limit:
-        from lavendersim.runner.limits_reached import limits_in_words  # late: `ls` reads no results
-
-        worst += f"  {limits_in_words(row.at_limit)}"
+        worst += f"  {_limits(row.at_limit)}"
     if not row.not_converged_steps:
         return worst
     tolerance = f"tolerance {digits(row.tolerance)} m/s"

@@ -14,9 +14,10 @@ from lavendersim.engine.effects import EVENT_KEYS
 from lavendersim.quantities.model import ResolvedModel, declared
 from lavendersim.quantities.quantity import Quaternion, Vector3
 
-# Absent from a cell's JSON where they change nothing: older logs have cells without them.
-_NEWER: Final = ("orientation", "surface", *(key.name for key in EVENT_KEYS))
+# What of a body an event changes that its contacts obey.
 _OF_BODY: Final = ("surface", *(key.name for key in EVENT_KEYS))
+# Absent from a cell's JSON where they change nothing: older logs have cells without them.
+_NEWER: Final = ("orientation", *_OF_BODY)
 
 
 class BodyChange(ResolvedModel):

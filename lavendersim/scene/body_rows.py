@@ -72,11 +72,17 @@ def body_table(
             pose = part_pose(pose, row.part)
         _fill(record, ("owner",), (row.owner,))
         fill_effects(record, row.body)
-        _fill(record, ("x", "y", "z", "qw", "qx", "qy", "qz"), pose)
-        names = [f"r{i}{j}" for i in range(3) for j in range(3)]
-        _fill(record, names, rotation_matrix(pose[3:]).ravel())
+        _fill(record, ("x", "y", "z"), pose[:3])
+        orient(record, pose[3:])
         assert k == row.owner or row.part is not None
     return bodies, hull_geometry(polyhedra)
+
+
+def orient(record: np.void, quaternion: np.ndarray) -> None:
+    """Write a unit quaternion w x y z into a body's record, and its matrix."""
+    _fill(record, ("qw", "qx", "qy", "qz"), quaternion)
+    names = [f"r{i}{j}" for i in range(3) for j in range(3)]
+    _fill(record, names, rotation_matrix(quaternion).ravel())
 
 
 def fill_effects(record: np.void, body: CellBody) -> None:

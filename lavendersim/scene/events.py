@@ -16,11 +16,10 @@ import numpy as np
 
 from lavendersim.cell import AnyEvent, CellEvent, CellForce, CellGravity
 from lavendersim.engine.engine import Engine
-from lavendersim.geometry.rotations import rotation_matrix
-from lavendersim.quantities.quantity import Quaternion, Vector3
+from lavendersim.quantities.quantity import Vector3
 from lavendersim.quantities.scalars import exact
 
-from .body_rows import fill_effects
+from .body_rows import fill_effects, orient
 from .build import Scene, set_gravity, set_timestep
 from .colliders import colliders
 from .pair_tables import list_materials, mix_again
@@ -146,7 +145,8 @@ class BodyEvents:
         if event.teleport is not None:
             body["x"], body["y"], body["z"] = event.teleport
         if event.orientation is not None:
-            orient(body, event.orientation)
+            turned = np.asarray(event.orientation, float)
+            orient(body, turned / np.linalg.norm(turned))
         if event.teleport is not None or event.orientation is not None:
             engine.forget_contacts(index)
         elif event.contact_cache == "clear":
@@ -168,16 +168,3 @@ class BodyEvents:
             engine.list_pairs_anew()
         else:
             mix_again(engine.state.pairs, rows, index)
-
-
-def orient(body: np.void, orientation: Quaternion) -> None:
-    """Write an orientation into a body's record, and its matrix where it has one."""
-    names = body.dtype.names or ()
-    quaternion = np.asarray(orientation, float)
-    quaternion = quaternion / np.linalg.norm(quaternion)
-    values = dict(zip(("qw", "qx", "qy", "qz"), quaternion, strict=True))
-    matrix = rotation_matrix(quaternion)
-    values |= {f"r{i}{j}": matrix[i, j] for i in range(3) for j in range(3)}
-    for name, value in values.items():
-        if name in names:
-            body[name] = value

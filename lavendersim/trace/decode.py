@@ -123,26 +123,29 @@ def decode_poses(
     chunk: ChunkContent, template: Template, bodies: int
 ) -> tuple[Rows, NDArray[np.float64]]:
     """Return steps (n,) and poses (n, bodies, 7) of a chunk; template: the layout of /tf."""
-    entries = chunk.messages[layout.CHANNELS["/tf"]]
-    rows = _matching(template, chunk.data, entries["offset"])
-    shape = (len(rows), bodies, layout.POSE)
-    if not bodies:
-        return _sequence(template, rows), np.empty(shape)
-    words = np.ascontiguousarray(template.take(rows, "pose")).view("<f8").reshape(shape)
-    return _sequence(template, rows), words[:, :, [0, 1, 2, 6, 3, 4, 5]].astype(np.float64)
+    steps, numbers = _of_bodies(chunk, "/tf", template, "pose", (bodies, layout.POSE))
+    return steps, numbers[:, :, [0, 1, 2, 6, 3, 4, 5]].astype(np.float64)
 
 
 def decode_velocities(
     chunk: ChunkContent, template: Template, bodies: int
 ) -> tuple[Rows, NDArray[np.float64]]:
     """Return steps (n,) and velocities (n, bodies, 6) of a chunk; template: that of their topic."""
-    entries = chunk.messages[layout.CHANNELS["/velocities"]]
-    rows = _matching(template, chunk.data, entries["offset"])
-    shape = (len(rows), bodies, layout.VELOCITY)
-    if not bodies:
+    form = bodies, layout.VELOCITY
+    steps, numbers = _of_bodies(chunk, "/velocities", template, "velocity", form)
+    return steps, numbers.astype(np.float64)
+
+
+def _of_bodies(
+    chunk: ChunkContent, topic: str, template: Template, slot: str, form: tuple[int, int]
+) -> tuple[Rows, Rows]:
+    """Return steps (n,) and the numbers of their bodies (n, *form) of a topic in a chunk."""
+    rows = _matching(template, chunk.data, chunk.messages[layout.CHANNELS[topic]]["offset"])
+    shape = (len(rows), *form)
+    if not form[0]:  # a message of no bodies has no such slot
         return _sequence(template, rows), np.empty(shape)
-    words = np.ascontiguousarray(template.take(rows, "velocity")).view("<f8").reshape(shape)
-    return _sequence(template, rows), words.astype(np.float64)
+    words = np.ascontiguousarray(template.take(rows, slot)).view("<f8").reshape(shape)
+    return _sequence(template, rows), words
 
 
 @lru_cache(maxsize=8)

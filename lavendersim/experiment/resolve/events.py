@@ -7,15 +7,13 @@ from typing import Any
 
 from lavendersim.cell.events import AnyEvent, CellEvent, CellGravity, CellTimestep
 from lavendersim.cell.shared_parts import shared
-from lavendersim.engine.effects import BODY_KEYS
+from lavendersim.engine.effects import EVENT_KEYS
 from lavendersim.experiment.models.events import Event
 from lavendersim.experiment.models.scene import Scene
 from lavendersim.experiment.resolve.frames import Frames
 from lavendersim.experiment.resolve.gravity import gravity_vector
 from lavendersim.experiment.resolve.shape import quaternion_of
 from lavendersim.experiment.resolve.surface_pairs import surface_of
-
-_OF_EVENT = [key for key in BODY_KEYS if key.by_event]
 
 
 def resolve_event(event: Event, scene: Scene, frames: Frames) -> AnyEvent:
@@ -43,9 +41,9 @@ def resolve_event(event: Event, scene: Scene, frames: Frames) -> AnyEvent:
         settled["orientation"] = frames.orientation(event.body, turned)
     if event.surface is not None:
         settled["surface"] = shared(surface_of(event.surface, scene))
-    for key in _OF_EVENT:
+    turn = partial(frames.vector, event.body)
+    for key in EVENT_KEYS:
         value = getattr(event, key.name)
-        turn = partial(frames.vector, event.body)
         settled[key.name] = None if value is None else key.resolve(value, turn)
     resolved: CellEvent = CellEvent.of(**settled)
     return resolved
