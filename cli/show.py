@@ -38,7 +38,6 @@ def show(
     Exits 3 when one of its logs was cut or is damaged where the plan is read.
     """
     from lavendersim.runner import open_run
-    from lavendersim.runner.run_results import mean_per_step
 
     opened = open_run(run, runs)
     if cell is not None:
@@ -62,7 +61,7 @@ def show(
     logged = plans_of(opened.cells)
     for plan in logged.plans:
         print_plan(plan, len(opened.cells))
-    logging = mean_per_step(results.cells, "logging_us_per_step")
+    logging = results.mean_per_step("logging_us_per_step")
     typer.echo(f"cells  logging {logging:.2f} us/step, compile {results.compile_s:.1f} s")
     cell_lines.print_cells(results.cells, verbose)
     typer.echo("checks")

@@ -14,7 +14,7 @@ from lavendersim.runner import Run
 from lavendersim.runner.environment import PACKAGES
 from lavendersim.runner.json_table import finite
 from lavendersim.runner.run_directory import ENVIRONMENT
-from lavendersim.runner.run_results import RunResults, mean_per_step
+from lavendersim.runner.run_results import RunResults
 from lavendersim.runner.run_seal import read_sealed
 
 VERSIONS: Final = ("lavender", "engine source", "python", *PACKAGES)
@@ -112,7 +112,7 @@ def compare(a: Run, b: Run) -> Comparison:
         pair.a.release()
         pair.b.release()
     environments = _environment(a), _environment(b)
-    costs = {name: [mean_per_step(one.cells, name) for one in results] for name in COSTS}
+    costs = {name: [one.mean_per_step(name) for one in results] for name in COSTS}
     return Comparison(
         a,
         b,

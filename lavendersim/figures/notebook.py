@@ -55,12 +55,11 @@ def _name(run: Any) -> str:
 def _summary(run: Any) -> Summary:
     results = run.results()
     cells, checks = results.cells, results.checks
-    steps = sum(row.steps for row in cells)
     return Summary(
         cells=cells,
         states=Counter(row.status for row in cells),
-        steps=steps,
-        physics=sum(row.steps * row.physics_us_per_step for row in cells) / max(steps, 1),
+        steps=sum(row.steps for row in cells),
+        physics=results.mean_per_step("physics_us_per_step"),
         passed=sum(check.passed for check in checks),
         claims=len(checks),
         shown=sorted(checks, key=lambda check: check.passed)[:MOST_VERDICTS],

@@ -8,7 +8,7 @@ and the infinities.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -116,6 +116,12 @@ class RunResults(Mapping[str, Any]):
         """Return how many keys the file has."""
         return len(self.as_json)
 
+    def mean_per_step(self, column: str) -> float:
+        """Return the mean cost of a step [us] over all steps of all cells; NaN without one."""
+        steps = sum(row.steps for row in self.cells)
+        total = sum(row.steps * getattr(row, column) for row in self.cells)
+        return total / steps if steps else math.nan
+
     def write(self, path: Path) -> None:
         """Write the table; numbers keep all their digits."""
         from .json_table import pieces_of  # late: who lists runs writes none
@@ -152,15 +158,6 @@ def as_numbers(value: Any) -> Any:
     if isinstance(value, list):
         return [as_numbers(item) for item in value]
     return value
-
-
-def mean_per_step(rows: Iterable[CellResult], column: str) -> float:
-    """Return a cost of a step [us], the mean over all steps of all cells; NaN without a step."""
-    steps, total = 0, 0.0
-    for row in rows:
-        steps += row.steps
-        total += row.steps * getattr(row, column)
-    return total / steps if steps else math.nan
 
 
 def _cell_of(row: Mapping[str, Any]) -> CellResult:

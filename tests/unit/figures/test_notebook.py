@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 from lavendersim.errors import TraceError
 from lavendersim.figures.notebook import MOST_VERDICTS, html_of
+from lavendersim.measures.verdict import Verdict
+from lavendersim.runner.run_results import CellResult, RunResults
 
 
 class Run:
@@ -14,33 +15,35 @@ class Run:
 
     name = "drop <b>"
 
-    def __init__(self, path: Path, results: dict[str, Any] | None = None) -> None:
+    def __init__(self, path: Path, results: RunResults | None = None) -> None:
         self.path, self._results = path, results
 
-    def results(self) -> dict[str, Any]:
+    def results(self) -> RunResults:
         """Return its tables."""
         if self._results is None:
             raise TraceError("results.json: missing & gone")
         return self._results
 
 
-def check(number: int, passed: bool) -> dict[str, Any]:
-    """Return a verdict."""
-    return {
-        **{"node": f"claim {number}", "passed": passed, "measured": 1.0, "expected": "at most 2"},
-        **{"message": f"message {number}", "margin": 0.5, "follows": False, "tolerance": "exact"},
-    }
+def cell(index: int, steps: int, physics: float) -> CellResult:
+    """Return the result of a cell whose steps took `physics` us each."""
+    return CellResult(index, "", "complete", steps, {}, physics, 0.0, 0.0, None, 0.0, 0)
+
+
+def verdict(number: int, passed: bool) -> Verdict:
+    """Return a verdict with a number of its own."""
+    node = f"claim {number}"
+    return Verdict("low", node, passed, 1.0, "at most 2", "exact", f"message {number}", "")
 
 
 def test_texts_are_escaped_and_failed_claims_come_first(tmp_path: Path) -> None:
-    cells = [
-        {"status": "complete", "steps": 100, "physics_us_per_step": 3.0, "label": "", "index": 0},
-        {"status": "complete", "steps": 300, "physics_us_per_step": 1.0, "label": "", "index": 1},
-    ]
-    checks = [check(number, number != 30) for number in range(40)]
-    page = html_of(Run(tmp_path, {"cells": cells, "checks": checks, "passed": False}))
+    cells = (cell(0, 100, 3.0), cell(1, 300, 1.0))
+    checks = tuple(verdict(number, number != 30) for number in range(40))
+    page = html_of(Run(tmp_path, RunResults("drop", False, None, cells, None, checks, False)))
     assert "drop &lt;b&gt;" in page
     assert "drop <b>" not in page
+    # By steps, not by cells: (100 * 3 + 300 * 1) / 400 us.
+    assert "400 steps, physics 1.50" in page
     assert "claim 30" in page
     assert sum(f"claim {k}" in page for k in range(30, 40)) == 1
     assert sum(f"claim {k}<" in page for k in range(40)) <= MOST_VERDICTS

@@ -13,7 +13,7 @@ import pytest
 
 from lavendersim.errors import TraceError
 from lavendersim.measures.verdict import Verdict
-from lavendersim.runner.run_results import CellResult, RunResults, mean_per_step, read_results
+from lavendersim.runner.run_results import CellResult, RunResults, read_results
 from lavendersim.runner.run_tables import FORMER_NAMES
 
 VERDICT = Verdict("low", "low at e=1", True, 0.5, "at most 1 m", "none", "", "a.mcap", False, 0.5)
@@ -82,8 +82,9 @@ def test_results_cannot_be_changed() -> None:
 
 
 def test_a_cost_of_a_step_is_the_mean_over_all_steps() -> None:
-    assert mean_per_step(CELLS, "physics_us_per_step") == (10 * 2.0 + 30 * 4.0) / 40
-    assert math.isnan(mean_per_step(CELLS[2:], "physics_us_per_step"))
+    assert RESULTS.mean_per_step("physics_us_per_step") == (10 * 2.0 + 30 * 4.0) / 40
+    without = dataclasses.replace(RESULTS, cells=CELLS[2:])
+    assert math.isnan(without.mean_per_step("physics_us_per_step"))
 
 
 def test_results_of_an_older_version_have_former_names_and_fewer_columns(tmp_path: Path) -> None:
