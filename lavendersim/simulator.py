@@ -104,7 +104,8 @@ class Simulator:
             self.np_random = np.random.default_rng(seed)
         self._scene: Scene = build(self._config, self.plan.spec)
         self._engine: Engine = self._scene.engine(self.plan.spec, block_steps=1)
-        self._events = EventQueue(self._engine, self._scene, self._config.events)
+        config = self._config
+        self._events = EventQueue(self._engine, self._scene, config.events, config.triggered)
         self._engine.advance(0)
         self._rows: Rows = self._engine.take_rows()
         self._terminated = False

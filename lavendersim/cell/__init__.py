@@ -39,6 +39,7 @@ from lavendersim.cell.shapes import (
     Sphere,
 )
 from lavendersim.cell.surface import PairedSurface, PairProperties, Partner, Surface
+from lavendersim.cell.triggers import CellTrigger, CellTriggeredEvent, happened, met_after
 
 __all__ = [
     "CAPTURE_IN_SWEEPS",
@@ -61,6 +62,8 @@ __all__ = [
     "CellSimple",
     "CellStudy",
     "CellTimestep",
+    "CellTrigger",
+    "CellTriggeredEvent",
     "Convex",
     "Cylinder",
     "FrictionCone",
@@ -82,4 +85,6 @@ __all__ = [
     "TimeWindow",
     "changes_of_bodies",
     "changes_of_gravity",
+    "happened",
+    "met_after",
 ]

@@ -12,11 +12,14 @@ from fractions import Fraction
 from functools import lru_cache
 from typing import Any
 
+from pydantic import SerializerFunctionWrapHandler, model_serializer
+
 from lavendersim.cell.choices import Mistake, Switch
 from lavendersim.cell.events import AnyEvent, CellTimestep
 from lavendersim.cell.numerics import Numerics
 from lavendersim.cell.record import CellRecord
 from lavendersim.cell.scene import CellScene
+from lavendersim.cell.triggers import CellTriggeredEvent
 from lavendersim.clock import Clock
 from lavendersim.quantities.model import ResolvedModel
 from lavendersim.quantities.scalars import exact
@@ -50,6 +53,20 @@ class CellConfig(ResolvedModel):
     record: CellRecord
     effects: CellEffects
     study: CellStudy
+    # Absent from the JSON of cells that have none, as in older logs.
+    triggered: tuple[CellTriggeredEvent, ...] = ()
+
+    @model_serializer(mode="wrap")
+    def _written(self, serialize: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        written: dict[str, Any] = serialize(self)
+        if not self.triggered:
+            del written["triggered"]
+        return written
+
+    @property
+    def planned_events(self) -> tuple[AnyEvent, ...]:
+        """Every event that may happen; the times of those with a trigger say nothing."""
+        return (*self.events, *(one.event for one in self.triggered))
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any]) -> CellConfig:

@@ -75,6 +75,7 @@ class Engine:
         hulls: HullGeometry | None = None,
         links: np.ndarray | None = None,
         drives: Any = (),
+        triggers: Any = (),
         block_steps: int = BLOCK_STEPS,
     ) -> None:
         lacking = {
@@ -94,7 +95,7 @@ class Engine:
         self._kernel = advance_for(spec)
         capacity = max(4, min(4 * len(pairs), FIRST_CONTACTS))
         self.state = memory.allocate_state(
-            spec, bodies, velocities, pairs, links, capacity, drives=drives
+            spec, bodies, velocities, pairs, links, capacity, drives=drives, triggers=triggers
         )
         self.workspace = memory.allocate_workspace(spec, self.state, hulls, templates)
         self.log = self._allocate_log()

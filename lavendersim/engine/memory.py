@@ -56,6 +56,7 @@ class State(NamedTuple):
     pseudo: np.ndarray  # (n,) pseudo-velocities of the positional projection, as velocities
     links: np.ndarray  # what effects join two bodies by
     drives: Any  # functions of time that act on bodies: Drives, or ()
+    triggers: Any  # states that make events happen: TRIGGER (t,), or ()
     control: Any  # of the length of substeps: `step_doubling.Control`, or ()
 
 
@@ -110,6 +111,7 @@ def allocate_state(
     capacity: int,
     *,
     drives: Any = (),
+    triggers: Any = (),
 ) -> State:
     """Return the state of a scene with room for so many contacts."""
     moving = len(bodies) if keeps_motion(spec) else 0
@@ -124,6 +126,7 @@ def allocate_state(
         pseudo=np.zeros(projected, velocities.dtype),
         links=allocate_links(spec, 0) if links is None else links,
         drives=drives,
+        triggers=triggers,
         control=allocate_control(spec, bodies, velocities, capacity),
     )
 

@@ -23,6 +23,7 @@ from .records import (
     ORIENTED_BODY,
     PAIR,
     PARAMETERS,
+    TRIGGER,
     VELOCITY,
     Field,
     dtype,
@@ -137,6 +138,11 @@ def allocate_links(spec: Spec, count: int) -> np.ndarray:
 def allocate_drives(spec: Spec, count: int) -> np.ndarray:
     """Return zeroed records of functions of time that act on bodies."""
     return np.zeros(count, drive_dtype(spec))
+
+
+def allocate_triggers(count: int) -> np.ndarray:
+    """Return zeroed records of states that make events happen."""
+    return np.zeros(count, dtype(TRIGGER))
 
 
 def allocate_knots(count: int) -> np.ndarray:

@@ -147,6 +147,19 @@ DRIVE: Final[list[Field]] = [
 ]
 KNOT: Final[list[Field]] = [("time", F8), ("value", F8)]  # [s], [-]
 
+# A state that makes an event happen (`effects.triggers`).
+TRIGGER: Final[list[Field]] = [
+    ("condition", I8),
+    ("a", I8),  # the body, or two that touch
+    ("b", I8),
+    ("x", F8),  # unit direction of a place, world frame [-]
+    ("y", F8),
+    ("z", F8),
+    ("value", F8),  # [m/s] of a speed, [m] of a place
+    ("touched", I8),  # 1 once the two bodies have touched
+    ("met", I8),  # 1 once the state was met
+]
+
 # When the timestep last changed: after how many steps, and at what time. Effects declare it that
 # count the time of a step.
 STRETCH: Final[list[Field]] = [("stretch_step", I8), ("stretch_begin", F8)]

@@ -104,6 +104,7 @@ def make_advance(spec: Spec) -> Any:
     iterates = has_gjk(spec)
     count_limits: Any = make_count_limits(spec) if iterates else None
     limits_impacts = has_hook(spec, "limit_impacts")
+    triggered, meet_triggers = made_once(spec, "meet_triggers")
     sleeps, measure_speeds = made_once(spec, "measure_speeds")
     _, wake = made_once(spec, "wake")
     _, update_sleeping = made_once(spec, "update_sleeping")
@@ -116,6 +117,8 @@ def make_advance(spec: Spec) -> Any:
             if counters.started == 0:
                 if linked:
                     log_links(log.step[counters.step_rows], state.links, bodies)
+                if triggered:
+                    meet_triggers(state, log, counters)
                 log_step(bodies, velocities, params, counters, log)
         counters.started = 1
         if touches:
@@ -268,12 +271,17 @@ def make_advance(spec: Spec) -> Any:
             if records:
                 if linked:
                     log_links(log.step[counters.step_rows], state.links, bodies)
+                if triggered:
+                    met = meet_triggers(state, log, counters)
                 log_step(bodies, velocities, params, counters, log)
             if in_parts:
                 end_step(counters)
             if diverged >= 0:
                 counters.body, counters.cause = diverged, cause
                 return DIVERGED
+            if triggered:
+                if met > 0:
+                    return RUNNING
         return RUNNING
 
     return kernel(advance, spec)

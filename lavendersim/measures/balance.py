@@ -110,7 +110,7 @@ def momentum_imbalance(trace: Trace, sums: ContactSums, passes: Passes = OVER_LO
 def _own_weight(trace: Trace) -> float:
     """Return the sum of m |g| times the radius of each movable body [J], |g| its largest."""
     scene = trace.config.scene
-    strengths = [one.gravity for one in changes_of_gravity(trace.config.events)]
+    strengths = [one.gravity for one in changes_of_gravity(trace.events)]
     pull = max(math.hypot(*one) for one in (scene.gravity, *strengths))
     bodies = [one for one in scene.bodies.values() if is_movable(one)]
     return pull * sum(mass_of(one) * bounding_radius(one.shape) for one in bodies)

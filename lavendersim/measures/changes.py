@@ -27,7 +27,7 @@ def first_starting_at(trace: Trace, time: float) -> int:
 
 def removals(trace: Trace) -> dict[str, int]:
     """Return the row of the first step without it, for each body that is removed."""
-    gone = [event for event in changes_of_bodies(trace.config.events) if event.remove]
+    gone = [event for event in changes_of_bodies(trace.events) if event.remove]
     return {event.body: first_starting_at(trace, event.at) for event in gone}
 
 
@@ -36,7 +36,7 @@ def masses(trace: Trace) -> Floats:
     bodies = trace.config.scene.bodies.items()
     movable = {name: mass_of(body) for name, body in bodies if is_movable(body)}
     total = np.full(len(trace.step), sum(movable.values()))
-    for event in changes_of_bodies(trace.config.events):
+    for event in changes_of_bodies(trace.events):
         scale = 0.0 if event.remove else event.scale_mass
         if scale is not None and event.body in movable:
             before = movable[event.body]
@@ -48,14 +48,14 @@ def masses(trace: Trace) -> Floats:
 def gravity(trace: Trace) -> Floats:
     """Return gravity [m/s^2] in each step (n, 3)."""
     pull = np.tile(vector(trace.config.scene.gravity), (len(trace.step), 1))
-    for event in changes_of_gravity(trace.config.events):
+    for event in changes_of_gravity(trace.events):
         pull[first_starting_at(trace, event.at) :] = event.gravity
     return pull
 
 
 def strength_of_gravity(trace: Trace) -> Floats | float:
     """Return |g| [m/s^2], in each step (n,) where events change it."""
-    if changes_of_gravity(trace.config.events):
+    if changes_of_gravity(trace.events):
         strength: Floats = np.sqrt((gravity(trace) ** 2).sum(axis=1))
         return strength
     return math.hypot(*trace.config.scene.gravity)
@@ -83,7 +83,7 @@ def forces(trace: Trace) -> Floats:
     total = np.zeros((len(trace.step), 3))
     for force in _constant_forces(trace):
         total[_acting(trace, force)] += vector(force.force)
-    if changes_of_gravity(trace.config.events):
+    if changes_of_gravity(trace.events):
         change = gravity(trace) - vector(trace.config.scene.gravity)
         total += masses(trace)[:, None] * change
     return total
@@ -97,7 +97,7 @@ def work_of_forces(trace: Trace) -> Floats:
         acts = np.zeros(len(work), dtype=bool)
         acts[_acting(trace, force)] = True
         displacement = np.diff(trace.pose[:, body, :3], axis=0, prepend=trace.pose[:1, body, :3])
-        for event in changes_of_bodies(trace.config.events):
+        for event in changes_of_bodies(trace.events):
             row = first_starting_at(trace, event.at)
             if event.teleport is None or event.body != force.body:
                 continue
@@ -106,7 +106,7 @@ def work_of_forces(trace: Trace) -> Floats:
         done = displacement @ vector(force.force)
         if any(force.torque):
             turns = _turns(trace.pose[:, body, 3:])
-            for event in changes_of_bodies(trace.config.events):
+            for event in changes_of_bodies(trace.events):
                 row = first_starting_at(trace, event.at)
                 if event.orientation is None or event.body != force.body:
                     continue
@@ -134,7 +134,7 @@ def given_by_events(trace: Trace) -> Floats:
     bodies = trace.config.scene.bodies
     scaled = dict.fromkeys(bodies, 1.0)
     moved: dict[tuple[str, int], Floats] = {}  # where an event of the same time put it
-    for event in changes_of_bodies(trace.config.events):
+    for event in changes_of_bodies(trace.events):
         name, row = event.body, first_starting_at(trace, event.at)
         body = bodies[name]
         scale = 0.0 if event.remove else event.scale_mass
@@ -172,7 +172,7 @@ def _given_by_gravity(trace: Trace) -> Floats:
     """
     given = np.zeros(len(trace.step))
     pull = gravity(trace)
-    for event in changes_of_gravity(trace.config.events):
+    for event in changes_of_gravity(trace.events):
         row = first_starting_at(trace, event.at)
         if trace.clock.steps_until(exact(event.at)) > 0 and 0 < row < len(given):
             loads = np.array(list(_masses_before(trace, row).values()))
@@ -189,7 +189,7 @@ def _masses_before(trace: Trace, row: int) -> dict[str, float]:
     bodies = trace.config.scene.bodies
     movable = {name for name in trace.bodies if is_movable(bodies[name])}
     loads = {name: mass_of(bodies[name]) if name in movable else 0.0 for name in trace.bodies}
-    for event in changes_of_bodies(trace.config.events):
+    for event in changes_of_bodies(trace.events):
         if first_starting_at(trace, event.at) < row:
             loads[event.body] *= 0.0 if event.remove else (event.scale_mass or 1.0)
     return loads
@@ -202,7 +202,7 @@ def _given_by_surfaces(trace: Trace) -> Floats:
     """
     given = np.zeros(len(trace.step))
     found: set[int] = set()
-    for event in changes_of_bodies(trace.config.events):
+    for event in changes_of_bodies(trace.events):
         row = first_starting_at(trace, event.at)
         if event.surface is not None and 0 < row < len(given) and row not in found:
             found.add(row)
@@ -213,7 +213,7 @@ def _given_by_surfaces(trace: Trace) -> Floats:
 def unknown_momentum(trace: Trace) -> np.ndarray:
     """Return in which steps an event changed a momentum that no log has."""
     unknown = np.zeros(len(trace.step), dtype=bool)
-    for event in changes_of_bodies(trace.config.events):
+    for event in changes_of_bodies(trace.events):
         row = first_starting_at(trace, event.at)
         changes = event.velocity is not None or event.scale_mass is not None
         if (changes or event.remove) and row < len(unknown):

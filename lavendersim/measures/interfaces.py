@@ -9,7 +9,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from lavendersim.cell import CellConfig
+from lavendersim.cell import AnyEvent, CellConfig
 from lavendersim.clock import Clock
 
 Floats = NDArray[np.float64]
@@ -60,6 +60,10 @@ class Trace(Protocol):
     @property
     def config(self) -> CellConfig:
         """The cell's config with every default filled in."""
+
+    @property
+    def events(self) -> Sequence[AnyEvent]:
+        """What happened to it and when; of events with a trigger, those whose state was met."""
 
     @property
     def clock(self) -> Clock:

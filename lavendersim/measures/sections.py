@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from lavendersim.cell import CellConfig
+from lavendersim.cell import AnyEvent, CellConfig
 from lavendersim.clock import Clock
 from lavendersim.errors import TraceError
 from lavendersim.measures.interfaces import Floats, Rows, Trace
@@ -31,6 +31,12 @@ class Section(NamedTuple):
     residual: Any = ()  # no measure of a single step needs sweeps, nor velocities
     velocity: Any = ()
     status: str = "complete"
+    happened: Sequence[AnyEvent] | None = None  # None: the events of its config, at their times
+
+    @property
+    def events(self) -> Sequence[AnyEvent]:
+        """What happened to it and when, up to its end."""
+        return self.config.events if self.happened is None else self.happened
 
     def steps_in_parts(self) -> Iterator[Rows]:
         """Yield all states: a section fits into memory."""
@@ -105,7 +111,7 @@ def sections_of(trace: Trace, whole: bool) -> Iterator[Section]:
         if before is not None:
             steps, poses = np.concatenate([before[0], steps]), np.concatenate([before[1], poses])
         same = trace.bodies, trace.config, trace.clock, trace.absent
-        yield Section(steps, contacts, poses, *same, begin)
+        yield Section(steps, contacts, poses, *same, begin, happened=trace.events)
         begin += len(numbers)
         before = steps[-1:].copy(), poses[-1:].copy()
 

@@ -28,7 +28,7 @@ def varies_friction(surface: Surface) -> bool:
 
 def surfaces_change(config: CellConfig) -> bool:
     """Whether an event changes the surface of a body: the log has then what contacts obeyed."""
-    return any(event.surface is not None for event in changes_of_bodies(config.events))
+    return any(event.surface is not None for event in changes_of_bodies(config.planned_events))
 
 
 def _present(rows: Rows, names: list[str]) -> list[str]:
@@ -106,7 +106,7 @@ def stored_as_found(trace: Trace, step: int) -> float:
 def _surfaces_in(trace: Trace, step: int) -> list[Surface]:
     """Return the surface of each body in a step, by its row."""
     bodies = {name: trace.config.scene.bodies[name].surface for name in trace.bodies}
-    for event in changes_of_bodies(trace.config.events):
+    for event in changes_of_bodies(trace.events):
         if event.surface is not None and trace.clock.steps_until(exact(event.at)) < step:
             bodies[event.body] = event.surface
     return list(bodies.values())

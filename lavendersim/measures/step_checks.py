@@ -152,7 +152,7 @@ def _speed(trace: Trace, sums: ContactSums, passes: Passes) -> Numbers:
 
 def _moved(trace: Trace) -> NDArray[np.bool_] | None:
     """Return in which steps the config put which body elsewhere (n - 1, bodies); None: in none."""
-    jumps = [event for event in changes_of_bodies(trace.config.events) if event.teleport]
+    jumps = [event for event in changes_of_bodies(trace.events) if event.teleport]
     if not jumps:
         return None
     moved = np.zeros((len(trace.step) - 1, len(trace.bodies)), bool)

@@ -8,11 +8,11 @@ bit (`measures.always.outcomes_of`), so that a run is not read again to be judge
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from lavendersim.cell import CellConfig
+from lavendersim.cell import AnyEvent, CellConfig, happened, met_after
 from lavendersim.clock import Clock
 from lavendersim.measures.always import WorstStates
 from lavendersim.measures.contact_sums import ContactSums, nothing
@@ -55,6 +55,7 @@ class Bounds:
         self._stops = always is not None and always.stop
         self.worst = None if always is None else WorstStates(always)
         self._cell = (bodies, config, clock, absent)
+        self._met: dict[int, int] = {}  # steps after which states of triggers were met
         self._last: tuple[Rows, Floats] | None = None  # the state before the block's
 
     @without_warnings
@@ -71,7 +72,9 @@ class Bounds:
             again = 1
             step = joined([self._last[0], step])
             pose = np.concatenate([self._last[1], pose])
-        part = Section(step, block.contact, pose[:, :, :POSE], *self._cell)
+        part = Section(
+            step, block.contact, pose[:, :, :POSE], *self._cell, happened=self._happened(step)
+        )
         self._last = step[-1:].copy(), pose[-1:].copy()
         checked = list(self._checks.over(part))
         first: tuple[int, CheckedSteps] | None = None
@@ -89,6 +92,14 @@ class Bounds:
             return block, ""
         row, check = first
         return _cut(block, row + 1 - again), _sentence(check, row, part)
+
+    def _happened(self, step: Rows) -> Sequence[AnyEvent]:
+        """Return the events of the cell up to the end of a block."""
+        _, config, clock, _ = self._cell
+        if not config.triggered:
+            return config.events
+        self._met |= {k: done for k, done in met_after([step]).items() if k not in self._met}
+        return happened(config.events, config.triggered, self._met, clock)
 
 
 def _cut(block: Block, states: int) -> Block:

@@ -261,7 +261,7 @@ def simulate(job: CellJob, began: Began | None = None) -> Simulated:
     # A check finds in a run what it finds in its log.
     unseen = absent | partly_recorded(described(job.config.record))
     bounds = Bounds(job.always, scene.names, job.config, scene.clock, unseen)
-    events = EventQueue(engine, scene, job.config.events)
+    events = EventQueue(engine, scene, job.config.events, job.config.triggered)
     dump = ProblemDump(job.path, job.config.record)
     accuracy = Accuracy(tolerance=job.config.numerics.tolerance)
     status = "complete"

@@ -29,6 +29,7 @@ from .colliders import colliders
 from .drive_tables import drive_tables
 from .pair_tables import pair_tables
 from .stages import later_forms
+from .trigger_table import trigger_table
 
 # Where nothing of a run is to be recorded: a window of steps that is empty.
 _NO_STEPS = (1, 0)
@@ -53,6 +54,7 @@ class Scene(NamedTuple):
     forces: tuple[CellForce, ...]  # `events` lets them act
     links: np.ndarray  # what effects join bodies by
     drives: Any  # functions of time that act on bodies: `memory.Drives`, or ()
+    triggers: Any  # states that make events happen, or ()
     numerics: Numerics
     described: Mapping[str, CellBody]  # the bodies as the run begins
     classes: tuple[RowClass, ...]  # of the rows of `templates`
@@ -71,6 +73,7 @@ class Scene(NamedTuple):
             hulls=self.hulls,
             links=self.links,
             drives=self.drives,
+            triggers=self.triggers,
             **extra,
         )
 
@@ -163,6 +166,7 @@ def build(config: CellConfig, spec: Spec) -> Scene:
         forces=config.scene.forces,
         links=link_table(config, spec, bodies),
         drives=drive_tables(config, spec, clock),
+        triggers=trigger_table(config, spec),
         numerics=config.numerics,
         described=config.scene.bodies,
         classes=tables.classes,

@@ -14,7 +14,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lavendersim.cell import AnyEvent, CellEvent, CellForce, CellGravity
+from lavendersim.cell import (
+    AnyEvent,
+    CellEvent,
+    CellForce,
+    CellGravity,
+    CellTimestep,
+    CellTriggeredEvent,
+)
 from lavendersim.engine.engine import Engine
 from lavendersim.quantities.quantity import Vector3
 from lavendersim.quantities.scalars import exact
@@ -36,16 +43,28 @@ class Change(NamedTuple):
 class EventQueue:
     """The changes of one run, in the order of their time."""
 
-    def __init__(self, engine: Engine, scene: Scene, events: Sequence[AnyEvent]) -> None:
+    def __init__(
+        self,
+        engine: Engine,
+        scene: Scene,
+        events: Sequence[AnyEvent],
+        triggered: Sequence[CellTriggeredEvent] = (),
+    ) -> None:
         self._engine, self._scene = engine, scene
         self._acting: list[CellForce] = []
-        changes = [*self._force_changes(scene.forces), *self._event_changes(events)]
+        self._of_bodies = BodyEvents(engine, scene)
+        changes = [*self._force_changes(scene.forces), *self._timed(events)]
         self._pending = sorted(changes, key=lambda change: change[:2])
+        self._triggered = {k: self._action(one.event) for k, one in enumerate(triggered)}
 
     def apply_due(self, done: int) -> None:
-        """Apply every change that is due after `done` steps."""
+        """Apply every change that is due after `done` steps; those of triggers come last."""
         while self._pending and self._pending[0].after <= done:
             self._pending.pop(0).apply()
+        if self._triggered and self._engine.spec.has("triggers"):
+            for k in np.flatnonzero(self._engine.state.triggers["met"]):
+                if (apply := self._triggered.pop(int(k), None)) is not None:
+                    apply()
 
     def next_stop(self, limit: int) -> int:
         """Return the step after which the next change is due, `limit` without one before it."""
@@ -55,23 +74,22 @@ class EventQueue:
         """Return how many steps are done when a time [s], as written, is reached."""
         return self._scene.clock.steps_until(exact(time))
 
-    def _event_changes(self, events: Sequence[AnyEvent]) -> Iterator[Change]:
+    def _timed(self, events: Sequence[AnyEvent]) -> Iterator[Change]:
         for done, timestep in self._scene.clock.changes:
             yield Change(
                 done,
                 0,
                 lambda timestep=timestep, done=done: self._set_timestep(timestep, done),  # type: ignore[misc]
             )
-        of_bodies = BodyEvents(self._engine, self._scene)
         timed = sorted(events, key=lambda event: event.at)
         for order, event in enumerate(timed, start=1):
-            if isinstance(event, CellGravity):
-                apply = partial(self._set_gravity, event.gravity)
-            elif isinstance(event, CellEvent):
-                apply = partial(of_bodies.apply, event)
-            else:
-                continue  # the clock has the timesteps
-            yield Change(self._after(event.at), order, apply)
+            if not isinstance(event, CellTimestep):  # the clock has the timesteps
+                yield Change(self._after(event.at), order, self._action(event))
+
+    def _action(self, event: CellEvent | CellGravity) -> Callable[[], None]:
+        if isinstance(event, CellGravity):
+            return partial(self._set_gravity, event.gravity)
+        return partial(self._of_bodies.apply, event)
 
     def _force_changes(self, forces: Sequence[CellForce]) -> Iterator[Change]:
         if not self._engine.spec.has("external_force"):
@@ -120,6 +138,7 @@ class BodyEvents:
     def __init__(self, engine: Engine, scene: Scene) -> None:
         self._engine, self._scene = engine, scene
         self._bodies = dict(scene.described)
+        self._removed: set[str] = set()
 
     def apply(self, event: CellEvent) -> None:
         """Apply one event. A body that is put elsewhere loses the impulses of its contacts.
@@ -128,7 +147,10 @@ class BodyEvents:
         everywhere.
         """
         engine, index = self._engine, self._scene.names.index(event.body)
+        if event.body in self._removed:  # a trigger came too late for it, or removed it before
+            return
         if event.remove:
+            self._removed.add(event.body)
             engine.remove(index)
             return
         engine.wake(index)

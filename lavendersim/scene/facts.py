@@ -23,7 +23,7 @@ from .stages import later_forms, stages_of
 
 def _body_facts(config: CellConfig) -> Iterator[BodyFacts]:
     events: dict[str, list[CellEvent]] = {}
-    for event in changes_of_bodies(config.events):
+    for event in changes_of_bodies(config.planned_events):
         events.setdefault(event.body, []).append(event)
     pushed = {force.body for force in config.scene.forces if any(force.force)}
     twisted = {force.body for force in config.scene.forces if any(force.torque)}
@@ -98,7 +98,8 @@ def facts_of(config: CellConfig, record: bool = True) -> Facts:
             for pair in pairs
         ),
         gravity=config.scene.gravity,
-        later_gravity=tuple(one.gravity for one in changes_of_gravity(config.events)),
+        triggers=tuple(one.when.text for one in config.triggered),
+        later_gravity=tuple(one.gravity for one in changes_of_gravity(config.planned_events)),
         stabilisation_gain=numerics.stabilisation_gain,
         projection=numerics.projection if numerics.projection_sweeps else 0.0,
         warm_start=numerics.warm_start,
@@ -117,7 +118,7 @@ def facts_of(config: CellConfig, record: bool = True) -> Facts:
         over_relaxation=numerics.over_relaxation,
         scene=config.scene,
         sleeping=numerics.sleeping,
-        events=bool(changes_of_bodies(config.events)),
+        events=bool(changes_of_bodies(config.planned_events)),
         record=record,
         velocities=config.record.velocities,
         residuals=config.record.residuals != "none",

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lavendersim.cell import CellConfig
+from lavendersim.cell import AnyEvent, CellConfig, happened, met_after
 from lavendersim.clock import Clock
 from lavendersim.errors import TraceError, UsageError
 from lavendersim.record_tables import joined
@@ -315,6 +315,13 @@ class Trace:
         TraceError where another version wrote it so that this one cannot read it.
         """
         return self._source.config()
+
+    @cached_property
+    def events(self) -> tuple[AnyEvent, ...]:
+        """The events of the run at their times; of those with a trigger, what was met, and when."""
+        triggered = self.config.triggered
+        met = met_after(self.steps_in_parts()) if triggered else {}
+        return happened(self.config.events, triggered, met, self.clock)
 
     def _columns(self, topic: str, message: str, default: tuple[Column, ...]) -> tuple[Column, ...]:
         """Return the columns of a topic; a run that ended before its first step has `default`."""

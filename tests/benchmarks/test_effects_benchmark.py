@@ -14,7 +14,7 @@ OTHER_LAWS = {
     *("speculative", "newton", "least_norm", "fast_bodies", "impact_energy", "sliding_stops"),
 }
 # Nor does the default choose these.
-ASKED_FOR = {"error_control", "pairwise_impacts"}
+ASKED_FOR = {"error_control", "pairwise_impacts", "triggers"}
 MISTAKES = {effect.name for effect in EFFECTS if effect.study_only}
 LOGS = {"step_log", "pose_log", "velocity_log", "contact_log", "residual_log", "problem_log"}
 

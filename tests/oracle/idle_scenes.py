@@ -206,6 +206,7 @@ CASES: dict[str, tuple[str, ...]] = {
     "packed_sweeps": ("adaptive balls",),
     "projection": ("balls",),
     "sleeping": ("frictional balls",),
+    "triggers": ("balls",),
     "step_log": ("balls",),
     "pose_log": ("balls",),
     "velocity_log": ("balls",),

@@ -45,7 +45,7 @@ def run_config(text: str) -> list[Course]:
         spec = shared_spec(plan)
         scene = build(cell.config, spec)
         engine = scene.engine(spec)
-        changes = EventQueue(engine, scene, cell.config.events)
+        changes = EventQueue(engine, scene, cell.config.events, cell.config.triggered)
         blocks, done, last = [], 0, cell.config.steps
         while True:
             changes.apply_due(done)

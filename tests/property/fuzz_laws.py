@@ -65,7 +65,7 @@ def run(config: CellConfig, spec: Spec, steps: int, by_step: bool = False) -> En
     """Run a cell to its end, as a cell of an experiment is run; or one step at a time."""
     scene = build(config, spec)
     engine = scene.engine(spec, BLOCK)
-    events = EventQueue(engine, scene, config.events)
+    events = EventQueue(engine, scene, config.events, config.triggered)
     blocks, status, done, states = [], RUNNING, 0, []
     while True:
         events.apply_due(done)

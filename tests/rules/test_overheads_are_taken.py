@@ -50,6 +50,7 @@ IDLE = {  # in effects/sphere.yaml, with the reason why no config has it at work
     "sleeping": NONE,
     "residual_log": SWEPT,
     "problem_log": NONE,
+    "triggers": "an event asks for it, of no scene that is timed",
     "velocity_log": "a key of the config asks for it, of no scene that is timed",
 }
 CHOSEN = "a key of the config chooses between two laws; neither is an overhead of the other"

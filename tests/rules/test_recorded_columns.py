@@ -13,7 +13,7 @@ UNIT = re.compile(r"\[[^]]+\]")
 # Counts, indices, hashes and directions have no unit.
 WITHOUT_UNIT = {
     "parts", "unordered", "substeps", "rejected", "estimated_error",
-    "step", "contact_count", "sweeps", "residual_contact", "state_hash", "sweep",
+    "step", "contact_count", "sweeps", "residual_contact", "state_hash", "sweep", "triggered",
     "awake", "stronge", "not_converged",
     "gjk_not_converged", "epa_not_converged", "stronge_not_converged",
     "signorini_contact", "cone_contact", "dissipation_contact",

@@ -68,6 +68,7 @@ class Falsified:
         self.contact = trace.contact.copy()
         self.bodies, self.clock = trace.bodies, trace.clock
         self.config, self.absent, self.status = trace.config, trace.absent, trace.status
+        self.events = trace.events
 
     def trace(self) -> Any:
         return self

@@ -57,6 +57,7 @@ NAMES: Final = (
     "least_norm",
     "projection",
     "sleeping",
+    "triggers",
     "step_log",
     "pose_log",
     "velocity_log",

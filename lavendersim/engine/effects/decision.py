@@ -63,6 +63,7 @@ class Facts(NamedTuple):
     stabilisation_gain: float
     projection: float
     warm_start: bool
+    triggers: tuple[str, ...] = ()  # states that make an event happen, in words
     later_gravity: tuple[tuple[float, float, float], ...] = ()  # as events make it
     pair_count: int = 0  # pairs of bodies that may touch
     speculative: bool = False

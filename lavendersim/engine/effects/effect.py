@@ -131,6 +131,7 @@ class Hooks:
     turn: Maker | None = None  # (body, velocity, dt) -> whether the turn has a solution
     turn_uneven: Maker | None = None  # the same for unequal principal inertias
     add_spin: Maker | None = None  # (body, velocity, x, y, z, twice_spent): jump of spin
+    meet_triggers: Maker | None = None  # (state, log, counters) -> how many, at the end of a step
     update_sleeping: Maker | None = None  # at the end of a step, see `sleeping`
     log_pose: Maker | None = None  # (body, row)
     log_velocity: Maker | None = None  # (v, row): behind the pose of its body

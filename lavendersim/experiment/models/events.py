@@ -7,6 +7,7 @@ from typing import Annotated, Final, Literal
 from pydantic import Field
 
 from lavendersim.cell.numerics import Timestep
+from lavendersim.cell.triggers import MOST_TRIGGERS
 from lavendersim.engine.effects import EVENT_KEYS
 from lavendersim.experiment.models.bodies import SurfaceOf
 from lavendersim.experiment.models.gravity import Gravity
@@ -19,6 +20,7 @@ from lavendersim.experiment.models.tree import (
     prescribes_motion,
     removals,
 )
+from lavendersim.experiment.models.triggers import Trigger, triggers
 from lavendersim.experiment.text.node import ABSENT, Node
 from lavendersim.experiment.text.place import Place
 from lavendersim.quantities.found import near
@@ -37,7 +39,13 @@ _MOVES: Final = {"teleport": "a teleport", "orientation": "a new orientation"}
 
 
 class _Event(ConfigModel):
-    at: Annotated[float, Quantity("s", minimum=0)] = Field(description="[s] simulated time")
+    at: Annotated[float, Quantity("s", minimum=0)] | None = Field(
+        default=None, description="[s] simulated time; this, or `when`"
+    )
+    when: Trigger | None = Field(
+        default=None,
+        description="a state that makes it happen, once, after the first step that ends so",
+    )
     body: BodyName | None = Field(
         default=None,
         description="a body that is not fixed; required but for gravity and a timestep; `remove`, "
@@ -82,13 +90,16 @@ class _Event(ConfigModel):
 
 
 class Event(declared("Event", _Event, EVENT_KEYS), _Event):  # type: ignore[misc]
-    """A change to one body, or of the whole run, before the first step that starts at `at`."""
+    """A change to one body, or of the whole run, before the first step that starts at `at`.
+
+    Or, with `when`, before the step after the first one that ends in a state.
+    """
 
     @classmethod
     def rules(cls, at: Place) -> None:
         """It happens in the run, to a body that is there and can take it, or to the timestep."""
         body, time = at.get("body"), at.get("at").number
-        after_the_end(at, "at")
+        _time_rules(at)
         of_run = next((key for key in _OF_RUN if at.written(key)), None)
         if of_run is not None:
             other = next((key for key in _OF_RUN if key != of_run and at.get(key)), None)
@@ -104,6 +115,21 @@ class Event(declared("Event", _Event, EVENT_KEYS), _Event):  # type: ignore[misc
         removal = removals(at.root).get(body.text or "")
         if removal is not None and time is not None and Removal(time, at.index) > removal:
             at.refuse(body.mark, removal.sentence("body", body.text))
+
+
+def _time_rules(at: Place) -> None:
+    """It has one time, or one state that makes it happen; the length of steps has a time."""
+    after_the_end(at, "at")
+    when = at.written("when")
+    if when is None:
+        if not at.written("at") and not at.node.incomplete:
+            at.lacks("at", "[s] a time, or else when: a state that makes it happen")
+    elif at.written("at"):
+        at.refuse(when, f"when: {at} has a time already; expected at or when")
+    elif at.get("timestep"):
+        at.refuse(when, "when: a timestep changes at a time; expected at")
+    elif len(known := triggers(at.root)) > MOST_TRIGGERS and at.index == known[MOST_TRIGGERS]:
+        at.refuse(when, f"when: expected at most {MOST_TRIGGERS} of them, found {len(known)}")
 
 
 def _change_rules(at: Place, body: Node) -> None:
@@ -134,7 +160,7 @@ def _change_rules(at: Place, body: Node) -> None:
 
 def _lacks_body(at: Place) -> None:
     """Without a body there is only the run to change; a misspelt key is refused elsewhere."""
-    unknown = at.node.entries.keys() - {"at", "body", *_OF_RUN, *_EVERY_CHANGE}
+    unknown = at.node.entries.keys() - {"at", "when", "body", *_OF_RUN, *_EVERY_CHANGE}
     if not at.node.incomplete and not any(near(key, ("body", *_OF_RUN)) for key in unknown):
         at.lacks("body", "name of a body, or else a timestep or gravity")
 

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 from lavendersim.cell.config import CellConfig, CellEffects, CellStudy
 from lavendersim.cell.numerics import Numerics
 from lavendersim.cell.record import CellRecord
 from lavendersim.cell.shared_parts import shared
 from lavendersim.experiment.models.experiment import CellSource, NumericsSource
-from lavendersim.experiment.resolve.events import resolve_event
+from lavendersim.experiment.resolve.events import resolve_event, resolve_triggered
 from lavendersim.experiment.resolve.scene import resolve_scene
 
 
@@ -19,9 +21,10 @@ def resolve_cell(source: CellSource) -> CellConfig:
     assert isinstance(source.numerics, NumericsSource)  # its preset is merged in (`with_preset`)
     numerics = shared(Numerics.model_construct(**dict(source.numerics)))
     scene, frames = resolve_scene(source.scene, numerics.timestep, source.duration)
+    resolved = partial(resolve_event, scene=source.scene, frames=frames)
     return CellConfig.of(
         scene=scene,
-        events=tuple(resolve_event(event, source.scene, frames) for event in source.events),
+        events=tuple(resolved(event) for event in source.events if event.when is None),
         numerics=numerics,
         duration=source.duration,
         record=shared(CellRecord.model_validate(source.record.model_dump(by_alias=True))),
@@ -31,4 +34,9 @@ def resolve_cell(source: CellSource) -> CellConfig:
             )
         ),
         study=shared(CellStudy(mistake=source.study.mistake)),
+        triggered=tuple(
+            resolve_triggered(event, source.scene, frames)
+            for event in source.events
+            if event.when is not None
+        ),
     )

@@ -7,6 +7,13 @@ from typing import Any
 
 from lavendersim.cell.events import AnyEvent, CellEvent, CellGravity, CellTimestep
 from lavendersim.cell.shared_parts import shared
+from lavendersim.cell.triggers import (
+    OF_CONTACT,
+    OF_PLACE,
+    CellTrigger,
+    CellTriggeredEvent,
+    Condition,
+)
 from lavendersim.engine.effects import EVENT_KEYS
 from lavendersim.experiment.models.events import Event
 from lavendersim.experiment.models.scene import Scene
@@ -14,18 +21,39 @@ from lavendersim.experiment.resolve.frames import Frames
 from lavendersim.experiment.resolve.gravity import gravity_vector
 from lavendersim.experiment.resolve.shape import quaternion_of
 from lavendersim.experiment.resolve.surface_pairs import surface_of
+from lavendersim.geometry.vectors import unit
+
+
+def resolve_triggered(event: Event, scene: Scene, frames: Frames) -> CellTriggeredEvent:
+    """Return an event with the state that makes it happen; it has passed the rules of both."""
+    when = event.when
+    assert when is not None
+    condition: Condition = when.condition
+    given: Any = getattr(when, condition)
+    of_pair = condition in OF_CONTACT
+    trigger = CellTrigger(
+        condition=condition,
+        bodies=given if of_pair else (str(when.body),),
+        along=unit(when.along) if condition in OF_PLACE else None,
+        value=None if of_pair else given,
+    )
+    happening = resolve_event(event, scene, frames)
+    assert not isinstance(happening, CellTimestep)
+    return CellTriggeredEvent(when=trigger, event=happening)
 
 
 def resolve_event(event: Event, scene: Scene, frames: Frames) -> AnyEvent:
     """Return an event with nothing left open; it has passed the rules of `Event`."""
+    # What a trigger makes happen has its time from the run.
+    at = 0.0 if event.at is None else event.at
     if event.gravity is not None:
-        return CellGravity(at=event.at, gravity=gravity_vector(event.gravity))
+        return CellGravity(at=at, gravity=gravity_vector(event.gravity))
     if event.timestep is not None:
-        return CellTimestep(at=event.at, timestep=event.timestep)
+        return CellTimestep(at=at, timestep=event.timestep)
     assert event.body is not None
     moves = event.teleport is not None or event.orientation is not None
     settled: dict[str, Any] = {
-        "at": event.at,
+        "at": at,
         "body": event.body,
         "scale_mass": event.scale_mass,
         "teleport": event.teleport,

@@ -127,7 +127,7 @@ def impulse_balance(spec: specs.ImpulseBalance, trace: Trace) -> float:
     movable bodies cancel), M the movable mass, p the logged momentum. NaN without any impulse,
     and where an event changes a mass or removes one.
     """
-    events = changes_of_bodies(trace.config.events)
+    events = changes_of_bodies(trace.events)
     bodies = trace.config.scene.bodies
     gone = [bodies[event.body] for event in events if event.remove]
     if any(event.scale_mass is not None for event in events) or any(map(is_movable, gone)):

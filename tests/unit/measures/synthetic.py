@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import numpy.lib.recfunctions as recfunctions
 
-from lavendersim.cell import CellConfig
+from lavendersim.cell import AnyEvent, CellConfig
 from lavendersim.clock import Clock
 from lavendersim.measures.free_rotation import free_rotation
 from tests.oracle.cells import cell
@@ -90,6 +90,11 @@ class SyntheticTrace:
     resolved: Mapping[str, Any] = field(default_factory=ball_and_floor)
     clock: Clock = field(default_factory=lambda: Clock(Fraction(1, 100)))
     status: str = "complete"
+
+    @property
+    def events(self) -> tuple[AnyEvent, ...]:
+        """What happened to it: what its config has."""
+        return self.config.events
 
     @property
     def config(self) -> CellConfig:

@@ -76,3 +76,27 @@ def test_an_event_that_turns_a_body_is_the_reason_for_rotation() -> None:
     turned = cell(event(0.5, "ball", orientation=[0.0, 1.0, 0.0, 0.0]))
     del turned["scene"]["bodies"]["box"]
     assert planned(turned).decisions["rotation"].reason == "ball: an event turns it"
+
+
+def test_surfaces_that_triggers_bring_meet_in_every_pair() -> None:
+    """Floor and box change by triggers, the floor's belt at a time: in any order."""
+    when = {"condition": "slower_than", "bodies": ["box"], "value": 0.1}
+    changed = config(
+        cell(event(0.6, "floor", surface_velocity=list(BELT)))
+        | {
+            "triggered": [
+                {"when": when, "event": event(0.0, "floor", surface=WOOD.model_dump())},
+                {"when": when, "event": event(0.0, "box", surface=ICE.model_dump())},
+            ]
+        }
+    )
+    forms = later_forms(changed)
+    floors = {(one.surface.friction, one.surface_velocity) for one in forms["floor"]}
+    still = (0.0, 0.0, 0.0)
+    assert floors == {(0.0, BELT), (0.5, still), (0.5, BELT)}
+    assert [one.surface for one in forms["box"]] == [ICE]
+    pairs = {
+        (one["floor"].surface.friction, one["floor"].surface_velocity, one["box"].surface.friction)
+        for one in stages_of(changed)
+    }
+    assert pairs == {(*floor, box) for floor in {(0.0, still), *floors} for box in (0.5, 0.0)}
