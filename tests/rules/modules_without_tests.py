@@ -17,6 +17,7 @@ DECLARATIONS = {
     "figures/specs/catalogue.py": "a union of models",
     "figures/specs/free_rotation.py": "fields of a panel's config",
     "figures/specs/heat_map.py": "fields of a panel's config",
+    "figures/specs/histogram.py": "fields of a panel's config",
     "figures/specs/measure_against_axis.py": "fields of a panel's config",
     "figures/specs/measure_by_name.py": "fields of a panel's config",
     "figures/specs/row_against_index.py": "fields of a panel's config",

@@ -10,6 +10,7 @@ import ast
 import re
 from pathlib import Path
 
+import panel_pages
 from config_tables import with_key_tables
 from markdown_tables import escaped, markdown
 from measure_tables import with_measure_tables
@@ -116,6 +117,8 @@ def with_table(page: str, after: str, table: str) -> str:
 
 def made(name: str) -> str:
     """Return a page of the documents as it should be."""
+    if name == "figures.md":
+        return panel_pages.page()
     page = (DOCUMENTS / name).read_text()
     if name == "config.md":
         return with_key_tables(page)
@@ -128,7 +131,7 @@ def made(name: str) -> str:
     return with_table(page, "Columns of `/contacts`", contact_columns())
 
 
-PAGES = ("architecture.md", "config.md", "measures.md", "plan.md")
+PAGES = ("architecture.md", "config.md", "figures.md", "measures.md", "plan.md")
 
 if __name__ == "__main__":
     for made_page in PAGES:
