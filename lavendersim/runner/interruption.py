@@ -26,6 +26,7 @@ class _Noted:
 
     open = False  # whether a log is
     signal = ""  # that came meanwhile
+    raised = ""  # one that was to end what goes on: a callback from C loses the exception
 
 
 def _take(number: int, frame: Any) -> None:
@@ -33,6 +34,7 @@ def _take(number: int, frame: Any) -> None:
     if _Noted.open and not _Noted.signal:
         _Noted.signal = name
         return
+    _Noted.raised = name
     raise Interrupted(f"{INTERRUPTED} by {name}")
 
 
@@ -55,7 +57,13 @@ def handled() -> Iterator[None]:
         signal.signal(number, _take)
     try:
         yield
+    except Exception:
+        if _is_main() and _Noted.raised:  # the compiler's defect is what became of the signal
+            raise Interrupted(f"{INTERRUPTED} by {_Noted.raised}") from None
+        raise
     finally:
+        if _is_main():
+            _Noted.raised = ""
         for number, handler in taken.items():
             signal.signal(number, handler)
 
@@ -66,7 +74,7 @@ def deferred() -> Iterator[Callable[[], str]]:
     if not _is_main():
         yield str
         return
-    _Noted.open, _Noted.signal = True, ""
+    _Noted.open, _Noted.signal = True, _Noted.raised
     try:
         yield lambda: _Noted.signal
     finally:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import os
 import signal
 import subprocess
@@ -13,6 +14,7 @@ import pytest
 
 from lavendersim import open_run, open_trace
 from lavendersim.errors import TraceError
+from lavendersim.runner.interruption import Interrupted, deferred, handled, raise_noted
 from tests.runner.small_configs import write
 
 # Fifty million steps: minutes on any machine.
@@ -123,3 +125,31 @@ def test_other_processes_close_their_logs(tmp_path: Path) -> None:
     assert all(status.startswith("interrupted by SIGTERM after step ") for status in long)
     logs = [open_trace(log, allow_incomplete=True) for log in directory.glob("cells/*.mcap")]
     assert sorted(trace.status for trace in logs) == sorted([short, *long])
+
+
+def lost(number: int) -> None:
+    """Let a signal come within a callback from C, as LLVM calls one: no exception leaves it."""
+    come = ctypes.CFUNCTYPE(None)(lambda: os.kill(os.getpid(), number))
+    come()
+
+
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
+def test_a_signal_that_the_compiler_loses_is_what_ends_the_run() -> None:
+    """The compiler then fails for want of what it was to be handed."""
+    with pytest.raises(Interrupted, match="by SIGTERM"), handled():
+        lost(signal.SIGTERM)
+        raise RuntimeError("no compiled object yet")
+    with pytest.raises(RuntimeError, match="of its own"), handled():
+        raise RuntimeError("of its own")
+
+
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
+def test_a_signal_that_the_compiler_loses_ends_the_next_cell() -> None:
+    with handled():
+        lost(signal.SIGTERM)
+        with deferred() as signalled:
+            assert signalled() == "SIGTERM"
+        with pytest.raises(Interrupted, match="by SIGTERM"):
+            raise_noted()
+    with handled(), deferred() as signalled:
+        assert signalled() == ""
