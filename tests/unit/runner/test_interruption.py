@@ -136,9 +136,13 @@ def lost(number: int) -> None:
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
 def test_a_signal_that_the_compiler_loses_is_what_ends_the_run() -> None:
     """The compiler then fails for want of what it was to be handed."""
-    with pytest.raises(Interrupted, match="by SIGTERM"), handled():
+
+    def compiled() -> None:
         lost(signal.SIGTERM)
         raise RuntimeError("no compiled object yet")
+
+    with pytest.raises(Interrupted, match="by SIGTERM"), handled():
+        compiled()
     with pytest.raises(RuntimeError, match="of its own"), handled():
         raise RuntimeError("of its own")
 
