@@ -82,25 +82,6 @@ WITHOUT_A_TEST = {
     "engine/solvers/packed": """
         lane_memory lanes layout packing
     """,
-    "experiment/checks": """
-        messages reading
-    """,
-    "experiment": """
-        experiment own_measures
-    """,
-    "experiment/models": """
-        always arrangements axis bodies claims cost experiment overhead record
-        recorded scene shapes steps study
-    """,
-    "experiment/resolve": """
-        cell shape
-    """,
-    "experiment/sweeps": """
-        cost_grid
-    """,
-    "experiment/text": """
-        parse
-    """,
     "figures": """
         ideal report report_matrix thumbnail
     """,
