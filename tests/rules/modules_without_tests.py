@@ -116,8 +116,4 @@ WITHOUT_A_TEST = {
     "scene": """
         build drive_tables
     """,
-    "trace": """
-        contact_rows container decode descriptors forms groups index opening
-        reader rebuild scan streams walk written_trace
-    """,
 }
