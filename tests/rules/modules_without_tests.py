@@ -92,16 +92,6 @@ WITHOUT_A_TEST = {
     "figures/specs": """
         time_series trajectory
     """,
-    "measures": """
-        always balance cell_judgements columns controls interfaces step_checks
-        sweep_judgements
-    """,
-    "measures/kinds": """
-        arithmetic convergence energy own spinning
-    """,
-    "measures/specs": """
-        always arithmetic base expectation kinematics laws own selection states
-    """,
     "problems": """
         interior_point newton_rounds search
     """,

@@ -90,3 +90,14 @@ def test_without_a_whole_group_there_is_nothing_to_save(log: Logged, tmp_path: P
     first = log.index.chunks[0].chunk_start_offset
     with pytest.raises(TraceError, match="nothing to save, no group of steps is whole"):
         scan(damaged(log, tmp_path, end=first + 100))
+
+
+def test_a_stretch_of_which_nothing_is_known_costs_the_group_behind_it(
+    log: Logged, tmp_path: Path
+) -> None:
+    """Without summary, chunk and message indexes: it may have been any chunk of that group."""
+    whole = scan(log.path).groups
+    poses = [e for e in log.index.chunks if CHANNELS["/tf"] in e.message_index_offsets]
+    length = poses[1].chunk_length + poses[1].message_index_length
+    found = scan(damaged(log, tmp_path, (poses[1].chunk_start_offset, length), end=-300))
+    assert found.groups == [whole[0], *whole[2:]]

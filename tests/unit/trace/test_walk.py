@@ -12,7 +12,7 @@ from logs_of_samples import Logged, logged, records
 from mcap.opcode import Opcode
 
 from lavendersim.trace.walk import NOTHING, SUMMARY, walk
-from lavendersim.trace.whole import MAGIC
+from lavendersim.trace.whole import BLOCK, MAGIC
 
 
 @pytest.fixture(scope="module")
@@ -47,8 +47,9 @@ def test_stretches_tile_a_damaged_log_and_others_stay(log: Logged) -> None:
         assert {(t.start, t.end, t.opcode) for t in truth if t.start not in hit} <= starts
 
 
-@pytest.mark.parametrize("foreign", [b"\0", b"\x01" * 9, b"\xff" * 5000])
+@pytest.mark.parametrize("foreign", [b"\0", b"\x01" * 9, b"\xff" * 5000, b"\xff" * (BLOCK - 4)])
 def test_what_was_put_between_two_records_is_one_stretch(log: Logged, foreign: bytes) -> None:
+    """Also where the next record lies across the end of the bytes that are read at once."""
     data = log.path.read_bytes()
     at = log.index.chunks[1].chunk_start_offset
     found = list(walk(BytesIO(data[:at] + foreign + data[at:])))
