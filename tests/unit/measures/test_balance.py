@@ -70,10 +70,10 @@ def test_two_sections_are_one_log(cut: int) -> None:
 
 
 def test_work_of_a_force_is_no_creation() -> None:
-    """A force of 5 N upwards does 5 N times the way, and slows the fall by as much."""
-    force = {"body": "ball", "force": [0.0, 0.0, 5.0], "torque": [0.0, 0.0, 0.0], "to": 9.0}
+    """A force of 5 N downwards does 5 N times the way, and speeds the fall up by as much."""
+    force = {"body": "ball", "force": [0.0, 0.0, -5.0], "torque": [0.0, 0.0, 0.0], "to": 9.0}
     log = fall(forces=[force])
-    pull = GRAVITY - 5.0 / MASS
+    pull = GRAVITY + 5.0 / MASS
     heights = 2.0 - 0.5 * pull * (DT * np.arange(STEPS)) ** 2
     log.step["kinetic_energy"] = 0.5 * MASS * (pull * DT * np.arange(STEPS)) ** 2
     log.step["potential_energy"] = MASS * GRAVITY * (heights + RADIUS)
