@@ -34,9 +34,6 @@ DECLARATIONS = {
 
 # Folder: modules, without `.py`. A debt, to be made shorter: nothing is added here.
 WITHOUT_A_TEST = {
-    "comparison": """
-        compare
-    """,
     "engine": """
         approach compile_options contact_problem coupling difference_kernel drives
         engine error_estimate flush_contacts foreseen_impacts impact_location
@@ -81,22 +78,6 @@ WITHOUT_A_TEST = {
     """,
     "engine/solvers/packed": """
         lane_memory lanes layout packing
-    """,
-    "figures": """
-        ideal report report_matrix thumbnail
-    """,
-    "figures/panels": """
-        free_rotation heat_map measure_against_axis measure_by_name row_against_index
-        stability_map time_series trajectory
-    """,
-    "figures/specs": """
-        time_series trajectory
-    """,
-    "problems": """
-        interior_point newton_rounds search
-    """,
-    "replay": """
-        blueprint removal viewer
     """,
     "runner": """
         bounds cell compile_times contact_sums_kernel cost cost_errors dask_cluster
