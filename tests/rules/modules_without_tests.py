@@ -79,11 +79,6 @@ WITHOUT_A_TEST = {
     "engine/solvers/packed": """
         lane_memory lanes layout packing
     """,
-    "runner": """
-        bounds cell compile_times contact_sums_kernel cost cost_errors dask_cluster
-        experiment_run export judge_again listing log_tables merge overhead_pairs remote
-        result_tables results solver_matrix step_passes_kernel timed_engine verification
-    """,
     "scene": """
         build drive_tables
     """,

@@ -67,8 +67,8 @@ def test_the_key_has_what_stands_in_the_table_and_what_was_not_run() -> None:
     assert NOT_RUN.words not in whole
     assert LOOKS["diverged"].words not in whole
     assert LOOKS["fails"].words in whole  # always in the key
-    part = page(matrix(*every[:-1]), Path())
-    assert NOT_RUN.words in part
+    one, two = (page(matrix(*every[:-k]), Path()).count(NOT_RUN.words) for k in (1, 2))
+    assert one - (two - one) == 1  # beside what entries say of themselves
 
 
 def test_margins_and_reasons_are_said_when_pointed_at() -> None:
