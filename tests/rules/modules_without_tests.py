@@ -79,7 +79,4 @@ WITHOUT_A_TEST = {
     "engine/solvers/packed": """
         lane_memory lanes layout packing
     """,
-    "scene": """
-        build drive_tables
-    """,
 }
