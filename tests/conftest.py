@@ -10,6 +10,7 @@ from hypothesis.internal.conjecture import providers
 from tests.drop_config import DROP
 
 pytest_plugins = ["pytester"]
+pytest.register_assert_rewrite("tests.marked_config")
 
 # Hypothesis also draws numbers that stand in the sources it finds loaded: any new file, and which
 # tests a process ran before, would change every world that is drawn.

@@ -137,20 +137,22 @@ def _typed(values: Sequence[Any]) -> tuple[Kind, Sequence[Any]]:
         return "bool", values
     if there and all(type(value) is int and abs(value) < 2**63 for value in there):
         return "i8", values
-    if all(isinstance(v, int | float | Fraction) and not isinstance(v, bool) for v in there):
+    if all(map(_is_number, there)):
         return "f8", [None if value is None else float(value) for value in values]
     if all(_is_row(value) for value in there):
         return "numbers", [None if v is None else list(map(float, v)) for v in values]
-    if all(_is_row(v) or isinstance(v, int | float) for v in there):  # a row of one is a number
+    if all(_is_row(v) or _is_number(v) for v in there):  # a row of one is a number
         rows = [v if v is None or _is_row(v) else [v] for v in values]
         return "numbers", [None if v is None else list(map(float, v)) for v in rows]
     return "text", [None if value is None else str(value) for value in values]
 
 
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float | Fraction) and not isinstance(value, bool)
+
+
 def _is_row(value: Any) -> bool:
-    return isinstance(value, list | tuple) and all(
-        isinstance(item, int | float | Fraction) and not isinstance(item, bool) for item in value
-    )
+    return isinstance(value, list | tuple) and all(map(_is_number, value))
 
 
 def _number(value: Any) -> Any:

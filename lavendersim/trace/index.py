@@ -85,7 +85,9 @@ def damage(path: Path, what: str) -> Iterator[None]:
         *(ValueError, KeyError, IndexError, TypeError, AttributeError, MemoryError),
         *(ArithmeticError, RecursionError),
     ) as error:
-        raise TraceError(f"{path}: {what} is damaged ({error or type(error).__name__})") from error
+        raise TraceError(
+            f"{path}: {what} is damaged ({str(error) or type(error).__name__})"
+        ) from error
 
 
 def parse(data: bytes, expected: type) -> Any:

@@ -35,9 +35,6 @@ DECLARATIONS = {
 
 # Folder: modules, without `.py`. A debt, to be made shorter: nothing is added here.
 WITHOUT_A_TEST = {
-    "comparison": """
-        compare
-    """,
     "engine": """
         approach compile_options contact_problem coupling difference_kernel drives
         engine error_estimate flush_contacts foreseen_impacts impact_location
@@ -82,62 +79,5 @@ WITHOUT_A_TEST = {
     """,
     "engine/solvers/packed": """
         lane_memory lanes layout packing
-    """,
-    "experiment/checks": """
-        messages reading
-    """,
-    "experiment": """
-        experiment own_measures
-    """,
-    "experiment/models": """
-        always arrangements axis bodies claims cost experiment overhead record
-        recorded scene shapes steps study
-    """,
-    "experiment/resolve": """
-        cell shape
-    """,
-    "experiment/sweeps": """
-        cost_grid
-    """,
-    "experiment/text": """
-        parse
-    """,
-    "figures": """
-        ideal report report_matrix thumbnail
-    """,
-    "figures/panels": """
-        free_rotation heat_map measure_against_axis measure_by_name row_against_index
-        stability_map time_series trajectory
-    """,
-    "figures/specs": """
-        time_series trajectory
-    """,
-    "measures": """
-        always balance cell_judgements columns controls interfaces step_checks
-        sweep_judgements
-    """,
-    "measures/kinds": """
-        arithmetic convergence energy own spinning
-    """,
-    "measures/specs": """
-        always arithmetic base expectation kinematics laws own selection states
-    """,
-    "problems": """
-        interior_point newton_rounds search
-    """,
-    "replay": """
-        blueprint removal viewer
-    """,
-    "runner": """
-        bounds cell compile_times contact_sums_kernel cost cost_errors dask_cluster
-        experiment_run export judge_again listing log_tables merge overhead_pairs remote
-        result_tables results solver_matrix step_passes_kernel timed_engine verification
-    """,
-    "scene": """
-        build drive_tables
-    """,
-    "trace": """
-        contact_rows container decode descriptors forms groups index opening
-        reader rebuild scan streams walk written_trace
     """,
 }

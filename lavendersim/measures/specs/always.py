@@ -31,10 +31,14 @@ DIVERGES: Final = "diverges"
 BEYOND_BOUNDS: Final = "beyond bounds: "
 
 
-def _form(value: Any) -> str | None:
+def _form(value: Any, words: tuple[str, ...] = (NONE,)) -> str | None:
     if isinstance(value, str):
-        return "off" if value in (NONE, DERIVED) else None
+        return "off" if value in words else None
     return None if value is None or isinstance(value, bool | dict | list | tuple) else "bound"
+
+
+def _form_of_depth(value: Any) -> str | None:
+    return _form(value, (NONE, DERIVED))
 
 
 _Off = Annotated[Literal["none"], Tag("off")]
@@ -45,7 +49,7 @@ Share = Annotated[
 Depth = Annotated[
     Annotated[Literal["none", "derived"], Tag("off")]
     | Annotated[float, Quantity("m", minimum=0), Tag("bound")],
-    either("a number of 0 or more [m], derived or none", _form),
+    either("a number of 0 or more [m], derived or none", _form_of_depth),
 ]
 Speed = Annotated[
     _Off | Annotated[float, Quantity("m/s", above=0), Tag("bound")],

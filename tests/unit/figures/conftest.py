@@ -1,8 +1,9 @@
-"""Lets the tests of the figures import the synthetic logs."""
+"""Lets the tests of the figures, and of their panels, import the synthetic logs and pages."""
 
 from __future__ import annotations
 
 import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "measures"))
+HERE = Path(__file__).parent
+sys.path[:0] = [str(HERE), str(HERE.parent / "measures")]

@@ -1,114 +1,111 @@
-"""The passes that kernels make while a cell runs give the numbers that numpy gives of its log.
-
-Two algorithms, row by row and column by column, of rows that are as wrong as a falsified log can
-be: equal to the last bit.
-"""
+"""Sums and maxima over the steps of a log, against loops over states and bodies."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+import math
 
 import numpy as np
 import pytest
 
-from lavendersim.measures import step_passes
 from lavendersim.measures.step_passes import (
     LOWEST,
     SO_FAR,
     EnergyRows,
     MomentumRows,
+    created,
+    fastest,
+    imbalance,
+    not_finite,
 )
-from lavendersim.runner import step_passes_kernel
 
-STATES, BODIES = 500, 6
-WRONG = [0.0, 0.01, 0.3]  # the share of numbers that are out of all bounds
-# NaN, infinite, nothing, and what squares to more or less than there are numbers
-OUT = [np.nan, np.inf, -np.inf, 0.0, -0.0, 1e300, -1e300, 5e-324]
-Draw = Callable[..., np.ndarray]
+STATES, BODIES = 40, 3
+RANDOM = np.random.default_rng(5)
 
 
-@pytest.fixture(params=WRONG)
-def draw(request: pytest.FixtureRequest) -> Draw:
-    random = np.random.default_rng(7)
-
-    def numbers(*shape: int) -> np.ndarray:
-        right = random.normal(size=shape) * 10.0 ** random.integers(-3, 3, shape)
-        return np.where(random.random(shape) < request.param, random.choice(OUT, shape), right)
-
-    return numbers
+def test_what_is_not_finite_is_counted_by_columns_and_by_bodies() -> None:
+    step = np.zeros(3, [("step", "i8"), ("x", "f8"), ("y", "f8")])
+    pose = np.zeros((3, BODIES, 7))
+    step["x"][1], step["y"][1] = np.nan, -np.inf
+    pose[2, 0, 1] = pose[2, 0, 5] = np.inf  # two numbers of one pose
+    pose[2, 2, 0] = np.nan
+    assert not_finite(step, pose).tolist() == [0.0, 2.0, 2.0]
 
 
-@pytest.fixture(autouse=True)
-def _without_warnings() -> Iterator[None]:
-    with np.errstate(all="ignore"):
-        yield
+def test_the_fastest_body_is_found_by_a_loop() -> None:
+    pose = RANDOM.normal(size=(STATES, BODIES, 7))
+    elapsed = RANDOM.uniform(0.01, 0.1, STATES - 1)
+    moved = RANDOM.random((STATES - 1, BODIES)) < 0.3
+    speeds, bodies = fastest(pose, elapsed, moved)
+    assert speeds[0] == 0.0
+    for k in range(1, STATES):
+        each = [
+            0.0
+            if moved[k - 1, b]
+            else math.dist(pose[k, b, :3], pose[k - 1, b, :3]) / elapsed[k - 1]
+            for b in range(BODIES)
+        ]
+        assert speeds[k] == pytest.approx(max(each), rel=1e-15)
+        assert bodies[k] == each.index(max(each))
 
 
-def assert_same(one: np.ndarray, other: np.ndarray) -> None:
-    assert np.array_equal(one, other, equal_nan=True)
-    assert one.dtype == other.dtype
+def test_a_speed_that_is_no_number_is_larger_than_any() -> None:
+    pose = np.zeros((2, BODIES, 7))
+    pose[1, 0, 0], pose[1, 1, 0] = 5.0, np.nan
+    speeds, bodies = fastest(pose, np.ones(1), None)
+    assert math.isnan(speeds[1])
+    assert bodies[1] == 1
 
 
-def test_numbers_that_are_not_finite(draw: Draw) -> None:
-    step = np.zeros(STATES, [("step", "i8"), ("x", "f8"), ("worst", "i8"), ("y", "f8")])
-    step["x"], step["y"], step["worst"] = draw(STATES), draw(STATES), -1
-    pose = draw(STATES, BODIES, 7)
-    given = step_passes_kernel.not_finite(step, pose)
-    assert_same(given, step_passes.not_finite(step, pose))
-    without = np.empty((STATES, 0, 0))
-    found = step_passes_kernel.not_finite(step, without)
-    assert_same(found, step_passes.not_finite(step, without))
-    expected = ~np.isfinite(step["x"]) * 1.0 + ~np.isfinite(step["y"])
-    assert_same(found, expected)
+def test_what_no_cause_explains_is_taken_over_all_that_enters() -> None:
+    momentum, forces, others, outer = RANDOM.normal(size=(4, STATES, 3))
+    kinetic, mass, size = np.abs(RANDOM.normal(size=(3, STATES)))
+    gravity, elapsed = np.array([0.1, -0.2, -9.81]), RANDOM.uniform(0.01, 0.1, STATES - 1)
+    columns = tuple(momentum[:, k] for k in range(3))
+    rows = MomentumRows(columns, kinetic, mass, gravity, forces, others, outer, size, elapsed)
+    gaps = imbalance(rows)
+    assert gaps[0] == 0.0
+    for k in range(1, STATES):
+        dt = elapsed[k - 1]
+        causes = (mass[k] * gravity + forces[k]) * dt + outer[k] + others[k]
+        unexplained = math.dist(momentum[k] - momentum[k - 1], causes)
+        enters = size[k] + math.hypot(*others[k])
+        enters += math.sqrt(2 * mass[k] * kinetic[k]) + math.sqrt(2 * mass[k - 1] * kinetic[k - 1])
+        enters += (mass[k] * math.hypot(*gravity) + math.hypot(*forces[k])) * dt
+        assert gaps[k] == pytest.approx(unexplained / enters, rel=1e-13)
 
 
-@pytest.mark.parametrize("share", [None, 0.1])
-def test_the_fastest_body(draw: Draw, share: float | None) -> None:
-    pose = draw(STATES, BODIES, 7)
-    pose[:, 2] = pose[:, 1]  # of two that are as fast the first counts
-    elapsed = np.full(STATES - 1, 1.0 / 240.0)
-    moved = None
-    if share is not None:
-        moved = np.random.default_rng(2).random((STATES - 1, BODIES)) < share
-    given = step_passes_kernel.fastest(pose, elapsed, moved)
-    for one, other in zip(given, step_passes.fastest(pose, elapsed, moved), strict=True):
-        assert_same(one, other)
-    assert share or 2 not in given[1]
+def energy(**given: list[float]) -> EnergyRows:
+    count = len(next(iter(given.values())))
+    rows = {name: np.zeros(count) for name in EnergyRows._fields}
+    return EnergyRows(**{**rows, **{name: np.array(one) for name, one in given.items()}})
 
 
-def test_the_imbalance_of_momentum(draw: Draw) -> None:
-    rows = MomentumRows(
-        momentum=(draw(STATES), draw(STATES), draw(STATES)),
-        kinetic=np.abs(draw(STATES)),
-        mass=np.abs(draw(STATES)),
-        gravity=np.array([0.1, -0.2, -9.81]),
-        forces=draw(STATES, 3),
-        others=draw(STATES, 3),
-        outer=draw(STATES, 3),
-        size=np.abs(draw(STATES)),
-        elapsed=np.full(STATES - 1, 1.0 / 240.0),
-    )
-    assert_same(step_passes_kernel.imbalance(rows), step_passes.imbalance(rows))
+def begun() -> np.ndarray:
+    so_far = np.zeros(SO_FAR)
+    so_far[LOWEST] = math.inf
+    return so_far
 
 
-def test_a_step_that_nothing_changes_is_balanced() -> None:
-    """No momentum, no mass, no cause: 0 over 0 is no imbalance."""
-    none, vectors = np.zeros(5), np.zeros((5, 3))
-    rows = MomentumRows(
-        *((none,) * 3, none, none, np.zeros(3), vectors, vectors, vectors, none, np.ones(4))
-    )
-    assert_same(step_passes_kernel.imbalance(rows), none)
-    assert_same(step_passes.imbalance(rows), none)
+def test_energy_is_created_above_the_lowest_so_far_over_what_is_at_play() -> None:
+    """10 J at first and 4 J fallen: what is put in is relative to both, and to work done."""
+    rows = energy(kinetic=[10.0, 8.0, 9.0, 9.0], potential=[0.0, 0.0, -4.0, -4.0])
+    so_far = begun()
+    so_far[-1] = 0.0
+    found = created(rows, so_far)
+    # own energy 10, 8, 5, 5: never above its lowest
+    assert found.tolist() == [0.0, 0.0, 0.0, 0.0]
+    rows = energy(kinetic=[10.0, 8.0, 9.0], work=[0.0, 0.0, 1.0])
+    assert created(rows, begun())[2] == 0.0  # the work explains it
+    rows = energy(kinetic=[10.0, 8.0, 9.0], events=[0.0, 0.0, -1.0])
+    at_play = created(rows, begun())
+    assert at_play[2] > 0.0  # what was taken away is missing, and yet it rose
 
 
-@pytest.mark.parametrize("cuts", [[], [1], [100, 101, 350]])
-def test_energy_created(draw: Draw, cuts: list[int]) -> None:
-    """In sections, too: what runs on from one to the next is the same."""
-    rows = EnergyRows(*(draw(STATES) for _ in EnergyRows._fields))
-    so_far, of_kernel = np.zeros(SO_FAR), np.zeros(SO_FAR)
-    so_far[LOWEST] = of_kernel[LOWEST] = np.inf
-    for begin, end in zip([0, *cuts], [*cuts, STATES], strict=True):
-        part = EnergyRows(*(column[begin:end] for column in rows))
-        found = step_passes_kernel.created(part, of_kernel)
-        assert_same(found, step_passes.created(part, so_far))
-        assert_same(of_kernel, so_far)
+def test_sections_run_on_from_one_another() -> None:
+    numbers = {name: list(RANDOM.normal(size=30)) for name in EnergyRows._fields}
+    whole, so_far = created(energy(**numbers), begun()), begun()
+    parts = [
+        created(energy(**{name: one[a:b] for name, one in numbers.items()}), so_far)
+        for a, b in ((0, 1), (1, 13), (13, 30))
+    ]
+    np.testing.assert_allclose(np.concatenate(parts), whole, rtol=1e-14)

@@ -1,20 +1,16 @@
-"""Newton's pieces: the cone's derivative, the scaled problem, steps, rounds, interior points."""
+"""Newton's pieces: the cone's derivative, the scaled problem, a factor and full steps."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
-from closed_forms import BY_HAND, cube
 from contact_problems import HARD, heap, in_units, stack
 from gauss_seidel import dense
 from made_problems import random_problem
 
-from lavendersim.problems import newton_rounds as rounds
 from lavendersim.problems.budget import Budget
 from lavendersim.problems.factorise import factorise
 from lavendersim.problems.friction_cone import derivative_root, project
-from lavendersim.problems.interior_point import STRATEGIES, interior_point
-from lavendersim.problems.newton_rounds import newton_rounds
 from lavendersim.problems.residual import project_on_cone, residual
 from lavendersim.problems.scaled_problem import (
     from_impulses,
@@ -126,44 +122,8 @@ def test_steps_never_leave_the_natural_map_larger() -> None:
         assert np.all(np.diff(sizes) <= 0.0), name
 
 
-def test_rounds_alone_carry_a_tower_that_rests() -> None:
-    """Redundant corners, load from nothing: no sweeps before."""
-    p = scale(stack(8, 12, mu=0.6, push=0.0))
-    budget = Budget(1e-11, 200)
-    x, reached = newton_rounds(p, np.zeros_like(p.b), budget)
-    assert reached <= 1e-11
-    assert scaled_residual(p, x, velocities(p, x)) == reached
-
-
-@pytest.mark.parametrize(
-    "strategy", STRATEGIES, ids=["long steps", "short steps", "long from afar", "short from afar"]
-)
-def test_an_interior_point_comes_down_from_inside_the_cones(strategy) -> None:
-    problem = stack(9, 10, ratio=1e3)
-    p = scale(problem)
-    x, reached = interior_point(p, Budget(1e-9, 200), strategy)
-    assert reached <= 1e-9
-    # What gets there by the path pushes within its cones.
-    assert (np.hypot(x[:, 1], x[:, 2]) <= p.mu * x[:, 0] + 1e-9 * np.abs(x).max()).all()
-
-
-def test_rounds_hold_the_shift_of_what_slides(monkeypatch: pytest.MonkeyPatch) -> None:
-    """With no full Newton steps to end it; without the shift a cone would lift what slides.
-
-    Rounds shrink the shift's error by mu or so; they end where round-off is all of G.
-    """
-    monkeypatch.setattr(rounds, "FINISHING", 0)
-    p = scale(cube(BY_HAND["slides"][0]))
-    _, reached = newton_rounds(p, np.zeros_like(p.b), Budget(1e-7, 200), 200)
-    assert reached <= 1e-7
-
-
-def test_methods_stop_when_everything_is_spent() -> None:
+def test_steps_stop_when_everything_is_spent() -> None:
     p = scale(heap(0, 10, mu=2.0))
-    for method in (newton_steps, newton_rounds):
-        budget = Budget(1e-14, 4)
-        method(p, np.zeros_like(p.b), budget)
-        assert budget.steps == len(budget.history) <= 4
     budget = Budget(1e-14, 4)
-    interior_point(p, budget)
-    assert budget.steps == len(budget.history) == 4
+    newton_steps(p, np.zeros_like(p.b), budget)
+    assert budget.steps == len(budget.history) <= 4

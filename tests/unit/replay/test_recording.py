@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
-
 import numpy as np
-import pyarrow as pa
 import pytest
 import rerun.blueprint as rrb
+from recordings import column, read, times
 from rerun.chunk import RrdReader
 
 from lavendersim import replay
@@ -19,34 +17,6 @@ from lavendersim.trace.absent import absent_table
 
 # Rerun stores positions, vectors and quaternions as float32.
 FLOAT32 = 2 * np.finfo(np.float32).eps
-
-
-def read(path):
-    """Time-varying columns by entity: the chunks in order of time, and the static ones."""
-    moving, static = defaultdict(list), defaultdict(list)
-    for chunk in RrdReader(path).stream():
-        batch = chunk.to_record_batch()
-        (static if chunk.is_static else moving)[chunk.entity_path].append(batch)
-    for batches in moving.values():
-        batches.sort(key=lambda batch: batch.column(times_column(batch))[0].value)
-    return moving, static
-
-
-def times_column(batch):
-    return batch.schema.get_field_index("sim_time")
-
-
-def column(batches, name):
-    return [
-        row
-        for batch in batches
-        for row in batch.column(batch.schema.get_field_index(name)).to_pylist()
-    ]
-
-
-def times(batches):
-    chunks = [batch.column(times_column(batch)).cast(pa.int64()).to_numpy() for batch in batches]
-    return np.concatenate(chunks)
 
 
 @pytest.fixture
@@ -222,25 +192,6 @@ def test_where_nothing_can_touch_the_scene_is_the_only_view(one_ball):
     kinds, title = views_of(where_nothing_can_touch(one_ball))
     assert kinds == ["Spatial3DView"]
     assert "force" not in title
-
-
-@pytest.mark.parametrize("at", [1.0, 0.9999, 9.0])
-def test_a_removed_body_vanishes_with_the_first_state_without_it(two_bodies, tmp_path, at):
-    two_bodies.resolved["events"] = [{"at": at, "body": "box", "remove": True}]
-    replay.save(two_bodies, tmp_path / "trace.rrd")
-    moving, static = read(tmp_path / "trace.rrd")
-    box = moving["/bodies/box"]
-    cleared = [batch for batch in box if "Clear:is_recursive" in batch.schema.names]
-    if at == 9.0:  # the log ends before: drawn as everything that stays
-        assert "/bodies/box" in static
-        assert not cleared
-        return
-    assert "/bodies/box" not in static
-    drawn = [batch for batch in box if "Boxes3D:half_sizes" in batch.schema.names]
-    assert times(drawn).tolist() == [0]
-    assert times(cleared).tolist() == [two_bodies.step["time_ns"][241]]
-    assert column(cleared, "Clear:is_recursive") == [[True]]
-    assert "/bodies/ball" in static
 
 
 def test_a_removed_floor_takes_its_grid_along(two_bodies, tmp_path):

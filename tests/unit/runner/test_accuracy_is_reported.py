@@ -14,7 +14,6 @@ import pytest
 import lavendersim
 from lavendersim.runner import Finished
 from lavendersim.runner.accuracy import Accuracy
-from lavendersim.runner.results import convergence_notices
 from tests.runner.small_configs import write
 
 # Two balls, one on the other: W = [[1, -1], [-1, 2]]/m. One sweep without an impulse to start from
@@ -63,13 +62,6 @@ def finished_with(**cells: Accuracy) -> Any:
     outcomes = [SimpleNamespace(accuracy=one, steps=1200) for one in cells.values()]
     labels = [SimpleNamespace(label=label.replace("_", "=")) for label in cells]
     return SimpleNamespace(run=SimpleNamespace(name="towers", cells=labels), outcomes=outcomes)
-
-
-def test_a_notice_names_cell_steps_tolerance_and_the_worst() -> None:
-    missed = finished_with(count_30=Accuracy(9e-9, 1e-8, 0), count_100=Accuracy(3.1e-7, 1e-8, 36))
-    assert convergence_notices(missed) == [
-        "towers[count=100]: 36 of 1200 steps ended above the tolerance 1e-08 m/s, worst 3.1e-07 m/s"
-    ]
 
 
 @pytest.fixture(scope="module")

@@ -1,10 +1,8 @@
-"""What an entry of the solver matrix says of a run, and that one case's end is not the others'."""
+"""What an entry of the solver matrix says of a run."""
 
 from __future__ import annotations
 
 import math
-import os
-import time
 from dataclasses import dataclass, field
 from fractions import Fraction
 from pathlib import Path
@@ -14,23 +12,11 @@ from typing import Any
 import pytest
 
 from lavendersim.clock import Clock
-from lavendersim.errors import UsageError
-from lavendersim.experiment import load_experiment_text
 from lavendersim.measures import Verdict
 from lavendersim.runner.matrix_entry import Entry, entry_of, passed
-from lavendersim.runner.solver_matrix import (
-    Case,
-    CaseAndSolver,
-    cases_of,
-    chosen,
-    entries,
-    make_entry,
-)
 
 BEYOND = "beyond bounds: residual 0.1 m/s, at most 1e-06, ball, in step 3 (t = 0.0125 s)"
-SCENE = """\
-scene: {bodies: {ball: {shape: {kind: sphere, radius: 0.1}, mass: 1.0, position: [0, 0, 1]}}}
-"""
+
 DIVERGED = "diverged: body ball is no longer finite after step 3 (t = 0.0125 s)"
 
 
@@ -134,66 +120,3 @@ def test_a_cell_that_ended_early_says_how(status: str, word: str) -> None:
 def test_the_cost_is_the_physics_of_all_cells_over_their_simulated_time() -> None:
     # 4 ms for (10 + 30) / 100 s
     assert entry(verdict("stands a", True)).cost == pytest.approx(0.004 / 0.4, rel=1e-12)
-
-
-def case(name: str, path: Path = Path("none.yaml")) -> Case:
-    return Case(name, path, False, "")
-
-
-def dies_of_two(pair: CaseAndSolver) -> Entry:
-    """Stand in for `make_entry`: the second case kills its process, as memory that is full may."""
-    if pair.case.name == "two":
-        os._exit(3)
-    if pair.case.name == "one":
-        time.sleep(1.0)  # still at work beside the second when that dies
-    return Entry(pair.case.name, pair.solver, "passes")
-
-
-@pytest.mark.parametrize("jobs", [1, 2])
-def test_a_case_whose_process_dies_loses_no_other(jobs: int) -> None:
-    cases = [case(name) for name in ("one", "two", "three", "four")]
-    made = list(entries(cases, ["jacobi"], jobs=jobs, make=dies_of_two))
-    assert len(made) == 4
-    assert {one.case: one.verdict for one in made} == {
-        **{"one": "passes", "two": "died", "three": "passes", "four": "passes"}
-    }
-
-
-def test_a_case_that_a_solver_cannot_take_is_refused_with_the_reason(tmp_path: Path) -> None:
-    config = tmp_path / "relaxed.yaml"
-    config.write_text(f"{SCENE}duration: 0.1\nalways: {{}}\nnumerics: {{over_relaxation: 1.5}}\n")
-    one = make_entry(CaseAndSolver(case("relaxed", config), "jacobi", tmp_path / "runs"))
-    assert (one.verdict, one.run, one.fine) == ("refused", None, False)
-    assert one.why == "over_relaxation: jacobi treats all contacts at once; expected 1"
-    assert not (tmp_path / "runs").exists()
-
-
-def test_solvers_are_named_once_each_and_all_begins_with_the_default() -> None:
-    everyone = chosen(["all"])
-    assert everyone[0] == "adaptive"
-    assert len(set(everyone)) == len(everyone) > 5
-    assert chosen(["jacobi, adaptive", "jacobi"]) == ("jacobi", "adaptive")
-
-
-@pytest.mark.parametrize(
-    ("name", "said"),
-    [
-        ("jacoby", 'no solver is called "jacoby"; did you mean "jacobi"?'),
-        ("gauss", 'no solver is called "gauss"; did you mean'),
-        ("", 'no solver is called ""; valid here: adaptive,'),
-    ],
-)
-def test_an_unknown_solver_is_reported_with_the_nearest(name: str, said: str) -> None:
-    with pytest.raises(UsageError) as error:
-        chosen([name])
-    assert str(error.value).startswith(said)
-    assert error.value.exit_code == 2
-
-
-def test_a_case_is_called_by_its_folder_and_its_file() -> None:
-    text = f"{SCENE}duration: 0.1\n"
-    judged = load_experiment_text(text + "always: {}\n", "tall/tower.yaml")
-    silent = load_experiment_text(text, "maps/height.yaml")
-    cases, left_out = cases_of([judged, silent])
-    assert [one.name for one in cases] == ["tall/tower"]
-    assert left_out == {"maps/height": "judges nothing"}

@@ -15,10 +15,8 @@ from lavendersim.errors import ConfigError, TraceError
 from lavendersim.experiment import load_experiment_text
 from lavendersim.measures.overhead_table import OverheadRow
 from lavendersim.runner import load_all, open_run, overheads, run
-from lavendersim.runner.overhead_pairs import ALL, names_of_effects, pairs_of
-from lavendersim.runner.timed_engine import Diverged, Timed
-from lavendersim.scene.laws import needs
-from lavendersim.scene.plan import plan_of
+from lavendersim.runner.overhead_pairs import names_of_effects
+from lavendersim.runner.timed_engine import Diverged
 from tests.drop_config import LOW
 from tests.older_runs import without_digests
 
@@ -111,57 +109,6 @@ def test_where_an_effect_has_no_overhead_the_row_says_why(monkeypatch: pytest.Mo
     assert rows["gravity"].why_not == "the scene diverges without it"
     assert rows["gravity"].timing is None
     assert rows["drag"].timing.overhead.median == pytest.approx(COST["drag"])
-
-
-@pytest.mark.parametrize("numerics", ["chapter", "default"])
-def test_both_engines_of_a_pair_can_be_and_differ_in_the_effect(numerics: str) -> None:
-    text = EVERY.replace("numerics: chapter", f"numerics: {numerics}")
-    config = load_experiment_text(text, "ball.yaml").cells()[0].config
-    silent = plan_of(config, record=False).spec
-    for pair in pairs_of(config):
-        assert (pair.off is None) == (pair.on is None) == bool(pair.why_not)
-        if pair.off is None or pair.on is None:
-            continue
-        for spec in (pair.off, pair.on):
-            assert all(spec.has(need) for name in spec.effects for need in needs(name))
-        extra = set(pair.on.effects) - set(pair.off.effects)
-        if pair.effect == ALL:
-            assert pair.off == silent
-            laws = {"impact_time", "midpoint", "speculative", "newton", "fast_bodies"}
-            laws |= {"impact_energy"}
-            assert bool(laws <= set(pair.on.effects)) == (numerics == "default")
-            assert not laws & set(pair.on.effects) or numerics == "default"
-        elif pair.effect in names_of_effects():
-            assert extra == {pair.effect} | ({"pose_log"} if pair.effect == "step_log" else set())
-
-
-class StepClock:
-    """A clock that gains 1000 ns with every step an engine has done since its initial state."""
-
-    engine: Any = None
-
-    def __call__(self) -> int:
-        return 0 if self.engine is None else 1000 * int(self.engine.counters["step"][0])
-
-
-def test_a_sample_is_the_same_steps_every_time() -> None:
-    cell = load_experiment_text(BALL, "ball.yaml").cells()[0]
-    spec = plan_of(cell.config, record=False).spec
-    first, steps = 24, 96  # of 120: the ball lands and bounces in them
-    clock = StepClock()
-    timed = Timed(cell.config, spec, first, steps, clock)
-    clock.engine, timed.starts = timed.engine, 3
-    timed.set_back()
-    begin = timed.engine.bodies["z"].tobytes()
-    for _ in range(3):
-        assert timed.sample() == 1000.0  # [ns]: of the timed steps alone, not those before
-        assert int(timed.engine.counters["step"][0]) == first + steps
-        assert timed.engine.bodies["z"].tobytes() != begin
-        timed.set_back()
-        assert timed.engine.bodies["z"].tobytes() == begin
-    assert 0.0 < timed.contacts < 1.0
-    whole = Timed(cell.config, spec, 0, first + steps)
-    assert whole.motion == timed.motion  # where an uninterrupted run ends, to the bit
 
 
 def test_a_run_leaves_its_overheads_in_json_and_csv(tmp_path: Path) -> None:

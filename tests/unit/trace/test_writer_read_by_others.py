@@ -5,13 +5,12 @@ from __future__ import annotations
 import math
 import struct
 import xml.etree.ElementTree as ET
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from google.protobuf import descriptor_pb2, descriptor_pool, message_factory
+from logs_of_samples import messages
 from mcap.reader import NonSeekingReader, make_reader
 from sample import BODIES, CONFIG, TIMESTEP, moving, rolling, run, write
 
@@ -40,22 +39,6 @@ def block(request: pytest.FixtureRequest) -> Block:
 @pytest.fixture(scope="module")
 def path(block: Block, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return write(tmp_path_factory.mktemp("log") / "run.mcap", [block])
-
-
-def messages(path: Path, topic: str) -> Iterator[tuple[Any, Any]]:
-    """Yield each message of a topic with its protobuf, by the schema in the file."""
-    classes: dict[int, Any] = {}
-    with path.open("rb") as stream:
-        reader = make_reader(stream, validate_crcs=True)
-        for schema, _, message in reader.iter_messages(topics=[topic]):
-            assert schema is not None
-            if schema.id not in classes:
-                pool = descriptor_pool.DescriptorPool()
-                for file in descriptor_pb2.FileDescriptorSet.FromString(schema.data).file:
-                    pool.Add(file)
-                found = pool.FindMessageTypeByName(schema.name)
-                classes[schema.id] = message_factory.GetMessageClass(found)
-            yield message, classes[schema.id].FromString(message.data)
 
 
 def same(a: float, b: float) -> bool:

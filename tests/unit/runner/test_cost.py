@@ -12,8 +12,7 @@ import numpy as np
 import pytest
 
 from lavendersim.errors import TraceError
-from lavendersim.experiment import load_experiment, load_experiment_text
-from lavendersim.experiment.sweeps.cost_grid import fragment_of, over_the_grid, settings_of
+from lavendersim.experiment import load_experiment
 from lavendersim.figures.work_precision import compose, draw_work_precision
 from lavendersim.measures.cost_table import CostRow
 from lavendersim.runner import open_run, run
@@ -51,7 +50,6 @@ cost:
   targets: [0.5, 1e-9]
   repeats: 7
 """
-GRID = BALL.replace("[projected_gauss_seidel]", "all").replace("[4]", "[2, 8]")
 
 
 @pytest.fixture(scope="module")
@@ -64,72 +62,6 @@ def costed(tmp_path_factory: pytest.TempPathFactory) -> Costed:
 
 def rows_of(costed: Costed) -> dict[tuple[str, str], CostRow]:
     return {(row.role, row.timestep): row for row in costed.table.rows}
-
-
-def test_the_grid_is_the_product_of_its_lists_with_what_the_config_specifies_first() -> None:
-    experiment = load_experiment_text(GRID, "ball.yaml")
-    settings = settings_of(experiment)
-    assert settings[0].role == "specified"
-    assert settings[0].timestep == Fraction(1, 240)
-    assert [one.role for one in settings].count("specified") == 1
-    assert settings[-1].role == "chapter"  # the config's slop is another
-    grid = [one for one in settings if one.role == "grid"]
-    assert len(set(grid)) == len(grid)
-    for one in grid:
-        # adaptive ends at its tolerance; every other solver takes the sweeps it is given
-        assert (one.tolerance is None) == (one.solver != "adaptive")
-        assert one.sweeps in (2, 8) or one.solver == "adaptive"
-        assert one.preset == "chapter"
-    assert {one.timestep for one in grid} == {Fraction(1, 60), Fraction(1, 240)}
-    swept = over_the_grid(experiment, settings)
-    assert len(swept.cells()) == 3 * len(settings)
-    for place, cell in enumerate(swept.cells()):
-        setting, numerics = settings[place // 3], cell.config.numerics
-        assert {name: getattr(numerics, name) for name in setting.knobs} == setting.knobs
-        assert numerics.slop == (0.001 if setting.role == "chapter" else 0.002)
-
-
-def test_accuracies_are_asked_for_where_the_laws_are_of_order_two() -> None:
-    for numerics, few in (("default", 4), ("{integrator: midpoint}", 0), ("chapter", 0)):
-        text = GRID.replace("{preset: chapter, slop: 0.002}", numerics)
-        asked = [
-            one
-            for one in settings_of(load_experiment_text(text, "ball.yaml"))
-            if one.accuracy is not None
-        ]
-        assert len(asked) == few
-        for one in asked:
-            assert (one.solver, one.timestep, one.tolerance) == ("adaptive", Fraction(1, 60), 1e-9)
-    both = GRID.replace("cost:", "cost:\n  presets: [default, chapter]\n  accuracies: [1e-3]")
-    both = both.replace("{preset: chapter, slop: 0.002}", "default")
-    settings = settings_of(load_experiment_text(both, "ball.yaml"))
-    assert [one.preset for one in settings if one.accuracy == 1e-3] == ["default"]
-
-
-def test_a_fragment_gives_its_setting_and_states_no_more_than_it_must() -> None:
-    asked = "{accuracy: 2e-3, slop: 1e-6}"  # and the grid has equal timesteps beside it
-    for numerics in (
-        "{preset: chapter, slop: 0.002}",
-        "chapter",
-        "default",
-        "{timestep: 1/60}",
-        asked,
-    ):
-        text = GRID.replace("{preset: chapter, slop: 0.002}", numerics)
-        experiment = load_experiment_text(text, "ball.yaml")
-        settings = settings_of(experiment)
-        swept = over_the_grid(experiment, settings)
-        for place, setting in enumerate(settings):
-            fragment = fragment_of(experiment, setting)
-            pasted = load_experiment_text(
-                text.replace(f"numerics: {numerics}\n", fragment), "ball.yaml"
-            )
-            # the whole config of a cell, to the last digit
-            assert [cell.digest for cell in pasted.cells()] == [
-                cell.digest for cell in swept.cells()[3 * place : 3 * place + 3]
-            ], fragment
-            if setting.role == "chapter":
-                assert fragment == "numerics: chapter\n"
 
 
 def test_errors_are_those_of_the_logs_the_worst_over_the_experiments_own_cells(

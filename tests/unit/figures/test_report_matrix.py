@@ -1,0 +1,96 @@
+"""The matrix of cases and solvers: every entry by its sign, what failed once more below."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from lavendersim.figures.report_matrix import LOOKS, NOT_RUN, Matrix, page, write_matrix
+from lavendersim.runner import matrix_entry
+
+SOLVERS = ("adaptive", "jacobi")
+
+
+def case(name: str, reduced: bool = False) -> Any:
+    return SimpleNamespace(name=name, question=f"what of {name}?", reduced=reduced)
+
+
+def entry(name: str, solver: str, verdict: str = "passes", margin: float = float("nan")) -> Any:
+    return SimpleNamespace(case=name, solver=solver, verdict=verdict, why="sank", detail=f"{name} sank deep", margin=margin, cost=2e-6, log=Path(f"runs/{name}.mcap"))  # noqa: E501  # fmt: skip
+
+
+def matrix(*entries: Any, left_out: dict[str, str] | None = None) -> Matrix:
+    cases = [case("tall/jenga"), case("tall/tower", reduced=True), case("drop")]
+    return Matrix(cases, SOLVERS, entries, left_out or {}, {}, "a processor")
+
+
+def rows_of(text: str) -> dict[str, list[str]]:
+    """Return the signs of each case's entries."""
+    found = {}
+    for row in re.findall(r"<tr[^>]*data-case=\"([^\"]*)\"(.*?)</tr>", text, re.DOTALL):
+        found[row[0]] = re.findall(
+            "|".join(look.sign for look in (*LOOKS.values(), NOT_RUN)), row[1]
+        )
+    return found
+
+
+def test_every_verdict_has_a_look_of_its_own() -> None:
+    assert len({look.sign for look in LOOKS.values()}) == len(LOOKS)
+    named = {getattr(matrix_entry, name) for name in ("DIED", "REFUSED")}
+    assert named <= LOOKS.keys()
+
+
+def test_entries_stand_in_the_row_of_their_case_and_the_column_of_their_solver() -> None:
+    text = page(
+        matrix(
+            entry("tall/jenga", "jacobi", "fails"),
+            entry("tall/jenga", "adaptive"),
+            entry("drop", "adaptive", "diverged"),
+        ),
+        Path(),
+    )
+    signs = {name: look.sign for name, look in LOOKS.items()}
+    assert rows_of(text) == {
+        "tall/jenga": [signs["passes"], signs["fails"]],
+        "tall/tower": [NOT_RUN.sign] * 2,
+        "drop": [signs["diverged"], NOT_RUN.sign],
+    }
+
+
+def test_the_key_has_what_stands_in_the_table_and_what_was_not_run() -> None:
+    every = [entry(name, solver) for name in ("tall/jenga", "tall/tower", "drop") for solver in SOLVERS]  # noqa: E501  # fmt: skip
+    whole = page(matrix(*every), Path())
+    assert NOT_RUN.words not in whole
+    assert LOOKS["diverged"].words not in whole
+    assert LOOKS["fails"].words in whole  # always in the key
+    one, two = (page(matrix(*every[:-k]), Path()).count(NOT_RUN.words) for k in (1, 2))
+    assert one - (two - one) == 1  # beside what entries say of themselves
+
+
+def test_margins_and_reasons_are_said_when_pointed_at() -> None:
+    text = page(matrix(entry("drop", "jacobi", "fails", margin=-0.25)), Path())
+    assert "fails: sank" in text
+    assert "least margin -0.25 of a bound" in text
+
+
+def test_failures_are_listed_below_solver_by_solver() -> None:
+    text = page(matrix(entry("drop", "jacobi", "fails"), entry("drop", "adaptive")), Path())
+    assert text.count("drop sank deep") == 1
+    assert "tall/jenga sank deep" not in text
+
+
+def test_links_are_relative_and_the_page_is_written_whole(tmp_path: Path) -> None:
+    one = entry("drop", "jacobi")
+    one.log = tmp_path / "runs" / "a b.mcap"
+    write_matrix(matrix(one), tmp_path / "pages.html")
+    assert 'href="runs/a%20b.mcap"' in (tmp_path / "pages.html").read_text()
+
+
+@pytest.mark.parametrize("names", [("a", "b"), ("b", "a")])
+def test_what_is_no_case_is_named_once_for_each_reason(names: tuple[str, str]) -> None:
+    text = page(matrix(left_out=dict.fromkeys(names, "it sweeps solvers") | {"c": "other"}), Path())
+    assert text.count("it sweeps solvers") == 1

@@ -1,0 +1,113 @@
+"""Thumbnails: outlines by a slow twin, seen from where bodies spread, equal for equal logs."""
+
+from __future__ import annotations
+
+import itertools
+from typing import Any
+
+import numpy as np
+import pytest
+from synthetic import log_of, scene_of
+
+from lavendersim.figures.thumbnail import (
+    BEFORE,
+    FIXED,
+    _grounds,
+    _hull,
+    _outlines,
+    _view,
+    thumbnail,
+)
+from lavendersim.trace.reader import RecordedPoses
+
+BALL = {"shape": {"kind": "sphere", "radius": 0.1}, "mass": 1.0}
+BOX = {"shape": {"kind": "box", "size": [2.0, 2.0, 2.0]}, "mass": 1.0}
+FLOOR = {"shape": {"kind": "plane", "normal": [0.0, 0.0, 1.0], "offset": 0.5}}
+
+
+def log(bodies: dict[str, Any], *states: Any, **scene: Any) -> Any:
+    one = log_of(scene_of(bodies, **scene), states)
+    one.recorded_pose = RecordedPoses(np.arange(len(states)), one.pose)
+    return one
+
+
+def is_extreme(points: np.ndarray, corner: np.ndarray) -> bool:
+    """Whether a corner is no mean of others: some direction has it alone as its farthest."""
+    angles = np.linspace(0.0, 2.0 * np.pi, 720, endpoint=False)
+    directions = np.column_stack([np.cos(angles), np.sin(angles)])
+    heights = points @ directions.T
+    return bool(np.any(corner @ directions.T >= heights.max(axis=0) - 1e-12))
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_an_outline_is_the_convex_hull_in_order(seed: int) -> None:
+    points = np.random.default_rng(seed).normal(size=(30, 2))
+    hull = _hull(points)
+    turns = [
+        np.cross(np.append(b - a, 0.0), np.append(c - b, 0.0))[2]
+        for a, b, c in zip(hull, np.roll(hull, -1, 0), np.roll(hull, -2, 0), strict=True)
+    ]
+    assert min(turns) > 0.0  # each corner turns left
+    for a, b in zip(hull, np.roll(hull, -1, 0), strict=True):
+        side = (b[0] - a[0]) * (points[:, 1] - a[1]) - (b[1] - a[1]) * (points[:, 0] - a[0])
+        assert side.min() >= -1e-12  # every point is within
+    assert all(is_extreme(points, corner) for corner in hull)
+
+
+def test_points_in_one_place_and_in_a_line_have_an_outline() -> None:
+    assert {tuple(corner) for corner in _hull(np.ones((4, 2))).tolist()} == {(1.0, 1.0)}
+    line = _hull(np.array([[0.0, 0.0], [1.0, 1.0], [2.0, 2.0]]))
+    assert sorted(map(tuple, line.tolist())) == [(0.0, 0.0), (2.0, 2.0)]
+
+
+def test_up_is_against_gravity_and_sideways_is_where_bodies_spread() -> None:
+    bodies = {"a": BALL, "b": BALL}
+    along_x, along_y = ([[0, 0, 0], end] for end in ([4, 0, 0], [0, 4, 0]))
+    right, up = _view(log(bodies, along_x))
+    assert (right.tolist(), up.tolist()) == ([1.0, 0.0, 0.0], [0.0, 0.0, 1.0])
+    right, _ = _view(log(bodies, along_y))
+    assert abs(right[1]) == pytest.approx(1.0)
+    _, up = _view(log(bodies, along_x, gravity=[0.0, -3.0, -4.0]))
+    assert up == pytest.approx([0.0, 0.6, 0.8])
+    right, up = _view(log(bodies, along_x, gravity=[9.0, 0.0, 0.0]))
+    assert up.tolist() == [-1.0, 0.0, 0.0]
+    assert abs(right @ up) < 1e-15
+
+
+def test_a_box_is_a_square_where_it_began_and_where_it_ended() -> None:
+    one = log({"it": BOX}, [[0, 0, 1]], [[3, 0, 1]])
+    outlines, colours, seen = _outlines(one, *_view(one))
+    assert colours[0] == BEFORE
+    squares = [sorted(map(tuple, outline.tolist())) for outline in outlines]
+    corners = list(itertools.product((-1.0, 1.0), (0.0, 2.0)))
+    assert squares == [
+        sorted(corners),
+        sorted((x + 3.0, y) for x, y in corners),
+    ]
+    assert (seen.min(axis=0).tolist(), seen.max(axis=0).tolist()) == ([-1.0, 0.0], [4.0, 2.0])
+
+
+def test_the_last_finite_state_is_shown_and_what_is_fixed_once() -> None:
+    bodies = {"it": BALL, "post": {"shape": BOX["shape"]}}
+    one = log(bodies, [[0, 0, 1], [9, 0, 0]], [[1, 0, 1], [9, 0, 0]], [[np.nan, 0, 1], [9, 0, 0]])
+    _, colours, seen = _outlines(one, *_view(one))
+    assert colours.count(FIXED) == 1
+    assert seen.max(axis=0)[0] == pytest.approx(1.1, abs=0.01)  # not the post's 10, nor NaN
+    none = log(bodies, [[np.nan, 0, 1], [9, 0, 0]])
+    assert _outlines(none, *_view(log(bodies, [[0, 0, 1], [9, 0, 0]])))[0] == []
+
+
+def test_a_plane_is_a_line_where_it_is_seen_edge_on() -> None:
+    one = log({"floor": FLOOR, "it": BALL}, [[0, 0, 0], [0, 0, 1]])
+    ((start, along),) = _grounds(one, *_view(one))
+    assert start.tolist() == [0.0, 0.5]
+    assert abs(along[0]) == pytest.approx(1.0)
+    facing = {"shape": {"kind": "plane", "normal": [0.0, 1.0, 0.0], "offset": 0.0}}
+    assert _grounds(log({"wall": facing, "it": BALL}, [[0, 0, 0], [0, 0, 1]]), *_view(one)) == []
+
+
+def test_equal_logs_give_equal_pictures() -> None:
+    made = [thumbnail(log({"floor": FLOOR, "it": BALL}, [[0, 0, 0], [0, 0, 1]], [[0, 0, 0], [1, 0, 1]])) for _ in range(2)]  # noqa: E501  # fmt: skip
+    assert made[0] == made[1]
+    assert made[0].startswith(b"\x89PNG")
+    assert made[0][16:24] == (160).to_bytes(4, "big") + (110).to_bytes(4, "big")

@@ -1,0 +1,65 @@
+"""Compile times: what is kept is not taken again, what is missing one kernel a process."""
+
+from __future__ import annotations
+
+from concurrent.futures import Executor, Future
+from typing import Any, ClassVar
+
+import pytest
+
+from lavendersim.engine.spec import Spec
+from lavendersim.runner import compile_times as module
+from lavendersim.runner.compile_times import compile_times
+from tests.made_cells import made_cell
+
+CONFIG = made_cell({"ball": {"shape": {"kind": "sphere", "radius": 0.1}}})
+SPECS = [Spec(effects=effects) for effects in ((), ("gravity",), ("gravity", "drag"))]
+
+
+class Pool(Executor):
+    """Notes how it is made, and compiles at once."""
+
+    made: ClassVar[list[dict[str, Any]]] = []
+
+    def __init__(self, workers: int, context: Any, **given: Any) -> None:
+        self.made.append({"workers": workers, "method": context.get_start_method(), **given})
+
+    def submit(self, function: Any, /, *given: Any, **more: Any) -> Future[Any]:
+        future: Future[Any] = Future()
+        future.set_result(function(*given, **more))
+        return future
+
+
+@pytest.fixture(autouse=True)
+def _pool(monkeypatch: pytest.MonkeyPatch) -> None:
+    Pool.made = []
+    monkeypatch.setattr(module, "ProcessPoolExecutor", Pool)
+    monkeypatch.setattr(module, "compile_anew", lambda config, spec: 1.0 + len(spec.effects))
+
+
+def test_only_what_is_not_known_is_compiled(monkeypatch: pytest.MonkeyPatch) -> None:
+    known = {SPECS[1]: 0.25}
+    monkeypatch.setattr(module, "_known", lambda config, spec: known.get(spec))
+    said: list[tuple[int, int]] = []
+    times = compile_times(CONFIG, SPECS, 8, lambda done, of: said.append((done, of)))
+    assert times == {SPECS[0]: 1.0, SPECS[1]: 0.25, SPECS[2]: 3.0}
+    assert said == [(0, 2), (1, 2), (2, 2)]
+    (made,) = Pool.made
+    # a process has the parts of what it compiled before: each is spawned, and compiles once
+    assert (made["workers"], made["method"], made["max_tasks_per_child"]) == (2, "spawn", 1)
+
+
+def test_where_all_is_known_no_process_is_started(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module, "_known", lambda config, spec: 0.5)
+    said: list[tuple[int, int]] = []
+    assert set(compile_times(CONFIG, SPECS, 2, lambda *one: said.append(one)).values()) == {0.5}
+    assert Pool.made == said == []
+
+
+@pytest.mark.parametrize(("workers", "expected"), [(1, 1), (2, 2), (9, 3)])
+def test_no_more_processes_than_kernels(
+    monkeypatch: pytest.MonkeyPatch, workers: int, expected: int
+) -> None:
+    monkeypatch.setattr(module, "_known", lambda config, spec: None)
+    compile_times(CONFIG, SPECS, workers, lambda done, of: None)
+    assert Pool.made[0]["workers"] == expected

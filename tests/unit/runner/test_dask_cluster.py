@@ -1,0 +1,187 @@
+"""Workers of Dask: killed, restarted, at an address, or of this machine."""
+
+from __future__ import annotations
+
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from threading import Thread
+from typing import Any
+
+import pytest
+
+from lavendersim.errors import UsageError
+from lavendersim.experiment import load_experiment
+from lavendersim.runner import Progress, Run, run
+from tests.runner.run_contents import contents
+from tests.runner.small_configs import DROPS, write
+
+MANY = DROPS.replace("[0.2, 0.5, 0.8]", str([round(0.1 + i / 100, 2) for i in range(40)]))
+
+
+OWN_MEASURE = '''\
+from lavendersim.measures import Trace, own_measure
+from lavendersim.quantities.names import BodyName
+
+
+@own_measure
+def highest(trace: Trace, body: BodyName) -> float:
+    """Greatest height [m] of a body's centre."""
+    return float(trace.pose[:, trace.bodies.index(body), 2].max())
+'''
+EXTENDED = """\
+extends: ../base.yaml
+measure: {top: {kind: highest, body: ball}}
+expect: [{name: it is as high as its start, measure: top, between: [0.149999, 0.150001]}]
+"""
+
+
+@pytest.fixture
+def drops(tmp_path: Path) -> Path:
+    return write(tmp_path)
+
+
+@pytest.fixture
+def cluster() -> Iterator[Any]:
+    distributed = pytest.importorskip("distributed")
+    with distributed.LocalCluster(
+        n_workers=2, threads_per_worker=1, dashboard_address=None, processes=True
+    ) as started:
+        yield started
+
+
+def part_of_dask(*words: object) -> subprocess.Popen[bytes]:
+    """Start a scheduler or a worker of Dask in a process of its own."""
+    command = [sys.executable, "-m", *map(str, words), "--no-dashboard"]
+    return subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+
+
+@pytest.mark.skipif(os.name != "posix", reason="kills as POSIX does")
+def test_dask_gives_the_cells_of_a_killed_worker_to_others(cluster: Any, tmp_path: Path) -> None:
+    from distributed import Client
+
+    config = write(tmp_path, MANY)
+    whole = contents(run(config, tmp_path / "whole").run)
+    runs = tmp_path / "runs"
+    worker = next(iter(cluster.workers.values()))
+
+    def kill() -> None:
+        while len(list(runs.glob("*/cells/[!.]*"))) < 3:
+            time.sleep(0.005)
+        os.kill(worker.pid, signal.SIGKILL)
+
+    killer = Thread(target=kill, daemon=True)
+    killer.start()
+    with Client(cluster, set_as_default=False) as client:
+        found = run(config, runs, executor=client.get_executor(pure=False))
+    killer.join()
+    assert contents(found.run) == whole
+
+
+def test_workers_of_dask_take_measures_of_a_file_for_a_config_that_extends_another(
+    cluster: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from distributed import Client
+
+    (tmp_path / "base.yaml").write_text(MANY)
+    folder = tmp_path / "cases"
+    folder.mkdir()
+    (folder / "measures.py").write_text(OWN_MEASURE)
+    config = folder / "tops.yaml"
+    config.write_text(EXTENDED)
+    whole = run(config, tmp_path / "whole")
+    here = Path.cwd()
+    monkeypatch.chdir(folder)  # a name that means nothing where the workers were started
+    with Client(cluster, set_as_default=False) as client:
+        found = run("tops.yaml", tmp_path / "runs", executor=client.get_executor(pure=False))
+    monkeypatch.chdir(here)
+    assert contents(found.run) == contents(whole.run)
+    # A ball of radius 0.1 m is released 0.05 m above the floor: its centre is highest at first.
+    tops = [found.run.taken[index]["top"] for index in range(len(found.run.cells))]
+    assert tops == pytest.approx([0.15] * 40, abs=1e-12)
+    judged = [one.passed for one in found.verdicts if one.name == "it is as high as its start"]
+    assert judged == [True] * 40
+
+
+@pytest.mark.skipif(os.name != "posix", reason="kills as POSIX does")
+def test_a_scheduler_of_dask_that_is_restarted_loses_no_cell(tmp_path: Path) -> None:
+    distributed = pytest.importorskip("distributed")
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    scheduler = ("distributed.cli.dask_scheduler", "--host", "127.0.0.1", "--port", port)
+    worker = ("distributed.cli.dask_worker", f"tcp://127.0.0.1:{port}", "--nthreads", 1)
+    config, runs = write(tmp_path, MANY), tmp_path / "runs"
+    whole = contents(run(config, tmp_path / "whole").run)
+    started = [part_of_dask(*scheduler), *(part_of_dask(*worker) for _ in range(2))]
+
+    def restart() -> None:
+        while len(list(runs.glob("*/cells/[!.]*"))) < 3:
+            time.sleep(0.005)
+        started[0].kill()
+        started[0].wait()
+        started.append(part_of_dask(*scheduler))
+        started.extend(part_of_dask(*worker) for _ in range(2))  # the first ones may have ended
+
+    said: list[str] = []
+    restarter = Thread(target=restart, daemon=True)
+    restarter.start()
+    try:
+        with distributed.Client(
+            f"tcp://127.0.0.1:{port}", set_as_default=False, timeout="60s"
+        ) as client:
+            executor = client.get_executor(pure=False)
+            found = run(config, runs, progress=Progress(warning=said.append), executor=executor)
+        restarter.join()
+    finally:
+        for process in started:
+            process.terminate()
+        for process in started:
+            process.wait()
+    assert "the executor lost its scheduler" in said[0]
+    assert contents(found.run) == whole
+
+
+def test_the_command_uses_the_workers_at_an_address(cluster: Any, tmp_path: Path) -> None:
+    drops = write(tmp_path)
+    command = [sys.executable, "-m", "lavender_cli.main", "run", drops, "--runs", tmp_path / "runs"]
+    done = subprocess.run(
+        [*command, "--dask", cluster.scheduler_address], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    found = Run((tmp_path / "runs" / "latest").resolve())
+    assert contents(found) == contents(run(drops, tmp_path / "whole").run)
+
+
+def test_a_scheduler_that_is_not_there_is_said(drops: Path, tmp_path: Path) -> None:
+    pytest.importorskip("distributed")
+    from lavendersim.runner import dask_cluster
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(dask_cluster, "TIMEOUT", "0.5s")
+        refused = pytest.raises(UsageError, match=r"--dask tcp://127\.0\.0\.1:9")
+        with refused, dask_cluster.dask_workers("tcp://127.0.0.1:9", 1):
+            pass
+
+
+def test_the_queue_of_dasks_configuration_has_to_be_known() -> None:
+    dask = pytest.importorskip("dask")
+    from lavendersim.runner.dask_cluster import dask_workers
+
+    refused = pytest.raises(UsageError, match=r"lavender\.queue: 'slrum'.*expected slurm, pbs")
+    with dask.config.set({"lavender.queue": "slrum"}), refused, dask_workers(None, 1):
+        pass
+
+
+def test_an_experiment_is_run_by_dask_of_this_machine(drops: Path, tmp_path: Path) -> None:
+    pytest.importorskip("distributed")
+    from lavendersim.runner.dask_cluster import dask_workers
+
+    with dask_workers(None, 1) as workers:
+        found = run(load_experiment(drops), tmp_path / "runs", executor=workers)
+    assert contents(found.run) == contents(run(drops, tmp_path / "whole").run)
