@@ -45,9 +45,6 @@ WITHOUT_A_TEST = {
         record_layout records removal residual respond scaled_residual spec spin_block
         spring_midpoint step_doubling vectors
     """,
-    "engine/collide/broad": """
-        fat_bounds pair_rows reach tree
-    """,
     "engine/collide/convex": """
         epa gjk polytope separation simplex tetrahedron
     """,
