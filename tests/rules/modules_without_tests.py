@@ -45,12 +45,6 @@ WITHOUT_A_TEST = {
         record_layout records removal residual respond scaled_residual spec spin_block
         spring_midpoint step_doubling vectors
     """,
-    "engine/collide/convex": """
-        epa gjk polytope separation simplex tetrahedron
-    """,
-    "engine/collide/manifold": """
-        box_clip edge_line line_normal patch polygon_clip
-    """,
     "engine/collide": """
         narrow_phase records scratch shape shape_pair
     """,
