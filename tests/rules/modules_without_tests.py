@@ -48,10 +48,6 @@ WITHOUT_A_TEST = {
     "engine/collide": """
         narrow_phase records scratch shape shape_pair
     """,
-    "engine/collide/pairs": """
-        capsule_capsule capsule_plane convex cylinder_plane hull_plane sphere_box
-        sphere_capsule sphere_cylinder sphere_plane sphere_sphere
-    """,
     "engine/collide/shapes": """
         box capsule cylinder polyhedron
     """,

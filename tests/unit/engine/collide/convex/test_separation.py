@@ -110,6 +110,18 @@ def test_a_standing_cylinder_askew_by_less_than_the_share_has_the_exact_normal()
         assert found.distance == pytest.approx(-1e-6, abs=1e-11)
 
 
+def test_a_cap_of_b_on_an_edge_of_a_gives_its_exact_normal(rng) -> None:
+    """The world is turned: GJK and EPA end at round-off of the normal, the cap's has none."""
+    for _ in range(5):
+        world = convex.random_rotation(rng)
+        edge_up = world @ convex.matrix_of([np.cos(np.pi / 8), np.sin(np.pi / 8), 0.0, 0.0])
+        a = body("box", (0.5, 0.5, 0.5), matrix=edge_up)
+        height = np.sqrt(0.5) + 0.4 - 1e-4
+        b = body("cylinder", (0.3, 0.0, 0.4), height * world[:, 2], world)
+        _, scratch = separate("cylinder_box", a, b)
+        np.testing.assert_array_equal(vector(scratch.separation[0], "n"), world[:, 2])
+
+
 def test_what_is_beyond_the_reach_is_left(rng) -> None:
     a, b = body("box", (0.5, 0.5, 0.5)), body("box", (0.5, 0.5, 0.5), (0.1, 0.0, 1.3))
     assert not separate("box_box", a, b, reach=0.299)[0]

@@ -167,15 +167,19 @@ def test_crossing_lines_touch_in_one_point_with_both_heights(rng) -> None:
     assert 5 < crossed < 55
 
 
+@pytest.mark.parametrize("angle", [0.0, 0.7, 2.5])
 @pytest.mark.parametrize("backwards", [False, True])
-def test_parallel_lines_touch_at_the_ends_of_their_overlap(backwards: bool) -> None:
-    """A along u from 0 to 2 at height u/10; B from 0.5 to 3, 1 mm beside, at height 1 + u/5."""
+def test_parallel_lines_touch_at_the_ends_of_their_overlap(backwards, angle) -> None:
+    """A from 0 to 2 m at a height of a tenth of that; B from 0.5 to 3, 1 mm beside, at 1 + x/5."""
     b = [(0.5, 1e-3, 1.1), (3.0, 1e-3, 1.6)]
-    rows = lines((0, 0, 0), (2, 0, 0.2), *(b[::-1] if backwards else b))
+    ends = np.array([(0, 0, 0), (2, 0, 0.2), *(b[::-1] if backwards else b)])
+    ends[:, :2] = turned(ends[:, :2], angle)
+    rows = lines(*ends)
     assert cross_lines(records(rows)) == 2
     found = rows[8:10]
-    np.testing.assert_allclose(found["x"], (0.5, 2.0), atol=1e-12)
-    np.testing.assert_allclose(found["y"], 0.5e-3, atol=1e-12)  # half way between the lines
+    x, y = turned(np.column_stack([found["x"], found["y"]]), -angle).T
+    np.testing.assert_allclose(x, (0.5, 2.0), atol=1e-12)
+    np.testing.assert_allclose(y, 0.5e-3, atol=1e-12)  # half way between the lines
     np.testing.assert_allclose(found["z"], (0.05, 0.2), atol=1e-12)
     np.testing.assert_allclose(found["phi"], (1.1, 1.4), atol=1e-12)
     assert found["in_line"].tolist() == [OTHER + backwards, 1]
