@@ -46,10 +46,7 @@ WITHOUT_A_TEST = {
         spring_midpoint step_doubling vectors
     """,
     "engine/collide": """
-        narrow_phase records scratch shape shape_pair
-    """,
-    "engine/collide/shapes": """
-        box capsule cylinder polyhedron
+        narrow_phase
     """,
     "engine/effects": """
         broad_phase capture_in_sweeps compliance contact_log contact_midpoint

@@ -12,7 +12,7 @@ R, SPHERE = 0.2, 0.3
 
 
 def test_the_nearest_point_of_the_axis_says_where_they_touch(rng) -> None:
-    """A search along the axis, without derivatives: right to 1e-8 in place and 1e-14 in distance."""
+    """A search along the axis, without derivatives: right to 1e-8 in place."""
     ends = 0
     for _ in range(60):
         half = rng.uniform(0.2, 0.6)

@@ -1,4 +1,4 @@
-"""A sphere's distance from a cylinder is its centre's: from side, cap or rim; inside, the nearer."""
+"""A sphere's distance from a cylinder is its centre's: of side, cap or rim; inside, the nearer."""
 
 from __future__ import annotations
 
