@@ -38,12 +38,10 @@ WITHOUT_A_TEST = {
         compare
     """,
     "engine": """
-        approach compile_options contact_problem coupling difference_kernel drives
-        engine error_estimate flush_contacts foreseen_impacts impact_location
-        impact_rows integrate kernel_parts matrix_problem memory message_kernel
-        midpoint_geometry midpoint_passes midpoint_rows part_compiler parts point_kernel
-        record_layout records removal residual respond scaled_residual spec spin_block
-        spring_midpoint step_doubling vectors
+        approach difference_kernel engine error_estimate flush_contacts foreseen_impacts
+        impact_location impact_rows integrate kernel_parts memory midpoint_geometry
+        midpoint_passes midpoint_rows part_compiler residual respond spin_block
+        spring_midpoint step_doubling
     """,
     "engine/collide": """
         narrow_phase

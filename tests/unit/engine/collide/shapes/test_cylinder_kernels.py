@@ -1,4 +1,4 @@
-"""A cylinder looks along n with a cap, its side, or nothing; a cap's octagon begins at its lowest."""
+"""A cylinder looks along n with a cap, its side, or nothing; its octagon begins at the lowest."""
 
 from __future__ import annotations
 
