@@ -47,12 +47,9 @@ WITHOUT_A_TEST = {
         narrow_phase
     """,
     "engine/effects": """
-        broad_phase capture_in_sweeps compliance contact_log contact_midpoint
-        contact_spring contact_torque decision effect error_control external_force
-        fast_bodies frictionless_contact gravity gyroscopic impact_energy impact_order
-        impact_time keys kinematic least_norm midpoint newton pairwise_impacts pose_log
-        problem_log residual_log restitution rotation speculative stabilisation
-        surface_velocity time_functions
+        broad_phase capture_in_sweeps contact_log contact_midpoint contact_spring effect
+        error_control fast_bodies impact_energy impact_order impact_time least_norm newton
+        pairwise_impacts problem_log residual_log
     """,
     "engine/solvers": """
         accelerated_projected_gradient block_gauss_seidel coloured_gauss_seidel jacobi

@@ -1,4 +1,4 @@
-"""Random contact problems given by their Delassus matrix, sparse by blocks, and the dense matrix."""
+"""Random contact problems by their Delassus matrix, sparse by blocks, and the dense matrix."""
 
 from __future__ import annotations
 
