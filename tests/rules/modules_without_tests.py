@@ -36,39 +36,18 @@ DECLARATIONS = {
 # Folder: modules, without `.py`. A debt, to be made shorter: nothing is added here.
 WITHOUT_A_TEST = {
     "engine": """
-        approach compile_options contact_problem coupling difference_kernel drives
-        engine error_estimate flush_contacts foreseen_impacts impact_location
-        impact_rows integrate kernel_parts matrix_problem memory message_kernel
-        midpoint_geometry midpoint_passes midpoint_rows part_compiler parts point_kernel
-        record_layout records removal residual respond scaled_residual spec spin_block
-        spring_midpoint step_doubling vectors
-    """,
-    "engine/collide/broad": """
-        fat_bounds pair_rows reach tree
-    """,
-    "engine/collide/convex": """
-        epa gjk polytope separation simplex tetrahedron
-    """,
-    "engine/collide/manifold": """
-        box_clip edge_line line_normal patch polygon_clip
+        approach difference_kernel engine error_estimate flush_contacts foreseen_impacts
+        impact_location impact_rows integrate kernel_parts memory midpoint_geometry
+        midpoint_passes midpoint_rows part_compiler residual respond spin_block
+        spring_midpoint step_doubling
     """,
     "engine/collide": """
-        narrow_phase records scratch shape shape_pair
-    """,
-    "engine/collide/pairs": """
-        capsule_capsule capsule_plane convex cylinder_plane hull_plane sphere_box
-        sphere_capsule sphere_cylinder sphere_plane sphere_sphere
-    """,
-    "engine/collide/shapes": """
-        box capsule cylinder polyhedron
+        narrow_phase
     """,
     "engine/effects": """
-        broad_phase capture_in_sweeps compliance contact_log contact_midpoint
-        contact_spring contact_torque decision effect error_control external_force
-        fast_bodies frictionless_contact gravity gyroscopic impact_energy impact_order
-        impact_time keys kinematic least_norm midpoint newton pairwise_impacts pose_log
-        problem_log residual_log restitution rotation speculative stabilisation
-        surface_velocity time_functions
+        broad_phase capture_in_sweeps contact_log contact_midpoint contact_spring effect
+        error_control fast_bodies impact_energy impact_order impact_time least_norm newton
+        pairwise_impacts problem_log residual_log
     """,
     "engine/solvers": """
         accelerated_projected_gradient block_gauss_seidel coloured_gauss_seidel jacobi

@@ -1,0 +1,135 @@
+"""A free spin keeps its angular momentum and energy; a jump has the energy it was promised."""
+
+from __future__ import annotations
+
+import convex
+import numpy as np
+import pytest
+from interpreted import interpreted
+from plain_facts import body_facts, facts, one_row, pair_facts, vector_fields
+
+from lavendersim.engine.effects import gyroscopic
+from lavendersim.engine.effects.gyroscopic import EFFECT
+from lavendersim.engine.spec import Spec
+
+INERTIA = np.array([0.2, 0.5, 0.6])
+
+
+class Spinning:
+    """A turned body of unequal inertias with a spin."""
+
+    def __init__(self, rng, inertia=INERTIA, spin: float = 1.0) -> None:
+        q = rng.normal(size=4)
+        q /= np.linalg.norm(q)
+        matrix, self.inertia = convex.matrix_of(q), inertia
+        names = [f"r{i}{j}" for i in range(3) for j in range(3)]
+        self.body = one_row(
+            **dict(zip(("qw", "qx", "qy", "qz"), q, strict=True)),
+            **dict(zip(names, matrix.ravel(), strict=True)),
+            **{f"inv_i{axis}": 1.0 / i for axis, i in zip("xyz", inertia, strict=True)},
+        )
+        self.velocity = one_row(**vector_fields("w", spin * rng.normal(size=3)))
+
+    @property
+    def matrix(self) -> np.ndarray:
+        return np.array([[self.body[f"r{i}{j}"] for j in range(3)] for i in range(3)])
+
+    @property
+    def omega(self) -> np.ndarray:
+        return np.array([self.velocity[f"w{axis}"] for axis in "xyz"])
+
+    @property
+    def tensor(self) -> np.ndarray:
+        return self.matrix @ np.diag(self.inertia) @ self.matrix.T
+
+    @property
+    def momentum(self) -> np.ndarray:
+        return self.tensor @ self.omega
+
+    @property
+    def energy(self) -> float:
+        return float(0.5 * self.omega @ self.momentum)
+
+
+def test_a_free_turn_keeps_momentum_and_energy_and_follows_euler(rng) -> None:
+    """The change of the body's spin in a short step: I dw/dt = (I w) x w, body axes."""
+    kernel = interpreted(gyroscopic.make(Spec(("rotation",))))
+    for _ in range(10):
+        one = Spinning(rng, spin=5.0)
+        momentum, energy, local = one.momentum, one.energy, one.matrix.T @ one.omega
+        dt = 1e-4
+        assert kernel(one.body, one.velocity, dt)
+        np.testing.assert_allclose(one.momentum, momentum, atol=1e-13)
+        assert one.energy == pytest.approx(energy, rel=1e-13)
+        rate = (one.matrix.T @ one.omega - local) / dt
+        euler = np.cross(INERTIA * local, local) / INERTIA
+        np.testing.assert_allclose(rate, euler, atol=1e-3 * np.linalg.norm(local) ** 3)
+        for _ in range(50):  # and over long steps
+            assert kernel(one.body, one.velocity, 0.05)
+        np.testing.assert_allclose(one.momentum, momentum, atol=1e-12)
+        assert one.energy == pytest.approx(energy, rel=1e-12)
+
+
+def test_the_middle_momentum_solves_its_equation_or_says_that_it_does_not(rng) -> None:
+    find = interpreted(gyroscopic.make_find_middle(Spec()))
+    one = Spinning(rng)
+    for _ in range(20):
+        p, dt = rng.normal(size=3), 0.1
+        *m, found = find(one.body, *p, dt)
+        assert found
+        m = np.array(m)
+        np.testing.assert_allclose(m - 0.5 * dt * np.cross(m, m / INERTIA), p, atol=1e-14)
+    assert not find(one.body, np.nan, 1.0, 1.0, 0.1)[3]
+
+
+def test_a_turn_by_the_mean_ends_with_twice_the_mean_less_the_start_in_body_axes(rng) -> None:
+    one, mean = Spinning(rng), rng.normal(size=3)
+    before, matrix = one.matrix.T @ one.omega, one.matrix
+    kernel = interpreted(gyroscopic.make_turn_by_mean(Spec()))
+    kernel(one.body, one.velocity, *mean, 0.1)
+    np.testing.assert_allclose(one.matrix.T @ one.omega, 2.0 * matrix.T @ mean - before, atol=1e-14)
+    assert not np.allclose(one.matrix, matrix)
+
+
+def test_a_jump_changes_the_energy_by_what_the_solver_counts_on(rng) -> None:
+    """dw . L + dw . I_0 dw/2, L of the spin now; found with another tensor I_0 than that now."""
+    kernel = interpreted(gyroscopic.make_jump(Spec()))
+    for _ in range(30):
+        one, other, jump = Spinning(rng), Spinning(rng), 0.3 * rng.normal(size=3)
+        twice = float(jump @ other.tensor @ jump)
+        promised = float(jump @ one.momentum + 0.5 * twice)
+        energy, omega = one.energy, one.omega
+        direction = jump / np.linalg.norm(jump)
+        lost = 0.5 * (one.momentum @ jump) ** 2 / (jump @ one.tensor @ jump)
+        if promised < -0.99 * lost:
+            continue  # more than its direction can take
+        kernel(one.body, one.velocity, *jump, twice)
+        assert one.energy - energy == pytest.approx(promised, abs=1e-13)
+        change = one.omega - omega
+        np.testing.assert_allclose(np.cross(change, direction), 0.0, atol=1e-12)
+
+
+def test_round_bodies_and_no_jump_need_no_scale(rng) -> None:
+    kernel = interpreted(gyroscopic.make_jump(Spec()))
+    ball = Spinning(rng, inertia=np.full(3, 0.3))
+    before = ball.omega
+    kernel(ball.body, ball.velocity, 0.1, -0.2, 0.3, 77.0)
+    np.testing.assert_array_equal(ball.omega, before + np.array([0.1, -0.2, 0.3]))
+    one = Spinning(rng)
+    before = one.omega
+    kernel(one.body, one.velocity, 0.0, 0.0, 0.0, 0.0)
+    np.testing.assert_array_equal(one.omega, before)
+
+
+def test_it_is_on_where_an_uneven_body_may_turn() -> None:
+    touching = (pair_facts("floor", "b"),)
+    for body, pairs, on in (
+        (body_facts("b", spins=True), (), True),
+        (body_facts("b", torque=True), (), True),
+        (body_facts("b", twisted=True), (), True),
+        (body_facts("b"), touching, True),
+        (body_facts("b"), (), False),
+        (body_facts("b", round=True, spins=True), touching, False),
+        (body_facts("b", movable=False, spins=True), touching, False),
+    ):
+        assert EFFECT.decide(facts(body, pairs=pairs)).on is on
