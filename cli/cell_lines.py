@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from lavendersim.runner.run_results import CellResult
 
 ENDED_SHOWN: Final = 5
+NO_RESIDUAL: Final = "residual not recorded"  # by versions before 0.1.0
 _SINGLE: Final = (int, float, str)  # not a row of numbers
 
 
@@ -51,15 +52,19 @@ def summary_of(rows: Sequence[CellResult]) -> list[str]:
         lines.append(f"and {len(ended) - ENDED_SHOWN} more ended early")
     costs = [(row.physics_us_per_step, row.label) for row in rows]
     lines += _range("physics", costs, " us/step")
-    worst = max(rows, key=_residual)
-    lines.append(f"residual <= {digits(worst.worst_residual)} m/s, largest at {worst.label}")
-    missed = [row for row in rows if row.not_converged_steps]
+    recorded = [row for row in rows if row.not_converged_steps is not None]
+    if recorded:
+        worst = max(recorded, key=_residual)
+        lines.append(f"residual <= {digits(worst.worst_residual)} m/s, largest at {worst.label}")
+    else:
+        lines.append(NO_RESIDUAL)
+    missed = [(row.not_converged_steps, row) for row in recorded if row.not_converged_steps]
     if missed:
-        most = max(missed, key=lambda row: row.not_converged_steps / max(row.steps, 1))
-        steps = sum(row.not_converged_steps for row in missed)
+        count, most = max(missed, key=lambda one: one[0] / max(one[1].steps, 1))
+        steps = sum(count for count, _ in missed)
         lines.append(
             f"{steps} steps of {len(missed)} cells above the tolerance, most at "
-            f"{most.label}: {most.not_converged_steps} of {most.steps}"
+            f"{most.label}: {count} of {most.steps}"
         )
     counts: Counter[str] = Counter()
     for row in rows:
@@ -109,7 +114,8 @@ def _number(value: float | str) -> float:
 
 def accuracy(row: CellResult) -> str:
     """Return how far the steps of a cell were solved, in words."""
-    worst = f"residual <= {digits(row.worst_residual)} m/s"
+    known = row.not_converged_steps is not None
+    worst = f"residual <= {digits(row.worst_residual)} m/s" if known else NO_RESIDUAL
     if row.at_limit:
         worst += f"  {_limits(row.at_limit)}"
     if not row.not_converged_steps:

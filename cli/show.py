@@ -62,7 +62,8 @@ def show(
     for plan in logged.plans:
         print_plan(plan, len(opened.cells))
     logging = results.mean_per_step("logging_us_per_step")
-    typer.echo(f"cells  logging {logging:.2f} us/step, compile {results.compile_s:.1f} s")
+    compiled = "not recorded" if results.compile_s is None else f"{results.compile_s:.1f} s"
+    typer.echo(f"cells  logging {logging:.2f} us/step, compile {compiled}")
     cell_lines.print_cells(results.cells, verbose)
     typer.echo("checks")
     claims.print_claims(results.checks, verbose)

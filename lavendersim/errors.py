@@ -64,3 +64,7 @@ class TraceError(LavenderError):
     """A log or a table of a run is damaged, unfinished or of another version."""
 
     exit_code = 3
+
+
+class OtherVersionError(TraceError):
+    """A whole log of a version whose configs this one cannot read."""

@@ -1,9 +1,11 @@
-"""Runs as versions before digests left them."""
+"""Runs as older versions left them: before digests, and before residuals."""
 
 from __future__ import annotations
 
 import json
 from pathlib import Path
+
+from lavendersim.runner.results import VIOLATIONS
 
 
 def without_digests(run: Path) -> Path:
@@ -13,4 +15,20 @@ def without_digests(run: Path) -> Path:
         del row["config"], row["log"]
     (run / "cells.json").write_text(json.dumps(index))
     (run / "DONE").write_text("")
+    return run
+
+
+def without_residuals(run: Path) -> Path:
+    """Leave of a finished run's results what the first versions wrote; returns it."""
+    without_digests(run)
+    results = json.loads((run / "results.json").read_text())
+    for key in ("compile_s", "reduced", "solver"):
+        del results[key]
+    for row in results["cells"]:
+        for key in ("tolerance", "worst_residual", "not_converged_steps", *VIOLATIONS):
+            del row[key]
+    for check in results["checks"]:
+        for key in ("follows", "margin"):
+            del check[key]
+    (run / "results.json").write_text(json.dumps(results))
     return run

@@ -41,8 +41,8 @@ class CellResult:
     logging_us_per_step: float  # [us]
     compile_s: float  # composing, compiling and loading its kernels [s]
     tolerance: float | None  # that the config asks of a step [m/s]; None: all sweeps are taken
-    worst_residual: float  # of any step [m/s]
-    not_converged_steps: int  # that ended above the tolerance
+    worst_residual: float  # of any step [m/s]; NaN where an older version recorded none
+    not_converged_steps: int | None  # that ended above the tolerance; None: likewise
     violations: Mapping[str, float | str | None] = field(default_factory=dict)  # by WORST columns
     # How often an algorithm took all its iterations, by columns of /step; none where it never did.
     at_limit: Mapping[str, int] = field(default_factory=dict)
@@ -162,7 +162,8 @@ def as_numbers(value: Any) -> Any:
 
 def _cell_of(row: Mapping[str, Any]) -> CellResult:
     columns = {name: as_numbers(value) for name, value in row.items() if name.startswith(WORST)}
-    del columns["worst_residual"]
+    columns.pop("worst_residual", None)
+    tolerance, not_converged = row.get("tolerance"), row.get("not_converged_steps")
     return CellResult(
         row["index"],
         row["label"],
@@ -172,9 +173,10 @@ def _cell_of(row: Mapping[str, Any]) -> CellResult:
         float(row["physics_us_per_step"]),
         float(row["logging_us_per_step"]),
         float(row["compile_s"]),
-        None if row["tolerance"] is None else float(row["tolerance"]),
-        float(row["worst_residual"]),
-        int(row["not_converged_steps"]),
+        # Before 0.1.0 steps had no residual: what was not recorded is not known, and not zero.
+        None if tolerance is None else float(tolerance),
+        float(row.get("worst_residual", "nan")),
+        None if not_converged is None else int(not_converged),
         columns,
         {name: int(row[name]) for name in AT_LIMIT if name in row},
     )

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from lavendersim.errors import LavenderError, TraceError
+from lavendersim.errors import LavenderError, OtherVersionError, TraceError
 from lavendersim.measures.own_file import NoSourceError
 
 from .judge_again import JudgedAgain, judge_again
@@ -58,9 +58,26 @@ def _contents(run: Run) -> Iterator[str]:
         yield f"{run.path}: did not finish: {ended} of {len(judged.cells)} logs are whole"
         return
     results = run.results()
+    if older := _of_another_version(judged):
+        yield older
+        return
     yield from _cells(run, judged, results.cells)
     if not judged.damaged:
         yield from _verdicts(run, judged, results)
+
+
+def _of_another_version(judged: JudgedAgain) -> str:
+    """Return why nothing can be measured again; empty where it can. A run is of one version."""
+    for cell in judged.cells:
+        if not cell.damage():
+            try:
+                _ = cell.config
+            except OtherVersionError as error:
+                return f"{error}; its measures and verdicts are not compared"
+            finally:
+                cell.release()
+            return ""
+    return ""
 
 
 def _cells(run: Run, judged: JudgedAgain, rows: Sequence[CellResult]) -> Iterator[str]:

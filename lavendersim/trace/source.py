@@ -11,7 +11,7 @@ from typing import Any, Protocol
 from mcap.records import Attachment, Schema
 
 from lavendersim.cell import CellConfig
-from lavendersim.errors import TraceError
+from lavendersim.errors import OtherVersionError, TraceError
 from lavendersim.trace import layout
 from lavendersim.trace.container import CRC_KEY, FileIndex
 from lavendersim.trace.former_config import former_config
@@ -60,7 +60,7 @@ class Source(Protocol):
         """Return the config file as its author wrote it."""
 
     def config(self) -> CellConfig:
-        """Return the config of the cell; TraceError where this version cannot read it."""
+        """Return the config of the cell; OtherVersionError where this version cannot read it."""
 
     def schema(self, channel: int) -> Schema | None:
         """Return the schema of a channel; None where the log has no such channel."""
@@ -117,14 +117,14 @@ class LogFile:
         return self._attachment(AS_WRITTEN).decode()
 
     def config(self) -> CellConfig:
-        """Return the config of the cell; TraceError where this version cannot read it."""
+        """Return the config of the cell; OtherVersionError where this version cannot read it."""
         data = self.config_data()
         try:
             with damage(self._path, "its config"):
                 return _config_of(data)
         except _OtherVersion as error:  # pydantic's: a count, then a key and what is wrong with it
             why = ": ".join(line.strip() for line in str(error).splitlines()[1:3])
-            raise TraceError(
+            raise OtherVersionError(
                 f"{self._path}: its config was written by another version: {why}"
             ) from None
 

@@ -11,6 +11,7 @@ import pytest
 from damaged_runs import DRAWN, copied, cut, flip, logs, made, verb
 
 from lavendersim import open_run
+from lavendersim.trace import source
 from tests.older_runs import without_digests
 
 ALWAYS = "always: {speed: 50.0}\n"
@@ -140,3 +141,19 @@ def test_judge_fails_the_claims_on_a_damaged_log_and_says_so(whole: Path, tmp_pa
     assert done.code == 3
     assert "unfinished, its end is missing" in done.stderr
     assert "a log that can answer" in done.stdout
+
+
+def test_logs_whose_configs_this_version_cannot_read_are_no_other_verdicts(
+    whole: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def of_another(data: object) -> None:
+        raise source._OtherVersion("1 validation error\nrecord.problems\n  Field required")
+
+    monkeypatch.setattr(source, "_config_of", of_another)
+    done = verb("verify", whole)
+    assert (done.code, done.stderr) == (3, "")
+    (line,) = done.stdout.splitlines()
+    assert line.endswith(
+        ".mcap: its config was written by another version: record.problems: Field required; "
+        "its measures and verdicts are not compared"
+    )

@@ -1,25 +1,28 @@
-"""A plan that scenes of many files share, as the cells of a sweep do.
+"""Plans that scenes of many files share, as the cells of a sweep do.
 
-A kernel of these takes five to ten seconds to compile, and the scenes differ in little. What the
+A kernel of these takes five to ten seconds to compile, and the scenes differ in little. What a
 shared plan has beside what a scene requires is idle there and changes no bit (tests/composition:
 each effect alone, and random subsets); so it was for every scene of these files when it was shared.
 Two effects do change something and are never added: with `impact_order` an impact of one pair alone
 has its rows in its own step and none in the next one; with `rotation` places of frictionless balls
-that slide differ in their last bit. Scenes of springs have plans of their own.
+that slide differ in their last bit. Scenes of springs between bodies have plans of their own.
 """
 
 from __future__ import annotations
 
 from functools import cache
+from typing import NamedTuple
 
 from lavendersim.engine.spec import Spec
 from lavendersim.experiment import load_experiment_text
 from lavendersim.scene.plan import Plan, plan_of_cell
 
-# Whatever these files require of lavender's own numerics, in one scene.
-SCENE = """
+# Whatever most of these files require of lavender's own numerics, in one scene.
+TURNING = """
 scene:
-  surfaces: {one: {friction: 0.5, restitution: 0.5}, two: {friction: 0}}
+  surfaces:
+    one: {friction: 0.5, restitution: 0.5, torsional_friction: 0.001, rolling_friction: 0.001}
+    two: {friction: 0}
   bodies:
     floor: {shape: {kind: plane}, surface: one}
     belt:
@@ -41,28 +44,100 @@ scene:
       velocity: [9, 0, 0]
       angular_velocity: [1, 2, 3]
       surface: one
+    ball:
+      shape: {kind: sphere, radius: 0.1}
+      mass: 1
+      position: [1, 0, 1]
+      surface: one
+      drag: {linear: 1}
+    low: {shape: {kind: sphere, radius: 0.1}, mass: 1, position: [2, 0, 1], surface: two}
+    dumbbell:
+      shape:
+        kind: compound
+        parts:
+          - {shape: {kind: sphere, radius: 0.1}, position: [0, -0.3, 0]}
+          - {shape: {kind: sphere, radius: 0.1}, position: [0, 0.3, 0]}
+      mass: 1
+      position: [3, 0, 1]
+      surface: one
+  forces:
+    - {body: ball, force: [1, 0, 0]}
+    - {body: ball, force: [1, 0, 0], factor: {kind: ramp}}
+duration: 1
+"""
+# Balls that nothing turns, and whose impacts have no order.
+ROUND = """
+scene:
+  surfaces: {one: {restitution: 0.5}}
+  bodies:
+    floor: {shape: {kind: plane}, surface: one}
+    fast:
+      shape: {kind: sphere, radius: 0.1}
+      mass: 1
+      position: [0, 0, 1]
+      velocity: [19, 0, 0]
+      surface: one
+    ball: {shape: {kind: sphere, radius: 0.1}, mass: 1, position: [1, 0, 1], surface: one}
+numerics: {impacts: at_surface}
+duration: 1
+"""
+# Contacts that give way as springs do.
+SPRINGY = """
+scene:
+  surfaces:
+    one: {friction: 0.5, restitution: 0.5, compliance: 1.0e-6}
+    two: {compliance: 1.0e-6}
+  bodies:
+    floor: {shape: {kind: plane}, surface: one}
+    brick:
+      shape: {kind: box, size: [0.2, 0.1, 0.3]}
+      mass: 1
+      position: [0, 0, 1]
+      velocity: [9, 0, 0]
+      angular_velocity: [1, 2, 3]
+      surface: one
     ball: {shape: {kind: sphere, radius: 0.1}, mass: 1, position: [1, 0, 1], surface: one}
     low: {shape: {kind: sphere, radius: 0.1}, mass: 1, position: [2, 0, 1], surface: two}
 duration: 1
 """
 NEVER_ADDED = {"impact_order", "rotation"}  # nor `sliding_stops`, which needs the former
+ROUND_PAIRS = ("sphere_plane", "sphere_sphere")
+SPRINGY_PAIRS = ("box_plane", "sphere_box", *ROUND_PAIRS)
 PAIRS = (
     *("box_box", "box_plane", "capsule_box", "capsule_plane", "cylinder_box", "cylinder_cylinder"),
-    *("cylinder_plane", "hull_plane", "sphere_box", "sphere_cylinder", "sphere_plane"),
-    "sphere_sphere",
+    *("cylinder_plane", "hull_plane", "sphere_box", "sphere_cylinder", *ROUND_PAIRS),
 )
+SHARED = {TURNING: PAIRS, ROUND: ROUND_PAIRS, SPRINGY: SPRINGY_PAIRS}  # shape pairs by the scene
+
+
+class _Shared(NamedTuple):
+    """A plan that scenes share."""
+
+    plan: Plan
+    pairs: tuple[str, ...]
+
+    def serves(self, plan: Plan) -> bool:
+        """Whether a plan chooses the same laws, and all else that it has is idle in it."""
+        has, required = set(self.plan.spec.effects), set(plan.spec.effects)
+        return (
+            plan.choices == self.plan.choices
+            and set(plan.spec.shape_pairs) <= set(self.pairs)
+            and required <= has
+            and NEVER_ADDED & required == NEVER_ADDED & has
+        )
 
 
 def shared_spec(plan: Plan) -> Spec:
-    """Return what is compiled for a plan: the shared one where it chooses the same laws."""
-    shared, required = _shared(), set(plan.spec.effects)
-    if plan.choices != shared.choices or not set(plan.spec.shape_pairs) <= set(PAIRS):
-        return plan.spec
-    if not NEVER_ADDED <= required <= set(shared.spec.effects):
-        return plan.spec
-    return shared.spec._replace(shape_pairs=PAIRS)
+    """Return what is compiled for a plan: a shared one where that chooses the same laws."""
+    for shared in _shared():
+        if shared.serves(plan):
+            return shared.plan.spec._replace(shape_pairs=shared.pairs)
+    return plan.spec
 
 
 @cache
-def _shared() -> Plan:
-    return plan_of_cell(load_experiment_text(SCENE, "shared.yaml").cells()[0])
+def _shared() -> list[_Shared]:
+    return [
+        _Shared(plan_of_cell(load_experiment_text(text, "shared.yaml").cells()[0]), pairs)
+        for text, pairs in SHARED.items()
+    ]

@@ -22,7 +22,7 @@ scene:
   bodies:
     floor: {{shape: {{kind: plane}}}}
     ball: {{shape: {{kind: sphere, radius: 0.1}}, mass: 1.0, position: [0, 0, 1]}}
-numerics: {{timestep: 1/60}}
+numerics: {{timestep: 1/60, impacts: at_surface}}  # of one pair alone no other law than in order
 duration: 0.1
 sweep:
   height:

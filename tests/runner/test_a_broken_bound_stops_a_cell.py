@@ -68,7 +68,8 @@ def test_without_a_bound_nothing_stops(tmp_path: Path) -> None:
 
 
 # A ball that bounces, is pushed, thrown, moved and made heavier: every term of the energy balance
-# is at work, and 1,200 steps are several blocks of rows.
+# is at work, and 1,200 steps are several blocks of rows. By another one, far away, its plan is that
+# of `test_every_step_is_judged`.
 BUSY = """\
 scene:
   surfaces: {rubber: {friction: 0.3, restitution: 0.5}}
@@ -76,6 +77,8 @@ scene:
     floor: {shape: {kind: plane}, surface: rubber}
     ball:
       {shape: {kind: sphere, radius: 0.1}, mass: 1.0, surface: rubber, position: [0, 0, 0.5]}
+    other:
+      {shape: {kind: sphere, radius: 0.1}, mass: 1.0, surface: rubber, position: [0, 90, 0.1]}
   forces: [{body: ball, from: 0.3, to: 4.0, force: [0.4, 1, 1], torque: [0.1, 0, 0.2]}]
 events:
   - {at: 0.4, body: ball, teleport: [0.5, 0, 0.7]}

@@ -100,6 +100,18 @@ def test_results_of_an_older_version_have_former_names_and_fewer_columns(tmp_pat
     assert (read.reduced, read.solver, read.compile_s, read.overheads) == (False, None, None, None)
 
 
+def test_what_versions_before_residuals_did_not_record_is_unknown_and_not_zero(
+    tmp_path: Path,
+) -> None:
+    accuracy = ("tolerance", "worst_residual", "not_converged_steps")
+    row = {key: value for key, value in ROW.items() if key not in accuracy}
+    (tmp_path / "results.json").write_text(json.dumps(TABLE | {"cells": [row]}))
+    (read,) = read_results(tmp_path / "results.json").cells
+    assert (read.tolerance, read.not_converged_steps) == (None, None)
+    assert math.isnan(read.worst_residual)
+    assert (read.status, read.steps, read.physics_us_per_step) == ("complete", 1, 1.0)
+
+
 @pytest.mark.parametrize(
     ("table", "why"),
     [
@@ -108,7 +120,7 @@ def test_results_of_an_older_version_have_former_names_and_fewer_columns(tmp_pat
         ({"cells": [{"index": 0}], "passed": True}, "it has no table 'cells'"),
         (TABLE | {"cells": [ROW | {"measures": 3}]}, "'int' object has no attribute 'items'"),
         (TABLE | {"cells": [ROW | {"steps": "few"}]}, "invalid literal for int()"),
-        (TABLE | {"cells": [dict(list(ROW.items())[:-1])]}, "it has no 'not_converged_steps'"),
+        (TABLE | {"cells": [{k: ROW[k] for k in ROW if k != "steps"}]}, "it has no 'steps'"),
         (TABLE | {"checks": 3}, "'int' object is not iterable"),
     ],
 )
