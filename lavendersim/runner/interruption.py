@@ -63,7 +63,7 @@ def handled() -> Iterator[None]:
 
 @contextmanager
 def deferred() -> Iterator[Callable[[], str]]:
-    """Note signals, while a log is open, say; yields what returns the name of one that came, or ""."""
+    """Note signals meanwhile; yields what returns the name of one that came, or ""."""
     if not _is_main():
         yield str
         return
