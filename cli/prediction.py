@@ -12,6 +12,7 @@ import typer
 from lavender_cli import printing
 
 if TYPE_CHECKING:
+    from lavendersim.runner.cell_jobs import Prepared
     from lavendersim.runner.prediction import Prediction
 
 VARIABLE = "LAVENDER_YES"
@@ -21,15 +22,22 @@ Yes = Annotated[
 ]
 
 
-def confirm(groups: Iterable[Sequence[Any]], runs: Path, jobs: int, yes: bool) -> None:
+def confirm(
+    groups: Iterable[Sequence[Any]],
+    runs: Path,
+    jobs: int,
+    yes: bool,
+    known: Sequence[Prepared] = (),
+) -> None:
     """Say what runs will take where that is long, and ask. UsageError where nobody can be asked.
 
     groups: for each experiment what is run of it, one after the other. yes: nobody is asked.
+    known: those that are planned.
     """
     from lavendersim.errors import UsageError
     from lavendersim.runner.prediction import predicted_together
 
-    found = [one for group in groups if (one := predicted_together(group, runs, jobs))]
+    found = [one for group in groups if (one := predicted_together(group, runs, jobs, known))]
     for one in found:
         if one.is_worth_saying:
             typer.echo(sentence_of(one), err=True)

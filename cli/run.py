@@ -20,6 +20,8 @@ from lavender_cli.prediction import Yes, confirm, with_refined
 if TYPE_CHECKING:
     from concurrent.futures import Executor
 
+    from lavendersim.runner.cell_jobs import Prepared
+
 # A disk or a quota is full, a file as large as may be, or the disk fails.
 DISK = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)
 
@@ -124,6 +126,7 @@ def run(
 ) -> None:
     """Run experiments, log every step, judge what was expected. Exits 1 when a check fails."""
     from lavendersim.runner import finished_run, load_all, run
+    from lavendersim.runner.prediction import planned_before
 
     if into is not None or shard is not None:
         asked = {"--plot": plot, "--refine": refine, "--resume": resume, "--json": as_json}
@@ -144,9 +147,11 @@ def run(
     where = [] if runs == Path("runs") else ["--runs", str(runs)]
     command = _command(configs, overrides, "--resume", *where)
     good, tables, with_overheads = True, [], []
+    planned: list[Prepared | None] = [None] * len(experiments)
     if not resume:  # it was asked before
+        planned = [planned_before(one, 1 if executor or dask else jobs) for one in experiments]
         each = (with_refined(one) if refine else [one] for one in experiments)
-        confirm(each, runs, jobs, yes)
+        confirm(each, runs, jobs, yes, [one for one in planned if one])
     with Drawing(experiments if plot else ()) as drawing:
         for number, experiment in enumerate(experiments):
             whole = finished_run(experiment, runs) if resume else None
@@ -175,6 +180,7 @@ def run(
                     tags=tags or (),
                     executor=workers,
                     is_predicted=not resume,
+                    prepared=planned[number],
                 )
             good = good and finished.good
             printing.warn_of_not_converged(finished)

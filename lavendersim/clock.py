@@ -158,7 +158,10 @@ def _nanoseconds(stretch: Stretch, steps: np.ndarray) -> np.ndarray:
     rest = stretch.begin - seconds
     scale = lcm(rest.denominator, stretch.timestep.denominator)
     begin, length = int(rest * scale) * NANOSECONDS, int(stretch.timestep * scale) * NANOSECONDS
-    if scale * length + begin < 2**62:
+    most = int(steps.max(initial=1))
+    if most * length + begin < 2**62:
+        times = (steps * length + begin) // scale
+    elif scale * length + begin < 2**62:
         whole, left = np.divmod(steps, scale)
         times = whole * length + (left * length + begin) // scale
     else:  # Timesteps such as 0.0041666666, or many changes, have denominators beyond 64 bits.

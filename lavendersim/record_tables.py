@@ -6,6 +6,7 @@ Of 26 columns that takes nine times as long as the bytes do.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -44,12 +45,17 @@ def widen(table: NDArray[Any], wide: NDArray[Any]) -> None:
     import numpy as np
 
     row, size = wide.dtype, table.dtype.itemsize
-    for name, place in (table.dtype.fields or {}).items():
-        if row.fields is None or row.fields[name][:2] != place[:2]:
-            raise TypeError(f"column {name} has another place")
+    _check_places(table.dtype, row)
     wide.view(np.uint8).reshape(len(table), row.itemsize)[:, :size] = (
         np.ascontiguousarray(_as_bytes(table)).view(np.uint8).reshape(len(table), size)
     )
+
+
+@lru_cache(maxsize=256)
+def _check_places(narrow: np.dtype[Any], wide: np.dtype[Any]) -> None:
+    for name, place in (narrow.fields or {}).items():
+        if wide.fields is None or wide.fields[name][:2] != place[:2]:
+            raise TypeError(f"column {name} has another place")
 
 
 def _as_bytes(table: NDArray[Any]) -> NDArray[Any]:

@@ -70,6 +70,17 @@ def compiling() -> Iterator[None]:
         yield
 
 
+def call(kernel: Any, *arguments: Any) -> Any:
+    """Call a kernel of plain arrays; its first call compiles it.
+
+    Afterwards to change what is warned of would take longer than a short block takes the kernel.
+    """
+    if kernel.overloads:
+        return kernel(*arguments)
+    with compiling():
+        return kernel(*arguments)
+
+
 # Steps of spheres take a tenth of a microsecond, and their kernels little time to compile.
 ROUND = frozenset({"sphere_plane", "sphere_sphere"})
 

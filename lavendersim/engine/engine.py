@@ -45,6 +45,9 @@ class Rows(NamedTuple):
     residual: np.ndarray
 
 
+# Bits of numpy's flags that numba tells arrays apart by: whether rows stand behind each other, may
+# be written, are aligned.
+_TOLD = 0x0001 | 0x0400 | 0x0100
 # Machine code of kernels by spec and types of the arrays, where it is known.
 _entries: dict[Any, Any] = {}
 
@@ -52,8 +55,7 @@ _entries: dict[Any, Any] = {}
 def _types_of(arrays: Any) -> Any:
     """Return what numba tells arrays apart by, in the shape of the tuples that they stand in."""
     if isinstance(arrays, np.ndarray):
-        flags = arrays.flags
-        return arrays.dtype, arrays.ndim, flags.c_contiguous, flags.writeable, flags.aligned
+        return arrays.dtype, arrays.ndim, arrays.flags.num & _TOLD
     if isinstance(arrays, tuple):
         return type(arrays), tuple(_types_of(inner) for inner in arrays)
     return type(arrays)

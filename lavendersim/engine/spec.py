@@ -7,6 +7,7 @@ sweep over any of them uses one compiled engine.
 from __future__ import annotations
 
 import hashlib
+from functools import lru_cache
 from typing import NamedTuple
 
 
@@ -51,4 +52,9 @@ class Spec(NamedTuple):
 
     def digest(self) -> str:
         """Eight hex digits that tell this structure from every other."""
-        return hashlib.sha256(repr(self).encode()).hexdigest()[:8]
+        return _digest(self)
+
+
+@lru_cache(maxsize=256)  # each log says it
+def _digest(spec: Spec) -> str:
+    return hashlib.sha256(repr(spec).encode()).hexdigest()[:8]

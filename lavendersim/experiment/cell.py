@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import json
 from collections.abc import Hashable, Iterable
 from dataclasses import dataclass, field
 from typing import Any, Final
@@ -129,10 +128,7 @@ class Cell:
 
         Keys are not sorted: the order of bodies decides the order of contacts in the solver.
         """
-        canonical = json.dumps(
-            self.config.as_dict(), separators=(",", ":"), ensure_ascii=False, allow_nan=False
-        )
-        return hashlib.sha256(canonical.encode()).hexdigest()
+        return hashlib.sha256(self.config.as_json().encode()).hexdigest()
 
 
 def alike(cells: Iterable[Cell]) -> list[list[Cell]]:

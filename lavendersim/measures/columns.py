@@ -36,7 +36,7 @@ def contacts_of(trace: Trace, body: str, other: str | None = None) -> Rows:
     if other is not None:
         partner = list(trace.bodies).index(other)
         touches &= (rows["body_a"] == partner) | (rows["body_b"] == partner)
-    chosen: Rows = rows[touches]
+    chosen: Rows = rows if touches.all() else rows[touches]
     return chosen
 
 
@@ -46,13 +46,13 @@ def summed_by_step(trace: Trace, rows: Rows, field: str) -> Floats:
     Normal impulses and forces are net: less what draws the bodies together.
     """
     positions = rows_of_steps(trace.step, rows)
-    sums = np.zeros(len(trace.step))
     numbers = rows[field]
-    if field in ("impulse_n", "force_n") and shares.pull(rows).any():
+    net = field in ("impulse_n", "force_n")
+    if net and shares.draws_together(rows) and shares.pull(rows).any():
         numbers = shares.net_impulse_n(rows)
         if field == "force_n":
             numbers = numbers / trace.clock.lengths(rows["step"])
-    np.add.at(sums, positions, numbers)
+    sums: Floats = np.bincount(positions, numbers, len(trace.step)).astype(np.float64, copy=False)
     return sums
 
 

@@ -36,6 +36,11 @@ def _present(rows: Rows, names: list[str]) -> list[str]:
     return [name for name in names if name in columns]
 
 
+def draws_together(contacts: Rows) -> bool:
+    """Whether contacts have an impulse that draws their bodies together."""
+    return bool(_present(contacts, PULLS))
+
+
 def pull(contacts: Rows) -> Floats:
     """Return the impulse that draws the bodies of each contact together along n [N s] (n,)."""
     total = np.zeros(len(contacts))
@@ -46,7 +51,7 @@ def pull(contacts: Rows) -> Floats:
 
 def net_impulse_n(contacts: Rows) -> Floats:
     """Return the normal impulse on B of each contact, less what draws together [N s] (n,)."""
-    if not _present(contacts, PULLS):
+    if not draws_together(contacts):
         pressing: Floats = contacts["impulse_n"]
         return pressing
     net: Floats = contacts["impulse_n"] - pull(contacts)

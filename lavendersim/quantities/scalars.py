@@ -56,8 +56,11 @@ def exact(number: float) -> Fraction:
     A time written as 5/6 is a float in the resolved config, and that float lies beside 5/6: an
     event then would act a step late. No decimal of up to six places is read as another ratio.
     """
-    if isinstance(number, Ratio):
-        return number.fraction
+    return number.fraction if isinstance(number, Ratio) else _as_written(number)
+
+
+@lru_cache(maxsize=256)  # cells of a sweep have the same times, and each asks for them often
+def _as_written(number: float) -> Fraction:
     simple = Fraction(number).limit_denominator(LARGEST_DENOMINATOR)
     return simple if float(simple) == number else Fraction(repr(number))
 

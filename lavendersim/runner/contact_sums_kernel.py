@@ -5,16 +5,17 @@ It serves rows of every form: which columns they have comes as an array, -1 for 
 
 from __future__ import annotations
 
-from functools import cache
+from functools import cache, lru_cache
 from math import sqrt
 from typing import Any, Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from lavendersim.cell import CellConfig
 from lavendersim.cell.mixing import mixed
 from lavendersim.clock import Clock
-from lavendersim.engine.compile import compiling, inner
+from lavendersim.engine.compile import call, inner
 from lavendersim.engine.kernel_cache import cached
 from lavendersim.engine.spec import Spec
 from lavendersim.geometry.bodies import is_movable
@@ -135,6 +136,18 @@ def _kernel() -> Any:
     return cached(_make_sum, Spec())
 
 
+@lru_cache(maxsize=64)
+def _places(row: np.dtype[Any]) -> tuple[NDArray[np.int64], ...]:
+    """Return which eight bytes of a row are COLUMNS, -1: none; which are floats, which pull."""
+    places = {name: int(place[1]) // 8 for name, place in (row.fields or {}).items()}
+    found = (
+        [places.get(name, -1) for name in COLUMNS],
+        [places[name] for name in places if row[name].kind == "f"],
+        [places[name] for name in shares.PULLS if name in places],
+    )
+    return tuple(np.array(one, np.int64) for one in found)
+
+
 class RunningSums:
     """Takes the sums of one cell's blocks."""
 
@@ -161,22 +174,17 @@ class RunningSums:
         """Return the sums of every step; contacts: rows as the engine wrote them, by step."""
         if len(contacts) == 0:
             return nothing(len(step))
-        row = contacts.dtype
-        places = {name: int(place[1]) // 8 for name, place in (row.fields or {}).items()}
-        columns = np.array([places.get(name, -1) for name in COLUMNS])
-        floats = np.array([places[name] for name in places if row[name].kind == "f"])
-        pulls = np.array([places[name] for name in shares.PULLS if name in places], np.int64)
         sums = np.zeros((len(step), 9))
         sums[:, OPENED] = self._clock.lengths(step["step"])  # where the kernel finds it
         words = np.ascontiguousarray(contacts)
         numbers, integers = (words.view(kind).reshape(len(words), -1) for kind in ("f8", "i8"))
-        with compiling():
-            _kernel()(
-                (np.ascontiguousarray(step["step"]), numbers, integers),
-                (columns, floats, pulls),
-                (self._of_body, self._mu, self._choices),
-                sums,
-            )
+        call(
+            _kernel(),
+            (np.ascontiguousarray(step["step"]), numbers, integers),
+            _places(contacts.dtype),
+            (self._of_body, self._mu, self._choices),
+            sums,
+        )
         return ContactSums(
             not_finite=sums[:, NOT_FINITE],
             deepest=sums[:, DEEPEST],

@@ -136,6 +136,7 @@ def run(
     tags: Sequence[str] = (),
     executor: Executor | None = None,
     is_predicted: bool = False,
+    prepared: Prepared | None = None,
     in_text: Sequence[str] = (),
 ) -> Finished:
     """Run every cell of an experiment and judge its expectations; take overheads where it asks.
@@ -147,7 +148,8 @@ def run(
     of `always` ends there, with a readable log; the others go on. executor: runs the cells in place
     of `jobs` processes, anything with the interface of `concurrent.futures`; see `remote`.
     is_predicted: what it takes is known (`prediction`); else logs that fill the disk are warned of.
-    in_text: overrides that the experiment's text has already, for the name of the directory.
+    prepared: the same experiment, where it was planned before. in_text: overrides that the
+    experiment's text has already, for the name of the directory.
     """
     from .cell_jobs import prepare
     from .log_size import log_space
@@ -157,7 +159,8 @@ def run(
     tags = checked_tags(tags)
     if executor is not None and experiment.config.record.problems != NONE:
         raise UsageError(f"{experiment.name}: record.problems is written by processes alone")
-    prepared = prepare(experiment, jobs if executor is None else 1)
+    if prepared is None or prepared.experiment is not experiment:
+        prepared = prepare(experiment, jobs if executor is None else 1)
     root = Path(root)
     check_latest(root)
     remove_leftovers(root)

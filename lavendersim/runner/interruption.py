@@ -1,7 +1,8 @@
 """Signals that end a run: what was simulated is in the log, and the log is closed, before it ends.
 
 While a log is open a signal is only noted, and the cell asks for it between two calls of the
-engine. Elsewhere it ends at once what goes on, and so does a second one.
+engine. While a process is forked it is noted, too: Python drops what is raised in the functions
+that it calls before and after. Elsewhere it ends at once what goes on, and so does a second one.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ class Interrupted(KeyboardInterrupt):
 class _Noted:
     """Of this process: signals come to its main thread."""
 
-    open = False  # whether a log is
+    open = False  # whether they are noted: a log is open, or a process begins
     signal = ""  # that came meanwhile
     raised = ""  # one that was to end what goes on: a callback from C loses the exception
 
@@ -70,7 +71,7 @@ def handled() -> Iterator[None]:
 
 @contextmanager
 def deferred() -> Iterator[Callable[[], str]]:
-    """Note signals while a log is open; yields what returns the name of one that came, or ""."""
+    """Note signals meanwhile; yields what returns the name of one that came, or ""."""
     if not _is_main():
         yield str
         return
@@ -81,8 +82,17 @@ def deferred() -> Iterator[Callable[[], str]]:
         _Noted.open = False
 
 
+def forked_to_end() -> bool:
+    """Whether a signal came as this process was forked, or just before; but for Ctrl-C.
+
+    It begins as its parent was then, with signals noted; from now on they end it.
+    """
+    name, _Noted.open, _Noted.signal = _Noted.signal, False, ""
+    return name not in ("", "SIGINT")
+
+
 def raise_noted() -> None:
-    """Raise Interrupted where a signal came while the last log was open."""
+    """Raise Interrupted where a signal came while signals were noted the last time."""
     if _is_main() and _Noted.signal:
         name, _Noted.signal = _Noted.signal, ""
         raise Interrupted(f"{INTERRUPTED} by {name}")

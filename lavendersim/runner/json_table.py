@@ -8,7 +8,9 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from typing import Any
+from typing import Any, Final
+
+_PLAIN: Final = frozenset({str, int, bool, type(None)})
 
 
 def text_of(table: Mapping[str, Any]) -> str:
@@ -32,12 +34,15 @@ def pieces_of(table: Mapping[str, Any]) -> Iterator[str]:
 
 def finite(value: Any, instead: Callable[[float], Any]) -> Any:
     """Return `value` with something instead of every number that JSON does not have."""
-    if isinstance(value, float) and not math.isfinite(value):
-        return instead(value)
+    if isinstance(value, float):
+        return value if math.isfinite(value) else instead(value)
     if isinstance(value, list):
         return [finite(item, instead) for item in value]
-    if isinstance(value, dict):
-        return {key: finite(item, instead) for key, item in value.items()}
+    if isinstance(value, dict):  # most of a row is neither, and asked here
+        return {
+            key: item if type(item) in _PLAIN else finite(item, instead)
+            for key, item in value.items()
+        }
     return value
 
 

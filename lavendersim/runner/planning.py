@@ -17,6 +17,7 @@ from lavendersim.experiment.cell import Cell
 from lavendersim.scene.plan import Plan
 
 from .forking import may_fork
+from .interruption import handled
 from .plans import Decided, decided, joined
 from .workers import Death, work
 
@@ -51,7 +52,7 @@ def planned(cells: Sequence[Cell], source: str, workers: int) -> Planned:
 
     source: digest of the engine. Raises ConfigError where a cell has no plan, see `shared_plans`.
     """
-    if workers > 1 and len(cells) >= WORTH_PROCESSES and may_fork():
+    if are_shared(cells, workers):
         size = min(-(-len(cells) // (SHARES * workers)), MOST_OF_SHARE)
         firsts = range(0, len(cells), size)
         shares = {first: _Share(cells[first : first + size], source) for first in firsts}
@@ -62,17 +63,23 @@ def planned(cells: Sequence[Cell], source: str, workers: int) -> Planned:
     return Planned(plans, [log for part in parts for log in part.logs])
 
 
+def are_shared(cells: Sequence[Cell], workers: int) -> bool:
+    """Whether so many processes plan these cells, and build them."""
+    return workers > 1 and len(cells) >= WORTH_PROCESSES and may_fork()
+
+
 def _by_others(shares: dict[int, _Share], workers: int) -> list[_Found]:
     """Return what other processes found of each share, in the order of the cells."""
     places = {id(share): first for first, share in shares.items()}
     found: dict[int, _Found] = {}
-    for share, part in work(_found, list(shares.values()), workers):
-        if isinstance(part, Death):
-            part = _found(share)
-        found[places[id(share)]] = part
-        for cell, config in zip(share.cells, part.configs, strict=False):
-            if config is not None:
-                cell.keep(config)
+    with handled():  # a signal ends these processes before this one
+        for share, part in work(_found, list(shares.values()), workers):
+            if isinstance(part, Death):
+                part = _found(share)
+            found[places[id(share)]] = part
+            for cell, config in zip(share.cells, part.configs, strict=False):
+                if config is not None:
+                    cell.keep(config)
     return [found[first] for first in shares]
 
 

@@ -97,7 +97,7 @@ def _plans_of_class(
     starts = StartsRead()
     for number, cell in enumerate(cells):
         try:
-            plan = plan_of_cell(cell, starts=None if number else starts)
+            plan = plan_of_cell(cell, starts=None if number or len(cells) == 1 else starts)
         except ConfigError as error:
             defects |= dict.fromkeys(error.defects)
             if starts.any is False:

@@ -8,14 +8,20 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Final, NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 from lavendersim.experiment import Experiment
 from lavendersim.experiment.cell import alike
 from lavendersim.scene.expected_contacts import expected_contacts
 
 from .log_size import LogSpace, free_bytes, is_certainly_small, log_space
+from .planning import are_shared
 from .plans import shared_plans
+
+if TYPE_CHECKING:
+    from lavendersim.scene.plan import Plan
+
+    from .cell_jobs import Prepared
 
 # Of docs/results.md, with logging: a ball 2.7 us a step; a pile, a pyramid 0.5 to 2.5 us a contact.
 PER_STEP: Final = 2.7e-6  # [s]
@@ -63,14 +69,29 @@ def is_short(experiment: Experiment, root: Path) -> bool:
     return is_certainly_small(cells, free_bytes(root))
 
 
-def predicted_together(runs: Sequence[Experiment], root: Path, jobs: int = 1) -> Prediction | None:
+def planned_before(experiment: Experiment, jobs: int) -> Prepared | None:
+    """Return an experiment with its plans where several processes make them; None: others wait.
+
+    Who predicts a run looks at all its cells, and one process builds them one after the other.
+    """
+    if not are_shared(experiment.cells(), jobs):
+        return None
+    from .cell_jobs import prepare  # late: numba
+
+    return prepare(experiment, jobs)
+
+
+def predicted_together(
+    runs: Sequence[Experiment], root: Path, jobs: int = 1, known: Sequence[Prepared] = ()
+) -> Prediction | None:
     """Return what the runs that one experiment leads to will take, one after the other.
 
-    None: each is certainly short. root, jobs: as of `predicted`.
+    None: each is certainly short. root, jobs: as of `predicted`. known: those that are planned.
     """
     if all(is_short(one, root) for one in runs):
         return None
-    each = [predicted(one, root, jobs) for one in runs]
+    plans = {id(one.experiment): one.plans for one in known}
+    each = [predicted(one, root, jobs, plans.get(id(one))) for one in runs]
     sizes = [one.space.size for one in each if one.space.size is not None]
     return Prediction(
         runs[0].name,
@@ -81,8 +102,13 @@ def predicted_together(runs: Sequence[Experiment], root: Path, jobs: int = 1) ->
     )
 
 
-def predicted(experiment: Experiment, root: Path, jobs: int = 1) -> Prediction:
-    """Return what a run of an experiment into a folder will take; jobs: its processes."""
+def predicted(
+    experiment: Experiment, root: Path, jobs: int = 1, plans: Sequence[Plan] | None = None
+) -> Prediction:
+    """Return what a run of an experiment into a folder will take; jobs: its processes.
+
+    plans: of its cells, where they are known.
+    """
     cells = experiment.cells()
     steps = sum(len(one) * one[0].config.steps for one in alike(cells))
     sampled = cells[:: max(1, len(cells) // TELLING)]
@@ -93,6 +119,7 @@ def predicted(experiment: Experiment, root: Path, jobs: int = 1) -> Prediction:
     seconds = work * steps / sum(one.config.steps for one in sampled) + PER_CELL * len(cells)
     seconds /= min(jobs, len(cells))
     space = log_space(
-        cells, lambda: shared_plans(cells), experiment.text, root, always=seconds > WORTH_SAYING
+        *(cells, lambda: plans or shared_plans(cells), experiment.text, root),
+        always=seconds > WORTH_SAYING,
     )
     return Prediction(experiment.name, len(cells), steps, seconds, space)

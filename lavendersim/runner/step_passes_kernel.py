@@ -7,14 +7,14 @@ kernel serves them all.
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cache
+from functools import cache, lru_cache
 from math import hypot, sqrt
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lavendersim.engine.compile import compiling, inner
+from lavendersim.engine.compile import call, inner
 from lavendersim.engine.kernel_cache import cached
 from lavendersim.engine.spec import Spec
 from lavendersim.measures.interfaces import Floats, Rows
@@ -132,8 +132,7 @@ def _kernel(make: Callable[[Spec], Any]) -> Any:
 
 
 def _run(make: Callable[[Spec], Any], *arguments: Any) -> None:
-    with compiling():
-        _kernel(make)(*arguments)
+    call(_kernel(make), *arguments)
 
 
 def _plain(numbers: Any) -> Floats:
@@ -142,14 +141,18 @@ def _plain(numbers: Any) -> Floats:
 
 def not_finite(step: Rows, pose: Floats) -> Floats:
     """Return the same as `step_passes.not_finite`; rows are of eight-byte fields."""
-    row = step.dtype
-    places = {name: int(place[1]) // 8 for name, place in (row.fields or {}).items()}
-    columns = [place for name, place in places.items() if row[name].kind == "f"]
     words = np.ascontiguousarray(step).view(np.int64).reshape(len(step), -1)
     wrong = np.zeros(len(step))
     bits = _plain(pose).view(np.int64)
-    _run(_make_not_finite, words, np.array(columns, np.int64), bits, wrong)
+    _run(_make_not_finite, words, _floats(step.dtype), bits, wrong)
     return wrong
+
+
+@lru_cache(maxsize=64)
+def _floats(row: np.dtype[Any]) -> NDArray[np.int64]:
+    """Return which eight bytes of a row are floats."""
+    fields = (row.fields or {}).items()
+    return np.array([place[1] // 8 for _, place in fields if place[0].kind == "f"], np.int64)
 
 
 def fastest(

@@ -26,7 +26,7 @@ from threading import Thread
 from typing import Any, Final, Generic, NamedTuple, TypeVar
 
 from .forking import may_fork
-from .interruption import handled
+from .interruption import deferred, forked_to_end, handled, raise_noted
 
 Task = TypeVar("Task")
 Result = TypeVar("Result")
@@ -115,7 +115,9 @@ class _Worker:
         with warnings.catch_warnings():
             # Python 3.12 warns of threads in a forked process: see `forking`.
             warnings.simplefilter("ignore", DeprecationWarning)
-            self.process.start()
+            # Python drops what a signal raises in the functions that it calls around a fork.
+            with handled(), deferred():
+                self.process.start()
         other.close()  # so that the pipe ends with the process
         self.given: deque[int] = deque()
         self.ready = False
@@ -184,6 +186,7 @@ class _Crew(Generic[Task, Result]):
     def _start(self) -> None:
         others = [worker.pipe for worker in self._workers]
         self._workers.append(_Worker(self._function, self._tasks, others))
+        raise_noted()  # the process is one of those that are ended
 
     def _replace(self, worker: _Worker) -> Iterator[tuple[Task, Death]]:
         """Start another process in the place of a dead one; yield a task that it dies of again."""
@@ -241,6 +244,8 @@ def _serve_forked(
 def serve(pipe: Connection, function: Callable[[Any], Any]) -> None:
     """Do what comes through the pipe, until it ends."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the process that asks
+    if forked_to_end():
+        return
     end_with_parent()
     tasks: SimpleQueue[Any] = SimpleQueue()
     # Tasks are read beside the one that is done: the other process never waits to send one.

@@ -6,7 +6,7 @@ Columns that effects bring are filled where they are present.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 
@@ -26,6 +26,9 @@ from lavendersim.geometry.rotations import rotation_matrix, unit_quaternion
 from lavendersim.geometry.shapes import bounding_radius
 
 from .colliders import Collider
+
+MATRIX: Final = tuple(f"r{i}{j}" for i in range(3) for j in range(3))  # of a body's record
+OWN_VALUES: Final = tuple(one.body_values for one in EFFECTS if one.body_values)
 
 
 def pose_of(body: CellBody) -> np.ndarray:
@@ -81,16 +84,15 @@ def body_table(
 def orient(record: np.void, quaternion: np.ndarray) -> None:
     """Write a unit quaternion w x y z into a body's record, and its matrix."""
     _fill(record, ("qw", "qx", "qy", "qz"), quaternion)
-    names = [f"r{i}{j}" for i in range(3) for j in range(3)]
-    _fill(record, names, rotation_matrix(quaternion).ravel())
+    if "r00" in (record.dtype.names or ()):
+        _fill(record, MATRIX, rotation_matrix(quaternion).ravel().tolist())
 
 
 def fill_effects(record: np.void, body: CellBody) -> None:
     """Fill the fields that effects bring, by the keys that they declare."""
-    for effect in EFFECTS:
-        if effect.body_values:
-            values = effect.body_values(body)
-            _fill(record, values, values.values())
+    for body_values in OWN_VALUES:
+        values = body_values(body)
+        _fill(record, values, values.values())
 
 
 def _fill(record: np.void, names: Iterable[str], values: Iterable[Any]) -> None:

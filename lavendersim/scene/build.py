@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from fractions import Fraction
+from functools import cache
 from math import inf, sqrt
 from typing import Any, NamedTuple
 
@@ -83,9 +84,9 @@ def _parameters(config: CellConfig, clock: Clock) -> np.ndarray:
     parameters = allocate_parameters()
     p = parameters[0]
     p["gx"], p["gy"], p["gz"] = config.scene.gravity
-    for name in p.dtype.names or ():
-        value = getattr(numerics, name, None)  # null is written where it means something, below
-        if value is not None:
+    for name in _of_numerics(p.dtype):
+        value = getattr(numerics, name)
+        if value is not None:  # null is written where it means something, below
             p[name] = value
     p["duration"] = config.duration
     if not numerics.warm_start:
@@ -100,6 +101,12 @@ def _parameters(config: CellConfig, clock: Clock) -> np.ndarray:
     p["tolerance"] = -1.0 if numerics.tolerance is None else numerics.tolerance
     p["residuals_from"], p["residuals_to"] = residual_window(config.record, clock)
     return parameters
+
+
+@cache
+def _of_numerics(row: np.dtype) -> tuple[str, ...]:
+    """Return the parameters that are keys of the numerics."""
+    return tuple(name for name in row.names or () if name in Numerics.model_fields)
 
 
 def set_gravity(parameters: np.ndarray, numerics: Numerics, gravity: Vector3) -> None:

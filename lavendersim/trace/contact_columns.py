@@ -111,17 +111,23 @@ def message_of(
     """Return the lavender.ContactColumns of some steps, in pieces."""
     packed = pack(group.rows, form.names, constants, group.starts)
     numbers = [column.astype("<i8").tobytes() for column in group[:3]]
-    fields: list[tuple[bytes | memoryview, ...]] = [
-        *((one,) for one in numbers),
-        tuple(name.encode() for name in form.names),
-        tuple(kind.encode() for kind in form.kinds),
-        *((one,) for one in packed),
-    ]
     pieces: list[bytes | memoryview] = []
-    for number, parts in enumerate(fields, 1):
-        for part in parts:
-            pieces += [bytes_field(number, len(part)), part]
+    for number, part in enumerate(numbers, 1):
+        pieces += [bytes_field(number, len(part)), part]
+    pieces.append(_names_and_kinds(form))
+    for number, one in enumerate(packed, len(numbers) + 3):
+        pieces += [bytes_field(number, len(one)), one]
     return pieces
+
+
+@lru_cache(maxsize=64)
+def _names_and_kinds(form: ColumnForm) -> bytes:
+    """Return the fields that say which columns there are: the same in every message of a log."""
+    return b"".join(
+        bytes_field(number, len(text)) + text.encode()
+        for number, texts in ((4, form.names), (5, form.kinds))
+        for text in texts
+    )
 
 
 class Packed(NamedTuple):
@@ -152,10 +158,9 @@ def pack(
 
     keys = _keys(rows, names)
     order, persists = _order(keys)
-    count, columns, places = len(order), _numbers(names), columns_of_words(rows[0].dtype)
+    count, columns = len(order), _numbers(names)
     words = scratch("words", (len(columns), count), np.uint64)
-    stored = np.array([places[name] for name in columns], np.int64)
-    first = 0
+    stored, first = _places(columns, rows[0].dtype), 0
     for part in rows:
         gather_columns()(words_of(part), first, order, stored, words)
         first += len(part)
@@ -163,9 +168,8 @@ def pack(
     spheres = _expected_by(starts, keys, names, order)
     if spheres is not None and not _is_of_spheres(spheres, named):
         spheres = None  # others have predictors of their own
-    special = np.array([_special(name, columns, spheres is not None) for name in columns], np.int64)
-    expected = scratch("expected", (int(np.count_nonzero(special)) + 1, count), np.uint64)
-    asked = [(name, code) for name, code in zip(columns, special.tolist(), strict=True) if code]
+    special, asked = _asked(columns, spheres is not None)
+    expected = scratch("expected", (len(asked) + 1, count), np.uint64)
     for place, (name, predictor) in enumerate(asked):
         if predictor == SPHERES and spheres is not None:
             expected[place] = spheres.columns[name].view(np.uint64)
@@ -214,6 +218,23 @@ def _with_positions(starts: Starts) -> Floats:
     bodies = starts.bodies.copy()
     bodies[:, POSITION] = starts.positions[0]
     return bodies
+
+
+@lru_cache(maxsize=64)
+def _places(columns: tuple[str, ...], row: np.dtype[Any]) -> Integers:
+    """Return where columns stand in the words of rows."""
+    places = columns_of_words(row)
+    return np.array([places[name] for name in columns], np.int64)
+
+
+@lru_cache(maxsize=64)
+def _asked(
+    columns: tuple[str, ...], of_spheres: bool
+) -> tuple[Integers, tuple[tuple[str, int], ...]]:
+    """Return the predictor that each column alone has, 0 for none; and of those that have one."""
+    special = [_special(name, columns, of_spheres) for name in columns]
+    asked = tuple((name, code) for name, code in zip(columns, special, strict=True) if code)
+    return np.array(special, np.int64), asked
 
 
 def _special(name: str, columns: Sequence[str], of_spheres: bool) -> int:
@@ -283,8 +304,9 @@ def _chosen(packed: Packed, columns: Sequence[str]) -> dict[str, int]:
     return chosen
 
 
-def _numbers(names: tuple[str, ...]) -> list[str]:
-    return [name for name in names if name not in KEY]
+@lru_cache(maxsize=64)
+def _numbers(names: tuple[str, ...]) -> tuple[str, ...]:
+    return tuple(name for name in names if name not in KEY)
 
 
 def _keys(rows: Tables, names: tuple[str, ...]) -> Integers:

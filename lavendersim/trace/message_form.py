@@ -8,6 +8,7 @@ of either, others the low bytes of a head, or a varint of their width.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import lru_cache
 from typing import Any, Final, NamedTuple
 
 import numpy as np
@@ -77,7 +78,8 @@ def _table(rows: Sequence[Sequence[int]], width: int) -> Words:
     return np.array(rows, np.uint64).reshape(-1, width)
 
 
-def columns_of_words(row: np.dtype[Any]) -> dict[str, int]:
+@lru_cache(maxsize=64)
+def columns_of_words(row: np.dtype[Any]) -> Mapping[str, int]:
     """Return the column of each field in the words of rows (`words_of`)."""
     if not _is_of_words(row):
         return {name: index for index, name in enumerate(row.names or ())}
@@ -93,6 +95,7 @@ def words_of(rows: Rows) -> Words:
     return np.ascontiguousarray(rows).view(np.uint64).reshape(len(rows), rows.itemsize // WORD)
 
 
+@lru_cache(maxsize=64)
 def _is_of_words(row: np.dtype[Any]) -> bool:
     places = (row.fields or {}).values()
     return row.itemsize % WORD == 0 and all(place[1] % WORD == 0 for place in places)

@@ -82,17 +82,23 @@ def lay_points(
 
     if len(contacts) == 0:
         return
-    place = columns_of_words(contacts.dtype)
-    columns = np.array([place[name] for name in form.names], np.int64)
+    columns, impulse = _places(form, contacts.dtype)
     floats = np.empty(len(columns), np.float32)
     kernel()(
         data,
         (starts, counts),
         words_of(contacts).view(np.float64),
         columns,
-        (grid, place.get("impulse_n", -1), (_KEPT, _word(LOADED), _word(UNLOADED))),
+        (grid, impulse, (_KEPT, _word(LOADED), _word(UNLOADED))),
         (floats, floats.view(np.uint32)),
     )
+
+
+@lru_cache(maxsize=64)
+def _places(form: PointForm, row: np.dtype[Any]) -> tuple[NDArray[np.int64], int]:
+    """Return where the columns of points stand in the words of rows; and the impulse, -1: not."""
+    place = columns_of_words(row)
+    return np.array([place[name] for name in form.names], np.int64), place.get("impulse_n", -1)
 
 
 def _word(colour: tuple[int, int, int, int]) -> np.uint32:

@@ -79,10 +79,10 @@ class Trace:
                 raise TraceError(
                     f"{path}: log format {description['format']}, this version reads {FORMAT}"
                 )
-            self.bodies = names_of(json.loads(description["bodies"]))
+            self.bodies = [*_names(description["bodies"])]
             self.clock = _clock(description["timestep"], description.get(TIMESTEP_CHANGES, "[]"))
             # topic -> why this log does without it; logs before there was a choice have them all
-            self.absent = reasons_of(json.loads(description.get(ABSENT, "{}")))
+            self.absent = {**_reasons(description.get(ABSENT, "{}"))}
             if source.schema(layout.CHANNELS["/velocities"]) is None:  # nor in older logs
                 self.absent.setdefault("/velocities", "record.velocities is false")
             # topic -> of which steps alone it has it; those are in `recorded_pose` and so on
@@ -342,6 +342,16 @@ class Trace:
 
 
 @lru_cache(maxsize=64)  # the logs of a sweep mostly have the same
+def _names(bodies: str) -> list[str]:
+    return names_of(json.loads(bodies))
+
+
+@lru_cache(maxsize=64)
+def _reasons(absent: str) -> dict[str, str]:
+    return reasons_of(json.loads(absent))
+
+
+@lru_cache(maxsize=64)
 def _clock(timestep: str, changes: str) -> Clock:
     """Return the times of the steps of a log; logs before timesteps could change have none."""
     clock = Clock.counted(timestep_of(timestep), changes_of(json.loads(changes)))

@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from functools import lru_cache
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
@@ -80,14 +81,24 @@ def description_of(config: CellConfig, absent: Mapping[str, str]) -> dict[str, s
     clock = config.clock
     found = {
         "format": FORMAT,
-        "bodies": json.dumps(list(config.scene.bodies)),
+        "bodies": _names(tuple(config.scene.bodies)),
         "timestep": str(clock.timestep),
-        ABSENT: json.dumps(absent, sort_keys=True),
+        ABSENT: _reasons(tuple(sorted(absent.items()))),
     }
     if clock.changes:
         changes = [[done, str(timestep)] for done, timestep in clock.changes]
         found[TIMESTEP_CHANGES] = json.dumps(changes)
     return found
+
+
+@lru_cache(maxsize=64)  # the cells of a sweep have the same bodies, and do without the same topics
+def _names(bodies: tuple[str, ...]) -> str:
+    return json.dumps(bodies)
+
+
+@lru_cache(maxsize=64)
+def _reasons(absent: tuple[tuple[str, str], ...]) -> str:
+    return json.dumps(dict(absent))
 
 
 class Written(NamedTuple):

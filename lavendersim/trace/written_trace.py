@@ -6,7 +6,7 @@ The same columns as from the file, bit for bit: nothing is decoded that is still
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
@@ -102,11 +102,7 @@ class WrittenTrace(Trace):
             yield table
 
     def _contact_row(self) -> np.dtype[Any]:
-        row = self._blocks[0].contact.dtype
-        form = column_form(row)
-        kinds = zip(form.names, form.kinds, strict=True)
-        columns = [("step", "i8"), *kinds, *((name, "f8") for name in (*form.derived, "time"))]
-        return _with_time(row, columns)
+        return _with_time(self._blocks[0].contact.dtype)
 
     def _recorded_rows(self) -> Iterator[tuple[NDArray[Any], NDArray[np.float64]]]:
         """Yield contacts of each block, and the time of each [s]."""
@@ -121,8 +117,12 @@ class WrittenTrace(Trace):
             yield contacts, np.repeat(decode.seconds(block.step["time_ns"]), counts)
 
 
-def _with_time(row: np.dtype[Any], columns: Sequence[tuple[str, str]]) -> np.dtype[Any]:
-    """Return a row with its time behind it, and its columns in this order."""
+@lru_cache(maxsize=64)
+def _with_time(row: np.dtype[Any]) -> np.dtype[Any]:
+    """Return a row of contacts with its time behind it, its columns in the order of a reader."""
+    form = column_form(row)
+    kinds = zip(form.names, form.kinds, strict=True)
+    columns = [("step", "i8"), *kinds, *((name, "f8") for name in (*form.derived, "time"))]
     places = {name: place[1] for name, place in (row.fields or {}).items()}
     names = [name for name, _ in columns]
     return np.dtype(

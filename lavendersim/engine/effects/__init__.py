@@ -4,6 +4,7 @@ The step is composed of the kernels that the effects of a `Spec` have for its ho
 """
 
 from dataclasses import replace
+from functools import lru_cache
 from importlib import import_module
 from typing import Any, Final, Literal
 
@@ -84,9 +85,10 @@ EVENT_KEYS: Final = tuple(
 MOTION_KEYS: Final = tuple(key for key in BODY_KEYS if key.prescribes_motion)
 
 
-def effects_of(spec: Spec) -> list[Effect]:
+@lru_cache(maxsize=256)
+def effects_of(spec: Spec) -> tuple[Effect, ...]:
     """Return the effects of an engine, in order."""
-    return [effect for effect in EFFECTS if spec.has(effect.name)]
+    return tuple(effect for effect in EFFECTS if spec.has(effect.name))
 
 
 def made_by(spec: Spec, hook: str) -> list[Any]:

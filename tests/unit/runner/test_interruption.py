@@ -14,7 +14,13 @@ import pytest
 
 from lavendersim import open_run, open_trace
 from lavendersim.errors import TraceError
-from lavendersim.runner.interruption import Interrupted, deferred, handled, raise_noted
+from lavendersim.runner.interruption import (
+    Interrupted,
+    deferred,
+    forked_to_end,
+    handled,
+    raise_noted,
+)
 from tests.runner.small_configs import write
 
 # Fifty million steps: minutes on any machine.
@@ -157,3 +163,21 @@ def test_a_signal_that_the_compiler_loses_ends_the_next_cell() -> None:
             raise_noted()
     with handled(), deferred() as signalled:
         assert signalled() == ""
+
+
+@pytest.mark.parametrize(("name", "ends"), [("SIGINT", False), ("SIGTERM", True)])
+def test_a_process_that_is_forked_while_signals_are_noted_ends_by_them(
+    name: str, ends: bool
+) -> None:
+    """But for Ctrl-C, which is for the one that forked; that one hears of it afterwards."""
+    with handled():
+        with deferred():
+            os.kill(os.getpid(), getattr(signal, name))
+            child = os.fork()
+            if not child:
+                os._exit(forked_to_end())
+            _, status = os.waitpid(child, 0)
+        with pytest.raises(Interrupted, match=name):
+            raise_noted()
+    assert os.waitstatus_to_exitcode(status) == ends
+    raise_noted()  # once

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import os
+import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from lavendersim.experiment import Experiment, load_experiment_text
+from lavendersim.experiment import cell as cell_module
+from lavendersim.runner import cell_jobs, planning, run, workers
 from lavendersim.runner.log_size import LogSpace
 from lavendersim.runner.prediction import (
     LONGEST,
@@ -15,6 +20,7 @@ from lavendersim.runner.prediction import (
     WORTH_SAYING,
     Prediction,
     is_short,
+    planned_before,
     predicted,
     predicted_together,
 )
@@ -66,3 +72,31 @@ def test_an_hour_is_asked_about_and_a_minute_worth_saying() -> None:
     assert not small.is_worth_saying
     assert not small._replace(seconds=LONGEST).is_long
     assert small._replace(seconds=LONGEST + 1.0).is_long
+
+
+def test_few_cells_and_those_of_one_process_wait_for_their_run() -> None:
+    assert planned_before(drop("0.5", 4), jobs=2) is None
+    assert planned_before(drop("0.5", 4), jobs=1) is None
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="processes are forked on Linux")
+def test_cells_are_built_by_the_processes_that_plan_them_and_planned_once(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(planning, "WORTH_PROCESSES", 2)
+    for module in (planning, workers):
+        monkeypatch.setattr(module, "may_fork", lambda: True)
+    here, build = os.getpid(), cell_module.build_cell
+
+    def elsewhere(*given: Any) -> Any:
+        assert os.getpid() != here
+        return build(*given)
+
+    experiment = drop("0.02", 4).refined(2)  # none of its cells is built yet
+    monkeypatch.setattr(cell_module, "build_cell", elsewhere)
+    known = planned_before(experiment, jobs=2)
+    assert known is not None
+    assert predicted(experiment, tmp_path, 2, known.plans) == predicted(experiment, tmp_path, 2)
+    monkeypatch.setattr(cell_jobs, "prepare", None)  # a second time it would be called
+    finished = run(experiment, tmp_path, prepared=known, is_predicted=True)
+    assert [cell.path.name for cell in finished.run.cells] == known.logs
