@@ -48,10 +48,10 @@ def test_it_ends_at_the_solution_and_the_energy_of_a_frictionless_one_never_rise
     found = solve(problem, SPEC, sweeps=3000)
     assert found.not_converged == 0
     np.testing.assert_allclose(found.impulses, solve_by_gauss_seidel(problem, 150), atol=1e-6)
-    smooth = problem._replace(mu=np.zeros(4))
-    matrix, energies = dense(smooth), []
-    matrix[::3, ::3] += np.diag(smooth.gamma)
+    frictionless = problem._replace(mu=np.zeros(4))
+    matrix, energies = dense(frictionless), []
+    matrix[::3, ::3] += np.diag(frictionless.gamma)
     for sweeps in range(1, 12):
-        r = solve(smooth, SPEC, sweeps=sweeps, tolerance=-1.0).impulses.ravel()
-        energies.append(0.5 * r @ matrix @ r + smooth.q.ravel() @ r)
+        r = solve(frictionless, SPEC, sweeps=sweeps, tolerance=-1.0).impulses.ravel()
+        energies.append(0.5 * r @ matrix @ r + frictionless.q.ravel() @ r)
     assert (np.diff(energies) <= 1e-13).all()

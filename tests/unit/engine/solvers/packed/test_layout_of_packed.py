@@ -14,13 +14,13 @@ from lavendersim.engine.solvers.packed.lanes import WIDTH
 from lavendersim.engine.solvers.packed.layout import LINE, allocate_packed, begins, stride
 from lavendersim.engine.spec import Spec
 
-ROUGH = Spec(("friction",))
+FRICTIONAL = Spec(("friction",))
 SPECS = {
     "normals": Spec(),
-    "blocks": ROUGH,
-    "torsion": ROUGH.including("torsional_friction"),
-    "rolling": ROUGH.including("rolling_friction"),
-    "both": ROUGH.including("rolling_friction", "torsional_friction"),
+    "blocks": FRICTIONAL,
+    "torsion": FRICTIONAL.including("torsional_friction"),
+    "rolling": FRICTIONAL.including("rolling_friction"),
+    "both": FRICTIONAL.including("rolling_friction", "torsional_friction"),
 }
 # Numbers of each field, by where it begins: axes have three, TURN_A and TURN_B three axes.
 BLOCK = {0: 9, layout.TURN_A: 9, layout.TURN_B: 9}
@@ -80,7 +80,7 @@ def test_no_two_contacts_share_a_number_and_rows_begin_with_a_cache_line(name, e
 
 
 def test_states_have_one_more_than_bodies_for_lanes_that_are_idle() -> None:
-    packed = allocate_packed(ROUGH, 6, 20, True)
+    packed = allocate_packed(FRICTIONAL, 6, 20, True)
     assert len(packed.state) == 7 * STRIDE
     assert len(packed.start) == len(packed.factor) == len(packed.group_of) == 6
     assert len(packed.first) == len(packed.second) == 20 * WIDTH
