@@ -49,14 +49,10 @@ WITHOUT_A_TEST = {
         error_control fast_bodies impact_energy impact_order impact_time least_norm newton
         pairwise_impacts problem_log residual_log
     """,
-    "engine/solvers": """
-        accelerated_projected_gradient block_gauss_seidel coloured_gauss_seidel jacobi
-        nonsmooth_conjugate_gradient projected_gauss_seidel solver step_bound sweep
-    """,
     "engine/solvers/newton": """
-        envelope faces least_norm matrix minimise response
+        faces least_norm matrix minimise response
     """,
     "engine/solvers/packed": """
-        lane_memory lanes layout packing
+        lane_memory lanes packing
     """,
 }

@@ -31,7 +31,7 @@ def test_fields_of_a_record_are_eight_bytes_and_named_once(name: str) -> None:
     assert dtype(fields).itemsize == 8 * len(fields)
 
 
-def test_kinds_of_shapes_and_reasons_to_return_are_told_apart() -> None:
+def test_kinds_of_shapes_and_reasons_to_return_differ() -> None:
     shapes = [records.PLANE, records.SPHERE, records.BOX, records.CAPSULE, records.CYLINDER]
     assert sorted([*shapes, records.HULL, records.COMPOUND]) == list(range(7))
     returns = [records.RUNNING, records.ROWS_FULL, records.CONTACTS_FULL, records.PAIRS_FULL]

@@ -44,7 +44,7 @@ def test_normals_and_positions_go_in_and_out_by_component() -> None:
     assert interpreted(own.normal_of)(record) == Vec3(1.0, 2.0, 3.0)
 
 
-def test_kinds_of_features_are_told_apart_and_a_face_has_what_a_mesh_asks() -> None:
+def test_kinds_of_features_differ_and_a_face_has_what_a_mesh_asks() -> None:
     assert len({own.POINT, own.LINE, own.FACE_LOOP, own.DISC}) == 4
     assert own.NO_FEATURE.kind == own.POINT
     assert {name for name, _ in FACE} == {"nx", "ny", "nz", "offset", "alive", "seen_by"}

@@ -25,15 +25,15 @@ def test_three_names_are_listed_and_of_more_two_and_the_number_of_others(count: 
 def test_pairs_that_have_something_to_tell_come_first_and_all_are_counted(telling, silent) -> None:
     pairs = [pair_facts("floor", f"dull{k}") for k in range(silent)]
     pairs += [pair_facts("floor", f"b{k}", friction=0.5) for k in range(telling)]
-    text = by_pair(pairs, lambda pair: "rough" if pair.surface.friction else "")
-    spoken = len(re.findall(r": rough", text))
+    text = by_pair(pairs, lambda pair: "grips" if pair.surface.friction else "")
+    spoken = len(re.findall(r": grips", text))
     more = re.search(r"(\d+) more pairs", text)
     assert spoken + (int(more[1]) if more else 0) == telling
     quiet = re.search(r"(\d+) other pairs: none", text)
     assert (int(quiet[1]) if quiet else len(re.findall(r"dull\d: none", text))) == silent
     assert len(text.split("; ")) <= 4
     if telling and silent:
-        assert text.index("rough") < text.index("none")
+        assert text.index("grips") < text.index("none")
 
 
 def test_a_body_has_the_forms_that_events_give_it_in_order() -> None:

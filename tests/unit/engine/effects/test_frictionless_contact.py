@@ -1,4 +1,4 @@
-"""Pairs without friction of any kind have rows of their own, told apart where both occur."""
+"""Pairs without friction of any kind have rows of their own, marked where both occur."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from lavendersim.engine.spec import Spec
 
 @pytest.mark.parametrize("kind", ["friction", "torsional_friction", "rolling_friction"])
 def test_any_kind_of_friction_makes_a_pair_frictional(kind: str) -> None:
-    smooth, rough = pair_facts("a", "b"), pair_facts("a", "c", **{kind: 0.1})
-    assert is_frictionless(smooth)
-    assert not is_frictionless(rough)
-    assert EFFECT.decide(facts(pairs=(rough, smooth))).on
-    assert "a and b" in EFFECT.decide(facts(pairs=(rough, smooth))).reason
-    assert not EFFECT.decide(facts(pairs=(rough,))).on
+    frictionless, frictional = pair_facts("a", "b"), pair_facts("a", "c", **{kind: 0.1})
+    assert is_frictionless(frictionless)
+    assert not is_frictionless(frictional)
+    assert EFFECT.decide(facts(pairs=(frictional, frictionless))).on
+    assert "a and b" in EFFECT.decide(facts(pairs=(frictional, frictionless))).reason
+    assert not EFFECT.decide(facts(pairs=(frictional,))).on
     assert not EFFECT.decide(facts()).on
 
 

@@ -61,9 +61,9 @@ def test_friction_turns_those_who_have_it_and_bodies_alike_to_them() -> None:
     def ball(name: str, own: str):
         return body_facts(name, "sphere", config=SimpleNamespace(surface=own))
 
-    pairs = (pair_facts("floor", "one", friction=0.5), pair_facts("floor", "smooth"))
+    pairs = (pair_facts("floor", "one", friction=0.5), pair_facts("floor", "slick"))
     bodies = FLOOR._replace(config=ball("floor", "f").config), ball("one", "a"), ball("two", "a")
-    found = EFFECT.decide(facts(*bodies, ball("smooth", "s"), pairs=pairs))
+    found = EFFECT.decide(facts(*bodies, ball("slick", "s"), pairs=pairs))
     assert found.on
     assert "one, two: friction exerts a torque" in found.reason
-    assert "smooth cannot turn" in found.reason
+    assert "slick cannot turn" in found.reason
