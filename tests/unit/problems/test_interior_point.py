@@ -48,13 +48,13 @@ def test_the_scaling_takes_one_point_to_the_other_and_is_symmetric_and_positive(
 
 
 def test_the_way_to_the_boundary_is_that_of_a_fine_scan() -> None:
-    x, d = inside(3, 200), np.random.default_rng(4).normal(size=(200, 3))
+    x, d = inside(3, 60), np.random.default_rng(4).normal(size=(60, 3))
     for one, way in zip(x, d, strict=True):
         found = _to_boundary(one[None], way[None])
-        lengths = np.linspace(0.0, 50.0, 500_01)
+        lengths = np.linspace(0.0, 50.0, 20_001)
         reached = one + lengths[:, None] * way
         outside = np.flatnonzero(np.hypot(reached[:, 1], reached[:, 2]) > reached[:, 0])
         if len(outside):
-            assert abs(found - lengths[outside[0]]) <= 1.1e-3
+            assert abs(found - lengths[outside[0]]) <= 2.6e-3  # the scan steps by 2.5e-3
         else:
             assert found > 49.99

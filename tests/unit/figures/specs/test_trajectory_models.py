@@ -12,7 +12,7 @@ from lavendersim.figures.specs.trajectory import Trajectory
 from lavendersim.quantities.readings import POSES
 
 
-@pytest.mark.parametrize(("x", "y"), itertools.product("xyz", repeat=2))
+@pytest.mark.parametrize(("x", "y"), list(itertools.product("xyz", repeat=2)))
 def test_two_coordinates_differ(x: str, y: str) -> None:
     given = LABELS | {"kind": "trajectory", "x": x, "y": y}
     if x != y:
