@@ -47,7 +47,7 @@ class Rows(NamedTuple):
 
 # Bits of numpy's flags that numba tells arrays apart by: whether rows stand behind each other, may
 # be written, are aligned.
-_TOLD = 0x0001 | 0x0400 | 0x0100
+_FLAGS = 0x0001 | 0x0400 | 0x0100
 # Machine code of kernels by spec and types of the arrays, where it is known.
 _entries: dict[Any, Any] = {}
 
@@ -55,7 +55,7 @@ _entries: dict[Any, Any] = {}
 def _types_of(arrays: Any) -> Any:
     """Return what numba tells arrays apart by, in the shape of the tuples that they stand in."""
     if isinstance(arrays, np.ndarray):
-        return arrays.dtype, arrays.ndim, arrays.flags.num & _TOLD
+        return arrays.dtype, arrays.ndim, arrays.flags.num & _FLAGS
     if isinstance(arrays, tuple):
         return type(arrays), tuple(_types_of(inner) for inner in arrays)
     return type(arrays)
