@@ -1,27 +1,51 @@
-"""`lavender judge`: measures and judges a run again, from its logs alone."""
+"""`lavender judge`: measures and judges a run again from its logs, or the laws of every step."""
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from lavender_cli import claims, printing
-from lavender_cli.run import LatestRun, Own, Runs
+from lavender_cli import claims, law_lines, printing
+from lavender_cli.run import Own, Runs, run_names
+
+if TYPE_CHECKING:
+    from lavendersim.runner import RunCell
+
+RunOrLog = Annotated[
+    Path | None,
+    typer.Argument(
+        metavar="[RUN]",
+        help="Run directory, the latest by default; with --laws also a log, of any program.",
+        autocompletion=run_names,
+    ),
+]
 
 
 def judge(
-    run: LatestRun = None,
+    run: RunOrLog = None,
     runs: Runs = Path("runs"),
     own: Own = None,
     verbose: claims.Verbose = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print the verdicts as JSON.")] = False,
+    laws: Annotated[
+        bool,
+        typer.Option(
+            "--laws",
+            help="How far each step breaks the laws of contact, by poses and velocities; "
+            "with -v every step.",
+        ),
+    ] = False,
 ) -> None:
     """Measure and judge a run again from its logs alone; it may be one that was killed.
 
-    Exits 1 when a check fails, 3 when a log is damaged.
+    With --laws instead: the impulses within Coulomb's cone that explain each step best, and what
+    is left. Exits 1 when a check fails, 3 when a log is damaged.
     """
+    if laws:
+        _judge_laws(run, runs, verbose, as_json)
+        return
     from lavendersim.runner import open_run
     from lavendersim.runner.judge_again import judge_again
 
@@ -38,3 +62,30 @@ def judge(
         raise typer.Exit(printing.DAMAGED)
     if not judged.good:
         raise typer.Exit(1)
+
+
+def _judge_laws(run: Path | None, runs: Path, verbose: bool, as_json: bool) -> None:
+    from lavendersim.laws.judging import judge_laws
+    from lavendersim.laws.motion import motion_of, read_motion
+    from lavendersim.runner import open_run
+
+    found: list[dict[str, Any]] = []
+    if run is not None and run.suffix == ".mcap":
+        motions = [(run.name, read_motion(run))]
+    else:
+        opened = open_run(run, runs)
+        motions = ((_title(cell), motion_of(cell.trace())) for cell in opened.cells)  # type: ignore[assignment]
+    for title, motion in motions:
+        judged = judge_laws(motion)
+        if as_json:
+            found.append({"cell": title, **judged.table(), **(judged.rows() if verbose else {})})
+        else:
+            law_lines.print_laws(judged, title)
+            if verbose:
+                law_lines.print_steps(judged)
+    if as_json:
+        printing.as_json({"cells": found})
+
+
+def _title(cell: RunCell) -> str:
+    return cell.label or cell.path.stem

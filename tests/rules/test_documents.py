@@ -33,7 +33,7 @@ def examples(document: Path) -> list[tuple[str, str]]:
     return found
 
 
-@pytest.mark.parametrize("name", ["read-a-contact.md", "python.md", "tables.md"])
+@pytest.mark.parametrize("name", ["read-a-contact.md", "laws.md", "python.md", "tables.md"])
 def test_a_document_prints_what_it_shows(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

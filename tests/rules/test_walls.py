@@ -33,6 +33,10 @@ ROOMS = {
     },
     "problems": {"errors", "quantities", "engine"},
     "measures": {"errors", "clock", "geometry", "quantities", "cell", "engine", "trace"},
+    "laws": {
+        *("errors", "clock", "geometry", "quantities", "cell", "experiment", "engine", "scene"),
+        *("trace", "problems"),
+    },
     "figures": {
         *("errors", "durable_files", "geometry", "quantities", "cell", "trace", "measures"),
     },
@@ -51,7 +55,7 @@ ROOMS = {
     "pytest_plugin": {"errors", "experiment", "lint", "trace", "measures", "runner"},
     "cli": {
         *("errors", "quantities", "experiment", "scene", "trace", "measures", "figures"),
-        *("replay", "runner", "problems", "comparison"),
+        *("replay", "runner", "problems", "comparison", "laws"),
     },
 }
 # Modules of the engine that list what it has, without numba: what configs may name.
@@ -69,7 +73,7 @@ LIBRARIES = {
     "numpy": {
         *("scene", "engine", "trace", "measures", "figures", "replay", "simulator", "runner"),
         *("problems", "clock", "geometry", "record_tables", "arrow", "comparison"),
-        "lint",
+        *("lint", "laws"),
     },
     "scipy": {"geometry", "problems"},  # hulls, where a scene has one; sparse matrices
     "h5py": {"problems"},
