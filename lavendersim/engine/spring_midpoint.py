@@ -22,6 +22,9 @@ from typing import Any, NamedTuple
 
 from .compile import kernel
 from .spec import Spec
+from .spring_limit import make_limit
+from .spring_newton import make_newton_step
+from .spring_turn import TWISTED, make_mean_spin
 from .vectors import Vec3, cross, dot, length, minus, plus, scaled
 
 PASSES = 50
@@ -45,14 +48,20 @@ def make_act_midway(spec: Spec, place: Any) -> Any:
 
     place: kernel of `effects.spring`.
     """
-    from .rotation import inverse_inertia_times
+    from .rotation import inverse_inertia_times, is_round
 
-    turns = spec.has("rotation")
+    turns, uneven = spec.has("rotation"), spec.has("gyroscopic")
+    mean_spin: Any = make_mean_spin(spec) if turns else None
+    limit: Any = make_limit(spec, place)
 
-    def mean_lever(r, v, m, dt):
+    def mean_lever(body, r, v, m, dt):
         # r: at the start, world.
         if turns:
             a = scaled(0.25 * dt, Vec3(m.wx + v.wx, m.wy + v.wy, m.wz + v.wz))
+            if uneven:
+                if body.sprung == TWISTED and not is_round(body):
+                    body.unturned = 0 if mean_spin(body, v, m, dt) else 1
+                    a = scaled(0.5 * dt, Vec3(body.turn_x, body.turn_y, body.turn_z))
             s = 1.0 / (1.0 + dot(a, a))
             return scaled(s, plus(plus(r, cross(a, r)), scaled(dot(a, r), a)))
         return r
@@ -93,7 +102,8 @@ def make_act_midway(spec: Spec, place: Any) -> Any:
         va, vb, ma, mb = velocities[link.a], velocities[link.b], motion[link.a], motion[link.b]
         start = place(link, body_a, body_b)
         length_0 = start.length
-        arm_a, arm_b = mean_lever(start.r_a, va, ma, dt), mean_lever(start.r_b, vb, mb, dt)
+        arm_a = mean_lever(body_a, start.r_a, va, ma, dt)
+        arm_b = mean_lever(body_b, start.r_b, vb, mb, dt)
         between = Vec3(body_b.x - body_a.x, body_b.y - body_a.y, body_b.z - body_a.z)
         before = minus(plus(between, start.r_b), start.r_a)
         moved = Vec3(
@@ -143,12 +153,124 @@ def make_act_midway(spec: Spec, place: Any) -> Any:
 
     improve = kernel(improve, spec)
 
-    def act(links, bodies, velocities, motion, params):
+    def forget(links):
         for k in range(links.shape[0]):
             link = links[k]
             link.force, link.px, link.py, link.pz = 0.0, 0.0, 0.0, 0.0
             link.lax, link.lay, link.laz = 0.0, 0.0, 0.0
             link.lbx, link.lby, link.lbz = 0.0, 0.0, 0.0
+            link.lost = 0
+
+    forget = kernel(forget, spec)
+
+    def law(link, body_a, body_b, ma, mb, start, length_1, dt):
+        # `improve`'s, with the rate at the end by those of the start and of the step.
+        k = response_of(body_a, start.r_a, start.d) + response_of(body_b, start.r_b, start.d)
+        longer = length_1 - start.length
+        force = link.stiffness * (0.5 * (start.length + length_1) - link.rest_length)
+        force += link.damping * longer / dt
+        slope = 0.5 * link.stiffness + link.damping / dt
+        if link.stiffness * k * dt * dt > FAST:
+            beta = min(1.0, 0.25 * link.damping * k * dt)
+            first = dot(start.d, minus(rate_of(mb, start.r_b), rate_of(ma, start.r_a)))
+            force += beta * link.stiffness * (1.5 * longer - 0.5 * dt * first)
+            slope += 1.5 * beta * link.stiffness
+        return force, slope
+
+    law = kernel(law, spec)
+    newton_step: Any = make_newton_step(spec, place, law, push) if turns else None
+
+    def begin_anew(links, bodies, velocities, motion):
+        for i in range(bodies.shape[0]):
+            body, v, m = bodies[i], velocities[i], motion[i]
+            if body.inv_m > 0.0 and body.joined == 1:
+                v.vx, v.vy, v.vz = m.vx + m.dvx, m.vy + m.dvy, m.vz + m.dvz
+                v.wx, v.wy, v.wz = body.free_wx, body.free_wy, body.free_wz
+            body.turn_x, body.turn_y = 0.5 * (m.wx + v.wx), 0.5 * (m.wy + v.wy)
+            body.turn_z = 0.5 * (m.wz + v.wz)
+        forget(links)
+
+    begin_anew = kernel(begin_anew, spec)
+
+    def note_start(links, bodies, velocities):
+        # What springs twist, and its spin before they do.
+        for i in range(bodies.shape[0]):
+            body, v = bodies[i], velocities[i]
+            body.sprung, body.unturned = 0, 0
+            if turns:
+                body.free_wx, body.free_wy, body.free_wz = v.wx, v.wy, v.wz
+                body.turn_x, body.turn_y, body.turn_z = v.wx, v.wy, v.wz
+        if turns:
+            for k in range(links.shape[0]):
+                link = links[k]
+                if link.active == 1:
+                    a, b = bodies[link.a], bodies[link.b]
+                    if link.ax != 0.0 or link.ay != 0.0 or link.az != 0.0:
+                        a.sprung = TWISTED if a.inv_m > 0.0 else 0
+                    if link.bx != 0.0 or link.by != 0.0 or link.bz != 0.0:
+                        b.sprung = TWISTED if b.inv_m > 0.0 else 0
+
+    note_start = kernel(note_start, spec)
+
+    def is_gradient(links, bodies, dt):
+        # Whether no spring has the damper of those that steps do not resolve.
+        for k in range(links.shape[0]):
+            link = links[k]
+            if link.damping > 0.0 and link.active == 1:
+                body_a, body_b = bodies[link.a], bodies[link.b]
+                now = place(link, body_a, body_b)
+                response = response_of(body_a, now.r_a, now.d)
+                response += response_of(body_b, now.r_b, now.d)
+                if link.stiffness * response * dt * dt > FAST:
+                    return False
+        return True
+
+    is_gradient = kernel(is_gradient, spec)
+
+    def is_turned(bodies, velocities, motion, dt):
+        # Mean spins, with all impulses.
+        found = True
+        for i in range(bodies.shape[0]):
+            body, v, m = bodies[i], velocities[i], motion[i]
+            if body.sprung == TWISTED:
+                body.unturned = 0 if mean_spin(body, v, m, dt) else 1
+                found = found and body.unturned == 0
+        return found
+
+    is_turned = kernel(is_turned, spec)
+
+    def improve_all(links, bodies, velocities, motion, dt):
+        for _ in range(PASSES):
+            changed, largest = 0.0, 0.0
+            for k in range(links.shape[0]):
+                link = links[k]
+                if link.active == 0 or bodies[link.a].inv_m + bodies[link.b].inv_m == 0.0:
+                    continue
+                change, size = newton_step(link, bodies, velocities, motion, dt)
+                changed, largest = max(changed, change), max(largest, size)
+                link.lost = 1 if change > 10.0 * FOUND * largest else 0
+            if changed <= 10.0 * FOUND * largest:
+                return is_turned(bodies, velocities, motion, dt)
+        is_turned(bodies, velocities, motion, dt)
+        return False
+
+    improve_all = kernel(improve_all, spec)
+
+    def turns_little(bodies, dt):
+        for i in range(bodies.shape[0]):
+            body = bodies[i]
+            if body.sprung == TWISTED:
+                if dt * length(Vec3(body.turn_x, body.turn_y, body.turn_z)) > 1.0:
+                    return False
+        return True
+
+    turns_little = kernel(turns_little, spec)
+
+    def act(links, bodies, velocities, motion, params):
+        note_start(links, bodies, velocities)
+        forget(links)
+        safe = is_gradient(links, bodies, params.dt)
+        found = False
         for number in range(PASSES):
             changed, largest = 0.0, 0.0
             for k in range(links.shape[0]):
@@ -157,7 +279,22 @@ def make_act_midway(spec: Spec, place: Any) -> Any:
                     continue
                 change, size = improve(link, bodies, velocities, motion, params.dt, number == 0)
                 changed, largest = max(changed, change), max(largest, size)
+                link.lost = 1 if change > FOUND * largest else 0
             if number > 0 and changed <= FOUND * largest:
+                found = True
                 break
+        if turns:
+            found = is_turned(bodies, velocities, motion, params.dt) and found
+            if not found:
+                begin_anew(links, bodies, velocities, motion)
+                found = improve_all(links, bodies, velocities, motion, params.dt)
+            # In a turn of radians the digits of the impulses are fewer.
+            safe = safe and turns_little(bodies, params.dt)
+        if not (found and safe):
+            limit(links, bodies, velocities, motion, params.dt)
+        if turns:
+            for i in range(bodies.shape[0]):
+                body, v = bodies[i], velocities[i]
+                body.to_wx, body.to_wy, body.to_wz = v.wx, v.wy, v.wz
 
     return kernel(act, spec)
