@@ -15,7 +15,7 @@ from .spec import Spec
 from .vectors import Vec3, cross, dot, length, minus, plus, plus_scaled, position, scaled
 
 
-class Group(NamedTuple):
+class GroupKernels(NamedTuple):
     """Kernels of groups of bodies."""
 
     label: Any  # (links, bodies): every body its group
@@ -28,7 +28,7 @@ class Group(NamedTuple):
     rigid_spin: Any  # (bodies, group, centre, h) -> omega_c; 0 for a line that has no spin about it
 
 
-def make_group(spec: Spec, place: Any) -> Group:
+def make_group(spec: Spec, place: Any) -> GroupKernels:
     """Return the kernels; place: that of `effects.spring`."""
     from .rotation import inertia_times
 
@@ -144,4 +144,6 @@ def make_group(spec: Spec, place: Any) -> Group:
 
     rigid_spin = kernel(rigid_spin, spec)
 
-    return Group(label, within, stored, spin_of, set_velocity, centre_of, momentum_of, rigid_spin)
+    return GroupKernels(
+        label, within, stored, spin_of, set_velocity, centre_of, momentum_of, rigid_spin
+    )

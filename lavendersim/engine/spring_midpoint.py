@@ -7,8 +7,10 @@ is the discrete gradient of its energy: F u . (X_1 - X_0) is what the spring sto
 takes, however far it turns in the step, and u passes through both points half way, so that angular
 momentum is kept. r_m = (r_0 + r_1)/2 are the levers, for of the Cayley map
     r_1 - r_0 = dt w x r_m,   r_m = (r_0 + a x r_0 + (a . r_0) a)/(1 + a^2),   a = w dt/2
-All springs are found together, by Newton's steps on one after the other; the first takes the length
-as linear along d_0, for a stiff spring has a solution on either side of its other point.
+All springs are found together, by steps like Newton's on one after the other; the first takes the
+length as linear along d_0, for a stiff spring has a solution on either side of its other point.
+What is not found so `spring_newton` tries, from the start and with how bodies turn; what it does
+not find either is left to `spring_limit`. How uneven bodies turn: `spring_turn`.
 
 What is damped, and swings faster than steps resolve (k K dt^2 > 4), would ring by the rule's
 undamped mode, v_1 = -v_0. Such a spring has more of a damper, which is of order 2 beside c,
@@ -25,11 +27,15 @@ from .spec import Spec
 from .spring_limit import make_limit
 from .spring_newton import make_newton_step
 from .spring_turn import TWISTED, make_mean_spin
-from .vectors import Vec3, cross, dot, length, minus, plus, scaled
+from .vectors import Vec3, cross, dot, length, minus, plus, position, scaled
 
 PASSES = 50
 # Change of impulses, of the largest, at which they are found.
 FOUND = 1e-14
+# The same, at which what is left is as good as round-off, and is left.
+NEARLY = 1e-13
+# Of places that are of the order of one, in a few operations [-].
+ROUND_OFF = 4e-15
 # k K dt^2 above which steps do not resolve a swing.
 FAST = 4.0
 
@@ -118,7 +124,7 @@ def make_act_midway(spec: Spec, place: Any) -> Any:
         sum_of = length_0 + length_1
         size = length(middle)
         if sum_of == 0.0 or size == 0.0:
-            return 0.0, 0.0
+            return 0.0, 0.0, 0.0
         u, d = scaled(2.0 / sum_of, middle), scaled(1.0 / size, middle)
         if linear and length_0 > 0.0:
             u = d = start.d
@@ -149,7 +155,10 @@ def make_act_midway(spec: Spec, place: Any) -> Any:
         push(body_b, vb, scaled(-1.0, change), minus_b)
         link.lax, link.lay, link.laz = spun_a.x, spun_a.y, spun_a.z
         link.lbx, link.lby, link.lbz = spun_b.x, spun_b.y, spun_b.z
-        return length(change), length(new)
+        # What round-off of places leaves of the impulse.
+        places = length(position(body_a)) + length(position(body_b)) + length_0
+        rounded = ROUND_OFF * dt * slope * places / (1.0 + 0.5 * dt * dt * slope * k)
+        return length(change), length(new), rounded
 
     improve = kernel(improve, spec)
 
@@ -213,11 +222,11 @@ def make_act_midway(spec: Spec, place: Any) -> Any:
     note_start = kernel(note_start, spec)
 
     def is_gradient(links, bodies, dt):
-        # Whether no spring has the damper of those that steps do not resolve.
+        # Whether no spring off a centre has the damper of those that steps do not resolve.
         for k in range(links.shape[0]):
             link = links[k]
-            if link.damping > 0.0 and link.active == 1:
-                body_a, body_b = bodies[link.a], bodies[link.b]
+            body_a, body_b = bodies[link.a], bodies[link.b]
+            if link.damping > 0.0 and link.active == 1 and body_a.sprung + body_b.sprung > 0:
                 now = place(link, body_a, body_b)
                 response = response_of(body_a, now.r_a, now.d)
                 response += response_of(body_b, now.r_b, now.d)
@@ -277,12 +286,18 @@ def make_act_midway(spec: Spec, place: Any) -> Any:
                 link = links[k]
                 if link.active == 0 or bodies[link.a].inv_m + bodies[link.b].inv_m == 0.0:
                     continue
-                change, size = improve(link, bodies, velocities, motion, params.dt, number == 0)
+                change, size, rounded = improve(
+                    link, bodies, velocities, motion, params.dt, number == 0
+                )
                 changed, largest = max(changed, change), max(largest, size)
-                link.lost = 1 if change > FOUND * largest else 0
+                link.lost = 1 if change > NEARLY * largest + rounded else 0
             if number > 0 and changed <= FOUND * largest:
                 found = True
                 break
+        if not found:  # but for round-off?
+            found = True
+            for k in range(links.shape[0]):
+                found = found and links[k].lost == 0
         if turns:
             found = is_turned(bodies, velocities, motion, params.dt) and found
             if not found:

@@ -31,7 +31,7 @@ class Mat3(NamedTuple):
     z: Vec3
 
 
-class Moment(NamedTuple):
+class TurnEquation(NamedTuple):
     """What one end's body has to fulfil: its equation and the derivatives."""
 
     e: Vec3
@@ -109,7 +109,7 @@ def make_mean_lever(spec: Spec) -> Any:
 
 
 def make_moment(spec: Spec) -> Any:
-    """Return `kernel(body, v, m, r, j, sign, dt) -> Moment`; v.w with the impulses so far."""
+    """Return `kernel(body, v, m, r, j, sign, dt) -> TurnEquation`; v.w with the impulses so far."""
     from .rotation import inertia_times, is_round
 
     mean_lever: Any = make_mean_lever(spec)
@@ -126,7 +126,7 @@ def make_moment(spec: Spec) -> Any:
         by_w = Mat3(scaled(0.5 * dt, by_a.x), scaled(0.5 * dt, by_a.y), scaled(0.5 * dt, by_a.z))
         nothing = diagonal(0.0)
         if body.sprung == 0:  # it turns by the mean of given spins
-            return Moment(Vec3(0.0, 0.0, 0.0), diagonal(1.0), nothing, by_w, arm)
+            return TurnEquation(Vec3(0.0, 0.0, 0.0), diagonal(1.0), nothing, by_w, arm)
         start = Vec3(m.wx, m.wy, m.wz)
         half = scaled(0.5, inertia(body, minus(Vec3(v.wx, v.wy, v.wz), start)))
         had = inertia(body, w)
@@ -144,7 +144,7 @@ def make_moment(spec: Spec) -> Any:
             e_l = sum_of(e_l, 0.25 * dt, crossing(1.0, w))
         # L = sign r_m x J
         e_w = sum_of(e_w, -sign, product(e_l, product(crossing(1.0, j), by_w)))
-        return Moment(e, e_w, product(e_l, crossing(sign, arm)), by_w, arm)
+        return TurnEquation(e, e_w, product(e_l, crossing(sign, arm)), by_w, arm)
 
     return kernel(moment, spec)
 
