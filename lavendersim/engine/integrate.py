@@ -18,6 +18,7 @@ from .records import NOT_FINITE, TURNS_TOO_FAST
 from .rotation import inertia_times, inverse_inertia_times, is_round, orient, turn
 from .row_terms import row_terms
 from .spec import Spec
+from .spring_turn import PLACED, make_twist
 
 # MOTION.carried: a contact carries the body from its impact on, or through the whole step.
 AFTERWARDS = 1
@@ -201,14 +202,18 @@ def make_turn_in_halves(spec: Spec) -> Any:
     to one the second would drive it about the axis that resists least.
     """
     integrate_rotation: Any = make_turn(spec)
+    sprung = spec.has("spring") and spec.has("midpoint")
 
     def turn_in_halves(body, v, m, dt):
+        stops = True
+        if sprung:
+            stops = body.sprung == 0  # what springs turn back turns by the mean as well
         gained_x, gained_y, gained_z = v.wx - m.wx, v.wy - m.wy, v.wz - m.wz
         twisted = gained_x != 0.0 or gained_y != 0.0 or gained_z != 0.0
         # A spin that a step all but stops would cancel to its last digits, and turns nothing.
         last = v.wx * v.wx + v.wy * v.wy + v.wz * v.wz
         before = m.wx * m.wx + m.wy * m.wy + m.wz * m.wz
-        if not (twisted and STOPPED * last >= before):
+        if not (twisted and (STOPPED * last >= before or not stops)):
             return integrate_rotation(body, v, dt)
         whole_x, whole_y, whole_z = v.wx, v.wy, v.wz
         w, i, j, k = body.qw, body.qx, body.qy, body.qz
@@ -233,6 +238,8 @@ def make_displace(spec: Spec) -> Any:
     """Return `kernel(body, v, m, dt) -> solved`: the body's displacement in the step."""
     turns = spec.has("rotation")
     midpoint = spec.has("midpoint")
+    springs = midpoint and spec.has("spring")
+    twist: Any = make_twist(spec) if springs and turns else None
     at_surface = spec.has("impact_time")
     uneven, centred = spec.has("gyroscopic"), spec.has("contact_midpoint")
     twists = turns and midpoint  # torques of forces and springs; none: the same bits
@@ -271,7 +278,13 @@ def make_displace(spec: Spec) -> Any:
                     return integrate_rotation(body, v, rest) and solved
                 return True
         x, y, z = v.vx * dt, v.vy * dt, v.vz * dt
-        if centred:
+        sprung = False
+        if springs:
+            # Where contacts were looked at and none pushes, v is at a middle that they found.
+            sprung = body.sprung > 0 and m.carried == 0
+            if turns and sprung:
+                v.wx, v.wy, v.wz = body.to_wx, body.to_wy, body.to_wz
+        if centred and not sprung:
             lasting = m.carried == LASTING
             if lasting:
                 half = 0.5 * dt
@@ -297,6 +310,22 @@ def make_displace(spec: Spec) -> Any:
                 v.wx, v.wy, v.wz = m.wx, m.wy, m.wz
                 turn_by_mean(body, v, m.mean_x, m.mean_y, m.mean_z, dt)
                 return True
+        if springs:
+            if sprung and body.sprung == PLACED:
+                body.x += body.shift_x
+                body.y += body.shift_y
+                body.z += body.shift_z
+                if turns:
+                    turn(body, dt * body.turn_x, dt * body.turn_y, dt * body.turn_z)
+                return True
+            if uneven:
+                if sprung and not is_round(body):
+                    half = 0.5 * dt
+                    body.x += half * (m.vx + v.vx)
+                    body.y += half * (m.vy + v.vy)
+                    body.z += half * (m.vz + v.vz)
+                    twist(body, v, dt)
+                    return True
         if midpoint:
             if m.carried == 0:
                 half = 0.5 * dt

@@ -7,8 +7,10 @@ is the discrete gradient of its energy: F u . (X_1 - X_0) is what the spring sto
 takes, however far it turns in the step, and u passes through both points half way, so that angular
 momentum is kept. r_m = (r_0 + r_1)/2 are the levers, for of the Cayley map
     r_1 - r_0 = dt w x r_m,   r_m = (r_0 + a x r_0 + (a . r_0) a)/(1 + a^2),   a = w dt/2
-All springs are found together, by Newton's steps on one after the other; the first takes the length
-as linear along d_0, for a stiff spring has a solution on either side of its other point.
+All springs are found together, by steps like Newton's on one after the other; the first takes the
+length as linear along d_0, for a stiff spring has a solution on either side of its other point.
+What is not found so `spring_newton` tries, from the start and with how bodies turn; what it does
+not find either is left to `spring_limit`. How uneven bodies turn: `spring_turn`.
 
 What is damped, and swings faster than steps resolve (k K dt^2 > 4), would ring by the rule's
 undamped mode, v_1 = -v_0. Such a spring has more of a damper, which is of order 2 beside c,
@@ -22,11 +24,18 @@ from typing import Any, NamedTuple
 
 from .compile import kernel
 from .spec import Spec
-from .vectors import Vec3, cross, dot, length, minus, plus, scaled
+from .spring_limit import make_limit
+from .spring_newton import make_newton_step
+from .spring_turn import TWISTED, make_mean_spin
+from .vectors import Vec3, cross, dot, length, minus, plus, position, scaled
 
 PASSES = 50
 # Change of impulses, of the largest, at which they are found.
 FOUND = 1e-14
+# The same, at which what is left is as good as round-off, and is left.
+NEARLY = 1e-13
+# Of places that are of the order of one, in a few operations [-].
+ROUND_OFF = 4e-15
 # k K dt^2 above which steps do not resolve a swing.
 FAST = 4.0
 
@@ -45,14 +54,20 @@ def make_act_midway(spec: Spec, place: Any) -> Any:
 
     place: kernel of `effects.spring`.
     """
-    from .rotation import inverse_inertia_times
+    from .rotation import inverse_inertia_times, is_round
 
-    turns = spec.has("rotation")
+    turns, uneven = spec.has("rotation"), spec.has("gyroscopic")
+    mean_spin: Any = make_mean_spin(spec) if turns else None
+    limit: Any = make_limit(spec, place)
 
-    def mean_lever(r, v, m, dt):
+    def mean_lever(body, r, v, m, dt):
         # r: at the start, world.
         if turns:
             a = scaled(0.25 * dt, Vec3(m.wx + v.wx, m.wy + v.wy, m.wz + v.wz))
+            if uneven:
+                if body.sprung == TWISTED and not is_round(body):
+                    body.unturned = 0 if mean_spin(body, v, m, dt) else 1
+                    a = scaled(0.5 * dt, Vec3(body.turn_x, body.turn_y, body.turn_z))
             s = 1.0 / (1.0 + dot(a, a))
             return scaled(s, plus(plus(r, cross(a, r)), scaled(dot(a, r), a)))
         return r
@@ -93,7 +108,8 @@ def make_act_midway(spec: Spec, place: Any) -> Any:
         va, vb, ma, mb = velocities[link.a], velocities[link.b], motion[link.a], motion[link.b]
         start = place(link, body_a, body_b)
         length_0 = start.length
-        arm_a, arm_b = mean_lever(start.r_a, va, ma, dt), mean_lever(start.r_b, vb, mb, dt)
+        arm_a = mean_lever(body_a, start.r_a, va, ma, dt)
+        arm_b = mean_lever(body_b, start.r_b, vb, mb, dt)
         between = Vec3(body_b.x - body_a.x, body_b.y - body_a.y, body_b.z - body_a.z)
         before = minus(plus(between, start.r_b), start.r_a)
         moved = Vec3(
@@ -108,7 +124,7 @@ def make_act_midway(spec: Spec, place: Any) -> Any:
         sum_of = length_0 + length_1
         size = length(middle)
         if sum_of == 0.0 or size == 0.0:
-            return 0.0, 0.0
+            return 0.0, 0.0, 0.0
         u, d = scaled(2.0 / sum_of, middle), scaled(1.0 / size, middle)
         if linear and length_0 > 0.0:
             u = d = start.d
@@ -139,25 +155,161 @@ def make_act_midway(spec: Spec, place: Any) -> Any:
         push(body_b, vb, scaled(-1.0, change), minus_b)
         link.lax, link.lay, link.laz = spun_a.x, spun_a.y, spun_a.z
         link.lbx, link.lby, link.lbz = spun_b.x, spun_b.y, spun_b.z
-        return length(change), length(new)
+        # What round-off of places leaves of the impulse.
+        places = length(position(body_a)) + length(position(body_b)) + length_0
+        rounded = ROUND_OFF * dt * slope * places / (1.0 + 0.5 * dt * dt * slope * k)
+        return length(change), length(new), rounded
 
     improve = kernel(improve, spec)
 
-    def act(links, bodies, velocities, motion, params):
+    def forget(links):
         for k in range(links.shape[0]):
             link = links[k]
             link.force, link.px, link.py, link.pz = 0.0, 0.0, 0.0, 0.0
             link.lax, link.lay, link.laz = 0.0, 0.0, 0.0
             link.lbx, link.lby, link.lbz = 0.0, 0.0, 0.0
+            link.lost = 0
+
+    forget = kernel(forget, spec)
+
+    def law(link, body_a, body_b, ma, mb, start, length_1, dt):
+        # `improve`'s, with the rate at the end by those of the start and of the step.
+        k = response_of(body_a, start.r_a, start.d) + response_of(body_b, start.r_b, start.d)
+        longer = length_1 - start.length
+        force = link.stiffness * (0.5 * (start.length + length_1) - link.rest_length)
+        force += link.damping * longer / dt
+        slope = 0.5 * link.stiffness + link.damping / dt
+        if link.stiffness * k * dt * dt > FAST:
+            beta = min(1.0, 0.25 * link.damping * k * dt)
+            first = dot(start.d, minus(rate_of(mb, start.r_b), rate_of(ma, start.r_a)))
+            force += beta * link.stiffness * (1.5 * longer - 0.5 * dt * first)
+            slope += 1.5 * beta * link.stiffness
+        return force, slope
+
+    law = kernel(law, spec)
+    newton_step: Any = make_newton_step(spec, place, law, push) if turns else None
+
+    def begin_anew(links, bodies, velocities, motion):
+        for i in range(bodies.shape[0]):
+            body, v, m = bodies[i], velocities[i], motion[i]
+            if body.inv_m > 0.0 and body.joined == 1:
+                v.vx, v.vy, v.vz = m.vx + m.dvx, m.vy + m.dvy, m.vz + m.dvz
+                v.wx, v.wy, v.wz = body.free_wx, body.free_wy, body.free_wz
+            body.turn_x, body.turn_y = 0.5 * (m.wx + v.wx), 0.5 * (m.wy + v.wy)
+            body.turn_z = 0.5 * (m.wz + v.wz)
+        forget(links)
+
+    begin_anew = kernel(begin_anew, spec)
+
+    def note_start(links, bodies, velocities):
+        # What springs twist, and its spin before they do.
+        for i in range(bodies.shape[0]):
+            body, v = bodies[i], velocities[i]
+            body.sprung, body.unturned = 0, 0
+            if turns:
+                body.free_wx, body.free_wy, body.free_wz = v.wx, v.wy, v.wz
+                body.turn_x, body.turn_y, body.turn_z = v.wx, v.wy, v.wz
+        if turns:
+            for k in range(links.shape[0]):
+                link = links[k]
+                if link.active == 1:
+                    a, b = bodies[link.a], bodies[link.b]
+                    if link.ax != 0.0 or link.ay != 0.0 or link.az != 0.0:
+                        a.sprung = TWISTED if a.inv_m > 0.0 else 0
+                    if link.bx != 0.0 or link.by != 0.0 or link.bz != 0.0:
+                        b.sprung = TWISTED if b.inv_m > 0.0 else 0
+
+    note_start = kernel(note_start, spec)
+
+    def is_gradient(links, bodies, dt):
+        # Whether no spring off a centre has the damper of those that steps do not resolve.
+        for k in range(links.shape[0]):
+            link = links[k]
+            body_a, body_b = bodies[link.a], bodies[link.b]
+            if link.damping > 0.0 and link.active == 1 and body_a.sprung + body_b.sprung > 0:
+                now = place(link, body_a, body_b)
+                response = response_of(body_a, now.r_a, now.d)
+                response += response_of(body_b, now.r_b, now.d)
+                if link.stiffness * response * dt * dt > FAST:
+                    return False
+        return True
+
+    is_gradient = kernel(is_gradient, spec)
+
+    def is_turned(bodies, velocities, motion, dt):
+        # Mean spins, with all impulses.
+        found = True
+        for i in range(bodies.shape[0]):
+            body, v, m = bodies[i], velocities[i], motion[i]
+            if body.sprung == TWISTED:
+                body.unturned = 0 if mean_spin(body, v, m, dt) else 1
+                found = found and body.unturned == 0
+        return found
+
+    is_turned = kernel(is_turned, spec)
+
+    def improve_all(links, bodies, velocities, motion, dt):
+        for _ in range(PASSES):
+            changed, largest = 0.0, 0.0
+            for k in range(links.shape[0]):
+                link = links[k]
+                if link.active == 0 or bodies[link.a].inv_m + bodies[link.b].inv_m == 0.0:
+                    continue
+                change, size = newton_step(link, bodies, velocities, motion, dt)
+                changed, largest = max(changed, change), max(largest, size)
+                link.lost = 1 if change > 10.0 * FOUND * largest else 0
+            if changed <= 10.0 * FOUND * largest:
+                return is_turned(bodies, velocities, motion, dt)
+        is_turned(bodies, velocities, motion, dt)
+        return False
+
+    improve_all = kernel(improve_all, spec)
+
+    def turns_little(bodies, dt):
+        for i in range(bodies.shape[0]):
+            body = bodies[i]
+            if body.sprung == TWISTED:
+                if dt * length(Vec3(body.turn_x, body.turn_y, body.turn_z)) > 1.0:
+                    return False
+        return True
+
+    turns_little = kernel(turns_little, spec)
+
+    def act(links, bodies, velocities, motion, params):
+        note_start(links, bodies, velocities)
+        forget(links)
+        safe = is_gradient(links, bodies, params.dt)
+        found = False
         for number in range(PASSES):
             changed, largest = 0.0, 0.0
             for k in range(links.shape[0]):
                 link = links[k]
                 if link.active == 0 or bodies[link.a].inv_m + bodies[link.b].inv_m == 0.0:
                     continue
-                change, size = improve(link, bodies, velocities, motion, params.dt, number == 0)
+                change, size, rounded = improve(
+                    link, bodies, velocities, motion, params.dt, number == 0
+                )
                 changed, largest = max(changed, change), max(largest, size)
+                link.lost = 1 if change > NEARLY * largest + rounded else 0
             if number > 0 and changed <= FOUND * largest:
+                found = True
                 break
+        if not found:  # but for round-off?
+            found = True
+            for k in range(links.shape[0]):
+                found = found and links[k].lost == 0
+        if turns:
+            found = is_turned(bodies, velocities, motion, params.dt) and found
+            if not found:
+                begin_anew(links, bodies, velocities, motion)
+                found = improve_all(links, bodies, velocities, motion, params.dt)
+            # In a turn of radians the digits of the impulses are fewer.
+            safe = safe and turns_little(bodies, params.dt)
+        if not (found and safe):
+            limit(links, bodies, velocities, motion, params.dt)
+        if turns:
+            for i in range(bodies.shape[0]):
+                body, v = bodies[i], velocities[i]
+                body.to_wx, body.to_wy, body.to_wz = v.wx, v.wy, v.wz
 
     return kernel(act, spec)

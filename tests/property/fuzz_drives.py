@@ -49,8 +49,7 @@ def motion(pen: Any, duration: float) -> list[dict[str, Any]]:
 def springs(pen: Any, bodies: dict[str, Any], movable: list[str]) -> list[dict[str, Any]]:
     """Return damped springs between centres, from soft to stiff beyond what a step resolves.
 
-    At points of bodies those that no step resolves give energy without bound: see the test of
-    `tests/physics/test_springs_at_the_middle.py` that is expected to fail.
+    At points of bodies those that no step resolves give energy where their bodies touch something.
     """
     if not pen.has("spring") or len(bodies) < 2:
         return []

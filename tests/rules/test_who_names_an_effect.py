@@ -88,8 +88,9 @@ ASKED = {
             "impact_location",
             *("integrate", "midpoint_geometry", "midpoint_passes", "midpoint_rows"),
             *("solvers/newton/minimise", "spring_midpoint", "step_doubling", "scene/events"),
+            *("spring_group", "spring_limit"),
         ),
-        "gyroscopic": ("integrate", "midpoint_geometry"),
+        "gyroscopic": ("integrate", "midpoint_geometry", "spring_midpoint", "spring_turn"),
         "kinematic": ("effects/sleeping", "integrate", "midpoint_geometry"),
         "compound": (
             *("collide/broad/broad_phase", "collide/broad/fat_bounds", "collide/narrow_phase"),
@@ -114,6 +115,7 @@ ASKED = {
             *("effects/impact_time", "effects/sliding_stops", "effects/warm_start", "memory"),
             *("midpoint_geometry", "parts", "respond", "runner/log_size"),
         ),
+        "spring": ("integrate",),
         "error_control": (
             *("effects/projection", "effects/warm_start", "parts", "step", "step_doubling"),
         ),

@@ -195,6 +195,17 @@ def make_link_row(spec: Spec) -> Kernel:
     return kernel(log_springs, spec)
 
 
+_MOVED: list[tuple[str, str]] = [
+    ("joined", "i8"),  # 1: a spring pulls it
+    # Of the step: 1: springs act off its centre, 2: they say where it goes; whether its mean spin
+    # is not found; its group, 1 + the first body of it, 0: none.
+    *[(name, "i8") for name in ("sprung", "unturned", "group")],
+    *[(f"turn_{axis}", "f8") for axis in "xyz"],  # mean spin of the step [rad/s]
+    *[(f"shift_{axis}", "f8") for axis in "xyz"],  # displacement in the step [m]
+    *[(f"free_w{axis}", "f8") for axis in "xyz"],  # spin before springs act [rad/s]
+    *[(f"to_{kind}{axis}", "f8") for kind in "vw" for axis in "xyz"],  # velocity, spin aimed at
+    *[(f"from_{axis}", "f8") for axis in ("x", "y", "z", "qw", "qx", "qy", "qz")],  # pose
+]
 _OUTER = "of springs on movable bodies from those that do not move, world"
 
 EFFECT = Effect(
@@ -213,12 +224,13 @@ EFFECT = Effect(
     acts_on=acts_on,
     links=links,
     fields=Fields(
-        body=[*ORIENTED_BODY, ("joined", "i8")],  # 1: a spring pulls it
+        body=[*ORIENTED_BODY, *_MOVED],
         link=[
             ("stiffness", "f8"),  # k [N/m]
             ("damping", "f8"),  # c [N s/m]
             ("rest_length", "f8"),  # l_0 [m]
             *[(f"{end}{axis}", "f8") for end in "ab" for axis in "xyz"],  # points, body frame [m]
+            ("lost", "i8"),  # 1: its impulse in this step is not found
             ("force", "f8"),  # of this step, positive where it pulls [N]
             *[(f"p{axis}", "f8") for axis in "xyz"],  # impulse on A in this step, world [N s]
             # Angular impulse on each end's body, about its centre; on B its opposite [N m s].
