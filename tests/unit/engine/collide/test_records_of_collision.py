@@ -21,9 +21,9 @@ def filled(fields, rows: int = 2) -> np.ndarray:
 
 def test_vertices_and_separations_are_copied_field_by_field() -> None:
     for copy, fields in ((own.copy_vertex, VERTEX), (own.copy_separation, SEPARATION)):
-        rows = filled(fields)
+        rows, source = filled(fields), filled(fields)[0]
         interpreted(copy)(*records(rows))
-        assert rows[1] == rows[0]
+        assert rows[0] == rows[1] == source
         rows[0]["ax"] = 99.0  # a copy, not a reference
         assert rows[1] != rows[0]
 
