@@ -14,7 +14,7 @@ from lavender_cli import printing
 from lavender_cli.run import Runs
 
 if TYPE_CHECKING:
-    from lavendersim.runner.listing import Listed, Wanted
+    from lavendersim.runner.listing import Listed, RunFilter
 
 COLOUR: Final = re.compile(r"\x1b\[[0-9;]*m")  # takes no column
 Name = Annotated[
@@ -103,15 +103,15 @@ def wanted_of(
     older: str | None,
     newer: str | None,
     larger: str | None = None,
-) -> Wanted:
+) -> RunFilter:
     """Return which runs the options mean. UsageError where one cannot be read."""
     from lavendersim.errors import UsageError
-    from lavendersim.runner.listing import VERDICTS, Wanted, size_from, time_before
+    from lavendersim.runner.listing import VERDICTS, RunFilter, size_from, time_before
 
     if verdict is not None and verdict not in VERDICTS:
         expected = " or ".join((", ".join(VERDICTS[:-1]), VERDICTS[-1]))
         raise UsageError(f"--verdict {verdict}: expected {expected}")
-    return Wanted(
+    return RunFilter(
         tuple(name or ()),
         verdict,
         tag,

@@ -39,11 +39,11 @@ def rm(
 ) -> None:
     """Remove runs. By options, the newest finished run of each experiment stays; asks first."""
     from lavendersim.errors import UsageError
-    from lavendersim.runner.listing import Wanted, listed
+    from lavendersim.runner.listing import RunFilter, listed
     from lavendersim.runner.remove_runs import named_run, removable, remove, remove_leftovers
 
     wanted = wanted_of(name, verdict, tag, older, newer, larger)
-    if bool(named) == (wanted != Wanted()):
+    if bool(named) == (wanted != RunFilter()):
         raise UsageError("expected either runs by name, or options that say which are removed")
     if named:
         each = (named_run(path, runs) for path in named)

@@ -42,7 +42,7 @@ class Listed(NamedTuple):
         return finished | row | {"date": self.date.isoformat(), "tags": list(self.tags)}
 
 
-class Wanted(NamedTuple):
+class RunFilter(NamedTuple):
     """Which runs are meant; what is None asks for nothing."""
 
     names: tuple[str, ...] = ()  # of experiments; * and ? as in a shell
@@ -78,9 +78,9 @@ def verdict_of(one: Listed) -> str:
     return "pass" if one.claims else "unclaimed"
 
 
-def listed(root: Path, wanted: Wanted = Wanted()) -> Iterator[Listed]:  # noqa: B008 - immutable
+def listed(root: Path, chosen: RunFilter = RunFilter()) -> Iterator[Listed]:  # noqa: B008 - immutable
     """Return the runs below a folder that are meant, oldest first."""
-    return (one for one in map(listed_run, list_runs(root)) if wanted.has(one))
+    return (one for one in map(listed_run, list_runs(root)) if chosen.has(one))
 
 
 def listed_run(run: Run) -> Listed:

@@ -24,7 +24,7 @@ def test_what_needs_no_impulses_is_over_at_once() -> None:
     assert not begun("slides").over
 
 
-def test_it_begins_where_it_is_told_to_and_aims_below_the_tolerance() -> None:
+def test_it_begins_at_the_given_impulses_and_aims_below_the_tolerance() -> None:
     start = np.ones((4, 3))
     one = Search(cube(BY_HAND["slides"][0]), 1e-6, 10, start, False)
     assert one.best.tolist() == start.tolist()

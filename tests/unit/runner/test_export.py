@@ -41,7 +41,7 @@ def test_a_table_is_found_by_its_name() -> None:
 
 
 def test_without_names_everything_there_is_and_the_reason_for_the_rest(tmp_path: Path) -> None:
-    """Velocities are there where a config asks for them: to have none is no lack."""
+    """Velocities are there where a config asks for them: a run may have none."""
     found = export_run(RUN, "csv", tmp_path)
     tables = {path.name for path in found.files if path.suffix == ".csv"}
     assert tables == {"cells.csv", "pose.csv", "step.csv", "verdicts.csv"}

@@ -12,7 +12,7 @@ from lavendersim.errors import UsageError
 from lavendersim.runner.listing import (
     VERDICTS,
     Listed,
-    Wanted,
+    RunFilter,
     _date,
     checked_tags,
     size_from,
@@ -81,28 +81,28 @@ def test_tags_are_words_each_once() -> None:
 def test_a_run_ended_in_one_of_five_ways(changes: dict[str, Any], verdict: str) -> None:
     assert verdict_of(listed(**changes)) == verdict
     assert verdict in VERDICTS
-    assert Wanted(verdict=verdict).has(listed(**changes))
+    assert RunFilter(verdict=verdict).has(listed(**changes))
 
 
 @pytest.mark.parametrize(
-    ("wanted", "good"),
+    ("chosen", "good"),
     [
-        (Wanted(), True),
-        (Wanted(names=("jenga", "tow*")), True),
-        (Wanted(names=("tow",)), False),
-        (Wanted(tag="good"), True),
-        (Wanted(tag="goo"), False),
-        (Wanted(before=NOW), True),
-        (Wanted(before=NOW - timedelta(seconds=1)), False),
-        (Wanted(since=NOW), True),
-        (Wanted(since=NOW + timedelta(seconds=1)), False),
-        (Wanted(larger=2e6), True),
-        (Wanted(larger=2e6 + 1), False),
-        (Wanted(names=("tower",), verdict="fail"), False),
+        (RunFilter(), True),
+        (RunFilter(names=("jenga", "tow*")), True),
+        (RunFilter(names=("tow",)), False),
+        (RunFilter(tag="good"), True),
+        (RunFilter(tag="goo"), False),
+        (RunFilter(before=NOW), True),
+        (RunFilter(before=NOW - timedelta(seconds=1)), False),
+        (RunFilter(since=NOW), True),
+        (RunFilter(since=NOW + timedelta(seconds=1)), False),
+        (RunFilter(larger=2e6), True),
+        (RunFilter(larger=2e6 + 1), False),
+        (RunFilter(names=("tower",), verdict="fail"), False),
     ],
 )
-def test_every_condition_has_to_hold(wanted: Wanted, good: bool) -> None:
-    assert wanted.has(listed()) is good
+def test_every_condition_has_to_hold(chosen: RunFilter, good: bool) -> None:
+    assert chosen.has(listed()) is good
 
 
 def test_a_run_began_when_its_name_says_or_else_its_folder(tmp_path: Path) -> None:

@@ -33,3 +33,12 @@ def test_both_engines_of_a_pair_can_be_and_differ_in_the_effect(numerics: str) -
             assert not laws & set(pair.on.effects) or numerics == "default"
         elif pair.effect in names_of_effects():
             assert extra == {pair.effect} | ({"pose_log"} if pair.effect == "step_log" else set())
+
+
+def test_what_other_effects_of_the_plan_need_cannot_be_left_out_alone() -> None:
+    rolling = BALL.replace("restitution: 0.5", "friction: 0.5, rolling_friction: 0.01")
+    config = load_experiment_text(rolling, "ball.yaml").cells()[0].config
+    found = {pair.effect: pair for pair in pairs_of(config, ("friction", "rolling_friction"))}
+    assert "rolling_friction" in found["friction"].why_not
+    assert found["friction"].why_not.endswith(("needs it", "need it"))
+    assert found["rolling_friction"].off is not None

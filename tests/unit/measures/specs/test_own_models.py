@@ -1,4 +1,4 @@
-"""The source of a measure of a file: what this process was told it may run, and nothing else."""
+"""The source of a measure of a file: what this process may run, and nothing else."""
 
 from __future__ import annotations
 
