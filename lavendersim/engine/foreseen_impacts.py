@@ -106,7 +106,7 @@ def make_foresee(spec: Spec) -> Any:
             if contact.phi <= params.slop + CLOSED * bends * left:
                 pressed += bends
         leaves = v > least + pressed and contact.phi + left * (v - 0.5 * pressed) > params.slop
-        if leaves and not drawn:
+        if leaves and not drawn and pair.whole == 0:
             contact.waits = 1
         ahead, slow = False, most
         if gap > params.slop:

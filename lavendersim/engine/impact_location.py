@@ -22,7 +22,7 @@ from .approach import (
     make_change_ahead,
     make_nearest_rate,
 )
-from .collide.manifold.point import manifold_normal
+from .collide.manifold.point import WHOLE, manifold_normal
 from .collide.narrow_phase import make_manifold
 from .collide.records import put_normal
 from .compile import kernel, separate
@@ -99,6 +99,7 @@ def make_locate(spec: Spec) -> Any:
         marches, own = ahead.located == ELSEWHERE, ahead.located == GUESSED
         first = marches  # what overlaps as the part begins, and parts, has not met yet
         low, high = 0.0, NEVER  # apart, overlapping
+        touching.reduction[WHOLE] = row.whole
         contact = trial.contact[0]
         contact.a, contact.b = owner_i, owner_j
         for _ in range(PASSES):
@@ -176,6 +177,7 @@ def make_locate(spec: Spec) -> Any:
                 break
         bodies[owner_i], bodies[owner_j] = kept[A], kept[B]
         bodies[i], bodies[j] = kept[PART_A], kept[PART_B]
+        touching.reduction[WHOLE] = 0
         return max(when, SOONEST)
 
     return separate(kernel(locate, spec), spec)

@@ -29,12 +29,12 @@ from .record_layout import (
     residual_row_dtype,
     step_row_dtype,
 )
-from .records import COUNTERS, MOTION, dtype
+from .records import COUNTERS, MOTION, OVERLOOKED, dtype
 from .solvers.catalogue import SOLVERS
 from .spec import Spec
 from .step_doubling import allocate_control, with_capacity
 
-_MOTION = dtype(MOTION)
+_MOTION, _OVERLOOKED = dtype(MOTION), dtype(OVERLOOKED)
 
 
 class Drives(NamedTuple):
@@ -57,6 +57,13 @@ class State(NamedTuple):
     links: np.ndarray  # what effects join two bodies by
     drives: Any  # functions of time that act on bodies: Drives, or ()
     control: Any  # of the length of substeps: `step_doubling.Control`, or ()
+
+
+class Overlooked(NamedTuple):
+    """Points ahead that a part of a step has no rows of (`overlooked_points`)."""
+
+    points: np.ndarray  # (2 m,) OVERLOOKED; m contacts at most
+    count: np.ndarray  # (1,) int64
 
 
 class Trial(NamedTuple):
@@ -83,6 +90,7 @@ class Workspace(NamedTuple):
     middle: Middle
     ordering: Ordering
     contact_lists: ContactLists  # of each body, `flush_contacts`
+    overlooked: Overlooked
     islands: np.ndarray  # (n,) int64 label of a body's island, `islands`
     solver: Any  # what the solver allocates
     free_velocities: np.ndarray  # (n,) as velocities: before any contact impulse, `problem_log`
@@ -161,6 +169,7 @@ def allocate_workspace(
         ),
         ordering=allocate_ordering(bodies, 0),
         contact_lists=allocate_contact_lists(0, 0),
+        overlooked=Overlooked(np.zeros(0, _OVERLOOKED), np.zeros(1, np.int64)),
         islands=np.zeros(bodies if spec.has("sleeping") else 0, np.int64),
         solver=(),
         free_velocities=np.zeros(bodies if spec.has("problem_log") else 0, state.velocities.dtype),
@@ -174,9 +183,11 @@ def for_contacts(spec: Spec, workspace: Workspace, state: State) -> Workspace:
     """Return the workspace with room for the contacts of a state."""
     bodies, capacity = len(state.bodies), len(state.contacts)
     listed = (bodies, capacity) if spec.has("impact_order") else (0, 0)
+    overlooked = np.zeros(2 * listed[1], _OVERLOOKED)
     return workspace._replace(
         ordering=allocate_ordering(bodies, capacity),
         contact_lists=allocate_contact_lists(*listed),
+        overlooked=workspace.overlooked._replace(points=overlooked),
         solver=SOLVERS[spec.solver].allocate(spec, bodies, capacity),
     )
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from .collide.manifold.point import manifold_normal
+from .collide.manifold.point import WHOLE, manifold_normal
 from .collide.narrow_phase import make_manifold
 from .collide.records import UNBOUNDED, put_normal
 from .compile import inner, kernel
@@ -127,6 +127,8 @@ def make_look(spec: Spec) -> Any:
             if a.shape != PLANE and b.shape != PLANE:
                 size = min(a.bound, b.bound)
             found = 0
+            if ordered:
+                scratch.manifold.reduction[WHOLE] = row.whole
             if not passes_on:  # beyond a seam is another's face, not its edge
                 found = manifold(row.kind, a, b, margin + APART * size, scratch)
             persists, flat = False, has_flat_faces(a) and has_flat_faces(b)
@@ -150,6 +152,8 @@ def make_look(spec: Spec) -> Any:
                         contact.tangential_x, contact.tangential_y = 0.0, 0.0
                         contact.tangential_z = 0.0
             first = last
+        if ordered:
+            scratch.manifold.reduction[WHOLE] = 0
 
     return kernel(look, spec)
 

@@ -80,7 +80,13 @@ ANGULAR_VELOCITY: Final[list[Field]] = [("wx", F8), ("wy", F8), ("wz", F8)]  # [
 
 # A pair of bodies that may touch, ordered as the kernel of its shape pair takes them.
 # Rows ascend in `key`, which names the two bodies whatever row they have.
-PAIR: Final[list[Field]] = [("a", I8), ("b", I8), ("kind", I8), ("key", I8)]
+PAIR: Final[list[Field]] = [
+    ("a", I8),
+    ("b", I8),
+    ("kind", I8),
+    ("key", I8),
+    ("whole", I8),  # 1 while every point of its manifold takes part (`overlooked_points`)
+]
 
 # What a body did within a step, beside its velocity at the end.
 MOTION: Final[list[Field]] = [
@@ -127,6 +133,21 @@ CONTACT: Final[list[Field]] = [
     ("target", F8),  # b + b_rest: the row asks v_n + target + gamma lambda >= 0 [m/s]
     ("inv_k", F8),  # 1/(k_n + gamma) [kg]
     ("lambda_n", F8),  # accumulated impulse on B along n, A gets the opposite [N s]
+]
+
+# A point ahead that a part of a step has no row of.
+OVERLOOKED: Final[list[Field]] = [
+    ("pair", I8),  # row of the pair table
+    ("a", I8),
+    ("b", I8),
+    ("waits", I8),  # 1: its row waits for a later part; 0: its manifold was reduced
+    ("x", F8),  # half way between the surfaces [m]
+    ("y", F8),
+    ("z", F8),
+    ("nx", F8),  # unit normal from A to B
+    ("ny", F8),
+    ("nz", F8),
+    ("phi", F8),  # [m]
 ]
 
 # Position and orientation, quaternion w x y z.

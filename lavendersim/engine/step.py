@@ -16,7 +16,7 @@ from __future__ import annotations
 from functools import cache
 from typing import Any
 
-from .approach import make_note_acceleration
+from .approach import NEVER, make_note_acceleration
 from .collide import narrow_phase
 from .collide.iteration_limits import forget_limits, has_gjk, make_count_limits
 from .compile import chain, composing, kernel, uncollected
@@ -30,6 +30,7 @@ from .integrate import (
     make_undo,
 )
 from .kernel_cache import cached
+from .overlooked_points import make_forget_whole
 from .parts import has_parts, make_end_step, make_forget_history, make_gather_parts
 from .records import (
     CONTACTS_FULL,
@@ -104,6 +105,7 @@ def make_advance(spec: Spec) -> Any:
     iterates = has_gjk(spec)
     count_limits: Any = make_count_limits(spec) if iterates else None
     limits_impacts = has_hook(spec, "limit_impacts")
+    forget_whole: Any = make_forget_whole(spec)
     sleeps, measure_speeds = made_once(spec, "measure_speeds")
     _, wake = made_once(spec, "wake")
     _, update_sleeping = made_once(spec, "update_sleeping")
@@ -121,7 +123,7 @@ def make_advance(spec: Spec) -> Any:
         if touches:
             pull = workspace.collision.outline_a.pull
             pull[0], pull[1], pull[2] = params.gx, params.gy, params.gz
-        done = 0
+        done, listed, again, longest = 0, 0, False, NEVER
         while done < steps:
             begins = True
             if in_parts:
@@ -167,11 +169,13 @@ def make_advance(spec: Spec) -> Any:
                 refresh_inertia(bodies, velocities)
             if compound:
                 place_parts(bodies)
-            listed = pairs.shape[0]
-            if broad:
-                listed = find_pairs(
-                    bodies, velocities, pairs, workspace.templates, params, workspace.broad_phase
-                )
+            if not again:
+                listed = pairs.shape[0]
+                if broad:
+                    broad_phase = workspace.broad_phase
+                    listed = find_pairs(
+                        bodies, velocities, pairs, workspace.templates, params, broad_phase
+                    )
             count = 0
             if touches:
                 if listed >= 0:
@@ -196,6 +200,8 @@ def make_advance(spec: Spec) -> Any:
                     forget_limits(workspace.collision)
                 if keeps:
                     undo(velocities, motion)
+                if again:
+                    forget_whole(pairs, listed)
                 if controlled:
                     abandon(state, params, counter, log.step)
                 params.dt = params.timestep
@@ -205,6 +211,7 @@ def make_advance(spec: Spec) -> Any:
                 left = params.dt
                 count, length = order(state, count, workspace, params, counters)
                 instant = length == 0.0
+                length = min(length, longest)
                 if length < left:
                     undo(velocities, motion)
                     params.dt = max(length, INSTANT)
@@ -230,7 +237,17 @@ def make_advance(spec: Spec) -> Any:
                         pass_by(contacts, velocities, motion, params, counters, log)
                         passed = True
                 if not passed:
-                    respond(state, count, workspace, params, counters, log)
+                    longest = respond(state, count, workspace, params, counters, log)
+                    if ordered:
+                        if longest > 0.0:
+                            undo(velocities, motion)
+                            if iterates:
+                                forget_limits(workspace.collision)
+                            params.dt, again = params.timestep, True
+                            continue
+                        if again:
+                            forget_whole(pairs, listed)
+                longest, again = NEVER, False
             if iterates:
                 count_limits(workspace.collision, counters)
             if in_parts:

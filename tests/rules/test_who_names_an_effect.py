@@ -111,8 +111,9 @@ ASKED = {
             *("effects/projection", "integrate", "midpoint_passes"),
         ),
         "impact_order": (
-            *("effects/impact_time", "effects/sliding_stops", "effects/warm_start", "memory"),
-            *("midpoint_geometry", "parts", "respond", "runner/log_size"),
+            *("collide/narrow_phase", "collide/pairs/cylinder_plane", "effects/impact_time"),
+            *("effects/sliding_stops", "effects/warm_start", "memory", "midpoint_geometry"),
+            *("parts", "respond", "runner/log_size"),
         ),
         "error_control": (
             *("effects/projection", "effects/warm_start", "parts", "step", "step_doubling"),
