@@ -87,6 +87,7 @@ ASKED = {
             *("effects/step_log", "effects/velocity_log", "error_estimate", "foreseen_impacts"),
             "impact_location",
             *("integrate", "midpoint_geometry", "midpoint_passes", "midpoint_rows"),
+            "overlooked_points",
             *("solvers/newton/minimise", "spring_midpoint", "step_doubling", "scene/events"),
         ),
         "gyroscopic": ("integrate", "midpoint_geometry"),
