@@ -36,7 +36,7 @@ def make_shift_together(spec: Spec) -> Any:
     """
     if not row_terms(spec).frictional:
         return None
-    slip_velocity, smooth = make_slip_velocity(spec), row_terms(spec).frictionless
+    slip_velocity, frictionless = make_slip_velocity(spec), row_terms(spec).frictionless
 
     def push_column(contacts, count, velocities, workspace, kept):
         by, led_to = workspace.shifted, workspace.defects
@@ -45,11 +45,11 @@ def make_shift_together(spec: Spec) -> Any:
                 by[k, c], led_to[k, c] = by[k - 1, c], led_to[k - 1, c]
         for c in range(count):
             contact = contacts[c]
-            rough = True
-            if smooth:
-                rough = contact.frictional == 1
+            frictional = True
+            if frictionless:
+                frictional = contact.frictional == 1
             defect = 0.0
-            if rough:
+            if frictional:
                 _, v_1, v_2 = slip_velocity(contact, velocities[contact.a], velocities[contact.b])
                 defect = contact.mu * sqrt(v_1 * v_1 + v_2 * v_2) - contact.shift
             else:
