@@ -63,7 +63,7 @@ class Overlooked(NamedTuple):
     """Points ahead that a part of a step has no rows of (`overlooked_points`)."""
 
     points: np.ndarray  # (2 m,) OVERLOOKED; m contacts at most
-    count: np.ndarray  # (1,) int64
+    noted: np.ndarray  # (1,) int64, how many
 
 
 class Trial(NamedTuple):

@@ -38,7 +38,7 @@ def make_note_left_out(spec: Spec) -> Any:
 
     def note_left_out(pair, a, b, count, n, workspace):
         manifold, overlooked = workspace.collision.manifold, workspace.overlooked
-        noted, left_out = overlooked.count[0], manifold.reduction[LEFT_OUT]
+        noted, left_out = overlooked.noted[0], manifold.reduction[LEFT_OUT]
         # The other half is for rows that wait.
         if noted + left_out > overlooked.points.shape[0] // 2:
             return False
@@ -48,7 +48,7 @@ def make_note_left_out(spec: Spec) -> Any:
             row.x, row.y, row.z, row.phi = point.x, point.y, point.z, point.phi
             row.nx, row.ny, row.nz = n.x, n.y, n.z
             noted += 1
-        overlooked.count[0] = noted
+        overlooked.noted[0] = noted
         return True
 
     return kernel(note_left_out, spec)
@@ -58,11 +58,11 @@ def make_note_waiting(spec: Spec) -> Any:
     """Return `kernel(contact, overlooked)`: its row waits for a later part."""
 
     def note_waiting(contact, overlooked):
-        row = overlooked.points[overlooked.count[0]]
+        row = overlooked.points[overlooked.noted[0]]
         row.pair, row.a, row.b, row.waits = contact.pair, contact.a, contact.b, 1
         row.x, row.y, row.z, row.phi = contact.x, contact.y, contact.z, contact.phi
         row.nx, row.ny, row.nz = contact.nx, contact.ny, contact.nz
-        overlooked.count[0] += 1
+        overlooked.noted[0] += 1
 
     return kernel(note_waiting, spec)
 
@@ -90,7 +90,7 @@ def make_look_over(spec: Spec) -> Any:
     def look_over(state, poses, overlooked, params):
         pairs, velocities, motion = state.pairs, state.velocities, state.motion
         dt, longest, again = params.dt, NEVER, False
-        for k in range(overlooked.count[0]):
+        for k in range(overlooked.noted[0]):
             point = overlooked.points[k]
             n, a, b = normal(point), point.a, point.b
             arm_a = minus(position(point), position(poses[a]))

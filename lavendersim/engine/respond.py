@@ -132,7 +132,7 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
             if moving:
                 midway = midpoint_passes(state, count, workspace, params, counters, log)
         if ordered:
-            if lasts and workspace.overlooked.count[0] > 0:
+            if lasts and workspace.overlooked.noted[0] > 0:
                 poses = workspace.middle.poses if midway else bodies
                 cut = look_over(state, poses, workspace.overlooked, params)
                 if cut > 0.0:

@@ -81,7 +81,7 @@ def make(spec: Spec):
         total = 0
         margin = TOUCHING
         reduction = scratch.manifold.reduction
-        workspace.overlooked.count[0] = 0
+        workspace.overlooked.noted[0] = 0
         for p in range(listed):
             i, j = pairs[p].a, pairs[p].b
             owner_i, owner_j = i, j

@@ -72,7 +72,10 @@ def allocate_envelope(bodies: int, contacts: int, capacity: int, packed: Any = (
         np.zeros(rows),
         np.zeros(bodies, dtype(MASS)),
         np.zeros((9, DOF)),
-        *(np.zeros((DEPTH, contacts)) for _ in range(4)),
+        np.zeros((DEPTH, contacts)),
+        np.zeros((DEPTH, contacts)),
+        np.zeros((DEPTH, contacts)),
+        np.zeros((DEPTH, contacts)),
         packed,
     )
 
