@@ -18,9 +18,10 @@ from __future__ import annotations
 from math import cos, sin, sqrt
 from typing import Any
 
-from .approach import NEVER, OVERLAP, make_rate, normal
+from .approach import CREEP, NEVER, OVERLAP, make_forced, make_rate, normal
 from .compile import kernel
-from .foreseen_impacts import FLIGHT
+from .effects import made_once
+from .foreseen_impacts import FLIGHT, make_is_impact
 from .spec import Spec
 from .vectors import Vec3, cross, dot, length, minus, position
 
@@ -74,6 +75,9 @@ def make_look_over(spec: Spec) -> Any:
     that the part may be when it is made again [s].
     """
     rate, turns = make_rate(spec), spec.has("rotation")
+    forced, is_impact = make_forced(spec), make_is_impact(spec)
+    restitution = spec.has("restitution")
+    falls, restitution_at = made_once(spec, "restitution_at")
 
     def turned(n, w, arm, dt):
         # What turning the arm moves its end along n, beside what its rate at the start does [m].
@@ -86,6 +90,18 @@ def make_look_over(spec: Spec) -> Any:
         return out + dot(n, cross(w, arm)) * (sin(angle) / angle - 1.0) * dt
 
     turned = kernel(turned, spec)
+
+    def meets(point, pair, speed, motion, params):
+        # Whether that is an impact; slower it is a contact of the motion, as any is.
+        e = 0.0
+        if restitution:
+            e = pair.restitution
+        if falls:
+            e = restitution_at(e, pair, speed)
+        dv, most = forced(point, motion)
+        return is_impact(speed, CREEP, dv, most, e, params)
+
+    meets = kernel(meets, spec)
 
     def look_over(state, poses, overlooked, params):
         pairs, velocities, motion = state.pairs, state.velocities, state.motion
@@ -112,12 +128,12 @@ def make_look_over(spec: Spec) -> Any:
             if not max(last, mean) * dt < limit:
                 continue
             pair = pairs[point.pair]
-            if point.waits == 1:
+            if first > 0.0 or point.waits == 1:
                 # phi + first t + (mean - first) t^2/dt = 0, in the form that does not cancel.
                 gap, half = max(point.phi, 0.0), (mean - first) / dt
                 root = sqrt(max(first * first - 4.0 * half * gap, 0.0))
                 due = 2.0 * gap / (root - first) if first < 0.0 else (first + root) / (-2.0 * half)
-                if due >= FLIGHT * params.timestep:
+                if due >= FLIGHT * params.timestep and meets(point, pair, root, motion, params):
                     if due < dt:
                         longest, again = min(longest, due), True
                     continue
