@@ -78,6 +78,17 @@ def make_locate(spec: Spec) -> Any:
 
     touches = kernel(touches, spec)
 
+    def deepest_new(contacts, count, pair, points, found):
+        # Of the points found the deepest that does not touch as the part begins; -1: none.
+        deepest = -1
+        for k in range(found):
+            if deepest < 0 or points[k].phi < points[deepest].phi:
+                if not touches(contacts, count, pair, points[k].feature):
+                    deepest = k
+        return deepest
+
+    deepest_new = kernel(deepest_new, spec)
+
     def locate(state, count, ahead, workspace, params):
         bodies, velocities, motion = state.bodies, state.velocities, state.motion
         trial = workspace.trial
@@ -97,7 +108,9 @@ def make_locate(spec: Spec) -> Any:
         margin = TOUCHING + ma.reach + mb.reach
         t, when, late = ahead.due, NEVER, False
         marches, own = ahead.located == ELSEWHERE, ahead.located == GUESSED
-        first = marches  # what overlaps as the part begins, and parts, has not met yet
+        others = False  # of its pair another point meets before it
+        # What overlaps as the part begins, and parts, has not met yet.
+        first = marches or ahead.phi < -MET
         low, high = 0.0, NEVER  # apart, overlapping
         touching.reduction[WHOLE] = row.whole
         contact = trial.contact[0]
@@ -124,15 +137,13 @@ def make_locate(spec: Spec) -> Any:
                         seen = k
                 if abs(points[seen].phi) <= MET:
                     # Has another of the pair met already? What it stands on has not: it lasts.
-                    met = -1
-                    for k in range(found):
-                        if points[k].phi < -TOUCHING and (
-                            met < 0 or points[k].phi < points[met].phi
-                        ):
-                            if not touches(state.contacts, count, ahead.pair, points[k].feature):
-                                met = k
-                    if met >= 0:
-                        own, seen, low = False, met, 0.0
+                    met = deepest_new(state.contacts, count, ahead.pair, points, found)
+                    if met >= 0 and points[met].phi < -TOUCHING:
+                        own, others, first, seen, low = False, True, True, met, 0.0
+            elif others:
+                met = deepest_new(state.contacts, count, ahead.pair, points, found)
+                if met >= 0:
+                    seen = met
             point = points[seen]
             contact.x, contact.y, contact.z = point.x, point.y, point.z
             put_normal(contact, manifold_normal(touching))
