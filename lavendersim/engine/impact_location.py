@@ -55,6 +55,7 @@ def make_locate(spec: Spec) -> Any:
     change_ahead, nearest_rate = make_change_ahead(spec), make_nearest_rate(spec)
     turns, compound = spec.has("rotation"), spec.has("compound")
     turn: Any = make_turn(spec)
+    overlooks = spec.has("overlooked_points")
     _, place_part = made_once(spec, "place_part")
 
     def displace(body, velocity, m, t, left):
@@ -112,7 +113,8 @@ def make_locate(spec: Spec) -> Any:
         # What overlaps as the part begins, and parts, has not met yet.
         first = marches or ahead.phi < -MET
         low, high = 0.0, NEVER  # apart, overlapping
-        touching.reduction[WHOLE] = row.whole
+        if overlooks:
+            touching.reduction[WHOLE] = row.whole
         contact = trial.contact[0]
         contact.a, contact.b = owner_i, owner_j
         for _ in range(PASSES):
@@ -188,7 +190,8 @@ def make_locate(spec: Spec) -> Any:
                 break
         bodies[owner_i], bodies[owner_j] = kept[A], kept[B]
         bodies[i], bodies[j] = kept[PART_A], kept[PART_B]
-        touching.reduction[WHOLE] = 0
+        if overlooks:
+            touching.reduction[WHOLE] = 0
         return max(when, SOONEST)
 
     return separate(kernel(locate, spec), spec)

@@ -87,12 +87,14 @@ def make_keep_motion(spec: Spec) -> Any:
 
     Those that wait are noted, since a push of the others may make them meet in it.
     """
-    keep_present, note_waiting = make_keep_present(spec), make_note_waiting(spec)
+    keep_present, overlooks = make_keep_present(spec), spec.has("overlooked_points")
+    note_waiting: Any = make_note_waiting(spec) if overlooks else None
 
     def keep_motion(contacts, count, overlooked):
-        for c in range(count):
-            if contacts[c].waits == 1:
-                note_waiting(contacts[c], overlooked)
+        if overlooks:
+            for c in range(count):
+                if contacts[c].waits == 1:
+                    note_waiting(contacts[c], overlooked)
         return keep_present(contacts, count)
 
     return kernel(keep_motion, spec)

@@ -183,7 +183,8 @@ def for_contacts(spec: Spec, workspace: Workspace, state: State) -> Workspace:
     """Return the workspace with room for the contacts of a state."""
     bodies, capacity = len(state.bodies), len(state.contacts)
     listed = (bodies, capacity) if spec.has("impact_order") else (0, 0)
-    overlooked = np.zeros(2 * listed[1], _OVERLOOKED)
+    rows = 2 * capacity if spec.has("overlooked_points") else 0
+    overlooked = np.zeros(rows, _OVERLOOKED)
     return workspace._replace(
         ordering=allocate_ordering(bodies, capacity),
         contact_lists=allocate_contact_lists(*listed),

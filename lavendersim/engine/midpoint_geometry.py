@@ -104,6 +104,7 @@ def make_look(spec: Spec) -> Any:
     compound, place_parts = made_once(spec, "place_parts")
     swept, stay = spec.has("fast_bodies"), make_stay(spec)
     ordered, nearest = spec.has("impact_order"), make_nearest(spec)
+    overlooks = spec.has("overlooked_points")
 
     def look(state, count, poses, workspace):
         bodies, contacts = state.bodies, state.contacts
@@ -127,7 +128,7 @@ def make_look(spec: Spec) -> Any:
             if a.shape != PLANE and b.shape != PLANE:
                 size = min(a.bound, b.bound)
             found = 0
-            if ordered:
+            if overlooks:
                 scratch.manifold.reduction[WHOLE] = row.whole
             if not passes_on:  # beyond a seam is another's face, not its edge
                 found = manifold(row.kind, a, b, margin + APART * size, scratch)
@@ -152,7 +153,7 @@ def make_look(spec: Spec) -> Any:
                         contact.tangential_x, contact.tangential_y = 0.0, 0.0
                         contact.tangential_z = 0.0
             first = last
-        if ordered:
+        if overlooks:
             scratch.manifold.reduction[WHOLE] = 0
 
     return kernel(look, spec)

@@ -80,13 +80,7 @@ ANGULAR_VELOCITY: Final[list[Field]] = [("wx", F8), ("wy", F8), ("wz", F8)]  # [
 
 # A pair of bodies that may touch, ordered as the kernel of its shape pair takes them.
 # Rows ascend in `key`, which names the two bodies whatever row they have.
-PAIR: Final[list[Field]] = [
-    ("a", I8),
-    ("b", I8),
-    ("kind", I8),
-    ("key", I8),
-    ("whole", I8),  # 1 while every point of its manifold takes part (`overlooked_points`)
-]
+PAIR: Final[list[Field]] = [("a", I8), ("b", I8), ("kind", I8), ("key", I8)]
 
 # What a body did within a step, beside its velocity at the end.
 MOTION: Final[list[Field]] = [

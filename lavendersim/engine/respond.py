@@ -75,7 +75,8 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
     if centred:
         midpoint_passes = make_midpoint_passes(spec, append_contact, preload, solve)
     stand_up: Any = make_stand_up(spec) if centred else None
-    look_over: Any = make_look_over(spec) if ordered else None
+    overlooks = spec.has("overlooked_points")
+    look_over: Any = make_look_over(spec) if overlooks else None
 
     def respond(state, count, workspace, params, counters, log):
         bodies, velocities, motion = state.bodies, state.velocities, state.motion
@@ -131,7 +132,7 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
         if centred:
             if moving:
                 midway = midpoint_passes(state, count, workspace, params, counters, log)
-        if ordered:
+        if overlooks:
             if lasts and workspace.overlooked.noted[0] > 0:
                 poses = workspace.middle.poses if midway else bodies
                 cut = look_over(state, poses, workspace.overlooked, params)

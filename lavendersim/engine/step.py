@@ -105,7 +105,8 @@ def make_advance(spec: Spec) -> Any:
     iterates = has_gjk(spec)
     count_limits: Any = make_count_limits(spec) if iterates else None
     limits_impacts = has_hook(spec, "limit_impacts")
-    forget_whole: Any = make_forget_whole(spec)
+    overlooks = spec.has("overlooked_points")
+    forget_whole: Any = make_forget_whole(spec) if overlooks else None
     sleeps, measure_speeds = made_once(spec, "measure_speeds")
     _, wake = made_once(spec, "wake")
     _, update_sleeping = made_once(spec, "update_sleeping")
@@ -169,7 +170,10 @@ def make_advance(spec: Spec) -> Any:
                 refresh_inertia(bodies, velocities)
             if compound:
                 place_parts(bodies)
-            if not again:
+            looks = True  # for pairs: a part that is made again has those of its first time
+            if overlooks:
+                looks = not again
+            if looks:
                 listed = pairs.shape[0]
                 if broad:
                     broad_phase = workspace.broad_phase
@@ -200,8 +204,9 @@ def make_advance(spec: Spec) -> Any:
                     forget_limits(workspace.collision)
                 if keeps:
                     undo(velocities, motion)
-                if again:
-                    forget_whole(pairs, listed)
+                if overlooks:
+                    if again:
+                        forget_whole(pairs, listed)
                 if controlled:
                     abandon(state, params, counter, log.step)
                 params.dt = params.timestep
@@ -211,7 +216,8 @@ def make_advance(spec: Spec) -> Any:
                 left = params.dt
                 count, length = order(state, count, workspace, params, counters)
                 instant = length == 0.0
-                length = min(length, longest)
+                if overlooks:
+                    length = min(length, longest)
                 if length < left:
                     undo(velocities, motion)
                     params.dt = max(length, INSTANT)
@@ -237,17 +243,18 @@ def make_advance(spec: Spec) -> Any:
                         pass_by(contacts, velocities, motion, params, counters, log)
                         passed = True
                 if not passed:
-                    longest = respond(state, count, workspace, params, counters, log)
-                    if ordered:
-                        if longest > 0.0:
+                    cut = respond(state, count, workspace, params, counters, log)
+                    if overlooks:
+                        if cut > 0.0:
                             undo(velocities, motion)
                             if iterates:
                                 forget_limits(workspace.collision)
-                            params.dt, again = params.timestep, True
+                            params.dt, longest, again = params.timestep, cut, True
                             continue
-                        if again:
-                            forget_whole(pairs, listed)
-                longest, again = NEVER, False
+                if overlooks:
+                    if again:
+                        forget_whole(pairs, listed)
+                    longest, again = NEVER, False
             if iterates:
                 count_limits(workspace.collision, counters)
             if in_parts:

@@ -45,7 +45,7 @@ scene:
     low: {shape: {kind: sphere, radius: 0.1}, mass: 1, position: [2, 0, 1], surface: two}
 duration: 1
 """
-NEVER_ADDED = {"impact_order", "rotation"}  # nor `sliding_stops`, which needs the former
+NEVER_ADDED = {"impact_order", "rotation"}  # nor what needs the former
 PAIRS = (
     *("box_box", "box_plane", "capsule_box", "capsule_plane", "cylinder_box", "cylinder_cylinder"),
     *("cylinder_plane", "hull_plane", "sphere_box", "sphere_cylinder", "sphere_plane"),

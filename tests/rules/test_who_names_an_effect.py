@@ -52,6 +52,7 @@ ELSEWHERE = {
         "engine/effects/impact_order.py": SPRING,
         "engine/foreseen_impacts.py": SPRING,
         "engine/impact_rows.py": SPRING,
+        "engine/midpoint_jumps.py": SPRING,
         "engine/effects/impact_time.py": SPRING,
         "engine/effects/projection.py": SPRING,
         "engine/midpoint_rows.py": SPRING,
@@ -63,6 +64,7 @@ ELSEWHERE = {
         "engine/effects/fast_bodies.py": "captured, it gives energy",
         "engine/effects/impact_energy.py": "takes the place of its law",
         "engine/foreseen_impacts.py": "a rebound tells an impact from a lasting contact",
+        "engine/overlooked_points.py": "a rebound tells an impact from a lasting contact",
     },
     "speculative": {
         "engine/effects/decision.py": FACT,
@@ -112,9 +114,13 @@ ASKED = {
             *("effects/projection", "integrate", "midpoint_passes"),
         ),
         "impact_order": (
-            *("collide/narrow_phase", "collide/pairs/cylinder_plane", "effects/impact_time"),
-            *("effects/sliding_stops", "effects/warm_start", "memory", "midpoint_geometry"),
+            *("effects/impact_time", "effects/overlooked_points", "effects/sliding_stops"),
+            *("effects/warm_start", "memory", "midpoint_geometry"),
             *("parts", "respond", "runner/log_size"),
+        ),
+        "overlooked_points": (
+            *("collide/narrow_phase", "collide/pairs/cylinder_plane", "foreseen_impacts"),
+            *("impact_location", "impact_rows", "memory", "midpoint_geometry", "respond", "step"),
         ),
         "error_control": (
             *("effects/projection", "effects/warm_start", "parts", "step", "step_doubling"),
@@ -130,11 +136,12 @@ ASKED = {
         ),
         "contact_spring": (
             *("effects/impact_order", "effects/impact_time", "effects/pairwise_impacts"),
-            *("effects/projection", "foreseen_impacts", "impact_rows", "midpoint_rows"),
+            *("effects/projection", "foreseen_impacts", "impact_rows", "midpoint_jumps"),
+            "midpoint_rows",
         ),
         "compliance": ("foreseen_impacts",),
         "cohesion": ("foreseen_impacts",),
-        "restitution": ("foreseen_impacts",),
+        "restitution": ("foreseen_impacts", "overlooked_points"),
         "projection": ("integrate", "memory"),
         "surface_velocity": ("effects/static_friction",),
         "capture_in_sweeps": ("effects/restitution",),

@@ -72,7 +72,8 @@ def make(spec: Spec):
     share = 0.5 if spec.has("midpoint") else 1.0
     compound = spec.has("compound")
     sleeps, still = made_once(spec, "is_still")
-    ordered, note_left_out = spec.has("impact_order"), make_note_left_out(spec)
+    overlooks = spec.has("overlooked_points")
+    note_left_out: Any = make_note_left_out(spec) if overlooks else None
 
     def narrow_phase(state, listed, workspace, dt):
         bodies, motion, pairs, contacts = state.bodies, state.motion, state.pairs, state.contacts
@@ -81,7 +82,8 @@ def make(spec: Spec):
         total = 0
         margin = TOUCHING
         reduction = scratch.manifold.reduction
-        workspace.overlooked.noted[0] = 0
+        if overlooks:
+            workspace.overlooked.noted[0] = 0
         for p in range(listed):
             i, j = pairs[p].a, pairs[p].b
             owner_i, owner_j = i, j
@@ -91,7 +93,7 @@ def make(spec: Spec):
                 if still(bodies[owner_i]) and still(bodies[owner_j]):
                     continue
             fast, until_impact = False, 0.0
-            if ordered:
+            if overlooks:
                 reduction[WHOLE], reduction[LEFT_OUT] = pairs[p].whole, 0
             d = Vec3(0.0, 0.0, 0.0)
             if speculative:
@@ -109,7 +111,7 @@ def make(spec: Spec):
             if total + count > contacts.shape[0]:
                 return -1
             n = manifold_normal(scratch.manifold)
-            if ordered:
+            if overlooks:
                 # Points of fast bodies are moved to where they meet: none is kept of the others.
                 if reduction[LEFT_OUT] > 0 and not fast:
                     if not note_left_out(p, owner_i, owner_j, count, n, workspace):
@@ -130,7 +132,7 @@ def make(spec: Spec):
                     contact.tangential_y = until_impact * (d.y - along * n.y)
                     contact.tangential_z = until_impact * (d.z - along * n.z)
                 total += 1
-        if ordered:
+        if overlooks:
             reduction[WHOLE] = 0
         return total
 

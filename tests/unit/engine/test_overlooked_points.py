@@ -19,7 +19,8 @@ from lavendersim.engine.record_layout import (
 from lavendersim.engine.records import MOTION, OVERLOOKED, dtype
 from lavendersim.engine.spec import Spec
 
-SPEC = Spec(effects=("friction", "impact_order", "impact_time", "rotation"))
+EFFECTS = ("friction", "impact_order", "impact_time", "overlooked_points", "rotation")
+SPEC = Spec(effects=EFFECTS)
 DT = 1.0 / 240.0
 ARM = 0.1  # [m] of the point from the centre of the body, along x
 
@@ -74,12 +75,23 @@ def test_a_point_left_out_that_ends_inside_makes_its_manifold_whole() -> None:
     assert part.pairs["whole"][0] == 0
 
 
-def test_a_push_that_turns_the_body_over_counts_though_the_point_parted() -> None:
-    """It rises by w ARM as the part begins; the push turns it, and it comes down five times as
-    fast: the mean of both is down.
-    """
-    part = Part(0.0, 0)
-    assert part.look({"wy": -1.0}, {"wy": 5.0}) == DT
+RETURNS = ({"wy": -1.0}, {"wy": 5.0})  # it rises by w ARM, and comes down five times as fast
+
+
+@pytest.mark.parametrize("waits", [0, 1])
+def test_a_point_that_parts_and_is_pushed_back_ends_the_part_where_it_meets(waits: int) -> None:
+    """ARM t - 3 ARM t^2/dt = 0: at a third of the part; it is an impact of its own."""
+    part = Part(0.0, waits)
+    assert part.look(*RETURNS) == pytest.approx(DT / 3.0, rel=1e-4)  # less what turning bends
+    assert part.pairs["whole"][0] == 0
+
+
+@pytest.mark.parametrize("waits", [0, 1])
+def test_one_that_meets_more_slowly_than_forces_change_in_a_step_is_a_contact(waits: int) -> None:
+    """It meets at ARM = 0.1 m/s, and comes back at once of what forces change by 0.2 m/s."""
+    part = Part(0.0, waits)
+    part.state.motion["dvz"][1] = -0.2
+    assert part.look(*RETURNS) == DT
     assert part.pairs["whole"][0] == 1
 
 

@@ -67,7 +67,7 @@ def make_put_rim(spec):
 def make(spec):
     """Return `kernel(plane, cylinder, margin, scratch) -> count`; it writes `scratch.manifold`."""
 
-    ordered, put_rim = spec.has("impact_order"), make_put_rim(spec)
+    overlooks, put_rim = spec.has("overlooked_points"), make_put_rim(spec)
 
     def cylinder_plane(plane, cylinder, margin, scratch):
         n, origin = Vec3(plane.hx, plane.hy, plane.hz), Vec3(0.0, 0.0, 0.0)
@@ -100,7 +100,7 @@ def make(spec):
                 place(rows[count], middle, phi, first + k)
                 count += 1
         kept = write_manifold(scratch.manifold, rows, count, n)
-        if ordered:
+        if overlooks:
             if abs(down.z) > LEANS and cylinder.hx * across * ROUNDER > DEEP:
                 kept += put_rim(cylinder, down, across, height, n, margin, kept, scratch)
         return kept
