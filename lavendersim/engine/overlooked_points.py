@@ -7,9 +7,10 @@ points without rows are looked at once the velocities are known. Where one would
 than DEEP at the end, the part is made again,
 
     with every point of its manifold, where the manifold was reduced (`whole` of the pair);
-    up to where it meets, where its row waits: what it does then is the next part's.
+    up to where it meets, where it parts at first and comes back as fast as an impact does.
 
-A meeting so soon that the part would be none is a contact of the part: its pair is whole, too.
+What comes back more slowly, or so soon that the part would be none, is a contact of the part: its
+pair is whole, too, and none of its rows waits.
 A part whose solve leads nothing into each other is made once, to the same bits.
 """
 
