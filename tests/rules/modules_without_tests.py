@@ -39,7 +39,7 @@ WITHOUT_A_TEST = {
     """,
     "engine": """
         approach compile_options contact_problem coupling difference_kernel drives
-        engine error_estimate flush_contacts foreseen_impacts impact_location
+        engine error_estimate flush_contacts foreseen_impacts
         impact_rows integrate kernel_parts matrix_problem memory message_kernel
         midpoint_geometry midpoint_passes midpoint_rows part_compiler parts point_kernel
         record_layout records removal residual respond scaled_residual spec spin_block

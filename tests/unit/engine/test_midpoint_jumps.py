@@ -102,8 +102,8 @@ LEFT = 4e-9
 def test_a_plate_that_lands_on_its_rim_wins_no_energy(
     length: float, degrees: int, spin: str, friction: float, tmp_path: Path
 ) -> None:
-    """Plastic and rough, and nothing lifts it: no step creates more than what a solve leaves times
-    its impulses. Some points of the rim last while others land.
+    """Plastic, and nothing lifts it: no step creates more than what a solve leaves times its
+    impulses. Some points of the rim last while others land.
     """
     file = tmp_path / "plate.yaml"
     file.write_text(PLATE.format(length=length, degrees=degrees, spin=spin, friction=friction))
