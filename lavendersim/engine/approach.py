@@ -19,6 +19,8 @@ NEVER = 1e300  # [s]
 GUESSED, ELSEWHERE, LOCATED, FAR, MEETS = 0, 1, 2, 3, 4
 # Slowest approach [m/s], and as a share of the bodies' speed to each other: what solves leave.
 CREEP, ROUND_OFF = 1e-7, 1e-9
+# Bodies that overlap by more are moved apart first: what they do has no order in time [m].
+OVERLAP = 5e-5
 # Shares of a step that are too short to tell an acceleration.
 SHORT = 1e-6
 

@@ -68,6 +68,7 @@ def make_foresee(spec: Spec) -> Any:
     turns, bend = spec.has("rotation"), make_bend(spec)
     restitution, compliance = spec.has("restitution"), spec.has("compliance")
     springs, cohesive = spec.has("contact_spring"), spec.has("cohesion")
+    overlooks = spec.has("overlooked_points")
     falls, restitution_at = made_once(spec, "restitution_at")
 
     def foresee(contact, pair, bodies, motion, params, met):
@@ -106,6 +107,8 @@ def make_foresee(spec: Spec) -> Any:
             if contact.phi <= params.slop + CLOSED * bends * left:
                 pressed += bends
         leaves = v > least + pressed and contact.phi + left * (v - 0.5 * pressed) > params.slop
+        if overlooks:
+            leaves = leaves and pair.whole == 0
         if leaves and not drawn:
             contact.waits = 1
         ahead, slow = False, most

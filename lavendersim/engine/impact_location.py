@@ -22,7 +22,7 @@ from .approach import (
     make_change_ahead,
     make_nearest_rate,
 )
-from .collide.manifold.point import manifold_normal
+from .collide.manifold.point import WHOLE, manifold_normal
 from .collide.narrow_phase import make_manifold
 from .collide.records import put_normal
 from .compile import kernel, separate
@@ -55,6 +55,7 @@ def make_locate(spec: Spec) -> Any:
     change_ahead, nearest_rate = make_change_ahead(spec), make_nearest_rate(spec)
     turns, compound = spec.has("rotation"), spec.has("compound")
     turn: Any = make_turn(spec)
+    overlooks = spec.has("overlooked_points")
     _, place_part = made_once(spec, "place_part")
 
     def displace(body, velocity, m, t, left):
@@ -78,6 +79,17 @@ def make_locate(spec: Spec) -> Any:
 
     touches = kernel(touches, spec)
 
+    def deepest_new(contacts, count, pair, points, found):
+        # Of the points found the deepest that does not touch as the part begins; -1: none.
+        deepest = -1
+        for k in range(found):
+            if deepest < 0 or points[k].phi < points[deepest].phi:
+                if not touches(contacts, count, pair, points[k].feature):
+                    deepest = k
+        return deepest
+
+    deepest_new = kernel(deepest_new, spec)
+
     def locate(state, count, ahead, workspace, params):
         bodies, velocities, motion = state.bodies, state.velocities, state.motion
         trial = workspace.trial
@@ -97,8 +109,12 @@ def make_locate(spec: Spec) -> Any:
         margin = TOUCHING + ma.reach + mb.reach
         t, when, late = ahead.due, NEVER, False
         marches, own = ahead.located == ELSEWHERE, ahead.located == GUESSED
-        first = marches  # what overlaps as the part begins, and parts, has not met yet
+        others = False  # of its pair another point meets before it
+        # What overlaps as the part begins, and parts, has not met yet.
+        first = marches or ahead.phi < -MET
         low, high = 0.0, NEVER  # apart, overlapping
+        if overlooks:
+            touching.reduction[WHOLE] = row.whole
         contact = trial.contact[0]
         contact.a, contact.b = owner_i, owner_j
         for _ in range(PASSES):
@@ -123,15 +139,13 @@ def make_locate(spec: Spec) -> Any:
                         seen = k
                 if abs(points[seen].phi) <= MET:
                     # Has another of the pair met already? What it stands on has not: it lasts.
-                    met = -1
-                    for k in range(found):
-                        if points[k].phi < -TOUCHING and (
-                            met < 0 or points[k].phi < points[met].phi
-                        ):
-                            if not touches(state.contacts, count, ahead.pair, points[k].feature):
-                                met = k
-                    if met >= 0:
-                        own, seen, low = False, met, 0.0
+                    met = deepest_new(state.contacts, count, ahead.pair, points, found)
+                    if met >= 0 and points[met].phi < -TOUCHING:
+                        own, others, first, seen, low = False, True, True, met, 0.0
+            elif others:
+                met = deepest_new(state.contacts, count, ahead.pair, points, found)
+                if met >= 0:
+                    seen = met
             point = points[seen]
             contact.x, contact.y, contact.z = point.x, point.y, point.z
             put_normal(contact, manifold_normal(touching))
@@ -176,6 +190,8 @@ def make_locate(spec: Spec) -> Any:
                 break
         bodies[owner_i], bodies[owner_j] = kept[A], kept[B]
         bodies[i], bodies[j] = kept[PART_A], kept[PART_B]
+        if overlooks:
+            touching.reduction[WHOLE] = 0
         return max(when, SOONEST)
 
     return separate(kernel(locate, spec), spec)

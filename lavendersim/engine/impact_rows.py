@@ -7,6 +7,7 @@ from typing import Any
 from .approach import MEETS, make_slowest
 from .compile import kernel
 from .effects import made_once
+from .overlooked_points import make_note_waiting
 from .records import TOUCHING
 from .spec import Spec
 
@@ -79,3 +80,21 @@ def make_keep_present(spec: Spec) -> Any:
         return kept
 
     return kernel(keep_present, spec)
+
+
+def make_keep_motion(spec: Spec) -> Any:
+    """Return `kernel(contacts, count, overlooked) -> count`: the same of a part that is motion.
+
+    Those that wait are noted, since a push of the others may make them meet in it.
+    """
+    keep_present, overlooks = make_keep_present(spec), spec.has("overlooked_points")
+    note_waiting: Any = make_note_waiting(spec) if overlooks else None
+
+    def keep_motion(contacts, count, overlooked):
+        if overlooks:
+            for c in range(count):
+                if contacts[c].waits == 1:
+                    note_waiting(contacts[c], overlooked)
+        return keep_present(contacts, count)
+
+    return kernel(keep_motion, spec)

@@ -29,12 +29,12 @@ from .record_layout import (
     residual_row_dtype,
     step_row_dtype,
 )
-from .records import COUNTERS, MOTION, dtype
+from .records import COUNTERS, MOTION, OVERLOOKED, dtype
 from .solvers.catalogue import SOLVERS
 from .spec import Spec
 from .step_doubling import allocate_control, with_capacity
 
-_MOTION = dtype(MOTION)
+_MOTION, _OVERLOOKED = dtype(MOTION), dtype(OVERLOOKED)
 
 
 class Drives(NamedTuple):
@@ -58,6 +58,13 @@ class State(NamedTuple):
     drives: Any  # functions of time that act on bodies: Drives, or ()
     triggers: Any  # states that make events happen: TRIGGER (t,), or ()
     control: Any  # of the length of substeps: `step_doubling.Control`, or ()
+
+
+class Overlooked(NamedTuple):
+    """Points ahead that a part of a step has no rows of (`overlooked_points`)."""
+
+    points: np.ndarray  # (2 m,) OVERLOOKED; m contacts at most
+    noted: np.ndarray  # (1,) int64, how many
 
 
 class Trial(NamedTuple):
@@ -84,6 +91,7 @@ class Workspace(NamedTuple):
     middle: Middle
     ordering: Ordering
     contact_lists: ContactLists  # of each body, `flush_contacts`
+    overlooked: Overlooked
     islands: np.ndarray  # (n,) int64 label of a body's island, `islands`
     solver: Any  # what the solver allocates
     free_velocities: np.ndarray  # (n,) as velocities: before any contact impulse, `problem_log`
@@ -164,6 +172,7 @@ def allocate_workspace(
         ),
         ordering=allocate_ordering(bodies, 0),
         contact_lists=allocate_contact_lists(0, 0),
+        overlooked=Overlooked(np.zeros(0, _OVERLOOKED), np.zeros(1, np.int64)),
         islands=np.zeros(bodies if spec.has("sleeping") else 0, np.int64),
         solver=(),
         free_velocities=np.zeros(bodies if spec.has("problem_log") else 0, state.velocities.dtype),
@@ -177,9 +186,12 @@ def for_contacts(spec: Spec, workspace: Workspace, state: State) -> Workspace:
     """Return the workspace with room for the contacts of a state."""
     bodies, capacity = len(state.bodies), len(state.contacts)
     listed = (bodies, capacity) if spec.has("impact_order") else (0, 0)
+    rows = 2 * capacity if spec.has("overlooked_points") else 0
+    overlooked = np.zeros(rows, _OVERLOOKED)
     return workspace._replace(
         ordering=allocate_ordering(bodies, capacity),
         contact_lists=allocate_contact_lists(*listed),
+        overlooked=workspace.overlooked._replace(points=overlooked),
         solver=SOLVERS[spec.solver].allocate(spec, bodies, capacity),
     )
 

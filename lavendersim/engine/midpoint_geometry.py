@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from .collide.manifold.point import manifold_normal
+from .collide.manifold.point import WHOLE, manifold_normal
 from .collide.narrow_phase import make_manifold
 from .collide.records import UNBOUNDED, put_normal
 from .compile import inner, kernel
@@ -104,6 +104,7 @@ def make_look(spec: Spec) -> Any:
     compound, place_parts = made_once(spec, "place_parts")
     swept, stay = spec.has("fast_bodies"), make_stay(spec)
     ordered, nearest = spec.has("impact_order"), make_nearest(spec)
+    overlooks = spec.has("overlooked_points")
 
     def look(state, count, poses, workspace):
         bodies, contacts = state.bodies, state.contacts
@@ -127,6 +128,8 @@ def make_look(spec: Spec) -> Any:
             if a.shape != PLANE and b.shape != PLANE:
                 size = min(a.bound, b.bound)
             found = 0
+            if overlooks:
+                scratch.manifold.reduction[WHOLE] = row.whole
             if not passes_on:  # beyond a seam is another's face, not its edge
                 found = manifold(row.kind, a, b, margin + APART * size, scratch)
             persists, flat = False, has_flat_faces(a) and has_flat_faces(b)
@@ -150,6 +153,8 @@ def make_look(spec: Spec) -> Any:
                         contact.tangential_x, contact.tangential_y = 0.0, 0.0
                         contact.tangential_z = 0.0
             first = last
+        if overlooks:
+            scratch.manifold.reduction[WHOLE] = 0
 
     return kernel(look, spec)
 

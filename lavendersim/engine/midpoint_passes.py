@@ -19,6 +19,7 @@ from .midpoint_geometry import (
     make_stay,
     make_take_kept,
 )
+from .midpoint_jumps import make_carry_along
 from .midpoint_rows import (
     SAME,
     make_begin_slip,
@@ -35,6 +36,8 @@ from .spec import Spec
 
 # Each pass gains some two digits where bodies turn by a tenth of a radian in a step.
 PASSES = 8
+# From this one on a contact that still comes and goes is none of the middle (`midpoint_jumps`).
+SETTLED = 3
 
 
 def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: Any) -> Any:
@@ -48,7 +51,7 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
     lasting = make_lasting(spec)
     keep_start, stay = make_keep_start(spec), make_stay(spec)
     stand_midway, look, shift = make_stand_midway(spec), make_look(spec), make_shift(spec)
-    widen = make_widen(spec)
+    widen, carry_along = make_widen(spec), make_carry_along(spec)
     carries_inertia, refresh_inertia = made_once(spec, "refresh_inertia")
     warms, match_contacts = made_once(spec, "match")
     _, store_contacts = made_once(spec, "store")
@@ -110,7 +113,8 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
         sweeps = counters.sweeps
         order = workspace.ordering.order
         system = ContactSystem(contacts, order, count, bodies, velocities)
-        for _ in range(PASSES):
+        torn = False
+        for k in range(PASSES):
             if warms:
                 store_contacts(contacts, count, bodies, cache, counters, params)
             stand_midway(bodies, velocities, motion, lead, poses, params.dt)
@@ -124,6 +128,8 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
                 contact = contacts[c]
                 append_contact(contact, bodies, velocities, motion, pairs[contact.pair], params)
                 shift(contact, lead, params)
+                if contact.jumps == 1:
+                    contact.lasts = 0
                 if contact.lasts == 0:  # it has no middle: what is met there may be elsewhere
                     stay(contact, bodies, poses)
                     append_contact(contact, bodies, velocities, motion, pairs[contact.pair], params)
@@ -143,9 +149,12 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
             forget_history(counters, log.residual)
             solve(system, workspace.solver, params, counters, log.residual)
             sweeps += counters.sweeps
-            if missed <= SAME:
+            torn = False
+            if missed <= SAME or k >= SETTLED:
+                torn = carry_along(contacts, count, motion)
+            if missed <= SAME and not torn:
                 break
-        if counters.not_converged == 1:
+        if counters.not_converged == 1 or torn:
             # What is solved at the start is better than what is not solved at the middle.
             for i in range(bodies.shape[0]):
                 bodies[i], velocities[i] = poses[i], free[i]

@@ -93,7 +93,7 @@ def make_lasting(spec: Spec) -> Any:
         forced = abs(contact.dv_n) * params.timestep / params.dt
         closed = contact.phi <= params.slop
         calm = -(FORCED * forced + CALM) <= contact.begin_n <= CALM
-        contact.lasts = 1 if closed and calm else 0
+        contact.lasts, contact.jumps = 1 if closed and calm else 0, 0
         if springs:
             if contact.spring_compliance > 0.0:  # its force has no jump
                 contact.lasts = 1

@@ -98,6 +98,7 @@ MOTION: Final[list[Field]] = [
     ("ahead_y", F8),
     ("ahead_z", F8),
     ("tau", F8),  # time of its first impact, from the start of the step; dt without one [s]
+    ("jumps", I8),  # 1: a contact that does not last pushes it, or what jumps (`midpoint_jumps`)
     ("carried", I8),  # by a contact. 0: free; else AFTERWARDS, ALWAYS, LASTING: see `integrate`
     ("midway", I8),  # 1: its velocity was changed by impulses at the middle of the step
     ("mean_x", F8),  # mean spin of the step, where midway is 1 [rad/s]
@@ -127,6 +128,21 @@ CONTACT: Final[list[Field]] = [
     ("target", F8),  # b + b_rest: the row asks v_n + target + gamma lambda >= 0 [m/s]
     ("inv_k", F8),  # 1/(k_n + gamma) [kg]
     ("lambda_n", F8),  # accumulated impulse on B along n, A gets the opposite [N s]
+]
+
+# A point ahead that a part of a step has no row of.
+OVERLOOKED: Final[list[Field]] = [
+    ("pair", I8),  # row of the pair table
+    ("a", I8),
+    ("b", I8),
+    ("waits", I8),  # 1: its row waits for a later part; 0: its manifold was reduced
+    ("x", F8),  # half way between the surfaces [m]
+    ("y", F8),
+    ("z", F8),
+    ("nx", F8),  # unit normal from A to B
+    ("ny", F8),
+    ("nz", F8),
+    ("phi", F8),  # [m]
 ]
 
 # Position and orientation, quaternion w x y z.

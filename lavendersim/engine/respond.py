@@ -19,6 +19,7 @@ from .effects import made_by, made_once
 from .integrate import keeps_motion, make_classify
 from .midpoint_passes import make_midpoint_passes, make_stand_up
 from .midpoint_rows import make_lasting, make_stirs
+from .overlooked_points import make_look_over
 from .records import INSTANT
 from .solvers.catalogue import SOLVERS
 from .solvers.solver import ContactSystem
@@ -41,9 +42,10 @@ def make_solve(spec: Spec) -> Any:
 
 
 def make_respond(spec: Spec, log_contacts: Any) -> Any:
-    """Return `kernel(state, count, workspace, params, counters, log)`, see `memory`.
+    """Return `kernel(state, count, workspace, params, counters, log) -> length`, see `memory`.
 
-    log_contacts: the kernel of `contact_log`.
+    length: 0; or the part, which may be no longer [s], is to be made again, with points of pairs
+    that are now `whole` (`overlooked_points`). log_contacts: the kernel of `contact_log`.
     """
     append_contact = make_append_contact(spec, chain(made_by(spec, "capture"), spec))
     order_contacts = ordering.make(spec)
@@ -73,6 +75,8 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
     if centred:
         midpoint_passes = make_midpoint_passes(spec, append_contact, preload, solve)
     stand_up: Any = make_stand_up(spec) if centred else None
+    overlooks = spec.has("overlooked_points")
+    look_over: Any = make_look_over(spec) if overlooks else None
 
     def respond(state, count, workspace, params, counters, log):
         bodies, velocities, motion = state.bodies, state.velocities, state.motion
@@ -128,6 +132,14 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
         if centred:
             if moving:
                 midway = midpoint_passes(state, count, workspace, params, counters, log)
+        if overlooks:
+            if lasts and workspace.overlooked.noted[0] > 0:
+                poses = workspace.middle.poses if midway else bodies
+                cut = look_over(state, poses, workspace.overlooked, params)
+                if cut > 0.0:
+                    if midway:
+                        stand_up(bodies, poses)
+                    return cut
         if stores and lasts:
             counters.contact_energy = contact_energy(contacts, count, velocities, params)
         if logs:
@@ -144,6 +156,7 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
         if centred:
             if midway:
                 stand_up(bodies, workspace.middle.poses)
+        return 0.0
 
     return separate(kernel(respond, spec), spec)
 

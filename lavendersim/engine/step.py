@@ -16,7 +16,7 @@ from __future__ import annotations
 from functools import cache
 from typing import Any
 
-from .approach import make_note_acceleration
+from .approach import NEVER, make_note_acceleration
 from .collide import narrow_phase
 from .collide.iteration_limits import forget_limits, has_gjk, make_count_limits
 from .compile import chain, composing, kernel, uncollected
@@ -30,6 +30,7 @@ from .integrate import (
     make_undo,
 )
 from .kernel_cache import cached
+from .overlooked_points import make_forget_whole
 from .parts import has_parts, make_end_step, make_forget_history, make_gather_parts
 from .records import (
     CONTACTS_FULL,
@@ -105,6 +106,8 @@ def make_advance(spec: Spec) -> Any:
     count_limits: Any = make_count_limits(spec) if iterates else None
     limits_impacts = has_hook(spec, "limit_impacts")
     triggered, meet_triggers = made_once(spec, "meet_triggers")
+    overlooks = spec.has("overlooked_points")
+    forget_whole: Any = make_forget_whole(spec) if overlooks else None
     sleeps, measure_speeds = made_once(spec, "measure_speeds")
     _, wake = made_once(spec, "wake")
     _, update_sleeping = made_once(spec, "update_sleeping")
@@ -124,7 +127,7 @@ def make_advance(spec: Spec) -> Any:
         if touches:
             pull = workspace.collision.outline_a.pull
             pull[0], pull[1], pull[2] = params.gx, params.gy, params.gz
-        done = 0
+        done, listed, again, longest = 0, 0, False, NEVER
         while done < steps:
             begins = True
             if in_parts:
@@ -170,11 +173,16 @@ def make_advance(spec: Spec) -> Any:
                 refresh_inertia(bodies, velocities)
             if compound:
                 place_parts(bodies)
-            listed = pairs.shape[0]
-            if broad:
-                listed = find_pairs(
-                    bodies, velocities, pairs, workspace.templates, params, workspace.broad_phase
-                )
+            looks = True  # for pairs: a part that is made again has those of its first time
+            if overlooks:
+                looks = not again
+            if looks:
+                listed = pairs.shape[0]
+                if broad:
+                    broad_phase = workspace.broad_phase
+                    listed = find_pairs(
+                        bodies, velocities, pairs, workspace.templates, params, broad_phase
+                    )
             count = 0
             if touches:
                 if listed >= 0:
@@ -199,6 +207,9 @@ def make_advance(spec: Spec) -> Any:
                     forget_limits(workspace.collision)
                 if keeps:
                     undo(velocities, motion)
+                if overlooks:
+                    if again:
+                        forget_whole(pairs, listed)
                 if controlled:
                     abandon(state, params, counter, log.step)
                 params.dt = params.timestep
@@ -208,6 +219,8 @@ def make_advance(spec: Spec) -> Any:
                 left = params.dt
                 count, length = order(state, count, workspace, params, counters)
                 instant = length == 0.0
+                if overlooks:
+                    length = min(length, longest)
                 if length < left:
                     undo(velocities, motion)
                     params.dt = max(length, INSTANT)
@@ -233,7 +246,18 @@ def make_advance(spec: Spec) -> Any:
                         pass_by(contacts, velocities, motion, params, counters, log)
                         passed = True
                 if not passed:
-                    respond(state, count, workspace, params, counters, log)
+                    cut = respond(state, count, workspace, params, counters, log)
+                    if overlooks:
+                        if cut > 0.0:
+                            undo(velocities, motion)
+                            if iterates:
+                                forget_limits(workspace.collision)
+                            params.dt, longest, again = params.timestep, cut, True
+                            continue
+                if overlooks:
+                    if again:
+                        forget_whole(pairs, listed)
+                    longest, again = NEVER, False
             if iterates:
                 count_limits(workspace.collision, counters)
             if in_parts:

@@ -11,7 +11,15 @@ from tests.benchmarks import effects
 # Laws that the chapter's numerics exclude, and what needs them.
 OTHER_LAWS = {
     *("midpoint", "contact_midpoint", "contact_spring", "impact_time", "impact_order"),
-    *("speculative", "newton", "least_norm", "fast_bodies", "impact_energy", "sliding_stops"),
+    *(
+        "speculative",
+        "newton",
+        "least_norm",
+        "fast_bodies",
+        "impact_energy",
+        "sliding_stops",
+        "overlooked_points",
+    ),
 }
 # Nor does the default choose these.
 ASKED_FOR = {"error_control", "pairwise_impacts", "triggers"}

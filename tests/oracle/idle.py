@@ -27,6 +27,7 @@ LETS_IN: dict[str, tuple[Any, ...]] = {
     "impact_order": ("in_order",),
     "pairwise_impacts": ("pairwise",),
     "sliding_stops": (),
+    "overlooked_points": (),
     "midpoint": ("midpoint", "midpoint_contact"),
     "contact_midpoint": ("midpoint_contact",),
     "contact_spring": ("spring",),

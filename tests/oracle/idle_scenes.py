@@ -191,6 +191,7 @@ CASES: dict[str, tuple[str, ...]] = {
     "impact_order": ("flying brick",),
     "pairwise_impacts": ("flying brick",),
     "sliding_stops": ("flying brick",),
+    "overlooked_points": ("balls, default",),
     "speculative": ("flying brick",),
     "fast_bodies": ("slow balls",),
     # Captured; at the time of impact it idles in the second kind of test_idle_subsets.

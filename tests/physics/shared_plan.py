@@ -100,7 +100,7 @@ scene:
     low: {shape: {kind: sphere, radius: 0.1}, mass: 1, position: [2, 0, 1], surface: two}
 duration: 1
 """
-NEVER_ADDED = {"impact_order", "rotation"}  # nor `sliding_stops`, which needs the former
+NEVER_ADDED = {"impact_order", "rotation"}  # nor what needs the former
 ROUND_PAIRS = ("sphere_plane", "sphere_sphere")
 SPRINGY_PAIRS = ("box_plane", "sphere_box", *ROUND_PAIRS)
 PAIRS = (

@@ -32,7 +32,7 @@ SECTIONS = {
         *("cohesion", "contact_spring", "static_friction", "falling_restitution"),
     ),
     "impacts-at-the-surface": ("impact_time", "impact_energy"),
-    "impacts-in-order": ("impact_order", "pairwise_impacts", "sliding_stops"),
+    "impacts-in-order": ("impact_order", "pairwise_impacts", "sliding_stops", "overlooked_points"),
     "error-control": ("error_control",),
     "contact-at-the-middle-of-the-step": ("contact_midpoint",),
     "torques-at-a-contact": ("torsional_friction", "rolling_friction"),

@@ -62,6 +62,7 @@ NOT_ALONE = {
     "capture_in_sweeps": CHOSEN,
     "pairwise_impacts": CHOSEN,
     "error_control": "a key of the config asks for it: it is no overhead of equal timesteps",
+    "overlooked_points": "it comes and goes with the impacts' order, and is timed with it",
     "sliding_stops": "it comes and goes with friction, and is timed with it",
     "pose_log": "it comes and goes with step_log, and is timed with it",
 }

@@ -9,10 +9,11 @@ from typing import Any
 
 from ..compile import inner, kernel
 from ..effects import made_once
+from ..overlooked_points import make_note_left_out
 from ..records import TOUCHING
 from ..spec import Spec
 from ..vectors import Vec3, dot
-from .manifold.point import manifold_normal
+from .manifold.point import LEFT_OUT, WHOLE, manifold_normal
 from .pairs import SHAPE_PAIRS
 from .records import put_normal
 from .swept import make_is_fast, make_swept_manifold
@@ -71,6 +72,8 @@ def make(spec: Spec):
     share = 0.5 if spec.has("midpoint") else 1.0
     compound = spec.has("compound")
     sleeps, still = made_once(spec, "is_still")
+    overlooks = spec.has("overlooked_points")
+    note_left_out: Any = make_note_left_out(spec) if overlooks else None
 
     def narrow_phase(state, listed, workspace, dt):
         bodies, motion, pairs, contacts = state.bodies, state.motion, state.pairs, state.contacts
@@ -78,6 +81,9 @@ def make(spec: Spec):
         points = scratch.manifold.points
         total = 0
         margin = TOUCHING
+        reduction = scratch.manifold.reduction
+        if overlooks:
+            workspace.overlooked.noted[0] = 0
         for p in range(listed):
             i, j = pairs[p].a, pairs[p].b
             owner_i, owner_j = i, j
@@ -87,6 +93,8 @@ def make(spec: Spec):
                 if still(bodies[owner_i]) and still(bodies[owner_j]):
                     continue
             fast, until_impact = False, 0.0
+            if overlooks:
+                reduction[WHOLE], reduction[LEFT_OUT] = pairs[p].whole, 0
             d = Vec3(0.0, 0.0, 0.0)
             if speculative:
                 ma, mb = motion[owner_i], motion[owner_j]
@@ -103,6 +111,11 @@ def make(spec: Spec):
             if total + count > contacts.shape[0]:
                 return -1
             n = manifold_normal(scratch.manifold)
+            if overlooks:
+                # Points of fast bodies are moved to where they meet: none is kept of the others.
+                if reduction[LEFT_OUT] > 0 and not fast:
+                    if not note_left_out(p, owner_i, owner_j, count, n, workspace):
+                        return -1
             for k in range(count):
                 contact = contacts[total]
                 point = points[k]
@@ -119,6 +132,8 @@ def make(spec: Spec):
                     contact.tangential_y = until_impact * (d.y - along * n.y)
                     contact.tangential_z = until_impact * (d.z - along * n.z)
                 total += 1
+        if overlooks:
+            reduction[WHOLE] = 0
         return total
 
     return kernel(narrow_phase, spec)

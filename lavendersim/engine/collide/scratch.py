@@ -14,7 +14,7 @@ from ..records import POINT, dtype
 from .convex.hull_geometry import HullGeometry, hull_geometry
 from .records import FACE, NOT_CONVERGED, PLANE_OF_FEATURE, SEPARATION, VECTOR, VERTEX
 
-# Points of one manifold before reduction: two polygons of at most eight vertices each.
+# Points of one manifold of boxes: two polygons of at most eight vertices each.
 MANIFOLD_POINTS = 16
 # Corners of the polygon that stands for a cylinder's cap (shapes/cylinder.py).
 CAP_CORNERS = 8
@@ -36,8 +36,9 @@ _POINT, _VECTOR, _VERTEX, _PLANE, _SEPARATION, _FACE, _NOT_CONVERGED = map(
 class Manifold(NamedTuple):
     """What a pair's kernel writes: contact points that share a normal."""
 
-    points: np.ndarray  # (MANIFOLD_POINTS,) POINT
+    points: np.ndarray  # (n,) POINT; behind those of the manifold the candidates left out
     normal: np.ndarray  # (3,) unit, from A to B
+    reduction: np.ndarray  # (2,) int64, see `manifold.point`
 
 
 class BoxFrame(NamedTuple):
@@ -103,6 +104,10 @@ def allocate_scratch(geometry: HullGeometry | None = None) -> Scratch:
     hulls = hull_geometry() if geometry is None else geometry
     longest, most = _longest_and_most(hulls) if len(hulls.vertex_start) > 2 else _of_the_box()
 
+    # A polygon of n corners cut by m sides has at most n + 2 m (manifold/polygon_clip), and a cut
+    # looks for two rows more; two halves.
+    rows = max(2 * (3 * longest + 2), most)
+
     def box() -> BoxFrame:
         return BoxFrame(
             axes=np.zeros((3, 3)), half=np.zeros(3), centre=np.zeros(3), offset=np.zeros(3)
@@ -118,7 +123,11 @@ def allocate_scratch(geometry: HullGeometry | None = None) -> Scratch:
         )
 
     return Scratch(
-        manifold=Manifold(points=np.zeros(MANIFOLD_POINTS, _POINT), normal=np.zeros(3)),
+        manifold=Manifold(
+            points=np.zeros(max(MANIFOLD_POINTS, rows), _POINT),
+            normal=np.zeros(3),
+            reduction=np.zeros(2, np.int64),
+        ),
         box_a=box(),
         box_b=box(),
         cosines=np.zeros((3, 3)),
@@ -138,7 +147,5 @@ def allocate_scratch(geometry: HullGeometry | None = None) -> Scratch:
         ),
         outline_a=outline(),
         outline_b=outline(),
-        # A polygon of n corners cut by m sides has at most n + 2 m (manifold/polygon_clip), and a
-        # cut looks for two rows more; two halves.
-        polygon=np.zeros(max(2 * (3 * longest + 2), most), _POINT),
+        polygon=np.zeros(rows, _POINT),
     )

@@ -42,6 +42,7 @@ NAMES: Final = (
     "impact_order",
     "pairwise_impacts",
     "sliding_stops",
+    "overlooked_points",
     "error_control",
     "speculative",
     "fast_bodies",

@@ -62,6 +62,7 @@ EFFECT = Effect(
         contact=[
             ("dv_n", "f8"),  # change of v_n by forces in this step [m/s]
             ("lasts", "i8"),  # 1: closed, and not approached, as the step begins
+            ("jumps", "i8"),  # 1: a body of it jumps, whatever it would do: `midpoint_jumps`
             ("begin_n", "f8"),  # n . J(q_0) v_0 [m/s]
             ("middle_n", "f8"),  # n . J(q_m) v_0 [m/s]
             ("kept_n", "f8"),  # impulse of the solve at the start [N s]

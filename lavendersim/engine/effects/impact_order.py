@@ -34,8 +34,6 @@ ROUND_OFF = 1e-12
 LOOKS = 16
 # An impact of more rows is not made by itself.
 CROWD = 64
-# Bodies that overlap by more are moved apart first: what they do has no order in time [m].
-OVERLAP = 5e-5
 
 
 def slides_back(facts: Facts) -> bool:
@@ -88,19 +86,21 @@ def make_order(spec: Spec) -> Any:
         LOCATED,
         MEETS,
         NEVER,
+        OVERLAP,
         make_approach,
         make_expect,
     )
     from ..flush_contacts import make_drop_flush
     from ..foreseen_impacts import make_follow, make_foresee
     from ..impact_location import make_locate
-    from ..impact_rows import make_keep_present, make_mark_impact
+    from ..impact_rows import make_keep_motion, make_keep_present, make_mark_impact
     from . import made_once
 
     expect = make_expect(spec)
     approach, foresee, follow = make_approach(spec), make_foresee(spec), make_follow(spec)
     locate, drop_flush = make_locate(spec), make_drop_flush(spec)
     mark_impact, keep_present = make_mark_impact(spec), make_keep_present(spec)
+    keep_motion = make_keep_motion(spec)
     edged = drop_flush is not None
     turns = spec.has("rotation")
     springs = spec.has("contact_spring")
@@ -199,7 +199,7 @@ def make_order(spec: Spec) -> Any:
                 break
             due = locate(state, count, contact, workspace, params)
             contact.located, contact.due = LOCATED, due
-        count = keep_present(contacts, count)
+        count = keep_motion(contacts, count, workspace.overlooked)
         return count, until_stop(state, count, length, params, counters)
 
     return kernel(order, spec)

@@ -16,6 +16,8 @@ EXCHANGES = 4
 BETTER = 1e-9
 # The deepest of points whose depths differ by less is the first of them [m].
 SAME_DEPTH = 1e-9
+# Entries of `Manifold.reduction`: 1 where every candidate is kept; how many were left out.
+WHOLE, LEFT_OUT = 0, 1
 # A fourth point that adds less than this lies in the triangle of the others [m^2].
 NO_AREA = 1e-18
 
@@ -134,6 +136,16 @@ def keep_four(points, count, n):
 
 
 @inner
+def reduce_manifold(manifold, points, count, n):
+    """Put the points to keep first; returns how many: all of a whole manifold."""
+    kept = count
+    if manifold.reduction[WHOLE] == 0:
+        kept = keep_four(points, count, n)
+    manifold.reduction[LEFT_OUT] = count - kept
+    return kept
+
+
+@inner
 def put_manifold_normal(manifold, n):
     """Write the normal that all points share."""
     manifold.normal[0], manifold.normal[1], manifold.normal[2] = n.x, n.y, n.z
@@ -147,9 +159,12 @@ def manifold_normal(manifold):
 
 @inner
 def write_manifold(manifold, rows, count, n):
-    """Write at most four of the first `count` candidates, and their normal; returns how many."""
+    """Write at most four of the first `count` candidates, and their normal; returns how many.
+
+    Behind them stand those that are left out.
+    """
     put_manifold_normal(manifold, n)
-    count = keep_four(rows, count, n)
+    kept = reduce_manifold(manifold, rows, count, n)
     for k in range(count):
         copy_point(rows[k], manifold.points[k])
-    return count
+    return kept

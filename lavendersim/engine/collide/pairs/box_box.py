@@ -33,7 +33,7 @@ from ..manifold.box_clip import (
     centre_of,
     clip_incident_face,
 )
-from ..manifold.point import keep_four, manifold_normal, place, put_manifold_normal
+from ..manifold.point import manifold_normal, place, put_manifold_normal, reduce_manifold
 from ..records import normal_of
 from ..shape_pair import ShapePair
 
@@ -243,7 +243,7 @@ def make(spec):
                 if status != APART:
                     return 0
                 return nearest_contact(a, found, manifold)
-        return keep_four(manifold.points, count, manifold_normal(manifold))
+        return reduce_manifold(manifold, manifold.points, count, manifold_normal(manifold))
 
     return separate(kernel(box_box, spec), spec)
 

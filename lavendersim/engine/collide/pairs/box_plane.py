@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from ...compile import inner, kernel
 from ...vectors import Vec3, dot, from_body, into_body
-from ..manifold.point import copy_point, place, put_manifold_normal
+from ..manifold.point import LEFT_OUT, WHOLE, place, put_manifold_normal, swap_points
 from ..shape_pair import ShapePair
 
 
@@ -28,12 +28,13 @@ def lower_side(n):
 
 @inner
 def keep_lower(points, count, n):
-    """Keep the corners of the lower face, in their order; n: in the box's frame; the new count."""
+    """Put the corners of the lower face first, in their order; n: in the box's frame; how many."""
     bit, value = lower_side(n)
     kept = 0
     for k in range(count):
         if points[k].feature & bit == value:
-            copy_point(points[k], points[kept])
+            if kept < k:
+                swap_points(points[k], points[kept])
             kept += 1
     return kept
 
@@ -66,9 +67,11 @@ def make(spec):
                 )
                 place(points[count], middle, phi, corner)
                 count += 1
-        if count > 4:
-            count = keep_lower(points, count, local)
-        return count
+        kept = count
+        if count > 4 and scratch.manifold.reduction[WHOLE] == 0:
+            kept = keep_lower(points, count, local)
+        scratch.manifold.reduction[LEFT_OUT] = count - kept
+        return kept
 
     return kernel(box_plane, spec)
 

@@ -2,25 +2,72 @@
 
 Standing, the lower cap touches by an octagon (shapes/cylinder.py), whose first corner is where the
 cylinder would tip to; lying, each rim touches by its lowest point.
-The features: 0..7 corners of the octagon, 8 and 9 the lowest points of the rims at -z and +z.
+The features: 0..7 corners of the octagon, 8 and 9 the lowest points of the rims at -z and +z, RIM
+and above other points of the lower rim.
 """
 
 from __future__ import annotations
 
-from math import sqrt
+from math import cos, pi, sin, sqrt
 
 from ...compile import kernel
 from ...vectors import Vec3, dot, from_body, into_body, negative, position
 from ..manifold.features import FACE_COSINE
-from ..manifold.point import place, write_manifold
+from ..manifold.point import LEFT_OUT, WHOLE, place, write_manifold
 from ..records import put_position
 from ..scratch import CAP_CORNERS
 from ..shape_pair import ShapePair
 from ..shapes.cylinder import put_cap
 
+RIM = 16
+# What is lower than the points of the manifold by less is as low [m].
+DEEP = 1e-5
+# Cosine to the axis above which a cylinder is no roller that lies: its rim may roll over [-].
+LEANS = 0.1
+# How much lower the rim is than a side of its octagon, in radii times the sine of the tilt [-].
+ROUNDER = 1.0 - cos(pi / 8.0)
+RIM_POINTS = 16  # a rim's points; every other one is a corner of its octagon
+
+
+def make_put_rim(spec):
+    """Return `kernel(cylinder, down, across, height, n, margin, kept, scratch) -> kept more`.
+
+    The lower rim between the points that the manifold has, left out of it: none is as low, but a
+    disc that rolls on its rim comes to stand on them.
+    """
+
+    def put_rim(cylinder, down, across, height, n, margin, kept, scratch):
+        manifold = scratch.manifold
+        total = kept + manifold.reduction[LEFT_OUT]
+        first = 2 if abs(down.z) >= FACE_COSINE else 1
+        x, y = cylinder.hx * down.x / across, cylinder.hx * down.y / across
+        z = cylinder.hz if down.z >= 0.0 else -cylinder.hz
+        put = 0
+        for k in range(1, RIM_POINTS, first):
+            c, s = cos(2.0 * pi * k / RIM_POINTS), sin(2.0 * pi * k / RIM_POINTS)
+            p = from_body(cylinder, Vec3(c * x - s * y, c * y + s * x, z))
+            phi = height + n.x * p.x + n.y * p.y + n.z * p.z
+            if phi <= margin:
+                half = 0.5 * phi
+                middle = Vec3(
+                    cylinder.x + p.x - half * n.x,
+                    cylinder.y + p.y - half * n.y,
+                    cylinder.z + p.z - half * n.z,
+                )
+                place(manifold.points[total + put], middle, phi, RIM + k)
+                put += 1
+        if manifold.reduction[WHOLE] == 1:
+            return put
+        manifold.reduction[LEFT_OUT] += put
+        return 0
+
+    return kernel(put_rim, spec)
+
 
 def make(spec):
     """Return `kernel(plane, cylinder, margin, scratch) -> count`; it writes `scratch.manifold`."""
+
+    overlooks, put_rim = spec.has("overlooked_points"), make_put_rim(spec)
 
     def cylinder_plane(plane, cylinder, margin, scratch):
         n, origin = Vec3(plane.hx, plane.hy, plane.hz), Vec3(0.0, 0.0, 0.0)
@@ -52,7 +99,11 @@ def make(spec):
                 )
                 place(rows[count], middle, phi, first + k)
                 count += 1
-        return write_manifold(scratch.manifold, rows, count, n)
+        kept = write_manifold(scratch.manifold, rows, count, n)
+        if overlooks:
+            if abs(down.z) > LEANS and cylinder.hx * across * ROUNDER > DEEP:
+                kept += put_rim(cylinder, down, across, height, n, margin, kept, scratch)
+        return kept
 
     return kernel(cylinder_plane, spec)
 
