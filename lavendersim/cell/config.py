@@ -13,6 +13,7 @@ from functools import lru_cache
 from typing import Any
 
 from lavendersim.cell.choices import Mistake, Switch
+from lavendersim.cell.engine import CellEngine
 from lavendersim.cell.events import AnyEvent, CellTimestep
 from lavendersim.cell.numerics import Numerics
 from lavendersim.cell.record import CellRecord
@@ -50,6 +51,7 @@ class CellConfig(ResolvedModel):
     record: CellRecord
     effects: CellEffects
     study: CellStudy
+    engine: CellEngine | None = None  # None: lavender's; absent from its data then
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any]) -> CellConfig:
@@ -58,11 +60,16 @@ class CellConfig(ResolvedModel):
 
     def as_dict(self) -> dict[str, Any]:
         """Return plain JSON-able data: ratios as `1/480`, vectors as lists."""
-        return self.model_dump(mode="json", by_alias=True)
+        return self.model_dump(mode="json", by_alias=True, exclude=self._absent)
 
     def as_json(self) -> str:
         """Return the text of `as_dict`, in one line."""
-        return self.model_dump_json(by_alias=True)
+        return self.model_dump_json(by_alias=True, exclude=self._absent)
+
+    @property
+    def _absent(self) -> set[str] | None:
+        """What its data does without: older ones have no engine."""
+        return {"engine"} if self.engine is None else None
 
     def refined(self, divisor: int) -> CellConfig:
         """Return the same cell at timesteps of 1/divisor, those of events included.
