@@ -81,14 +81,14 @@ def law_of(engine: str) -> dict[str, str]:
     from lavendersim.peers.catalogue import installed_version, peer_of
 
     peer = peer_of(engine)
-    told = [one for one in peer.told(engine) if one not in "xyz"]
+    reported = [one for one in peer.reports(engine) if one not in "xyz"]
     return {
         "engine": engine,
         "version": installed_version(peer.name) or f"not installed: pip install {peer.package}",
         "variant": peer.variants[engine].doc,
         "law": peer.law,
         "precision": "double" if peer.double else "single",
-        "tells": ", ".join(told) or "nothing of contacts",
+        "tells": ", ".join(reported) or "nothing of contacts",
         "repeats": peer.repeats,
     }
 

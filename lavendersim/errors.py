@@ -30,18 +30,18 @@ class UsageError(LavenderError):
     exit_code = 2
 
 
-class NotToldError(UsageError):
+class NotReportedError(UsageError):
     """A log has not what is asked of it, because the engine that made it does not tell it."""
 
 
 # How a reason ends where an engine does not tell what is asked of its log: a measure's reason is
 # kept as a text, and raised again from it.
-NOT_TOLD: Final = "does not tell it"
+UNREPORTED: Final = "does not tell it"
 
 
 def unanswerable(sentence: str) -> UsageError:
     """Return the error of a log that has not what is asked of it, by the reason it gives."""
-    return NotToldError(sentence) if sentence.endswith(NOT_TOLD) else UsageError(sentence)
+    return NotReportedError(sentence) if sentence.endswith(UNREPORTED) else UsageError(sentence)
 
 
 class ConfigError(LavenderError):

@@ -22,10 +22,11 @@ duration: 0.5
 BOX = """
 scene:
   gravity: [4.905, 0, -8.495709211125343]
-  surfaces: {rough: {friction: 0.3}}
+  surfaces: {rubber: {friction: 0.3}}
   bodies:
-    floor: {shape: {kind: plane}, surface: rough}
-    box: {shape: {kind: box, size: [0.4, 0.4, 0.2]}, mass: 2, position: [0, 0, 0.1], surface: rough}
+    floor: {shape: {kind: plane}, surface: rubber}
+    box: {shape: {kind: box, size: [0.4, 0.4, 0.2]}, mass: 2, position: [0, 0, 0.1],
+          surface: rubber}
 numerics: {timestep: 1/240}
 duration: 0.5
 """

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple, Protocol
 
-from lavendersim.errors import LavenderError, NotToldError
+from lavendersim.errors import LavenderError, NotReportedError
 from lavendersim.measures import controls
 from lavendersim.measures.always import COMPLETE, PREFIX
 from lavendersim.measures.cell_judgements import judge_cell
@@ -164,7 +164,7 @@ def _outcome(expectation: ExpectSpec, cells: Sequence[Cell], values: Values) -> 
             row = values.row(expectation.measure, cells[0])
             return judge_cell(expectation, row, cells[0])
         return judge_sweep(expectation, cells, values.of(expectation.measure))
-    except NotToldError as error:
+    except NotReportedError as error:
         return unjudged(str(error))
     except LavenderError as error:  # a log that is damaged, or has no such topic, fails alone
         return failure("a log that can answer", str(error))

@@ -21,7 +21,7 @@ def unanswered(trace: Trace) -> dict[str, str]:
         return {}
     peer = peer_of(engine.name)
     found = {"residual": f"{peer.title} tells no residual of its contacts in m/s"}
-    if IMPULSE not in peer.told(engine.name):
+    if IMPULSE not in peer.reports(engine.name):
         silent = f"{engine.name} tells no impulses of contacts"
         found |= {"impulses": silent, "momentum": silent}
     elif not peer.momentum:

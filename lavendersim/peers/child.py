@@ -41,7 +41,7 @@ def run(task: Task, pipe: Connection) -> str:
     if why := misbuilt(scene, world, peer):
         return why
     pipe.send(Built(installed_version(peer.name), perf_counter_ns() - begin))
-    told = len(peer.told(task.engine))
+    reported = len(peer.reports(task.engine))
     poses, speeds = [world.poses()], [world.velocities()]
     rows: list[tuple[float, ...]] = []
     first, spent, pushed, sent = 0, 0, False, perf_counter()
@@ -55,33 +55,33 @@ def run(task: Task, pipe: Connection) -> str:
         spent += perf_counter_ns() - start
         poses.append(world.poses())
         speeds.append(world.velocities())
-        if told:
+        if reported:
             rows += [(step, *row) for row in world.contacts()]
         if len(poses) == MOST_STEPS or perf_counter() - sent > SECONDS:
-            pipe.send(_states(first, poses, speeds, rows, spent, told))
+            pipe.send(_states(first, poses, speeds, rows, spent, reported))
             poses, speeds, rows = [], [], []
             first, spent, sent = step + 1, 0, perf_counter()
     if poses:
-        pipe.send(_states(first, poses, speeds, rows, spent, told))
+        pipe.send(_states(first, poses, speeds, rows, spent, reported))
     return ""
 
 
-def _states(first: int, poses: Any, speeds: Any, rows: Any, spent: int, told: int) -> States:
-    contacts = np.array(rows, dtype=np.float64).reshape(-1, 3 + told)
+def _states(first: int, poses: Any, speeds: Any, rows: Any, spent: int, reported: int) -> States:
+    contacts = np.array(rows, dtype=np.float64).reshape(-1, 3 + reported)
     return States(first, np.array(poses), np.array(speeds), contacts, spent)
 
 
 def misbuilt(scene: Scene, world: Any, peer: Peer) -> str:
     """Return what the engine has otherwise than it was described; empty where nothing."""
     bodies = scene.movable
-    wanted = {
+    required = {
         "mass and inertia": ([(b.mass, *b.inertia) for b in bodies], world.inertias()),
         "position": ([b.position for b in bodies], world.poses()[:, :3]),
         "orientation": ([b.orientation for b in bodies], world.poses()[:, 3:]),
         "velocity": ([b.velocity for b in bodies], world.velocities()[:, :3]),
         "angular velocity": ([b.spin for b in bodies], world.velocities()[:, 3:]),
     }
-    for what, (expected, found) in wanted.items():
+    for what, (expected, found) in required.items():
         asked, has = np.array(expected).reshape(len(bodies), -1), np.asarray(found)
         if what == "orientation":  # q and -q are one
             has = has * np.where((has * asked).sum(axis=1, keepdims=True) < 0.0, -1.0, 1.0)

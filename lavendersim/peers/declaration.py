@@ -17,7 +17,7 @@ FRICTION: Final = ("friction",)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Setting:
+class EngineSetting:
     """One setting of an engine: a key of its section under `engines`."""
 
     name: str
@@ -46,7 +46,7 @@ class Peer:
     law: str  # of contact, in a sentence: cone or pyramid, convex or not, restitution
     double: bool  # precision of its numbers
     variants: Mapping[str, Variant]  # `mujoco`, `mujoco-stiff`: the first has its own defaults
-    settings: tuple[Setting, ...]
+    settings: tuple[EngineSetting, ...]
     shapes: frozenset[str]
     surface_keys: frozenset[str]  # of surfaces, that it obeys
     forces: bool = False  # constant ones at the centre of mass, for a while
@@ -54,7 +54,7 @@ class Peer:
     momentum: bool = False  # its impulses are all that acts beside gravity and forces of a step
     repeats: str = ""  # whether two runs agree to the bit, in words
 
-    def told(self, engine: str) -> tuple[str, ...]:
+    def reports(self, engine: str) -> tuple[str, ...]:
         """Return what a variant tells of contacts."""
         tells = self.variants[engine].tells
         return self.tells if tells is None else tells

@@ -22,7 +22,7 @@ from lavendersim.peers.world import CannotRun, Floats
 from lavendersim.quantities.scalars import exact
 
 
-class Body(NamedTuple):
+class PeerBody(NamedTuple):
     """One body at the start."""
 
     row: int  # in the scene
@@ -49,7 +49,7 @@ class Scene:
         self.steps = config.steps
         self._forces, self._clock = config.scene.forces, config.clock
 
-    def pairs(self) -> Iterator[tuple[Body, Body]]:
+    def pairs(self) -> Iterator[tuple[PeerBody, PeerBody]]:
         """Yield the pairs of bodies of which one moves."""
         return ((a, b) for a, b in combinations(self.bodies, 2) if a.moves or b.moves)
 
@@ -57,29 +57,29 @@ class Scene:
         """Whether any pair has friction."""
         return any(value > 0.0 for value in self._of_pairs("friction").values())
 
-    def of_pair(self, key: str, a: Body, b: Body) -> float:
+    def of_pair(self, key: str, a: PeerBody, b: PeerBody) -> float:
         """Return a coefficient of a contact of two bodies."""
         return float(getattr(mixed(a.surface, b.surface), key))
 
     def by_product(self, key: str) -> list[float]:
         """Return of each body a value such that the product of two is that of their contact."""
-        return self._values(key, [sqrt, lambda wanted: wanted], lambda a, b: a * b)
+        return self._values(key, [sqrt, lambda required: required], lambda a, b: a * b)
 
     def by_least(self, key: str) -> list[float]:
         """Return of each body a value such that the lesser of two is that of their contact."""
-        return self._values(key, [lambda wanted: wanted], min)
+        return self._values(key, [lambda required: required], min)
 
     def by_first(self, keys: tuple[str, ...]) -> tuple[list[tuple[float, ...]], bool] | None:
         """Return values of each body such that a contact has those of the body that stays, or of
         either where both move; and whether the bodies that stay differ. None: there are none.
         """
-        wanted = [self._of_pairs(key) for key in keys]
-        among = {tuple(one[a, b] for one in wanted) for a, b in wanted[0] if self._both(a, b)}
+        required = [self._of_pairs(key) for key in keys]
+        among = {tuple(one[a, b] for one in required) for a, b in required[0] if self._both(a, b)}
         of_fixed: dict[int, set[tuple[float, ...]]] = {}
-        for a, b in wanted[0]:
+        for a, b in required[0]:
             if not self._both(a, b):
                 fixed = b if self.bodies[a].moves else a
-                of_fixed.setdefault(fixed, set()).add(tuple(one[a, b] for one in wanted))
+                of_fixed.setdefault(fixed, set()).add(tuple(one[a, b] for one in required))
         if len(among) > 1 or any(len(values) > 1 for values in of_fixed.values()):
             return None
         nothing = (0.0,) * len(keys)
@@ -117,28 +117,29 @@ class Scene:
         rule: Callable[[float, float], float],
     ) -> list[float]:
         """Return values of bodies from which a rule makes those of pairs, or raise CannotRun."""
-        wanted = self._of_pairs(key)
+        required = self._of_pairs(key)
         tried = [
             [inverse(getattr(body.surface, key)) for body in self.bodies] for inverse in inverses
         ]
         tried += [
-            [inverse(max(wanted.values(), default=0.0))] * len(self.bodies) for inverse in inverses
+            [inverse(max(required.values(), default=0.0))] * len(self.bodies)
+            for inverse in inverses
         ]
         # What moves leaves the choice to what stays, where moving bodies meet nothing else.
         high = 1.0 if rule(1.0, 0.5) == 0.5 else 0.0
-        of_fixed = {b if self.bodies[a].moves else a: value for (a, b), value in wanted.items()}
-        top = max([high, *wanted.values()])
+        of_fixed = {b if self.bodies[a].moves else a: value for (a, b), value in required.items()}
+        top = max([high, *required.values()])
         tried.append([top if body.moves else of_fixed.get(body.row, 0.0) for body in self.bodies])
         for values in tried:
-            made = ((rule(values[a], values[b]), value) for (a, b), value in wanted.items())
+            made = ((rule(values[a], values[b]), value) for (a, b), value in required.items())
             if all(abs(one - value) <= 4e-16 * value for one, value in made):
                 return values
         raise CannotRun(f"its rule of mixing makes no such {key} of these surfaces")
 
 
-def _body(row: int, name: str, body: Any) -> Body:
+def _body(row: int, name: str, body: Any) -> PeerBody:
     moves = is_movable(body)
-    return Body(
+    return PeerBody(
         row,
         name,
         body.shape,

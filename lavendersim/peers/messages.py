@@ -29,7 +29,7 @@ class States(NamedTuple):
     first: int  # step
     pose: NDArray[np.float64]  # (steps, movable, 7)
     velocity: NDArray[np.float64]  # (steps, movable, 6)
-    contacts: NDArray[np.float64]  # (rows, 3 + told): step, body A, body B, what is told
+    contacts: NDArray[np.float64]  # (rows, 3 + reported): step, body A, body B, what is reported
     step_ns: int  # spent in the engine's steps alone
 
 

@@ -9,8 +9,8 @@ from lavendersim.peers.declaration import (
     IMPULSE,
     POINT,
     TANGENTIAL,
+    EngineSetting,
     Peer,
-    Setting,
     Value,
     Variant,
 )
@@ -61,28 +61,34 @@ PEER: Final = Peer(
         ),
     },
     settings=(
-        Setting(name="solver", type=Literal["Newton", "CG", "PGS"], doc="of the convex problem"),
-        Setting(
+        EngineSetting(
+            name="solver", type=Literal["Newton", "CG", "PGS"], doc="of the convex problem"
+        ),
+        EngineSetting(
             name="iterations", type=Annotated[int, Quantity(whole=True, minimum=1)], doc="at most"
         ),
-        Setting(name="tolerance", type=Annotated[float, Quantity(minimum=0)], doc="to stop at"),
-        Setting(name="cone", type=Literal["pyramidal", "elliptic"], doc="of friction"),
-        Setting(name="integrator", type=Literal["Euler", "RK4", "discrete"], doc="of a step"),
-        Setting(
+        EngineSetting(
+            name="tolerance", type=Annotated[float, Quantity(minimum=0)], doc="to stop at"
+        ),
+        EngineSetting(name="cone", type=Literal["pyramidal", "elliptic"], doc="of friction"),
+        EngineSetting(name="integrator", type=Literal["Euler", "RK4", "discrete"], doc="of a step"),
+        EngineSetting(
             name="time_constant", type=Annotated[float, Quantity("s", above=0)], doc="[s] of solref"
         ),
-        Setting(
+        EngineSetting(
             name="time_constant_steps",
             type=Annotated[float, Quantity(above=0)],
             doc="of solref, in timesteps, instead of time_constant",
         ),
-        Setting(name="damping_ratio", type=Annotated[float, Quantity(above=0)], doc="of solref"),
-        Setting(name="impedance", type=_SHARE, doc="of solimp, at every depth"),
-        Setting(
+        EngineSetting(
+            name="damping_ratio", type=Annotated[float, Quantity(above=0)], doc="of solref"
+        ),
+        EngineSetting(name="impedance", type=_SHARE, doc="of solimp, at every depth"),
+        EngineSetting(
             name="impratio", type=Annotated[float, Quantity(above=0)], doc="friction over normal"
         ),
-        Setting(name="margin", type=Annotated[float, Quantity("m", minimum=0)], doc="[m]"),
-        Setting(name="speculative", type=bool, doc="contacts ahead"),
+        EngineSetting(name="margin", type=Annotated[float, Quantity("m", minimum=0)], doc="[m]"),
+        EngineSetting(name="speculative", type=bool, doc="contacts ahead"),
     ),
     shapes=frozenset({"plane", "sphere", "box", "capsule", "cylinder", "hull", "compound"}),
     surface_keys=frozenset({"friction", "restitution"}),

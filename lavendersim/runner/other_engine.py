@@ -12,7 +12,7 @@ from time import perf_counter_ns
 from typing import TYPE_CHECKING
 
 from lavendersim.cell import CellEngine
-from lavendersim.errors import NOT_TOLD
+from lavendersim.errors import UNREPORTED
 from lavendersim.measures.always import WorstStates
 from lavendersim.peers.catalogue import installed_version, peer_of
 from lavendersim.peers.declaration import Peer
@@ -45,16 +45,16 @@ def simulate_elsewhere(
     config, engine = job.config, job.config.engine
     assert engine is not None
     peer = peer_of(engine.name)
-    told = peer.told(engine.name)
-    absent = absent_topics((job.in_log or plan_in_log(job.plan)).absent, peer, told)
+    reported = peer.reports(engine.name)
+    absent = absent_topics((job.in_log or plan_in_log(job.plan)).absent, peer, reported)
     if "/contacts" in absent:
-        told = ()
-    metadata = metadata_of(engine, peer, told, job.seeds)
+        reported = ()
+    metadata = metadata_of(engine, peer, reported, job.seeds)
     writer = TraceWriter(job.path, config, job.as_written, metadata, absent)
     unseen = absent | partly_recorded(described(config.record))
     bodies = list(config.scene.bodies)
     bounds = Bounds(job.always, bodies, config, config.clock, unseen)
-    rows = RowsOfStates(config, told)
+    rows = RowsOfStates(config, reported)
     status = "complete"
     done = [0]  # steps; read by who shows the progress, at any time
     build_ns = physics_ns = logging_ns = 0
@@ -68,7 +68,7 @@ def simulate_elsewhere(
                 if began is not None:
                     began(partial(done.__getitem__, 0))
             elif isinstance(message, States):
-                kept = message if told else message._replace(contacts=message.contacts[:0, :3])
+                kept = message if reported else message._replace(contacts=message.contacts[:0, :3])
                 block, broken = bounds.within(rows.block(kept))
                 writer.append(block)
                 done[0] = int(block.step["step"][-1])
@@ -92,15 +92,15 @@ def simulate_elsewhere(
     return outcome, written, bounds.worst
 
 
-def absent_topics(planned: dict[str, str], peer: Peer, told: tuple[str, ...]) -> dict[str, str]:
+def absent_topics(planned: dict[str, str], peer: Peer, reported: tuple[str, ...]) -> dict[str, str]:
     """Return the topics that a log does without: by the plan, and what the engine does not tell."""
-    silent = f"{peer.title} {NOT_TOLD}"
+    silent = f"{peer.title} {UNREPORTED}"
     absent = planned | {"/residuals": silent, "/plot/log10_residual": silent}
-    return absent if told else absent | {topic: absent.get(topic, silent) for topic in CONTACTS}
+    return absent if reported else absent | {topic: absent.get(topic, silent) for topic in CONTACTS}
 
 
 def metadata_of(
-    engine: CellEngine, peer: Peer, told: tuple[str, ...], seeds: str
+    engine: CellEngine, peer: Peer, reported: tuple[str, ...], seeds: str
 ) -> dict[str, dict[str, str]]:
     """Return what a log says of the engine that made it, and of the columns that it lacks."""
     version = installed_version(peer.name)
@@ -114,12 +114,12 @@ def metadata_of(
         "repeats": peer.repeats,
         "seed": seeds,
     }
-    has = {name for name, _ in step_columns(told)}
+    has = {name for name, _ in step_columns(reported)}
     untold = {f"/step.{one.name}" for one in STEP_COLUMNS if one.name not in has}
-    if told:
-        has = {name for name, _ in contact_columns(told)}
+    if reported:
+        has = {name for name, _ in contact_columns(reported)}
         untold |= {f"/contacts.{name}" for name in CONTACT_COLUMNS if name not in has}
-    silent = f"{peer.title} {NOT_TOLD}"
+    silent = f"{peer.title} {UNREPORTED}"
     return {
         "versions": versions(),
         "engine": made_by,

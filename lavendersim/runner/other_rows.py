@@ -34,31 +34,31 @@ STEP: Final = (
 BODIES: Final = (("step", "i8"), ("body_a", "i8"), ("body_b", "i8"))
 
 
-def step_columns(told: tuple[str, ...]) -> list[tuple[str, str]]:
-    """Return the columns of /step that a log has; told: of contacts."""
+def step_columns(reported: tuple[str, ...]) -> list[tuple[str, str]]:
+    """Return the columns of /step that a log has; reported: of contacts."""
     of = {"total_normal_force": "impulse_n", "max_penetration": "separation"}
-    return [(name, kind) for name, kind in STEP if name not in of or of[name] in told]
+    return [(name, kind) for name, kind in STEP if name not in of or of[name] in reported]
 
 
-def contact_columns(told: tuple[str, ...]) -> list[tuple[str, str]]:
-    """Return the columns of a contact that a log has of what is told, those that follow with them.
+def contact_columns(reported: tuple[str, ...]) -> list[tuple[str, str]]:
+    """Return the columns of contacts that a log has of what is reported, and what follows.
 
     A tangential impulse is a vector to engines; a log has it along tangents of the normal.
     """
-    names = [*told]
-    if TANGENTIAL[0] in told:
-        names = [name for name in told if name not in TANGENTIAL]
+    names = [*reported]
+    if TANGENTIAL[0] in reported:
+        names = [name for name in reported if name not in TANGENTIAL]
         names += ["impulse_t1", "impulse_t2", "t1x", "t1y", "t1z"]
     derived = {"impulse_n": "force_n", "separation": "penetration"}
-    names += [derived[name] for name in told if name in derived]
+    names += [derived[name] for name in reported if name in derived]
     return [*BODIES, *((name, "f8") for name in names)]
 
 
 class RowsOfStates:
     """Makes the rows of one run."""
 
-    def __init__(self, config: CellConfig, told: tuple[str, ...]) -> None:
-        self._config, self._told = config, told
+    def __init__(self, config: CellConfig, reported: tuple[str, ...]) -> None:
+        self._config, self._reported = config, reported
         bodies = list(config.scene.bodies.values())
         self._moving = np.flatnonzero([is_movable(body) for body in bodies])
         self._still = np.array(
@@ -74,7 +74,7 @@ class RowsOfStates:
         pose = np.repeat(self._still[None], count, axis=0)
         pose[:, self._moving, :7], pose[:, self._moving, 7:] = states.pose, states.velocity
         contact = self._contacts(states)
-        step = np.zeros(count, step_columns(self._told))
+        step = np.zeros(count, step_columns(self._reported))
         step["step"] = states.first + np.arange(count)
         step["time_ns"] = self._config.clock.nanoseconds(step["step"])
         self._sum_bodies(step, states)
@@ -90,9 +90,9 @@ class RowsOfStates:
         )
 
     def _contacts(self, states: States) -> NDArray[Any]:
-        columns = ("step", "body_a", "body_b", *self._told)
+        columns = ("step", "body_a", "body_b", *self._reported)
         given = dict(zip(columns, states.contacts.T, strict=True))
-        found = np.zeros(len(states.contacts), contact_columns(self._told))
+        found = np.zeros(len(states.contacts), contact_columns(self._reported))
         for name in given.keys() & set(found.dtype.names or ()):
             found[name] = given[name]
         if "separation" in given:

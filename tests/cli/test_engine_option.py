@@ -6,10 +6,8 @@ import json
 from pathlib import Path
 
 import pytest
-from typer.testing import CliRunner
+from command_line import lavender
 
-from lavender_cli.main import app
-from lavendersim.peers import catalogue
 from tests.engines import BALL, BOX, needs
 
 CLAIM = """
@@ -19,11 +17,6 @@ always: {}
 """
 
 
-def lavender(*words: str | Path) -> tuple[int, str, str]:
-    found = CliRunner().invoke(app, [str(word) for word in words])
-    return found.exit_code, found.stdout, found.stderr
-
-
 def write(folder: Path, name: str, text: str) -> Path:
     path = folder / name
     path.write_text(text)
@@ -31,54 +24,43 @@ def write(folder: Path, name: str, text: str) -> Path:
 
 
 def test_an_unknown_engine_is_refused_before_a_file_is_read(tmp_path: Path) -> None:
-    code, _, said = lavender("run", tmp_path / "none.yaml", "--engine", "mujco")
-    assert code == 2
-    assert 'no engine is called "mujco"' in said
-    assert 'did you mean "mujoco"?' in said
-
-
-def test_one_that_is_not_installed_is_refused_with_the_command(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
-    monkeypatch.setattr(catalogue, "installed_version", lambda name: "")
-    config = write(tmp_path, "ball.yaml", f"{BALL}engine: mujoco\n")
-    code, _, said = lavender("run", config, "--runs", tmp_path / "runs")
-    assert code == 2
-    assert f"{config}:8:1: engine: MuJoCo is not installed" in said.replace("\n", "")
-    assert "`pip install mujoco`" in said
+    for verb in ("run", "check"):
+        found = lavender(verb, "none.yaml", "--engine", "mujco", where=tmp_path)
+        assert found.returncode == 2
+        assert 'no engine is called "mujco"' in found.stderr
+        assert 'did you mean "mujoco"?' in found.stderr
 
 
 @needs("mujoco")
 def test_both_engines_run_two_scenes_end_to_end(tmp_path: Path) -> None:
     """3 + 2 t - g t^2/2 = 2.77375 m at 0.5 s; Euler's method is 24.5 mm below."""
-    ball = write(tmp_path, "ball.yaml", BALL + CLAIM)
-    box = write(tmp_path, "box.yaml", BOX)
-    runs = tmp_path / "runs"
-    code, _, said = lavender("run", ball, box, "-e", "all", "--runs", runs, "--json")
-    assert code == 0, said
-    tables = json.loads(lavender("run", ball, "-e", "lavender,mujoco", "--runs", runs, "--json")[1])
-    cells = tables[0]["cells"] if isinstance(tables, list) else tables["cells"]
+    write(tmp_path, "box.yaml", BOX)
+    write(tmp_path, "ball.yaml", BALL + CLAIM)
+    words = ("run", "box.yaml", "ball.yaml", "-e", "lavender,mujoco", "--json")
+    found = lavender(*words, where=tmp_path)
+    assert found.returncode == 0, found.stderr
+    (cells,) = (one["cells"] for one in json.loads(found.stdout) if one["experiment"] == "ball")
     assert [cell["label"] for cell in cells] == ["engine=lavender", "engine=mujoco"]
     assert [cell["measures"]["height"] for cell in cells] == pytest.approx(
         [2.77375, 2.77375 - 9.81 * 0.01 * 0.25], abs=1e-9
     )
     for verb in ("show", "judge", "verify"):
-        code, shown, said = lavender(verb, runs / "latest")
-        assert code == 0, shown + said
-    assert "not judged" in lavender("judge", runs / "latest")[1]
+        found = lavender(verb, where=tmp_path)
+        assert found.returncode == 0, found.stdout + found.stderr
+    assert "always: residual: not judged" in lavender("judge", where=tmp_path).stdout
 
 
 @needs("mujoco")
 def test_a_matrix_marks_what_is_refused_and_goes_on(tmp_path: Path) -> None:
-    ball = write(tmp_path, "ball.yaml", BALL + CLAIM)
+    write(tmp_path, "ball.yaml", BALL + CLAIM)
     text = (BALL + CLAIM).replace("mass: 2,", "mass: 2, drag: {linear: 0.001},")
-    drag = write(tmp_path, "drag.yaml", text)
-    page = tmp_path / "engines.html"
-    words = ("-e", "all", "--runs", tmp_path / "runs", "--report", page, "--json")
-    code, shown, said = lavender("check", ball, drag, *words)
-    found = json.loads(shown)
+    text = text.replace("always: {}", "always: {momentum: none}")
+    write(tmp_path, "drag.yaml", text)
+    words = ("check", ".", "-e", "lavender,mujoco", "--report", "engines.html", "--json")
+    done = lavender(*words, where=tmp_path)
+    found = json.loads(done.stdout)
     verdicts = {
-        (one["case"].split("/")[1], one["solver"]): one["verdict"] for one in found["entries"]
+        (one["case"].rpartition("/")[2], one["solver"]): one["verdict"] for one in found["entries"]
     }
     assert verdicts == {
         ("ball", "lavender"): "passes",
@@ -86,15 +68,15 @@ def test_a_matrix_marks_what_is_refused_and_goes_on(tmp_path: Path) -> None:
         ("drag", "lavender"): "passes",
         ("drag", "mujoco"): "refused",
     }
-    assert code == 0, said
-    assert "refused" in page.read_text()
+    assert done.returncode == 0, done.stderr
+    assert "refused" in (tmp_path / "engines.html").read_text()
 
 
 @needs("mujoco")
-def test_the_plan_of_another_engine_states_its_law(tmp_path: Path) -> None:
-    config = write(tmp_path, "ball.yaml", f"{BALL}engine: mujoco-stiff\n")
-    code, shown, _ = lavender("plan", config)
-    assert code == 0
-    assert "engine mujoco-stiff, which plans by itself" in shown
-    assert "law        soft contacts in a convex problem" in shown
-    assert "midpoint" not in shown
+def test_the_plan_of_another_engine_says_its_law(tmp_path: Path) -> None:
+    write(tmp_path, "ball.yaml", f"{BALL}engine: mujoco-stiff\n")
+    found = lavender("plan", "ball.yaml", where=tmp_path)
+    assert found.returncode == 0
+    assert "engine mujoco-stiff, which plans by itself" in found.stdout
+    assert "law        soft contacts in a convex problem" in found.stdout
+    assert "midpoint" not in found.stdout

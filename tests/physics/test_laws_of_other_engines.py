@@ -1,4 +1,4 @@
-"""Laws of whole runs by other engines: closed forms, one schema, equal bytes, told ends."""
+"""Laws of whole runs by other engines: closed forms, one schema, equal bytes, reported ends."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from lavendersim.errors import NotToldError
+from lavendersim.errors import NotReportedError
 from tests.engines import BALL, BOX, log_of, needs, run_by
 
 pytestmark = needs("mujoco")
@@ -45,7 +45,7 @@ def test_a_box_slides_down_a_slope_as_coulomb_says(tmp_path: Path) -> None:
     assert np.all(log.contact["friction"] == 0.3)
 
 
-def test_told_impulses_are_all_that_changes_momentum(tmp_path: Path) -> None:
+def test_reported_impulses_are_all_that_changes_momentum(tmp_path: Path) -> None:
     """p' - p = M g h + J to round-off of 53 bits, which needs every sign and axis of J.
 
     As far as its Newton's method goes: at MuJoCo's default tolerance 2e-5 N s are left.
@@ -70,9 +70,9 @@ def test_a_log_has_the_columns_of_ours_and_reasons_for_the_others(tmp_path: Path
     assert log.pose.shape == (121, 2, 7)
     assert log.velocity.shape == (121, 2, 6)
     assert log.metadata["engine"]["name"] == "mujoco"
-    with pytest.raises(NotToldError, match=r"no /step\.residual: MuJoCo does not tell it"):
+    with pytest.raises(NotReportedError, match=r"no /step\.residual: MuJoCo does not tell it"):
         log.step["residual"]
-    with pytest.raises(NotToldError, match=r"no /contacts\.approach_velocity: MuJoCo"):
+    with pytest.raises(NotReportedError, match=r"no /contacts\.approach_velocity: MuJoCo"):
         log.contact["approach_velocity"]
 
 
@@ -119,8 +119,8 @@ def test_a_contact_of_two_surfaces_has_the_friction_of_their_mixture(
 ) -> None:
     """MuJoCo takes the larger; lavender sqrt(mu_a mu_b): 0 where one is frictionless."""
     text = BOX.replace(
-        "rough: {friction: 0.3}", f"rough: {{friction: 0.3}}, other: {{friction: {mu}}}"
+        "rubber: {friction: 0.3}", f"rubber: {{friction: 0.3}}, other: {{friction: {mu}}}"
     )
-    text = text.replace("kind: plane}, surface: rough", "kind: plane}, surface: other")
+    text = text.replace("kind: plane}, surface: rubber", "kind: plane}, surface: other")
     log = log_of(run_by(text, "mujoco", tmp_path))
     np.testing.assert_allclose(log.contact["friction"], (0.3 * mu) ** 0.5, rtol=1e-15)

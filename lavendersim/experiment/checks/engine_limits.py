@@ -6,13 +6,13 @@ from lavendersim.cell.config import CellConfig
 from lavendersim.experiment.checks.messages import locate
 from lavendersim.experiment.text.node import Mark, Node, Path, key_mark
 from lavendersim.experiment.text.report import Report
-from lavendersim.peers.refusals import refusals_of
+from lavendersim.peers.limits import limits_of
 
 
 def refuse_limits(config: CellConfig, tree: Node, report: Report) -> None:
     """Note what of a resolved cell its engine cannot do; tree: that the cell was made of."""
     places: dict[Mark, str] = {}  # of several bodies of one surface the first is named
-    for path, sentence in refusals_of(config):
+    for path, sentence in limits_of(config):
         places.setdefault(_place(tree, path), sentence)
     for mark, sentence in places.items():
         report.add(mark, sentence)

@@ -11,7 +11,7 @@ import mujoco
 import numpy as np
 
 from lavendersim.peers.declaration import Value
-from lavendersim.peers.description import Body, Scene
+from lavendersim.peers.description import PeerBody, Scene
 from lavendersim.peers.world import Floats
 
 # An underdamped contact spring stands for a coefficient of restitution: it swings for so many
@@ -138,7 +138,7 @@ class World:
         return found
 
 
-def _parts(body: Body) -> list[tuple[str, Any, str]]:
+def _parts(body: PeerBody) -> list[tuple[str, Any, str]]:
     """Return name, shape and place of each piece of a body."""
     if body.shape.kind != "compound":
         return [(f"g_{body.row}", body.shape, "")]

@@ -7,8 +7,8 @@ from lavendersim.peers.catalogue import PEERS
 
 def test_a_variant_tells_what_its_engine_does_unless_it_says_so() -> None:
     peer = PEERS["mujoco"]
-    assert peer.told("mujoco-stiff") == peer.tells
-    assert peer.told("mujoco-rk4") == ()
+    assert peer.reports("mujoco-stiff") == peer.tells
+    assert peer.reports("mujoco-rk4") == ()
 
 
 def test_every_engine_states_its_law_and_whether_it_repeats() -> None:

@@ -59,8 +59,8 @@ def test_who_stays_says_what_holds_in_its_contacts() -> None:
     assert differ
     for a, b in found.pairs():
         says = values[a.row] if not a.moves else values[b.row]
-        wanted = [found.of_pair(key, a, b) for key in ("friction", "restitution")]
-        assert list(says) == wanted
+        required = [found.of_pair(key, a, b) for key in ("friction", "restitution")]
+        assert list(says) == required
 
 
 def test_a_force_acts_in_steps_that_start_within_its_time() -> None:

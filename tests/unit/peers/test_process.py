@@ -1,4 +1,4 @@
-"""An engine that crashes or hangs is an end that is told."""
+"""An engine that crashes or hangs is an end that is reported."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ ROOT = Path(__file__).parents[3]
 
 
 @pytest.mark.parametrize(
-    ("how", "told"),
+    ("how", "reported"),
     [
         ("crash", "crashed: its process was ended by SIGSEGV"),
         ("exit", "crashed: its process exited with 3 (it is out of memory)"),
@@ -21,10 +21,10 @@ ROOT = Path(__file__).parents[3]
     ],
 )
 def test_how_a_process_goes_wrong_is_its_end(
-    how: str, told: str, monkeypatch: pytest.MonkeyPatch
+    how: str, reported: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(ROOT)
     # a process that crashes must have started within the silence, on a loaded machine too
     silence = 3.0 if how == "hang" else 60.0
     found = list(messages_of(Task("", how, {}), silence, "tests.unit.peers.crashing_engine"))
-    assert found == [Ended(told)]
+    assert found == [Ended(reported)]

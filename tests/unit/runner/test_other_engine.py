@@ -46,8 +46,8 @@ def test_a_crash_is_how_the_cell_ended_and_others_go_on(
     monkeypatch.setattr(other_engine, "messages_of", crashing)
     swept = "sweep: {engine: {path: engine, values: [mujoco, mujoco-stiff, mujoco-cg]}}"
     finished = run(load_experiment_text(f"{BALL}{swept}\n", "ball.yaml"), tmp_path)
-    told = "failed: crashed: its process was ended by SIGSEGV after step 0"
-    assert [cell.status for cell in finished.run.cells] == ["complete", told, "complete"]
+    reported = "failed: crashed: its process was ended by SIGSEGV after step 0"
+    assert [cell.status for cell in finished.run.cells] == ["complete", reported, "complete"]
     assert [outcome.steps for outcome in finished.outcomes] == [50, 0, 50]
     assert not finished.good
     assert len(finished.run.cells[1].trace().step) == 1

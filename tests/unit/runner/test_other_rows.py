@@ -13,7 +13,7 @@ from lavendersim.runner import run
 from lavendersim.runner.other_rows import RowsOfStates, state_hashes
 from tests.engines import BALL, log_of
 
-TOLD = POINT + IMPULSE + TANGENTIAL + FRICTION
+REPORTED = POINT + IMPULSE + TANGENTIAL + FRICTION
 SPUN = """
 scene:
   bodies:
@@ -49,20 +49,20 @@ def test_equal_states_have_equal_hashes_and_minus_zero_is_zero() -> None:
     assert one != moved
 
 
-def test_an_impulse_along_tangents_is_the_vector_that_was_told() -> None:
+def test_an_impulse_along_tangents_is_the_vector_that_was_reported() -> None:
     config = load_experiment_text(BALL, "ball.yaml").cells()[0].config
     normals = np.array([[0.0, 0.0, 1.0], [0.0, 0.0, -1.0], [0.6, 0.0, 0.8], [2.0, -3.0, 6.0]])
     normals[3] /= 7.0
-    told = np.random.default_rng(1).normal(size=(4, 3))
-    told -= normals * (told * normals).sum(axis=1, keepdims=True)
+    reported = np.random.default_rng(1).normal(size=(4, 3))
+    reported -= normals * (reported * normals).sum(axis=1, keepdims=True)
     rows = np.array(
-        [(k, 0, 1, 0, 0, 0, *normals[k], -0.5, 2.0, *told[k], 0.3) for k in range(len(normals))]
+        [(k, 0, 1, 0, 0, 0, *normals[k], -0.5, 2.0, *reported[k], 0.3) for k in range(len(normals))]
     )
     pose, velocity = np.tile([0.0, 0, 0, 1, 0, 0, 0], (4, 1, 1)), np.zeros((4, 1, 6))
-    found = RowsOfStates(config, TOLD).block(States(0, pose, velocity, rows, 0)).contact
+    found = RowsOfStates(config, REPORTED).block(States(0, pose, velocity, rows, 0)).contact
     first = np.column_stack([found[f"t1{axis}"] for axis in "xyz"])
     second = np.cross(normals, first)
     made = found["impulse_t1"][:, None] * first + found["impulse_t2"][:, None] * second
-    np.testing.assert_allclose(made, told, atol=1e-15)
+    np.testing.assert_allclose(made, reported, atol=1e-15)
     assert found["penetration"].tolist() == [0.5] * 4
     assert found["force_n"].tolist() == [200.0] * 4  # 2 N s in 1/100 s

@@ -39,7 +39,8 @@ engine: mujoco
 scene:
   bodies:
     floor: {shape: {kind: plane}}
-    ball: {shape: {kind: sphere, radius: 1}, mass: 1, position: [0, 0, 1], surface: {rolling_friction: 0.1}}
+    ball: {shape: {kind: sphere, radius: 1}, mass: 1, position: [0, 0, 1],
+           surface: {rolling_friction: 0.1}}
     b: {shape: {kind: sphere, radius: 1}, mass: 1, position: [9, 0, 0],
         surface: {rolling_friction: 0.1}}
 duration: 1
@@ -69,7 +70,7 @@ def test_a_surface_of_several_bodies_is_one_place() -> None:
 
 
 def test_each_body_with_a_surface_of_its_own_is_a_place() -> None:
-    assert places(OWN) == [(5, "rolling_friction"), (7, "rolling_friction")]
+    assert places(OWN) == [(6, "rolling_friction"), (8, "rolling_friction")]
 
 
 def test_a_property_of_a_pair_is_refused_in_the_pair() -> None:

@@ -84,5 +84,5 @@ duration: 1
     world = World(scene, {})
     world.step()
     found = {tuple(sorted(row[:2])): row[-1] for row in world.contacts()}
-    wanted = {(0, 1): 0.2, (0, 2): 0.3, (1, 2): 0.6}
-    assert found == pytest.approx(wanted, rel=1e-12)
+    required = {(0, 1): 0.2, (0, 2): 0.3, (1, 2): 0.6}
+    assert found == pytest.approx(required, rel=1e-12)

@@ -10,10 +10,10 @@ from lavendersim.experiment import load_experiment_text
 CONFIG = """\
 engine: mujoco
 scene:
-  surfaces: {rough: {friction: 0.5}}
+  surfaces: {rubber: {friction: 0.5}}
   bodies:
-    floor: {shape: {kind: plane}, surface: rough}
-    ball: {shape: {kind: sphere, radius: 1}, mass: 1, position: [0, 0, 1], surface: rough}
+    floor: {shape: {kind: plane}, surface: rubber}
+    ball: {shape: {kind: sphere, radius: 1}, mass: 1, position: [0, 0, 1], surface: rubber}
 duration: 1
 """
 CASES = [

@@ -16,20 +16,20 @@ from lavendersim.peers.declaration import Peer
 Path = tuple[str | int, ...]
 
 
-class Refusal(NamedTuple):
+class Limit(NamedTuple):
     """One key that asks for what an engine cannot do."""
 
     path: Path
     sentence: str
 
 
-def refusals_of(config: CellConfig) -> list[Refusal]:
+def limits_of(config: CellConfig) -> list[Limit]:
     """Return what the engine of a cell cannot do; nothing for lavender's."""
     if config.engine is None:
         return []
     peer = peer_of(config.engine.name)
     return [
-        Refusal(path, f"{path[-1]}: {peer.title} {sentence}")
+        Limit(path, f"{path[-1]}: {peer.title} {sentence}")
         for path, sentence in (
             *_of_bodies(config, peer),
             *_of_scene(config, peer),
