@@ -65,7 +65,8 @@ def check_by(
     finally:
         # what an interrupted matrix has is shown; what it has not stands as not run
         if report is not None:
-            damaged = _write(report, cases, solvers, made, left_out)
+            what = "engine" if engines else "solver"
+            damaged = _write(report, cases, solvers, made, left_out, what)
         if as_json:
             printing.as_json(as_data(cases, solvers, made, left_out))
         else:
@@ -107,6 +108,7 @@ def _write(
     solvers: Sequence[str],
     made: Sequence[Entry],
     left_out: dict[str, str],
+    what: str,
 ) -> list[str]:
     """Write the page; returns a sentence of each log that has no picture for its damage."""
     from lavendersim.figures import write_matrix
@@ -115,7 +117,8 @@ def _write(
 
     pictured = {entry.case: entry for entry in reversed(made) if entry.run is not None}
     shown = {name: open_run(entry.run).cells[0] for name, entry in pictured.items()}
-    write_matrix(cases, solvers, made, left_out, shown=shown, processor=processor(), path=report)
+    place: dict[str, Any] = {"path": report, "what": what}
+    write_matrix(cases, solvers, made, left_out, shown=shown, processor=processor(), **place)
     typer.echo(f"report {report}", err=True)
     return [sentence for cell in shown.values() if (sentence := cell.damage())]
 

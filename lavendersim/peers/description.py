@@ -69,6 +69,10 @@ class Scene:
         """Return of each body a value such that the lesser of two is that of their contact."""
         return self._values(key, [lambda required: required], min)
 
+    def by_larger(self, key: str) -> list[float]:
+        """Return of each body a value such that the larger of two is that of their contact."""
+        return self._values(key, [lambda required: required], max)
+
     def by_first(self, keys: tuple[str, ...]) -> tuple[list[tuple[float, ...]], bool] | None:
         """Return values of each body such that a contact has those of the body that stays, or of
         either where both move; and whether the bodies that stay differ. None: there are none.
@@ -126,9 +130,8 @@ class Scene:
             for inverse in inverses
         ]
         # What moves leaves the choice to what stays, where moving bodies meet nothing else.
-        high = 1.0 if rule(1.0, 0.5) == 0.5 else 0.0
         of_fixed = {b if self.bodies[a].moves else a: value for (a, b), value in required.items()}
-        top = max([high, *required.values()])
+        top = 0.0 if rule is max else max([1.0, *required.values()])
         tried.append([top if body.moves else of_fixed.get(body.row, 0.0) for body in self.bodies])
         for values in tried:
             made = ((rule(values[a], values[b]), value) for (a, b), value in required.items())

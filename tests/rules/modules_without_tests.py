@@ -32,7 +32,9 @@ DECLARATIONS = {
     "measures/specs/spinning.py": "fields of a measure's config",
     "measures/specs/steady.py": "fields of a measure's config",
     "peers/messages.py": "fields of messages",
+    "peers/bullet.py": "a declaration",
     "peers/mujoco.py": "a declaration",
+    "peers/rapier.py": "a declaration",
 }
 
 # Folder: modules, without `.py`. A debt, to be made shorter: nothing is added here.

@@ -89,7 +89,7 @@ LIBRARIES = {
     "typer": {"cli"},
     "rich": {"cli"},
     "pytest": {"pytest_plugin"},
-    **{library: {"peers"} for library in ("mujoco",)},
+    **{library: {"peers"} for library in ("mujoco", "pybullet", "rapier3d")},
 }
 IMPORTS = imports()
 

@@ -17,7 +17,7 @@ scene:
 duration: 1
 """
 CASES = [
-    ("friction: 0.5", "friction: 0.5, cohesion: 2", "3:37: cohesion: MuJoCo does not obey it"),
+    ("friction: 0.5", "friction: 0.5, cohesion: 2", "3:38: cohesion: MuJoCo does not obey it"),
     ("mass: 1", "mass: 1, drag: {linear: 1}", "6:55: drag: MuJoCo has none here"),
     ("mass: 1", "kinematic: true", "6:46: kinematic: MuJoCo has none here"),
     (
@@ -68,7 +68,7 @@ def test_lavender_does_what_is_refused_there(before: str, after: str, said: str)
 def test_a_swept_engine_is_refused_by_its_own_cell() -> None:
     text = CONFIG.replace("engine: mujoco\n", "").replace("0.5}", "0.5, cohesion: 2}")
     text += "sweep: {engine: {path: engine, values: [lavender, mujoco]}}\n"
-    with pytest.raises(ConfigError, match=r"c\.yaml:2:37: cohesion: MuJoCo does not obey it"):
+    with pytest.raises(ConfigError, match=r"c\.yaml:2:38: cohesion: MuJoCo does not obey it"):
         load_experiment_text(text, "c.yaml")
 
 
