@@ -75,9 +75,10 @@ def test_a_box_slides_down_a_slope_as_coulomb_says(tmp_path: Path) -> None:
 
 @needs("mujoco")
 def test_reported_impulses_are_all_that_changes_momentum(tmp_path: Path) -> None:
-    """p' - p = M g h + J to round-off of 53 bits, which needs every sign and axis of J.
+    """p' - p = M g h + J, which needs every sign and axis of J: to round-off of 2 N s in most steps.
 
-    As far as its Newton's method goes: at MuJoCo's default tolerance 2e-5 N s are left.
+    Where its Newton's method stops before that (impacts), it leaves 1e-5 N s of some 0.3; a wrong
+    sign of one tangent is 0.1 N s.
     """
     across = BOX.replace("mass: 2,", "mass: 2, velocity: [0, 0.5, 0],")  # along both tangents
     log = log_of(run_by(across, "mujoco-stiff", tmp_path))
@@ -90,8 +91,10 @@ def test_reported_impulses_are_all_that_changes_momentum(tmp_path: Path) -> None
     momentum = np.array([log.step[f"momentum_{axis}"] for axis in "xyz"]).T
     total = np.array([np.bincount(log.contact["step"], one, len(momentum)) for one in push]).T
     weight = 2.0 * np.array([4.905, 0.0, -8.495709211125343]) / 240
-    # the floor is body 0, A: impulses are on the box; momentum of some 2 N s
-    np.testing.assert_allclose(np.diff(momentum, axis=0), weight + total[1:], atol=1e-13)
+    # the floor is body 0, A: impulses are on the box
+    left = np.abs(np.diff(momentum, axis=0) - weight - total[1:]).max(axis=1)
+    assert np.median(left) < 1e-14
+    assert left.max() < 1e-4
 
 
 @needs("mujoco")
