@@ -75,7 +75,7 @@ def test_a_box_slides_down_a_slope_as_coulomb_says(tmp_path: Path) -> None:
 
 @needs("mujoco")
 def test_reported_impulses_are_all_that_changes_momentum(tmp_path: Path) -> None:
-    """p' - p = M g h + J, which needs every sign and axis of J: to round-off of 2 N s in most steps.
+    """p' - p = M g h + J, with every sign and axis of J: to round-off of 2 N s in most steps.
 
     Where its Newton's method stops before that (impacts), it leaves 1e-5 N s of some 0.3; a wrong
     sign of one tangent is 0.1 N s.
