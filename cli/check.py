@@ -9,7 +9,7 @@ import typer
 
 from lavender_cli import claims, printing, progress, solver_matrix, time_errors
 from lavender_cli.prediction import Yes, confirm, with_refined
-from lavender_cli.run import Configs, Jobs, Refine, Runs, Set, Strict, Sweep, overrides_of
+from lavender_cli.run import Configs, Engines, Jobs, Refine, Runs, Set, Strict, Sweep, overrides_of
 
 
 def check(
@@ -32,6 +32,7 @@ def check(
             "commas between; `all` is every one.",
         ),
     ] = None,
+    engine: Engines = None,
     refine: Refine = False,
     values: Set = None,
     axes: Sweep = None,
@@ -44,7 +45,7 @@ def check(
 
     With -v: every verdict, cell by cell. Exits 1 when one fails.
 
-    With --solver: a matrix of verdicts, case by solver. Exits 1 when a solver
+    With --solver, or --engine: a matrix of verdicts, case by solver or engine. Exits 1 when one
     fails a case in more than what the case declares; a known failure is
     no pass, but no error either.
     """
@@ -53,22 +54,29 @@ def check(
     from lavendersim.runner import load_all, run
 
     overrides = overrides_of(values, axes)
-    if solver:
+    if solver and engine:
+        raise UsageError("a matrix is of solvers or of engines: leave out --solver or --engine")
+    columns: tuple[str, ...] = ()
+    if solver or engine:
+        from lavendersim.peers import catalogue
         from lavendersim.runner.solver_cases import about_something_else
         from lavendersim.runner.solver_matrix import chosen
 
         if overrides:
             raise UsageError("a matrix is of cases as they stand: leave out --set and --sweep")
         if refine:
-            raise UsageError("--refine tells time errors of one solver: leave out --solver")
-        solvers = chosen(solver)  # a wrong name is refused before any file is read
+            raise UsageError("--refine tells time errors of one run: leave out --solver, --engine")
+        # a wrong name is refused before any file is read
+        columns = catalogue.chosen(engine) if engine else chosen(solver or ())
     experiments = load_all(configs, not full, overrides, strict)
     if report is not None:
         check_page_path(report)  # not after an hour of runs
-    if solver:
+    if columns:
         cases = [one for one in experiments if not about_something_else(one)]
-        confirm(([one] * len(solvers) for one in cases), runs, jobs, yes)
-        if not solver_matrix.check_solvers(experiments, solver, runs, jobs, report, as_json):
+        confirm(([one] * len(columns) for one in cases), runs, jobs, yes)
+        if not solver_matrix.check_by(
+            experiments, columns, runs, jobs, report, as_json, bool(engine)
+        ):
             raise typer.Exit(1)
         return
     confirm((with_refined(one) if refine else [one] for one in experiments), runs, jobs, yes)
@@ -108,10 +116,13 @@ def check(
         printing.as_json(table | ({"time_errors": refined} if refine else {}))
     else:
         passed = sum(bool(verdict["passed"]) for verdict in verdicts)
+        unjudged = sum(not verdict.get("judged", True) for verdict in verdicts)
+        left = f"{unjudged} not judged, " if unjudged else ""
         ended = sum(cell["status"] == "complete" for cell in cells)
         short = sum(experiment.options.reduced for experiment in experiments)
         typer.echo(
-            f"{passed} of {len(verdicts)} expectations met, {ended} of {len(cells)} cells complete"
+            f"{passed} of {len(verdicts)} expectations met, {left}"
+            f"{ended} of {len(cells)} cells complete"
             + (
                 f"; {short} experiment{'s' * (short != 1)} reduced, --full runs all of them"
                 if short

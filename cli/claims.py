@@ -33,6 +33,7 @@ class Judged(NamedTuple):
     expected: str
     message: str
     margin: float  # share of the bound that is left; NaN where there is no such
+    judged: bool = True
 
     @property
     def place(self) -> str:
@@ -43,7 +44,7 @@ class Judged(NamedTuple):
 class ClaimLine(NamedTuple):
     """What became of one expectation in all its cells, or of all checks of `always`."""
 
-    passed: bool
+    passed: bool | None  # None: the engine does not tell enough to judge it in any cell
     text: str
 
 
@@ -52,7 +53,10 @@ def summarise(verdicts: Sequence[Any]) -> list[ClaimLine]:
     from lavendersim.measures.always import PREFIX
 
     groups: dict[str, list[Any]] = {}
-    for verdict in of_memory(verdicts):
+    every = of_memory(verdicts)
+    for verdict in every:
+        if not verdict.judged:
+            continue
         groups.setdefault(verdict.name, []).append(verdict)
     checks = [name for name in groups if name.startswith(PREFIX)]
     met = [name for name in checks if all(one.passed for one in groups[name])]
@@ -66,6 +70,11 @@ def summarise(verdicts: Sequence[Any]) -> list[ClaimLine]:
         grouped = [groups[name] for name in together]
         text = _together(PREFIX, grouped, len(together) == len(checks))
         lines.append(ClaimLine(True, text))
+    left = [one for one in every if not one.judged]
+    for name in dict.fromkeys(one.name for one in left):
+        own = [one for one in left if one.name == name]
+        cells = f" in {len(own)} cells" if len(own) > 1 else ""
+        lines.append(ClaimLine(None, f"{name}: not judged{cells}, the engine does not tell it"))
     return lines
 
 
@@ -128,7 +137,9 @@ def print_claims(verdicts: Sequence[Any], verbose: bool = False) -> None:
         return
     for one in of_memory(verdicts):
         shown = f"{one.node}: {digits(one.measured)}, expected {one.expected}"
-        typer.echo(f"  {mark(one.passed)}  {shown}")
+        if not one.judged:
+            shown = one.message
+        typer.echo(f"  {mark(one.passed if one.judged else None)}  {shown}")
 
 
 def print_failures(
@@ -144,7 +155,7 @@ def print_failures(
     if len(ended_early) > len(ended):
         more = len(ended_early) - len(ended)
         typer.echo(f"  and {more} more cells ended early, -v lists each")
-    failed = [one for one in verdicts if not one.passed]
+    failed = [one for one in verdicts if one.fails]
     shown = failed if verbose else failed[:FULL_FAILURES]
     for one in shown:
         typer.echo("\n".join(f"  {line}" for line in one.message.splitlines()))

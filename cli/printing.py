@@ -49,8 +49,13 @@ def time_span(seconds: float) -> str:
     return f"{minutes} min {rest} s" if minutes else f"{rest} s"
 
 
-def mark(passed: bool) -> str:
-    """Return a coloured word; typer drops the colour where NO_COLOR or a pipe requires it."""
+def mark(passed: bool | None) -> str:
+    """Return a coloured word; typer drops the colour where NO_COLOR or a pipe requires it.
+
+    None: not judged.
+    """
+    if passed is None:
+        return typer.style("----", fg=typer.colors.YELLOW)
     if passed:
         return typer.style("pass", fg=typer.colors.GREEN)
     return typer.style("FAIL", fg=typer.colors.RED, bold=True)

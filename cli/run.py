@@ -52,6 +52,14 @@ Sweep = Annotated[
     list[str] | None,
     typer.Option("--sweep", metavar="NAME=PATH:[VALUES]", help="Another axis; repeatable."),
 ]
+Engines = Annotated[
+    list[str] | None,
+    typer.Option(
+        *("--engine", "-e"),
+        metavar="NAME",
+        help="What simulates it, with commas between several; `all`: every one installed.",
+    ),
+]
 Strict = Annotated[
     bool, typer.Option("--strict", help="What of a config is suspicious is an error.")
 ]
@@ -99,6 +107,7 @@ def run(
     refine: Refine = False,
     values: Set = None,
     axes: Sweep = None,
+    engine: Engines = None,
     strict: Strict = False,
     resume: Annotated[
         bool, typer.Option("--resume", help="Go on with the newest run where it did not finish.")
@@ -135,14 +144,14 @@ def run(
             "--executor": executor is not None,
             "--dask": dask is not None,
         }
-        overrides = overrides_of(values, axes)
+        overrides = overrides_of(values, axes, engine)
         _run_shard(configs, overrides, strict, _Place(into, shard), jobs, asked)
         return
 
     if executor not in (None, DASK):
         raise typer.BadParameter(f"{executor!r}, expected {DASK!r}", param_hint="--executor")
     # Every file is read before the first run, so a defect anywhere leaves nothing half done.
-    overrides = overrides_of(values, axes)
+    overrides = overrides_of(values, axes, engine)
     experiments = load_all(configs, overrides=overrides, strict=strict)
     where = [] if runs == Path("runs") else ["--runs", str(runs)]
     command = _command(configs, overrides, "--resume", *where)
@@ -294,9 +303,16 @@ def _run_shard(
         raise typer.Exit(1)
 
 
-def overrides_of(values: list[str] | None, axes: list[str] | None) -> list[str]:
+def overrides_of(
+    values: list[str] | None, axes: list[str] | None, engines: list[str] | None = None
+) -> list[str]:
     """Return the options as `load_experiment` takes them."""
-    return [*(f"set {one}" for one in values or ()), *(f"sweep {one}" for one in axes or ())]
+    given = [*(f"set {one}" for one in values or ()), *(f"sweep {one}" for one in axes or ())]
+    if not engines:
+        return given
+    from lavendersim.peers import catalogue
+
+    return given + catalogue.overrides_of(catalogue.chosen(engines))
 
 
 def _command(configs: list[Path], overrides: list[str], *options: str) -> str:

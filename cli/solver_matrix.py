@@ -25,31 +25,38 @@ WORDS = {
     "diverged": ("DIVERGED", "bold red"),
     "refused": ("REFUSED", "bold red"),
     "died": ("DIED", "bold red"),
+    "not judged": ("UNTOLD", "yellow"),
 }
 UNWRAPPED = 200  # columns of a pipe
 
 
-def check_solvers(
+def check_by(
     experiments: Sequence[Any],
-    names: Sequence[str],
+    solvers: Sequence[str],
     runs: Path,
     jobs: int,
     report: Path | None,
     as_json: bool,
+    engines: bool = False,
 ) -> bool:
-    """Run every case by every solver and print the matrix; False where more than known fails."""
-    from lavendersim.errors import UsageError
-    from lavendersim.runner.solver_matrix import cases_of, chosen, entries
+    """Run every case by every solver and print the matrix; False where more than known fails.
 
-    solvers = chosen(names)
+    engines: these are engines; what one cannot do is refused, which is no failure.
+    """
+    from lavendersim.errors import UsageError
+    from lavendersim.runner.solver_matrix import cases_of, entries, make_engine_entry, make_entry
+
+    make = make_engine_entry if engines else make_entry
     cases, left_out = cases_of(experiments)
     if not cases:
         name, why = next(iter(left_out.items()))
-        raise UsageError(f"nothing here is put to several solvers: {name} {why}")
+        raise UsageError(
+            f"nothing here is put to several {'engines' if engines else 'solvers'}: {name} {why}"
+        )
     made: list[Entry] = []
     damaged: list[str] = []
     try:
-        for entry in entries(cases, solvers, runs, jobs):
+        for entry in entries(cases, solvers, runs, jobs, make):
             made.append(entry)
             total = len(cases) * len(solvers)
             why = f": {entry.why}" if entry.why else ""
@@ -58,7 +65,8 @@ def check_solvers(
     finally:
         # what an interrupted matrix has is shown; what it has not stands as not run
         if report is not None:
-            damaged = _write(report, cases, solvers, made, left_out)
+            what = "engine" if engines else "solver"
+            damaged = _write(report, cases, solvers, made, left_out, what)
         if as_json:
             printing.as_json(as_data(cases, solvers, made, left_out))
         else:
@@ -66,7 +74,8 @@ def check_solvers(
     printing.report_damage(damaged)
     if damaged:
         raise typer.Exit(printing.DAMAGED)
-    return all(entry.fine for entry in made)
+    beside = {"refused", "not judged"} if engines else set()
+    return all(entry.fine or entry.verdict in beside for entry in made)
 
 
 def as_data(
@@ -99,6 +108,7 @@ def _write(
     solvers: Sequence[str],
     made: Sequence[Entry],
     left_out: dict[str, str],
+    what: str,
 ) -> list[str]:
     """Write the page; returns a sentence of each log that has no picture for its damage."""
     from lavendersim.figures import write_matrix
@@ -107,7 +117,8 @@ def _write(
 
     pictured = {entry.case: entry for entry in reversed(made) if entry.run is not None}
     shown = {name: open_run(entry.run).cells[0] for name, entry in pictured.items()}
-    write_matrix(cases, solvers, made, left_out, shown=shown, processor=processor(), path=report)
+    place: dict[str, Any] = {"path": report, "what": what}
+    write_matrix(cases, solvers, made, left_out, shown=shown, processor=processor(), **place)
     typer.echo(f"report {report}", err=True)
     return [sentence for cell in shown.values() if (sentence := cell.damage())]
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 
 class Defect(NamedTuple):
@@ -28,6 +28,20 @@ class UsageError(LavenderError):
     """The command line asks for something that does not exist or cannot be."""
 
     exit_code = 2
+
+
+class NotReportedError(UsageError):
+    """A log has not what is asked of it, because the engine that made it does not tell it."""
+
+
+# How a reason ends where an engine does not tell what is asked of its log: a measure's reason is
+# kept as a text, and raised again from it.
+UNREPORTED: Final = "does not tell it"
+
+
+def unanswerable(sentence: str) -> UsageError:
+    """Return the error of a log that has not what is asked of it, by the reason it gives."""
+    return NotReportedError(sentence) if sentence.endswith(UNREPORTED) else UsageError(sentence)
 
 
 class ConfigError(LavenderError):

@@ -14,6 +14,7 @@ from lavendersim.cell.choices import (
     Switch,
 )
 from lavendersim.cell.config import CellConfig, CellEffects, CellStudy
+from lavendersim.cell.engine import CellEngine
 from lavendersim.cell.events import (
     AnyEvent,
     CellEvent,
@@ -51,6 +52,7 @@ __all__ = [
     "CellCompound",
     "CellConfig",
     "CellEffects",
+    "CellEngine",
     "CellEvent",
     "CellForce",
     "CellGravity",

@@ -12,9 +12,8 @@ from fractions import Fraction
 from functools import lru_cache
 from typing import Any
 
-from pydantic import SerializerFunctionWrapHandler, model_serializer
-
 from lavendersim.cell.choices import Mistake, Switch
+from lavendersim.cell.engine import CellEngine
 from lavendersim.cell.events import AnyEvent, CellTimestep
 from lavendersim.cell.numerics import Numerics
 from lavendersim.cell.record import CellRecord
@@ -53,15 +52,9 @@ class CellConfig(ResolvedModel):
     record: CellRecord
     effects: CellEffects
     study: CellStudy
-    # Absent from the JSON of cells that have none, as in older logs.
+    # Both are absent from the data of cells that have none, as in older logs.
+    engine: CellEngine | None = None  # None: lavender's
     triggered: tuple[CellTriggeredEvent, ...] = ()
-
-    @model_serializer(mode="wrap")
-    def _written(self, serialize: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        written: dict[str, Any] = serialize(self)
-        if not self.triggered:
-            del written["triggered"]
-        return written
 
     @property
     def planned_events(self) -> tuple[AnyEvent, ...]:
@@ -75,11 +68,16 @@ class CellConfig(ResolvedModel):
 
     def as_dict(self) -> dict[str, Any]:
         """Return plain JSON-able data: ratios as `1/480`, vectors as lists."""
-        return self.model_dump(mode="json", by_alias=True)
+        return self.model_dump(mode="json", by_alias=True, exclude=self._absent)
 
     def as_json(self) -> str:
         """Return the text of `as_dict`, in one line."""
-        return self.model_dump_json(by_alias=True)
+        return self.model_dump_json(by_alias=True, exclude=self._absent)
+
+    @property
+    def _absent(self) -> set[str] | None:
+        """What its data does without."""
+        return {name for name in ("engine", "triggered") if not getattr(self, name)} or None
 
     def refined(self, divisor: int) -> CellConfig:
         """Return the same cell at timesteps of 1/divisor, those of events included.

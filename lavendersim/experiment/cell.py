@@ -9,6 +9,7 @@ from typing import Any, Final
 
 from lavendersim.cell.config import CellConfig
 from lavendersim.errors import ConfigError, Defect
+from lavendersim.experiment.checks.engine_limits import refuse_limits
 from lavendersim.experiment.checks.messages import locate
 from lavendersim.experiment.checks.reading import Reading
 from lavendersim.experiment.models.always import AlwaysSection
@@ -43,11 +44,13 @@ def build_cell(root: Node, point: SweepPoint, report: Report) -> CellConfig | No
     if not report.close_round() or source is None:
         return None
     try:
-        return resolve_cell(source)
+        config = resolve_cell(source)
     except SceneError as error:
         report.add(locate(tree, error.path)[1].mark, str(error))
         report.close_round()
         return None
+    refuse_limits(config, tree, report)
+    return config if report.close_round() else None
 
 
 @dataclass(frozen=True, slots=True)

@@ -72,6 +72,12 @@ class Experiment:
         )
 
     @property
+    def engines(self) -> tuple[str, ...]:
+        """The engines of its cells, by their names in the config."""
+        axis = self.swept.get("engine")
+        return (self.config.engine,) if axis is None else tuple(map(str, self.axes[axis]))
+
+    @property
     def mistakes(self) -> dict[str, list[Cell]]:
         """Each deliberate error, and the cells that make it."""
         found: dict[str, list[Cell]] = {}

@@ -96,8 +96,9 @@ def write_matrix(
     shown: Mapping[str, Any],
     processor: str,
     path: Path,
+    what: str = "solver",
 ) -> None:
-    """Write one self-contained HTML page: a matrix of cases and solvers.
+    """Write one self-contained HTML page: a matrix of cases and solvers, or engines (`what`).
 
     cases: `runner.solver_matrix.Case`; entries: `runner.matrix_entry.Entry`, those there are;
     left_out: case -> why; shown: case -> the cell whose last state is drawn.
@@ -105,4 +106,4 @@ def write_matrix(
     from lavendersim.figures.report_matrix import Matrix
     from lavendersim.figures.report_matrix import write_matrix as write_page
 
-    write_page(Matrix(cases, solvers, entries, left_out, shown, processor), path)
+    write_page(Matrix(cases, solvers, entries, left_out, shown, processor, what), path)

@@ -58,7 +58,7 @@ def _case(result: Any, folder: Path) -> dict[str, Any]:
         "claims": verdicts,
         "failures": _damaged(result)
         + ended
-        + [verdict.message for verdict in verdicts if not verdict.passed],
+        + [verdict.message for verdict in verdicts if verdict.fails],
     }
 
 
@@ -77,7 +77,7 @@ def _cells(result: Any, folder: Path) -> list[dict[str, Any]]:
         rows.append(
             {
                 "label": cell.label or "the only cell",
-                "good": cell.index not in ended and all(verdict.passed for verdict in own),
+                "good": cell.index not in ended and not any(verdict.fails for verdict in own),
                 "margin": margin,
                 "least_claim": least_claim,
                 "residual": outcome.accuracy.worst_residual,
@@ -95,14 +95,14 @@ def _declared(experiment: Any) -> list[str]:
 
 def _shown(result: Any) -> Any:
     """Return the cell that stands for the case: the first that failed something, or the first."""
-    failed = {verdict.path for verdict in result.verdicts if not verdict.passed}
+    failed = {verdict.path for verdict in result.verdicts if verdict.fails}
     failed |= {str(cell.path) for cell in result.ended_early}
     return next((c for c in result.run.cells if str(c.path) in failed), result.run.cells[0])
 
 
 def _margin(verdicts: Sequence[Any]) -> tuple[float, str]:
     """Return the least margin and the claim that has it; of a failure without one, no number."""
-    failed = [verdict for verdict in verdicts if not verdict.passed]
+    failed = [verdict for verdict in verdicts if verdict.fails]
     known = [one for one in failed or verdicts if not math.isnan(one.margin)]
     if not known:
         return math.nan, failed[0].node if failed else ""

@@ -24,6 +24,7 @@ class Matrix(NamedTuple):
     left_out: Mapping[str, str]  # config -> why it is no case
     shown: Mapping[str, Any]  # case -> the cell that is pictured
     processor: str
+    what: str = "solver"  # or engine
 
 
 class EntryLook(NamedTuple):
@@ -41,7 +42,8 @@ LOOKS: Final = {
     "fails": EntryLook("\u2717", "fails", "fails"),
     "beyond bounds": EntryLook("\u25a0", "fails", "stopped at the first step beyond a bound"),
     "diverged": EntryLook("\u221e", "fails", "diverged: its numbers ended"),
-    "refused": EntryLook("\u2205", "other", "refused: the case cannot be put to this solver"),
+    "refused": EntryLook("\u2205", "other", "refused: the case cannot be put to it"),
+    "not judged": EntryLook("?", "other", "not judged: the engine does not tell enough"),
     "died": EntryLook("\u2020", "fails", "the run broke off: a defect of lavender"),
 }
 NOT_RUN: Final = EntryLook("\u2013", "other", "not run")
@@ -65,7 +67,8 @@ def page(matrix: Matrix, folder: Path) -> str:
         names.setdefault(why, []).append(name)
     return render(
         "matrix.html",
-        title=f"{count_of(matrix.cases, 'case')} by {count_of(matrix.solvers, 'solver')}",
+        title=f"{count_of(matrix.cases, 'case')} by {count_of(matrix.solvers, matrix.what)}",
+        what=matrix.what,
         reduced=any(case.reduced for case in matrix.cases),
         processor=matrix.processor,
         key=key,

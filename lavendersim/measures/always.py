@@ -17,7 +17,7 @@ from lavendersim.measures.not_finite import without_warnings
 from lavendersim.measures.sections import sections_of
 from lavendersim.measures.specs.always import BEYOND_BOUNDS, Always
 from lavendersim.measures.step_checks import CheckedSteps, StepChecks, checks_of
-from lavendersim.measures.verdict import NO_TOLERANCE, Outcome, failure
+from lavendersim.measures.verdict import NO_TOLERANCE, Outcome, failure, unjudged
 
 COMPLETE = "complete"
 PREFIX = "always: "
@@ -38,6 +38,7 @@ def outcomes_of(always: Always, cell: Cell) -> dict[str, Outcome]:
         for section in sections_of(trace, is_whole(ended)):
             for one in checks.over(section):
                 worst.take(one, section, 1 if section.before else 0, len(section.step))
+        worst.untold = checks.untold
     except LavenderError as error:  # a log that is damaged
         return {check: failure("a log that can answer", str(error)) for check in checks_of(always)}
     return worst.outcomes(ended, cell)
@@ -64,6 +65,7 @@ class WorstStates:
     def __init__(self, always: Always) -> None:
         self._always = always
         self._found: dict[str, _Worst] = {}
+        self.untold: dict[str, str] = {}  # checks that the engine does not tell enough for
 
     def take(self, one: CheckedSteps, section: Trace, first: int, end: int) -> None:
         """Count the states first..end-1 of a section in."""
@@ -84,7 +86,9 @@ class WorstStates:
             missing = failure("a complete run", ended, not is_whole(ended))
             return dict.fromkeys(checks_of(self._always), missing)
         early = "" if is_whole(ended) else ended
-        return {name: _outcome(one, early, cell) for name, one in self._found.items()}
+        untold = {name: unjudged(why) for name, why in self.untold.items()}
+        judged = {name: _outcome(one, early, cell) for name, one in self._found.items()}
+        return judged | untold
 
 
 def time_of(step: Rows, row: int) -> float:

@@ -119,7 +119,11 @@ def _own_weight(trace: Trace) -> float:
 def _lifted(trace: Trace, sums: ContactSums) -> Floats:
     """Return the most that the projection can lift in each step [J]."""
     pull = changes.strength_of_gravity(trace)
-    if trace.config.numerics.projection == 0.0 or not np.any(pull):
+    if (
+        trace.config.numerics.projection == 0.0
+        or trace.config.engine is not None
+        or not np.any(pull)
+    ):
         return np.zeros(len(trace.step))
     lifted: Floats = pull * changes.masses(trace) * sums.opened
     return lifted

@@ -95,11 +95,11 @@ def verdict_of(trial: ControlTrial, claims: Sequence[Any], raw: Mapping[str, Ver
     early = [
         status for status in ended if status != COMPLETE and not status.startswith(BEYOND_BOUNDS)
     ]
-    also = [verdict.node for verdict in others if not verdict.passed and not verdict.follows]
+    also = [verdict.node for verdict in others if verdict.fails and not verdict.follows]
     if of_completion(trial.control):
         bites, shown = bool(ended) and len(early) == len(ended), ended[0] if ended else ""
     else:
-        failing = [one for one in named if not one.passed and not one.follows]
+        failing = [one for one in named if one.fails and not one.follows]
         bites = bool(named) and not early and len(failing) == len(named)
         shown = named[0].message.replace("\n", "\n    ") if named else ""
     if not trial.cells:

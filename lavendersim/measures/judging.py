@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple, Protocol
 
-from lavendersim.errors import LavenderError
+from lavendersim.errors import LavenderError, NotReportedError
 from lavendersim.measures import controls
 from lavendersim.measures.always import COMPLETE, PREFIX
 from lavendersim.measures.cell_judgements import judge_cell
@@ -22,7 +22,7 @@ from lavendersim.measures.specs.expectation import ExpectSpec
 from lavendersim.measures.step_checks import checks_of
 from lavendersim.measures.sweep_judgements import judge_sweep
 from lavendersim.measures.values import Values
-from lavendersim.measures.verdict import Outcome, Verdict, failure
+from lavendersim.measures.verdict import Outcome, Verdict, failure, unjudged
 
 Measures = Mapping[str, MeasureSpec]
 # By the cell's index: the outcome of each of its checks.
@@ -164,6 +164,8 @@ def _outcome(expectation: ExpectSpec, cells: Sequence[Cell], values: Values) -> 
             row = values.row(expectation.measure, cells[0])
             return judge_cell(expectation, row, cells[0])
         return judge_sweep(expectation, cells, values.of(expectation.measure))
+    except NotReportedError as error:
+        return unjudged(str(error))
     except LavenderError as error:  # a log that is damaged, or has no such topic, fails alone
         return failure("a log that can answer", str(error))
 
@@ -188,4 +190,5 @@ def _verdict(name: str, claim: Claim, outcome: Outcome, measure: str) -> Verdict
         margin=outcome.margin,
         measure=measure,
         reason=outcome.reason,
+        judged=outcome.judged,
     )

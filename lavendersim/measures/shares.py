@@ -63,6 +63,8 @@ def given_by_pull(contacts: Rows) -> Floats:
 
     Bodies that part lose to the pull, at a rate between those of the step's two ends: no gain.
     """
+    if "normal_velocity" not in (contacts.dtype.names or ()):  # of an engine that draws nothing
+        return np.zeros(len(contacts))
     gained: Floats = np.maximum(-pull(contacts) * contacts["normal_velocity"], 0.0)
     return gained
 

@@ -30,6 +30,8 @@ from lavendersim.measures.balance import EnergyBalance, momentum_imbalance
 from lavendersim.measures.changes import first_starting_at
 from lavendersim.measures.contact_sums import ContactSums, contacts_of_log, excesses
 from lavendersim.measures.interfaces import Floats, Rows, Trace
+from lavendersim.measures.other_engines import unanswered
+from lavendersim.measures.overlap_of_bodies import overlap_of_rows
 from lavendersim.measures.specs.always import CHECKS, DERIVED, FINITE, NONE, Always
 from lavendersim.measures.step_passes import OVER_LOGS, Passes
 
@@ -66,11 +68,15 @@ class StepChecks:
         self._always, self._energy, self._passes = always, EnergyBalance(passes), passes
         self._checks = [check for check in checks_of(always) if check in checks]
         self._bounds: dict[str, float] = {}
+        self.untold: dict[str, str] = {}  # checks that the log cannot answer, with reasons
 
     def over(self, trace: Trace) -> Iterator[CheckedSteps]:
         """Yield the checks that are made of a log or its next section, in the order of CHECKS."""
+        self.untold = unanswered(trace)
         sums = self._passes.contacts(trace)
         for check in self._checks:
+            if check in self.untold:
+                continue
             if check not in self._bounds:
                 self._bounds[check] = bound_of(check, self._always, trace)
             numbers, bodies = self._numbers(check, trace, sums)
@@ -124,6 +130,8 @@ def _momentum(trace: Trace, sums: ContactSums, passes: Passes) -> Numbers:
 
 
 def _penetration(trace: Trace, sums: ContactSums, passes: Passes) -> Numbers:
+    if trace.config.engine is not None:  # one geometry for all engines: not what each tells of it
+        return overlap_of_rows(trace, np.arange(len(trace.step))), _no_body
     return sums.deepest, _of_contacts(trace, lambda contacts: contacts["penetration"])
 
 

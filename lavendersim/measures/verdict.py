@@ -17,6 +17,7 @@ class Outcome(NamedTuple):
     reason: str = ""  # where it failed, when the numbers do not say it
     follows: bool = False  # failed because the cell did not complete
     margin: float = float("nan")  # share of the bound that is left; below 0 outside [-]
+    judged: bool = True  # False: the engine does not tell what it takes, `reason` says so
 
 
 class Verdict(NamedTuple):
@@ -34,6 +35,12 @@ class Verdict(NamedTuple):
     margin: float = float("nan")  # share of the bound that is left; NaN where there is no such
     measure: str = ""  # what was judged
     reason: str = ""  # where it failed, when the numbers do not say it
+    judged: bool = True  # False: the engine does not tell what it takes; then it is not passed
+
+    @property
+    def fails(self) -> bool:
+        """Whether it was judged and not met."""
+        return self.judged and not self.passed
 
     @property
     def message(self) -> str:
@@ -41,7 +48,7 @@ class Verdict(NamedTuple):
         if self.said:
             return self.said
         lines = [
-            f"{self.node}: {'passed' if self.passed else 'FAILED'}",
+            f"{self.node}: {self.word}",
             f"  measured   {self.measured!r}{f' ({self.measure})' if self.measure else ''}",
             f"  expected   {self.expected}",
             f"  tolerance  {self.tolerance}",
@@ -51,14 +58,26 @@ class Verdict(NamedTuple):
         return "\n".join(lines)
 
     @property
+    def word(self) -> str:
+        """What became of it, in a word or two."""
+        return ("passed" if self.passed else "FAILED") if self.judged else "not judged"
+
+    @property
     def row(self) -> dict[str, Any]:
         """What tables say of it."""
         given = self._asdict()
         del given["measure"], given["reason"]
+        if self.judged:
+            del given["judged"]
         return {
             "message" if name == "said" else name: self.message if name == "said" else value
             for name, value in given.items()
         }
+
+
+def unjudged(reason: str) -> Outcome:
+    """Return the outcome of what an engine does not tell enough to judge."""
+    return Outcome(False, float("nan"), "a log that can answer", NO_TOLERANCE, reason, judged=False)
 
 
 def failure(expected: str, reason: str, follows: bool = False) -> Outcome:

@@ -21,7 +21,7 @@ from lavendersim.measures.not_finite import without_warnings
 from lavendersim.measures.sections import Section
 from lavendersim.measures.specs.always import BEYOND_BOUNDS, STOPPING, Always
 from lavendersim.measures.step_checks import CheckedSteps, StepChecks
-from lavendersim.measures.step_passes import Passes
+from lavendersim.measures.step_passes import OVER_LOGS, Passes
 from lavendersim.record_tables import joined
 from lavendersim.trace import Block
 from lavendersim.trace.layout import POSE
@@ -41,16 +41,9 @@ class Bounds:
         clock: Clock,
         absent: Mapping[str, str],
     ) -> None:
-        self._sums = RunningSums(config, bodies, clock)
-        touches = "/contacts" not in absent
-
-        def summed(part: Trace) -> ContactSums:
-            return self._sums(part.step, part.contact) if touches else nothing(len(part.step))
-
-        kernels = step_passes_kernel
-        passes = Passes(
-            *(summed, kernels.not_finite, kernels.fastest, kernels.imbalance, kernels.created)
-        )
+        passes = OVER_LOGS  # rows of other engines have other columns: no kernel for each
+        if config.engine is None:
+            passes = _by_kernels(RunningSums(config, bodies, clock), "/contacts" not in absent)
         self._checks = None if always is None else StepChecks(always, passes=passes)
         self._stops = always is not None and always.stop
         self.worst = None if always is None else WorstStates(always)
@@ -77,6 +70,7 @@ class Bounds:
         )
         self._last = step[-1:].copy(), pose[-1:].copy()
         checked = list(self._checks.over(part))
+        self.worst.untold = self._checks.untold
         first: tuple[int, CheckedSteps] | None = None
         for check in checked if self._stops else ():
             beyond = np.flatnonzero(check.numbers[again:] > check.bound)
@@ -100,6 +94,18 @@ class Bounds:
             return config.events
         self._met |= {k: done for k, done in met_after([step]).items() if k not in self._met}
         return happened(config.events, config.triggered, self._met, clock)
+
+
+def _by_kernels(sums: RunningSums, touches: bool) -> Passes:
+    """Return the passes by kernels; touches: there are contacts."""
+
+    def summed(part: Trace) -> ContactSums:
+        return sums(part.step, part.contact) if touches else nothing(len(part.step))
+
+    kernels = step_passes_kernel
+    return Passes(
+        *(summed, kernels.not_finite, kernels.fastest, kernels.imbalance, kernels.created)
+    )
 
 
 def _cut(block: Block, states: int) -> Block:

@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator
 from lavendersim.cell.record import NONE
 from lavendersim.errors import ConfigError, Defect
 from lavendersim.experiment import Experiment
+from lavendersim.peers.catalogue import LAVENDER, missing
 
 Check = Callable[[Experiment], None]
 
@@ -33,6 +34,8 @@ def _checks_of(experiment: Experiment) -> Iterator[Check]:
         from .overheads import check_overheads
 
         yield check_overheads
+    if any(name != LAVENDER for name in experiment.engines):
+        yield check_installed
     if experiment.switches_effects:
         from .plans import check_overrides
 
@@ -41,3 +44,13 @@ def _checks_of(experiment: Experiment) -> Iterator[Check]:
         from .problem_dump import check_problems
 
         yield check_problems
+
+
+def check_installed(experiment: Experiment) -> None:
+    """Raise ConfigError where a cell names an engine that is not installed, or is not its own."""
+    defects: dict[Defect, None] = {}
+    for cell in experiment.cells():
+        if cell.config.engine is not None and (why := missing(cell.config.engine.name)):
+            defects[cell.defect(("engine",), f"engine: {why}")] = None
+    if defects:
+        raise ConfigError(sorted(defects))

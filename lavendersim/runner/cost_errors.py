@@ -179,7 +179,7 @@ def _unmet(experiment: Experiment, run: SettingRun) -> list[str]:
     verdicts = judge(experiment.measures, claims, own, Values(experiment.measures, taken))
     for cell in run.cells:
         cell.release()
-    return [verdict.node for verdict in verdicts if not verdict.passed]
+    return [verdict.node for verdict in verdicts if verdict.fails]
 
 
 def orders_of(settings: Sequence[Setting], errors: Sequence[float]) -> list[float | None]:

@@ -36,13 +36,14 @@ def outcomes_of(
         return
     first: dict[tuple[Any, ...], CellJob] = {}
     for job in jobs:
-        first.setdefault(job.plan.choices, job)
+        if job.config.engine is None:  # what runs elsewhere has no kernel
+            first.setdefault(job.plan.choices, job)
     missing = _missing(list(first.values()))
     tally = Tally(jobs)
     progress.running(tally)
     apart = _compile_together(missing, workers, progress)
     # The first cell of each plan runs here: it leaves the kernel where other processes find it.
-    ordered = sorted(jobs, key=lambda job: first[job.plan.choices] is not job)
+    ordered = sorted(jobs, key=lambda job: first.get(job.plan.choices) is not job)
     done, taken = 0, 0.0  # and what they took [s]
     worth = WORTH_PROCESSES * (FORKED if may_fork() else 1.0)
     while done < len(ordered):

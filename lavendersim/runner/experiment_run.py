@@ -67,7 +67,7 @@ class Finished(NamedTuple):
     @property
     def good(self) -> bool:
         """Whether every cell completed that should, and every claim was met."""
-        return not self.ended_early and all(verdict.passed for verdict in self.verdicts)
+        return not self.ended_early and not any(verdict.fails for verdict in self.verdicts)
 
     @property
     def ended_early(self) -> list[RunCell]:

@@ -27,7 +27,7 @@ class JudgedAgain(NamedTuple):
     @property
     def good(self) -> bool:
         """Whether every cell completed that should, and every claim was met."""
-        return not self.ended_early and all(verdict.passed for verdict in self.verdicts)
+        return not self.ended_early and not any(verdict.fails for verdict in self.verdicts)
 
     def table(self) -> dict[str, Any]:
         """Return it as results are kept: a number that JSON does not have is a text."""

@@ -7,12 +7,13 @@ beyond bounds  a cell was stopped at the first step that broke a bound of `alway
 diverged       a cell ended where its numbers did
 refused        the case cannot be put to this solver
 died           the run itself broke off, which is a defect of lavender
+not judged     the engine tells too little for any claim; of some alone, they stand beside it
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, Literal, NamedTuple
 
@@ -31,7 +32,17 @@ BEYOND: Final = "beyond bounds"
 DIVERGED: Final = "diverged"
 REFUSED: Final = "refused"
 DIED: Final = "died"
-Word = Literal["passes", "known failure", "fails", "beyond bounds", "diverged", "refused", "died"]
+NOT_JUDGED: Final = "not judged"
+Word = Literal[
+    "passes",
+    "known failure",
+    "fails",
+    "beyond bounds",
+    "diverged",
+    "refused",
+    "died",
+    "not judged",
+]
 FINE: Final = frozenset({PASSES, KNOWN})
 
 
@@ -56,7 +67,7 @@ class Entry(NamedTuple):
 
 def entry_of(case: str, solver: str, finished: Finished) -> Entry:
     """Return the entry of a `Finished` run."""
-    failed = [verdict for verdict in finished.raw if not verdict.passed]
+    failed = [verdict for verdict in finished.raw if verdict.fails]
     declared = _declared(finished)
     undeclared = [one for one in failed if one.node not in declared and not one.follows]
     ended = finished.ended_early
@@ -73,6 +84,8 @@ def entry_of(case: str, solver: str, finished: Finished) -> Entry:
     elif not undeclared and failed:
         word, why = KNOWN, _line(failed[0])
         detail = "\n".join(verdict.message for verdict in failed)
+    elif not ended and not undeclared and any(not verdict.judged for verdict in finished.raw):
+        word, why = _of_unjudged(finished.raw)
     shown = {verdict.path for verdict in undeclared or failed} | {str(one.path) for one in ended}
     cells = finished.run.cells
     first = next((cell for cell in cells if str(cell.path) in shown), cells[0])
@@ -80,6 +93,13 @@ def entry_of(case: str, solver: str, finished: Finished) -> Entry:
     margin = min(known, default=math.nan)
     run = finished.run.path
     return Entry(case, solver, word, why, detail, margin, _cost(finished), run, first.path)
+
+
+def _of_unjudged(verdicts: Sequence[Verdict]) -> tuple[Word, str]:
+    """Return the word where the engine did not tell enough to judge some claims, none failed."""
+    left = [verdict.node for verdict in verdicts if not verdict.judged]
+    word: Word = NOT_JUDGED if len(left) == len(verdicts) else PASSES
+    return word, f"not judged, the engine does not tell it: {', '.join(left)}"
 
 
 def without_run(case: str, solver: str, word: Word, why: str) -> Entry:

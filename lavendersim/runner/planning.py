@@ -14,6 +14,7 @@ from typing import Final, NamedTuple
 
 from lavendersim.cell import CellConfig
 from lavendersim.experiment.cell import Cell
+from lavendersim.peers.catalogue import installed_version, peer_of
 from lavendersim.scene.plan import Plan
 
 from .forking import may_fork
@@ -94,5 +95,7 @@ def _found(share: _Share) -> _Found:
 
 
 def log_of(cell: Cell, source: str) -> str:
-    """Return the name of a cell's log: by its config and the engine's source."""
+    """Return the name of a cell's log: by its config and the engine's source, or its version."""
+    if (engine := cell.config.engine) is not None:
+        source = f"{source} {installed_version(peer_of(engine.name).name)}"
     return hashlib.sha256(f"{cell.digest} {source}".encode()).hexdigest()[:16] + ".mcap"

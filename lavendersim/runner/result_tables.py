@@ -95,7 +95,7 @@ def cells_table(run: Run) -> Table:
         [row.status for row in rows],
         [row.steps for row in rows],
         [_all_passed(judged.get(cell.index, [])) for cell in run.cells],
-        [[one.node for one in judged.get(c.index, []) if not one.passed] for c in run.cells],
+        [[one.node for one in judged.get(c.index, []) if one.fails] for c in run.cells],
         *(values for _, values in measures.values()),
         [_reasons(row.measures) for row in rows],
     ]
@@ -167,7 +167,8 @@ def _reasons(measures: Mapping[str, Any]) -> list[str]:
 
 
 def _all_passed(checks: Sequence[Verdict]) -> bool | None:
-    return all(check.passed for check in checks) if checks else None
+    judged = [check for check in checks if check.judged]
+    return all(check.passed for check in judged) if judged else None
 
 
 def _has(row: CellResult, name: str) -> bool:

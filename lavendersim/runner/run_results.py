@@ -194,4 +194,5 @@ def _verdict_of(row: Mapping[str, Any]) -> Verdict:
         path=row.get("path", ""),
         follows=row.get("follows", False),
         margin=float(row.get("margin", "nan")),  # older versions wrote none
+        judged=row.get("judged", True),
     )

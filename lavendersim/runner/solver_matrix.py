@@ -18,6 +18,7 @@ from typing import NamedTuple, get_args
 from lavendersim.cell.choices import Solver
 from lavendersim.errors import ConfigError, UsageError
 from lavendersim.experiment import Experiment, load_experiment
+from lavendersim.peers import catalogue
 from lavendersim.quantities.found import nearest, quoted
 
 from .experiment_run import run
@@ -78,9 +79,19 @@ def cases_of(experiments: Sequence[Experiment]) -> tuple[list[Case], dict[str, s
 
 def make_entry(pair: CaseAndSolver) -> Entry:
     """Run a case by a solver and return its entry; whatever happens there is its verdict."""
+    return _entry(pair, lambda case: load_experiment(case.path, case.reduced, pair.solver))
+
+
+def make_engine_entry(pair: CaseAndSolver) -> Entry:
+    """Run a case by an engine, whose name stands in the place of a solver's."""
+    given = catalogue.overrides_of([pair.solver])
+    return _entry(pair, lambda case: load_experiment(case.path, case.reduced, overrides=given))
+
+
+def _entry(pair: CaseAndSolver, load: Callable[[Case], Experiment]) -> Entry:
     case, solver = pair.case.name, pair.solver
     try:
-        experiment = load_experiment(pair.case.path, pair.case.reduced, solver)
+        experiment = load(pair.case)
         return entry_of(case, solver, run(experiment, pair.root, overheads=False))
     except ConfigError as error:
         return without_run(case, solver, REFUSED, error.defects[0].message)

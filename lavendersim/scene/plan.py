@@ -36,6 +36,7 @@ CHOICES: Final = (
     "sleeping",
     "mistake",
     "effects",
+    "engine",
 )
 APART: Final = {
     name: Decision(False, f"no {pair.shapes[0]} and {pair.shapes[1]} may touch")
@@ -77,6 +78,11 @@ class Plan(NamedTuple):
     cells: tuple[CellName, ...]  # that this is the plan of
     required_by: dict[str, tuple[CellName, ...]]  # see `requiring`; no key: none
     reasons: dict[str, Reasons]  # of a union: see `reasons_of`
+
+    @property
+    def engine(self) -> str:
+        """The engine of its cells; another than lavender's composes nothing of it."""
+        return str(self.choices[CHOICES.index("engine")])
 
     def decided(self, name: str) -> Decision:
         """Return the decision on an effect or a shape pair."""
@@ -235,6 +241,7 @@ def _choices(config: CellConfig, facts: Facts) -> tuple[Any, ...]:
         # Where many bodies move, they are as solved: an engine of few would choose theirs.
         "undetermined_forces": numerics.undetermined_forces if is_affordable(facts) else AS_SOLVED,
         "effects": _switched(config.effects),
+        "engine": "lavender" if config.engine is None else config.engine.name,
     }
     chosen = {**dict(numerics), **dict(config.study), **made}
     return tuple(chosen[name] for name in CHOICES)

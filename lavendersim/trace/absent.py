@@ -1,4 +1,4 @@
-"""The empty table of a topic that a log does without.
+"""The empty table of a topic that a log does without; a table without some of its columns.
 
 The table is empty, so whatever counts or loops over its rows needs to know nothing; whatever asks
 for one of its columns gets that sentence as the reason.
@@ -6,12 +6,14 @@ for one of its columns gets that sentence as the reason.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lavendersim.errors import UsageError
+from lavendersim.errors import unanswerable
 
 
 class AbsentTable(np.ndarray[Any, Any]):
@@ -26,7 +28,7 @@ class AbsentTable(np.ndarray[Any, Any]):
     def __getitem__(self, key: Any) -> Any:
         """Return rows by number, slice or mask; there is no column to return."""
         if isinstance(key, str) or (isinstance(key, list) and key and isinstance(key[0], str)):
-            raise UsageError(self.why)
+            raise unanswerable(self.why)
         return super().__getitem__(key)
 
 
@@ -35,3 +37,30 @@ def absent_table(why: str) -> NDArray[Any]:
     table = np.zeros(0, []).view(AbsentTable)
     table.why = why
     return table
+
+
+class TableWithout(np.ndarray[Any, Any]):
+    """A table whose engine does not tell some columns. NotReportedError where one is asked for."""
+
+    why: Mapping[str, str] = MappingProxyType({})  # by column
+
+    def __array_finalize__(self, source: Any) -> None:
+        """Pass the reasons on to what is cut out of the table."""
+        self.why = getattr(source, "why", MappingProxyType({}))
+
+    def __getitem__(self, key: Any) -> Any:
+        """Return rows, or columns by their names: these as plain arrays."""
+        if isinstance(key, str):
+            if key in self.why:
+                raise unanswerable(self.why[key])
+            return super().__getitem__(key).view(np.ndarray)
+        return super().__getitem__(key)
+
+
+def table_without(table: NDArray[Any], why: Mapping[str, str]) -> NDArray[Any]:
+    """Return a table that gives the reasons of columns that it does without, if any."""
+    if not why:
+        return table
+    found = table.view(TableWithout)
+    found.why = why
+    return found

@@ -18,10 +18,10 @@ from numpy.typing import NDArray
 
 from lavendersim.cell import AnyEvent, CellConfig, happened, met_after
 from lavendersim.clock import Clock
-from lavendersim.errors import TraceError, UsageError
+from lavendersim.errors import TraceError, unanswerable
 from lavendersim.record_tables import joined
 from lavendersim.trace import decode, layout
-from lavendersim.trace.absent import absent_table
+from lavendersim.trace.absent import absent_table, table_without
 from lavendersim.trace.contact_columns import known_rules
 from lavendersim.trace.forms import RULES
 from lavendersim.trace.index import ChunkContent, damage
@@ -38,7 +38,7 @@ from lavendersim.trace.schema import FORMAT, RESIDUAL_COLUMNS, STEP_COLUMNS, Col
 from lavendersim.trace.source import Source
 from lavendersim.trace.streams import COLUMNS
 from lavendersim.trace.whole import INTERRUPTED
-from lavendersim.trace.writer import ABSENT, DESCRIPTION, ENDING, TIMESTEP_CHANGES
+from lavendersim.trace.writer import ABSENT, DESCRIPTION, ENDING, TIMESTEP_CHANGES, UNTOLD
 
 if TYPE_CHECKING:
     from lavendersim.arrow import Table
@@ -115,7 +115,8 @@ class Trace:
     def step(self) -> NDArray[Any]:
         """One row per logged step: the file's columns, and `time` [s]."""
         with damage(self.path, "/step"):
-            return decode.join(self.steps_in_parts(), decode.step_columns(self.step_columns))
+            step = decode.join(self.steps_in_parts(), decode.step_columns(self.step_columns))
+        return table_without(step, self._untold("/step"))
 
     @property
     def step_columns(self) -> tuple[Column, ...]:
@@ -152,14 +153,14 @@ class Trace:
         UsageError for a log without /tf, or of some steps alone.
         """
         if "/tf" in self.absent:
-            raise UsageError(self.why_not("/tf"))
+            raise unanswerable(self.why_not("/tf"))
         return self.recorded_pose.pose
 
     @cached_property
     def recorded_pose(self) -> RecordedPoses:
         """The poses of the steps of which the log has them. UsageError for a log without /tf."""
         if not self.has("/tf"):
-            raise UsageError(self.why_not("/tf"))
+            raise unanswerable(self.why_not("/tf"))
         with damage(self.path, "/tf"):
             parts = list(self.poses_in_parts())
             steps = np.concatenate([np.empty(0, np.int64), *(steps for steps, _ in parts)])
@@ -172,7 +173,7 @@ class Trace:
     def poses_in_parts(self) -> Iterator[tuple[NDArray[np.int64], NDArray[np.float64]]]:
         """Yield recorded poses (rows, bodies, 7) with the numbers of their steps, and keep none."""
         if not self.has("/tf"):
-            raise UsageError(self.why_not("/tf"))
+            raise unanswerable(self.why_not("/tf"))
         with damage(self.path, "/tf"):
             form, count = layout.transforms_layout(self.bodies), len(self.bodies)
             for chunk in self._chunks("/tf"):
@@ -186,7 +187,7 @@ class Trace:
         """
         for topic in ("/velocities", "/tf"):
             if topic in self.absent:
-                raise UsageError(self.why_not(topic))
+                raise unanswerable(self.why_not(topic))
         with damage(self.path, "/velocities"):
             parts = list(self.velocities_in_parts())
             steps = np.concatenate([np.empty(0, np.int64), *(steps for steps, _ in parts)])
@@ -201,7 +202,7 @@ class Trace:
         Of the steps whose poses are recorded.
         """
         if not self.has("/velocities"):
-            raise UsageError(self.why_not("/velocities"))
+            raise unanswerable(self.why_not("/velocities"))
         with damage(self.path, "/velocities"):
             form, count = layout.velocities_layout(self.bodies), len(self.bodies)
             for chunk in self._chunks("/velocities"):
@@ -229,7 +230,7 @@ class Trace:
         """
         if "/contacts" in self.absent:
             return absent_table(self.why_not("/contacts"))
-        return self.recorded_contact
+        return table_without(self.recorded_contact, self._untold("/contacts"))
 
     @cached_property
     def recorded_contact(self) -> NDArray[Any]:
@@ -257,7 +258,7 @@ class Trace:
     def recorded_contacts_in_parts(self) -> Iterator[NDArray[Any]]:
         """Yield the rows of `recorded_contact` in parts of whole steps, and keep none."""
         if not self.has("/contacts"):
-            raise UsageError(self.why_not("/contacts"))
+            raise unanswerable(self.why_not("/contacts"))
         schema = self._source.schema(layout.CHANNELS[COLUMNS])
         if schema is None:
             yield from self._contacts_of_points()
@@ -322,6 +323,14 @@ class Trace:
         triggered = self.config.triggered
         met = met_after(self.steps_in_parts()) if triggered else {}
         return happened(self.config.events, triggered, met, self.clock)
+
+    def _untold(self, topic: str) -> dict[str, str]:
+        """Return the columns of a topic that the engine does not tell, with sentences."""
+        return {
+            name.removeprefix(f"{topic}."): f"this log has no {name}: {why}"
+            for name, why in self.metadata.get(UNTOLD, {}).items()
+            if name.startswith(f"{topic}.")
+        }
 
     def _columns(self, topic: str, message: str, default: tuple[Column, ...]) -> tuple[Column, ...]:
         """Return the columns of a topic; a run that ended before its first step has `default`."""

@@ -79,8 +79,9 @@ MADE: dict[str, tuple[bytes, tuple[str, ...]]] = {
     ),
 }
 TOP_KEYS = (
-    "valid here: constants, scene, events, numerics, duration, record, effects, study, extends, "
-    "question, expected, sweep, measure, expect, always, slow, reduced, figure, overhead, cost"
+    "valid here: constants, scene, events, numerics, duration, record, effects, study, engine, "
+    "engines, extends, question, expected, sweep, measure, expect, always, slow, reduced, figure, "
+    "overhead, cost"
 )
 
 

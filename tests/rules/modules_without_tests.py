@@ -9,6 +9,7 @@ from __future__ import annotations
 DECLARATIONS = {
     "cell/body.py": "fields of a resolved config",
     "cell/choices.py": "names of choices",
+    "cell/engine.py": "fields of a resolved config",
     "cell/numerics.py": "fields of a resolved config",
     "cell/shapes/compound.py": "fields of a resolved config",
     "cell/shapes/plane.py": "fields of a resolved config",
@@ -31,6 +32,10 @@ DECLARATIONS = {
     "measures/specs/overlap.py": "fields of a measure's config",
     "measures/specs/spinning.py": "fields of a measure's config",
     "measures/specs/steady.py": "fields of a measure's config",
+    "peers/messages.py": "fields of messages",
+    "peers/bullet.py": "a declaration",
+    "peers/mujoco.py": "a declaration",
+    "peers/rapier.py": "a declaration",
 }
 
 # Folder: modules, without `.py`. A debt, to be made shorter: nothing is added here.

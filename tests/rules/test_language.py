@@ -84,6 +84,7 @@ NAMESAKES = {
     "Column": "of a record, as an effect declares it and as a log numbers it",
     "FreeRotation": "the closed form, and the panel that draws it",
     "Ratio": "a number of a config, a kind of measure, a kind of judgement",
+    "World": "what every adapter is, and each of them",
     "Scene": "as written, and as the engine takes it",
 }
 

@@ -23,8 +23,10 @@ ROOMS = {
     "cell": {"errors", "clock", "quantities", "engine"},  # of the engine: DECLARATIONS
     "experiment": {
         *("errors", "clock", "geometry", "quantities", "cell", "engine", "measures", "figures"),
-        "config_options",
+        *("config_options", "peers"),
     },
+    # of the engine: DECLARATIONS; of declarations alone experiment, measures and cli know
+    "peers": {"errors", "geometry", "quantities", "cell", "engine"},
     "engine": {"quantities", "record_tables", "durable_files"},
     "scene": {"errors", "clock", "geometry", "quantities", "cell", "experiment", "engine"},
     "trace": {
@@ -32,7 +34,7 @@ ROOMS = {
         *("engine", "arrow"),
     },
     "problems": {"errors", "quantities", "engine"},
-    "measures": {"errors", "clock", "geometry", "quantities", "cell", "engine", "trace"},
+    "measures": {"errors", "clock", "geometry", "quantities", "cell", "engine", "trace", "peers"},
     "laws": {
         *("errors", "clock", "geometry", "quantities", "cell", "experiment", "engine", "scene"),
         *("trace", "problems"),
@@ -49,13 +51,13 @@ ROOMS = {
         "lint",
         *("errors", "clock", "quantities", "cell", "experiment", "scene", "engine", "problems"),
         *("trace", "measures", "geometry", "record_tables", "durable_files", "arrow"),
-        *("figures", "config_options"),  # figures: a run in a notebook
+        *("figures", "config_options", "peers"),  # figures: a run in a notebook
     },
     "comparison": {"errors", "geometry", "trace", "measures", "runner"},
     "pytest_plugin": {"errors", "experiment", "lint", "trace", "measures", "runner"},
     "cli": {
         *("errors", "quantities", "experiment", "scene", "trace", "measures", "figures"),
-        *("replay", "runner", "problems", "comparison", "laws"),
+        *("replay", "runner", "problems", "comparison", "laws", "peers"),
     },
 }
 # Modules of the engine that list what it has, without numba: what configs may name.
@@ -73,7 +75,7 @@ LIBRARIES = {
     "numpy": {
         *("scene", "engine", "trace", "measures", "figures", "replay", "simulator", "runner"),
         *("problems", "clock", "geometry", "record_tables", "arrow", "comparison"),
-        *("lint", "laws"),
+        *("lint", "laws", "peers"),
     },
     "scipy": {"geometry", "problems"},  # hulls, where a scene has one; sparse matrices
     "h5py": {"problems"},
@@ -91,6 +93,7 @@ LIBRARIES = {
     "typer": {"cli"},
     "rich": {"cli"},
     "pytest": {"pytest_plugin"},
+    **{library: {"peers"} for library in ("mujoco", "pybullet", "rapier3d")},
 }
 IMPORTS = imports()
 
@@ -119,7 +122,7 @@ def test_a_room_imports_only_the_rooms_it_may(room: str) -> None:
 
 
 def test_configs_are_read_with_no_more_of_the_engine_than_its_lists() -> None:
-    rooms = ("cell", "experiment", "lint", "measures", "trace")
+    rooms = ("cell", "experiment", "lint", "measures", "peers", "trace")
     of_engine = [f for f in IMPORTS if f.room in rooms and f.target == "engine"]
     strangers = [
         str(f)

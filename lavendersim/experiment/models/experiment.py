@@ -12,6 +12,7 @@ from lavendersim.experiment.models.always import AlwaysSection
 from lavendersim.experiment.models.axis import Axis
 from lavendersim.experiment.models.claims import expectation_rules, measure_rules
 from lavendersim.experiment.models.cost import CostSpec
+from lavendersim.experiment.models.engines import EngineName, Engines
 from lavendersim.experiment.models.events import Event
 from lavendersim.experiment.models.overhead import OverheadSpec
 from lavendersim.experiment.models.record import Record
@@ -23,6 +24,7 @@ from lavendersim.experiment.text.place import Place
 from lavendersim.figures.specs.catalogue import FigureSpec
 from lavendersim.measures.specs.catalogue import MeasureSpec
 from lavendersim.measures.specs.expectation import ExpectSpec
+from lavendersim.peers.catalogue import LAVENDER
 from lavendersim.quantities.model import ConfigModel
 from lavendersim.quantities.names import ConstantName, NewName
 from lavendersim.quantities.quantity import Quantity, either
@@ -98,6 +100,10 @@ class CellSource(ConfigModel):
     study: Study = Field(
         default=Study(), description="a deliberate error; every run with one says so"
     )
+    engine: EngineName = Field(
+        default=LAVENDER, description="what simulates it: `lavender`, or another that is installed"
+    )
+    engines: Engines = Field(default=Engines(), description="settings of other engines")
 
     @classmethod
     def rules(cls, at: Place) -> None:

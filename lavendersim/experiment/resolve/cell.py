@@ -5,12 +5,14 @@ from __future__ import annotations
 from functools import partial
 
 from lavendersim.cell.config import CellConfig, CellEffects, CellStudy
+from lavendersim.cell.engine import CellEngine
 from lavendersim.cell.numerics import Numerics
 from lavendersim.cell.record import CellRecord
 from lavendersim.cell.shared_parts import shared
 from lavendersim.experiment.models.experiment import CellSource, NumericsSource
 from lavendersim.experiment.resolve.events import resolve_event, resolve_triggered
 from lavendersim.experiment.resolve.scene import resolve_scene
+from lavendersim.peers.catalogue import LAVENDER, peer_of
 
 
 def resolve_cell(source: CellSource) -> CellConfig:
@@ -20,6 +22,10 @@ def resolve_cell(source: CellSource) -> CellConfig:
     """
     assert isinstance(source.numerics, NumericsSource)  # its preset is merged in (`with_preset`)
     numerics = shared(Numerics.model_construct(**dict(source.numerics)))
+    engine = engine_of(source)
+    # Another engine's log has velocities: whoever judges it has nothing else of its dynamics.
+    record = source.record.model_dump(by_alias=True)
+    record |= {"velocities": True} if engine is not None else {}
     scene, frames = resolve_scene(source.scene, numerics.timestep, source.duration)
     resolved = partial(resolve_event, scene=source.scene, frames=frames)
     return CellConfig.of(
@@ -27,7 +33,7 @@ def resolve_cell(source: CellSource) -> CellConfig:
         events=tuple(resolved(event) for event in source.events if event.when is None),
         numerics=numerics,
         duration=source.duration,
-        record=shared(CellRecord.model_validate(source.record.model_dump(by_alias=True))),
+        record=shared(CellRecord.model_validate(record)),
         effects=shared(
             CellEffects(
                 force=source.effects.force, switches=dict(sorted(source.effects.switches.items()))
@@ -39,4 +45,16 @@ def resolve_cell(source: CellSource) -> CellConfig:
             for event in source.events
             if event.when is not None
         ),
+        engine=engine,
     )
+
+
+def engine_of(source: CellSource) -> CellEngine | None:
+    """Return the engine of a cell with its settings; None: lavender's."""
+    if source.engine == LAVENDER:
+        return None
+    peer = peer_of(source.engine)
+    given = getattr(source.engines, peer.name)
+    own = {} if given is None else {name: value for name, value in given if value is not None}
+    settings = {**peer.variants[source.engine].settings, **own}
+    return CellEngine(name=source.engine, settings=dict(sorted(settings.items())))

@@ -23,7 +23,10 @@ from lavendersim.quantities.found import nearest, quoted
 
 # Keys whose value may be the name of an entry of a section of the scene.
 NAMED: Final = {"surface": "surfaces", "shape": "shapes"}
-SWEPT_SECTIONS = ("constants", "scene", "events", "numerics", "duration", "effects", "study")
+SWEPT_SECTIONS = (
+    *("constants", "scene", "events", "numerics", "duration", "effects", "study"),
+    *("engine", "engines"),
+)
 
 
 class _NoPath(Exception):  # noqa: N818 - carries the sentence; never leaves this module

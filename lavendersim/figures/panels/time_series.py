@@ -21,7 +21,7 @@ from lavendersim.measures.columns import (
 )
 from lavendersim.measures.interfaces import Cell, Floats, Rows, Trace
 from lavendersim.measures.kinds.motion import drift_by_step
-from lavendersim.measures.kinds.overlap import overlap_of_rows
+from lavendersim.measures.overlap_of_bodies import overlap_of_rows
 from lavendersim.measures.values import Values
 
 DRIFT_AFTER = 0.5  # [s] as the measure counts it

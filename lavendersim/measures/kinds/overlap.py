@@ -2,17 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
-from lavendersim.geometry.minkowski_sums import extents
-from lavendersim.geometry.shapes import HalfSpace
 from lavendersim.measures.columns import last_window
-from lavendersim.measures.interfaces import Floats, Trace
-from lavendersim.measures.penetration import depths
+from lavendersim.measures.interfaces import Trace
+from lavendersim.measures.overlap_of_bodies import overlap_of_rows
 from lavendersim.measures.registration import measure
-from lavendersim.measures.solids import PlacedSolids, Solids, near_pairs, solids_of
 from lavendersim.measures.specs.overlap import Overlap
 
 NAN = float("nan")
@@ -28,39 +23,3 @@ def overlap(spec: Overlap, trace: Trace) -> float:
     """
     rows = np.flatnonzero(last_window(trace, spec.last))[:: -spec.every]
     return float(np.max(overlap_of_rows(trace, rows))) if len(rows) else NAN
-
-
-def overlap_of_rows(trace: Trace, rows: Any) -> Floats:
-    """Return the deepest penetration [m] of any two bodies in each of these rows of the log."""
-    solids, grounds = solids_of(trace.config.scene, list(trace.bodies))
-    poses = trace.pose
-    deepest = np.zeros(len(rows))
-    for index, row in enumerate(rows):
-        placed = solids.placed(poses[row])
-        found = [
-            *_with_planes(solids, placed, grounds),
-            *_among_solids(solids, placed),
-        ]
-        # np.max, not fmax: one depth that is unknown leaves the deepest unknown
-        deepest[index] = max(0.0, np.max(found)) if not np.isnan(found).any() else NAN
-    return deepest
-
-
-def _with_planes(solids: Solids, placed: PlacedSolids, grounds: list[HalfSpace]) -> list[float]:
-    found = [0.0]
-    for normal, offset in grounds:
-        inside = offset - placed.position @ normal + extents(solids.sums, placed.rotation, -normal)
-        inside = inside[solids.movable]
-        found += [float(np.max(np.where(np.isinf(inside), NAN, inside)))] if len(inside) else []
-    return found
-
-
-def _among_solids(solids: Solids, placed: PlacedSolids) -> list[float]:
-    first, second = near_pairs(solids.sums, placed, solids.movable)
-    found = [0.0]
-    kinds = np.stack([solids.kind[first], solids.kind[second]], axis=1)
-    for kind_a, kind_b in np.unique(kinds, axis=0):
-        alike = (kinds == (kind_a, kind_b)).all(axis=1)
-        a, b = placed.take(first[alike]), placed.take(second[alike])
-        found.append(float(np.max(depths(int(kind_a), int(kind_b), a, b))))
-    return found

@@ -1,0 +1,1 @@
+"""How each engine builds and steps a scene; importing one imports its engine."""

@@ -1,0 +1,149 @@
+"""Scenes on MuJoCo."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from itertools import product
+from math import log, pi, sqrt
+from typing import Any, Final
+
+import mujoco
+import numpy as np
+
+from lavendersim.peers.declaration import Value
+from lavendersim.peers.description import PeerBody, Scene
+from lavendersim.peers.world import Floats
+
+# An underdamped contact spring stands for a coefficient of restitution: it swings for so many
+# steps. Shorter swings are resolved worse by MuJoCo's integrators.
+SWING_STEPS: Final = 12
+OPTIONS: Final = ("solver", "iterations", "tolerance", "cone", "integrator", "impratio")
+
+
+def _text(values: Any) -> str:
+    return " ".join(f"{value:.17g}" for value in values)
+
+
+class World:
+    """A model and its data."""
+
+    def __init__(self, scene: Scene, settings: Mapping[str, Value]) -> None:
+        self._of, self._dt = settings, scene.timestep
+        self.model = mujoco.MjModel.from_xml_string(self._xml(scene))
+        self.data = mujoco.MjData(self.model)
+        geoms = [self.model.geom(k).name for k in range(self.model.ngeom)]
+        self._rows = [int(name.split("_")[1]) for name in geoms]
+        for k, body in enumerate(scene.movable):  # a free joint's spin is in the body's frame
+            turn, inverse = np.zeros(3), np.array(body.orientation) * (1.0, -1.0, -1.0, -1.0)
+            mujoco.mju_rotVecQuat(turn, np.array(body.spin), inverse)
+            self.data.qvel[6 * k : 6 * k + 6] = [*body.velocity, *turn]
+
+    def _contact(self, friction: float, restitution: float) -> str:
+        """Return solref, solimp, margin and condim of a contact."""
+        get, dt = self._of.get, self._dt
+        soft = dt * float(get("time_constant_steps", 0.0)) or get("time_constant", 0.02)
+        reference, share = (soft, get("damping_ratio", 1.0)), get("impedance")
+        if restitution > 0.0:  # (-stiffness, -damping): a free half swing keeps e of the speed
+            decay = -log(restitution) / pi  # zeta / sqrt(1 - zeta^2)
+            zeta = decay / sqrt(1.0 + decay * decay)
+            natural = pi / (SWING_STEPS * dt * sqrt(1.0 - zeta * zeta))
+            reference, share = (-natural * natural, -2.0 * zeta * natural), share or 0.9999
+        impedance = f'solimp="{share} {share} 0.001"' if share else ""
+        margin, dim = get("margin", 0.0), 3 if friction else 1
+        return f'solref="{_text(reference)}" {impedance} margin="{margin}" condim="{dim}"'
+
+    def _geom(self, name: str, shape: Any, place: str, rest: str, meshes: list[str]) -> str:
+        if shape.kind == "plane":
+            place = f'pos="{_text(shape.offset * n for n in shape.normal)}"'
+            form = f'type="plane" size="0 0 1" zaxis="{_text(shape.normal)}"'
+        elif shape.kind == "hull":
+            corners = _text(number for point in shape.points for number in point)
+            meshes.append(f'<mesh name="{name}" vertex="{corners}" inertia="convex"/>')
+            form = f'type="mesh" mesh="{name}"'
+        elif shape.kind == "box":
+            form = f'type="box" size="{_text(0.5 * edge for edge in shape.size)}"'
+        else:
+            size = (shape.radius, *((0.5 * shape.length,) if shape.kind != "sphere" else ()))
+            form = f'type="{shape.kind}" size="{_text(size)}"'
+        return f'<geom name="{name}" {form} {place} {rest}/>'
+
+    def _xml(self, scene: Scene) -> str:
+        keys, get = ("friction", "restitution"), self._of.get
+        meshes: list[str] = []
+        pairs: list[str] = []
+        shared = scene.by_first(keys)
+        bodies = []
+        for body in scene.bodies:
+            rest = 'contype="0" conaffinity="0"'
+            if shared is not None:
+                values, differ = shared
+                mu, e = values[body.row]
+                first = int(differ and not body.moves)  # its values are those of its contacts
+                rest = f'priority="{first}" friction="{mu:.17g} 0 0" {self._contact(mu, e)}'
+            geoms = "".join(self._geom(*part, rest, meshes) for part in _parts(body))
+            place = f'pos="{_text(body.position)}" quat="{_text(body.orientation)}"'
+            inertial = f'<inertial pos="0 0 0" mass="{body.mass:.17g}" diaginertia='
+            free = f'<freejoint/>{inertial}"{_text(body.inertia)}"/>' if body.moves else ""
+            plane = body.shape.kind == "plane"
+            bodies.append(geoms if plane else f"<body {place}>{free}{geoms}</body>")
+        for a, b in scene.pairs() if shared is None else ():
+            mu, e = (scene.of_pair(key, a, b) for key in keys)
+            rest = f'friction="{_text((mu, mu, 0, 0, 0))}" {self._contact(mu, e)}'
+            for (one, *_), (other, *_) in product(_parts(a), _parts(b)):
+                pairs.append(f'<pair geom1="{one}" geom2="{other}" {rest}/>')
+        options = " ".join(f'{key}="{self._of[key]}"' for key in OPTIONS if key in self._of)
+        ahead = 'speculative="enable"' if get("speculative") else ""
+        return f"""<mujoco><compiler autolimits="false" boundmass="0" boundinertia="0"/>
+  <option timestep="{self._dt:.17g}" gravity="{_text(scene.gravity)}" {options}>
+    <flag autoreset="disable" {ahead}/></option>
+  <size memory="512M"/><asset>{"".join(meshes)}</asset>
+  <worldbody>{"".join(bodies)}</worldbody><contact>{"".join(pairs)}</contact></mujoco>"""
+
+    def inertias(self) -> Floats:
+        """Return mass and principal moments."""
+        moving = self.model.body_dofnum > 0
+        mass, inertia = self.model.body_mass[moving], self.model.body_inertia[moving]
+        return np.column_stack([mass, inertia])
+
+    def poses(self) -> Floats:
+        """Return poses."""
+        return np.array(self.data.qpos).reshape(-1, 7)
+
+    def velocities(self) -> Floats:
+        """Return velocities."""
+        found: Floats = np.array(self.data.qvel).reshape(-1, 6)
+        for row, pose in zip(found, self.poses(), strict=True):
+            mujoco.mju_rotVecQuat(row[3:], row[3:].copy(), pose[3:])
+        return found
+
+    def push(self, loads: Floats) -> None:
+        """Have forces and torques act in the next step."""
+        self.data.xfrc_applied[self.model.body_dofnum > 0] = loads
+
+    def step(self) -> None:
+        """Advance by one timestep."""
+        mujoco.mj_step(self.model, self.data)
+
+    def contacts(self) -> list[tuple[float, ...]]:
+        """Return the contacts of the last step; RK4 leaves those of its last stage."""
+        found, force, rows = [], np.zeros(6), self._rows
+        for k in range(self.data.ncon):
+            one = self.data.contact[k]
+            mujoco.mj_contactForce(self.model, self.data, k, force)
+            n, t1, t2 = one.frame.reshape(3, 3)
+            pushed = force[:3] * self._dt
+            point = (*one.pos, *n, one.dist)
+            slide = (*(pushed[1] * t1 + pushed[2] * t2), one.friction[0] if one.dim > 1 else 0.0)
+            found.append((rows[one.geom1], rows[one.geom2], *point, pushed[0], *slide))
+        return found
+
+
+def _parts(body: PeerBody) -> list[tuple[str, Any, str]]:
+    """Return name, shape and place of each piece of a body."""
+    if body.shape.kind != "compound":
+        return [(f"g_{body.row}", body.shape, "")]
+    places = [f'pos="{_text(p.position)}" quat="{_text(p.orientation)}"' for p in body.shape.parts]
+    return [
+        (f"g_{body.row}_{k}", part.shape, place)
+        for k, (part, place) in enumerate(zip(body.shape.parts, places, strict=True))
+    ]

@@ -1,0 +1,116 @@
+"""Scenes on Rapier, one thread; what it has of contacts is not asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import rapier3d
+from rapier3d import CoefficientCombineRule as Rule
+from rapier3d import Collider, MassProperties, PhysicsWorld, RigidBody
+
+from lavendersim.peers.declaration import Value
+from lavendersim.peers.description import PeerBody, Scene
+from lavendersim.peers.world import Floats
+
+
+class World:
+    """One world."""
+
+    def __init__(self, scene: Scene, settings: Mapping[str, Value]) -> None:
+        self._world = PhysicsWorld(scene.gravity)
+        self._world.set_num_threads(1)
+        self._swept = bool(settings.get("swept", False))
+        own = self._world.integration_parameters
+        own.dt = scene.timestep
+        for name, of_rapier in (
+            ("iterations", "num_solver_iterations"),
+            ("internal_iterations", "num_internal_pgs_iterations"),
+            ("allowed_error", "normalized_allowed_linear_error"),
+        ):
+            if name in settings:
+                setattr(own, of_rapier, settings[name])
+        if "stiff_steps" in settings:
+            frequency = float(settings["stiff_steps"]) / scene.timestep
+            softness = rapier3d.SpringCoefficients(frequency, 5.0)
+            own.contact_softness = own.static_contact_softness = softness
+        # Both of its rules are given: roots are multiplied, the larger restitution is taken.
+        self._friction = scene.by_product("friction")
+        self._restitution = scene.by_larger("restitution")
+        handles = [self._add(body) for body in scene.bodies]
+        self._handles = [handles[body.row] for body in scene.movable]
+        for one in self._bodies():  # else only its first step would do it
+            one.recompute_mass_properties_from_colliders(self._world.colliders)
+
+    def _add(self, body: PeerBody) -> Any:
+        shape, position = body.shape, body.position
+        if shape.kind == "plane":
+            collider = Collider.halfspace(shape.normal)
+            x, y, z = (shape.offset * n for n in shape.normal)
+            position = (x, y, z)
+        elif shape.kind == "box":
+            collider = Collider.cuboid(*(0.5 * edge for edge in shape.size))
+        else:
+            collider = Collider.ball(shape.radius)
+        collider = collider.friction(self._friction[body.row]).density(0.0)
+        collider = collider.restitution(self._restitution[body.row])
+        collider = collider.friction_combine_rule(Rule.MULTIPLY)
+        collider = collider.restitution_combine_rule(Rule.MAX)
+        turn = (1.0, 0.0, 0.0, 0.0) if shape.kind == "plane" else body.orientation
+        place = rapier3d.Isometry3(position, rapier3d.Rotation3(*turn))
+        builder = (RigidBody.dynamic() if body.moves else RigidBody.fixed()).position(place)
+        if body.moves:
+            properties = MassProperties((0.0, 0.0, 0.0), body.mass, body.inertia)
+            builder = (
+                builder.additional_mass_properties(properties)
+                .linvel(body.velocity)
+                .angvel(body.spin)
+                .can_sleep(False)
+                .ccd_enabled(self._swept)
+                .gyroscopic_forces(True)
+            )
+        return self._world.add_body(builder, [collider])
+
+    def _bodies(self) -> list[Any]:
+        return [self._world.rigid_bodies[handle] for handle in self._handles]
+
+    def inertias(self) -> Floats:
+        """Return mass and principal moments."""
+        found = []
+        for body in self._bodies():
+            moments = body.mass_properties.principal_inertia
+            found.append((body.mass, moments.x, moments.y, moments.z))
+        return np.array(found)
+
+    def poses(self) -> Floats:
+        """Return poses."""
+        found = np.empty((len(self._handles), 7))
+        for row, body in zip(found, self._bodies(), strict=True):
+            centre, turn = body.translation, body.rotation
+            row[:] = [centre.x, centre.y, centre.z, turn.w, turn.i, turn.j, turn.k]
+        return found
+
+    def velocities(self) -> Floats:
+        """Return velocities."""
+        found = np.empty((len(self._handles), 6))
+        for row, body in zip(found, self._bodies(), strict=True):
+            v, w = body.linvel, body.angvel
+            row[:] = [v.x, v.y, v.z, w.x, w.y, w.z]
+        return found
+
+    def push(self, loads: Floats) -> None:
+        """Have forces and torques act in the next step; they last until they are taken back."""
+        for body, load in zip(self._bodies(), loads.tolist(), strict=True):
+            body.reset_forces(True)
+            body.reset_torques(True)
+            body.add_force(tuple(load[:3]), True)
+            body.add_torque(tuple(load[3:]), True)
+
+    def step(self) -> None:
+        """Advance by one timestep."""
+        self._world.step()
+
+    def contacts(self) -> list[tuple[float, ...]]:
+        """Return none."""
+        return []

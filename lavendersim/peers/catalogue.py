@@ -1,0 +1,82 @@
+"""The engines by the names that a config has, and which of them are installed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cache
+from importlib import import_module
+from typing import Final
+
+from lavendersim.errors import UsageError
+from lavendersim.peers.declaration import Peer
+from lavendersim.quantities.found import nearest, quoted
+
+LAVENDER: Final = "lavender"
+ALL: Final = "all"
+MODULES: Final = ("mujoco", "rapier", "bullet")  # one file each; the order is that of `all`
+
+PEERS: Final[dict[str, Peer]] = {
+    name: import_module(f"lavendersim.peers.{name}").PEER for name in MODULES
+}
+# Every name that `engine` may have.
+NAMES: Final = (LAVENDER, *(variant for peer in PEERS.values() for variant in peer.variants))
+
+
+def peer_of(engine: str) -> Peer:
+    """Return the engine of a variant, such as `mujoco-stiff`."""
+    return PEERS[engine.partition("-")[0]]
+
+
+@cache
+def installed_version(name: str) -> str:
+    """Return the version of an engine, empty where it is not installed; nothing is imported."""
+    from importlib.metadata import PackageNotFoundError, version  # late: it takes milliseconds
+
+    try:
+        return version(PEERS[name].package)
+    except PackageNotFoundError:
+        return ""
+
+
+def installed() -> tuple[str, ...]:
+    """Return the names of the engines that can run here, lavender first."""
+    return (LAVENDER, *(name for name in PEERS if installed_version(name)))
+
+
+def unknown(engine: str) -> str:
+    """Return why a name is none of an engine, with the nearest, and what is installed."""
+    here = f"installed here: {', '.join(installed())}"
+    return f"no engine is called {quoted(engine)} ({here}){nearest(engine, NAMES)}"
+
+
+def chosen(names: Sequence[str]) -> tuple[str, ...]:
+    """Return the engines that are meant, each once; `all` is every one that is installed.
+
+    names: with commas between, or several. UsageError for one that is unknown or not installed.
+    """
+    found: dict[str, None] = {}
+    for name in (part.strip() for text in names for part in text.split(",")):
+        if name != ALL and name not in NAMES:
+            raise UsageError(unknown(name))
+        if name != ALL and (why := missing(name)):
+            raise UsageError(why)
+        found.update(dict.fromkeys(installed() if name == ALL else [name]))
+    return tuple(found)
+
+
+def overrides_of(engines: Sequence[str]) -> list[str]:
+    """Return the options that have these engines simulate a config: one, or an axis of several."""
+    if len(engines) == 1:
+        return [f"set engine={engines[0]}"]
+    return [f"sweep engine=engine:[{', '.join(engines)}]"] if engines else []
+
+
+def missing(engine: str) -> str:
+    """Return how to install the engine of a variant; empty where it is."""
+    if engine == LAVENDER or installed_version(peer_of(engine).name):
+        return ""
+    peer = peer_of(engine)
+    return (
+        f"{peer.title} is not installed; expected one of {', '.join(installed())}, or "
+        f"`pip install {peer.package}` (all engines: `pip install lavendersim[engines]`)"
+    )

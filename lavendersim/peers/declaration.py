@@ -1,0 +1,60 @@
+"""What an engine declares of itself; one `PEER` a file."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+Value = float | int | str | bool
+
+# What of a contact an engine may tell: a point, a unit normal from A to B, the gap [m]; the normal
+# impulse on B, the tangential one as a vector in world axes [N s]; the coefficient that it used.
+POINT: Final = ("x", "y", "z", "nx", "ny", "nz", "separation")
+IMPULSE: Final = ("impulse_n",)
+TANGENTIAL: Final = ("px", "py", "pz")
+FRICTION: Final = ("friction",)
+
+
+@dataclass(frozen=True, kw_only=True)
+class EngineSetting:
+    """One setting of an engine: a key of its section under `engines`."""
+
+    name: str
+    type: Any  # annotated with its quantity, or a Literal
+    doc: str  # unit and meaning
+    default: None = None  # as the variant has it
+
+
+@dataclass(frozen=True, kw_only=True)
+class Variant:
+    """One set of settings of an engine, with the reason for it."""
+
+    doc: str
+    settings: Mapping[str, Value] = field(default_factory=dict)
+    tells: tuple[str, ...] | None = None  # of contacts; None: as its engine
+
+
+@dataclass(frozen=True, kw_only=True)
+class Peer:
+    """An engine: what a config may ask of it, and which law it solves."""
+
+    name: str
+    title: str  # as its authors write it
+    package: str  # of the registry, and of `pip install`
+    tried: tuple[str, ...]  # versions of the package that the tests have run
+    law: str  # of contact, in a sentence: cone or pyramid, convex or not, restitution
+    double: bool  # precision of its numbers
+    variants: Mapping[str, Variant]  # `mujoco`, `mujoco-stiff`: the first has its own defaults
+    settings: tuple[EngineSetting, ...]
+    shapes: frozenset[str]
+    surface_keys: frozenset[str]  # of surfaces, that it obeys
+    forces: bool = False  # constant ones at the centre of mass, for a while
+    tells: tuple[str, ...] = ()  # of contacts, of the above; none: it tells of no contact
+    momentum: bool = False  # its impulses are all that acts beside gravity and forces of a step
+    repeats: str = ""  # whether two runs agree to the bit, in words
+
+    def reports(self, engine: str) -> tuple[str, ...]:
+        """Return what a variant tells of contacts."""
+        tells = self.variants[engine].tells
+        return self.tells if tells is None else tells

@@ -1,0 +1,73 @@
+"""The process of an engine from outside: starts it, yields its messages, sees it crash or hang."""
+
+from __future__ import annotations
+
+import os
+import pickle
+import signal
+import subprocess
+import sys
+from collections.abc import Generator
+from multiprocessing import Pipe
+from tempfile import TemporaryFile
+from typing import IO, Any, Final
+
+from lavendersim.peers.messages import Built, Ended, States, Task
+
+SILENCE: Final = 60.0  # [s] without a word: it hangs
+MODULE: Final = "lavendersim.peers.child"
+# One thread, whatever an engine would take.
+THREADS: Final = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
+
+
+def messages_of(
+    task: Task, silence: float = SILENCE, module: str = MODULE
+) -> Generator[Built | States | Ended, None, None]:
+    """Yield what a run on an engine sends; the last is `Ended`, also of one that died or hung.
+
+    silence: [s] after which it is ended. Whoever stops asking ends it.
+    """
+    receiver, sender = Pipe(duplex=False)
+    with TemporaryFile() as said:
+        command = [sys.executable, "-m", module, str(sender.fileno())]
+        process = subprocess.Popen(
+            command,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.DEVNULL,
+            stderr=said,
+            pass_fds=(sender.fileno(),),
+            start_new_session=True,  # Ctrl-C is for the run, which ends it
+            env=os.environ | THREADS,
+        )
+        sender.close()
+        try:
+            assert process.stdin is not None
+            try:
+                process.stdin.write(pickle.dumps(task))
+                process.stdin.close()
+            except BrokenPipeError:
+                pass  # it died before: its end says so
+            while True:
+                if not receiver.poll(silence):
+                    yield Ended(f"hangs: no step was done in {silence:g} s")
+                    return
+                try:
+                    message: Any = receiver.recv()
+                except (EOFError, OSError):
+                    yield Ended(_death(process.wait(), said))
+                    return
+                yield message
+                if isinstance(message, Ended):
+                    return
+        finally:
+            process.kill()
+            process.wait()
+            receiver.close()
+
+
+def _death(code: int, said: IO[bytes]) -> str:
+    """Return how a process died, with the last line that it wrote."""
+    how = f"was ended by {signal.Signals(-code).name}" if code < 0 else f"exited with {code}"
+    said.seek(0)
+    lines = said.read().decode(errors="replace").strip().splitlines()
+    return f"crashed: its process {how}{f' ({lines[-1].strip()})' if lines else ''}"

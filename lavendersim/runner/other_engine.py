@@ -1,0 +1,127 @@
+"""One cell run by another engine: its process, its rows, its log; see `cell.simulate`.
+
+The engine steps in a process of its own. One that crashes, hangs or cannot build the scene is how
+the cell ended, and said in its status; the log has what was done before.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from time import perf_counter_ns
+from typing import TYPE_CHECKING
+
+from lavendersim.cell import CellEngine
+from lavendersim.errors import UNREPORTED
+from lavendersim.measures.always import WorstStates
+from lavendersim.peers.catalogue import installed_version, peer_of
+from lavendersim.peers.declaration import Peer
+from lavendersim.peers.messages import Built, States, Task
+from lavendersim.peers.process import messages_of
+from lavendersim.trace import TraceWriter, Written
+from lavendersim.trace.recorded import described, partly_recorded
+from lavendersim.trace.schema import CONTACT_COLUMNS, STEP_COLUMNS
+from lavendersim.trace.writer import UNTOLD
+
+from .accuracy import Accuracy
+from .bounds import Bounds
+from .cell_outcome import CellOutcome
+from .environment import versions
+from .interruption import deferred
+from .other_rows import RowsOfStates, contact_columns, step_columns
+
+if TYPE_CHECKING:
+    from .cell import CellJob
+
+CONTACTS = ("/contacts", "/contact_columns", "/plot/force", "/plot/penetration")
+
+
+def simulate_elsewhere(
+    job: CellJob, began: Callable[[Callable[[], int]], None] | None
+) -> tuple[CellOutcome, Written, WorstStates | None]:
+    """Simulate a cell by its engine and write its log; returns what `cell.Simulated` has."""
+    from .cell import interrupted, plan_in_log
+
+    config, engine = job.config, job.config.engine
+    assert engine is not None
+    peer = peer_of(engine.name)
+    reported = peer.reports(engine.name)
+    absent = absent_topics((job.in_log or plan_in_log(job.plan)).absent, peer, reported)
+    if "/contacts" in absent:
+        reported = ()
+    metadata = metadata_of(engine, peer, reported, job.seeds)
+    writer = TraceWriter(job.path, config, job.as_written, metadata, absent)
+    unseen = absent | partly_recorded(described(config.record))
+    bodies = list(config.scene.bodies)
+    bounds = Bounds(job.always, bodies, config, config.clock, unseen)
+    rows = RowsOfStates(config, reported)
+    status = "complete"
+    done = [0]  # steps; read by who shows the progress, at any time
+    build_ns = physics_ns = logging_ns = 0
+    task = Task(config.as_json(), engine.name, dict(engine.settings))
+    running = messages_of(task)
+    with deferred() as signalled:
+        for message in running:
+            start = perf_counter_ns()
+            if isinstance(message, Built):
+                build_ns = message.build_ns
+                if began is not None:
+                    began(partial(done.__getitem__, 0))
+            elif isinstance(message, States):
+                kept = message if reported else message._replace(contacts=message.contacts[:0, :3])
+                block, broken = bounds.within(rows.block(kept))
+                writer.append(block)
+                done[0] = int(block.step["step"][-1])
+                physics_ns += message.step_ns
+                if broken:
+                    status = broken
+                    break
+            elif message.why:
+                status = f"failed: {message.why} after step {done[0]}"
+            logging_ns += perf_counter_ns() - start
+            if name := signalled():
+                status = interrupted(config.clock, name, done[0])
+                break
+        running.close()
+        start = perf_counter_ns()
+        written = writer.close(status)
+        logging_ns += perf_counter_ns() - start
+    accuracy = Accuracy(worst_residual=float("nan"))
+    times = build_ns, physics_ns, logging_ns
+    outcome = CellOutcome(job.cell, status, done[0], *times, accuracy, written.digest)
+    return outcome, written, bounds.worst
+
+
+def absent_topics(planned: dict[str, str], peer: Peer, reported: tuple[str, ...]) -> dict[str, str]:
+    """Return the topics that a log does without: by the plan, and what the engine does not tell."""
+    silent = f"{peer.title} {UNREPORTED}"
+    absent = planned | {"/residuals": silent, "/plot/log10_residual": silent}
+    return absent if reported else absent | {topic: absent.get(topic, silent) for topic in CONTACTS}
+
+
+def metadata_of(
+    engine: CellEngine, peer: Peer, reported: tuple[str, ...], seeds: str
+) -> dict[str, dict[str, str]]:
+    """Return what a log says of the engine that made it, and of the columns that it lacks."""
+    version = installed_version(peer.name)
+    made_by = {
+        "name": engine.name,
+        "version": f"{peer.title} {version}",
+        "variant": peer.variants[engine.name].doc,
+        "settings": ", ".join(f"{name}: {value}" for name, value in engine.settings.items()),
+        "law": peer.law,
+        "precision": "double" if peer.double else "single",
+        "repeats": peer.repeats,
+        "seed": seeds,
+    }
+    has = {name for name, _ in step_columns(reported)}
+    untold = {f"/step.{one.name}" for one in STEP_COLUMNS if one.name not in has}
+    if reported:
+        has = {name for name, _ in contact_columns(reported)}
+        untold |= {f"/contacts.{name}" for name in CONTACT_COLUMNS if name not in has}
+    silent = f"{peer.title} {UNREPORTED}"
+    return {
+        "versions": versions(),
+        "engine": made_by,
+        UNTOLD: dict.fromkeys(sorted(untold), silent),
+    }

@@ -1,0 +1,82 @@
+"""`--engine`: two small scenes by lavender and MuJoCo, end to end; the matrix; what is refused."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from command_line import lavender
+
+from tests.engines import BALL, BOX, needs
+
+CLAIM = """
+measure: {height: {kind: position, body: ball, along: [0, 0, 1], time: 0.5}}
+expect: [{name: height, measure: height, equals: {value: 2.77375, absolute: 0.03}}]
+always: {}
+"""
+
+
+def write(folder: Path, name: str, text: str) -> Path:
+    path = folder / name
+    path.write_text(text)
+    return path
+
+
+def test_an_unknown_engine_is_refused_before_a_file_is_read(tmp_path: Path) -> None:
+    for verb in ("run", "check"):
+        found = lavender(verb, "none.yaml", "--engine", "mujco", where=tmp_path)
+        assert found.returncode == 2
+        assert 'no engine is called "mujco"' in found.stderr
+        assert 'did you mean "mujoco"?' in found.stderr
+
+
+@needs("mujoco")
+def test_both_engines_run_two_scenes_end_to_end(tmp_path: Path) -> None:
+    """3 + 2 t - g t^2/2 = 2.77375 m at 0.5 s; Euler's method is 24.5 mm below."""
+    write(tmp_path, "box.yaml", BOX)
+    write(tmp_path, "ball.yaml", BALL + CLAIM)
+    words = ("run", "box.yaml", "ball.yaml", "-e", "lavender,mujoco", "--json")
+    found = lavender(*words, where=tmp_path)
+    assert found.returncode == 0, found.stderr
+    (cells,) = (one["cells"] for one in json.loads(found.stdout) if one["experiment"] == "ball")
+    assert [cell["label"] for cell in cells] == ["engine=lavender", "engine=mujoco"]
+    assert [cell["measures"]["height"] for cell in cells] == pytest.approx(
+        [2.77375, 2.77375 - 9.81 * 0.01 * 0.25], abs=1e-9
+    )
+    for verb in ("show", "judge", "verify"):
+        found = lavender(verb, where=tmp_path)
+        assert found.returncode == 0, found.stdout + found.stderr
+    assert "always: residual: not judged" in lavender("judge", where=tmp_path).stdout
+
+
+@needs("mujoco")
+def test_a_matrix_marks_what_is_refused_and_goes_on(tmp_path: Path) -> None:
+    write(tmp_path, "ball.yaml", BALL + CLAIM)
+    text = (BALL + CLAIM).replace("mass: 2,", "mass: 2, drag: {linear: 0.001},")
+    text = text.replace("always: {}", "always: {momentum: none}")
+    write(tmp_path, "drag.yaml", text)
+    words = ("check", ".", "-e", "lavender,mujoco", "--report", "engines.html", "--json")
+    done = lavender(*words, where=tmp_path)
+    found = json.loads(done.stdout)
+    verdicts = {
+        (one["case"].rpartition("/")[2], one["solver"]): one["verdict"] for one in found["entries"]
+    }
+    assert verdicts == {
+        ("ball", "lavender"): "passes",
+        ("ball", "mujoco"): "passes",
+        ("drag", "lavender"): "passes",
+        ("drag", "mujoco"): "refused",
+    }
+    assert done.returncode == 0, done.stderr
+    assert "refused" in (tmp_path / "engines.html").read_text()
+
+
+@needs("mujoco")
+def test_the_plan_of_another_engine_says_its_law(tmp_path: Path) -> None:
+    write(tmp_path, "ball.yaml", f"{BALL}engine: mujoco-stiff\n")
+    found = lavender("plan", "ball.yaml", where=tmp_path)
+    assert found.returncode == 0
+    assert "engine mujoco-stiff, which plans by itself" in found.stdout
+    assert "law        soft contacts in a convex problem" in found.stdout
+    assert "midpoint" not in found.stdout

@@ -1,0 +1,57 @@
+"""What an engine has otherwise than it was described is said."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from lavendersim.experiment import load_experiment_text
+from lavendersim.peers.catalogue import PEERS
+from lavendersim.peers.child import misbuilt
+from lavendersim.peers.description import Scene
+from tests.engines import BALL
+
+
+class Built:
+    """A ball in an engine that keeps what it is given, but for one number."""
+
+    def __init__(self, change: str = "", by: float = 0.0) -> None:
+        self.state: dict[str, Any] = {
+            "inertias": np.array([[2.0, 0.008, 0.008, 0.008]]),
+            "poses": np.array([[0.0, 0.0, 3.0, -1.0, 0.0, 0.0, 0.0]]),
+            "velocities": np.array([[1.0, 0.0, 2.0, 0.0, 3.0, 0.0]]),
+        }
+        if change:
+            name, column = change.split()
+            self.state[name][0, int(column)] += by
+
+    def inertias(self) -> Any:
+        return self.state["inertias"]
+
+    def poses(self) -> Any:
+        return self.state["poses"]
+
+    def velocities(self) -> Any:
+        return self.state["velocities"]
+
+
+@pytest.mark.parametrize(
+    ("change", "what"),
+    [
+        ("inertias 0", "mass and inertia"),
+        ("inertias 3", "mass and inertia"),
+        ("poses 1", "position"),
+        ("poses 4", "orientation"),
+        ("velocities 2", "velocity"),
+        ("velocities 5", "angular velocity"),
+    ],
+)
+def test_a_number_that_differs_is_named_with_its_body(change: str, what: str) -> None:
+    scene = Scene(load_experiment_text(BALL, "ball.yaml").cells()[0].config)
+    peer = PEERS["mujoco"]
+    assert misbuilt(scene, Built(), peer) == ""  # -q is q
+    assert misbuilt(scene, Built(change, 1e-15), peer) == ""
+    said = misbuilt(scene, Built(change, 1e-6), peer)
+    assert said.startswith(f"MuJoCo has another {what} of ball: ")

@@ -1,0 +1,15 @@
+"""What a variant tells is what its engine tells, unless it says otherwise."""
+
+from __future__ import annotations
+
+from lavendersim.peers.catalogue import PEERS
+
+
+def test_a_variant_tells_what_its_engine_does_unless_it_says_so() -> None:
+    peer = PEERS["mujoco"]
+    assert peer.reports("mujoco-stiff") == peer.tells
+    assert peer.reports("mujoco-rk4") == ()
+
+
+def test_every_engine_states_its_law_and_whether_it_repeats() -> None:
+    assert all(peer.law and peer.repeats and peer.tried for peer in PEERS.values())

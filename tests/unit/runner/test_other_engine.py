@@ -1,0 +1,53 @@
+"""A cell by another engine: how it ends where its process goes wrong; topics and their reasons."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from lavendersim.experiment import load_experiment_text
+from lavendersim.peers.catalogue import PEERS
+from lavendersim.peers.messages import Built, Ended, States
+from lavendersim.runner import other_engine, run
+from lavendersim.runner.other_engine import absent_topics
+from tests.engines import BALL, needs
+
+
+def test_topics_that_an_engine_does_not_tell_have_its_reason_and_others_the_plans() -> None:
+    planned = {"/contacts": "nothing can touch"}
+    absent = absent_topics(planned, PEERS["mujoco"], ())
+    assert absent["/contacts"] == "nothing can touch"
+    assert absent["/plot/force"] == absent["/residuals"] == "MuJoCo does not tell it"
+    assert "/contacts" not in absent_topics({}, PEERS["mujoco"], ("impulse_n",))
+
+
+@needs("mujoco")
+def test_a_crash_is_how_the_cell_ended_and_others_go_on(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """The second process dies after its initial state; its log has that state."""
+    whole = other_engine.messages_of
+    started: list[str] = []
+
+    def crashing(task: Any) -> Iterator[Any]:
+        started.append(task.engine)
+        if len(started) != 2:
+            yield from whole(task)
+            return
+        yield Built("0", 1)
+        pose, velocity = np.array([[[0.0, 0, 3, 1, 0, 0, 0]]]), np.zeros((1, 1, 6))
+        yield States(0, pose, velocity, np.zeros((0, 3 + 12)), 1)
+        yield Ended("crashed: its process was ended by SIGSEGV")
+
+    monkeypatch.setattr(other_engine, "messages_of", crashing)
+    swept = "sweep: {engine: {path: engine, values: [mujoco, mujoco-stiff, mujoco-cg]}}"
+    finished = run(load_experiment_text(f"{BALL}{swept}\n", "ball.yaml"), tmp_path)
+    reported = "failed: crashed: its process was ended by SIGSEGV after step 0"
+    assert [cell.status for cell in finished.run.cells] == ["complete", reported, "complete"]
+    assert [outcome.steps for outcome in finished.outcomes] == [50, 0, 50]
+    assert not finished.good
+    assert len(finished.run.cells[1].trace().step) == 1
