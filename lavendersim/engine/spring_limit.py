@@ -51,9 +51,10 @@ def make_limit(spec: Spec, place: Any) -> Any:
     centre_of, momentum_of = group_of.centre_of, group_of.momentum_of
     rigid_spin = group_of.rigid_spin
 
-    def fit(links, bodies, velocities, group, anchored, h, budget):
+    def fit(links, bodies, velocities, group, kept):
         # Velocities of bodies that stand in their pose: what they may have. Returns the share of
         # what they had that is left, negative where the pose needs more energy than there is.
+        anchored, h, budget = kept
         left = budget - stored(links, bodies, group)
         if anchored:
             zero = Vec3(0.0, 0.0, 0.0)
@@ -202,8 +203,9 @@ def make_limit(spec: Spec, place: Any) -> Any:
 
     take = kernel(take, spec)
 
-    def aim(bodies, velocities, motion, group, centred, ended, t, dt):
-        # centred, ended: the centre's mean velocity in the step, and that at its end.
+    def aim(bodies, velocities, group, centre, t, dt):
+        # centre: its mean velocity in the step, and that at its end.
+        centred, ended = centre
         for i in range(bodies.shape[0]):
             body, v = bodies[i], velocities[i]
             if body.group == group:
@@ -298,7 +300,7 @@ def make_limit(spec: Spec, place: Any) -> Any:
                 return
         share = -1.0
         if turned:
-            share = fit(links, bodies, velocities, group, anchored, h, budget)
+            share = fit(links, bodies, velocities, group, (anchored, h, budget))
         restore(bodies, group)
         if not share >= LIKE:
             settle(links, bodies, velocities, motion, group, dt)
@@ -307,9 +309,9 @@ def make_limit(spec: Spec, place: Any) -> Any:
             for number in range(HALVINGS + 1):
                 if number == HALVINGS:
                     t = 0.0
-                aim(bodies, velocities, motion, group, centred, ended, t, dt)
+                aim(bodies, velocities, group, (centred, ended), t, dt)
                 move(bodies, group, dt)
-                share = fit(links, bodies, velocities, group, anchored, h, budget)
+                share = fit(links, bodies, velocities, group, (anchored, h, budget))
                 restore(bodies, group)
                 if share >= 0.0:
                     break

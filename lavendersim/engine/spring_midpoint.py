@@ -172,8 +172,9 @@ def make_act_midway(spec: Spec, place: Any) -> Any:
 
     forget = kernel(forget, spec)
 
-    def law(link, body_a, body_b, ma, mb, start, length_1, dt):
+    def law(link, bodies, motion, start, length_1, dt):
         # `improve`'s, with the rate at the end by those of the start and of the step.
+        body_a, body_b, ma, mb = bodies[link.a], bodies[link.b], motion[link.a], motion[link.b]
         k = response_of(body_a, start.r_a, start.d) + response_of(body_b, start.r_b, start.d)
         longer = length_1 - start.length
         force = link.stiffness * (0.5 * (start.length + length_1) - link.rest_length)

@@ -109,7 +109,10 @@ def make_mean_lever(spec: Spec) -> Any:
 
 
 def make_moment(spec: Spec) -> Any:
-    """Return `kernel(body, v, m, r, j, sign, dt) -> TurnEquation`; v.w with the impulses so far."""
+    """Return `kernel(body, v, m, lever, dt) -> TurnEquation`; v.w with the impulses so far.
+
+    lever: r of the spring, its impulse J on A, and 1 for A, -1 for B.
+    """
     from .rotation import inertia_times, is_round
 
     mean_lever: Any = make_mean_lever(spec)
@@ -120,7 +123,8 @@ def make_moment(spec: Spec) -> Any:
 
     inertia = kernel(inertia, spec)
 
-    def moment(body, v, m, r, j, sign, dt):
+    def moment(body, v, m, lever, dt):
+        r, j, sign = lever
         w = Vec3(body.turn_x, body.turn_y, body.turn_z)
         arm, by_a = mean_lever(r, scaled(0.5 * dt, w))
         by_w = Mat3(scaled(0.5 * dt, by_a.x), scaled(0.5 * dt, by_a.y), scaled(0.5 * dt, by_a.z))
@@ -158,8 +162,9 @@ def make_newton_step(spec: Spec, place: Any, law: Any, push: Any) -> Any:
     moment: Any = make_moment(spec)
     mean_lever: Any = make_mean_lever(spec)
 
-    def twist(body, v, r, j, sign, old, dt):
+    def twist(body, v, lever, old, dt):
         # The spring's angular impulse by the mean spin as it is now.
+        r, j, sign = lever
         w = Vec3(body.turn_x, body.turn_y, body.turn_z)
         arm, _ = mean_lever(r, scaled(0.5 * dt, w))
         spun = cross(arm, scaled(sign, j))
@@ -168,12 +173,13 @@ def make_newton_step(spec: Spec, place: Any, law: Any, push: Any) -> Any:
 
     twist = kernel(twist, spec)
 
-    def twist_both(link, body_a, body_b, va, vb, start, dt):
+    def twist_both(link, bodies, velocities, start, dt):
+        a, b = link.a, link.b
         j = Vec3(link.px, link.py, link.pz)
         old = Vec3(link.lax, link.lay, link.laz)
-        link.lax, link.lay, link.laz = twist(body_a, va, start.r_a, j, 1.0, old, dt)
+        link.lax, link.lay, link.laz = twist(bodies[a], velocities[a], (start.r_a, j, 1.0), old, dt)
         old = Vec3(-link.lbx, -link.lby, -link.lbz)
-        on_b = twist(body_b, vb, start.r_b, j, -1.0, old, dt)
+        on_b = twist(bodies[b], velocities[b], (start.r_b, j, -1.0), old, dt)
         link.lbx, link.lby, link.lbz = -on_b.x, -on_b.y, -on_b.z
 
     twist_both = kernel(twist_both, spec)
@@ -189,10 +195,10 @@ def make_newton_step(spec: Spec, place: Any, law: Any, push: Any) -> Any:
         body_a, body_b = bodies[link.a], bodies[link.b]
         va, vb, ma, mb = velocities[link.a], velocities[link.b], motion[link.a], motion[link.b]
         start = place(link, body_a, body_b)
-        twist_both(link, body_a, body_b, va, vb, start, dt)
+        twist_both(link, bodies, velocities, start, dt)
         j = Vec3(link.px, link.py, link.pz)
-        a = moment(body_a, va, ma, start.r_a, j, 1.0, dt)
-        b = moment(body_b, vb, mb, start.r_b, j, -1.0, dt)
+        a = moment(body_a, va, ma, (start.r_a, j, 1.0), dt)
+        b = moment(body_b, vb, mb, (start.r_b, j, -1.0), dt)
         between = Vec3(body_b.x - body_a.x, body_b.y - body_a.y, body_b.z - body_a.z)
         before = minus(plus(between, start.r_b), start.r_a)
         moved = Vec3(
@@ -206,7 +212,7 @@ def make_newton_step(spec: Spec, place: Any, law: Any, push: Any) -> Any:
         both = length_0 + length_1
         if both == 0.0 or length_1 == 0.0:
             return 0.0, 0.0
-        force, slope = law(link, body_a, body_b, ma, mb, start, length_1, dt)
+        force, slope = law(link, bodies, motion, start, length_1, dt)
         pull = 2.0 * dt * force / both
         n = minus(j, scaled(pull, middle))
         # The derivative of dt F u by X.
@@ -228,7 +234,7 @@ def make_newton_step(spec: Spec, place: Any, law: Any, push: Any) -> Any:
         link.force, link.px, link.py, link.pz = force, new.x, new.y, new.z
         push(body_a, va, change, Vec3(0.0, 0.0, 0.0))
         push(body_b, vb, scaled(-1.0, change), Vec3(0.0, 0.0, 0.0))
-        twist_both(link, body_a, body_b, va, vb, start, dt)
+        twist_both(link, bodies, velocities, start, dt)
         return length(change) + angle * length(new), length(new)
 
     return kernel(newton_step, spec)

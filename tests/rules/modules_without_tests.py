@@ -42,7 +42,7 @@ DECLARATIONS = {
 WITHOUT_A_TEST = {
     "engine": """
         approach difference_kernel engine error_estimate flush_contacts foreseen_impacts
-        impact_location impact_rows integrate kernel_parts memory midpoint_geometry
+        impact_rows integrate kernel_parts memory midpoint_geometry
         midpoint_passes midpoint_rows part_compiler residual respond spin_block
         spring_midpoint step_doubling
     """,

@@ -30,14 +30,15 @@ RIM_POINTS = 16  # a rim's points; every other one is a corner of its octagon
 
 
 def make_put_rim(spec):
-    """Return `kernel(cylinder, down, across, height, n, margin, kept, scratch) -> kept more`.
+    """Return `kernel(cylinder, lowest, n, margin, kept, scratch) -> kept more`.
 
     The lower rim between the points that the manifold has, left out of it: none is as low, but a
-    disc that rolls on its rim comes to stand on them.
+    disc that rolls on its rim comes to stand on them. lowest: -n in the cylinder's frame, how much
+    of it lies across the axis, and the height of the centre [m].
     """
 
-    def put_rim(cylinder, down, across, height, n, margin, kept, scratch):
-        manifold = scratch.manifold
+    def put_rim(cylinder, lowest, n, margin, kept, scratch):
+        (down, across, height), manifold = lowest, scratch.manifold
         total = kept + manifold.reduction[LEFT_OUT]
         first = 2 if abs(down.z) >= FACE_COSINE else 1
         x, y = cylinder.hx * down.x / across, cylinder.hx * down.y / across
@@ -102,7 +103,7 @@ def make(spec):
         kept = write_manifold(scratch.manifold, rows, count, n)
         if overlooks:
             if abs(down.z) > LEANS and cylinder.hx * across * ROUNDER > DEEP:
-                kept += put_rim(cylinder, down, across, height, n, margin, kept, scratch)
+                kept += put_rim(cylinder, (down, across, height), n, margin, kept, scratch)
         return kept
 
     return kernel(cylinder_plane, spec)
