@@ -27,6 +27,8 @@ from .vectors import Vec3, cross, dot, length, minus, plus, scaled
 PASSES = 50
 # Change of impulses, of the largest, at which they are found.
 FOUND = 1e-14
+# And at which the last pass may leave them: what passes of many springs round off stays below.
+LEFT = 1e-10
 # k K dt^2 above which steps do not resolve a swing.
 FAST = 4.0
 
@@ -41,9 +43,10 @@ class SpringPose(NamedTuple):
 
 
 def make_act_midway(spec: Spec, place: Any) -> Any:
-    """Return `kernel(links, bodies, velocities, motion, params)`: springs change velocities.
+    """Return `kernel(links, bodies, velocities, motion, params, counters)`: springs act.
 
-    place: kernel of `effects.spring`.
+    place: kernel of `effects.spring`. Velocities change; impulses that change by more than LEFT in
+    the last of PASSES are counted in counters.spring_not_converged.
     """
     from .rotation import inverse_inertia_times
 
@@ -143,7 +146,8 @@ def make_act_midway(spec: Spec, place: Any) -> Any:
 
     improve = kernel(improve, spec)
 
-    def act(links, bodies, velocities, motion, params):
+    def act(links, bodies, velocities, motion, params, counters):
+        changed, largest = 0.0, 0.0
         for k in range(links.shape[0]):
             link = links[k]
             link.force, link.px, link.py, link.pz = 0.0, 0.0, 0.0, 0.0
@@ -159,5 +163,7 @@ def make_act_midway(spec: Spec, place: Any) -> Any:
                 changed, largest = max(changed, change), max(largest, size)
             if number > 0 and changed <= FOUND * largest:
                 break
+        if not changed <= LEFT * largest:
+            counters.spring_not_converged += 1
 
     return kernel(act, spec)

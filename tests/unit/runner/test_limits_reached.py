@@ -55,7 +55,7 @@ for block in (1, 5, 1000):
     if block == 5:
         engine.log = engine.log._replace(contact=engine.log.contact[:2])
     engine.advance(0)
-    engine.workspace.collision.not_converged[0] = (3, 2)
+    engine.workspace.collision.not_converged[["gjk", "epa"]] = (3, 2)
     counts = []
     while engine.counters["step"][0] < config.steps:
         engine.advance(config.steps - int(engine.counters["step"][0]))

@@ -49,7 +49,7 @@ def test_none_of_drawn_poses_runs_out(pair: str) -> None:
         sample = solid_poses.random_sample(pair, POSES, spread=spread)
         scratch = allocate_scratch(hull_geometry(sample.hulls))
         solid_poses.manifolds(sample, EVERYWHERE, scratch=scratch)
-        assert scratch.not_converged[0].tolist() == (0, 0)
+        assert not any(scratch.not_converged[0].tolist())
 
 
 @pytest.mark.parametrize(
