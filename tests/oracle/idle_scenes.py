@@ -193,7 +193,7 @@ CASES: dict[str, tuple[str, ...]] = {
     "sliding_stops": ("flying brick",),
     "speculative": ("flying brick",),
     "fast_bodies": ("slow balls",),
-    # Captured; at the time of impact it idles in random scenes (test_idle_subsets, kind `rough`).
+    # Captured; at the time of impact it idles in the second kind of test_idle_subsets.
     "falling_restitution": ("balls",),
     "restitution": ("plastic balls",),
     "capture_in_sweeps": ("plastic balls, mistaken",),
