@@ -49,7 +49,8 @@ def make_locate(spec: Spec) -> Any:
     """Return `kernel(state, count, contact, workspace, params) -> when` they meet [s], or NEVER.
 
     contact: one ahead of the first `count`, with a first guess in `due`. The rows of the bodies are
-    left as they were.
+    left as they were. What is not found after PASSES is where it was looked for last, and counted
+    in the scratch of collisions.
     """
     manifold, approach = make_manifold(spec, spec.shape_pairs), make_approach(spec)
     change_ahead, nearest_rate = make_change_ahead(spec), make_nearest_rate(spec)
@@ -188,6 +189,8 @@ def make_locate(spec: Spec) -> Any:
             if t == before:
                 when = NEVER if phi > TOUCHING else t
                 break
+        else:
+            workspace.collision.not_converged[0].impact += 1
         bodies[owner_i], bodies[owner_j] = kept[A], kept[B]
         bodies[i], bodies[j] = kept[PART_A], kept[PART_B]
         if overlooks:

@@ -27,17 +27,18 @@ AGREES = 0.5
 
 
 def make_stand_midway(spec: Spec) -> Any:
-    """Return `kernel(bodies, velocities, motion, lead, poses, dt)`: bodies at the step's middle.
+    """Return `kernel(bodies, velocities, motion, lead, poses, dt) -> missed`: bodies midway.
 
-    velocities: at the end, as far as they are known. poses: rows of the bodies at the start.
-    lead: velocities before any impulse; of uneven bodies their spin at the middle, which turns with
-    the body. Those of the last middle, replaced.
+    velocities: at the end, as far as they are known. poses: rows of the bodies at the start. lead:
+    velocities before any impulse; of uneven bodies their spin at the middle, which turns with the
+    body. Those of the last middle, replaced. missed: how many bodies turned to no middle.
     """
     turns, uneven = spec.has("rotation"), spec.has("gyroscopic")
     kinematic = spec.has("kinematic")
     turn_midway: Any = make_turn_midway(spec) if uneven else None
 
     def stand_midway(bodies, velocities, motion, lead, poses, dt):
+        missed = 0
         for i in range(bodies.shape[0]):
             v, m, free = velocities[i], motion[i], lead[i]
             free.vx, free.vy, free.vz = m.vx, m.vy, m.vz
@@ -59,8 +60,9 @@ def make_stand_midway(spec: Spec) -> Any:
                     x, y, z = m.wx + v.wx, m.wy + v.wy, m.wz + v.wz
                     body.qw, body.qx, body.qy, body.qz = start.qw, start.qx, start.qy, start.qz
                     half_turn(body, 0.5 * x, 0.5 * y, 0.5 * z, dt)
-                else:
-                    turn_midway(body, start, m, free, v, dt)
+                elif not turn_midway(body, start, m, free, v, dt):
+                    missed += 1
+        return missed
 
     return kernel(stand_midway, spec)
 

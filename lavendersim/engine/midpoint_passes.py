@@ -11,7 +11,7 @@ from typing import Any
 
 from .compile import kernel
 from .contact import make_apply_start
-from .effects import made_once
+from .effects import has_hook, made_once
 from .midpoint_geometry import (
     make_keep_start,
     make_look,
@@ -47,6 +47,7 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
     append_contact, preload: kernels of `respond`; preload: None where nothing is preloaded.
     """
     friction, turns = row_terms(spec).frictional, spec.has("rotation")
+    uneven = has_hook(spec, "turn_uneven")
     is_turning, begin_slip = make_is_turning(spec), make_begin_slip(spec)
     lasting = make_lasting(spec)
     keep_start, stay = make_keep_start(spec), make_stay(spec)
@@ -113,11 +114,11 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
         sweeps = counters.sweeps
         order = workspace.ordering.order
         system = ContactSystem(contacts, order, count, bodies, velocities)
-        torn = False
+        missed, unturned, torn = 0.0, 0, False
         for k in range(PASSES):
             if warms:
                 store_contacts(contacts, count, bodies, cache, counters, params)
-            stand_midway(bodies, velocities, motion, lead, poses, params.dt)
+            unturned = stand_midway(bodies, velocities, motion, lead, poses, params.dt)
             look(state, count, poses, workspace)
             restore(velocities, free, lead, motion)
             if loaded:
@@ -154,6 +155,12 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
                 torn = carry_along(contacts, count, motion)
             if missed <= SAME and not torn:
                 break
+        # A pass may miss what solves leave.
+        left = not missed <= max(SAME, params.tolerance)
+        if counters.not_converged == 1 or torn or left:
+            counters.midpoint_not_converged += 1
+        if uneven:
+            counters.gyroscopic_not_converged += unturned
         if counters.not_converged == 1 or torn:
             # What is solved at the start is better than what is not solved at the middle.
             for i in range(bodies.shape[0]):

@@ -249,7 +249,16 @@ COUNTERS: Final[list[Field]] = [
     # integration took all its parts (`stronge`).
     ("gjk_not_converged", I8),
     ("epa_not_converged", I8),
+    ("ascent_not_converged", I8),
+    ("advance_not_converged", I8),
+    ("impact_not_converged", I8),
     ("stronge_not_converged", I8),
+    # And fixed points that were not found within their passes (`midpoint_passes`,
+    # `effects.gyroscopic`, `spring_midpoint`, `solvers.newton.least_norm`).
+    ("midpoint_not_converged", I8),
+    ("gyroscopic_not_converged", I8),
+    ("spring_not_converged", I8),
+    ("least_norm_not_converged", I8),
     ("newton_steps", I8),  # of Newton's method since the start
     ("unchosen", F8),  # changes by sweeps since impulses were of least norm [m/s]
     ("chosen", F8),  # the largest impulse then, as the velocity it gives [m/s]

@@ -50,9 +50,10 @@ class SpringPose(NamedTuple):
 
 
 def make_act_midway(spec: Spec, place: Any) -> Any:
-    """Return `kernel(links, bodies, velocities, motion, params)`: springs change velocities.
+    """Return `kernel(links, bodies, velocities, motion, params, counters)`: springs act.
 
-    place: kernel of `effects.spring`.
+    place: kernel of `effects.spring`. Velocities change; counters.spring_not_converged counts the
+    solves that find no impulses, whose bodies `spring_limit` places.
     """
     from .rotation import inverse_inertia_times, is_round
 
@@ -276,7 +277,7 @@ def make_act_midway(spec: Spec, place: Any) -> Any:
 
     turns_little = kernel(turns_little, spec)
 
-    def act(links, bodies, velocities, motion, params):
+    def act(links, bodies, velocities, motion, params, counters):
         note_start(links, bodies, velocities)
         forget(links)
         safe = is_gradient(links, bodies, params.dt)
@@ -306,6 +307,8 @@ def make_act_midway(spec: Spec, place: Any) -> Any:
                 found = improve_all(links, bodies, velocities, motion, params.dt)
             # In a turn of radians the digits of the impulses are fewer.
             safe = safe and turns_little(bodies, params.dt)
+        if not found:
+            counters.spring_not_converged += 1
         if not (found and safe):
             limit(links, bodies, velocities, motion, params.dt)
         if turns:

@@ -18,7 +18,7 @@ from typing import Any
 
 from .approach import NEVER, make_note_acceleration
 from .collide import narrow_phase
-from .collide.iteration_limits import forget_limits, has_gjk, make_count_limits
+from .collide.iteration_limits import forget_limits, has_limits, make_count_limits
 from .compile import chain, composing, kernel, uncollected
 from .effects import BY_NAME, has_hook, made_by, made_once
 from .integrate import (
@@ -43,6 +43,7 @@ from .records import (
     WOKEN,
 )
 from .respond import make_pass_by, make_respond
+from .row_terms import row_terms
 from .spec import Spec
 from .step_doubling import (
     GO_ON,
@@ -102,12 +103,13 @@ def make_advance(spec: Spec) -> Any:
     end_span: Any = make_end_span(spec) if controlled else None
     abandon: Any = make_abandon(spec) if controlled else None
     stand: Any = make_stand(spec) if ordered else None
-    iterates = has_gjk(spec)
+    iterates = touches and has_limits(spec)
     count_limits: Any = make_count_limits(spec) if iterates else None
-    limits_impacts = has_hook(spec, "limit_impacts")
+    limits_impacts, chooses = has_hook(spec, "limit_impacts"), has_hook(spec, "choose_impulses")
     triggered, meet_triggers = made_once(spec, "meet_triggers")
     overlooks = spec.has("overlooked_points")
     forget_whole: Any = make_forget_whole(spec) if overlooks else None
+    midway = row_terms(spec).shifted
     sleeps, measure_speeds = made_once(spec, "measure_speeds")
     _, wake = made_once(spec, "wake")
     _, update_sleeping = made_once(spec, "update_sleeping")
@@ -136,8 +138,16 @@ def make_advance(spec: Spec) -> Any:
                 params.timestep = params.dt
                 if iterates:
                     counters.gjk_not_converged, counters.epa_not_converged = 0, 0
+                    counters.ascent_not_converged, counters.advance_not_converged = 0, 0
+                    counters.impact_not_converged = 0
                 if limits_impacts:
                     counters.stronge_not_converged = 0
+                if midway:
+                    counters.midpoint_not_converged, counters.gyroscopic_not_converged = 0, 0
+                if linked:
+                    counters.spring_not_converged = 0
+                if chooses:
+                    counters.least_norm_not_converged = 0
             if ordered and not controlled:
                 params.dt = params.timestep - counters.elapsed
             if begins:
@@ -167,7 +177,8 @@ def make_advance(spec: Spec) -> Any:
             if keeps:
                 begin(bodies, velocities, motion, params)
                 if linked:
-                    act_between(state.links, bodies, velocities, motion, params)
+                    unfound = counters.spring_not_converged
+                    act_between(state.links, bodies, velocities, motion, params, counters)
                     finish(bodies, velocities, motion, params)
             if carries_inertia:
                 refresh_inertia(bodies, velocities)
@@ -207,6 +218,8 @@ def make_advance(spec: Spec) -> Any:
                     forget_limits(workspace.collision)
                 if keeps:
                     undo(velocities, motion)
+                    if linked:
+                        counters.spring_not_converged = unfound
                 if overlooks:
                     if again:
                         forget_whole(pairs, listed)
@@ -231,14 +244,14 @@ def make_advance(spec: Spec) -> Any:
                         drive(state.drives, bodies, velocities, params, counters)
                     begin(bodies, velocities, motion, params)
                     if linked:
-                        act_between(state.links, bodies, velocities, motion, params)
+                        act_between(state.links, bodies, velocities, motion, params, counters)
                         finish(bodies, velocities, motion, params)
             if accelerates and not keeps:
                 for i in range(bodies.shape[0]):
                     if bodies[i].inv_m > 0.0:
                         accelerate(bodies[i], velocities[i], params)
             if linked and not keeps:
-                act_between(state.links, bodies, velocities, motion, params)
+                act_between(state.links, bodies, velocities, motion, params, counters)
             if touches:
                 passed = False
                 if passes:

@@ -13,7 +13,14 @@ from typing import Final
 AT_LIMIT: Final = {
     "gjk_not_converged": "distances of convex bodies by GJK",
     "epa_not_converged": "depths of convex bodies by EPA",
+    "ascent_not_converged": "depths of round bodies by ascent",
+    "advance_not_converged": "meetings of fast bodies by conservative advancement",
+    "impact_not_converged": "times of impact by Newton's method",
     "stronge_not_converged": "impacts by Stronge's law",
+    "midpoint_not_converged": "contacts at the middle of a step by fixed-point passes",
+    "gyroscopic_not_converged": "turns to the middle of a step by Newton's method",
+    "spring_not_converged": "impulses of springs by Newton's method",
+    "least_norm_not_converged": "undetermined forces by rounds of least norm",
 }
 
 

@@ -26,8 +26,8 @@ from lavendersim.engine.step import advance_for, kernels_of
 
 # Effects that have no kernel in their own file: they widen others, or theirs stand elsewhere.
 NO_KERNEL = {
-    *("broad_phase", "contact_midpoint", "contact_torque", "fast_bodies", "frictionless_contact"),
-    *("kinematic", "least_norm", "midpoint", "newton", "packed_sweeps"),
+    *("broad_phase", "contact_torque", "frictionless_contact", "kinematic", "midpoint", "newton"),
+    "packed_sweeps",
 }
 # Whose code is more or less by what the compiler inlines: a body that is called from one place is
 # copied there, the same body beside another (`frictionless_contact`) is called. A condition more

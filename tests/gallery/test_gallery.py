@@ -27,7 +27,7 @@ def named(files: list[Path]) -> pytest.MarkDecorator:
 
 
 def test_there_are_scenes_of_ten_lines_or_so() -> None:
-    assert len(SCENES) >= 17
+    assert len(SCENES) >= 15
     assert [file.name for file in SCENES + NOT_YET if len(file.read_text().split("\n")) > 15] == []
 
 
@@ -61,4 +61,7 @@ def test_what_is_not_right_is_said_with_its_place(file: Path, tmp_path: Path) ->
         worst = outcome.accuracy
         is_missed = worst.not_converged > 0
         assert is_missed == (worst.worst_residual > worst.tolerance)
-        assert len(finished.not_converged) == int(is_missed)
+        missed = [one for one in finished.not_converged if "above the tolerance" in one]
+        assert len(missed) == int(is_missed)
+        # And one of what took all its iterations, as with the break of fifteen balls and with dice.
+        assert len(finished.not_converged) == int(is_missed) + int(bool(worst.at_limit))

@@ -15,7 +15,9 @@ WITHOUT_UNIT = {
     "parts", "unordered", "substeps", "rejected", "estimated_error",
     "step", "contact_count", "sweeps", "residual_contact", "state_hash", "sweep", "triggered",
     "awake", "stronge", "not_converged",
-    "gjk_not_converged", "epa_not_converged", "stronge_not_converged",
+    "gjk_not_converged", "epa_not_converged", "stronge_not_converged", "ascent_not_converged",
+    "advance_not_converged", "impact_not_converged", "midpoint_not_converged",
+    "gyroscopic_not_converged", "spring_not_converged", "least_norm_not_converged",
     "signorini_contact", "cone_contact", "dissipation_contact",
     "body_a", "body_b", "feature", "nx", "ny", "nz", "t1x", "t1y", "t1z",
 }  # fmt: skip

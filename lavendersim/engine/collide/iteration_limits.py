@@ -1,14 +1,17 @@
-"""Calls of GJK and EPA that took all their iterations: which engines have them, and their counts.
+"""Searches on shapes that took all their iterations: which engines have them, and their counts.
 
-Such a call gives what it found so far, as if it had ended by its tolerance; the step says how many
-there were (`gjk_not_converged`, `epa_not_converged` of /step).
+GJK and EPA, the ascent to a depth of round cores, the advance of fast bodies and the time of an
+impact. Such a call gives what it found so far, as if it had ended by its tolerance; the step says
+how many there were (`gjk_not_converged` and so on of /step).
 """
 
 from __future__ import annotations
 
 from ..compile import inner, kernel, once
+from ..effects import has_hook
 from ..spec import Spec
 from .pairs import SHAPE_PAIRS, box_box, convex
+from .shapes import has_curved
 from .swept import needs_separation
 
 
@@ -23,21 +26,46 @@ def has_gjk(spec: Spec) -> bool:
     return has_epa(spec) or ahead or (spec.has("fast_bodies") and needs_separation(spec))
 
 
+def has_ascent(spec: Spec) -> bool:
+    """Whether EPA's depths of round cores are improved."""
+    return has_epa(spec) and has_curved(spec)
+
+
+def has_advance(spec: Spec) -> bool:
+    """Whether fast bodies are moved to where they meet."""
+    return spec.has("fast_bodies")
+
+
+def has_limits(spec: Spec) -> bool:
+    """Whether there is anything to count."""
+    return has_gjk(spec) or has_advance(spec) or has_hook(spec, "order_impacts")
+
+
 @inner
 def forget_limits(scratch):
     """Forget what was counted in a part of the step that is begun anew."""
     counted = scratch.not_converged[0]
-    counted.gjk, counted.epa = 0, 0
+    counted.gjk, counted.epa, counted.ascent, counted.advance, counted.impact = 0, 0, 0, 0, 0
 
 
 @once
 def make_count_limits(spec: Spec):
     """Return `kernel(scratch, counters)`: `counters` tells of the step so far."""
+    gjk, epa, ascends = has_gjk(spec), has_epa(spec), has_ascent(spec)
+    advances, orders = has_advance(spec), has_hook(spec, "order_impacts")
 
     def count_limits(scratch, counters):
         counted = scratch.not_converged[0]
-        counters.gjk_not_converged += counted.gjk
-        counters.epa_not_converged += counted.epa
+        if gjk:
+            counters.gjk_not_converged += counted.gjk
+        if epa:
+            counters.epa_not_converged += counted.epa
+        if ascends:
+            counters.ascent_not_converged += counted.ascent
+        if advances:
+            counters.advance_not_converged += counted.advance
+        if orders:
+            counters.impact_not_converged += counted.impact
         forget_limits(scratch)
 
     return kernel(count_limits, spec)

@@ -40,7 +40,12 @@ FACE: list[Field] = [
 ]
 
 # Calls that took all their iterations, since they were counted last (`iteration_limits`).
-NOT_CONVERGED: list[Field] = [("gjk", I8), ("epa", I8)]
+NOT_CONVERGED: list[Field] = [
+    *[("gjk", I8), ("epa", I8)],
+    ("ascent", I8),  # of a depth (`convex.separation`)
+    ("advance", I8),  # to where fast bodies meet (`swept`)
+    ("impact", I8),  # in time (`impact_location`)
+]
 
 # The plane of a face or cap.
 PLANE_OF_FEATURE: list[Field] = [

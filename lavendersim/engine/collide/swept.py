@@ -121,7 +121,8 @@ def make_gap(spec: Spec, manifold):
 def make_find_impact(spec: Spec, manifold):
     """Return `kernel(kind, a, b, d, scratch) -> Impact`: move B along d to where it touches A.
 
-    Or to where it is nearest.
+    Or to where it is nearest. What is on its way after ADVANCES is counted in
+    `scratch.not_converged`; the nearest approach lies within 2^-APPROACHES of what was halved.
     """
     gap_at = make_gap(spec, manifold)
 
@@ -138,6 +139,9 @@ def make_find_impact(spec: Spec, manifold):
             put_position(b, plus_scaled(start, t, d))
             gap, n = gap_at(kind, a, b, scratch)
             closing = -dot(d, n)
+        else:
+            if gap > TOUCHING and closing > 0.0 and t < 1.0:
+                scratch.not_converged[0].advance += 1
         if gap > TOUCHING and closing < 0.0 and t > 0.0:
             # They closed before and part now: halve what lies between.
             slow = ACROSS * ACROSS * dot(d, d)

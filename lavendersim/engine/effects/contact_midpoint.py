@@ -21,7 +21,7 @@ from __future__ import annotations
 from ..records import Field
 from ..spec import Spec
 from .decision import Decision, Facts
-from .effect import Choice, Effect, Fields, RowTerms
+from .effect import Choice, Column, Effect, Fields, Hooks, Kernel, RowTerms, kernel
 
 
 def decide(facts: Facts) -> Decision:
@@ -52,6 +52,15 @@ def contact_fields(spec: Spec) -> list[Field]:
     ]
 
 
+def make_step_row(spec: Spec) -> Kernel:
+    """Return `kernel(row, bodies, counters)` that says how often no middle was found."""
+
+    def log_not_found(row, bodies, counters):
+        row.midpoint_not_converged = counters.midpoint_not_converged
+
+    return kernel(log_not_found, spec)
+
+
 EFFECT = Effect(
     name="contact_midpoint",
     decide=decide,
@@ -71,4 +80,14 @@ EFFECT = Effect(
         ],
         contact_with=contact_fields,
     ),
+    step_columns=(
+        Column(
+            "midpoint_not_converged",
+            "i8",
+            "parts of the step whose contacts at its middle took all their passes, or were not"
+            " solved there",
+            number=50,
+        ),
+    ),
+    hooks=Hooks(step_row=make_step_row),
 )

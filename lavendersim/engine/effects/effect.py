@@ -87,7 +87,7 @@ class Hooks:
     start_step: Maker | None = None  # (bodies, velocities), before forces act
     end_part: Maker | None = None  # (bodies, params), once poses have moved
     accelerate: Maker | None = None  # (body, velocity, params), before contacts are completed
-    act_between: Maker | None = None  # (links, bodies, velocities, motion, params), after forces
+    act_between: Maker | None = None  # (links, bodies, velocities, motion, params, counters)
     link_row: Maker | None = None  # (row, links, bodies): fills the columns of a step
     prepare: Maker | None = None  # (contact, va, vb, pair, params), when it has frame and levers
     capture: Maker | None = None  # (contact, pair, params), once per contact and step

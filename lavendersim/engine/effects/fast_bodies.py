@@ -16,7 +16,7 @@ the start of a step does: up to m |g| dt times the speed in every bounce (`measu
 from math import hypot, inf, sqrt
 
 from .decision import BodyFacts, Decision, Facts
-from .effect import Effect, Fields
+from .effect import Column, Effect, Fields, Hooks, kernel
 
 # Share of the smaller bounding radius that a pair may close in a step before it is fast [-].
 FAST = 0.5
@@ -123,6 +123,15 @@ def _kinetic_energy(body: BodyFacts) -> float:
     return 0.5 * mass * (body.speed * body.speed) + 0.5 * inertia * (spin * spin)
 
 
+def make_step_row(spec):
+    """Return `kernel(row, bodies, counters)` that says how often no meeting was found."""
+
+    def log_not_found(row, bodies, counters):
+        row.advance_not_converged = counters.advance_not_converged
+
+    return kernel(log_not_found, spec)
+
+
 EFFECT = Effect(
     name="fast_bodies",
     decide=decide,
@@ -136,4 +145,13 @@ EFFECT = Effect(
             ("tangential_z", "f8"),
         ],
     ),
+    step_columns=(
+        Column(
+            "advance_not_converged",
+            "i8",
+            "meetings of fast bodies for which conservative advancement took all its iterations",
+            number=48,
+        ),
+    ),
+    hooks=Hooks(step_row=make_step_row),
 )

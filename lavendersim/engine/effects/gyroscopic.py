@@ -10,7 +10,7 @@ found by Newton's method.
 from math import sqrt
 
 from .decision import Decision, Facts, named
-from .effect import Effect, Hooks, kernel
+from .effect import Column, Effect, Hooks, kernel
 
 # Newton doubles the digits in each pass: four serve any |omega| dt < 1. A body that has not found
 # its midpoint after these turns several radians a step, and the run ends: nothing here is true.
@@ -99,7 +99,7 @@ def make(spec):
 
 
 def make_turn_midway(spec):
-    """Return `kernel(body, start, m, lead, end, dt)`: half a turn, with what impulses change.
+    """Return `kernel(body, start, m, lead, end, dt) -> found`: half a turn, with impulses' change.
 
     body: stands at a middle found before, with its spin there in `start.w` + what impulses change;
     start: its row at the start of the step. end: spin that the step ends with at that middle; lead:
@@ -117,12 +117,13 @@ def make_turn_midway(spec):
         bx, by, bz = to_body(start, m.wx, m.wy, m.wz)
         ix, iy, iz = start.inv_ix, start.inv_iy, start.inv_iz
         px, py, pz = bx / ix + 0.5 * gx, by / iy + 0.5 * gy, bz / iz + 0.5 * gz
-        px, py, pz, _ = find_middle(start, px, py, pz, dt)
+        px, py, pz, found = find_middle(start, px, py, pz, dt)
         wx, wy, wz = to_world(start, ix * px, iy * py, iz * pz)
         body.qw, body.qx, body.qy, body.qz = start.qw, start.qx, start.qy, start.qz
         half_turn(body, wx, wy, wz, dt)
         x, y, z = inverse_inertia_times(body, lx, ly, lz)
         lead.wx, lead.wy, lead.wz = wx - 0.5 * x, wy - 0.5 * y, wz - 0.5 * z
+        return found
 
     return kernel(turn_midway, spec)
 
@@ -191,10 +192,37 @@ def make_jump(spec):
     return kernel(jump, spec)
 
 
+def acts_midway(spec):
+    """Whether bodies turn to the middle of a step, where one that is not found ends no run."""
+    from ..row_terms import row_terms
+
+    return row_terms(spec).shifted
+
+
+def make_step_row(spec):
+    """Return `kernel(row, bodies, counters)` that says how many middles were not found."""
+    midway = acts_midway(spec)
+
+    def log_not_found(row, bodies, counters):
+        if midway:
+            row.gyroscopic_not_converged = counters.gyroscopic_not_converged
+
+    return kernel(log_not_found, spec)
+
+
 EFFECT = Effect(
     name="gyroscopic",
     decide=decide,
     per="body",
     needs=("rotation",),
-    hooks=Hooks(turn_uneven=make, add_spin=make_jump),
+    step_columns=(
+        Column(
+            "gyroscopic_not_converged",
+            "i8",
+            "bodies whose turn to the middle of the step took all its passes",
+            number=51,
+            when=acts_midway,
+        ),
+    ),
+    hooks=Hooks(turn_uneven=make, add_spin=make_jump, step_row=make_step_row),
 )

@@ -210,6 +210,7 @@ def make_step_row(spec: Spec) -> Any:
 
     def log_parts(row, bodies, counters):
         row.parts, row.unordered = counters.parts, counters.unordered
+        row.impact_not_converged = counters.impact_not_converged
 
     return kernel(log_parts, spec)
 
@@ -233,6 +234,12 @@ EFFECT = Effect(
     step_columns=(
         Column("parts", "i8", "parts that the step was made in, impacts included", number=33),
         Column("unordered", "i8", "1 when impacts of the step were left without order", number=34),
+        Column(
+            "impact_not_converged",
+            "i8",
+            "searches for the time of an impact that took all their passes",
+            number=49,
+        ),
     ),
     hooks=Hooks(order_impacts=make_order, step_row=make_step_row),
 )

@@ -12,7 +12,7 @@ from ..records import Field
 from ..spec import Spec
 from . import newton
 from .decision import Decision, Facts
-from .effect import Choice, Effect, Fields, Hooks
+from .effect import Choice, Column, Effect, Fields, Hooks, kernel
 
 # Each choice factorises a matrix over all bodies that touch: where more move, as solved.
 MOST_BODIES: Final = 50
@@ -47,6 +47,15 @@ def make(spec: Spec) -> Any:
     return make_least_norm(spec)
 
 
+def make_step_row(spec: Spec) -> Any:
+    """Return `kernel(row, bodies, counters)` that says how often no least norm was found."""
+
+    def log_not_found(row, bodies, counters):
+        row.least_norm_not_converged = counters.least_norm_not_converged
+
+    return kernel(log_not_found, spec)
+
+
 def contact_fields(spec: Spec) -> list[Field]:
     """Return the columns of the face of Coulomb's cone that a contact's impulse is on."""
     from ..row_terms import row_terms
@@ -66,5 +75,13 @@ EFFECT = Effect(
     needs=("newton",),
     chosen_by=Choice("undetermined_forces"),
     fields=Fields(contact_with=contact_fields),
-    hooks=Hooks(choose_impulses=make),
+    step_columns=(
+        Column(
+            "least_norm_not_converged",
+            "i8",
+            "choices of undetermined forces that took all their rounds",
+            number=53,
+        ),
+    ),
+    hooks=Hooks(choose_impulses=make, step_row=make_step_row),
 )

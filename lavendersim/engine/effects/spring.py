@@ -112,17 +112,17 @@ def make_place(spec: Spec) -> Kernel:
 
 
 def make_act(spec: Spec) -> Kernel:
-    """Return `kernel(links, bodies, velocities, motion, params)`: springs change velocities."""
+    """Return `kernel(links, bodies, velocities, motion, params, counters)`: springs act."""
     from ..rotation import inverse_inertia_times
     from ..spring_midpoint import make_act_midway
     from ..vectors import cross
 
     place = make_place(spec)
-    if spec.has("midpoint"):
+    if is_iterated(spec):
         return make_act_midway(spec, place)
     turns = spec.has("rotation")
 
-    def act(links, bodies, velocities, motion, params):
+    def act(links, bodies, velocities, motion, params, counters):
         dt = params.dt
         for k in range(links.shape[0]):
             link = links[k]
@@ -163,6 +163,22 @@ def make_act(spec: Spec) -> Kernel:
                     vb.wx, vb.wy, vb.wz = vb.wx - j * tbx, vb.wy - j * tby, vb.wz - j * tbz
 
     return kernel(act, spec)
+
+
+def is_iterated(spec: Spec) -> bool:
+    """Whether impulses of springs are found by passes."""
+    return spec.has("midpoint")
+
+
+def make_step_row(spec: Spec) -> Kernel:
+    """Return `kernel(row, bodies, counters)` that says how often they were not found."""
+    iterated = is_iterated(spec)
+
+    def log_not_found(row, bodies, counters):
+        if iterated:
+            row.spring_not_converged = counters.spring_not_converged
+
+    return kernel(log_not_found, spec)
 
 
 def make_link_row(spec: Spec) -> Kernel:
@@ -244,10 +260,17 @@ EFFECT = Effect(
         Column("spring_impulse_z", "f8", f"impulse {_OUTER} z", "N s", number=30),
         Column("spring_force", "f8", "of the spring with the largest; it pulls", "N", number=31),
         Column("spring_stretch", "f8", "largest length less rest length", "m", number=32),
+        Column(
+            "spring_not_converged",
+            "i8",
+            "solves for the impulses of springs that took all their passes",
+            number=52,
+            when=is_iterated,
+        ),
     ),
     balance=Balance(
         stored="spring_energy",
         outer=("spring_impulse_x", "spring_impulse_y", "spring_impulse_z"),
     ),
-    hooks=Hooks(act_between=make_act, link_row=make_link_row),
+    hooks=Hooks(act_between=make_act, link_row=make_link_row, step_row=make_step_row),
 )

@@ -27,6 +27,12 @@ def _has_epa(spec: Spec) -> bool:
     return has_epa(spec)
 
 
+def _has_ascent(spec: Spec) -> bool:
+    from ..collide.iteration_limits import has_ascent
+
+    return has_ascent(spec)
+
+
 def make(spec: Spec, log_pose, loggers):
     """Return `kernel(bodies, velocities, params, counters, log)`, at the end of a step.
 
@@ -42,7 +48,7 @@ def make(spec: Spec, log_pose, loggers):
     speeds = 6 if rotation else 3  # vx vy vz, wx wy wz: the first words of a velocity record
     log_more = chain(loggers, spec)
     logs_velocity, log_velocity = made_once(spec, "log_velocity")
-    gjk, epa = _has_gjk(spec), _has_epa(spec)
+    gjk, epa, ascends = _has_gjk(spec), _has_epa(spec), _has_ascent(spec)
 
     def hash_into(state_hash, words, count):
         # FNV-1a over 64-bit words; -0.0 counts as 0.0, because no result may depend on it.
@@ -99,6 +105,8 @@ def make(spec: Spec, log_pose, loggers):
             row.gjk_not_converged = counters.gjk_not_converged
         if epa:
             row.epa_not_converged = counters.epa_not_converged
+        if ascends:
+            row.ascent_not_converged = counters.ascent_not_converged
         row.residual = counters.residual
         log_bodies(bodies, velocities, row, poses[counters.step_rows], params)
         log_more(row, bodies, counters)
@@ -177,6 +185,13 @@ EFFECT = Effect(
             "depths of convex bodies for which EPA ran out of vertices, or lost its mesh",
             number=45,
             when=_has_epa,
+        ),
+        Column(
+            "ascent_not_converged",
+            "i8",
+            "depths of round bodies that the last of all rounds still improved",
+            number=47,
+            when=_has_ascent,
         ),
     ),
     channels=("/step",),

@@ -15,6 +15,7 @@ from lavendersim.runner.accuracy import Accuracy
 from lavendersim.runner.limits_reached import AT_LIMIT, limits_in_words
 from lavendersim.trace.schema import STEP_COLUMNS
 
+# Stands, or is thrown down, spins, and hangs on a spring: every search has something to do.
 LOG = """\
 scene:
   gravity: [0, 0, -9.81]
@@ -23,17 +24,28 @@ scene:
     log:
       shape: {kind: cylinder, radius: 0.1, length: 0.3}
       mass: 1
-      position: [0, 0, 0.149]
-      velocity: [0.2, 0.1, 0]
+      position: [0, 0, %s]
+      velocity: [0.2, 0.1, %s]
+      angular_velocity: [0.5, 1, 0.2]
+  springs: [{a: floor, b: log, point_b: [0, 0.1, 0], stiffness: 50, damping: 1, rest_length: 0.2}]
 numerics: {timestep: 1/240}
 duration: 0.05
 """
+STANDS, THROWN = LOG % (0.149, 0), LOG % (0.4, -30)
 # In another process: kernels of this one have the budget that they were made with.
 BUDGET = """
 import sys
-from lavendersim.engine.collide.convex import gjk
-gjk.ROUNDS = 3
+from lavendersim.engine import impact_location, midpoint_passes, spring_midpoint
+from lavendersim.engine.collide import swept
+from lavendersim.engine.collide.convex import separation
+from lavendersim.engine.solvers.newton import least_norm
+separation.ASCENTS = midpoint_passes.PASSES = least_norm.ROUNDS = 1
+swept.ADVANCES = impact_location.PASSES = spring_midpoint.PASSES = 2
 """
+STARVES = {f"{name}_not_converged" for name in ("ascent", "midpoint", "spring", "least_norm")}
+ASKED = STARVES | {
+    f"{name}_not_converged" for name in ("gjk", "epa", "advance", "impact", "gyroscopic")
+}
 STARVED = f"""{BUDGET}
 from lavender_cli.main import main
 sys.argv = ["lavender", *sys.argv[1:]]
@@ -55,7 +67,7 @@ for block in (1, 5, 1000):
     if block == 5:
         engine.log = engine.log._replace(contact=engine.log.contact[:2])
     engine.advance(0)
-    engine.workspace.collision.not_converged[0] = (3, 2)
+    engine.workspace.collision.not_converged[["gjk", "epa"]] = (3, 2)
     counts = []
     while engine.counters["step"][0] < config.steps:
         engine.advance(config.steps - int(engine.counters["step"][0]))
@@ -93,7 +105,7 @@ def test_counts_of_blocks_of_steps_add_up() -> None:
 
 
 def test_a_step_that_is_begun_again_forgets_what_it_counted(tmp_path: Path) -> None:
-    (tmp_path / "log.yaml").write_text(LOG)
+    (tmp_path / "log.yaml").write_text(STANDS)
     done = lavender(["-c", IN_BLOCKS], where=tmp_path)
     single, five, all_at_once = json.loads(done.stdout)
     assert (single[0], five[0], all_at_once[0]) == (False, True, False)
@@ -104,20 +116,20 @@ def test_a_step_that_is_begun_again_forgets_what_it_counted(tmp_path: Path) -> N
 
 @pytest.mark.parametrize("starved", [False, True])
 def test_a_run_says_how_often_they_ran_out(tmp_path: Path, starved: bool) -> None:
-    (tmp_path / "log.yaml").write_text(LOG)
+    (tmp_path / "log.yaml").write_text(THROWN)
     program = ["-c", STARVED] if starved else ["-m", "lavender_cli.main"]
     done = lavender(program, "run", "log.yaml", where=tmp_path)
     run = open_run(None, tmp_path / "runs")
     step = run.cells[0].trace().step
     counts = {name: int(step[name].sum()) for name in AT_LIMIT if name in step.dtype.names}
-    assert set(counts) == {"gjk_not_converged", "epa_not_converged"}
+    assert set(counts) == ASKED
     (row,) = json.loads((run.path / "results.json").read_text())["cells"]
     shown = lavender(["-m", "lavender_cli.main"], "show", where=tmp_path).stdout
     found = {name: count for name, count in counts.items() if count}
     assert run.results().cells[0].at_limit == found
     assert {name: row[name] for name in AT_LIMIT if name in row} == found
     if starved:
-        assert counts["gjk_not_converged"] > 0  # of three rounds nothing overlaps: EPA has no part
+        assert all(counts[name] > 0 for name in STARVES)
         assert f"log: {limits_in_words(found)}" in done.stderr
         assert limits_in_words(found) in shown
     else:

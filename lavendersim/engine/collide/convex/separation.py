@@ -62,7 +62,8 @@ def make_ascend(spec):
 
     B is moved out along n until it is clear of A; the normal m of the distance there has
     s(m) + t n . m >= s(n) + t, hence s(m) >= s(n): each round separates more, and stops at a
-    direction that no other near it beats.
+    direction that no other near it beats. One that still gains after ASCENTS is counted in
+    `scratch.not_converged`.
     """
     gjk, separation_along = make_gjk(spec), make_separation_along(spec)
 
@@ -89,6 +90,8 @@ def make_ascend(spec):
             copy_separation(found, best)
             if moved < STEADY or gain <= NO_GAIN * size:
                 break
+        else:
+            scratch.not_converged[0].ascent += 1
         copy_separation(best, found)
 
     return kernel(ascend, spec)

@@ -142,7 +142,8 @@ def make_least_norm(spec: Spec) -> Any:
     """Return `kernel(system, workspace, params, counters)`: the impulses, velocities with them.
 
     Of a step that is solved. Impulses stay as they are where they are the only ones, where they
-    were chosen and have hardly changed, and where the residual would grow.
+    were chosen and have hardly changed, and where the residual would grow. Those that are not found
+    in ROUNDS are counted in counters.least_norm_not_converged.
     """
     friction = row_terms(spec).frictional
     spins, limits_torque = resists_turning(spec), make_limits_torque(spec)
@@ -217,7 +218,7 @@ def make_least_norm(spec: Spec) -> Any:
             find_face(contact, velocities[contact.a], velocities[contact.b], still)
         slope = begin(contacts, count, size, workspace, stiff, load / loaded)
         enough = EXACTNESS * SOFT * SHARP * SHARP / most
-        found = slope < 0.0
+        found, ends = slope < 0.0, not slope < 0.0
         for _ in range(ROUNDS):
             if found:
                 made, found = descend(contacts, count, size, workspace, enough, slope)
@@ -229,7 +230,10 @@ def make_least_norm(spec: Spec) -> Any:
                 if turned <= TURNING * fastest:
                     left = max(go_round(contacts, count, stiff), turned)
                     if left <= ENDS * fastest:
+                        ends = True
                         break
+        if not ends:
+            counters.least_norm_not_converged += 1
         if not found:
             return
         restore_best(contacts, count, velocities)
