@@ -123,4 +123,5 @@ def of_contacts(effect: Effect) -> bool:
 
 
 def _is_log(effect: Effect) -> bool:
-    return effect.channels is not None
+    """Whether it is a log, or looks at one."""
+    return any(BY_NAME[name].channels is not None for name in (effect.name, *needs(effect.name)))

@@ -13,6 +13,10 @@ from tests.drop_config import LOW
 BALL = f"{LOW}duration: 0.5\n"
 
 
+# What comes and goes with an effect and has no numerics of its own that choose it.
+TIMED_WITH = {"step_log": ("pose_log",), "impact_order": ("overlooked_points",)}
+
+
 @pytest.mark.parametrize("numerics", ["chapter", "default"])
 def test_both_engines_of_a_pair_can_be_and_differ_in_the_effect(numerics: str) -> None:
     text = BALL.replace("numerics: chapter", f"numerics: {numerics}")
@@ -32,7 +36,7 @@ def test_both_engines_of_a_pair_can_be_and_differ_in_the_effect(numerics: str) -
             assert bool(laws <= set(pair.on.effects)) == (numerics == "default")
             assert not laws & set(pair.on.effects) or numerics == "default"
         elif pair.effect in names_of_effects():
-            assert extra == {pair.effect} | ({"pose_log"} if pair.effect == "step_log" else set())
+            assert extra == {pair.effect, *TIMED_WITH.get(pair.effect, ())}
 
 
 def test_what_other_effects_of_the_plan_need_cannot_be_left_out_alone() -> None:
