@@ -36,6 +36,11 @@ class Judged(NamedTuple):
     judged: bool = True
 
     @property
+    def fails(self) -> bool:
+        """Whether it was judged and not met."""
+        return self.judged and not self.passed
+
+    @property
     def place(self) -> str:
         """The cell, as its node has it; empty where the claim is on no cell alone."""
         return self.node.removeprefix(self.name).removeprefix(" at ")
