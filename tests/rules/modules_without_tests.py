@@ -51,9 +51,6 @@ WITHOUT_A_TEST = {
         error_control fast_bodies impact_energy impact_order impact_time least_norm newton
         pairwise_impacts problem_log residual_log
     """,
-    "engine/solvers/packed": """
-        lane_memory lanes packing
-    """,
     "experiment/checks": """
         messages reading
     """,

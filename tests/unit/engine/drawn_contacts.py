@@ -6,7 +6,7 @@ The Jacobian and the inverse mass are written here from their definitions, of wh
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from interpreted import records
@@ -40,21 +40,23 @@ def stacked(velocities: np.ndarray) -> np.ndarray:
     return np.array([[row[name] for name in names] for row in velocities]).ravel()
 
 
-def put_vector(row: np.void, prefix: str, vector: Sequence[float] | np.ndarray) -> None:
+def put_vector(row: Any, prefix: str, vector: Sequence[float] | np.ndarray) -> None:
     """Write the fields x, y, z behind a prefix, where the record has them."""
     for axis, value in zip("xyz", vector, strict=True):
         put(row, f"{prefix}{axis}", value)
 
 
-def put(row: np.void, name: str, value: float) -> None:
+def put(row: Any, name: str, value: float) -> None:
     if name in row.dtype.names:
         row[name] = value
 
 
 def random_frame(rng: np.random.Generator) -> np.ndarray:
     """Return three orthonormal rows, right-handed."""
-    frame = np.linalg.qr(rng.normal(size=(3, 3)))[0]
-    return frame * np.sign(np.linalg.det(frame))
+    frame: np.ndarray = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+    if np.linalg.det(frame) < 0.0:
+        frame = -frame
+    return frame
 
 
 def cross_matrix(r: np.ndarray) -> np.ndarray:
@@ -122,8 +124,8 @@ def drawn(
             "mu": rng.uniform(0.2, 0.9), "target": rng.uniform(-0.2, 0.2), "frictional": 1,
             "lambda_n": rng.uniform(0.5, 2.0),
         }  # fmt: skip
-        i = np.linalg.inv(w[1:, 1:])
-        values |= {"i_11": i[0, 0], "i_12": i[0, 1], "i_22": i[1, 1]}
+        across = np.linalg.inv(w[1:, 1:])
+        values |= {"i_11": across[0, 0], "i_12": across[0, 1], "i_22": across[1, 1]}
         along = rng.uniform(0.0, 2.0 * np.pi)
         size = rng.uniform(0.1, 0.9) * values["mu"] * values["lambda_n"]
         values |= {"lambda_1": size * np.cos(along), "lambda_2": size * np.sin(along)}
@@ -132,6 +134,6 @@ def drawn(
     return Drawn(bodies, velocities, contacts, jacobian, mass, inverse)
 
 
-def views(scene: Drawn) -> tuple:
+def views(scene: Drawn) -> tuple[Any, Any, Any]:
     """Return bodies, velocities and contacts as kernels read them."""
     return records(scene.bodies), records(scene.velocities), records(scene.contacts)

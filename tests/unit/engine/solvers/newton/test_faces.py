@@ -46,7 +46,7 @@ def one_contact(rng, w=(0.0, 0.0, 0.0), spec=FRICTIONAL, **fields: float):
     ],
 )
 def test_a_face_is_known_by_velocity_and_impulse(w, impulse, face, rng) -> None:
-    scene, (_, velocities, contacts) = one_contact(rng, w, lambda_n=impulse)
+    _, (_, velocities, contacts) = one_contact(rng, w, lambda_n=impulse)
     contact = contacts[0]
     interpreted(faces.make_find_face(FRICTIONAL))(contact, velocities[1], velocities[2], STILL)
     assert contact.face == face
