@@ -137,3 +137,11 @@ def drawn(
 def views(scene: Drawn) -> tuple[Any, Any, Any]:
     """Return bodies, velocities and contacts as kernels read them."""
     return records(scene.bodies), records(scene.velocities), records(scene.contacts)
+
+
+def set_contact_velocity(scene: Drawn, w: Sequence[float] | np.ndarray) -> None:
+    """Give bodies the least velocities at which J v is w: of a contact or two of free bodies."""
+    v = (np.linalg.pinv(scene.jacobian) @ np.asarray(w)).reshape(-1, 6)
+    for row, own in zip(scene.velocities, v, strict=True):
+        put_vector(row, "v", own[:3])
+        put_vector(row, "w", own[3:])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from drawn_contacts import drawn, views
+from drawn_contacts import drawn, set_contact_velocity, views
 from interpreted import interpreted
 
 from lavendersim.engine.solvers.newton import faces, response
@@ -21,13 +21,7 @@ STILL = 1e-6
 def one_contact(rng, w=(0.0, 0.0, 0.0), spec=FRICTIONAL, **fields: float):
     """Return a contact at the velocity w, target included, and its scene."""
     scene = drawn(spec, rng, [(1, 2)], fixed=(0,))
-    own = scene.jacobian
-    # Momentum that gives w: J v = w - target.
-    asked = np.array(w) - [scene.contacts["target"][0], 0.0, 0.0]
-    v = np.linalg.pinv(own) @ asked
-    for i in (1, 2):
-        for k, name in enumerate(("vx", "vy", "vz", "wx", "wy", "wz")):
-            scene.velocities[i][name] = v[6 * i + k]
+    set_contact_velocity(scene, np.array(w) - [scene.contacts["target"][0], 0.0, 0.0])
     for name, value in fields.items():
         scene.contacts[name] = value
     return scene, views(scene)

@@ -33,8 +33,8 @@ from lavendersim.engine.solvers.packed.lanes import (
 from lavendersim.engine.spec import Spec
 
 # Signs, zeros, ties, a NaN: by place, not drawn.
-X = np.array([1.5, -2.5, 0.0, -0.0, 3.0, np.nan, 1e-300, -7.0])
-Y = np.array([2.0, 1.0, 0.0, 2.0, 3.0, 1.0, 0.5, 6.5])
+FIRST = np.array([1.5, -2.5, 0.0, -0.0, 3.0, np.nan, 1e-300, -7.0])
+SECOND = np.array([2.0, 1.0, 0.0, 2.0, 3.0, 1.0, 0.5, 6.5])
 RESULTS = 12
 
 
@@ -69,23 +69,23 @@ def compiled(eight: bool) -> Any:
 
 @pytest.mark.parametrize("eight", [False, True], ids=["one", "eight"])
 def test_numbers_have_the_bits_of_numpy(eight: bool) -> None:
-    y = np.where(Y == 0.0, 0.25, Y)
+    x, y = FIRST, np.where(SECOND == 0.0, 0.25, SECOND)
     out, found = np.full((RESULTS, WIDTH), 0.5), np.zeros(2 * WIDTH, np.bool_)
-    compiled(eight)(X, y, out, found)
+    compiled(eight)(x, y, out, found)
     expected = [
-        X + y, X - y, X * y, X / (y * y + y * y),
-        np.where(X < 0.0, 0.0, X), np.abs(X), np.sqrt(y),
-        np.where(X > y, X, y), np.where(X > y, y, X),
-        np.where(X < -y, -y, np.where(X > y, y, X)), X * y + X * X,
+        x + y, x - y, x * y, x / (y * y + y * y),
+        np.where(x < 0.0, 0.0, x), np.abs(x), np.sqrt(y),
+        np.where(x > y, x, y), np.where(x > y, y, x),
+        np.where(x < -y, -y, np.where(x > y, y, x)), x * y + x * x,
     ]  # fmt: skip
     for k, one in enumerate(expected):
         np.testing.assert_array_equal(out[k], one, err_msg=f"result {k}")
     if eight:
         np.testing.assert_array_equal(out[11], 0.0)
-        assert not found[0]  # no X is above its y here
-        np.testing.assert_array_equal(found[WIDTH:], X > 0.0)
+        assert not found[0]  # no x is above its y here
+        np.testing.assert_array_equal(found[WIDTH:], x > 0.0)
     else:
-        np.testing.assert_array_equal(found[:WIDTH], X > y)
+        np.testing.assert_array_equal(found[:WIDTH], x > y)
 
 
 @pytest.mark.parametrize("place", range(WIDTH))

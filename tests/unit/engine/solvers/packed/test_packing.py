@@ -129,7 +129,7 @@ def test_a_group_has_no_movable_body_twice_and_is_filled_with_nothing(rng) -> No
     assert (np.diff(used) > 0).all()
     assert slots == WIDTH * (used[-1] // WIDTH + 1)
     place = interpreted(packing.make_place(FRICTIONAL, True, 6))
-    spare = STRIDE * len(scene.bodies)
+    spare, previous = STRIDE * len(scene.bodies), [0] * WIDTH
     for group in range(slots // WIDTH):
         own = [int(order[k]) for k in range(len(order)) if used[k] // WIDTH == group]
         movable = [i for c in own for i in PAIRS[c] if i != 0]
