@@ -46,9 +46,8 @@ WITHOUT_A_TEST = {
         narrow_phase
     """,
     "engine/effects": """
-        broad_phase capture_in_sweeps contact_log contact_midpoint contact_spring effect
-        error_control fast_bodies impact_energy impact_order impact_time least_norm newton
-        pairwise_impacts problem_log residual_log
+        contact_log contact_midpoint contact_spring fast_bodies impact_energy impact_order
+        impact_time
     """,
     "experiment/checks": """
         messages reading

@@ -1,7 +1,7 @@
 """The residual is zero where a contact has its law, and elsewhere the distance that theory gives.
 
-A closed contact that approaches at v is v off, one that presses and parts at w the smaller of w and
-lambda/inv_k, one that should stick and slips its slip; the largest counts, and a NaN is the largest.
+A closed contact that approaches at v is v off, one that presses and parts at w the smaller of w
+and lambda/inv_k, one that should stick and slips its slip. The largest counts, a NaN above all.
 """
 
 from __future__ import annotations
@@ -87,7 +87,7 @@ def test_the_pyramid_has_its_law_side_by_side(rng) -> None:
 
 
 def test_the_convex_law_lifts_what_slides(rng) -> None:
-    lifted = SLIDING + [MU * 0.5, 0.0, 0.0]
+    lifted = SLIDING + np.array([MU * 0.5, 0.0, 0.0])
     assert residual(CONVEX, row(CONVEX, rng, lifted, AGAINST, mu=MU)) == pytest.approx(0, abs=1e-13)
     assert residual(CONVEX, row(CONVEX, rng, SLIDING, AGAINST, mu=MU)) > 1e-2
     assert residual(DISC, row(DISC, rng, lifted, AGAINST, mu=MU)) > 1e-2
