@@ -46,8 +46,7 @@ WITHOUT_A_TEST = {
         narrow_phase
     """,
     "engine/effects": """
-        contact_log contact_midpoint contact_spring fast_bodies impact_energy impact_order
-        impact_time
+        contact_log impact_order
     """,
     "experiment/checks": """
         messages reading

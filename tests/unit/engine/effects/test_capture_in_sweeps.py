@@ -1,4 +1,4 @@
-"""Restitution captured in every sweep: the first visit bounces, the second takes the bounce back."""
+"""Restitution captured in every sweep: the first visit bounces, the second takes it back."""
 
 from __future__ import annotations
 
