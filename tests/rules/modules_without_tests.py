@@ -46,7 +46,7 @@ WITHOUT_A_TEST = {
         narrow_phase
     """,
     "engine/effects": """
-        contact_log impact_order
+        impact_order
     """,
     "experiment/checks": """
         messages reading

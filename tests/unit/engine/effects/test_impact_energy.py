@@ -116,7 +116,7 @@ def test_what_gains_leaves_as_fast_as_gains_nothing(rng) -> None:
     counters = meeting.settle(friction)
     assert meeting.first > 0.0
     assert counters.stronge == 1
-    assert -contact.target <= min(0.9, slower) + 1e-15
+    assert 0.0 < -contact.target <= min(0.9, slower) + 1e-15
     # Stronge's law alone would gain, too: by halving nothing is gained, and nothing left.
     assert meeting.solves > 1
     assert meeting.gained == pytest.approx(0.0, abs=1e-11)
