@@ -138,9 +138,9 @@ def test_a_step_says_whether_stronges_law_was_taken() -> None:
 
 def test_it_is_on_where_something_bounces_and_something_has_friction() -> None:
     bounces = pair_facts("floor", "ball", restitution=0.5)
-    rubs = pair_facts("floor", "box", friction=0.3)
+    frictional = pair_facts("floor", "box", friction=0.3)
     turns = pair_facts("floor", "box", rolling_friction=1e-3)
-    for pairs, on in (((bounces,), False), ((rubs,), False), ((bounces, rubs), True),
+    for pairs, on in (((bounces,), False), ((frictional,), False), ((bounces, frictional), True),
                       ((bounces, turns), True)):  # fmt: skip
         assert EFFECT.decide(facts(pairs=pairs, impacts="at_surface")).on is on
-    assert not EFFECT.decide(facts(pairs=(bounces, rubs))).on
+    assert not EFFECT.decide(facts(pairs=(bounces, frictional))).on
