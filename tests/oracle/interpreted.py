@@ -59,7 +59,7 @@ class Rows:
         return Rows(found) if found.dtype.names else found
 
     def __setitem__(self, place: Any, value: Any) -> None:
-        self.array[place] = value
+        self.array[place] = value._row if isinstance(value, Row) else value
 
 
 def interpreted(kernel: Any) -> Callable[..., Any]:

@@ -47,8 +47,9 @@ ROUNDS = 30
 TURNING = 1e-3
 # A residual may grow by so much [m/s].
 SHARP = 1e-11
-# Rounds end when their violation is this share of the fastest contact's velocity [-].
-ENDS = 1e-12
+# Rounds end when their violation is this share of the fastest contact's velocity [-], and this
+# share of SHARP: above it the residual would grow by more than it may, and the choice be lost.
+ENDS, WITHIN = 1e-12, 0.5
 # Impulses stay that sweeps have changed by no more since they were chosen: share of the largest
 # then, both as velocities [-].
 DRIFT = 1e-6
@@ -229,7 +230,7 @@ def make_least_norm(spec: Spec) -> Any:
                     turned = turn_all(contacts, count)
                 if turned <= TURNING * fastest:
                     left = max(go_round(contacts, count, stiff), turned)
-                    if left <= ENDS * fastest:
+                    if left <= min(ENDS * fastest, WITHIN * SHARP):
                         ends = True
                         break
         if not ends:
