@@ -23,6 +23,7 @@ from .approach import CREEP, NEVER, OVERLAP, make_forced, make_rate, normal
 from .compile import kernel
 from .effects import made_once
 from .foreseen_impacts import FLIGHT, make_is_impact
+from .records import SPHERE
 from .spec import Spec
 from .vectors import Vec3, cross, dot, length, minus, position
 
@@ -110,6 +111,8 @@ def make_look_over(spec: Spec) -> Any:
         for k in range(overlooked.noted[0]):
             point = overlooked.points[k]
             n, a, b = normal(point), point.a, point.b
+            if poses[a].shape == SPHERE or poses[b].shape == SPHERE:  # no push turns it in
+                continue
             arm_a = minus(position(point), position(poses[a]))
             arm_b = minus(position(point), position(poses[b]))
             last = rate(n, velocities[a], velocities[b], arm_a, arm_b)

@@ -27,6 +27,7 @@ from lavendersim.engine.step import advance_for, kernels_of
 # Effects that have no kernel in their own file: they widen others, or theirs stand elsewhere.
 NO_KERNEL = {
     *("broad_phase", "contact_torque", "frictionless_contact", "kinematic", "midpoint", "newton"),
+    "overlooked_points",
     "packed_sweeps",
 }
 # Whose code is more or less by what the compiler inlines: a body that is called from one place is

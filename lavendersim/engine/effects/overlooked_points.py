@@ -2,8 +2,8 @@
 
 Which rows a part has is decided before its solve. Once it is solved the points that have none are
 looked at, and where one would end inside the part is made again with it, or up to where it meets
-(`engine.overlooked_points`). Of a sphere all contacts are single points through its centre: a push
-at one turns none of the others in.
+(`engine.overlooked_points`). A sphere touches at points through its centre: a push at one turns
+none of the others in, and its points are not looked at. One of a compound is a part like any.
 """
 
 from __future__ import annotations
@@ -18,8 +18,9 @@ def decide(facts: Facts) -> Decision:
     parts = has_parts(facts)
     if not parts.on:
         return Decision(False, f"steps have one part: {parts.reason}")
+    of_parts = {body.name for body in facts.bodies if body.parts > 1}
     for pair in facts.pairs:
-        if "sphere" not in pair.shape_pair:
+        if "sphere" not in pair.shape_pair or of_parts & {pair.a, pair.b}:
             return Decision(True, f"{pair.a} and {pair.b} may touch at several points")
     return Decision(False, "spheres touch at single points")
 

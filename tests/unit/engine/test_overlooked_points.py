@@ -16,7 +16,7 @@ from lavendersim.engine.record_layout import (
     allocate_parameters,
     allocate_velocities,
 )
-from lavendersim.engine.records import MOTION, OVERLOOKED, dtype
+from lavendersim.engine.records import MOTION, OVERLOOKED, SPHERE, dtype
 from lavendersim.engine.spec import Spec
 
 EFFECTS = ("friction", "impact_order", "impact_time", "overlooked_points", "rotation")
@@ -63,6 +63,14 @@ def test_what_ends_apart_leaves_the_part_as_it_is(waits: int) -> None:
         part = Part(gap, waits)
         assert part.look({"vz": -1.0}, {"vz": -1.0}) == 0.0
         assert part.pairs["whole"][0] == 0
+
+
+@pytest.mark.parametrize("body", [0, 1])
+def test_a_point_of_a_sphere_is_not_looked_at(body: int) -> None:
+    part = Part(DT - 1.1 * DEEP, 0)
+    part.bodies["shape"][body] = SPHERE
+    assert part.look({"vz": -1.0}, {"vz": -1.0}) == 0.0
+    assert part.pairs["whole"][0] == 0
 
 
 def test_a_point_left_out_that_ends_inside_makes_its_manifold_whole() -> None:

@@ -33,3 +33,12 @@ def test_spheres_have_single_points_whatever_they_touch() -> None:
         found = plan(shapes)
         assert found.decisions["overlooked_points"] == (False, "spheres touch at single points")
         assert "impact_order" in found.spec.effects
+
+
+def test_spheres_of_a_compound_are_several_points() -> None:
+    parts = [
+        {"shape": {"kind": "sphere", "radius": 0.1}, "position": [x, 0, 0]} for x in (-0.2, 0.2)
+    ]
+    dumbbell = body({"kind": "compound", "parts": parts}, (0, 0, 0.1), friction=0.5)
+    found = plan({"dumbbell": dumbbell}).decisions["overlooked_points"]
+    assert found == (True, "floor and dumbbell may touch at several points")
