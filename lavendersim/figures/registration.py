@@ -1,12 +1,12 @@
 """Registration of panels: the model of a kind's config, and the function that draws it.
 
-class Histogram(Panel):              # its part of the config
-    kind: Literal["histogram"]
+class Cumulative(Panel):             # its part of the config
+    kind: Literal["cumulative"]
     ...
 
-@draws(Histogram)                    # what its panel shows
-def draw_histogram(
-    axes: Axes, panel: Histogram, cells: Sequence[Cell], values: Values, experiment: Experiment
+@draws(Cumulative)                   # what its panel shows
+def draw_cumulative(
+    axes: Axes, panel: Cumulative, cells: Sequence[Cell], values: Values, experiment: Experiment
 ) -> None:
     ...
 

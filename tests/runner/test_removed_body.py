@@ -125,6 +125,7 @@ def test_a_thumbnail_shows_it_as_long_as_it_is_there(finished: Finished) -> None
             recorded_pose=RecordedPoses(np.arange(states), log.pose[:states]),
             bodies=log.bodies,
             config=log.config,
+            events=log.events,
             clock=log.clock,
         )
         picture = imread(io.BytesIO(thumbnail(part)))[:, :, :3]

@@ -4,7 +4,7 @@ Every model of a panel in a file of `lavendersim/figures/specs` is one. Another 
 its own by an entry point of the group `lavendersim.figures` whose value is a module:
 
     [project.entry-points."lavendersim.figures"]
-    histogram = "my_package.histogram"
+    cumulative = "my_package.cumulative"
 
 The module has the model of each of its kinds and the function that draws it, see
 `lavendersim.figures.registration`; it is imported with every config, so it imports matplotlib

@@ -104,7 +104,7 @@ class Pair:
     def sweep(self, margin: float = TOUCHING, sine: float = 0.0) -> Sweep:
         """Return what the kernel finds; it must leave the bodies as they were."""
         scratch = allocate_scratch()
-        points, normal = scratch.manifold
+        points, normal = scratch.manifold[:2]
         before = self.bodies.copy()
         with compiling():
             count, time, fast = swept_kernel(self.pairs, sine)(
