@@ -26,10 +26,6 @@ N, T1, T2 = range(3)
 MASS: Final[list[Field]] = [(name, F8) for name in ("m", "xx", "xy", "xz", "yy", "yz", "zz")]
 
 
-# Rounds of shifts that are looked back at (`shifts`).
-DEPTH = 4
-
-
 class Envelope(NamedTuple):
     """Arrays of one factorisation; n bodies, 6 n rows."""
 
@@ -46,12 +42,6 @@ class Envelope(NamedTuple):
     change: np.ndarray  # (6 bodies,) of the velocities in this round: v - v^k
     mass: np.ndarray  # (bodies,) MASS, by position
     rows: np.ndarray  # (9, 6) rows n, t1, t2 of one contact: body A's, body B's, and scaled
-    # (DEPTH, contacts), see `shifts`: what rounds changed of the shifts and of their defects, and
-    # the same made orthogonal
-    shifted: np.ndarray
-    defects: np.ndarray
-    shift_basis: np.ndarray
-    defect_basis: np.ndarray
     packed: Any = ()  # what sweeps between two calls work in, where they pack contacts
 
 
@@ -72,10 +62,6 @@ def allocate_envelope(bodies: int, contacts: int, capacity: int, packed: Any = (
         np.zeros(rows),
         np.zeros(bodies, dtype(MASS)),
         np.zeros((9, DOF)),
-        np.zeros((DEPTH, contacts)),
-        np.zeros((DEPTH, contacts)),
-        np.zeros((DEPTH, contacts)),
-        np.zeros((DEPTH, contacts)),
         packed,
     )
 
