@@ -20,7 +20,10 @@ def test_a_config_error_has_a_line_for_each_defect_in_their_order() -> None:
 def test_exit_codes_are_those_of_docs() -> None:
     kinds = [one for one in vars(errors).values() if isinstance(one, type)]
     codes = {one.__name__: one.exit_code for one in kinds if issubclass(one, LavenderError)}
-    asked = ("UsageError", "ConfigError", "ProblemError", "MissingDriverError")
+    asked = (
+        *("UsageError", "NotReportedError", "ConfigError", "ProblemError"),
+        "MissingDriverError",
+    )
     assert codes == {
         **{"LavenderError": 4, "TraceError": 3, "OtherVersionError": 3},
         **dict.fromkeys(asked, 2),

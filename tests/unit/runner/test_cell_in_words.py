@@ -62,7 +62,7 @@ def test_a_substep_that_cannot_be_says_which_bound_it_met() -> None:
 
 
 def test_an_interruption_names_its_signal() -> None:
-    said = interrupted(SCENE, "SIGTERM", 3)
+    said = interrupted(CELL.clock, "SIGTERM", 3)
     assert said == "interrupted by SIGTERM after step 3 (t = 1 s)"
 
 

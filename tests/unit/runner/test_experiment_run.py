@@ -104,5 +104,5 @@ def test_a_run_is_good_where_its_cells_ended_as_they_should_and_its_claims_are_m
     cells = [SimpleNamespace(index=k, status=one, coordinates={}) for k, one in enumerate(statuses)]
     failing = [SimpleNamespace(fails=name, at={}) for name in controls]
     run: Any = SimpleNamespace(cells=cells, experiment=SimpleNamespace(controls=failing))
-    verdicts: Any = [SimpleNamespace(passed=passed)]
+    verdicts: Any = [SimpleNamespace(passed=passed, fails=not passed)]
     assert Finished(run, [], verdicts, verdicts).good is good

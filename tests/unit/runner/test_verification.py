@@ -23,7 +23,14 @@ def verdict(measured: float = 1.0, passed: bool = True, path: str = "here") -> V
 
 
 def cell(index: int = 0, status: str = "complete", damage: str = "") -> Any:
-    return SimpleNamespace(index=index, label=f"e={index}", status=status, damage=lambda: damage)
+    return SimpleNamespace(
+        index=index,
+        label=f"e={index}",
+        status=status,
+        damage=lambda: damage,
+        config=None,
+        release=lambda: None,
+    )
 
 
 def row(measures: dict[str, Any], status: str = "complete") -> CellResult:
