@@ -62,6 +62,11 @@ class ContactSearch:
                 f"{motion.path}: {effect.replace('_', ' ')} ({plan.decisions[effect].reason}): "
                 "its impulses do not follow from poses and velocities, so no step is judged"
             )
+        if config.triggered:
+            raise UsageError(
+                f"{motion.path}: an event happens when {config.triggered[0].when.text}: poses and "
+                "velocities do not tell when that was, so no step is judged"
+            )
         effects = _GEOMETRY.intersection(plan.spec.effects) | {"speculative"}
         spec = plan.spec._replace(
             effects=tuple(sorted(effects)), solver="projected_gauss_seidel", order="forward"

@@ -129,7 +129,7 @@ def given_by_events(trace: Trace) -> Floats:
     inertia, less 1, times the scene's kinetic energy. A new surface gives what its springs store
     in the penetration that they find. New gravity gives -(new - old) . sum m x, exactly.
     """
-    if not trace.config.events:
+    if not trace.events:
         return np.zeros(len(trace.step))
     given = _given_by_gravity(trace) + _given_by_surfaces(trace)
     pull = gravity(trace)

@@ -90,7 +90,7 @@ def _of_scene(config: CellConfig, peer: Peer) -> Iterator[tuple[Path, str]]:
 
 
 def _of_run(config: CellConfig) -> Iterator[tuple[Path, str]]:
-    if config.events:
+    if config.planned_events:
         yield ("events",), "takes no events; expected none"
     if config.numerics.accuracy is not None:
         yield ("numerics", "accuracy"), "makes every step one timestep long; expected null"

@@ -69,3 +69,9 @@ def test_what_poses_and_velocities_do_not_tell_is_refused() -> None:
     text = ball().replace("mass: 2\n", "mass: 2\n      drag: {linear: 0.1}\n")
     with pytest.raises(UsageError, match=r"made\.mcap: drag \(ball.*no step is judged"):
         search(text)
+
+
+def test_events_that_a_state_makes_happen_are_refused() -> None:
+    event = "{when: {body: ball, below: 0}, body: ball, velocity: [0, 0, 1]}"
+    with pytest.raises(UsageError, match=r"when ball is below 0 m .*no step is judged"):
+        search(ball() + f"events: [{event}]\n")

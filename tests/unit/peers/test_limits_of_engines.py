@@ -27,6 +27,11 @@ CASES = [
     ),
     (
         "duration: 1",
+        "duration: 1\nevents: [{when: {body: ball, below: 0}, body: ball, remove: true}]",
+        "8:1: events: MuJoCo takes no events",
+    ),
+    (
+        "duration: 1",
         "duration: 1\nnumerics: {accuracy: 1e-4}",
         "8:12: accuracy: MuJoCo makes every step one timestep long",
     ),
