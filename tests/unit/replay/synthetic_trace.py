@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from lavendersim.cell import CellConfig
+from lavendersim.cell import AnyEvent, CellConfig
 from lavendersim.clock import Clock
 from lavendersim.trace.reader import RecordedPoses
 from tests.oracle.cells import cell
@@ -70,6 +70,11 @@ class SyntheticTrace:
     def has(self, topic: str) -> bool:
         """Whether the log has a topic."""
         return topic not in self.absent
+
+    @property
+    def events(self) -> tuple[AnyEvent, ...]:
+        """What happened to it: what its config has."""
+        return self.config.events
 
     @property
     def config(self) -> CellConfig:
