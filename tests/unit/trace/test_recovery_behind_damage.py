@@ -18,8 +18,8 @@ from lavendersim.trace.layout import CHANNELS
 from lavendersim.trace.recovery import EXCHANGED, RecoveryReport
 from lavendersim.trace.writer import description_of
 
-STEPS = 901  # five groups
-GROUPS = 5
+STEPS = 901  # six groups
+GROUPS = 6
 STEP = CHANNELS["/step"]
 
 
