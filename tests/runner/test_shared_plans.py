@@ -37,7 +37,8 @@ PATHS = {name: f"numerics.{name}" for name in VALUES} | {
 
 
 def test_every_choice_can_be_swept() -> None:
-    assert {*VALUES, "error_control"} == set(CHOICES)  # of that see below
+    # Of an accuracy see below; engines are swept by `tests/cli/test_engine_option.py`.
+    assert {*VALUES, "error_control", "engine"} == set(CHOICES)
 
 
 def test_cells_with_an_accuracy_share_an_engine_and_those_without_another() -> None:
