@@ -7,6 +7,7 @@ that it calls before and after. Elsewhere it ends at once what goes on, and so d
 
 from __future__ import annotations
 
+import os
 import signal
 import threading
 from collections.abc import Callable, Iterator
@@ -27,13 +28,15 @@ class _Noted:
 
     open = False  # whether they are noted: a log is open, or a process begins
     signal = ""  # that came meanwhile
+    by = 0  # the process that began to note them
     raised = ""  # one that was to end what goes on: a callback from C loses the exception
 
 
 def _take(number: int, frame: Any) -> None:
     name = signal.Signals(number).name
-    if _Noted.open and not _Noted.signal:
-        _Noted.signal = name
+    forked = _Noted.by != os.getpid()  # and not yet so far that a second one may end it
+    if _Noted.open and (forked or not _Noted.signal):
+        _Noted.signal = _Noted.signal or name
         return
     _Noted.raised = name
     raise Interrupted(f"{INTERRUPTED} by {name}")
@@ -75,7 +78,7 @@ def deferred() -> Iterator[Callable[[], str]]:
     if not _is_main():
         yield str
         return
-    _Noted.open, _Noted.signal = True, _Noted.raised
+    _Noted.open, _Noted.signal, _Noted.by = True, _Noted.raised, os.getpid()
     try:
         yield lambda: _Noted.signal
     finally:
@@ -85,8 +88,13 @@ def deferred() -> Iterator[Callable[[], str]]:
 def forked_to_end() -> bool:
     """Whether a signal came as this process was forked, or just before; but for Ctrl-C.
 
-    It begins as its parent was then, with signals noted; from now on they end it.
+    It begins as its parent was then, with signals noted; from now on they end it as they end any
+    process, without a word, and Ctrl-C is for the parent alone.
     """
+    for name in SIGNALS:
+        if hasattr(signal, name):
+            action = signal.SIG_IGN if name == "SIGINT" else signal.SIG_DFL
+            signal.signal(getattr(signal, name), action)
     name, _Noted.open, _Noted.signal = _Noted.signal, False, ""
     return name not in ("", "SIGINT")
 

@@ -243,7 +243,6 @@ def _serve_forked(
 
 def serve(pipe: Connection, function: Callable[[Any], Any]) -> None:
     """Do what comes through the pipe, until it ends."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the process that asks
     if forked_to_end():
         return
     end_with_parent()

@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -181,3 +182,35 @@ def test_a_process_that_is_forked_while_signals_are_noted_ends_by_them(
             raise_noted()
     assert os.waitstatus_to_exitcode(status) == ends
     raise_noted()  # once
+
+
+def forked(does: Callable[[], int]) -> int:
+    """Fork a process that does this; return its number. It ends with 99 where that raises."""
+    child = os.fork()
+    if child:
+        return child
+    code = 99
+    try:
+        code = does()
+    finally:
+        os._exit(code)
+
+
+def test_signals_to_a_process_that_is_just_forked_end_it_without_a_word() -> None:
+    """As many as come before it begins; after that the next one ends it by default."""
+
+    def noting() -> int:
+        for _ in range(3):
+            os.kill(os.getpid(), signal.SIGTERM)
+        return forked_to_end()
+
+    def beginning() -> int:
+        forked_to_end()
+        os.kill(os.getpid(), signal.SIGTERM)
+        return 0
+
+    with handled():
+        with deferred():
+            ends = [os.waitpid(forked(one), 0)[1] for one in (noting, beginning)]
+        raise_noted()  # nothing came to this one
+    assert [os.waitstatus_to_exitcode(end) for end in ends] == [1, -signal.SIGTERM]
