@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -12,6 +13,7 @@ from lavender_cli.completion import run_names
 from lavender_cli.run import AllowIncomplete, Runs
 
 if TYPE_CHECKING:
+    from lavendersim.replay import Viewpoint
     from lavendersim.runner import Run, RunCell
 
 
@@ -61,6 +63,31 @@ def replay(
             help="Write a picture of the viewer at --at or the last contact; needs no display.",
         ),
     ] = None,
+    video_to: Annotated[
+        Path | None,
+        typer.Option(
+            "--video",
+            metavar="FILE.mp4",
+            help="Write a film of the viewer, or its frames without ffmpeg; needs no display.",
+        ),
+    ] = None,
+    camera: Annotated[
+        str,
+        typer.Option(
+            "--camera",
+            metavar="WHERE",
+            help="See it from front, back, left, right, above, or from X,Y,Z in metres.",
+        ),
+    ] = "",
+    follow: Annotated[
+        str, typer.Option("--follow", metavar="BODY", help="Move the camera with this body.")
+    ] = "",
+    speed: Annotated[
+        float | None,
+        typer.Option(
+            "--speed", metavar="X", help="Simulated seconds per second; slow by default if short."
+        ),
+    ] = None,
     allow_incomplete: AllowIncomplete = False,
 ) -> None:
     """Replay a run in rerun: bodies, contact forces and their plots over simulated time.
@@ -72,11 +99,14 @@ def replay(
     from lavendersim.errors import UsageError
     from lavendersim.runner import open_run
 
-    for path, suffix in ((save_to, ".rrd"), (screenshot_to, ".png")):
+    for path, suffix in ((save_to, ".rrd"), (screenshot_to, ".png"), (video_to, ".mp4")):
         if path is not None and path.suffix != suffix:
             raise UsageError(f"{path}: the name of this file ends in {suffix}")
+    viewpoint = viewpoint_of(camera, follow, speed)
     if save_to is not None and at is not None and screenshot_to is None:
         raise UsageError("--at: an .rrd file has no place for it; leave out --save or --at")
+    if video_to is not None and at is not None and screenshot_to is None:
+        raise UsageError("--at: a film shows all times; leave out --video or --at")
     if other is None and (overlay or other_cell is not None):
         option = "--overlay" if overlay else "--other-cell"
         raise UsageError(f"{option}: name another run beside it")
@@ -105,16 +135,31 @@ def replay(
         title = " ".join(filter(None, [names[0], "and", names[1], part]))
         shown_trace = viewer.pair_of(traces[0], traces[1], (names[0], names[1]), overlay)
     if save_to is not None:
-        viewer.save(shown_trace, save_to, title)
+        viewer.save(shown_trace, save_to, title, viewpoint)
         typer.echo(save_to)
     if screenshot_to is not None:
-        for complaint in viewer.screenshot(shown_trace, screenshot_to, title, at):
+        for complaint in viewer.screenshot(shown_trace, screenshot_to, title, at, viewpoint):
             typer.echo(f"rerun's viewer: {complaint}", err=True)
         typer.echo(screenshot_to)
-    if save_to is None and screenshot_to is None:
-        viewer.open_viewer(shown_trace, title, at)
+    if video_to is not None:
+        written = viewer.video(shown_trace, video_to, title, viewpoint)
+        if written != video_to:
+            typer.echo("ffmpeg is not installed: these are the frames of the film", err=True)
+        typer.echo(written)
+    if save_to is None and screenshot_to is None and video_to is None:
+        viewer.open_viewer(shown_trace, title, at, viewpoint)
     if damaged:
         raise typer.Exit(printing.DAMAGED)
+
+
+def viewpoint_of(camera: str, follow: str, speed: float | None) -> Viewpoint:
+    """Return what the options say of the view; UsageError where one cannot be."""
+    from lavendersim.errors import UsageError
+    from lavendersim.replay.viewpoint import Viewpoint, camera_from
+
+    if speed is not None and not 0.0 < speed < math.inf:
+        raise UsageError(f"--speed: expected a number above 0, got {speed:g}")
+    return Viewpoint(camera_from(camera) if camera else "", follow, speed)
 
 
 def cell_of(run: Run, number: int) -> RunCell:

@@ -10,11 +10,15 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from lavendersim.replay.viewpoint import Viewpoint
+
 if TYPE_CHECKING:
     from lavendersim.replay.pair import LogPair
     from lavendersim.trace import Trace
 
-__all__ = ["open_viewer", "pair_of", "save", "screenshot"]
+__all__ = ["Viewpoint", "open_viewer", "pair_of", "save", "screenshot", "video"]
+
+DEFAULT_VIEW = Viewpoint()
 
 
 def pair_of(a: Trace, b: Trace, names: tuple[str, str], overlay: bool = False) -> LogPair:
@@ -24,7 +28,12 @@ def pair_of(a: Trace, b: Trace, names: tuple[str, str], overlay: bool = False) -
     return LogPair(a, b, *names, overlay=overlay)
 
 
-def open_viewer(trace: Trace | LogPair, title: str | None = None, at: float | None = None) -> None:
+def open_viewer(
+    trace: Trace | LogPair,
+    title: str | None = None,
+    at: float | None = None,
+    viewpoint: Viewpoint = DEFAULT_VIEW,
+) -> None:
     """Show `trace` in a rerun window, which stays open after this process ends.
 
     A viewer that is already open is used. `title` names the recording; by default the log's name.
@@ -34,18 +43,27 @@ def open_viewer(trace: Trace | LogPair, title: str | None = None, at: float | No
     """
     from lavendersim.replay.viewer import show_in_window
 
-    show_in_window(trace, title or Path(trace.path).stem, at)
+    show_in_window(trace, title or Path(trace.path).stem, at, viewpoint)
 
 
-def save(trace: Trace | LogPair, path: str | Path, title: str | None = None) -> None:
+def save(
+    trace: Trace | LogPair,
+    path: str | Path,
+    title: str | None = None,
+    viewpoint: Viewpoint = DEFAULT_VIEW,
+) -> None:
     """Write `trace` with its blueprint to `path` (.rrd), whole or not at all."""
     from lavendersim.replay.recording import write_rrd
 
-    write_rrd(trace, Path(path), title or Path(trace.path).stem)
+    write_rrd(trace, Path(path), title or Path(trace.path).stem, viewpoint)
 
 
 def screenshot(
-    trace: Trace | LogPair, path: str | Path, title: str | None = None, at: float | None = None
+    trace: Trace | LogPair,
+    path: str | Path,
+    title: str | None = None,
+    at: float | None = None,
+    viewpoint: Viewpoint = DEFAULT_VIEW,
 ) -> list[str]:
     """Write a picture (.png) of the viewer; needs no display.
 
@@ -55,4 +73,21 @@ def screenshot(
     """
     from lavendersim.replay.headless import take_screenshot
 
-    return take_screenshot(trace, Path(path), title or Path(trace.path).stem, at)
+    return take_screenshot(trace, Path(path), title or Path(trace.path).stem, at, viewpoint)
+
+
+def video(
+    trace: Trace | LogPair,
+    path: str | Path,
+    title: str | None = None,
+    viewpoint: Viewpoint = DEFAULT_VIEW,
+) -> Path:
+    """Write a film (.mp4) of the viewer; needs no display.
+
+    Returns its path or, where ffmpeg is not installed, the new folder of its frames beside it.
+    Raises MissingDriverError where no Vulkan driver is installed, UsageError where that folder
+    is there already.
+    """
+    from lavendersim.replay.film import write_film
+
+    return write_film(trace, Path(path), title or Path(trace.path).stem, viewpoint)

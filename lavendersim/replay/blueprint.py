@@ -23,6 +23,7 @@ import numpy.typing as npt
 import rerun as rr
 import rerun.blueprint as rrb
 
+from lavendersim.replay.camera import Camera
 from lavendersim.replay.columns import (
     plots_of,
     time_in_nanoseconds,
@@ -30,7 +31,7 @@ from lavendersim.replay.columns import (
 )
 from lavendersim.replay.force_scale import ForceScale
 from lavendersim.replay.layer import ALONE, Layer
-from lavendersim.replay.scene import WORLD, DrawnBody, Extent, Vector, grid_spacing
+from lavendersim.replay.scene import WORLD, DrawnBody, Extent, grid_spacing
 from lavendersim.replay.timeline import TIMELINE
 
 if TYPE_CHECKING:
@@ -39,29 +40,33 @@ if TYPE_CHECKING:
 BACKGROUND = (24, 26, 30)
 MARGIN = 0.06  # of a plot's range, on every side
 
-# From the front right and a little above: floors are seen from above, stacks from the side.
-VIEW_DIRECTION = np.array([0.5, -1.0, 0.35])
-VIEW_DISTANCE = 1.15  # diagonals: the whole extent within rerun's vertical field of view
-
 SHOWN_SECONDS = 8.0  # contacts are short: play slowly enough to be seen, never faster than life
 
 
 def blueprint(
-    trace: Trace, bodies: Sequence[DrawnBody], room: Extent, scale: ForceScale | None
+    trace: Trace,
+    bodies: Sequence[DrawnBody],
+    room: Extent,
+    scale: ForceScale | None,
+    camera: Camera,
+    speed: float | None = None,
 ) -> rrb.Blueprint:
-    """Lay out the 3D view and the plots of a recording; scale: None where nothing can touch."""
+    """Lay out the 3D view and the plots of a recording; scale: None where nothing can touch.
+
+    speed: simulated seconds per second; by default slow enough to be seen.
+    """
     times = time_in_nanoseconds(trace)
     seconds = float(times[-1] - times[0]) * 1e-9 if len(times) else 0.0
     grounded = any(body.kind == "plane" for body in bodies)
     rulers = [scale.label if scale is not None else "bodies"]
     rulers += [f"grid {grid_spacing(room):g} m"] if grounded else []
-    scene = scene_view("; ".join(rulers), contents_of(ALONE, scale is not None), bodies, room)
+    scene = scene_view("; ".join(rulers), contents_of(ALONE, scale is not None), camera)
     curves = [
         curves_view(plot.entity, plot.title, values_of(trace, plot), seconds)
         for plot in plots_of(trace)
     ]
     beside = rrb.Horizontal(scene, rrb.Vertical(*curves), column_shares=[3, 2])
-    return laid_out(beside if curves else scene, seconds)
+    return laid_out(beside if curves else scene, seconds, speed)
 
 
 def contents_of(layer: Layer, contacts: bool) -> list[str]:
@@ -71,26 +76,28 @@ def contents_of(layer: Layer, contacts: bool) -> list[str]:
 
 
 def scene_view(
-    name: str, contents: list[str], bodies: Sequence[DrawnBody], room: Extent
+    name: str, contents: list[str], camera: Camera, layer: Layer = ALONE
 ) -> rrb.Spatial3DView:
-    """The view of a scene."""
+    """The view of a scene; layer: of the body that the camera follows."""
     return rrb.Spatial3DView(
         origin="/",
         contents=contents,
         name=name,
         background=rrb.Background(color=BACKGROUND),
-        eye_controls=rrb.EyeControls3D(
-            kind=rrb.Eye3DKind.Orbital,
-            position=eye_position(bodies, room),
-            look_target=room.centre,
-            eye_up=(0, 0, 1),
-        ),
+        eye_controls=camera.controls(layer),
         line_grid=rrb.LineGrid3D(visible=False),
         spatial_information=rrb.SpatialInformation(target_frame=WORLD),
     )
 
 
-def laid_out(views: rrb.Container | rrb.View, seconds: float) -> rrb.Blueprint:
+def playback_speed(seconds: float) -> float:
+    """Simulated seconds per second at which a recording of that length is played by default."""
+    return float(np.clip(seconds / SHOWN_SECONDS, 0.05, 1.0))
+
+
+def laid_out(
+    views: rrb.Container | rrb.View, seconds: float, speed: float | None = None
+) -> rrb.Blueprint:
     """The viewer with these views and nothing else; seconds: of the recording."""
     return rrb.Blueprint(
         views,
@@ -100,22 +107,13 @@ def laid_out(views: rrb.Container | rrb.View, seconds: float) -> rrb.Blueprint:
         rrb.TimePanel(
             state="collapsed",
             timeline=TIMELINE,
-            playback_speed=float(np.clip(seconds / SHOWN_SECONDS, 0.05, 1.0)),
+            playback_speed=playback_speed(seconds) if speed is None else speed,
             play_state="playing",
             loop_mode="all",
         ),
         auto_layout=False,
         auto_views=False,
     )
-
-
-def eye_position(bodies: Sequence[DrawnBody], room: Extent) -> Vector:
-    """Where the camera stands [m]: far enough to see everything, on the open side of each plane."""
-    direction = VIEW_DIRECTION / np.linalg.norm(VIEW_DIRECTION)
-    for plane in (body for body in bodies if body.kind == "plane"):
-        direction = direction + max(0.0, 0.3 - float(direction @ plane.normal)) * plane.normal
-    direction = direction / np.linalg.norm(direction)
-    return np.asarray(room.centre + VIEW_DISTANCE * room.diagonal * direction)
 
 
 def curves_view(

@@ -7,6 +7,7 @@ arrows of the step before.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -15,6 +16,8 @@ import numpy.typing as npt
 import rerun as rr
 
 from lavendersim.cell import Plane
+from lavendersim.geometry.bodies import is_movable
+from lavendersim.geometry.shapes import bounding_radius
 from lavendersim.replay.force_scale import CONTACT_KEY, ForceScale
 from lavendersim.replay.layer import ALONE, Layer
 from lavendersim.replay.removal import clear_removed
@@ -26,6 +29,9 @@ if TYPE_CHECKING:
 
 CONTACT_POINTS = ("contacts", "points")
 CONTACT_FORCES = ("contacts", "forces")
+
+ARROW_OF_SCENE = 0.006  # radius of a shaft in diagonals of the scene, at most
+ARROW_OF_BODY = 0.06  # and in bounding radii of the median movable body
 
 # Small enough for the viewer to fetch what it shows, large enough to make the calls' cost vanish.
 STEPS_PER_BLOCK = 200
@@ -175,7 +181,7 @@ def _send_contacts(
     layer: Layer,
 ) -> None:
     times = time_in_nanoseconds(trace).astype("timedelta64[ns]")
-    thickness = 0.006 * room.diagonal
+    thickness = arrow_thickness(trace, room)
     points = rr.Points3D.from_fields(colors=[POINT_COLOUR], radii=[1.5 * thickness])
     stream.log(layer.path(*CONTACT_POINTS), rr.CoordinateFrame(WORLD), points, static=True)
     arrows = rr.Arrows3D.from_fields(radii=[thickness])
@@ -196,6 +202,21 @@ def _send_contacts(
         send_columns(stream, layer.path(*CONTACT_FORCES), times[block], forces.partition(lengths))
         spots = rr.Points3D.columns(positions=origins)
         send_columns(stream, layer.path(*CONTACT_POINTS), times[block], spots.partition(lengths))
+
+
+def arrow_thickness(trace: Trace, room: Extent) -> float:
+    """Radius [m] of an arrow's shaft: seen in the whole scene, and thin beside the bodies.
+
+    In a crowd of small bodies arrows of a share of the scene would cover them.
+    """
+    bodies = trace.config.scene.bodies.values()
+    radii = [
+        bounding_radius(body.shape)
+        for body in bodies
+        if is_movable(body) and not isinstance(body.shape, Plane)
+    ]
+    beside = ARROW_OF_BODY * float(np.median(radii)) if radii else math.inf
+    return min(ARROW_OF_SCENE * room.diagonal, beside)
 
 
 def _vectors(rows: npt.NDArray[Any], x: str, y: str, z: str) -> npt.NDArray[np.float64]:

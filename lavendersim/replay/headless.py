@@ -11,8 +11,9 @@ import socket
 import subprocess
 import tempfile
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
@@ -27,13 +28,14 @@ from lavendersim.replay.drivers import (
     require_vulkan,
     viewer_program,
 )
-from lavendersim.replay.recording import moment_to_show, write_rrd
+from lavendersim.replay.recording import DEFAULT_VIEW, moment_to_show, write_rrd
 from lavendersim.replay.timeline import TIMELINE
 
 if TYPE_CHECKING:
     from rerun.experimental import ViewerState
 
     from lavendersim.replay.pair import LogPair
+    from lavendersim.replay.viewpoint import Viewpoint
     from lavendersim.trace import Trace
 
 Answer = TypeVar("Answer")
@@ -49,20 +51,44 @@ HARMLESS = ("Software rasterizer detected",)
 
 
 def take_screenshot(
-    trace: Trace | LogPair, path: Path, title: str, at: float | None = None
+    trace: Trace | LogPair,
+    path: Path,
+    title: str,
+    at: float | None = None,
+    viewpoint: Viewpoint = DEFAULT_VIEW,
 ) -> list[str]:
     """Write the picture to `path`; return the viewer's complaints."""
     moment = moment_to_show(trace, at)
+    with _loaded_viewer(trace, title, viewpoint) as viewer:
+        picture, complaints = viewer.ask(lambda client: _shoot(client, moment))
+    write_whole(path, picture)
+    return complaints
+
+
+def pictures(
+    trace: Trace | LogPair,
+    title: str,
+    viewpoint: Viewpoint,
+    moments: Sequence[np.timedelta64],
+) -> Iterator[bytes]:
+    """Yield a picture (.png) of the viewer at each of these moments."""
+    with _loaded_viewer(trace, title, viewpoint) as viewer:
+        viewer.ask(lambda client: _settle(client, moments[0]))
+        for moment in moments:
+            yield viewer.ask(partial(_shoot_next, moment=moment))
+
+
+@contextmanager
+def _loaded_viewer(trace: Trace | LogPair, title: str, viewpoint: Viewpoint) -> Iterator[_Viewer]:
+    """A headless viewer that has loaded a recording."""
     require_vulkan()
     program = viewer_program()
     with tempfile.TemporaryDirectory(prefix="lavender-replay-") as folder:
         recording = Path(folder) / "recording.rrd"
-        write_rrd(trace, recording, title)
+        write_rrd(trace, recording, title, viewpoint)
         with _headless_viewer(program, recording, Path(folder) / "stderr.txt") as viewer:
             viewer.wait_for(_is_loaded, "load the recording")
-            picture, complaints = viewer.ask(lambda client: _shoot(client, moment))
-    write_whole(path, picture)
-    return complaints
+            yield viewer
 
 
 class _Viewer:
@@ -148,10 +174,19 @@ def _is_loaded(state: ViewerState) -> bool:
     return loaded and not state.loading and bool(state.views)
 
 
-def _shoot(client: ViewerClient, moment: np.timedelta64) -> tuple[bytes, list[str]]:
+def _settle(client: ViewerClient, moment: np.timedelta64) -> None:
     time.sleep(NOTICE_SECONDS)  # it plays meanwhile; while paused the notices would stay
     client.set_time(TIMELINE, duration=moment, play_state="paused")
     client.take_screenshot()  # the first paint after a jump still sizes plots and fetches chunks
+
+
+def _shoot_next(client: ViewerClient, moment: np.timedelta64) -> bytes:
+    client.set_time(TIMELINE, duration=moment, play_state="paused")
+    return client.take_screenshot()
+
+
+def _shoot(client: ViewerClient, moment: np.timedelta64) -> tuple[bytes, list[str]]:
+    _settle(client, moment)
     picture = client.take_screenshot()
     reports = [
         f"{report.severity} in view «{view.name}»: {report.summary}"

@@ -12,7 +12,7 @@ Both are seen from one place, in one scale of forces, so that what looks differe
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
@@ -21,9 +21,11 @@ import rerun.blueprint as rrb
 
 from lavendersim.replay import columns, scene
 from lavendersim.replay.blueprint import contents_of, curves_view, laid_out, scene_view
+from lavendersim.replay.camera import Camera, camera_of
 from lavendersim.replay.force_scale import ForceScale, force_scale
 from lavendersim.replay.layer import Layer
 from lavendersim.replay.pair import Distances, LogPair, distances_of
+from lavendersim.replay.viewpoint import Viewpoint
 
 if TYPE_CHECKING:
     from lavendersim.trace import Trace
@@ -53,7 +55,9 @@ _PLOTS: Final = (
 )
 
 
-def record_pair(pair: LogPair, stream: rr.RecordingStream, title: str) -> None:
+def record_pair(
+    pair: LogPair, stream: rr.RecordingStream, title: str, viewpoint: Viewpoint
+) -> None:
     """Send two logs and the layout of the viewer to `stream`."""
     bodies = {layer: scene.shapes(trace.config) for layer, trace in _layers(pair)}
     rooms = [scene.extent(trace, bodies[layer]) for layer, trace in _layers(pair)]
@@ -63,10 +67,11 @@ def record_pair(pair: LogPair, stream: rr.RecordingStream, title: str) -> None:
     scale = _common_scale(pair, room.diagonal)
     found = distances_of(pair)
     stream.send_recording_name(title)
-    stream.send_blueprint(_blueprint(pair, bodies[A], room, scale, found))
+    camera = camera_of(pair.a, bodies[A], room, viewpoint)
+    stream.send_blueprint(_blueprint(pair, scale, found, camera, viewpoint.speed))
     for layer, trace in _layers(pair):
         ghost = pair.overlay and layer == B
-        scene.draw(stream, trace, bodies[layer], room, layer, ghost)
+        scene.draw(stream, trace, bodies[layer], scene.Stage(room, camera, layer, ghost))
         touching = trace.has("/contacts") and not ghost
         columns.send_scene(stream, trace, room, scale if touching else None, layer)
     _send_distances(stream, found)
@@ -88,10 +93,10 @@ def _common_scale(pair: LogPair, diagonal: float) -> ForceScale | None:
 
 def _blueprint(
     pair: LogPair,
-    bodies: Sequence[scene.DrawnBody],
-    room: scene.Extent,
     scale: ForceScale | None,
     found: Distances,
+    camera: Camera,
+    speed: float | None,
 ) -> rrb.Blueprint:
     seconds = float(max(columns.time_in_nanoseconds(t)[-1] for _, t in _layers(pair))) * 1e-9
     curves = [
@@ -108,14 +113,15 @@ def _blueprint(
     if pair.overlay:
         name = f"A: {pair.name_a}, B as pale lines: {pair.name_b}{ruler}"
         seen = [*contents_of(A, scale is not None), *contents_of(B, False)]
-        view = scene_view(name, seen, bodies, room)
-        return laid_out(rrb.Horizontal(view, rrb.Vertical(*curves), column_shares=[3, 2]), seconds)
+        view = scene_view(name, seen, camera, A)
+        beside = rrb.Horizontal(view, rrb.Vertical(*curves), column_shares=[3, 2])
+        return laid_out(beside, seconds, speed)
     views = [
-        scene_view(f"{layer.name}: {name}{ruler}", contents_of(layer, True), bodies, room)
+        scene_view(f"{layer.name}: {name}{ruler}", contents_of(layer, True), camera, layer)
         for layer, name in ((A, pair.name_a), (B, pair.name_b))
     ]
     rows = rrb.Vertical(rrb.Horizontal(*views), rrb.Horizontal(*curves), row_shares=[3, 2])
-    return laid_out(rows, seconds)
+    return laid_out(rows, seconds, speed)
 
 
 def _send_distances(stream: rr.RecordingStream, found: Distances) -> None:

@@ -13,12 +13,16 @@ from lavendersim.durable_files import written_aside
 from lavendersim.errors import UsageError
 from lavendersim.replay import columns, scene
 from lavendersim.replay.blueprint import blueprint
+from lavendersim.replay.camera import camera_of
 from lavendersim.replay.force_scale import force_scale
 from lavendersim.replay.pair import LogPair
 from lavendersim.replay.pair_recording import record_pair
+from lavendersim.replay.viewpoint import Viewpoint
 
 if TYPE_CHECKING:
     from lavendersim.trace import Trace
+
+DEFAULT_VIEW = Viewpoint()
 
 
 def new_stream(title: str) -> rr.RecordingStream:
@@ -32,10 +36,15 @@ def new_stream(title: str) -> rr.RecordingStream:
     return rr.RecordingStream(name)
 
 
-def record(trace: Trace | LogPair, stream: rr.RecordingStream, title: str) -> None:
+def record(
+    trace: Trace | LogPair,
+    stream: rr.RecordingStream,
+    title: str,
+    viewpoint: Viewpoint = DEFAULT_VIEW,
+) -> None:
     """Send the whole trace, or two, and the layout of the viewer to `stream`."""
     if isinstance(trace, LogPair):
-        record_pair(trace, stream, title)
+        record_pair(trace, stream, title, viewpoint)
         return
     bodies = scene.shapes(trace.config)
     room = scene.extent(trace, bodies)
@@ -44,18 +53,21 @@ def record(trace: Trace | LogPair, stream: rr.RecordingStream, title: str) -> No
     scale = force_scale(columns.contacts_of(trace), room.diagonal) if touching else None
 
     stream.send_recording_name(title)
-    stream.send_blueprint(blueprint(trace, bodies, room, scale))
-    scene.draw(stream, trace, bodies, room)
+    camera = camera_of(trace, bodies, room, viewpoint)
+    stream.send_blueprint(blueprint(trace, bodies, room, scale, camera, viewpoint.speed))
+    scene.draw(stream, trace, bodies, scene.Stage(room, camera))
     columns.send(stream, trace, room, scale)
 
 
-def write_rrd(trace: Trace | LogPair, path: Path, title: str) -> None:
+def write_rrd(
+    trace: Trace | LogPair, path: Path, title: str, viewpoint: Viewpoint = DEFAULT_VIEW
+) -> None:
     """Write the recording beside `path` and move it there when it is whole."""
     stream = new_stream(title)
     try:
         with written_aside(path) as unfinished:
             stream.save(unfinished)
-            record(trace, stream, title)
+            record(trace, stream, title, viewpoint)
             stream.flush()
             stream.disconnect()  # writes the footer that readers look for
     finally:

@@ -14,6 +14,7 @@ import numpy as np
 import rerun as rr
 
 from lavendersim.geometry.rotations import rotated, shortest_turn
+from lavendersim.replay.camera import Camera
 from lavendersim.replay.layer import ALONE, Layer
 from lavendersim.replay.removal import removed
 from lavendersim.replay.shapes import XYZW, DrawnBody, Vector, shapes
@@ -57,6 +58,18 @@ class Extent(NamedTuple):
         return float(np.linalg.norm(self.high - self.low)) or 1.0
 
 
+class Stage(NamedTuple):
+    """How the bodies of a log are drawn.
+
+    ghost: movable bodies alone, as pale lines, to lie over those of another log.
+    """
+
+    room: Extent
+    camera: Camera
+    layer: Layer = ALONE
+    ghost: bool = False
+
+
 def entity(name: str, layer: Layer = ALONE) -> str:
     """Entity path of a body; its last part is the body's name, escaped as rerun requires."""
     return layer.path(BODIES, name)
@@ -83,17 +96,14 @@ def draw(
     stream: rr.RecordingStream,
     trace: Trace,
     bodies: Sequence[DrawnBody],
-    room: Extent,
-    layer: Layer = ALONE,
-    ghost: bool = False,
+    stage: Stage,
 ) -> None:
     """Log every body's geometry, and the path its centre takes, once.
-
-    ghost: movable bodies alone, as pale lines, to lie over those of another log.
 
     As static data, but for what is removed during the run: that can be cleared (`clear_removed`).
     """
     stream.log("/", rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
+    layer, ghost = stage.layer, stage.ghost
     gone = removed(trace)
     begin = int(trace.step["time_ns"][0]) if len(trace.step) else 0
     movable = sum(not body.fixed for body in bodies)
@@ -104,7 +114,7 @@ def draw(
             continue
         if body.kind == "plane":
             with at_time(stream, begin):
-                _draw_plane(stream, body, room, stays, layer)
+                _draw_plane(stream, body, stage, stays)
             continue
         colour = FIXED_COLOUR if body.fixed else GHOST_COLOUR if ghost else next(colours)
         _draw_path(stream, trace, body, colour, layer)
@@ -139,13 +149,13 @@ def _draw_path(
         stream.log(place, rr.CoordinateFrame(WORLD), line, static=True)
 
 
-def _draw_plane(
-    stream: rr.RecordingStream, plane: DrawnBody, room: Extent, stays: bool, layer: Layer
-) -> None:
+def _draw_plane(stream: rr.RecordingStream, plane: DrawnBody, stage: Stage, stays: bool) -> None:
     """A thin box whose upper face lies in the plane, below (or beside) the scene, with a grid.
 
-    The viewer's own grid is endless and flickers where it coincides with a face.
+    The viewer's own grid is endless and flickers where it coincides with a face. Of a plane that
+    stands between the eye and the bodies there is the grid alone.
     """
+    room, layer = stage.room, stage.layer
     thickness = 0.01 * room.diagonal
     spacing = grid_spacing(room)
     cells = math.ceil(0.7 * room.diagonal / spacing)
@@ -159,7 +169,8 @@ def _draw_plane(
         colors=[GROUND_COLOUR],
         fill_mode="Solid",
     )
-    stream.log(entity(plane.name, layer), rr.CoordinateFrame(WORLD), slab, static=stays)
+    if not stage.camera.is_behind(plane):
+        stream.log(entity(plane.name, layer), rr.CoordinateFrame(WORLD), slab, static=stays)
 
     ticks = np.linspace(-across, across, 2 * cells + 1)
     ends = np.array([-across, across])

@@ -14,13 +14,14 @@ from rerun.experimental import ViewerClient
 
 from lavendersim.errors import LavenderError
 from lavendersim.replay.drivers import require_display, viewer_program
-from lavendersim.replay.recording import moment_to_show, new_stream, record
+from lavendersim.replay.recording import DEFAULT_VIEW, moment_to_show, new_stream, record
 from lavendersim.replay.timeline import TIMELINE
 
 if TYPE_CHECKING:
     import numpy as np
 
     from lavendersim.replay.pair import LogPair
+    from lavendersim.replay.viewpoint import Viewpoint
     from lavendersim.trace import Trace
 
 LOADED_SECONDS = 30.0  # a viewer that is not open yet starts in 1-5 s, and then takes the recording
@@ -28,13 +29,18 @@ POLL_SECONDS = 0.1
 VIEWER = "rerun+http://127.0.0.1:9876/proxy"  # where rr.spawn opens one, or finds an open one
 
 
-def show_in_window(trace: Trace | LogPair, title: str, at: float | None = None) -> None:
+def show_in_window(
+    trace: Trace | LogPair,
+    title: str,
+    at: float | None = None,
+    viewpoint: Viewpoint = DEFAULT_VIEW,
+) -> None:
     """Open the viewer (or use the open one), send it the trace, and stop it at a moment [s]."""
     require_display()
     moment = None if at is None else moment_to_show(trace, at)
     stream = new_stream(title)
     rr.spawn(executable_path=str(viewer_program()), recording=stream)
-    record(trace, stream, title)
+    record(trace, stream, title, viewpoint)
     stream.flush(timeout_sec=60.0)
     if moment is not None:
         stop_at(moment, str(stream.get_recording_id()))

@@ -11,6 +11,7 @@ from typer.testing import CliRunner
 
 from lavender_cli.replay import replay
 from lavendersim.errors import UsageError
+from lavendersim.replay import Viewpoint
 
 
 @dataclass
@@ -54,7 +55,7 @@ def invoke(*arguments):
 def test_without_options_the_first_cell_opens_and_the_others_are_named(calls):
     result = invoke()
     title = "20260101T000000Z-drop-0123abcd e=0.1"
-    assert calls == [("open_viewer", "trace of e=0.1", title, None)]
+    assert calls == [("open_viewer", "trace of e=0.1", title, None, Viewpoint())]
     assert "--cell K" in result.stderr
     assert result.stdout == ""
 
@@ -80,13 +81,39 @@ def test_cell_that_does_not_exist_is_refused_with_the_range(calls, cell):
 def test_a_moment_is_given_to_the_window_and_to_the_picture(calls):
     invoke("--cell", "1", "--at", "1.234")
     invoke("--cell", "1", "--at", "1.234", "--screenshot", "a.png")
-    assert [(name, at) for name, *_, at in calls] == [("open_viewer", 1.234), ("screenshot", 1.234)]
+    assert [(name, at) for name, *_, at, _ in calls] == [
+        ("open_viewer", 1.234),
+        ("screenshot", 1.234),
+    ]
 
 
 def test_a_recording_that_cannot_hold_a_moment_is_refused(calls):
     result = invoke("--at", "1.234", "--save", "a.rrd")
     assert isinstance(result.exception, UsageError)
     assert calls == []
+
+
+def test_a_film_shows_all_times_and_says_where_its_frames_are_without_ffmpeg(calls, monkeypatch):
+    made = []
+    monkeypatch.setattr(
+        "lavendersim.replay.video", lambda *a: made.append(a) or a[1].with_suffix(".frames")
+    )
+    result = invoke("--video", "a.mp4", "--speed", "2", "--follow", "ball", "--camera", "1,2,3")
+    assert made[0][3] == Viewpoint((1.0, 2.0, 3.0), "ball", 2.0)
+    assert result.stdout == "a.frames\n"
+    assert "ffmpeg is not installed" in result.stderr
+    assert isinstance(invoke("--video", "a.mp4", "--at", "1").exception, UsageError)
+    assert (len(made), calls) == (1, [])
+
+
+@pytest.mark.parametrize("speed", ["0", "-1", "nan", "inf"])
+def test_a_speed_that_cannot_be_is_refused(calls, speed):
+    result = invoke("--speed", speed)
+    assert isinstance(result.exception, UsageError)
+    assert (str(result.exception), calls) == (
+        f"--speed: expected a number above 0, got {speed}",
+        [],
+    )
 
 
 @dataclass(frozen=True)
@@ -127,7 +154,7 @@ def pairs(monkeypatch):
 
 def test_of_another_run_the_cell_at_the_same_coordinates_is_shown(pairs):
     assert invoke("one", "two", "--cell", "1", "--overlay").exit_code == 0
-    ((shown, title, at),) = pairs
+    ((shown, title, at, _),) = pairs
     assert shown == ("one e=0.8", "two e=0.8", ("one e=0.8", "two e=0.8"), True)
     assert (title, at) == ("one e=0.8 and two e=0.8", None)
 

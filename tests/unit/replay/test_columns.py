@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 
+import numpy as np
 import pytest
 from synthetic_trace import single_ball
 
@@ -42,3 +43,14 @@ def test_blocks_have_100_to_200_steps_except_the_last(steps):
         assert sum(sizes) == len(trace.step)
         assert all(100 <= size <= 200 for size in sizes[:-1])
         assert sizes[-1] <= 200
+
+
+def test_arrows_are_thin_beside_small_bodies_and_in_the_whole_scene():
+    """A ball of 0.1 m: its own share in a large room, the scene's in one of its own size."""
+    trace = single_ball(2)
+    large = scene.Extent(np.zeros(3), np.array([100.0, 0.0, 0.0]))
+    small = scene.Extent(np.zeros(3), np.array([0.2, 0.0, 0.0]))
+    thickness = [columns.arrow_thickness(trace, room) for room in (large, small)]
+    assert thickness == pytest.approx(
+        [columns.ARROW_OF_BODY * 0.1, columns.ARROW_OF_SCENE * 0.2], rel=1e-12
+    )

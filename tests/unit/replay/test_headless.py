@@ -52,9 +52,9 @@ def test_what_the_viewer_cannot_show_is_reported(two_bodies, tmp_path, monkeypat
 
     draw = headless.write_rrd
 
-    def with_lost_frame(trace, path, title):
+    def with_lost_frame(trace, path, title, viewpoint):
         monkeypatch.setattr(columns, "WORLD", "nowhere")
-        draw(trace, path, title)
+        draw(trace, path, title, viewpoint)
 
     monkeypatch.setattr(headless, "write_rrd", with_lost_frame)
     monkeypatch.setattr(headless, "NOTICE_SECONDS", 0.0)

@@ -11,8 +11,10 @@ from rerun.chunk import RrdReader
 from lavendersim import replay
 from lavendersim.replay import scene
 from lavendersim.replay.blueprint import blueprint
+from lavendersim.replay.camera import camera_of
 from lavendersim.replay.columns import contacts_of
 from lavendersim.replay.force_scale import force_scale
+from lavendersim.replay.viewpoint import Viewpoint
 from lavendersim.trace.absent import absent_table
 
 # Rerun stores positions, vectors and quaternions as float32.
@@ -181,7 +183,8 @@ def views_of(trace):
     bodies = scene.shapes(trace.config)
     room = scene.extent(trace, bodies)
     scale = None if trace.absent else force_scale(contacts_of(trace), room.diagonal)
-    views = views_in(blueprint(trace, bodies, room, scale).root_container)
+    camera = camera_of(trace, bodies, room, Viewpoint())
+    views = views_in(blueprint(trace, bodies, room, scale, camera).root_container)
     return [type(view).__name__ for view in views], str(views[0].name)
 
 
