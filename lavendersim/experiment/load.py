@@ -6,12 +6,15 @@ checks. Checks work on trees, so that a defect in one section hides none in anot
 
 from __future__ import annotations
 
+import json
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
 from pathlib import Path
+from typing import Any
 
 from lavendersim.config_options import ConfigOptions
-from lavendersim.errors import ConfigError
+from lavendersim.errors import ConfigError, UsageError
 from lavendersim.experiment.cell import Cell, build_cell
 from lavendersim.experiment.checks.reading import Reading
 from lavendersim.experiment.experiment import Experiment
@@ -21,7 +24,7 @@ from lavendersim.experiment.models.tree import swept_values
 from lavendersim.experiment.own_measures import with_own_measures
 from lavendersim.experiment.resolve.formulas import with_numbers
 from lavendersim.experiment.sweeps import axes as sweep
-from lavendersim.experiment.sweeps.option_overrides import check_untouched, with_overrides
+from lavendersim.experiment.sweeps.option_overrides import SET, check_untouched, with_overrides
 from lavendersim.experiment.sweeps.reduced_length import at_reduced_length, check_reduced_length
 from lavendersim.experiment.sweeps.solver_override import with_solver
 from lavendersim.experiment.sweeps.starts import is_valid, varies_starts
@@ -39,21 +42,43 @@ MOST_CELLS_CHECKED = 1000
 
 
 def load_experiment(
-    path: str | os.PathLike[str],
+    config: str | os.PathLike[str] | Mapping[str, Any],
     reduced: bool = False,
     solver: str | None = None,
-    overrides: Sequence[str] = (),
+    overrides: Sequence[str] | Mapping[str, Any] = (),
 ) -> Experiment:
-    """Read and validate one config file; reduced: a slow experiment at its reduced length.
+    """Read and validate one config; reduced: a slow experiment at its reduced length.
 
+    config: path of its file, its text (of more than one line), or the mapping that the file would
+    hold; messages call what has no file `config`.
     solver: in every cell, instead of what the config says; None leaves it as it stands.
-    overrides: values instead of those of the file, see `sweeps.option_overrides`.
+    overrides: values instead of those of the config, a mapping by path, or
+    texts as `sweeps.option_overrides` reads them: `set numerics.timestep=1/480`.
 
-    Raises ConfigError with all defects of the file, UsageError when it cannot be read.
+    Raises ConfigError with all defects of the config, UsageError when it cannot be read.
     """
-    file = Path(path)
+    if isinstance(overrides, Mapping):
+        overrides = [f"{SET}{path}={_plain(value)}" for path, value in overrides.items()]
+    if isinstance(config, Mapping):
+        config = json.dumps(config, indent=1, default=_without_json) + "\n"
+    if isinstance(config, str) and "\n" in config:
+        return load_experiment_text(config, "config", reduced, solver, overrides)
+    file = Path(config)
     raw, size = read_file(file, str(file))
     return _load(raw, str(file), size, ConfigOptions(reduced, solver, tuple(overrides)), file)
+
+
+def _plain(value: Any) -> str:
+    return value if isinstance(value, str) else json.dumps(value, default=_without_json)
+
+
+def _without_json(value: Any) -> Any:
+    """Return what YAML has for a value of Python: lists for arrays, `1/480` for a Fraction."""
+    if isinstance(value, Fraction | os.PathLike):
+        return str(value)
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    raise UsageError(f"config: {found(value)} has no place in a config")
 
 
 def load_experiment_text(

@@ -35,8 +35,8 @@ def moments_of(times: npt.NDArray[np.int64], speed: float | None = None) -> list
     seconds = float(times[-1] - times[0]) * 1e-9
     rate = playback_speed(seconds) if speed is None else speed
     count = math.ceil(seconds / rate * FRAMES_PER_SECOND) + 1  # the last step is shown
-    wanted = times[0] + np.arange(count) * (rate * 1e9 / FRAMES_PER_SECOND)
-    rows = np.searchsorted(0.5 * (times[1:] + times[:-1]), wanted)
+    due = times[0] + np.arange(count) * (rate * 1e9 / FRAMES_PER_SECOND)
+    rows = np.searchsorted(0.5 * (times[1:] + times[:-1]), due)
     return [np.timedelta64(int(times[row]), "ns") for row in rows]
 
 

@@ -125,7 +125,7 @@ def _short(override: str) -> str:
 
 
 def run(
-    experiment: Experiment | Path | str,
+    experiment: Experiment | Path | str | Mapping[str, Any],
     root: Path | str = RUNS,
     jobs: int = 1,
     progress: Progress = Progress(),  # noqa: B008 - immutable
@@ -138,9 +138,11 @@ def run(
     is_predicted: bool = False,
     prepared: Prepared | None = None,
     in_text: Sequence[str] = (),
+    overrides: Sequence[str] | Mapping[str, Any] = (),
 ) -> Finished:
     """Run every cell of an experiment and judge its expectations; take overheads where it asks.
 
+    experiment: one that was loaded, or whatever `load_experiment` takes, with these overrides.
     root: where run directories are made. jobs: processes; the logs are the same for any number.
     overheads: false leaves out what a section `overhead` asks for. closing: called with the results
     before the run counts as finished. resume: go on with the newest run of the experiment where it
@@ -155,7 +157,9 @@ def run(
     from .log_size import log_space
 
     if not isinstance(experiment, Experiment):
-        experiment = load_experiment(experiment)
+        experiment = load_experiment(experiment, overrides=overrides)
+    elif overrides:
+        raise UsageError("overrides belong to the config: give them to load_experiment")
     tags = checked_tags(tags)
     if executor is not None and experiment.config.record.problems != NONE:
         raise UsageError(f"{experiment.name}: record.problems is written by processes alone")

@@ -52,6 +52,7 @@ class EventQueue:
     ) -> None:
         self._engine, self._scene = engine, scene
         self._acting: list[CellForce] = []
+        self._pushed: dict[str, tuple[Vector3, Vector3]] = {}
         self._of_bodies = BodyEvents(engine, scene)
         changes = [*self._force_changes(scene.forces), *self._timed(events)]
         self._pending = sorted(changes, key=lambda change: change[:2])
@@ -65,6 +66,21 @@ class EventQueue:
             for k in np.flatnonzero(self._engine.state.triggers["met"]):
                 if (apply := self._triggered.pop(int(k), None)) is not None:
                     apply()
+
+    def push(self, body: str, force: Vector3, torque: Vector3) -> None:
+        """Let these [N, N m] act on a body beside those of the config, until the next are given."""
+        if self._pushed.get(body) != (force, torque):
+            self._pushed[body] = force, torque
+            self._engine.wake(self._scene.names.index(body))
+            self._set_force(body)
+
+    def set_velocity(
+        self, body: str, velocity: Vector3 | None, angular_velocity: Vector3 | None
+    ) -> None:
+        """Give a body a velocity, a spin or both, as an event does."""
+        index = self._scene.names.index(body)
+        self._engine.wake(index)
+        write_velocity(self._engine, index, velocity, angular_velocity)
 
     def next_stop(self, limit: int) -> int:
         """Return the step after which the next change is due, `limit` without one before it."""
@@ -125,11 +141,23 @@ class EventQueue:
     def _set_force(self, name: str) -> None:
         """Write the sum of what acts on a body now: no remainder is left when forces end."""
         body = self._engine.bodies[self._scene.names.index(name)]
-        acting = [force for force in self._acting if force.body == name]
+        acting = [(force.force, force.torque) for force in self._acting if force.body == name]
+        acting += [self._pushed[name]] if name in self._pushed else []
         for k, axis in enumerate("xyz"):
-            body[f"f{axis}"] = fsum(force.force[k] for force in acting)
+            body[f"f{axis}"] = fsum(force[k] for force, _ in acting)
             if f"t{axis}" in (body.dtype.names or ()):
-                body[f"t{axis}"] = fsum(force.torque[k] for force in acting)
+                body[f"t{axis}"] = fsum(torque[k] for _, torque in acting)
+
+
+def write_velocity(
+    engine: Engine, index: int, velocity: Vector3 | None, angular_velocity: Vector3 | None
+) -> None:
+    """Write what is given of a body's velocity [m/s] and spin [rad/s]."""
+    row = engine.velocities[index]
+    if velocity is not None:
+        row["vx"], row["vy"], row["vz"] = velocity
+    if angular_velocity is not None and engine.spec.has("rotation"):
+        row["wx"], row["wy"], row["wz"] = angular_velocity
 
 
 class BodyEvents:
@@ -154,16 +182,13 @@ class BodyEvents:
             engine.remove(index)
             return
         engine.wake(index)
-        body, velocity = engine.bodies[index], engine.velocities[index]
+        body = engine.bodies[index]
         if event.scale_mass is not None:
             body["inv_m"] /= event.scale_mass
             if engine.spec.has("rotation"):
                 for axis in "xyz":
                     body[f"inv_i{axis}"] /= event.scale_mass
-        if event.velocity is not None:
-            velocity["vx"], velocity["vy"], velocity["vz"] = event.velocity
-        if event.angular_velocity is not None and engine.spec.has("rotation"):
-            velocity["wx"], velocity["wy"], velocity["wz"] = event.angular_velocity
+        write_velocity(engine, index, event.velocity, event.angular_velocity)
         if event.teleport is not None:
             body["x"], body["y"], body["z"] = event.teleport
         if event.orientation is not None:

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 EVERYWHERE = (
     *("quantities", "cell", "experiment", "geometry", "engine", "scene", "trace", "problems"),
-    *("arrow", "comparison", "lint", "laws", "peers"),
+    *("arrow", "comparison", "lint", "laws", "peers", "simulator"),
     *("measures", "figures", "replay", "runner", "cli", "lavendersim", "configs", "docs", "tests"),
 )
 ENGINE = ("engine", "tests")

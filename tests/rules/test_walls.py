@@ -45,7 +45,9 @@ ROOMS = {
     "replay": {
         *("errors", "durable_files", "geometry", "quantities", "cell", "trace", "measures"),
     },
-    "simulator": {"errors", "quantities", "cell", "experiment", "scene", "engine"},
+    "simulator": {
+        *("errors", "geometry", "quantities", "cell", "experiment", "scene", "engine"),
+    },
     "lint": {"errors", "geometry", "quantities", "cell", "experiment", "engine", "measures"},
     "runner": {
         "lint",
@@ -93,6 +95,7 @@ LIBRARIES = {
     "typer": {"cli"},
     "rich": {"cli"},
     "pytest": {"pytest_plugin"},
+    "gymnasium": {"simulator"},
     **{library: {"peers"} for library in ("mujoco", "pybullet", "rapier3d")},
 }
 IMPORTS = imports()
@@ -191,6 +194,7 @@ def test_the_command_line_reads_and_writes_no_files() -> None:
 
 # Who writes files past `durable_files`, and why.
 BESIDE_THE_DOOR = {
+    "lavendersim/replay/film.py": "frames of a film, in a folder of their own until all are there",
     "lavendersim/trace/container.py": "logs grow for hours, and are readable after a kill",
     "lavendersim/runner/run_index.py": "a line for each cell that ends",
     "lavendersim/runner/run_lock.py": "opens a folder to lock it, writes nothing",

@@ -56,15 +56,15 @@ def test_frames_are_a_twenty_fifth_of_a_second_apart_at_that_speed(speed: float)
     seconds = np.array(film.moments_of(times, speed)).astype("int64") * 1e-9
     assert len(seconds) == math.ceil(2.0 / speed * 25) + 1
     assert (seconds[0], seconds[-1]) == (0.0, 2.0)
-    # The last one comes up to a frame early. Half a step from the wanted time at most.
+    # The last one comes up to a frame early. Half a step from the due time at most.
     assert np.diff(seconds)[:-1] == pytest.approx(speed / 25.0, abs=1e-3)
 
 
 def test_each_frame_shows_the_nearest_step() -> None:
     times = np.array([0, 10, 100, 130, 400]) * (SECOND // 1000)
     shown = [int(one.astype("int64")) for one in film.moments_of(times, 1.0)]
-    wanted = np.arange(11) * SECOND // 25
-    assert shown == [int(times[np.argmin(np.abs(times - one))]) for one in wanted]
+    due = np.arange(11) * SECOND // 25
+    assert shown == [int(times[np.argmin(np.abs(times - one))]) for one in due]
 
 
 def test_ffmpeg_joins_the_frames(two_bodies, tmp_path, monkeypatch, shot) -> None:

@@ -11,6 +11,8 @@ normal_force = sim.body_contact_data()[sim.body_id("ball"), 1]
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from copy import copy
 from os import PathLike
 from typing import Any, Final
 
@@ -24,6 +26,7 @@ from lavendersim.quantities.found import nearest, quoted
 from lavendersim.scene.build import Scene, build
 from lavendersim.scene.events import EventQueue
 from lavendersim.scene.plan import Plan, plan_of_cell
+from lavendersim.simulator.actions import Limits, checked_limits, pushes, with_limits
 
 Observation = dict[str, Any]
 
@@ -56,11 +59,19 @@ BODY_CONTACT_COLUMNS: Final = (
 class Simulator:
     """One cell of an experiment, advanced a timestep per `step()`.
 
-    config: path of a YAML experiment, or an Experiment. cell: which cell of its sweep.
-    Raises ConfigError or UsageError where the config or the cell is wrong.
+    config: path of a YAML experiment, its text, a mapping, or an Experiment. cell: which cell of
+    its sweep. actions: what `step` may be given, by body the limit of the components of its
+    `force` [N], `torque` [N m], `velocity` [m/s] and `angular_velocity` [rad/s]; the plan has what
+    a scene requires in which they are reached.
+    Raises ConfigError or UsageError where the config, the cell or an action is wrong.
     """
 
-    def __init__(self, config: str | PathLike[str] | Experiment, cell: int = 0) -> None:
+    def __init__(
+        self,
+        config: str | PathLike[str] | Mapping[str, Any] | Experiment,
+        cell: int = 0,
+        actions: Limits | None = None,
+    ) -> None:
         experiment = config if isinstance(config, Experiment) else load_experiment(config)
         cells = experiment.cells()
         if not 0 <= cell < len(cells):
@@ -70,7 +81,12 @@ class Simulator:
         self.experiment = experiment
         self._config = cells[cell].config
         self._last_step = self._config.steps
-        self.plan: Plan = plan_of_cell(cells[cell])
+        self.actions = checked_limits(self._config, actions or {})
+        planned = cells[cell]
+        if self.actions:
+            planned = copy(planned)
+            planned.keep(with_limits(self._config, self.actions))
+        self.plan: Plan = plan_of_cell(planned)
         self.np_random = np.random.default_rng()
         self.reset()
 
@@ -111,22 +127,36 @@ class Simulator:
         self._terminated = False
         return self._observation(), self._info()
 
-    def step(self, action: None = None) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
+    def step(
+        self, action: Mapping[str, Mapping[str, Any]] | None = None
+    ) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
         """Advance one timestep: (observation, reward, terminated, truncated, info).
 
+        action: by body, three components of each input, as `{"cart": {"force": (2.0, 0.0, 0.0)}}`.
+        Forces and torques act on the centre of mass, in world axes, over this step; those that are
+        not named are 0; without an action those of the last one go on. Velocities are set before
+        the step.
         reward is 0. terminated: a body's state is no longer finite. truncated: the duration of the
-        config is over. Raises UsageError after termination, until `reset`.
+        config is over. Raises UsageError for an action that was not declared or is beyond its
+        limit, and after termination, until `reset`.
         """
-        if action is not None:
-            raise UsageError("this simulation takes no action: call step()")
         if self._terminated:
             raise UsageError("the simulation has diverged: call reset() before step()")
+        if action is not None:
+            self._act(action)
         self._events.apply_due(self.steps_done)
         status = self._engine.advance(1)
         self._rows = self._engine.take_rows()
         self._terminated = status == DIVERGED
         truncated = self.steps_done >= self._last_step
         return self._observation(), 0.0, self._terminated, truncated, self._info()
+
+    def _act(self, action: Mapping[str, Mapping[str, Any]]) -> None:
+        for one in pushes(action, self.actions):
+            if one.force is not None and one.torque is not None:
+                self._events.push(one.body, one.force, one.torque)
+            if one.velocity is not None or one.angular_velocity is not None:
+                self._events.set_velocity(one.body, one.velocity, one.angular_velocity)
 
     @property
     def steps_done(self) -> int:
