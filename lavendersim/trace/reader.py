@@ -45,6 +45,7 @@ if TYPE_CHECKING:
 
 COMPLETE = "complete"
 INCOMPLETE = "incomplete"
+MOST_SHOWN = 8  # names of bodies, to a person who looks at a trace
 RECOVERED = "recovered"  # how the status of a log begins that `recover` made of a part of one
 
 
@@ -93,6 +94,14 @@ class Trace:
         if self.status.startswith((RECOVERED, INTERRUPTED)):
             self.damage = f"{path}: {self.status}"
         self.complete = self.status == COMPLETE
+
+    def __repr__(self) -> str:
+        """What it is of, without reading a column: status, timestep, bodies, absent topics."""
+        shown = ", ".join(self.bodies[:MOST_SHOWN]) + (", ..." * (len(self.bodies) > MOST_SHOWN))
+        lines = [f"Trace of {self.path}: {self.status}"]
+        lines += [f"  steps of {self.clock.timestep} s; {len(self.bodies)} bodies: {shown}"]
+        lines += [f"  without {topic}: {why}" for topic, why in self.absent.items()]
+        return "\n".join(lines)
 
     def verify(self) -> None:
         """Raise TraceError unless every byte of the log is as it was written.
