@@ -16,6 +16,7 @@ from lavender_cli import claims, overheads, printing, progress, time_errors
 from lavender_cli.completion import run_names
 from lavender_cli.drawing import Drawing
 from lavender_cli.prediction import Yes, confirm, with_refined
+from lavender_cli.watch import again
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
@@ -132,9 +133,20 @@ def run(
     shard: Annotated[
         str | None, typer.Option("--shard", metavar="K/N", help="With --into: part K of N.")
     ] = None,
+    watch: Annotated[
+        bool, typer.Option("--watch", help="Run again whenever a file of it is saved.")
+    ] = False,
 ) -> None:
     """Run experiments, log every step, judge what was expected. Exits 1 when a check fails."""
-    from lavendersim.runner import finished_run, load_all, run
+    if watch:
+        given = {**locals(), "watch": False}  # the parameters: nothing else is known yet
+        if into is not None or shard is not None or resume:
+            option = "--resume" if resume else "--into"
+            raise typer.BadParameter(f"{option}: watched runs are whole", param_hint="--watch")
+        again(configs, lambda: run(**given))
+        return
+    from lavendersim.runner import finished_run, load_all
+    from lavendersim.runner import run as run_experiment
     from lavendersim.runner.prediction import planned_before
 
     if into is not None or shard is not None:
@@ -180,7 +192,7 @@ def run(
                     from lavendersim.runner.dask_cluster import dask_workers
 
                     workers = open_now.enter_context(dask_workers(dask, jobs))
-                finished = run(
+                finished = run_experiment(
                     experiment,
                     runs,
                     jobs,
