@@ -6,6 +6,8 @@ k of them, all faster than v_y, v_k = v* (v_0 / v*)^((3/4)^k).
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 from laboratory import Bench, box, plane, planned, resolved, sphere
@@ -26,13 +28,22 @@ def law(speed: float, e: float = E_0, yields: float = YIELDS) -> float:
     return e * (yields / max(speed, yields)) ** 0.25
 
 
+def rigid(bodies: dict[str, Any], impacts: str) -> Bench:
+    """Balls without gravity; captured, one engine serves those on a floor and those in flight."""
+    cell = resolved(bodies, impacts=impacts)
+    spec = planned(cell).spec
+    if impacts == "captured":
+        spec = spec._replace(shape_pairs=("sphere_plane", "sphere_sphere"))
+    return Bench(cell, spec)
+
+
 def thrown(speed: float, impacts: str, **surface: float) -> Bench:
     """A ball that touches a floor and approaches it, without gravity."""
     bodies = {
         "floor": plane(**surface),
         "ball": sphere(RADIUS, (0.0, 0.0, RADIUS), velocity=(0.0, 0.0, -speed), **surface),
     }
-    return Bench(resolved(bodies, impacts=impacts), None)
+    return rigid(bodies, impacts)
 
 
 @pytest.mark.parametrize("impacts", IMPACTS)
@@ -55,7 +66,7 @@ def test_two_bodies_have_that_of_the_speed_between_them(impacts: str) -> None:
         "a": sphere(RADIUS, (-RADIUS, 0.0, 0.0), velocity=(2.0, 0.0, 0.0), mass=3.0, **FALLING),
         "b": sphere(RADIUS, (RADIUS, 0.0, 0.0), velocity=(-6.0, 0.0, 0.0), mass=1.0, **FALLING),
     }
-    bench = Bench(resolved(bodies, impacts=impacts), None)
+    bench = rigid(bodies, impacts)
     bench.run(1)
     a, b = bench.velocity[:, 0]
     assert b - a == pytest.approx(E_0 / 2.0 * 8.0, rel=ROUND_OFF)
