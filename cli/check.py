@@ -52,6 +52,7 @@ def check(
     from lavendersim.errors import UsageError
     from lavendersim.figures import check_page_path, write_report
     from lavendersim.runner import load_all, run
+    from lavendersim.runner.prediction import planned_before
 
     overrides = overrides_of(values, axes)
     if solver and engine:
@@ -79,12 +80,20 @@ def check(
         ):
             raise typer.Exit(1)
         return
-    confirm((with_refined(one) if refine else [one] for one in experiments), runs, jobs, yes)
+    planned = [planned_before(one, jobs) for one in experiments]
+    each = (with_refined(one) if refine else [one] for one in experiments)
+    confirm(each, runs, jobs, yes, [one for one in planned if one])
     good, verdicts, cells, results, refined = True, [], [], [], []
-    for experiment in experiments:
+    for experiment, prepared in zip(experiments, planned, strict=True):
         printing.warn_of_mistakes(experiment)
         with progress.reporting(experiment.name) as shown:
-            finished = run(experiment, runs, jobs, shown, overheads=False, is_predicted=True)
+            finished = run(
+                experiment,
+                *(runs, jobs, shown),
+                overheads=False,
+                is_predicted=True,
+                prepared=prepared,
+            )
         good = good and finished.good
         results.append(finished)
         printing.warn_of_not_converged(finished)

@@ -48,6 +48,7 @@ def cost(
     from lavendersim.runner import load_all
     from lavendersim.runner.cost import check_cost, grid_of, take_cost
     from lavendersim.runner.cost_targets import percentage
+    from lavendersim.runner.prediction import planned_before
 
     sought = [percentage(target) for target in targets or ()]
     # In a folder those with a section `cost` are meant; a file that is named must have one.
@@ -60,11 +61,18 @@ def cost(
         raise UsageError(f"{configs[0]}: no config in this folder has a section cost")
     for experiment in experiments:
         check_cost(experiment, repeats)
-    confirm(([grid_of(one)] for one in experiments), runs, jobs, yes)
+    grids = [grid_of(one) for one in experiments]
+    planned = [planned_before(grid, jobs) for grid in grids]
+    confirm(([grid] for grid in grids), runs, jobs, yes, [one for one in planned if one])
     tables, missed = [], False
-    for experiment in experiments:
+    for experiment, prepared in zip(experiments, planned, strict=True):
         with progress.reporting(experiment.name) as shown:
-            costed = take_cost(experiment, runs, jobs, shown, sought, repeats, is_predicted=True)
+            costed = take_cost(
+                experiment,
+                *(runs, jobs, shown, sought, repeats),
+                is_predicted=True,
+                prepared=prepared,
+            )
         run = costed.finished.run
         missed = missed or not all(target.reached for target in costed.table.targets)
         figures = []

@@ -207,14 +207,17 @@ class Engine:
             self._entry = _entries[self._types] = compiled[0].entry_point
         return status
 
-    def take_rows(self) -> Rows:
-        """Return copies of the rows written since the last call and empty the columns."""
+    def take_rows(self, room: int = 0) -> Rows:
+        """Return copies of the rows written since the last call and empty the columns.
+
+        room: for more behind each row of contacts [byte].
+        """
         count, log = self.counters[0], self.log
         history = log.residual[: count["residual_rows"]]
         rows = Rows(
             copied(log.step[: count["step_rows"]]),
             log.pose[: count["step_rows"]].copy(),
-            copied(log.contact[: count["contact_rows"]]),
+            copied(log.contact[: count["contact_rows"]], room),
             history[history["step"] <= count["step"]],  # of steps that are done
         )
         self._keep_unfinished(log)

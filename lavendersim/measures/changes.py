@@ -7,6 +7,7 @@ none. Forces and events act before the first step that starts at their time or l
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 
@@ -33,8 +34,7 @@ def removals(trace: Trace) -> dict[str, int]:
 
 def masses(trace: Trace) -> Floats:
     """Return the mass of everything movable [kg] in each state."""
-    bodies = trace.config.scene.bodies.items()
-    movable = {name: mass_of(body) for name, body in bodies if is_movable(body)}
+    movable = _movable_masses(trace.config.scene)
     total = np.full(len(trace.step), sum(movable.values()))
     for event in changes_of_bodies(trace.events):
         scale = 0.0 if event.remove else event.scale_mass
@@ -43,6 +43,24 @@ def masses(trace: Trace) -> Floats:
             movable[event.body] = before * scale
             total[first_starting_at(trace, event.at) :] += movable[event.body] - before
     return total
+
+
+_last_masses: tuple[Any, dict[str, float]] = (None, {})
+
+
+def _movable_masses(scene: Any) -> dict[str, float]:
+    """Return the mass of each movable body as configured [kg].
+
+    Of the scene that was asked for last it is kept: a run asks twice for every block of its steps,
+    and to look at two hundred bodies takes as long as all its checks.
+    """
+    global _last_masses
+    of, known = _last_masses
+    if of is not scene:
+        bodies = scene.bodies.items()
+        known = {name: mass_of(body) for name, body in bodies if is_movable(body)}
+        _last_masses = scene, known
+    return dict(known)
 
 
 def gravity(trace: Trace) -> Floats:

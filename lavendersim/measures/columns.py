@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 
@@ -26,6 +26,17 @@ def rows_of_steps(step: Rows, contacts: Rows) -> np.ndarray:
     ends = np.searchsorted(contacts["step"], step["step"], "right")
     begins = np.concatenate(([0], ends[:-1]))
     return np.repeat(np.arange(len(step)), ends - begins)
+
+
+def contact_parts(trace: Trace) -> Iterator[Rows]:
+    """Yield the contact rows of a log in parts of whole steps, for what is taken step by step.
+
+    Of a log that has not all of them it is the empty table that says why.
+    """
+    if "/contacts" in trace.absent:
+        yield trace.contact
+        return
+    yield from trace.contacts_in_parts()
 
 
 def contacts_of(trace: Trace, body: str, other: str | None = None) -> Rows:
@@ -80,9 +91,11 @@ def of_pairs(contacts: Rows, surfaces: list[Surface], value: Callable[[Surface],
 
     surfaces: of the bodies by their rows.
     """
-    different = list(dict.fromkeys(surfaces))
+    objects = {id(surface): surface for surface in surfaces}  # of many bodies there are a few
+    different = list(dict.fromkeys(objects.values()))
     number = {surface: row for row, surface in enumerate(different)}
-    rows = np.array([number[surface] for surface in surfaces])
+    row_of = {key: number[surface] for key, surface in objects.items()}
+    rows = np.array([row_of[id(surface)] for surface in surfaces])
     pair = rows[contacts["body_a"]] * len(different) + rows[contacts["body_b"]]
     table = np.zeros(len(different) ** 2)
     present = np.zeros(len(table), dtype=bool)

@@ -28,7 +28,7 @@ from lavendersim.record_tables import widened
 from lavendersim.scene.build import Scene, build
 from lavendersim.scene.events import EventQueue
 from lavendersim.scene.plan import Plan
-from lavendersim.trace import Block, TraceWriter, Written, trace_of
+from lavendersim.trace import ROOM_FOR_TIME, Block, TraceWriter, Written, trace_of
 from lavendersim.trace.recorded import described, partly_recorded
 from lavendersim.trace.whole import INTERRUPTED
 
@@ -285,7 +285,7 @@ def simulate(job: CellJob, began: Began | None = None) -> Simulated:
             if result == DIVERGED:
                 status = divergence(scene, engine)
             start = perf_counter_ns()
-            rows = engine.take_rows()
+            rows = engine.take_rows(room=ROOM_FOR_TIME)
             if len(rows.step):
                 block, broken = bounds.within(block_of(rows, scene.clock), result == DIVERGED)
                 if broken:

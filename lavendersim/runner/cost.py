@@ -13,7 +13,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from lavendersim.durable_files import write_whole
 from lavendersim.errors import ConfigError, UsageError
@@ -32,6 +32,9 @@ from .json_table import text_of
 from .progress import Progress
 from .run_directory import COST, COST_TABLE, RUNS
 from .timed_engine import clock
+
+if TYPE_CHECKING:
+    from .cell_jobs import Prepared
 
 
 class Costed(NamedTuple):
@@ -64,17 +67,18 @@ def take_cost(
     repeats: int | None = None,
     *,
     is_predicted: bool = False,
+    prepared: Prepared | None = None,
 ) -> Costed:
     """Run the grid of an experiment's `cost` section and time it.
 
     jobs: processes that run and compile; times are taken in this one. targets, repeats: in place of
     those of the config. The run is finished, and `latest`, when all of it is. is_predicted: see
-    `run`.
+    `run`. prepared: the grid, where it was planned before.
     """
     check_cost(experiment, repeats)
     assert experiment.config.cost is not None
     settings = settings_of(experiment)
-    grid = grid_of(experiment)
+    grid = prepared.experiment if prepared else grid_of(experiment)
     tables: list[CostTable] = []
 
     def closing(finished: Finished, measured: list[dict[str, Any]]) -> None:
@@ -127,6 +131,7 @@ def take_cost(
         closing=closing,
         in_text=overrides,
         is_predicted=is_predicted,
+        prepared=prepared,
     )
     return Costed(finished, tables[0])
 

@@ -38,7 +38,14 @@ from lavendersim.trace.schema import FORMAT, RESIDUAL_COLUMNS, STEP_COLUMNS, Col
 from lavendersim.trace.source import Source
 from lavendersim.trace.streams import COLUMNS
 from lavendersim.trace.whole import INTERRUPTED
-from lavendersim.trace.writer import ABSENT, DESCRIPTION, ENDING, TIMESTEP_CHANGES, UNTOLD
+from lavendersim.trace.writer import (
+    ABSENT,
+    DESCRIPTION,
+    ENDING,
+    KEPT_BYTES,
+    TIMESTEP_CHANGES,
+    UNTOLD,
+)
 
 if TYPE_CHECKING:
     from lavendersim.arrow import Table
@@ -73,6 +80,7 @@ class Trace:
         if config is not None:
             self.config = config
         self._source = source
+        self._kept: list[NDArray[Any]] | None = None  # contacts in parts, of a log of not too many
         with damage(path, "the metadata"):
             self.metadata = source.metadata()
             description = self.metadata[DESCRIPTION]
@@ -246,7 +254,8 @@ class Trace:
         """Like `contact`, of the steps of which the log has them; see `recorded_rows`."""
         if not self.has("/contacts"):
             return absent_table(self.why_not("/contacts"))
-        parts = list(self.recorded_contacts_in_parts())
+        kept, self._kept = self._kept, None
+        parts = list(self.recorded_contacts_in_parts()) if kept is None else kept
         if not parts:
             return decode.join((), [("step", "i8"), ("time", "f8")])
         return joined(parts)
@@ -254,15 +263,26 @@ class Trace:
     def contacts_in_parts(self) -> Iterator[NDArray[Any]]:
         """Yield the rows of `contact` in parts of whole steps, read as they are asked for.
 
-        A long run of many bodies has more of them than memory holds. None without /contacts, or
-        with those of some steps alone.
+        A long run of many bodies has more of them than memory holds; of others they are kept for
+        whoever asks again. None without /contacts, or with those of some steps alone.
         """
         if "/contacts" in self.absent:
             return
+        untold = self._untold("/contacts")
         if "recorded_contact" in self.__dict__:  # read already
-            yield self.recorded_contact
+            yield table_without(self.recorded_contact, untold)
             return
-        yield from self.recorded_contacts_in_parts()
+        if self._kept is not None:
+            yield from (table_without(part, untold) for part in self._kept)
+            return
+        kept: list[NDArray[Any]] = []
+        size = 0
+        for part in self.recorded_contacts_in_parts():
+            size += part.nbytes
+            kept = [*kept, part] if size <= KEPT_BYTES else []
+            yield table_without(part, untold)
+        if size <= KEPT_BYTES:
+            self._kept = kept
 
     def recorded_contacts_in_parts(self) -> Iterator[NDArray[Any]]:
         """Yield the rows of `recorded_contact` in parts of whole steps, and keep none."""

@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lavendersim.record_tables import widen, widened
+from lavendersim.record_tables import widened
 from lavendersim.trace import decode, layout
-from lavendersim.trace.blocks import Block
+from lavendersim.trace.blocks import ROOM_FOR_TIME, Block
 from lavendersim.trace.contact_columns import column_form
 from lavendersim.trace.reader import RecordedPoses, Trace
 from lavendersim.trace.recorded import is_recorded
@@ -78,31 +78,20 @@ class WrittenTrace(Trace):
         )
         return velocities
 
-    @cached_property
-    def recorded_contact(self) -> NDArray[Any]:
-        """Like `contact`, of the steps of which the log has them; in one piece at once."""
-        parts = list(self._recorded_rows()) if self.has("/contacts") else []
-        if not parts:
-            return super().recorded_contact
-        ends = np.cumsum([0, *(len(contacts) for contacts, _ in parts)])
-        table = np.empty(ends[-1], self._contact_row())
-        for (contacts, times), begin, end in zip(parts, ends[:-1], ends[1:], strict=True):
-            widen(contacts, table[begin:end])
-            table["time"][begin:end] = times
-        return table
-
     def recorded_contacts_in_parts(self) -> Iterator[NDArray[Any]]:
-        """Yield the rows of `recorded_contact` block by block."""
+        """Yield the rows of `recorded_contact` block by block, as they stand in memory.
+
+        Blocks with room for it get the time behind each row; of others rows are copied.
+        """
         if not self.has("/contacts"):
             yield from super().recorded_contacts_in_parts()
             return
         for contacts, times in self._recorded_rows():
-            table = widened(contacts, self._contact_row())
+            row = _with_time(contacts.dtype)
+            has_room = row.itemsize == contacts.dtype.itemsize
+            table = contacts.view(row) if has_room else widened(contacts, row)
             table["time"] = times
             yield table
-
-    def _contact_row(self) -> np.dtype[Any]:
-        return _with_time(self._blocks[0].contact.dtype)
 
     def _recorded_rows(self) -> Iterator[tuple[NDArray[Any], NDArray[np.float64]]]:
         """Yield contacts of each block, and the time of each [s]."""
@@ -119,18 +108,22 @@ class WrittenTrace(Trace):
 
 @lru_cache(maxsize=64)
 def _with_time(row: np.dtype[Any]) -> np.dtype[Any]:
-    """Return a row of contacts with its time behind it, its columns in the order of a reader."""
+    """Return a row of contacts with its time behind it, its columns in the order of a reader.
+
+    It is no longer where the row has room for that.
+    """
     form = column_form(row)
     kinds = zip(form.names, form.kinds, strict=True)
     columns = [("step", "i8"), *kinds, *((name, "f8") for name in (*form.derived, "time"))]
     places = {name: place[1] for name, place in (row.fields or {}).items()}
     names = [name for name, _ in columns]
+    used = max(place[0].itemsize + place[1] for place in (row.fields or {}).values())
     return np.dtype(
         {
             "names": names,
             "formats": ["=" + kind for _, kind in columns],
-            "offsets": [places.get(name, row.itemsize) for name in names],
-            "itemsize": row.itemsize + 8,
+            "offsets": [places.get(name, used) for name in names],
+            "itemsize": max(row.itemsize, used + ROOM_FOR_TIME),
         }
     )
 

@@ -23,6 +23,7 @@ from pathlib import Path
 from statistics import median
 from typing import Any
 
+import lavender_cli.main  # noqa: F401  (before numpy: it says how that asks for memory)
 from lavendersim.runner.environment import environment
 
 from .line_bars import compared, ratio

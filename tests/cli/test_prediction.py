@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import pytest
 from command_line import lavender
@@ -10,9 +11,12 @@ from typer.testing import CliRunner, Result
 
 from lavender_cli import prediction
 from lavender_cli.main import app
+from lavendersim import open_run
 from lavendersim.errors import UsageError
-from lavendersim.experiment import load_experiment
+from lavendersim.experiment import Experiment, load_experiment
+from lavendersim.runner import cell_jobs
 from lavendersim.runner import prediction as predictions
+from lavendersim.runner.cell_jobs import Prepared
 from lavendersim.runner.cost import grid_of
 from lavendersim.runner.prediction import PER_CELL, PER_CONTACT, PER_STEP, predicted
 
@@ -33,7 +37,9 @@ COST = """cost:
   timesteps: [1/60, 1/240]
   sweeps: [4]
   warm_start: [true]
+  repeats: 7
 """
+TRUTH = "{measure: rebound, truth: 0.025}"
 
 
 @pytest.mark.parametrize(
@@ -124,3 +130,31 @@ def test_the_time_goes_with_steps_cells_and_processes(drop: Path, tmp_path: Path
     ten = load_experiment(drop)
     assert predicted(ten, tmp_path).seconds == pytest.approx(10 * each, rel=1e-12)
     assert predicted(ten, tmp_path, 2).seconds == pytest.approx(5 * each, rel=1e-12)
+
+
+@pytest.mark.parametrize("words", [["run"], ["check"], ["cost", "--no-plot"]], ids=lambda w: w[0])
+def test_cells_that_processes_plan_are_planned_once_and_before_the_prediction(
+    drop: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, words: list[str]
+) -> None:
+    """What is predicted and what is run are the cells of one preparation."""
+    drop.write_text(drop.read_text() + COST.replace("{measure: rebound}", TRUTH))
+    prepared, known = [], []
+    prepare, together = cell_jobs.prepare, predictions.predicted_together
+
+    def preparing(experiment: Experiment, workers: int = 1) -> Prepared:
+        prepared.append(prepare(experiment, workers))
+        return prepared[-1]
+
+    def predicting(*given: Any) -> Any:
+        known.extend(given[3])
+        return together(*given)
+
+    monkeypatch.setattr(predictions, "are_shared", lambda cells, workers: True)
+    monkeypatch.setattr(cell_jobs, "prepare", preparing)
+    monkeypatch.setattr(predictions, "predicted_together", predicting)
+    asked = [words[0], str(drop), *words[1:], "--runs", str(tmp_path / "runs")]
+    done = CliRunner().invoke(app, asked)
+    assert done.exit_code == 0, done.output
+    assert len(prepared) == len(known) == 1
+    assert known[0] is prepared[0]
+    assert open_run(tmp_path / "runs" / "latest").cells[0].path.name in prepared[0].logs

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -99,3 +100,29 @@ def test_listing_runs_reads_no_config_and_no_log(tmp_path: Path) -> None:
         "lavendersim.runner.cells_index",
         *(f"lavendersim.runner.run_{part}" for part in ("index", "seal", "tables")),
     }
+
+
+def test_a_command_ends_without_looking_for_circles() -> None:
+    said = "print(json.dumps([gc.isenabled(), gc.get_freeze_count() > 10_000]))"
+    code = f"import atexit, gc, json, sys\natexit.register(lambda: {said})\n{VERSION}"
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=True
+    )
+    assert json.loads(done.stdout.splitlines()[-1]) == [False, True]
+
+
+@pytest.mark.parametrize(("chosen", "expected"), [(None, "0"), ("1", "1")])
+def test_numpy_asks_for_no_large_pages_unless_someone_else_says_so(
+    chosen: str | None, expected: str
+) -> None:
+    name = "NUMPY_MADVISE_HUGEPAGE"
+    others = {key: value for key, value in os.environ.items() if key != name}
+    done = subprocess.run(
+        [sys.executable, "-c", f"import lavender_cli.main, os; print(os.environ[{name!r}])"],
+        env=others | ({} if chosen is None else {name: chosen}),
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=True,
+    )
+    assert done.stdout.strip() == expected

@@ -26,6 +26,18 @@ def test_a_copy_has_the_bytes_and_shares_none(count: int) -> None:
     assert copied(table(100)[::2][:count]).tobytes() == table(100)[::2][:count].tobytes()
 
 
+@pytest.mark.parametrize("count", [0, 1, 50])
+def test_a_copy_may_have_room_behind_each_row(count: int) -> None:
+    rows = table(count)
+    copy = copied(rows, room=8)
+    assert (copy.dtype.names, copy.dtype.itemsize) == (ROW.names, ROW.itemsize + 8)
+    wide = copy.view(np.dtype([*ROW.descr, ("behind", "i8")]))
+    wide["behind"] = -1
+    for name in ROW.names or ():
+        assert copy[name].tobytes() == rows[name].tobytes()
+    assert not np.shares_memory(copy, rows)
+
+
 @pytest.mark.parametrize("counts", [(3,), (0, 5), (4, 0, 2)])
 def test_joined_tables_stand_one_after_the_other(counts: tuple[int, ...]) -> None:
     tables = [table(count, seed) for seed, count in enumerate(counts)]

@@ -11,6 +11,7 @@ from lavendersim.measures import changes
 from lavendersim.measures.columns import (
     angular_momentum,
     clearance_by_step,
+    contact_parts,
     energy_at_rest,
     impulses,
     last_window,
@@ -45,14 +46,13 @@ def force_error(spec: specs.ForceError, trace: Trace) -> float:
     weight = pull * (np.full(len(rows), mass_of(bodies[spec.body])) if spec.body else masses)
     if not np.all(weight > 0.0):
         return NAN
-    contacts = trace.contact
-    first = np.searchsorted(contacts["step"], trace.step["step"][rows[0]])
-    contacts = contacts[first:]
-    contacts = contacts[carried[contacts["body_a"]] != carried[contacts["body_b"]]]
-    sign = np.where(carried[contacts["body_b"]], 1.0, -1.0)
-    lift = sign * (impulses(contacts) @ (-gravity / pull)) / trace.clock.lengths(contacts["step"])
     forces = np.zeros(len(trace.step))
-    np.add.at(forces, rows_of_steps(trace.step, contacts), lift)
+    for contacts in contact_parts(trace):
+        late = contacts[np.searchsorted(contacts["step"], trace.step["step"][rows[0]]) :]
+        outer = late[carried[late["body_a"]] != carried[late["body_b"]]]
+        sign = np.where(carried[outer["body_b"]], 1.0, -1.0)
+        lift = sign * (impulses(outer) @ (-gravity / pull)) / trace.clock.lengths(outer["step"])
+        np.add.at(forces, rows_of_steps(trace.step, outer), lift)
     return float(np.max(np.abs(forces[rows] / weight - 1.0)))
 
 

@@ -18,7 +18,7 @@ from __future__ import annotations
 import numpy as np
 
 from lavendersim.geometry.bodies import inverse_mass
-from lavendersim.measures.columns import friction_of, of_pairs
+from lavendersim.measures.columns import contact_parts, friction_of, of_pairs
 from lavendersim.measures.interfaces import Floats, Rows, Trace
 from lavendersim.measures.registration import measure
 from lavendersim.measures.specs.optimality import Optimality
@@ -33,21 +33,28 @@ def optimality(spec: Optimality, trace: Trace) -> Floats:
     One NaN for a log without contacts or without what their rows asked for (`target`). UsageError
     where the log has no /contacts at all.
     """
-    contacts = trace.contact
+    largest = [
+        [np.max(one) for one in _violations(trace, contacts)]
+        for contacts in contact_parts(trace)
+        if len(contacts["step"]) and "target" in (contacts.dtype.names or ())
+    ]
+    return np.max(largest, axis=0) if largest else np.array([NAN])
+
+
+def _violations(trace: Trace, contacts: Rows) -> list[Floats]:
     steps = contacts["step"]
-    if len(steps) == 0 or "target" not in contacts.dtype.names:
-        return np.array([NAN])
     bodies = [trace.config.scene.bodies[name] for name in trace.bodies]
     surfaces = [one.surface for one in bodies]
     dt = trace.clock.lengths(steps)
     residual = np.asarray(trace.step["residual"])[np.searchsorted(trace.step["step"], steps)]
+    impulse_n = contacts["impulse_n"]
     if "gamma" in (contacts.dtype.names or ()):
         gamma = np.asarray(contacts["gamma"])
     else:
         gamma = of_pairs(contacts, surfaces, lambda pair: pair.compliance) / dt**2
     least = _summed(contacts, [inverse_mass(one) for one in bodies])
-    pushed = (contacts["inverse_effective_mass"] + gamma) * contacts["impulse_n"]
-    away = contacts["normal_velocity"] + contacts["target"] + gamma * contacts["impulse_n"]
+    pushed = (contacts["inverse_effective_mass"] + gamma) * impulse_n
+    away = contacts["normal_velocity"] + contacts["target"] + gamma * impulse_n
     violations = [
         np.maximum(-pushed, 0.0),
         np.maximum(np.abs(np.minimum(pushed, away)) - residual, 0.0),
@@ -56,7 +63,7 @@ def optimality(spec: Optimality, trace: Trace) -> Floats:
         mu = friction_of(trace, contacts)
         cone, sliding = _friction(trace, contacts, least, mu)
         violations += [cone, np.maximum(sliding - residual, 0.0)]
-    return np.array([float(np.max(one)) for one in violations])
+    return violations
 
 
 def _summed(contacts: Rows, of_bodies: list[float]) -> Floats:
@@ -68,16 +75,15 @@ def _summed(contacts: Rows, of_bodies: list[float]) -> Floats:
 
 def _friction(trace: Trace, contacts: Rows, scale: Floats, mu: Floats) -> tuple[Floats, Floats]:
     limit = scale * mu * np.maximum(contacts["impulse_n"], 0.0)
-    scaled = scale[:, None] * np.column_stack([contacts["impulse_t1"], contacts["impulse_t2"]])
-    slip = np.column_stack([contacts["slip_t1"], contacts["slip_t2"]])
-    trial = scaled - slip
+    first, second = scale * contacts["impulse_t1"], scale * contacts["impulse_t2"]
+    one, other = first - contacts["slip_t1"], second - contacts["slip_t2"]
     if trace.config.numerics.friction_cone == "pyramid":
-        sizes = np.abs(scaled).max(axis=1)
-        nearest = np.clip(trial, -limit[:, None], limit[:, None])
+        sizes = np.maximum(np.abs(first), np.abs(second))
+        one, other = np.clip(one, -limit, limit), np.clip(other, -limit, limit)
     else:
-        sizes = np.sqrt((scaled**2).sum(axis=1))
-        lengths = np.sqrt((trial**2).sum(axis=1))
+        sizes = np.sqrt(first**2 + second**2)
+        lengths = np.sqrt(one**2 + other**2)
         with np.errstate(divide="ignore", invalid="ignore"):
             shrink = np.where(lengths > limit, limit / lengths, 1.0)
-        nearest = trial * shrink[:, None]
-    return np.maximum(sizes - limit, 0.0), np.sqrt(((scaled - nearest) ** 2).sum(axis=1))
+        one, other = one * shrink, other * shrink
+    return np.maximum(sizes - limit, 0.0), np.sqrt((first - one) ** 2 + (second - other) ** 2)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from pathlib import Path
-from typing import Any
+from types import MappingProxyType
+from typing import Any, ClassVar
 
 import numpy as np
 import numpy.lib.recfunctions as recfunctions
@@ -90,6 +91,11 @@ class SyntheticTrace:
     resolved: Mapping[str, Any] = field(default_factory=ball_and_floor)
     clock: Clock = field(default_factory=lambda: Clock(Fraction(1, 100)))
     status: str = "complete"
+    absent: ClassVar[Mapping[str, str]] = MappingProxyType({})
+
+    def contacts_in_parts(self) -> Iterator[Any]:
+        """Yield the contacts, in one part."""
+        yield self.contact
 
     @property
     def events(self) -> tuple[AnyEvent, ...]:

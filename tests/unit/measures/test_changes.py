@@ -110,3 +110,14 @@ def test_what_takes_one_gravity_says_so_where_it_changes_and_only_there() -> Non
     with pytest.raises(UsageError, match=r"^creep takes one gravity, and an event changes it from"):
         changes.constant_gravity(log, "creep")
     assert changes.constant_gravity(log, "creep", 5).tolist() == [0.0, 0.0, -1.62]
+
+
+def test_masses_are_those_of_the_scene_that_is_asked_of() -> None:
+    """One body is halved on the way; a second scene of half the mass is asked in between."""
+    halved, light = fall(NONE | {"at": 3 * DT, "body": "ball", "scale_mass": 0.5}), fall()
+    light.resolved["scene"]["bodies"]["ball"]["mass"] = 0.5 * MASS
+    for _ in range(2):
+        assert changes.masses(halved).tolist() == [MASS] * 4 + [0.5 * MASS] * 3
+        assert changes.masses(light).tolist() == [0.5 * MASS] * 7
+    kept = halved.config.scene
+    assert changes._movable_masses(kept) == changes._movable_masses(kept) == {"ball": MASS}

@@ -6,11 +6,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from sample import BODIES, SCENE, run, write
+from sample import AS_WRITTEN, BODIES, CONFIG, METADATA, SCENE, run, write
 
 from lavendersim.errors import TraceError, UsageError
-from lavendersim.trace import Block, open_trace
+from lavendersim.trace import Block, Trace, TraceWriter, open_trace, reader
 from lavendersim.trace.layout import CHANNELS
+from lavendersim.trace.writer import UNTOLD
 from tests.made_cells import made_cell
 
 STEPS = 900
@@ -33,6 +34,38 @@ def test_parts_are_the_whole_and_are_not_kept(tmp_path: Path, block: Block) -> N
     assert np.concatenate([one["x"] for one in contacts]).tobytes() == block.contact["x"].tobytes()
     steps = np.concatenate([numbers for numbers, _ in trace.poses_in_parts()])
     assert steps.tolist() == block.step["step"].tolist()
+
+
+def test_contacts_are_kept_for_who_asks_again_unless_they_are_too_many(
+    tmp_path: Path, block: Block, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = write(tmp_path / "a.mcap", [block])
+
+    def asked_twice(trace: Trace) -> bool:
+        first, second = list(trace.contacts_in_parts()), list(trace.contacts_in_parts())
+        assert [one.tobytes() for one in first] == [one.tobytes() for one in second]
+        return all(map(np.shares_memory, first, second))
+
+    trace = open_trace(path)
+    next(trace.contacts_in_parts())  # who stops in between leaves nothing behind
+    assert asked_twice(trace)
+    assert trace.contact.tobytes() == open_trace(path).contact.tobytes()
+    monkeypatch.setattr(reader, "KEPT_BYTES", 1000)
+    assert not asked_twice(open_trace(path))
+
+
+def test_parts_refuse_columns_that_the_engine_does_not_tell(tmp_path: Path, block: Block) -> None:
+    untold = {UNTOLD: {"/contacts.gamma": "it is a secret"}}
+    writer = TraceWriter(tmp_path / "a.mcap", CONFIG, AS_WRITTEN, METADATA | untold)
+    writer.append(block)
+    writer.close("complete")
+    trace = open_trace(tmp_path / "a.mcap")
+    for _ in range(2):
+        part = next(trace.contacts_in_parts())
+        assert len(part["x"])
+        with pytest.raises(UsageError, match=r"no /contacts\.gamma: it is a secret"):
+            part["gamma"]
+        assert len(trace.contact)  # afterwards it is in one piece
 
 
 def test_of_some_steps_alone_rows_are_those_of_the_config(tmp_path: Path, block: Block) -> None:

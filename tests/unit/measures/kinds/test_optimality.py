@@ -147,3 +147,24 @@ def test_a_surface_that_moves_by_itself_is_judged_by_its_slip(row: dict[str, flo
     log.resolved["scene"]["bodies"]["floor"]["surface_velocity"] = [1.0, 0.0, 0.0]
     log.step["residual"] = [9.0, 0.0, 9.0]
     assert list(evaluate(SPEC, log)) == violations(row)
+
+
+@pytest.mark.parametrize("worst", range(4))
+def test_the_worst_contact_of_all_parts_counts(worst: int) -> None:
+    """Four parts of a log, of which one has a row that breaks each law; another is empty."""
+    broken = {"impulse_n": -1.0, "impulse_t1": 3.0, "normal_velocity": 0.1, "slip_t1": 1.0}
+    log, other = log_with({}), log_with(broken)
+    parts = [log.contact, log.contact[:0], log.contact, log.contact]
+    parts[worst] = other.contact
+    log.contacts_in_parts = lambda: iter(parts)
+    assert list(evaluate(SPEC, log)) == list(evaluate(SPEC, other))
+    assert min(evaluate(SPEC, other)) > 0.1  # [m/s]
+
+
+def test_what_is_no_number_in_one_part_is_none_of_the_whole() -> None:
+    log, other = log_with({}), log_with({"impulse_n": math.nan})
+    for parts in ([log.contact, other.contact], [other.contact, log.contact]):
+        log.contacts_in_parts = lambda parts=parts: iter(parts)
+        found = evaluate(SPEC, log)
+        assert np.isnan(found).tolist() == np.isnan(evaluate(SPEC, other)).tolist()
+        assert np.isnan(found[[PUSHING, COMPLEMENTARY, CONE]]).all()
