@@ -11,6 +11,7 @@ from lavendersim.peers.declaration import (
     TANGENTIAL,
     EngineSetting,
     Peer,
+    Swept,
     Value,
     Variant,
 )
@@ -89,6 +90,14 @@ PEER: Final = Peer(
         ),
         EngineSetting(name="margin", type=Annotated[float, Quantity("m", minimum=0)], doc="[m]"),
         EngineSetting(name="speculative", type=bool, doc="contacts ahead"),
+    ),
+    swept=(
+        Swept("mujoco", {"time_constant_steps": (2.0,)}),  # as stiff as its spring may be
+        Swept("mujoco"),
+        Swept("mujoco-stiff", {"iterations": (1, 3, 100)}),
+        Swept("mujoco-cg", {"iterations": (3, 10, 100)}),
+        Swept("mujoco-rk4"),
+        Swept("mujoco-discrete"),
     ),
     shapes=frozenset({"plane", "sphere", "box", "capsule", "cylinder", "hull", "compound"}),
     surface_keys=frozenset({"friction", "restitution"}),
