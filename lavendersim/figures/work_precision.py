@@ -102,8 +102,7 @@ def _caption(table: CostTable) -> str:
         repeats=table.repeats,
         processor=table.machine["processor"],
         clock=table.clock,
-        targets=". ".join(said).replace(" us ", " µs ")
-        + ".",
+        targets=". ".join(said).replace(" us ", " µs ") + ".",
     )
 
 

@@ -163,7 +163,9 @@ def main() -> None:
                 os._exit(0)
             code = os.waitstatus_to_exitcode(os.waitpid(copy, 0)[1])
             if code:
-                how = f"was ended by {signal.Signals(-code).name}" if code < 0 else f"exited: {code}"
+                how = (
+                    f"was ended by {signal.Signals(-code).name}" if code < 0 else f"exited: {code}"
+                )
                 pipe.send(f"crashed: its process {how}")
 
 

@@ -144,7 +144,7 @@ def _declared(finished: Finished) -> set[str]:
 
 
 def _line(verdict: Verdict) -> str:
-    return f"{verdict.node}: {verdict.measured:.3g}, expected {verdict.expected}"
+    return f"{verdict.node}: {verdict.measured:.6g}, expected {verdict.expected}"
 
 
 def _cost(finished: Finished) -> float:

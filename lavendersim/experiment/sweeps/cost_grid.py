@@ -152,9 +152,7 @@ def over_the_grid(experiment: Experiment, settings: list[Setting]) -> Experiment
         data["numerics"] = {k: v for k, v in data["numerics"].items() if k != "accuracy"}
     own = data.pop("sweep", None) or {}
     products = own if isinstance(own, tuple) else (own,)
-    data["sweep"] = tuple(
-        {**_axes(setting), **axes} for setting in settings for axes in products
-    )
+    data["sweep"] = tuple({**_axes(setting), **axes} for setting in settings for axes in products)
     head = f"# {experiment.name}: the settings of its section `cost`, as a sweep.\n"
     for override in experiment.options.overrides:
         head += f"# with --{' '.join(override.split())}\n"

@@ -31,11 +31,15 @@ def optimality(spec: Optimality, trace: Trace) -> Floats:
     """Return the largest violations [m/s]: pushing, complementarity; with friction cone, sliding.
 
     One NaN for a log without contacts or without what their rows asked for (`target`). UsageError
-    where the log has no /contacts at all.
+    where the log has no /contacts at all, NotReportedError where an engine does not tell of them.
     """
     contacts = trace.contact
     steps = contacts["step"]
-    if len(steps) == 0 or "target" not in contacts.dtype.names:
+    if "target" not in (contacts.dtype.names or ()):
+        if trace.config.engine is not None:
+            np.asarray(contacts["target"])  # NotReportedError: another engine does not tell it
+        return np.array([NAN])
+    if len(steps) == 0:
         return np.array([NAN])
     bodies = [trace.config.scene.bodies[name] for name in trace.bodies]
     surfaces = [one.surface for one in bodies]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
@@ -11,8 +12,10 @@ import numpy.lib.recfunctions as recfunctions
 import pytest
 from synthetic import MASS, contacts, log_of, scene_of
 
+from lavendersim.errors import NotReportedError
 from lavendersim.measures import evaluate
 from lavendersim.measures.specs.optimality import Optimality
+from tests import engines
 
 SPEC = Optimality(kind="optimality")
 PUSHING, COMPLEMENTARY, CONE, SLIDING = range(4)
@@ -147,3 +150,12 @@ def test_a_surface_that_moves_by_itself_is_judged_by_its_slip(row: dict[str, flo
     log.resolved["scene"]["bodies"]["floor"]["surface_velocity"] = [1.0, 0.0, 0.0]
     log.step["residual"] = [9.0, 0.0, 9.0]
     assert list(evaluate(SPEC, log)) == violations(row)
+
+
+@engines.needs("mujoco")
+def test_of_an_engine_that_tells_no_targets_the_laws_are_not_judged(tmp_path: Path) -> None:
+    text = engines.BOX.replace("duration: 0.5", "duration: 0.05")
+    log = engines.log_of(engines.run_by(text, "mujoco", tmp_path))
+    assert len(log.contact) > 0
+    with pytest.raises(NotReportedError):
+        evaluate(SPEC, log)
