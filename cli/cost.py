@@ -69,8 +69,16 @@ def cost(
     tables, missed = [], False
     for experiment in experiments:
         with progress.reporting(experiment.name) as shown:
-            how = {"engines": engines, "is_predicted": True}
-            costed = take_cost(experiment, runs, jobs, shown, sought, repeats, **how)
+            costed = take_cost(
+                experiment,
+                runs,
+                jobs,
+                shown,
+                sought,
+                repeats,
+                engines=engines,
+                is_predicted=True,
+            )
         run = costed.finished.run
         reached = {one.target for one in costed.table.targets if one.reached}
         missed = missed or not reached.issuperset(sought)
@@ -159,8 +167,8 @@ def _residual(number: float | None, form: str) -> str:
 
 
 def _cells(row: CostRow) -> tuple[str, ...]:
-    from lavendersim.quantities.short_times import short_time
     from lavendersim.peers.catalogue import LAVENDER
+    from lavendersim.quantities.short_times import short_time
     from lavendersim.runner.cost_targets import effort_of, percent, rate_of, settings_of, steps_of
 
     spread = row.ns_per_second

@@ -1,7 +1,7 @@
 """Colours, markers, lines and legend of the settings on a work-precision page of several engines.
 
 A colour is an engine, a marker a timestep; hollow is an engine's own defaults, or what the config
-specifies of lavender's. Every engine has its colour in every figure, whichever others are beside it.
+specifies of lavender's. An engine has its colour in every figure, whichever others are beside it.
 """
 
 from __future__ import annotations

@@ -62,7 +62,7 @@ def best_solved(rows: Sequence[CostRow]) -> list[list[CostRow]]:
 
 
 def least_errors(rows: Sequence[CostRow]) -> list[list[CostRow]]:
-    """Return a curve an engine: of each timestep the setting with the least error, failed or not."""
+    """Return a curve an engine: of each timestep the setting of least error, failed or not."""
     curves: dict[str, dict[str, CostRow]] = {}
     for row in rows:
         curve = curves.setdefault(row.family, {})

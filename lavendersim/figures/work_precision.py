@@ -19,9 +19,9 @@ from matplotlib.patches import Rectangle
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from lavendersim.figures.cost_looks import RINGS, Looks, drawn, handles_of
+from lavendersim.figures.drawing import describe
 from lavendersim.figures.engine_looks import EngineLooks
 from lavendersim.figures.engine_looks import handles_of as handles_of_engines
-from lavendersim.figures.drawing import describe
 from lavendersim.figures.page import Page, blank, write
 from lavendersim.figures.style import DARK, GREY
 from lavendersim.figures.timestep_errors import draw_timestep_errors

@@ -18,6 +18,7 @@ import os
 import signal
 import subprocess
 import sys
+from contextlib import suppress
 from importlib import import_module
 from math import ceil
 from multiprocessing import Pipe
@@ -97,10 +98,8 @@ class TimingServer:
         if self._process is None or self._pipe is None:
             return
         self._pipe.close()
-        try:
+        with suppress(ProcessLookupError):  # it has ended
             os.killpg(self._process.pid, signal.SIGKILL)
-        except ProcessLookupError:
-            pass  # it has ended
         self._process.wait()
         self._process = self._pipe = None
 
@@ -163,10 +162,8 @@ def main() -> None:
                 os._exit(0)
             code = os.waitstatus_to_exitcode(os.waitpid(copy, 0)[1])
             if code:
-                how = (
-                    f"was ended by {signal.Signals(-code).name}" if code < 0 else f"exited: {code}"
-                )
-                pipe.send(f"crashed: its process {how}")
+                ended = f"was ended by {signal.Signals(-code).name}" if code < 0 else ""
+                pipe.send(f"crashed: its process {ended or f'exited with {code}'}")
 
 
 if __name__ == "__main__":

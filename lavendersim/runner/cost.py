@@ -23,8 +23,8 @@ from lavendersim.experiment.sweeps.cost_grid import Setting, fragment_of, over_t
 from lavendersim.measures.cost_table import CostRow, CostTable, CostTruth, ErrorSource
 from lavendersim.measures.spread import Spread
 
-from .cost_errors import SettingError, errors_of, law_of, orders_of, runs_of
 from .cost_engines import able_engines
+from .cost_errors import SettingError, errors_of, law_of, orders_of, runs_of
 from .cost_targets import across_engines, answers, front_of_engine
 from .cost_times import Clocked, Times, times_of
 from .environment import machine
@@ -33,7 +33,6 @@ from .json_table import text_of
 from .progress import Progress
 from .run_directory import COST, COST_TABLE, RUNS
 from .timed_engine import clock
-
 
 NOT_TIMED: Final = "it was not timed: it ends before timing begins, or breaks off"
 

@@ -54,7 +54,7 @@ def answers(rows: Sequence[CostRow], targets: Iterable[float]) -> list[CostAnswe
 def across_engines(rows: Sequence[CostRow], found: Sequence[CostAnswer]) -> list[str]:
     """Return a sentence a target, with all engines; none where there is but one.
 
-    0.1 % costs per simulated second: lavender 288 us (240 Hz), MuJoCo 19 ms (..), Bullet not reached
+    0.1 % costs per simulated second: lavender 288 us (..), MuJoCo 19 ms (..), Bullet not reached
     """
     titles = {row.family: row.title for row in rows}
     if len(titles) < 2:

@@ -93,7 +93,7 @@ def entry_of(case: str, solver: str, finished: Finished) -> Entry:
     first = next((cell for cell in cells if str(cell.path) in shown), cells[0])
     known = [one.margin for one in finished.raw if not math.isnan(one.margin)]
     margin = min(known, default=math.nan)
-    behind = (undeclared or failed or _nearest(finished.raw) or [None])[0]
+    behind = next(iter(undeclared or failed or _nearest(finished.raw)), None)
     return Entry(
         case,
         solver,

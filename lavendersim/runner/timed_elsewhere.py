@@ -1,4 +1,4 @@
-"""What the steps of another engine cost, sample by sample, as `timed_engine` tells it of lavender's.
+"""What the steps of another engine cost, sample by sample, as `timed_engine` tells of lavender's.
 
 Each sample is asked of the process that times its engine; all settings of an engine share one.
 """

@@ -7,8 +7,8 @@ experiment's own axes inside it:
     - {preset: .., timestep: .., solver: .., sweeps: .., tolerance: .., warm_start: .., <own axes>}
     - {numerics: chapter, <own axes>}                                       the chapter's setting
 
-so that a grid is run, logged, measured and kept like any other sweep. Other engines have products of
-their own (`engine_grid`).
+so that a grid is run, logged, measured and kept like any other sweep. Other engines have products
+of their own (`engine_grid`).
 """
 
 from __future__ import annotations
@@ -38,7 +38,12 @@ TRUTH_SWEEPS: Final = 10_000
 # What the experiment that sweeps the grid does without: they speak of the own sweep, not of it.
 _LEFT_OUT: Final = ("expect", "figure", "overhead", "cost", "engine")
 # What a setting of another engine has in the place of lavender's numerics: nothing.
-_NO_NUMERICS: Final = {"solver": "", "sweeps": 0, "tolerance": None, "warm_start": True}
+_NO_NUMERICS: Final[dict[str, Any]] = {
+    "solver": "",
+    "sweeps": 0,
+    "tolerance": None,
+    "warm_start": True,
+}
 
 Role = Literal["grid", "specified", "chapter", "truth"]
 

@@ -20,7 +20,7 @@ Own = tuple[tuple[str, Value], ...]  # settings of an engine that a grid varies,
 
 
 def variants_of(engine: str, timesteps: Sequence[Fraction]) -> Iterator[tuple[str, Own, Fraction]]:
-    """Yield variant, settings and timestep of each setting of an engine; or of one variant of it."""
+    """Yield variant, settings, timestep of each setting of an engine; or of one variant of it."""
     whole = engine in PEERS
     own = [one for one in peer_of(engine).swept if whole or one.variant == engine]
     swept = [(one.variant, one.values) for one in own] or [(engine, {})]

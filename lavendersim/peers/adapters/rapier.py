@@ -116,12 +116,13 @@ class World:
         self._world.step()
 
     def contacts(self) -> list[tuple[float, ...]]:
-        """Return the contacts that were solved in the last step; impulses are those of all of it."""
+        """Return the contacts solved in the last step, with the impulses of all of it."""
         found = []
         for pair in self._world.narrow_phase.contact_pairs():
             for manifold in pair.manifolds:
                 data, normal = manifold.data, manifold.data.normal
-                rows = [self._rows[body.index] for body in (data.rigid_body1, data.rigid_body2)]
+                bodies = data.rigid_body1, data.rigid_body2
+                rows = [self._rows[body.index] for body in bodies if body is not None]
                 impulses = {one.contact_id: one.impulse for one in manifold.points}
                 for one in data.solver_contacts:
                     place = (one.point.x, one.point.y, one.point.z, normal.x, normal.y, normal.z)

@@ -20,7 +20,7 @@ def test_an_engine_has_one_colour_and_is_hollow_at_its_own_defaults() -> None:
         peer("mujoco", settings={"iterations": 3}),
     )
     looks = EngineLooks.of(table.rows)
-    own, ours, default, stiff, knob = table.rows
+    _, ours, default, stiff, _ = table.rows
     assert looks.colour(default) == looks.colour(stiff) == COLOURS["mujoco"].colour
     assert looks.colour(ours) != looks.colour(stiff)
     hollow = [looks.mark(row)["markerfacecolor"] == "white" for row in table.rows]

@@ -72,7 +72,7 @@ def test_how_a_sample_goes_wrong_is_reported_and_the_next_is_given(
     try:
         for engine, reported in (
             ("mujoco-stiff", "crashed: its process was ended by SIGSEGV"),
-            ("mujoco-rk4", "crashed: its process exited: 3"),
+            ("mujoco-rk4", "crashed: its process exited with 3"),
             ("mujoco-cg", "ValueError: it has no such shape"),
         ):
             with pytest.raises(EngineFailed, match=reported):
