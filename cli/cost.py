@@ -65,6 +65,7 @@ def cost(
         raise UsageError(f"{configs[0]}: no config in this folder has a section cost")
     for experiment in experiments:
         check_cost(experiment, repeats)
+    printing.warn_of_untried(experiments, engines)
     confirm(([grid_of(one, engines)] for one in experiments), runs, jobs, yes)
     tables, missed = [], False
     for experiment in experiments:
@@ -167,14 +168,13 @@ def _residual(number: float | None, form: str) -> str:
 
 
 def _cells(row: CostRow) -> tuple[str, ...]:
-    from lavendersim.peers.catalogue import LAVENDER
     from lavendersim.quantities.short_times import short_time
     from lavendersim.runner.cost_targets import effort_of, percent, rate_of, settings_of, steps_of
 
     spread = row.ns_per_second
     name, start = f"{row.solver:28} {row.preset:7}", "warm" if row.warm_start else "cold"
     knobs = f"{name} {steps_of(row):>13} {effort_of(row):>12} {start}"
-    if row.engine != LAVENDER:
+    if not row.is_lavender:
         knobs = f"{row.engine:28} {', '.join(settings_of(row)):7} {rate_of(row.timestep):>13}"
     return (
         knobs,
@@ -194,7 +194,7 @@ def _cells(row: CostRow) -> tuple[str, ...]:
 def _residual_of(row: CostRow) -> str:
     if row.worst_residual is not None:
         return f"{row.worst_residual:.1e}"
-    return "not finite" if row.solver else "not told"
+    return "not finite" if row.is_lavender else "not reported"
 
 
 def _notes(row: CostRow) -> list[str]:

@@ -15,11 +15,10 @@ from matplotlib.lines import Line2D
 
 from lavendersim.figures.cost_looks import COLOURED, CONTROLLED, MARKERS, RINGS
 from lavendersim.figures.style import DARK, Look
-from lavendersim.measures.cost_table import CostRow, CostTable
-from lavendersim.peers.catalogue import LAVENDER, PEERS
+from lavendersim.measures.cost_table import ENGINES, CostRow, CostTable
 
 COLOURS: Final[dict[str, Look]] = {
-    name: COLOURED[place % len(COLOURED)] for place, name in enumerate((LAVENDER, *PEERS))
+    name: COLOURED[place % len(COLOURED)] for place, name in enumerate(ENGINES)
 }
 
 
@@ -59,7 +58,7 @@ class EngineLooks(NamedTuple):
         """Return the marker of a setting."""
         colour = self.colour(row)
         own = row.engine == row.family and not row.settings and row.role in ("grid", "specified")
-        hollow = own and (row.engine != LAVENDER or row.role == "specified")
+        hollow = own and (not row.is_lavender or row.role == "specified")
         return {
             "marker": CONTROLLED if row.is_controlled else self.timesteps[row.timestep],
             "markersize": 6.5,

@@ -26,7 +26,6 @@ from lavendersim.figures.page import Page, blank, write
 from lavendersim.figures.style import DARK, GREY
 from lavendersim.figures.timestep_errors import draw_timestep_errors
 from lavendersim.measures.cost_table import CostRow, CostTable
-from lavendersim.peers.catalogue import LAVENDER
 
 WIDTH, LEGEND_WIDTH, HEIGHT = 5.6, 2.9, 5.0  # [inch] of a panel, of the legend
 SECOND_WIDTH: Final = 4.2  # [inch]
@@ -70,8 +69,8 @@ def compose(table: CostTable) -> Figure:
     widths = [WIDTH, SECOND_WIDTH, LEGEND_WIDTH]
     figure = blank(Page(_caption(table), sum(widths), HEIGHT, table.question, gaps=GAPS))
     work, orders, legend = figure.subplots(1, 3, width_ratios=widths)
-    several = len(table.engines) > 1 or table.engines != [LAVENDER]
-    looks: AnyLooks = EngineLooks.of(table.rows) if several else Looks.of(table.rows)
+    of_engines = table.compares_engines
+    looks: AnyLooks = EngineLooks.of(table.rows) if of_engines else Looks.of(table.rows)
     draw_settings(work, table, looks)
     draw_timestep_errors(orders, table, looks)
     limits = [*work.get_ylim(), *orders.get_ylim()]
@@ -96,7 +95,7 @@ def _caption(table: CostTable) -> str:
         reference += f" (the worst of {table.cells_per_setting} cells of {', '.join(table.axes)})"
     said = table.sentences or [target.sentence for target in table.targets]
     said += [f"{engine} refused: {why}" for engine, why in table.refused.items()]
-    return (CAPTION if table.engines == [LAVENDER] else OF_ENGINES).format(
+    return (OF_ENGINES if table.compares_engines else CAPTION).format(
         measure=table.error.measure,
         truth=reference,
         repeats=table.repeats,

@@ -6,11 +6,13 @@ A number that a setting does not have (it diverged, it was not timed) is None.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Final
 
 from lavendersim.measures.spread import Spread
 from lavendersim.measures.typed_tables import plain, read_as
-from lavendersim.peers.catalogue import LAVENDER, peer_of
+from lavendersim.peers.catalogue import LAVENDER, PEERS, peer_of
+
+ENGINES: Final = (LAVENDER, *PEERS)  # in the order of their looks
 
 
 @dataclass(frozen=True)
@@ -77,6 +79,11 @@ class CostRow:
         return self.engine if self.engine == LAVENDER else peer_of(self.engine).title
 
     @property
+    def is_lavender(self) -> bool:
+        """Whether lavender simulates it, so that it has numerics."""
+        return self.engine == LAVENDER
+
+    @property
     def is_controlled(self) -> bool:
         """Whether an accuracy was asked for."""
         return self.accuracy is not None
@@ -131,6 +138,11 @@ class CostTable:
     def engines(self) -> list[str]:
         """The engines that have settings in it, in their order."""
         return list(dict.fromkeys(row.family for row in self.rows))
+
+    @property
+    def compares_engines(self) -> bool:
+        """Whether another engine has settings in it."""
+        return not all(row.is_lavender for row in self.rows)
 
     @classmethod
     def of(cls, data: dict[str, Any]) -> CostTable:

@@ -9,8 +9,8 @@ from lavendersim.peers.declaration import (
     POINT,
     TANGENTIAL,
     EngineSetting,
+    Knobs,
     Peer,
-    Swept,
     Variant,
 )
 from lavendersim.quantities.quantity import Quantity
@@ -41,9 +41,9 @@ PEER: Final = Peer(
         EngineSetting(name="rigid", type=bool, doc="plain rigid bodies, no multibodies"),
     ),
     swept=(
-        Swept("bullet", {"iterations": (5, 50, 500)}),
-        Swept("bullet-rigid", {"iterations": (5, 50, 500)}),
-        Swept("bullet-accurate"),
+        Knobs("bullet", {"iterations": (5, 50, 500)}),
+        Knobs("bullet-rigid", {"iterations": (5, 50, 500)}),
+        Knobs("bullet-accurate"),
     ),
     shapes=frozenset({"plane", "sphere", "box", "capsule", "cylinder"}),
     surface_keys=frozenset({"friction", "restitution"}),

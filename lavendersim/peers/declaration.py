@@ -35,7 +35,7 @@ class Variant:
     tells: tuple[str, ...] | None = None  # of contacts; None: as its engine
 
 
-class Swept(NamedTuple):
+class Knobs(NamedTuple):
     """What `lavender cost` varies of a variant beside the timestep: all its values together."""
 
     variant: str
@@ -54,7 +54,7 @@ class Peer:
     double: bool  # precision of its numbers
     variants: Mapping[str, Variant]  # `mujoco`, `mujoco-stiff`: the first has its own defaults
     settings: tuple[EngineSetting, ...]
-    swept: tuple[Swept, ...]  # by `lavender cost`; the variant of its own defaults is among them
+    swept: tuple[Knobs, ...]  # by `lavender cost`; the variant of its own defaults is among them
     shapes: frozenset[str]
     surface_keys: frozenset[str]  # of surfaces, that it obeys
     forces: bool = False  # constant ones at the centre of mass, for a while

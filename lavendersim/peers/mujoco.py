@@ -10,8 +10,8 @@ from lavendersim.peers.declaration import (
     POINT,
     TANGENTIAL,
     EngineSetting,
+    Knobs,
     Peer,
-    Swept,
     Value,
     Variant,
 )
@@ -92,12 +92,12 @@ PEER: Final = Peer(
         EngineSetting(name="speculative", type=bool, doc="contacts ahead"),
     ),
     swept=(
-        Swept("mujoco", {"time_constant_steps": (2.0,)}),  # as stiff as its spring may be
-        Swept("mujoco"),
-        Swept("mujoco-stiff", {"iterations": (1, 3, 100)}),
-        Swept("mujoco-cg", {"iterations": (3, 10, 100)}),
-        Swept("mujoco-rk4"),
-        Swept("mujoco-discrete"),
+        Knobs("mujoco", {"time_constant_steps": (2.0,)}),  # as stiff as its spring may be
+        Knobs("mujoco"),
+        Knobs("mujoco-stiff", {"iterations": (1, 3, 100)}),
+        Knobs("mujoco-cg", {"iterations": (3, 10, 100)}),
+        Knobs("mujoco-rk4"),
+        Knobs("mujoco-discrete"),
     ),
     shapes=frozenset({"plane", "sphere", "box", "capsule", "cylinder", "hull", "compound"}),
     surface_keys=frozenset({"friction", "restitution"}),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Final
 
-from lavendersim.peers.declaration import IMPULSE, POINT, EngineSetting, Peer, Swept, Variant
+from lavendersim.peers.declaration import IMPULSE, POINT, EngineSetting, Knobs, Peer, Variant
 from lavendersim.quantities.quantity import Quantity
 
 _COUNT = Annotated[int, Quantity(whole=True, minimum=1)]
@@ -42,8 +42,8 @@ PEER: Final = Peer(
         EngineSetting(name="swept", type=bool, doc="continuous collision detection"),
     ),
     swept=(
-        Swept("rapier", {"iterations": (1, 4, 16)}),
-        Swept("rapier-stiff", {"iterations": (4, 8, 32)}),
+        Knobs("rapier", {"iterations": (1, 4, 16)}),
+        Knobs("rapier-stiff", {"iterations": (4, 8, 32)}),
     ),
     shapes=frozenset({"plane", "sphere", "box"}),
     surface_keys=frozenset({"friction", "restitution"}),

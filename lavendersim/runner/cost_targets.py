@@ -126,7 +126,7 @@ def time_of(row: CostRow) -> str:
 
 def name_of(row: CostRow) -> str:
     """Return a setting in words: `projected_gauss_seidel, 240 Hz, 8 sweeps, warm`."""
-    if row.engine != LAVENDER:
+    if not row.is_lavender:
         return ", ".join([row.engine, rate_of(row.timestep), *settings_of(row)])
     if row.role == "chapter":
         return f"the chapter's setting ({_knobs(row)})"

@@ -71,14 +71,14 @@ def steps_of(engine: str, **values: float) -> list[Step]:
         linear = mass * (after[1][:, :3] - before[1][:, :3] - DT * np.array(scene.gravity))
         turning = spin_of(*after, inertia) - spin_of(*before, inertia)
         pushed, twisted = np.zeros_like(linear), np.zeros_like(linear)
-        for a, b, *told in world.contacts():
-            impulse = told[7] * np.array(told[3:6])
+        for a, b, *reported in world.contacts():
+            impulse = reported[7] * np.array(reported[3:6])
             if TANGENTIAL[0] in peer_of(engine).reports(engine):
-                impulse = impulse + told[8:11]
+                impulse = impulse + reported[8:11]
             for body, sign in ((a, -1.0), (b, 1.0)):
                 if body in rows:
                     pushed[rows[body]] += sign * impulse
-                    lever = np.array(told[:3]) - before[0][rows[body], :3]
+                    lever = np.array(reported[:3]) - before[0][rows[body], :3]
                     twisted[rows[body]] += np.cross(lever, sign * impulse)
         found.append(Step(linear, turning, pushed, twisted))
     return found
@@ -92,21 +92,21 @@ def spin_of(poses: np.ndarray, velocities: np.ndarray, inertia: np.ndarray) -> n
 
 
 # Relative to the momenta of a step. Round-off of 53 and of 24 bits through a hundred sums; but two
-# solvers stop before that, and tell impulses of another iterate than the velocities they leave.
+# solvers stop before that, and report impulses of another iterate than the velocities they leave.
 ROUNDING = {True: 1e-9, False: 1e-4}
-UNSOLVED = {"mujoco-cg": 1e-3, "mujoco-discrete": 1e-4}
+STOPPED_EARLY = {"mujoco-cg": 1e-3, "mujoco-discrete": 1e-4}
 
 
 def rounding(engine: str) -> float:
     """Return what sums of a step's impulses are off by [N s]: of 50 N for 1/240 s, 0.2 N s."""
-    return 0.2 * UNSOLVED.get(engine, ROUNDING[peer_of(engine).double])
+    return 0.2 * STOPPED_EARLY.get(engine, ROUNDING[peer_of(engine).double])
 
 
 @pytest.mark.parametrize("engine", TELLING)
 def test_impulses_of_a_step_are_the_change_of_momentum_of_each_body(engine: str) -> None:
-    """Where friction is not told, without it."""
-    told = TANGENTIAL[0] in peer_of(engine).reports(engine)
-    friction = {"friction": 0.5, "along": 2.0, "across": 1.0} if told else {"friction": 0.0}
+    """Where friction is not reported, without it."""
+    reported = TANGENTIAL[0] in peer_of(engine).reports(engine)
+    friction = {"friction": 0.5, "along": 2.0, "across": 1.0} if reported else {"friction": 0.0}
     for step in steps_of(engine, **friction):
         np.testing.assert_allclose(step.pushed, step.linear, atol=rounding(engine))
 
@@ -128,9 +128,9 @@ def test_a_stack_at_rest_is_held_by_its_weight_without_a_moment(engine: str) -> 
 
 @pytest.mark.parametrize("engine", TELLING)
 def test_moments_of_impulses_are_the_change_of_spin(engine: str) -> None:
-    """Held by friction on a slant, where friction is told: the load leans, the boxes stay."""
-    told = TANGENTIAL[0] in peer_of(engine).reports(engine)
-    steps = steps_of(engine, **({"along": 2.0, "across": 1.0} if told else {}))
+    """Held by friction on a slant, where friction is reported: the load leans, the boxes stay."""
+    reported = TANGENTIAL[0] in peer_of(engine).reports(engine)
+    steps = steps_of(engine, **({"along": 2.0, "across": 1.0} if reported else {}))
     for step in steps[-10:]:
         # points and levers of the step's start or end: they part by the millimetre that a soft
         # contact moves in a step at most, of 50 N for 1/240 s
