@@ -72,6 +72,7 @@ def check(
     experiments = load_all(configs, not full, overrides, strict)
     if report is not None:
         check_page_path(report)  # not after an hour of runs
+    printing.warn_of_untried(experiments, columns if engine else ())
     if columns:
         cases = [one for one in experiments if not about_something_else(one)]
         confirm(([one] * len(columns) for one in cases), runs, jobs, yes)

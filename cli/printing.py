@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
@@ -105,6 +105,18 @@ def warn_of_mistakes(experiment: Any) -> None:
         where = "" if total == 1 else f" in {len(cells)} of {total} cells"
         warning = f"study-only: {mistake}, a deliberate error{where}"
         typer.echo(f"{experiment.name}: {typer.style(warning, fg=typer.colors.YELLOW)}", err=True)
+
+
+def warn_of_untried(experiments: Iterable[Any], engines: Iterable[str] = ()) -> None:
+    """Print to stderr which engines have a version that was never tried, each once a command.
+
+    engines: beside those that the experiments name.
+    """
+    from lavendersim.peers.catalogue import untried
+
+    named = [name for one in experiments for name in one.engines]
+    for sentence in untried([*engines, *named]):
+        typer.echo(typer.style(sentence, fg=typer.colors.YELLOW), err=True)
 
 
 def warn_of_not_converged(finished: Any) -> None:

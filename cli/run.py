@@ -165,6 +165,7 @@ def run(
     # Every file is read before the first run, so a defect anywhere leaves nothing half done.
     overrides = overrides_of(values, axes, engine)
     experiments = load_all(configs, overrides=overrides, strict=strict)
+    printing.warn_of_untried(experiments)
     where = [] if runs == Path("runs") else ["--runs", str(runs)]
     command = _command(configs, overrides, "--resume", *where)
     good, tables, with_overheads = True, [], []
@@ -298,6 +299,7 @@ def _run_shard(
     if len(experiments) > 1:
         raise UsageError(f"--into {into}: expected one config, not {len(experiments)}")
     experiment = experiments[0]
+    printing.warn_of_untried(experiments)
     printing.warn_of_mistakes(experiment)
     given = ["--into", str(into), *(["--shard", shard] if shard is not None else [])]
     command = _command(configs, overrides, *given)

@@ -52,6 +52,22 @@ class Looks(NamedTuple):
             {name: lines[place % len(lines)] for place, name in enumerate(presets)},
         )
 
+    def colour(self, row: CostRow) -> str:
+        """Return the colour of a setting."""
+        return str(self.solvers[row.solver].colour)
+
+    def line(self, row: CostRow) -> Any:
+        """Return the line of the curve that a setting is on."""
+        return self.presets.get(row.preset, "-")
+
+    def curves(self, rows: Sequence[CostRow]) -> Iterator[list[CostRow]]:
+        """Yield the settings that a line joins."""
+        return curves_of(rows)
+
+    def front_colour(self, row: CostRow) -> str:
+        """Return the colour of the front that a setting is on."""
+        return DARK
+
     def mark(self, row: CostRow) -> dict[str, Any]:
         """Return the marker of a setting: full where it starts warm, hollow where cold."""
         colour = self.solvers[row.solver].colour

@@ -20,7 +20,7 @@ class Matrix(NamedTuple):
 
     cases: Sequence[Any]  # .name `family/case`, .question, .reduced
     solvers: Sequence[str]
-    entries: Sequence[Any]  # .case, .solver, .verdict, .why, .detail, .margin, .cost, .log
+    entries: Sequence[Any]  # .case, .solver, .verdict, .why, .detail, .margin, .number, .claim, ...
     left_out: Mapping[str, str]  # config -> why it is no case
     shown: Mapping[str, Any]  # case -> the cell that is pictured
     processor: str
@@ -111,8 +111,15 @@ def _entry(entry: Any, folder: Path) -> dict[str, Any]:
     text = look.words if entry.verdict == "passes" else f"{entry.verdict}: {entry.why}"
     if not math.isnan(entry.margin):
         text += f"\nleast margin {entry.margin:.3g} of a bound"
+    if entry.claim and entry.claim not in text:
+        text += f"\n{entry.claim}"
     log = "" if entry.log is None else address(entry.log, folder)
-    return {"look": look, "text": text, "was_run": True, "log": log, "cost": entry.cost}
+    found = {"look": look, "text": text, "was_run": True, "log": log, "cost": entry.cost}
+    if entry.claim and not math.isnan(entry.number):
+        found["number"] = f"{entry.number:.2g}"
+    elif math.isnan(entry.cost):
+        found["number"] = entry.verdict  # no run, and nothing to tell in a number
+    return found
 
 
 def _failures(matrix: Matrix, solver: str) -> dict[str, Any] | None:

@@ -11,6 +11,7 @@ from matplotlib.ticker import NullFormatter, NullLocator
 
 from lavendersim.figures.cost_looks import FLOOR, Looks, drawn
 from lavendersim.figures.drawing import describe, ticks_at_values
+from lavendersim.figures.engine_looks import EngineLooks
 from lavendersim.figures.style import GREY
 from lavendersim.measures.cost_table import CostRow, CostTable
 
@@ -18,9 +19,12 @@ MS: Final = 1e3
 SLOPES: Final = {1: (0, (1, 2)), 2: (0, (5, 2, 1, 2))}
 
 
-def draw_timestep_errors(axes: Any, table: CostTable, looks: Looks) -> None:
-    """Draw, for every solver and preset, the settings that were solved best, and slopes 1 and 2."""
-    describe(axes, "error against timestep, solved best", "timestep [ms]", "", "log", "log")
+def draw_timestep_errors(axes: Any, table: CostTable, looks: Looks | EngineLooks) -> None:
+    """Draw, for every solver and preset, the settings that were solved best, and slopes 1 and 2;
+    for every engine the least error there is.
+    """
+    which = "solved best" if isinstance(looks, Looks) else "least of an engine"
+    describe(axes, f"error against timestep, {which}", "timestep [ms]", "", "log", "log")
     rows = [
         row
         for row in table.rows
@@ -29,13 +33,12 @@ def draw_timestep_errors(axes: Any, table: CostTable, looks: Looks) -> None:
     if not rows:
         axes.text(0.5, 0.5, "no setting has an error", transform=axes.transAxes, ha="center")
         return
-    curves = best_solved(rows)
+    curves = best_solved(rows) if isinstance(looks, Looks) else least_errors(rows)
     for curve in curves:
         steps = [MS * float(Fraction(row.timestep)) for row in curve]
         errors = [drawn(row) for row in curve]
-        look = looks.solvers[curve[0].solver]
-        line = looks.presets[curve[0].preset]
-        axes.plot(steps, errors, color=look.colour, linestyle=line, linewidth=1.2, alpha=0.8)
+        colour, line = looks.colour(curve[0]), looks.line(curve[0])
+        axes.plot(steps, errors, color=colour, linestyle=line, linewidth=1.2, alpha=0.8)
         for row, step, error in zip(curve, steps, errors, strict=True):
             axes.plot(step, error, **looks.mark(row), zorder=3)
     _draw_slopes(axes, [row for curve in curves for row in curve])
@@ -52,6 +55,19 @@ def best_solved(rows: Sequence[CostRow]) -> list[list[CostRow]]:
         curve = curves.setdefault((row.preset, row.solver), {})
         best = curve.get(row.timestep)
         if best is None or _solved(row) > _solved(best):
+            curve[row.timestep] = row
+    return [
+        sorted(curve.values(), key=lambda row: Fraction(row.timestep)) for curve in curves.values()
+    ]
+
+
+def least_errors(rows: Sequence[CostRow]) -> list[list[CostRow]]:
+    """Return a curve an engine: of each timestep the setting of least error, failed or not."""
+    curves: dict[str, dict[str, CostRow]] = {}
+    for row in rows:
+        curve = curves.setdefault(row.family, {})
+        best = curve.get(row.timestep)
+        if best is None or drawn(row) < drawn(best):
             curve[row.timestep] = row
     return [
         sorted(curve.values(), key=lambda row: Fraction(row.timestep)) for curve in curves.values()

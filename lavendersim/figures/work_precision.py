@@ -18,8 +18,10 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from lavendersim.figures.cost_looks import RINGS, Looks, curves_of, drawn, handles_of
+from lavendersim.figures.cost_looks import RINGS, Looks, drawn, handles_of
 from lavendersim.figures.drawing import describe
+from lavendersim.figures.engine_looks import EngineLooks
+from lavendersim.figures.engine_looks import handles_of as handles_of_engines
 from lavendersim.figures.page import Page, blank, write
 from lavendersim.figures.style import DARK, GREY
 from lavendersim.figures.timestep_errors import draw_timestep_errors
@@ -29,6 +31,7 @@ WIDTH, LEGEND_WIDTH, HEIGHT = 5.6, 2.9, 5.0  # [inch] of a panel, of the legend
 SECOND_WIDTH: Final = 4.2  # [inch]
 GAPS: Final = (0.1, 0.04167)  # [inch] around a panel
 BAND: Final = 0.94  # share of the axis from which on settings without an error stand
+AnyLooks = Looks | EngineLooks
 CAPTION: Final = (
     "Error of {measure}{truth}, against the processor's time for a simulated second of physics: "
     "left is cheap, down is accurate. Medians of {repeats} interleaved repeats; the bars, most of "
@@ -38,6 +41,15 @@ CAPTION: Final = (
     "line is the front: no setting is cheaper and as good. Errors below 1e-15 are round-off and "
     "drawn there. Neither compilation "
     "nor logging is in any time. {processor}, clock {clock}. {targets}"
+)
+OF_ENGINES: Final = (
+    "Error of {measure}{truth}, against the processor's time for a simulated second of an engine's "
+    "steps alone, one thread: left is cheap, down is accurate. Medians of {repeats} repeats, in "
+    "which all engines take turns; bars hold the median in 19 of 20 cases. Hollow: an engine's own "
+    "defaults, or what the config specifies. Crossed: the setting failed (it ended early, did not "
+    "converge, or broke a claim of the experiment). Thin lines join settings that differ in their "
+    "timestep; thick lines are the front of each engine: none of its settings is cheaper and as "
+    "good. Errors below 1e-15 are round-off and drawn there. {processor}, clock {clock}. {targets}"
 )
 
 
@@ -57,14 +69,20 @@ def compose(table: CostTable) -> Figure:
     widths = [WIDTH, SECOND_WIDTH, LEGEND_WIDTH]
     figure = blank(Page(_caption(table), sum(widths), HEIGHT, table.question, gaps=GAPS))
     work, orders, legend = figure.subplots(1, 3, width_ratios=widths)
-    looks = Looks.of(table.rows)
+    of_engines = table.compares_engines
+    looks: AnyLooks = EngineLooks.of(table.rows) if of_engines else Looks.of(table.rows)
     draw_settings(work, table, looks)
     draw_timestep_errors(orders, table, looks)
     limits = [*work.get_ylim(), *orders.get_ylim()]
     for axes in (work, orders):
         axes.set_ylim(min(limits), max(limits))
     legend.set_axis_off()
-    legend.legend(handles=handles_of(table, looks), loc="upper left", borderaxespad=0.0)
+    handles = (
+        handles_of_engines(table, looks)
+        if isinstance(looks, EngineLooks)
+        else handles_of(table, looks)
+    )
+    legend.legend(handles=handles, loc="upper left", borderaxespad=0.0)
     return figure
 
 
@@ -75,36 +93,38 @@ def _caption(table: CostTable) -> str:
         reference = f", against the same run at a timestep of {truth.timestep} s"
     if table.axes:
         reference += f" (the worst of {table.cells_per_setting} cells of {', '.join(table.axes)})"
-    return CAPTION.format(
+    said = table.sentences or [target.sentence for target in table.targets]
+    said += [f"{engine} refused: {why}" for engine, why in table.refused.items()]
+    return (OF_ENGINES if table.compares_engines else CAPTION).format(
         measure=table.error.measure,
         truth=reference,
         repeats=table.repeats,
         processor=table.machine["processor"],
         clock=table.clock,
-        targets=". ".join(target.sentence for target in table.targets).replace(" us ", " µs ")
-        + ".",
+        targets=". ".join(said).replace(" us ", " µs ") + ".",
     )
 
 
-def draw_settings(axes: Any, table: CostTable, looks: Looks) -> None:
+def draw_settings(axes: Any, table: CostTable, looks: AnyLooks) -> None:
     """Draw every setting, the curves between neighbours, the front and the targets."""
     unit, size = unit_of(table)
     cost, error = f"cost [{unit} per simulated second]", table.error.measure
     describe(axes, "error against cost", cost, f"relative error of {error} [-]", "log", "log")
     timed = [row for row in table.rows if row.ns_per_second is not None]
-    for curve in curves_of(timed):
+    for curve in looks.curves(timed):
         shown = [row for row in curve if row.error is not None]
         axes.plot(
             [row.cost / size for row in shown],
             [drawn(row) for row in shown],
-            color=looks.solvers[curve[0].solver].colour,
-            linestyle=looks.presets.get(curve[0].preset, "-"),
+            color=looks.colour(curve[0]),
+            linestyle=looks.line(curve[0]),
             linewidth=0.9,
             alpha=0.55,
         )
     for row in timed:
         _draw_setting(axes, row, size, looks)
-    _draw_front(axes, timed, size)
+    for family in table.engines:
+        _draw_front(axes, [row for row in timed if row.family == family], size, looks)
     for target in table.targets:
         axes.axhline(target.target, color=GREY, linewidth=1.1, linestyle=(0, (5, 3)), zorder=1)
         axes.text(
@@ -129,14 +149,14 @@ def draw_settings(axes: Any, table: CostTable, looks: Looks) -> None:
     axes.set_ylim(low, high)
 
 
-def _draw_setting(axes: Any, row: CostRow, size: float, looks: Looks) -> None:
+def _draw_setting(axes: Any, row: CostRow, size: float, looks: AnyLooks) -> None:
     place: dict[str, Any] = {}
     level = drawn(row) if row.error is not None else 0.5 * (1.0 + BAND)
     if row.error is None:
         place["transform"] = axes.get_xaxis_transform()
     spread = row.ns_per_second
     assert spread is not None
-    colour = looks.solvers[row.solver].colour
+    colour = looks.colour(row)
     ends = [spread.low / size, spread.high / size]
     axes.plot(ends, [level, level], color=colour, linewidth=1.4, **place)
     axes.plot(row.cost / size, level, **looks.mark(row), **place, zorder=3)
@@ -148,11 +168,12 @@ def _draw_setting(axes: Any, row: CostRow, size: float, looks: Looks) -> None:
         axes.plot(row.cost / size, level, **ring, **RINGS[row.role], **place, zorder=4)
 
 
-def _draw_front(axes: Any, rows: Sequence[CostRow], size: float) -> None:
+def _draw_front(axes: Any, rows: Sequence[CostRow], size: float, looks: AnyLooks) -> None:
     """Draw the front as a stair: what the cheapest setting of at most this cost reaches."""
     front = sorted((row for row in rows if row.front), key=lambda row: row.cost)
     costs, errors = [row.cost / size for row in front], [drawn(row) for row in front]
-    axes.step(costs, errors, where="post", color=DARK, linewidth=1.6, zorder=2)
+    colour = looks.front_colour(front[0]) if front else DARK
+    axes.step(costs, errors, where="post", color=colour, linewidth=1.6, zorder=2)
 
 
 def unit_of(table: CostTable) -> tuple[str, float]:

@@ -6,10 +6,13 @@ A number that a setting does not have (it diverged, it was not timed) is None.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Final
 
 from lavendersim.measures.spread import Spread
 from lavendersim.measures.typed_tables import plain, read_as
+from lavendersim.peers.catalogue import LAVENDER, PEERS, peer_of
+
+ENGINES: Final = (LAVENDER, *PEERS)  # in the order of their looks
 
 
 @dataclass(frozen=True)
@@ -61,7 +64,24 @@ class CostRow:
     timed_seconds: float  # [s] simulated time that is timed, of all its cells
     compile_s: float  # [s] of its engine, once
     fragment: str  # of a config, which gives this setting
-    front: bool = False  # whether none is cheaper and as good
+    front: bool = False  # whether none of its engine is cheaper and as good
+    engine: str = LAVENDER  # or a variant of another, which has no numerics but the timestep
+    settings: dict[str, Any] = field(default_factory=dict)  # of that engine, beside the variant's
+
+    @property
+    def family(self) -> str:
+        """The engine whose variant it is."""
+        return self.engine if self.engine == LAVENDER else peer_of(self.engine).name
+
+    @property
+    def title(self) -> str:
+        """The engine as its authors write it."""
+        return self.engine if self.engine == LAVENDER else peer_of(self.engine).title
+
+    @property
+    def is_lavender(self) -> bool:
+        """Whether lavender simulates it, so that it has numerics."""
+        return self.engine == LAVENDER
 
     @property
     def is_controlled(self) -> bool:
@@ -89,6 +109,7 @@ class CostAnswer:
     row: int | None  # index of the setting
     sentence: str
     fragment: str | None  # of a config
+    engine: str = LAVENDER  # whose settings are meant
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -109,7 +130,19 @@ class CostTable:
     duration: float  # [s] simulated
     truth: CostTruth | None  # None: no run of its own
     rows: list[CostRow]
-    targets: list[CostAnswer]
+    targets: list[CostAnswer]  # of several engines one each
+    refused: dict[str, str] = field(default_factory=dict)  # engine -> why it cannot do the scene
+    sentences: list[str] = field(default_factory=list)  # a target, all engines; of several
+
+    @property
+    def engines(self) -> list[str]:
+        """The engines that have settings in it, in their order."""
+        return list(dict.fromkeys(row.family for row in self.rows))
+
+    @property
+    def compares_engines(self) -> bool:
+        """Whether another engine has settings in it."""
+        return not all(row.is_lavender for row in self.rows)
 
     @classmethod
     def of(cls, data: dict[str, Any]) -> CostTable:

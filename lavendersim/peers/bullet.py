@@ -4,7 +4,15 @@ from __future__ import annotations
 
 from typing import Annotated, Final
 
-from lavendersim.peers.declaration import EngineSetting, Peer, Variant
+from lavendersim.peers.declaration import (
+    IMPULSE,
+    POINT,
+    TANGENTIAL,
+    EngineSetting,
+    Knobs,
+    Peer,
+    Variant,
+)
 from lavendersim.quantities.quantity import Quantity
 
 PEER: Final = Peer(
@@ -32,7 +40,14 @@ PEER: Final = Peer(
         ),
         EngineSetting(name="rigid", type=bool, doc="plain rigid bodies, no multibodies"),
     ),
+    swept=(
+        Knobs("bullet", {"iterations": (5, 50, 500)}),
+        Knobs("bullet-rigid", {"iterations": (5, 50, 500)}),
+        Knobs("bullet-accurate"),
+    ),
     shapes=frozenset({"plane", "sphere", "box", "capsule", "cylinder"}),
     surface_keys=frozenset({"friction", "restitution"}),
+    tells=POINT + IMPULSE + TANGENTIAL,
+    momentum=True,
     repeats="the same bits on one machine",
 )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from functools import cache
 from importlib import import_module
 from typing import Final
@@ -69,6 +69,17 @@ def overrides_of(engines: Sequence[str]) -> list[str]:
     if len(engines) == 1:
         return [f"set engine={engines[0]}"]
     return [f"sweep engine=engine:[{', '.join(engines)}]"] if engines else []
+
+
+def untried(engines: Iterable[str]) -> list[str]:
+    """Return a sentence for each engine whose installed version no test has run, each once."""
+    peers = {peer_of(engine).name: peer_of(engine) for engine in engines if engine != LAVENDER}
+    return [
+        f"{peer.title} {version} was never tried with lavender; tests have run "
+        f"{', '.join(peer.tried)}"
+        for name, peer in peers.items()
+        if (version := installed_version(name)) and version not in peer.tried
+    ]
 
 
 def missing(engine: str) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 Value = float | int | str | bool
 
@@ -35,6 +35,13 @@ class Variant:
     tells: tuple[str, ...] | None = None  # of contacts; None: as its engine
 
 
+class Knobs(NamedTuple):
+    """What `lavender cost` varies of a variant beside the timestep: all its values together."""
+
+    variant: str
+    values: Mapping[str, tuple[Value, ...]] = {}  # by setting; none: it stands as it is
+
+
 @dataclass(frozen=True, kw_only=True)
 class Peer:
     """An engine: what a config may ask of it, and which law it solves."""
@@ -47,6 +54,7 @@ class Peer:
     double: bool  # precision of its numbers
     variants: Mapping[str, Variant]  # `mujoco`, `mujoco-stiff`: the first has its own defaults
     settings: tuple[EngineSetting, ...]
+    swept: tuple[Knobs, ...]  # by `lavender cost`; the variant of its own defaults is among them
     shapes: frozenset[str]
     surface_keys: frozenset[str]  # of surfaces, that it obeys
     forces: bool = False  # constant ones at the centre of mass, for a while

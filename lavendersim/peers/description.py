@@ -53,6 +53,11 @@ class Scene:
         """Yield the pairs of bodies of which one moves."""
         return ((a, b) for a, b in combinations(self.bodies, 2) if a.moves or b.moves)
 
+    @property
+    def has_forces(self) -> bool:
+        """Whether forces act on bodies in some steps."""
+        return bool(self._forces)
+
     def frictional(self) -> bool:
         """Whether any pair has friction."""
         return any(value > 0.0 for value in self._of_pairs("friction").values())

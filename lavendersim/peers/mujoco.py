@@ -10,6 +10,7 @@ from lavendersim.peers.declaration import (
     POINT,
     TANGENTIAL,
     EngineSetting,
+    Knobs,
     Peer,
     Value,
     Variant,
@@ -89,6 +90,14 @@ PEER: Final = Peer(
         ),
         EngineSetting(name="margin", type=Annotated[float, Quantity("m", minimum=0)], doc="[m]"),
         EngineSetting(name="speculative", type=bool, doc="contacts ahead"),
+    ),
+    swept=(
+        Knobs("mujoco", {"time_constant_steps": (2.0,)}),  # as stiff as its spring may be
+        Knobs("mujoco"),
+        Knobs("mujoco-stiff", {"iterations": (1, 3, 100)}),
+        Knobs("mujoco-cg", {"iterations": (3, 10, 100)}),
+        Knobs("mujoco-rk4"),
+        Knobs("mujoco-discrete"),
     ),
     shapes=frozenset({"plane", "sphere", "box", "capsule", "cylinder", "hull", "compound"}),
     surface_keys=frozenset({"friction", "restitution"}),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Final
 
-from lavendersim.peers.declaration import EngineSetting, Peer, Variant
+from lavendersim.peers.declaration import IMPULSE, POINT, EngineSetting, Knobs, Peer, Variant
 from lavendersim.quantities.quantity import Quantity
 
 _COUNT = Annotated[int, Quantity(whole=True, minimum=1)]
@@ -41,8 +41,13 @@ PEER: Final = Peer(
         ),
         EngineSetting(name="swept", type=bool, doc="continuous collision detection"),
     ),
+    swept=(
+        Knobs("rapier", {"iterations": (1, 4, 16)}),
+        Knobs("rapier-stiff", {"iterations": (4, 8, 32)}),
+    ),
     shapes=frozenset({"plane", "sphere", "box"}),
     surface_keys=frozenset({"friction", "restitution"}),
     forces=True,
+    tells=POINT + IMPULSE,
     repeats="the same bits on one machine, in one thread",
 )

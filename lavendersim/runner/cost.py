@@ -23,8 +23,9 @@ from lavendersim.experiment.sweeps.cost_grid import Setting, fragment_of, over_t
 from lavendersim.measures.cost_table import CostRow, CostTable, CostTruth, ErrorSource
 from lavendersim.measures.spread import Spread
 
+from .cost_engines import able_engines
 from .cost_errors import SettingError, errors_of, law_of, orders_of, runs_of
-from .cost_targets import answers, front_of
+from .cost_targets import across_engines, answers, front_of_engine
 from .cost_times import Clocked, Times, times_of
 from .environment import machine
 from .experiment_run import Finished, run
@@ -35,6 +36,8 @@ from .timed_engine import clock
 
 if TYPE_CHECKING:
     from .cell_jobs import Prepared
+
+NOT_TIMED: Final = "it was not timed: it ends before timing begins, or breaks off"
 
 
 class Costed(NamedTuple):
@@ -53,9 +56,10 @@ def check_cost(experiment: Experiment, repeats: int | None = None) -> None:
         raise UsageError(f"--repeats: expected {FEWEST_REPEATS} or more, found {repeats}; {FEW}")
 
 
-def grid_of(experiment: Experiment) -> Experiment:
+def grid_of(experiment: Experiment, engines: Sequence[str] = ()) -> Experiment:
     """Return what is run to measure what accuracy costs: every setting, as a sweep."""
-    return over_the_grid(experiment, settings_of(experiment))
+    able, _ = able_engines(experiment, engines)
+    return over_the_grid(experiment, settings_of(experiment, able))
 
 
 def take_cost(
@@ -66,19 +70,22 @@ def take_cost(
     targets: Sequence[float] = (),
     repeats: int | None = None,
     *,
+    engines: Sequence[str] = (),
     is_predicted: bool = False,
     prepared: Prepared | None = None,
 ) -> Costed:
     """Run the grid of an experiment's `cost` section and time it.
 
-    jobs: processes that run and compile; times are taken in this one. targets, repeats: in place of
-    those of the config. The run is finished, and `latest`, when all of it is. is_predicted: see
-    `run`. prepared: the grid, where it was planned before.
+    jobs: processes that run and compile; lavender is timed in this one. targets, repeats: in place
+    of those of the config. engines: whose settings are in it; none: the config's. The run is
+    finished, and `latest`, when all of it is. is_predicted: see `run`. prepared: the grid, where it
+    was planned before.
     """
     check_cost(experiment, repeats)
     assert experiment.config.cost is not None
-    settings = settings_of(experiment)
-    grid = prepared.experiment if prepared else grid_of(experiment)
+    able, refused = able_engines(experiment, engines)
+    settings = settings_of(experiment, able)
+    grid = prepared.experiment if prepared else over_the_grid(experiment, settings)
     tables: list[CostTable] = []
 
     def closing(finished: Finished, measured: list[dict[str, Any]]) -> None:
@@ -114,7 +121,9 @@ def take_cost(
             duration=experiment.cells()[0].config.duration,
             truth=_truth(settings, errors),
             rows=rows,
-            targets=answers(rows, targets or spec.targets),
+            targets=(found := answers(rows, targets or spec.targets)),
+            refused=refused,
+            sentences=across_engines(rows, found),
         )
         tables.append(table)
         data = table.as_data()
@@ -162,15 +171,18 @@ def _rows(
             worst_residual=_known(error.residual),
             not_converged_steps=error.not_converged,
             steps=error.steps,
-            failed=error.failed or ("" if spread else "it ends before timing begins"),
+            failed=error.failed or ("" if spread else NOT_TIMED),
             ns_per_second=spread,
             samples=time.samples,
             timed_seconds=time.seconds,
             compile_s=time.compile_s,
             fragment=fragment_of(experiment, setting),
+            engine=setting.engine,
+            settings=dict(setting.own),
         )
         rows.append(row)
-    front = front_of(rows)
+    families = dict.fromkeys(row.family for row in rows)
+    front = {place for engine in families for place in front_of_engine(rows, engine)}
     return [replace(row, front=place in front) for place, row in enumerate(rows)]
 
 
@@ -201,6 +213,7 @@ COLUMNS: Final = (
     *("role", "preset", "timestep", "solver", "sweeps", "tolerance", "warm_start", "accuracy"),
     *("error", "worst_at", "order", "worst_residual", "not_converged_steps", "failed", "front"),
     *("median", "lower_quartile", "upper_quartile", "low", "high", "compile_s", "law"),
+    *("engine", "settings"),
 )
 
 

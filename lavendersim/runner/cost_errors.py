@@ -17,11 +17,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from lavendersim.cell import CellConfig
+from lavendersim.errors import UNREPORTED
 from lavendersim.experiment import Experiment
 from lavendersim.experiment.sweeps.cost_grid import Setting
 from lavendersim.measures import Values, judge
 from lavendersim.measures.closed_forms import evaluate_form
 from lavendersim.measures.specs.base import ClosedForm
+from lavendersim.peers.catalogue import peer_of
 from lavendersim.scene.classes import class_pairs
 from lavendersim.scene.colliders import colliders
 
@@ -160,9 +162,14 @@ def not_converged_steps(not_converged: int, steps: int, tolerance: float | None)
 
 
 def _taken(experiment: Experiment, measured: Mapping[str, Any]) -> dict[str, Any]:
-    """Return every measure of a cell; NaN where the log had no answer."""
+    """Return every measure of a cell; NaN where the log had no answer, its reason where an engine
+    does not tell what it takes: such a claim is not judged.
+    """
     values = {name: measured.get(name, NAN) for name in experiment.measures}
-    return {name: NAN if isinstance(one, str) else one for name, one in values.items()}
+    return {
+        name: NAN if isinstance(one, str) and not one.endswith(UNREPORTED) else one
+        for name, one in values.items()
+    }
 
 
 def _unmet(experiment: Experiment, run: SettingRun) -> list[str]:
@@ -201,6 +208,8 @@ def orders_of(settings: Sequence[Setting], errors: Sequence[float]) -> list[floa
 
 def law_of(config: CellConfig) -> str:
     """Name the law whose problem is solved: what no timestep and no sweep can improve."""
+    if config.engine is not None:
+        return peer_of(config.engine.name).law
     numerics = config.numerics
     surfaces = [pair.surface for pair in class_pairs(colliders([*config.scene.bodies.values()]))]
     compliant = any(surface.compliance for surface in surfaces)

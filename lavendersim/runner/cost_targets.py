@@ -8,6 +8,7 @@ from fractions import Fraction
 
 from lavendersim.errors import UsageError
 from lavendersim.measures.cost_table import CostAnswer, CostRow
+from lavendersim.peers.catalogue import LAVENDER
 from lavendersim.quantities.short_times import short_time
 
 ROUND_OFF = 1e-13  # [-] some hundred operations of 2^-52 each; of two such errors none is better
@@ -26,7 +27,7 @@ def percentage(text: str) -> float:
 
 
 def front_of(rows: Sequence[CostRow]) -> list[int]:
-    """Return the settings than which none is cheaper and as good, from the cheapest on."""
+    """Return the settings than which none is cheaper and as good, the cheapest first."""
     errors = {place: max(error_of(row), ROUND_OFF) for place, row in enumerate(rows)}
     good = [place for place, row in enumerate(rows) if row.is_answer]
     good.sort(key=lambda place: (rows[place].cost, errors[place]))
@@ -43,34 +44,70 @@ def error_of(row: CostRow) -> float:
 
 
 def answers(rows: Sequence[CostRow], targets: Iterable[float]) -> list[CostAnswer]:
-    """Return the cheapest setting that reaches each target, in words and as a fragment."""
-    return [_answer(rows, target) for target in targets]
+    """Return the cheapest setting of each engine that reaches each target, in words and as a
+    fragment.
+    """
+    engines = dict.fromkeys(row.family for row in rows)
+    return [_answer(rows, target, engine) for target in targets for engine in engines]
 
 
-def _answer(rows: Sequence[CostRow], target: float) -> CostAnswer:
-    front = front_of(rows)
+def across_engines(rows: Sequence[CostRow], found: Sequence[CostAnswer]) -> list[str]:
+    """Return a sentence a target, with all engines; none where there is but one.
+
+    0.1 % costs per simulated second: lavender 288 us (..), MuJoCo 19 ms (..), Bullet not reached
+    """
+    titles = {row.family: row.title for row in rows}
+    if len(titles) < 2:
+        return []
+    sentences = []
+    for target in dict.fromkeys(one.target for one in found):
+        parts = [_of_engine(rows, one, titles) for one in found if one.target == target]
+        sentences.append(f"{percent(target)} costs per simulated second: {', '.join(parts)}")
+    return sentences
+
+
+def _of_engine(rows: Sequence[CostRow], answer: CostAnswer, titles: dict[str, str]) -> str:
+    title = titles[answer.engine]
+    if answer.row is not None:
+        row = rows[answer.row]
+        return f"{title} {short_time(row.cost / 1e9)} ({name_of(row)})"
+    front = front_of_engine(rows, answer.engine)
+    nearest = f"at best {percent(error_of(rows[front[-1]]))}" if front else "every setting failed"
+    return f"{title} not reached ({nearest})"
+
+
+def front_of_engine(rows: Sequence[CostRow], engine: str) -> list[int]:
+    """Return the front of the settings of one engine."""
+    own = [place for place, row in enumerate(rows) if row.family == engine]
+    return [own[place] for place in front_of([rows[place] for place in own])]
+
+
+def _answer(rows: Sequence[CostRow], target: float, engine: str) -> CostAnswer:
+    front = front_of_engine(rows, engine)
     reaching = [place for place in front if error_of(rows[place]) <= target]
     if reaching:
         row = rows[reaching[0]]
         sentence = f"{percent(target)} costs {time_of(row)}: {name_of(row)}"
         if alike := _as_cheap(rows, reaching[0], target):
             sentence += f" ({alike} other{'s are' if alike > 1 else ' is'} as cheap, by the spread)"
-        return CostAnswer(target, True, reaching[0], sentence, row.fragment)
-    sentence = f"no setting of the grid reaches {percent(target)}"
+        return CostAnswer(target, True, reaching[0], sentence, row.fragment, engine)
+    of = "the grid" if engine == LAVENDER else engine
+    sentence = f"no setting of {of} reaches {percent(target)}"
     if front:
         row = rows[front[-1]]
         nearest = f"{percent(error_of(row))} at {time_of(row)}: {name_of(row)}"
         sentence += f": the nearest is {nearest}"
     else:
         sentence += ": all of them failed"
-    return CostAnswer(target, False, None, sentence, None)
+    return CostAnswer(target, False, None, sentence, None, engine)
 
 
 def _as_cheap(rows: Sequence[CostRow], best: int, target: float) -> int:
     """Count the other settings that reach a target no slower than the best, within its spread."""
     spread = rows[best].ns_per_second
     assert spread is not None
-    others = [row for place, row in enumerate(rows) if place != best and error_of(row) <= target]
+    own = [row for place, row in enumerate(rows) if place != best]
+    others = [row for row in own if row.family == rows[best].family and error_of(row) <= target]
     return sum(
         row.is_answer and row.ns_per_second is not None and row.ns_per_second.low <= spread.high
         for row in others
@@ -89,9 +126,16 @@ def time_of(row: CostRow) -> str:
 
 def name_of(row: CostRow) -> str:
     """Return a setting in words: `projected_gauss_seidel, 240 Hz, 8 sweeps, warm`."""
+    if not row.is_lavender:
+        return ", ".join([row.engine, rate_of(row.timestep), *settings_of(row)])
     if row.role == "chapter":
         return f"the chapter's setting ({_knobs(row)})"
     return _knobs(row) if row.preset == "default" else f"{_knobs(row)}, laws of {row.preset}"
+
+
+def settings_of(row: CostRow) -> list[str]:
+    """Return the settings of another engine in words: `iterations 50`."""
+    return [f"{key.replace('_', ' ')} {value}" for key, value in row.settings.items()]
 
 
 def _knobs(row: CostRow) -> str:

@@ -3,11 +3,13 @@
     compile all -> an engine a cell, at the step where timing begins -> rounds, forwards and back
 Every round visits every setting, so that a slow minute of the machine falls on all of them. An
 engine is that of the setting alone, without records: what is timed is physics. Compilation is done
-before the first sample and has a number of its own.
+before the first sample and has a number of its own. Other engines take their turns in the same
+rounds, each in a process that times it.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from fractions import Fraction
 from math import ceil
@@ -19,9 +21,11 @@ from lavendersim.quantities.scalars import exact
 from lavendersim.scene.plan import plan_of_cell, union
 
 from .compile_times import compile_times
+from .timed_elsewhere import Servers, TimedElsewhere, timing_servers
 from .timed_engine import SAMPLE_NS, Diverged, Timed
 
 Report = Callable[[str, int, int], None]
+Engines = list[tuple[Timed | TimedElsewhere, Fraction]]  # with their timesteps [s]
 
 
 class Clocked(NamedTuple):
@@ -43,36 +47,51 @@ def times_of(
     settings: Sequence[Clocked], begin: float, repeats: int, workers: int, report: Report
 ) -> list[Times]:
     """Return the times of every setting; begin: the simulated time [s] at which timing begins."""
-    specs = [union([plan_of_cell(cell, False) for cell in each.cells]).spec for each in settings]
-    seconds = compile_times(
-        settings[0].cells[0].config,
-        list(dict.fromkeys(specs)),
-        workers,
-        lambda done, total: report("compiling engines to time", done, total),
-    )
-    engines = []
-    for done, (each, spec) in enumerate(zip(settings, specs, strict=True)):
-        report("settings made ready", done, len(settings))
-        engines.append(_engines(each, spec, begin))
-    samples: list[list[float]] = [[] for _ in settings]
-    order = [place for place, timed in enumerate(engines) if timed]
-    for repeat in range(repeats):
-        report("rounds of all settings", repeat, repeats)
-        for place in order if repeat % 2 == 0 else reversed(order):
-            samples[place].append(_sample(engines[place]))
-    report("rounds of all settings", repeats, repeats)
+    specs = [_spec_of(each) for each in settings]
+    own = [(each, spec) for each, spec in zip(settings, specs, strict=True) if spec is not None]
+    seconds = {}
+    if own:
+        seconds = compile_times(
+            own[0][0].cells[0].config,
+            list(dict.fromkeys(spec for _, spec in own)),
+            workers,
+            lambda done, total: report("compiling engines to time", done, total),
+        )
+    with timing_servers() as servers:
+        engines = []
+        for done, (each, spec) in enumerate(zip(settings, specs, strict=True)):
+            report("settings made ready", done, len(settings))
+            engines.append(_engines(each, spec, begin, servers))
+        samples: list[list[float]] = [[] for _ in settings]
+        order = [place for place, timed in enumerate(engines) if timed]
+        for repeat in range(repeats):
+            report("rounds of all settings", repeat, repeats)
+            for place in order if repeat % 2 == 0 else reversed(order):
+                samples[place].append(_sample(engines[place]))
+        report("rounds of all settings", repeats, repeats)
     return [
-        Times(taken, seconds[spec], sum(float(engine.steps * step) for engine, step in timed))
+        Times(
+            [] if any(math.isnan(one) for one in taken) else taken,
+            0.0 if spec is None else seconds[spec],
+            sum(float(engine.steps * step) for engine, step in timed),
+        )
         for taken, spec, timed in zip(samples, specs, engines, strict=True)
     ]
 
 
-def _engines(each: Clocked, spec: Spec, begin: float) -> list[tuple[Timed, Fraction]]:
+def _spec_of(each: Clocked) -> Spec | None:
+    """Return what lavender's engine of a setting is composed of; None of another engine's."""
+    if each.cells[0].config.engine is not None:
+        return None
+    return union([plan_of_cell(cell, False) for cell in each.cells]).spec
+
+
+def _engines(each: Clocked, spec: Spec | None, begin: float, servers: Servers) -> Engines:
     """Return an engine a cell, with its timestep [s]; none of cells that end before timing begins.
 
     A cell that diverged is timed up to the step before it did.
     """
-    engines = []
+    engines: Engines = []
     for cell, steps in zip(each.cells, each.steps, strict=True):
         timestep = cell.config.numerics.timestep
         first = ceil(exact(begin) / timestep)
@@ -80,14 +99,18 @@ def _engines(each: Clocked, spec: Spec, begin: float) -> list[tuple[Timed, Fract
         if last <= first:
             continue
         shortest = SAMPLE_NS // len(each.cells)
+        if spec is None:
+            timed = TimedElsewhere(cell.config, first, last - first, shortest, servers)
+            engines.append((timed, timestep))
+            continue
         try:
-            timed = Timed(cell.config, spec, first, last - first, shortest=shortest)
+            own = Timed(cell.config, spec, first, last - first, shortest=shortest)
         except Diverged:  # without its records an engine takes the same steps: never
             continue
-        engines.append((timed, timestep))
+        engines.append((own, timestep))
     return engines
 
 
-def _sample(engines: Sequence[tuple[Timed, Fraction]]) -> float:
-    """Return what a simulated second costs [ns], the mean over cells."""
+def _sample(engines: Engines) -> float:
+    """Return what a simulated second costs [ns], the mean over cells; NaN where one gave none."""
     return sum(timed.sample() / float(step) for timed, step in engines) / len(engines)

@@ -55,6 +55,8 @@ class Entry(NamedTuple):
     why: str = ""  # one line: what failed, its number against its bound, or how it ended
     detail: str = ""  # the whole message
     margin: float = math.nan  # the least share of a bound that is left over all claims [-]
+    number: float = math.nan  # behind the verdict: of the claim that failed, or nearest its bound
+    claim: str = ""  # which, with its bound; "" where no number decided
     cost: float = math.nan  # physics per simulated second, one processor [s/s]
     run: Path | None = None  # its directory
     log: Path | None = None  # of the first cell that failed, or of the first
@@ -91,8 +93,26 @@ def entry_of(case: str, solver: str, finished: Finished) -> Entry:
     first = next((cell for cell in cells if str(cell.path) in shown), cells[0])
     known = [one.margin for one in finished.raw if not math.isnan(one.margin)]
     margin = min(known, default=math.nan)
-    run = finished.run.path
-    return Entry(case, solver, word, why, detail, margin, _cost(finished), run, first.path)
+    behind = next(iter(undeclared or failed or _nearest(finished.raw)), None)
+    return Entry(
+        case,
+        solver,
+        word,
+        why,
+        detail,
+        margin,
+        number=math.nan if behind is None else behind.measured,
+        claim="" if behind is None else _line(behind),
+        cost=_cost(finished),
+        run=finished.run.path,
+        log=first.path,
+    )
+
+
+def _nearest(verdicts: Sequence[Verdict]) -> list[Verdict]:
+    """Return the verdict with the least of its bound left; none where no claim has a bound."""
+    bounded = [one for one in verdicts if one.judged and not math.isnan(one.margin)]
+    return [min(bounded, key=lambda one: one.margin)] if bounded else []
 
 
 def _of_unjudged(verdicts: Sequence[Verdict]) -> tuple[Word, str]:
@@ -124,7 +144,7 @@ def _declared(finished: Finished) -> set[str]:
 
 
 def _line(verdict: Verdict) -> str:
-    return f"{verdict.node}: {verdict.measured:.3g}, expected {verdict.expected}"
+    return f"{verdict.node}: {verdict.measured:.6g}, expected {verdict.expected}"
 
 
 def _cost(finished: Finished) -> float:

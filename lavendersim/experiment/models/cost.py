@@ -19,13 +19,15 @@ from lavendersim.experiment.models.tree import products
 from lavendersim.experiment.text.node import key_mark
 from lavendersim.experiment.text.place import Place
 from lavendersim.measures.specs.base import ClosedForm
+from lavendersim.peers.catalogue import PEERS
 from lavendersim.quantities.model import ConfigModel
 from lavendersim.quantities.names import MeasureName
 from lavendersim.quantities.quantity import Quantity, either
 
 # The numerics that a setting of the grid has, beside an accuracy.
 KNOBS: Final = ("timestep", "solver", "sweeps", "tolerance", "warm_start")
-GRID_NAMES: Final = frozenset(("numerics", "preset", *KNOBS, "accuracy"))  # of the grid's own axes
+# Names of the grid's own axes; those of another engine begin with its name.
+GRID_NAMES: Final = frozenset(("numerics", "preset", *KNOBS, "accuracy", "engine"))
 FEWEST_REPEATS = 7  # of six samples the interval that holds the median is all of them
 FEW = "of fewer, one slow moment of the machine decides where the median lies"
 
@@ -125,9 +127,13 @@ class CostSpec(ConfigModel):
         for product in products(at.root):
             for name, axis in product.entries.items():
                 path = axis.get("path")
-                if (path.text or "").split(".")[0] == "numerics":
+                varied = (path.text or "").split(".")[0]
+                if varied == "numerics":
                     sentence = "numerics are varied by the section cost; leave them to that"
                     at.refuse(path.mark, f"path: {sentence}")
-                elif name in GRID_NAMES:
+                elif varied in ("engine", "engines"):
+                    sentence = "engines are chosen by `lavender cost --engine`; leave them to that"
+                    at.refuse(path.mark, f"path: {sentence}")
+                elif name in GRID_NAMES or name.partition("_")[0] in PEERS:
                     sentence = "the section cost has an axis of this name; rename this one"
                     at.refuse(key_mark(product, name), f"{name}: {sentence}")

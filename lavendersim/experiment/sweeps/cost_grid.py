@@ -7,12 +7,13 @@ experiment's own axes inside it:
     - {preset: .., timestep: .., solver: .., sweeps: .., tolerance: .., warm_start: .., <own axes>}
     - {numerics: chapter, <own axes>}                                       the chapter's setting
 
-so that a grid is run, logged, measured and kept like any other sweep.
+so that a grid is run, logged, measured and kept like any other sweep. Other engines have products
+of their own (`engine_grid`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from itertools import product
@@ -24,7 +25,9 @@ from lavendersim.experiment.load import load_experiment_text
 from lavendersim.experiment.models.cost import KNOBS, CostSpec
 from lavendersim.experiment.models.steps import is_of_order_two
 from lavendersim.experiment.resolve.presets import DEFAULT, PRESETS, specified_numerics
+from lavendersim.experiment.sweeps.engine_grid import Own, paths_of, section_of, variants_of
 from lavendersim.experiment.text.yaml_text import as_yaml
+from lavendersim.peers.catalogue import LAVENDER
 
 CHAPTER: Final = "chapter"  # name of a preset; its axis is `numerics`
 # They sweep until a residual is reached, however long that takes; all others take their sweeps.
@@ -33,7 +36,14 @@ FINER: Final = 8  # the truth's timestep is the grid's finest over this
 TRUTH_TOLERANCE: Final = 1e-12  # [m/s] a thousandth of the default's
 TRUTH_SWEEPS: Final = 10_000
 # What the experiment that sweeps the grid does without: they speak of the own sweep, not of it.
-_LEFT_OUT: Final = ("expect", "figure", "overhead", "cost")
+_LEFT_OUT: Final = ("expect", "figure", "overhead", "cost", "engine")
+# What a setting of another engine has in the place of lavender's numerics: nothing.
+_NO_NUMERICS: Final[dict[str, Any]] = {
+    "solver": "",
+    "sweeps": 0,
+    "tolerance": None,
+    "warm_start": True,
+}
 
 Role = Literal["grid", "specified", "chapter", "truth"]
 
@@ -49,10 +59,14 @@ class Setting(NamedTuple):
     tolerance: float | None  # [m/s]
     warm_start: bool
     accuracy: float | None = None  # None: every step is one timestep long
+    engine: str = LAVENDER  # or a variant of another; of numerics it has the timestep alone
+    own: Own = ()  # settings of that engine
 
     @property
     def knobs(self) -> dict[str, Any]:
         """The numerics it sets."""
+        if self.engine != LAVENDER:
+            return {"timestep": self.timestep}
         asked = {} if self.accuracy is None else {"accuracy": self.accuracy}
         return {name: getattr(self, name) for name in KNOBS} | asked
 
@@ -62,7 +76,7 @@ class Setting(NamedTuple):
         # whatever else the config specifies, the chapter's has the preset's numbers
         own = self.role == "chapter"
         effort = self.sweeps, self.tolerance, self.warm_start, self.accuracy
-        return (own, self.preset, self.solver, *effort)
+        return (own, self.preset, self.solver, *effort, self.engine, self.own)
 
     @property
     def coordinates(self) -> dict[str, Any]:
@@ -72,10 +86,28 @@ class Setting(NamedTuple):
         return {"preset": self.preset, **self.knobs}
 
 
-def settings_of(experiment: Experiment) -> list[Setting]:
-    """Return the settings: the config's own, the grid, the chapter's, the truth's if any."""
+def settings_of(experiment: Experiment, engines: Sequence[str] = (LAVENDER,)) -> list[Setting]:
+    """Return the settings: the config's own, the grid, the chapter's; of other engines those that
+    they declare; the truth's if any. Of lavender's only where it is among the engines.
+    """
     spec = experiment.config.cost
     assert spec is not None
+    preset, _ = _specified(experiment)
+    settings = _of_lavender(experiment, spec) if LAVENDER in engines else []
+    settings += [
+        Setting("grid", preset, timestep, **_NO_NUMERICS, engine=variant, own=own)
+        for engine in engines
+        if engine != LAVENDER
+        for variant, own, timestep in variants_of(engine, spec.timesteps)
+    ]
+    if spec.error.truth == "finest":
+        finest = min(spec.timesteps) / FINER
+        truth = (finest, "adaptive", TRUTH_SWEEPS, TRUTH_TOLERANCE, True)
+        settings.append(Setting("truth", preset, *truth))
+    return list(dict.fromkeys(settings))
+
+
+def _of_lavender(experiment: Experiment, spec: CostSpec) -> list[Setting]:
     preset, others = _specified(experiment)
     numerics = experiment.cells()[0].config.numerics
     own = {name: getattr(numerics, name) for name in (*KNOBS, "accuracy")}
@@ -87,10 +119,6 @@ def settings_of(experiment: Experiment) -> list[Setting]:
     settings = [specified, *grid]
     if others or specified[1:] != chapter[1:]:
         settings.append(chapter)
-    if spec.error.truth == "finest":
-        finest = min(spec.timesteps) / FINER
-        truth = (finest, "adaptive", TRUTH_SWEEPS, TRUTH_TOLERANCE, True)
-        settings.append(Setting("truth", preset, *truth))
     return settings
 
 
@@ -129,9 +157,7 @@ def over_the_grid(experiment: Experiment, settings: list[Setting]) -> Experiment
         data["numerics"] = {k: v for k, v in data["numerics"].items() if k != "accuracy"}
     own = data.pop("sweep", None) or {}
     products = own if isinstance(own, tuple) else (own,)
-    data["sweep"] = tuple(
-        {**_axes(setting.coordinates), **axes} for setting in settings for axes in products
-    )
+    data["sweep"] = tuple({**_axes(setting), **axes} for setting in settings for axes in products)
     head = f"# {experiment.name}: the settings of its section `cost`, as a sweep.\n"
     for override in experiment.options.overrides:
         head += f"# with --{' '.join(override.split())}\n"
@@ -139,15 +165,21 @@ def over_the_grid(experiment: Experiment, settings: list[Setting]) -> Experiment
     return replace(swept, name=experiment.name)
 
 
-def _axes(coordinates: Mapping[str, Any]) -> dict[str, Any]:
-    return {
-        name: {"path": name if name == "numerics" else f"numerics.{name}", "values": (value,)}
-        for name, value in coordinates.items()
-    }
+def _axes(setting: Setting) -> dict[str, Any]:
+    places = {
+        name: (name if name == "numerics" else f"numerics.{name}", value)
+        for name, value in setting.coordinates.items()
+    } | paths_of(setting.engine, setting.own)
+    return {name: {"path": path, "values": (value,)} for name, (path, value) in places.items()}
 
 
 def fragment_of(experiment: Experiment, setting: Setting) -> str:
-    """Return the `numerics` section that gives this setting in this experiment, as YAML."""
+    """Return the keys that give this setting in this experiment, as YAML: `numerics` of lavender's,
+    of another engine the engine, its settings and the timestep.
+    """
+    if setting.engine != LAVENDER:
+        timestep = {"numerics": {"timestep": setting.timestep}}
+        return as_yaml(section_of(setting.engine, setting.own) | timestep)
     if setting.role == "chapter":
         return f"numerics: {CHAPTER}\n"
     defaults = dict(PRESETS[setting.preset])

@@ -1,4 +1,4 @@
-"""Scenes on Bullet, by pybullet's direct connection; what it has of contacts is not asked for."""
+"""Scenes on Bullet, by pybullet's direct connection."""
 
 from __future__ import annotations
 
@@ -34,6 +34,7 @@ class World:
         self._restitution = scene.by_product("restitution")
         numbers = [self._add(body) for body in scene.bodies]
         self._numbers = [numbers[body.row] for body in scene.movable]
+        self._rows, self._dt = {number: row for row, number in enumerate(numbers)}, scene.timestep
 
     def _shape(self, shape: Any) -> int:
         create, here = pybullet.createCollisionShape, self._here
@@ -104,5 +105,17 @@ class World:
         pybullet.stepSimulation(**self._here)
 
     def contacts(self) -> list[tuple[float, ...]]:
-        """Return none."""
-        return []
+        """Return the contacts of the last step, at points of their collision detection.
+
+        Its normal points from its B to its A, and forces are on its A: its B is our A.
+        """
+        found = []
+        for one in pybullet.getContactPoints(**self._here):
+            (a, b), point, normal = one[1:3], one[6], one[7]
+            gap, push, slide, first, across, second = one[8:14]
+            friction = (
+                (slide * s + across * t) * self._dt for s, t in zip(first, second, strict=True)
+            )
+            place = (self._rows[b], self._rows[a], *point, *normal, gap)
+            found.append((*place, push * self._dt, *friction))
+        return found

@@ -1,4 +1,7 @@
-"""Scenes on Rapier, one thread; what it has of contacts is not asked for."""
+"""Scenes on Rapier, one thread.
+
+Its Python tells no directions of friction, and of its default friction no impulse either.
+"""
 
 from __future__ import annotations
 
@@ -39,6 +42,7 @@ class World:
         self._friction = scene.by_product("friction")
         self._restitution = scene.by_larger("restitution")
         handles = [self._add(body) for body in scene.bodies]
+        self._rows = {handle.index: row for row, handle in enumerate(handles)}
         self._handles = [handles[body.row] for body in scene.movable]
         for one in self._bodies():  # else only its first step would do it
             one.recompute_mass_properties_from_colliders(self._world.colliders)
@@ -112,5 +116,15 @@ class World:
         self._world.step()
 
     def contacts(self) -> list[tuple[float, ...]]:
-        """Return none."""
-        return []
+        """Return the contacts solved in the last step, with the impulses of all of it."""
+        found = []
+        for pair in self._world.narrow_phase.contact_pairs():
+            for manifold in pair.manifolds:
+                data, normal = manifold.data, manifold.data.normal
+                bodies = data.rigid_body1, data.rigid_body2
+                rows = [self._rows[body.index] for body in bodies if body is not None]
+                impulses = {one.contact_id: one.impulse for one in manifold.points}
+                for one in data.solver_contacts:
+                    place = (one.point.x, one.point.y, one.point.z, normal.x, normal.y, normal.z)
+                    found.append((*rows, *place, one.dist, impulses[one.contact_id]))
+        return found

@@ -36,3 +36,12 @@ def test_every_variant_begins_with_its_engine() -> None:
         assert all(catalogue.peer_of(variant) is peer for variant in peer.variants)
         known = {setting.name for setting in peer.settings}
         assert all(variant.settings.keys() <= known for variant in peer.variants.values())
+
+
+def test_a_version_that_was_never_tried_is_reported_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    versions = {"mujoco": "99.1", "rapier": "", "bullet": catalogue.PEERS["bullet"].tried[0]}
+    monkeypatch.setattr(catalogue, "installed_version", versions.__getitem__)
+    names = ["lavender", "mujoco", "mujoco-stiff", "rapier", "bullet"]
+    (sentence,) = catalogue.untried(names)
+    tried = ", ".join(catalogue.PEERS["mujoco"].tried)
+    assert sentence == f"MuJoCo 99.1 was never tried with lavender; tests have run {tried}"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from lavendersim.measures.cost_table import CostRow
-from lavendersim.runner.cost_targets import answers, front_of
+from lavendersim.runner.cost_targets import across_engines, answers, front_of, front_of_engine
 from tests.made_costs import cost_table, row_data, spread
 
 
@@ -63,3 +63,25 @@ def test_an_accuracy_answers_a_target() -> None:
     assert answer.sentence == (
         "0.1 % costs 2 ms per simulated second: adaptive, accuracy 1e-4, to 1e-9 m/s, warm"
     )
+
+
+def test_several_engines_answer_a_target_in_one_sentence_each_by_its_own_front() -> None:
+    rows = [
+        row(2e5, 1e-4),
+        row(1e7, 2e-3, engine="mujoco-stiff", solver="", settings={"iterations": 3}),
+        row(5e5, 0.02, engine="mujoco", solver=""),
+        row(1e5, 1e-9, failed="not met: it stands", engine="bullet", solver=""),
+    ]
+    found = answers(rows, [0.01])
+    assert [(one.engine, one.reached) for one in found] == [
+        ("lavender", True),
+        ("mujoco", True),
+        ("bullet", False),
+    ]
+    assert across_engines(rows, found) == [
+        "1 % costs per simulated second: lavender 200 us (adaptive, 240 Hz, 8 sweeps, warm), "
+        "MuJoCo 10 ms (mujoco-stiff, 240 Hz, iterations 3), "
+        "Bullet not reached (every setting failed)"
+    ]
+    assert front_of_engine(rows, "mujoco") == [2, 1]
+    assert across_engines(rows[:1], answers(rows[:1], [0.01])) == []

@@ -82,6 +82,20 @@ def test_a_failure_says_what_failed_first_with_its_number_and_its_bound() -> Non
     assert one.log == Path("run/cells/a.mcap")
 
 
+def test_the_number_behind_a_verdict_is_that_of_what_failed_or_of_what_is_nearest_its_bound() -> (
+    None
+):
+    near = verdict("slips by a", True, margin=0.1)._replace(measured=0.9)
+    far = verdict("turns by a", True, margin=0.8)._replace(measured=0.2)
+    bad = verdict("sinks by b", False, margin=-1.0)._replace(measured=3.0)
+    assert entry(far, near, verdict("is named a", True)).number == 0.9
+    assert entry(far, near).claim == "slips by a: 0.9, expected at most 1"
+    assert entry(far, near, bad).number == 3.0
+    alone = entry(verdict("is named a", True))  # it has no bound to be near to
+    assert math.isnan(alone.number)
+    assert alone.claim == ""
+
+
 def test_a_declared_failure_is_no_pass_and_no_news() -> None:
     one = entry(verdict("stands a", True), verdict("force b", False), controlled=("force b",))
     assert (one.verdict, one.fine) == ("known failure", True)

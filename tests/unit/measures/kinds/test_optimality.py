@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
@@ -11,8 +12,10 @@ import numpy.lib.recfunctions as recfunctions
 import pytest
 from synthetic import MASS, contacts, log_of, scene_of
 
+from lavendersim.errors import NotReportedError
 from lavendersim.measures import evaluate
 from lavendersim.measures.specs.optimality import Optimality
+from tests import engines
 
 SPEC = Optimality(kind="optimality")
 PUSHING, COMPLEMENTARY, CONE, SLIDING = range(4)
@@ -168,3 +171,12 @@ def test_what_is_no_number_in_one_part_is_none_of_the_whole() -> None:
         found = evaluate(SPEC, log)
         assert np.isnan(found).tolist() == np.isnan(evaluate(SPEC, other)).tolist()
         assert np.isnan(found[[PUSHING, COMPLEMENTARY, CONE]]).all()
+
+
+@engines.needs("mujoco")
+def test_of_an_engine_that_tells_no_targets_the_laws_are_not_judged(tmp_path: Path) -> None:
+    text = engines.BOX.replace("duration: 0.5", "duration: 0.05")
+    log = engines.log_of(engines.run_by(text, "mujoco", tmp_path))
+    assert len(log.contact) > 0
+    with pytest.raises(NotReportedError):
+        evaluate(SPEC, log)
