@@ -33,7 +33,9 @@ def test_top_precesses_at_the_rates_of_lagrange() -> None:
     np.testing.assert_allclose(way, length * (turned - turn[:, 2]), atol=TOLERANCE)
 
 
-@pytest.mark.parametrize("body", [disc(0.05, 0.005), on_a_tip((2e-3, 2e-3, 1e-3), (0, 0, -0.1), 0.01)])
+@pytest.mark.parametrize(
+    "body", [disc(0.05, 0.005), on_a_tip((2e-3, 2e-3, 1e-3), (0, 0, -0.1), 0.01)]
+)
 def test_what_rolls_keeps_its_energy(body) -> None:
     turn, spin = leaning(30), np.array([-10.0, 3.0, 20.0])
     _, end, last = body.after(0.4, turn, spin)
