@@ -14,17 +14,17 @@ SMOOTH = Row("it", "", lambda rate: {}, (math.inf, math.inf, 0.01), smooth=True)
 
 
 def found(coarse: float, fine: float) -> Found:
-    return Found(SMOOTH, {240: {"one": coarse}, 1000: {"one": fine}})
+    return Found(SMOOTH, {1000: {"one": coarse}, 4000: {"one": fine}})
 
 
 def test_second_order_is_met_by_what_falls_by_the_square() -> None:
-    one = found(9e-3, 9e-3 * (240 / 1000) ** 2)
+    one = found(9e-3, 9e-3 / 16)
     assert one.order == pytest.approx(2.0)
     assert not one.missed
 
 
 def test_first_order_and_a_bar_that_is_missed_are_named() -> None:
-    order, bar = found(0.01, 0.01 * 240 / 1000), found(1.0, 0.0576)
+    order, bar = found(0.01, 0.0025), found(0.0576, 0.0036)
     assert [line.split(":")[1] for line in order.missed] == [" order 1.00, at least 1.8"]
     assert bar.missed == ["it, one, 1/1000: 0.0576, at most 0.01"]
 

@@ -10,7 +10,6 @@ printed is the worst. With --check the exit code is 1 where a bar is missed.
 from __future__ import annotations
 
 import argparse
-import itertools
 import sys
 from collections.abc import Sequence
 from typing import Any
@@ -19,7 +18,7 @@ from lavendersim.experiment import load_experiment_text
 from lavendersim.scene.plan import plan_of_cell
 
 from . import impacts, meeting, resting, smooth
-from .row import RATES, Error, Found, Row, table
+from .row import FINER, RATES, Error, Found, Row, table
 from .scene import scenes_in_turn
 
 ROWS: tuple[Row, ...] = (*smooth.ROWS, *impacts.ROWS, *meeting.ROWS, *resting.ROWS)
@@ -27,11 +26,14 @@ ROWS: tuple[Row, ...] = (*smooth.ROWS, *impacts.ROWS, *meeting.ROWS, *resting.RO
 
 def measure(rows: Sequence[Row], rates: Sequence[int], said: bool = False) -> list[Found]:
     """Run all scenes of rows, those of one plan in one engine; said: print each as it is run."""
+    rates_of = {
+        row.name: (*rates, FINER) if row.smooth and RATES[-1] in rates else rates for row in rows
+    }
     found: dict[str, dict[int, dict[str, float]]] = {
-        row.name: {rate: {} for rate in rates} for row in rows
+        name: {rate: {} for rate in each} for name, each in rates_of.items()
     }
     groups: dict[tuple[Any, ...], dict[str, tuple[Row, int, str, str, Error]]] = {}
-    for row, rate in itertools.product(rows, rates):
+    for row, rate in ((row, rate) for row in rows for rate in rates_of[row.name]):
         for name, (text, error) in row.scenes(rate).items():
             (cell,) = load_experiment_text(text, f"{name}.yaml").cells()
             group = groups.setdefault((row.plan, plan_of_cell(cell).choices), {})
