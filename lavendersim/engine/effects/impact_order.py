@@ -12,10 +12,10 @@ Slow meetings are no impacts (`foreseen_impacts`): with a rebound that would end
 steps, or without rebound below SLOW times what forces change in a step (GLANCING of that across a
 gap, where the path of the contact bends). They are contacts of the motion (`impact_time`). An
 impact takes along what touches and does not part (`impact_rows`), and nothing else. One may have
-CROWD rows of contacts, and a step has WORK of them to spend on its parts, or REBOUND where something
-rebounds: there impacts without order may win energy. The rest of one that has spent them or meets a
-larger impact, or whose bodies overlap, is made in one part: its impacts at their times but without
-their order (/step: unordered).
+CROWD rows of contacts, and a step has WORK of them to spend on its parts, or REBOUND where
+something rebounds: there impacts without order may win energy. The rest of one that has spent them
+or meets a larger impact, or whose bodies overlap, is made in one part: its impacts at their times
+but without their order (/step: unordered).
 """
 
 from __future__ import annotations

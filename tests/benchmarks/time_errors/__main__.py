@@ -33,11 +33,12 @@ def measure(rows: Sequence[Row], rates: Sequence[int], said: bool = False) -> li
         name: {rate: {} for rate in each} for name, each in rates_of.items()
     }
     groups: dict[tuple[Any, ...], dict[str, tuple[Row, int, str, str, Error]]] = {}
-    for row, rate in ((row, rate) for row in rows for rate in rates_of[row.name]):
-        for name, (text, error) in row.scenes(rate).items():
-            (cell,) = load_experiment_text(text, f"{name}.yaml").cells()
-            group = groups.setdefault((row.plan, plan_of_cell(cell).choices), {})
-            group[f"{row.name} {rate} {name}"] = row, rate, name, text, error
+    for row in rows:
+        for rate in rates_of[row.name]:
+            for name, (text, error) in row.scenes(rate).items():
+                (cell,) = load_experiment_text(text, f"{name}.yaml").cells()
+                group = groups.setdefault((row.plan, plan_of_cell(cell).choices), {})
+                group[f"{row.name} {rate} {name}"] = row, rate, name, text, error
     for group in groups.values():
         texts = {key: text for key, (*_, text, _) in group.items()}
         for key, states in scenes_in_turn(texts):
