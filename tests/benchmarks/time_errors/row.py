@@ -11,7 +11,7 @@ from .scene import States
 RATES = (60, 240, 1000)  # steps a second
 FINER = 4000  # of smooth rows, too: their order is that from 1/1000 on
 SECOND = 1.8  # least observed order of what is of second order
-ROUND_OFF = 1e-7  # solves leave 1e-9 m/s in each of 4000 steps
+ROUND_OFF = 1e-6  # solves leave 1e-9 m/s in each of 4000 steps, of some 0.5 m/s
 Error = Callable[[States], float]
 Scenes = Mapping[str, tuple[str, Error]]  # variant: config, and how far off its run is
 
