@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from tests.benchmarks.time_errors import impacts
+from tests.benchmarks.time_errors import balls
 from tests.benchmarks.time_errors.__main__ import ROWS, measure
 from tests.benchmarks.time_errors.row import Found, Row, table
 
@@ -39,7 +39,7 @@ def test_every_row_has_another_name_and_scenes_at_each_rate() -> None:
 
 
 def test_cradles_are_measured_against_their_twins() -> None:
-    (row,) = (row for row in impacts.ROWS if row.name.startswith("cradles"))
+    (row,) = (row for row in balls.ROWS if row.name.startswith("cradles"))
     (one,) = measure([row], (240,))
     assert len(one.errors[240]) == 12
     assert not one.missed

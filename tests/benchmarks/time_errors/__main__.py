@@ -17,11 +17,11 @@ from typing import Any
 from lavendersim.experiment import load_experiment_text
 from lavendersim.scene.plan import plan_of_cell
 
-from . import impacts, meeting, resting, smooth
+from . import balls, impacts, meeting, resting, smooth
 from .row import FINER, RATES, Error, Found, Row, table
 from .scene import scenes_in_turn
 
-ROWS: tuple[Row, ...] = (*smooth.ROWS, *impacts.ROWS, *meeting.ROWS, *resting.ROWS)
+ROWS: tuple[Row, ...] = (*smooth.ROWS, *impacts.ROWS, *balls.ROWS, *meeting.ROWS, *resting.ROWS)
 
 
 def measure(rows: Sequence[Row], rates: Sequence[int], said: bool = False) -> list[Found]:
