@@ -29,7 +29,7 @@ _Two = ModelField(min_length=2, max_length=2)
 class Rope(ConfigModel):
     """A rope without mass between two points, each of a body: it is never longer than it is."""
 
-    kind: Literal["rope"]
+    kind: Literal["rope"] = ModelField(description="`rope`")
     between: Annotated[tuple[BodyName, ...], _Two] = ModelField(
         description="names of two bodies, of which at least one moves"
     )
