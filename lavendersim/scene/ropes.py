@@ -62,9 +62,7 @@ def with_ends(spec: Spec, bodies: np.ndarray, config: CellConfig) -> np.ndarray:
     return table
 
 
-def with_ropes(
-    spec: Spec, pairs: np.ndarray, bodies: np.ndarray, scene: CellScene
-) -> np.ndarray:
+def with_ropes(spec: Spec, pairs: np.ndarray, bodies: np.ndarray, scene: CellScene) -> np.ndarray:
     """Return the table of pairs with those of ropes before it; bodies: see `with_ends`."""
     if not spec.has("rope"):
         return pairs

@@ -38,7 +38,9 @@ def tied(
 
 def pendulum(rate: int, angle: float, duration: float) -> str:
     place = (math.sin(angle), 0.0, -math.cos(angle))
-    return tied({"hook": hook(), "bob": ball(0.05, 1.0, place)}, ["between: [hook, bob]"], rate, duration)
+    return tied(
+        {"hook": hook(), "bob": ball(0.05, 1.0, place)}, ["between: [hook, bob]"], rate, duration
+    )
 
 
 def conical(rate: int) -> str:
@@ -51,7 +53,7 @@ def conical(rate: int) -> str:
 def double(rate: int) -> str:
     (one, other), (first, second) = LENGTHS, ANGLES
     upper = np.array([one * math.sin(first), 0.0, -one * math.cos(first)])
-    lower = upper + (other * math.sin(second), 0.0, -other * math.cos(second))
+    lower = upper + np.array([other * math.sin(second), 0.0, -other * math.cos(second)])
     bodies = {
         "hook": hook(),
         "upper": ball(0.05, MASSES[0], upper),
@@ -91,10 +93,13 @@ def free_box(rate: int, height: float) -> str:
     """A ball and a box go round each other, tied at its corner; the box turns as well."""
     shape = f"{{kind: box, size: [0.2, 0.2, {height!r}]}}"
     bodies = {
-        "box": f"{{shape: {shape}, mass: 2.0, surface: one, position: [0, 0, 0], velocity: [0, -1, 0]}}",
+        "box": f"{{shape: {shape}, mass: 2.0, surface: one, position: [0, 0, 0], "
+        "velocity: [0, -1, 0]}",
         "light": ball(0.05, 0.5, (1, 0, 0), (0, 2.0, 0.5)),
     }
-    return tied(bodies, ["between: [box, light], points: [[0.1, 0.05, 0.1], [0, 0, 0]]"], rate, 2.0, 0.0)
+    return tied(
+        bodies, ["between: [box, light], points: [[0.1, 0.05, 0.1], [0, 0, 0]]"], rate, 2.0, 0.0
+    )
 
 
 def chain(links: int, load: float) -> str:
@@ -108,7 +113,11 @@ def chain(links: int, load: float) -> str:
 
 @pytest.fixture(scope="module")
 def ran() -> dict[str, States]:
-    texts = {f"pendulum {angle} {rate}": pendulum(rate, angle, 10.0) for angle in (0.5, 1.5) for rate in RATES}
+    texts = {
+        f"pendulum {angle} {rate}": pendulum(rate, angle, 10.0)
+        for angle in (0.5, 1.5)
+        for rate in RATES
+    }
     texts |= {f"conical {rate}": conical(rate) for rate in RATES}
     texts |= {f"double {rate}": double(rate) for rate in RATES}
     texts |= {f"pair {rate}": free_pair(rate) for rate in RATES}
@@ -125,7 +134,9 @@ def momenta(states: States, name: str) -> np.ndarray:
 
 
 @pytest.mark.parametrize(("angle", "rate"), [*itertools.product((0.5, 1.5), RATES)])
-def test_pendulum_keeps_its_energy_and_length(ran: dict[str, States], angle: float, rate: int) -> None:
+def test_pendulum_keeps_its_energy_and_length(
+    ran: dict[str, States], angle: float, rate: int
+) -> None:
     states = ran[f"pendulum {angle} {rate}"]
     # The first step begins at rest: its middle is its start, from which the bob falls by g dt^2/2
     # along the tangent, (g dt^2/2)^2/2 beyond the circle. Passes to the middle leave 1e-9 m/s.
@@ -148,11 +159,15 @@ def test_pendulum_has_the_period_of_its_amplitude(ran: dict[str, States], angle:
         crossed = states.time[down] + x[down] / (x[down] - x[down + 1]) / rate
         errors.append(abs((crossed[-1] - crossed[0]) / (len(crossed) - 1) - period))
     # Half of (w dt)^2 at most of the period; crossings are linear between steps.
-    assert all(error <= 0.5 * GRAVITY / rate**2 * period for error, rate in zip(errors, RATES, strict=True))
+    assert all(
+        error <= 0.5 * GRAVITY / rate**2 * period for error, rate in zip(errors, RATES, strict=True)
+    )
     assert np.mean(orders(errors)) == pytest.approx(2.0, abs=0.3)
 
 
-def test_conical_pendulum_goes_round_by_its_height_and_pulls_by_its_line(ran: dict[str, States]) -> None:
+def test_conical_pendulum_goes_round_by_its_height_and_pulls_by_its_line(
+    ran: dict[str, States],
+) -> None:
     rate_of_turn = math.sqrt(GRAVITY / math.cos(0.5))
     for rate in RATES:
         states = ran[f"conical {rate}"]
@@ -183,7 +198,9 @@ def test_double_pendulum_moves_as_its_equations_say(ran: dict[str, States]) -> N
 
     a, b = solve_ivp(rates, (0.0, 3.0), [*ANGLES, 0.0, 0.0], rtol=1e-11, atol=1e-12).y[:2, -1]
     truth = (one * math.sin(a) + other * math.sin(b), 0.0, -one * math.cos(a) - other * math.cos(b))
-    errors = [float(np.linalg.norm(ran[f"double {rate}"].of("lower")[0][-1] - truth)) for rate in RATES]
+    errors = [
+        float(np.linalg.norm(ran[f"double {rate}"].of("lower")[0][-1] - truth)) for rate in RATES
+    ]
     assert errors[-1] <= 1e-4
     assert orders(errors) == pytest.approx([2.0] * 3, abs=0.1)
 
@@ -200,7 +217,9 @@ def test_what_ropes_tie_in_free_flight_keeps_its_momenta(
 
 
 @pytest.mark.parametrize("rate", RATES)
-def test_pair_that_goes_round_keeps_its_energy_and_distance(ran: dict[str, States], rate: int) -> None:
+def test_pair_that_goes_round_keeps_its_energy_and_distance(
+    ran: dict[str, States], rate: int
+) -> None:
     states = ran[f"pair {rate}"]
     found = states.energy()
     np.testing.assert_allclose(found, found[0], rtol=1e-15 * len(found))

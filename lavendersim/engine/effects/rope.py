@@ -12,6 +12,7 @@ from collections.abc import Iterator, Mapping
 from typing import Annotated, Any, Literal
 
 from pydantic import Field as ModelField
+from pydantic import Strict
 
 from lavendersim.quantities.model import ConfigModel
 from lavendersim.quantities.names import BodyName, NewName
@@ -20,27 +21,29 @@ from lavendersim.quantities.quantity import Quantity, Vector, Vector3
 from ..spec import Spec
 from .decision import Decision, Facts, named
 from .effect import Column, Effect, Fields, Hooks, Kernel, RowTerms, kernel
-from .keys import SHARE, SceneKey, TurnOf
+from .keys import SceneKey, TurnOf
 
 _CENTRE: Vector3 = (0.0, 0.0, 0.0)
-_Two = ModelField(min_length=2, max_length=2)
+_TWO = ModelField(min_length=2, max_length=2)
+_Point = Annotated[Vector3, Vector(3, Quantity("m"))]
+# In a cell's JSON they are lists.
+_Names = Annotated[tuple[BodyName, ...], Strict(False), _TWO]
+_Points = Annotated[tuple[_Point, ...], Strict(False), _TWO]
 
 
 class Rope(ConfigModel):
     """A rope without mass between two points, each of a body: it is never longer than it is."""
 
     kind: Literal["rope"] = ModelField(description="`rope`")
-    between: Annotated[tuple[BodyName, ...], _Two] = ModelField(
-        description="names of two bodies, of which at least one moves"
-    )
-    points: Annotated[tuple[Annotated[Vector3, Vector(3, Quantity("m"))], ...], _Two] = ModelField(
+    between: _Names = ModelField(description="names of two bodies, of which at least one moves")
+    points: _Points = ModelField(
         default=(_CENTRE, _CENTRE),
         description="[m] where it is tied, each in the frame of its body; 0 is the centre of mass",
     )
     length: Annotated[float, Quantity("m", above=0)] | None = ModelField(
         default=None, description="[m] none: the distance of the two points as the run begins"
     )
-    restitution: SHARE = ModelField(
+    restitution: Annotated[float, Quantity(minimum=0, maximum=1)] = ModelField(
         default=0.0, description="[-] of the speed at which it becomes taut, what it throws back"
     )
 

@@ -15,9 +15,11 @@ DT = 0.01
 
 
 def log() -> SimpleNamespace:
-    """Ten steps: rope 1 pulls with 2 N, once with 4 N; rope 2 with 7 N in the last; surfaces touch."""
+    """Ten steps: rope 1 pulls with 2 N, once 4 N; rope 2 with 7 N in the last; surfaces touch."""
     pulls = [(step, 1, 2.0) for step in range(1, 9)] + [(9, 1, 4.0), (10, 2, 7.0), (10, 0, 100.0)]
-    contact = np.zeros(len(pulls), [("step", "i8"), ("rope", "i8"), ("force_n", "f8"), ("impulse_n", "f8")])
+    contact = np.zeros(
+        len(pulls), [("step", "i8"), ("rope", "i8"), ("force_n", "f8"), ("impulse_n", "f8")]
+    )
     contact["step"], contact["rope"], contact["force_n"] = zip(*pulls, strict=True)
     contact["impulse_n"] = DT * contact["force_n"]
     step = np.zeros(11, [("step", "i8"), ("time", "f8")])

@@ -30,7 +30,7 @@ def scene(rope: dict[str, Any] | None, **fixed: bool) -> dict[str, Any]:
     }
     cell = resolved(bodies, (0.0, 0.0, 0.0))
     if rope is not None:
-        cell["scene"]["connections"] = {"line": {"kind": "rope", "between": list(bodies), **rope}}
+        cell["scene"]["connections"] = {"line": {"kind": "rope", "between": tuple(bodies), **rope}}
     return cell
 
 
@@ -44,9 +44,9 @@ def test_a_rope_between_bodies_of_which_one_moves_is_required_and_no_other() -> 
 
 
 def test_a_rope_off_a_centre_of_what_moves_turns_it() -> None:
-    off = planned(scene({"points": [[0.0, 0.0, 0.0], [0.0, 0.1, 0.0]]}))
+    off = planned(scene({"points": ((0.0, 0.0, 0.0), (0.0, 0.1, 0.0))}))
     assert {"contact_torque", "rotation"} <= {*off.spec.effects}
-    on_the_hook = planned(scene({"points": [[0.0, 0.1, 0.0], [0.0, 0.0, 0.0]]}))
+    on_the_hook = planned(scene({"points": ((0.0, 0.1, 0.0), (0.0, 0.0, 0.0))}))
     assert not {"contact_torque", "rotation"} & {*on_the_hook.spec.effects}
 
 
