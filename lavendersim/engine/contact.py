@@ -12,7 +12,7 @@ from __future__ import annotations
 from typing import Any
 
 from .block import make_apply_vector, make_complete_block, make_relative_velocity
-from .compile import chain, kernel
+from .compile import chain, inner, kernel
 from .effects import made_by
 from .integrate import keeps_motion
 from .records import SPHERE
@@ -25,41 +25,33 @@ from .spin_block import (
     make_resists_turning,
     resists_turning,
 )
-from .vectors import Vec3, length
+from .vectors import Vec3, length, position
 
 
-def make_add_levers(spec: Spec):
-    """Return `kernel(contact, body_a, body_b, bx, by, bz) -> what they add to k_n` [1/kg].
+@inner
+def add_levers(contact, body_a, body_b, b, round_a, round_b):
+    """Fill the angular parts of a row; returns what they add to k_n [1/kg].
 
-    Fills the angular parts of a row. b: where B's centre is when the surfaces meet, across n [m].
+    b: where B's centre is when the surfaces meet, across n [m]. round_a, round_b: whether every
+    normal of the body passes through its centre: what the product leaves is round-off.
     """
-    ropes = spec.has("rope")
-
-    def add_levers(contact, body_a, body_b, bx, by, bz):
-        nx, ny, nz = contact.nx, contact.ny, contact.nz
-        # Every normal of a ball passes through its centre: what the product leaves is round-off.
-        round_a, round_b = body_a.shape == SPHERE, body_b.shape == SPHERE
-        if ropes:
-            if contact.span > 0.0:
-                round_a, round_b = False, False
-        rx, ry, rz = contact.x - body_a.x, contact.y - body_a.y, contact.z - body_a.z
-        lx, ly, lz = ry * nz - rz * ny, rz * nx - rx * nz, rx * ny - ry * nx
-        if round_a:
-            lx, ly, lz = 0.0, 0.0, 0.0
-        tx, ty, tz = inverse_inertia_times(body_a, lx, ly, lz)
-        contact.lever_ax, contact.lever_ay, contact.lever_az = lx, ly, lz
-        contact.turn_ax, contact.turn_ay, contact.turn_az = tx, ty, tz
-        k = lx * tx + ly * ty + lz * tz
-        rx, ry, rz = contact.x - bx, contact.y - by, contact.z - bz
-        lx, ly, lz = ry * nz - rz * ny, rz * nx - rx * nz, rx * ny - ry * nx
-        if round_b:
-            lx, ly, lz = 0.0, 0.0, 0.0
-        tx, ty, tz = inverse_inertia_times(body_b, lx, ly, lz)
-        contact.lever_bx, contact.lever_by, contact.lever_bz = lx, ly, lz
-        contact.turn_bx, contact.turn_by, contact.turn_bz = tx, ty, tz
-        return k + lx * tx + ly * ty + lz * tz
-
-    return kernel(add_levers, spec)
+    nx, ny, nz = contact.nx, contact.ny, contact.nz
+    rx, ry, rz = contact.x - body_a.x, contact.y - body_a.y, contact.z - body_a.z
+    lx, ly, lz = ry * nz - rz * ny, rz * nx - rx * nz, rx * ny - ry * nx
+    if round_a:
+        lx, ly, lz = 0.0, 0.0, 0.0
+    tx, ty, tz = inverse_inertia_times(body_a, lx, ly, lz)
+    contact.lever_ax, contact.lever_ay, contact.lever_az = lx, ly, lz
+    contact.turn_ax, contact.turn_ay, contact.turn_az = tx, ty, tz
+    k = lx * tx + ly * ty + lz * tz
+    rx, ry, rz = contact.x - b.x, contact.y - b.y, contact.z - b.z
+    lx, ly, lz = ry * nz - rz * ny, rz * nx - rx * nz, rx * ny - ry * nx
+    if round_b:
+        lx, ly, lz = 0.0, 0.0, 0.0
+    tx, ty, tz = inverse_inertia_times(body_b, lx, ly, lz)
+    contact.lever_bx, contact.lever_by, contact.lever_bz = lx, ly, lz
+    contact.turn_bx, contact.turn_by, contact.turn_bz = tx, ty, tz
+    return k + lx * tx + ly * ty + lz * tz
 
 
 def make_normal_velocity(spec: Spec):
@@ -193,19 +185,23 @@ def make_apply_start(spec: Spec):
 def make_complete_row(spec: Spec):
     """Return `kernel(contact, body_a, body_b) -> k_n` of a row without friction: its levers."""
     torque, swept = row_terms(spec).levers, spec.has("fast_bodies")
-    add_levers: Any = make_add_levers(spec) if torque else None
+    ropes = spec.has("rope")
 
     def complete_row(contact, body_a, body_b):
         k_n = body_a.inv_m + body_b.inv_m
         if torque:
-            bx, by, bz = body_b.x, body_b.y, body_b.z
+            b = position(body_b)
             if swept:
-                bx, by, bz = (
-                    bx + contact.tangential_x,
-                    by + contact.tangential_y,
-                    bz + contact.tangential_z,
+                b = Vec3(
+                    b.x + contact.tangential_x,
+                    b.y + contact.tangential_y,
+                    b.z + contact.tangential_z,
                 )
-            k_n += add_levers(contact, body_a, body_b, bx, by, bz)
+            round_a, round_b = body_a.shape == SPHERE, body_b.shape == SPHERE
+            if ropes:
+                if contact.span > 0.0:
+                    round_a, round_b = False, False
+            k_n += add_levers(contact, body_a, body_b, b, round_a, round_b)
         return k_n
 
     return kernel(complete_row, spec)
