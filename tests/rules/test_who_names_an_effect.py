@@ -118,7 +118,7 @@ ASKED = {
         ),
         "impact_order": (
             *("effects/impact_time", "effects/overlooked_points", "effects/sliding_stops"),
-            *("effects/warm_start", "memory", "midpoint_geometry"),
+            *("contact", "effects/warm_start", "memory", "midpoint_geometry"),
             *("parts", "respond", "runner/log_size"),
         ),
         "overlooked_points": (
