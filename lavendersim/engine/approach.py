@@ -11,7 +11,7 @@ from .compile import inner, kernel
 from .effects import made_once
 from .records import PLANE, TOUCHING
 from .spec import Spec
-from .vectors import Vec3, dot, length, minus, position
+from .vectors import Vec3, cross, dot, length, minus, plus, position, scaled
 
 NEVER = 1e300  # [s]
 # When a contact is due: by the rate of its own gap; a guess for any feature of its pair; found on
@@ -216,14 +216,46 @@ def make_bend(spec: Spec) -> Any:
     A normal turns with its bodies, and as they go round each other.
     """
     relative_speed, turns = make_relative_speed(spec), spec.has("rotation")
+    ropes = spec.has("rope")
 
     def bend(contact, bodies, motion):
         ma, mb = motion[contact.a], motion[contact.b]
         one, other, rate = bodies[contact.a], bodies[contact.b], 0.0
         if one.shape != PLANE and other.shape != PLANE:
             rate = length(relative_velocity(ma, mb)) / min(one.bound, other.bound)
+        if ropes:
+            if contact.span > 0.0:
+                rate = max(rate, length(relative_velocity(ma, mb)) / contact.span)
         if turns:
             rate += length(Vec3(ma.wx, ma.wy, ma.wz)) + length(Vec3(mb.wx, mb.wy, mb.wz))
         return rate * relative_speed(contact, bodies, motion)
 
     return kernel(bend, spec)
+
+
+def make_bend_of_rope(spec: Spec) -> Any:
+    """Return `kernel(end_a, end_b, bodies, motion) -> a` of its gap in free motion [m/s^2].
+
+    phi'' = -|d|'',  |d|'' = (|d'|^2 - (d'.u)^2)/|d| + u . (w_B x (w_B x r_B) - w_A x (w_A x r_A)),
+    u = d/|d|, beside what forces do: ends that pass each other go apart as they pass.
+    """
+    turns = spec.has("rotation")
+
+    def bend_of_rope(end_a, end_b, bodies, motion):
+        ma, mb = motion[end_a.owner], motion[end_b.owner]
+        d, v = minus(position(end_b), position(end_a)), relative_velocity(ma, mb)
+        size = length(d)
+        if size == 0.0:
+            return 0.0
+        u = scaled(1.0 / size, d)
+        bent = 0.0
+        if turns:
+            wa, wb = Vec3(ma.wx, ma.wy, ma.wz), Vec3(mb.wx, mb.wy, mb.wz)
+            turn_a = cross(wa, minus(position(end_a), position(bodies[end_a.owner])))
+            turn_b = cross(wb, minus(position(end_b), position(bodies[end_b.owner])))
+            v = plus(v, minus(turn_b, turn_a))
+            bent = dot(u, minus(cross(wb, turn_b), cross(wa, turn_a)))
+        along = dot(u, v)
+        return -bent - (dot(v, v) - along * along) / size
+
+    return kernel(bend_of_rope, spec)

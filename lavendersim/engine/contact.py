@@ -14,6 +14,7 @@ from typing import Any
 from .block import make_apply_vector, make_complete_block, make_relative_velocity
 from .compile import chain, inner, kernel
 from .effects import made_by
+from .integrate import keeps_motion
 from .records import SPHERE
 from .rotation import inverse_inertia_times
 from .row_terms import by_friction, row_terms
@@ -24,27 +25,28 @@ from .spin_block import (
     make_resists_turning,
     resists_turning,
 )
+from .vectors import Vec3, length, position
 
 
 @inner
-def add_levers(contact, body_a, body_b, bx, by, bz):
+def add_levers(contact, body_a, body_b, b, round_a, round_b):
     """Fill the angular parts of a row; returns what they add to k_n [1/kg].
 
-    b: where B's centre is when the surfaces meet, across n [m].
+    b: where B's centre is when the surfaces meet, across n [m]. round_a, round_b: whether every
+    normal of the body passes through its centre: what the product leaves is round-off.
     """
     nx, ny, nz = contact.nx, contact.ny, contact.nz
     rx, ry, rz = contact.x - body_a.x, contact.y - body_a.y, contact.z - body_a.z
     lx, ly, lz = ry * nz - rz * ny, rz * nx - rx * nz, rx * ny - ry * nx
-    # Every normal of a ball passes through its centre: what the product leaves is round-off.
-    if body_a.shape == SPHERE:
+    if round_a:
         lx, ly, lz = 0.0, 0.0, 0.0
     tx, ty, tz = inverse_inertia_times(body_a, lx, ly, lz)
     contact.lever_ax, contact.lever_ay, contact.lever_az = lx, ly, lz
     contact.turn_ax, contact.turn_ay, contact.turn_az = tx, ty, tz
     k = lx * tx + ly * ty + lz * tz
-    rx, ry, rz = contact.x - bx, contact.y - by, contact.z - bz
+    rx, ry, rz = contact.x - b.x, contact.y - b.y, contact.z - b.z
     lx, ly, lz = ry * nz - rz * ny, rz * nx - rx * nz, rx * ny - ry * nx
-    if body_b.shape == SPHERE:
+    if round_b:
         lx, ly, lz = 0.0, 0.0, 0.0
     tx, ty, tz = inverse_inertia_times(body_b, lx, ly, lz)
     contact.lever_bx, contact.lever_by, contact.lever_bz = lx, ly, lz
@@ -183,21 +185,49 @@ def make_apply_start(spec: Spec):
 def make_complete_row(spec: Spec):
     """Return `kernel(contact, body_a, body_b) -> k_n` of a row without friction: its levers."""
     torque, swept = row_terms(spec).levers, spec.has("fast_bodies")
+    ropes = spec.has("rope")
 
     def complete_row(contact, body_a, body_b):
         k_n = body_a.inv_m + body_b.inv_m
         if torque:
-            bx, by, bz = body_b.x, body_b.y, body_b.z
+            b = position(body_b)
             if swept:
-                bx, by, bz = (
-                    bx + contact.tangential_x,
-                    by + contact.tangential_y,
-                    bz + contact.tangential_z,
+                b = Vec3(
+                    b.x + contact.tangential_x,
+                    b.y + contact.tangential_y,
+                    b.z + contact.tangential_z,
                 )
-            k_n += add_levers(contact, body_a, body_b, bx, by, bz)
+            round_a, round_b = body_a.shape == SPHERE, body_b.shape == SPHERE
+            if ropes:
+                if contact.span > 0.0:
+                    round_a, round_b = False, False
+            k_n += add_levers(contact, body_a, body_b, b, round_a, round_b)
         return k_n
 
     return kernel(complete_row, spec)
+
+
+def make_stirred(spec: Spec):
+    """Return `kernel(body_a, body_b, motion, contact, params) -> speed`, of the ends of a rope.
+
+    What accelerates both bodies in a timestep, in any direction [m/s]: forces, and where impacts
+    are in order what the bodies did in the last part of a step.
+    """
+    kept, forced = spec.has("impact_order"), keeps_motion(spec)
+
+    def stirred(body_a, body_b, motion, contact, params):
+        speed = 0.0
+        if forced:
+            ma, mb = motion[contact.a], motion[contact.b]
+            speed += length(Vec3(ma.dvx, ma.dvy, ma.dvz)) + length(Vec3(mb.dvx, mb.dvy, mb.dvz))
+            speed *= params.timestep / params.dt
+        if kept:
+            a, b = body_a, body_b
+            last = length(Vec3(a.ax, a.ay, a.az)) + length(Vec3(b.ax, b.ay, b.az))
+            speed += params.timestep * last
+        return speed
+
+    return kernel(stirred, spec)
 
 
 def make_append_contact(spec: Spec, capture):
@@ -219,6 +249,8 @@ def make_append_contact(spec: Spec, capture):
     preparing = made_by(spec, "prepare")
     prepares = bool(preparing)
     prepare: Any = chain(preparing, spec) if prepares else None
+    ropes = spec.has("rope")
+    stirred: Any = make_stirred(spec) if ropes else None
 
     def append_contact(contact, bodies, velocities, motion, pair, params):
         body_a, body_b = bodies[contact.a], bodies[contact.b]
@@ -248,6 +280,10 @@ def make_append_contact(spec: Spec, capture):
                 + contact.ny * (mb.dvy - ma.dvy)
                 + contact.nz * (mb.dvz - ma.dvz)
             )
+        if ropes:
+            contact.stirred = 0.0
+            if contact.span > 0.0:
+                contact.stirred = stirred(body_a, body_b, motion, contact, params)
         if at_surface:
             contact.e = 0.0
         contact.target = 0.0

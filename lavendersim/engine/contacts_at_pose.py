@@ -69,7 +69,7 @@ def contacts_at_pose(engine: Engine) -> np.ndarray:
     A view that the next call overwrites. The engine needs `speculative`: its `state.motion` says
     how far around each body is looked.
     """
-    if not engine.spec.shape_pairs:
+    if not engine.spec.touches:
         return engine.contacts[:0]
     find = _kernel_of(engine.spec)
     while True:

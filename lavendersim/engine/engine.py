@@ -163,7 +163,7 @@ class Engine:
 
     def _grow_pairs(self) -> None:
         needed = int(self.workspace.broad_phase.state["needed"][0])
-        pairs = np.zeros(needed + needed // 4, self.state.pairs.dtype)
+        pairs = removal.larger_table(self.state.pairs, needed + needed // 4)
         self.state = self.state._replace(pairs=pairs)
         near = allocate_broad_phase(len(self.bodies), len(pairs))
         self.workspace = self.workspace._replace(broad_phase=near)
@@ -259,9 +259,10 @@ class Engine:
             templates = removal.make_untouchable(self.bodies, self.workspace.templates, rows)
             self.workspace = self.workspace._replace(templates=templates)
             self.list_pairs_anew()
+            pairs = removal.ropes_without(self.state.pairs, rows)
         else:
             pairs = removal.pairs_without(self.state.pairs, rows)
-            self.state = self.state._replace(pairs=pairs)
+        self.state = self.state._replace(pairs=pairs)
 
     def forget_contacts(self, body: int | None = None) -> None:
         """Drop cached impulses, of every contact or of those of one body (it was changed)."""

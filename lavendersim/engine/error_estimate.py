@@ -151,7 +151,7 @@ def make_estimate(spec: Spec) -> Any:
     differences. left: of the run, behind the substep [s]; residual: of its last solve [m/s].
     Returns e, the error of the same body that solves may leave, and that body; -1: none has one.
     """
-    turns, touches = spec.has("rotation"), bool(spec.shape_pairs)
+    turns, touches = spec.has("rotation"), spec.touches
     point_speed = make_point_speed(spec)
     respect_contacts: Any = make_respect_contacts(spec) if touches else None
 

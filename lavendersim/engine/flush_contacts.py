@@ -17,6 +17,7 @@ from __future__ import annotations
 from typing import Any
 
 from .approach import CREEP, FAR, make_rate, make_slowest
+from .collide.rope import ROPE
 from .collide.shapes import make_radius, make_support
 from .compile import kernel
 from .contact_lists import make_list_contacts
@@ -42,7 +43,7 @@ def make_drop_flush(spec: Spec) -> Any:
     support, radius = make_support(spec), make_radius(spec)
     rate, slowest = make_rate(spec), make_slowest(spec)
     keep_present, list_contacts = make_keep_present(spec), make_list_contacts(spec)
-    sleeps = spec.has("sleeping")
+    sleeps, ropes = spec.has("sleeping"), spec.has("rope")
 
     def passes(state, contact, other, workspace, params, least):
         bodies, motion = state.bodies, state.motion
@@ -104,6 +105,9 @@ def make_drop_flush(spec: Spec) -> Any:
         for c in range(count):
             contact = contacts[c]
             row = state.pairs[contact.pair]
+            if ropes:
+                if row.kind == ROPE:
+                    continue
             ajar = contact.phi > params.slop and contact.located != FAR
             ajar = ajar and not (bodies[row.a].shape == SPHERE and bodies[row.b].shape == SPHERE)
             if contact.rate >= -CREEP and not ajar:

@@ -14,6 +14,7 @@ from .approach import (
     ELSEWHERE,
     NEVER,
     make_bend,
+    make_bend_of_rope,
     make_change_ahead,
     make_forced,
     make_nearest_rate,
@@ -68,7 +69,8 @@ def make_foresee(spec: Spec) -> Any:
     turns, bend = spec.has("rotation"), make_bend(spec)
     restitution, compliance = spec.has("restitution"), spec.has("compliance")
     springs, cohesive = spec.has("contact_spring"), spec.has("cohesion")
-    overlooks = spec.has("overlooked_points")
+    overlooks, ropes = spec.has("overlooked_points"), spec.has("rope")
+    bend_of_rope: Any = make_bend_of_rope(spec) if ropes else None
     falls, restitution_at = made_once(spec, "restitution_at")
 
     def foresee(contact, pair, bodies, motion, params, met):
@@ -82,7 +84,12 @@ def make_foresee(spec: Spec) -> Any:
         if contact.phi <= TOUCHING and abs(v) <= CREEP:
             return False
         (dv, most), least = forced(contact, motion), slowest(contact, bodies, motion)
-        a, e = change_ahead(contact, motion) / left, 0.0
+        bent = 0.0
+        if ropes:
+            if contact.span > 0.0:
+                bent = bend_of_rope(bodies[pair.a], bodies[pair.b], bodies, motion) * left
+                dv, most = dv + bent, most + abs(bent)
+        a, e = (change_ahead(contact, motion) + bent) / left, 0.0
         if restitution:
             e = pair.restitution
         gap = contact.phi if contact.phi > TOUCHING else 0.0

@@ -12,6 +12,7 @@ from typing import Any
 from .collide.manifold.point import WHOLE, manifold_normal
 from .collide.narrow_phase import make_manifold
 from .collide.records import UNBOUNDED, put_normal
+from .collide.rope import ROPE
 from .compile import inner, kernel
 from .effects import made_once
 from .effects.gyroscopic import make_turn_midway
@@ -106,7 +107,7 @@ def make_look(spec: Spec) -> Any:
     compound, place_parts = made_once(spec, "place_parts")
     swept, stay = spec.has("fast_bodies"), make_stay(spec)
     ordered, nearest = spec.has("impact_order"), make_nearest(spec)
-    overlooks = spec.has("overlooked_points")
+    overlooks, ropes = spec.has("overlooked_points"), spec.has("rope")
 
     def look(state, count, poses, workspace):
         bodies, contacts = state.bodies, state.contacts
@@ -149,6 +150,9 @@ def make_look(spec: Spec) -> Any:
                     best = nearest(contact, scratch.manifold, found)
                 if best >= 0:
                     point = points[best]
+                    if ropes:
+                        if row.kind == ROPE:
+                            contact.span = a.hx - point.phi
                     contact.x, contact.y, contact.z = point.x, point.y, point.z
                     put_normal(contact, manifold_normal(scratch.manifold))
                     if swept:

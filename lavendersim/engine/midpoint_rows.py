@@ -55,7 +55,7 @@ def make_stirs(spec: Spec) -> Any:
 
 def make_is_turning(spec: Spec) -> Any:
     """Return `kernel(contacts, count, bodies, motion, params) -> whether the geometry changes`."""
-    turns = spec.has("rotation")
+    turns, ropes = spec.has("rotation"), spec.has("rope")
 
     def is_turning(contacts, count, bodies, motion, params):
         for c in range(count):
@@ -71,6 +71,9 @@ def make_is_turning(spec: Spec) -> Any:
                 size = min(size, body_b.bound)
             if body_a.shape != PLANE and body_b.shape != PLANE:
                 rate = speed / size
+            if ropes:
+                if contact.span > 0.0:
+                    rate = max(rate, speed / contact.span)
             if turns:
                 spin = sqrt(ma.wx * ma.wx + ma.wy * ma.wy + ma.wz * ma.wz)
                 spin += sqrt(mb.wx * mb.wx + mb.wy * mb.wy + mb.wz * mb.wz)
@@ -86,13 +89,18 @@ def make_is_turning(spec: Spec) -> Any:
 def make_lasting(spec: Spec) -> Any:
     """Return `kernel(contact, params)`, of a row completed at the start: whether it lasts."""
     friction, springs = row_terms(spec).frictional, spec.has("contact_spring")
+    ropes = spec.has("rope")
 
     def lasting(contact, params):
         contact.begin_n = contact.v_n_pre - contact.dv_n
         contact.middle_n = contact.begin_n
         forced = abs(contact.dv_n) * params.timestep / params.dt
         closed = contact.phi <= params.slop
-        calm = -(FORCED * forced + CALM) <= contact.begin_n <= CALM
+        closes, opens = FORCED * forced + CALM, CALM
+        if ropes:
+            if contact.span > 0.0:  # its ends swing by as much to either side of its length
+                closes = opens = FORCED * contact.stirred + CALM
+        calm = -closes <= contact.begin_n <= opens
         contact.lasts, contact.jumps = 1 if closed and calm else 0, 0
         if springs:
             if contact.spring_compliance > 0.0:  # its force has no jump
@@ -148,14 +156,19 @@ def make_shift(spec: Spec) -> Any:
     terms = row_terms(spec)
     friction, frictionless = terms.frictional, terms.frictionless
     springs, spring_row = made_once(spec, "spring_row")
-    swept = spec.has("fast_bodies")
+    swept, ropes = spec.has("fast_bodies"), spec.has("rope")
     normal_velocity = make_normal_velocity(spec)
     relative_velocity = make_relative_velocity(spec)
 
     def shift(contact, lead, params):
         la, lb = lead[contact.a], lead[contact.b]
         contact.middle_n = normal_velocity(contact, la, lb)
-        b = contact.middle_n - min(contact.begin_n, 0.0)
+        kept = min(contact.begin_n, 0.0)
+        if ropes:
+            # What its ends approach by is no mode to damp: it is what keeps length and energy.
+            if contact.span > 0.0:
+                kept = 0.0
+        b = contact.middle_n - kept
         ajar = max(contact.phi - params.slop, 0.0)
         forced = abs(contact.dv_n) * params.timestep / params.dt
         turned = TURNED * abs(b) + CALM
@@ -163,7 +176,11 @@ def make_shift(spec: Spec) -> Any:
         soft = False
         if springs:
             soft = contact.spring_compliance > 0.0
-        calm = -(FORCED * forced + turned) <= contact.begin_n <= turned
+        closes, opens = FORCED * forced + turned, turned
+        if ropes:
+            if contact.span > 0.0:
+                closes = opens = FORCED * contact.stirred + turned
+        calm = -closes <= contact.begin_n <= opens
         if not soft and (not calm or ajar > AJAR * params.dt * abs(b)):
             return
         if swept:  # its gap is that along the normal of where bodies pass each other, not theirs

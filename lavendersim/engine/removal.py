@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from .collide.rope import ROPE
+
 NO_PAIR = -1  # `kind` of two classes of bodies that never touch
 # What says of a body that it moves, or may again.
 _MOVES = (
@@ -45,6 +47,24 @@ def cut_links(links: np.ndarray, bodies: np.ndarray, body: int) -> None:
 def pairs_without(pairs: np.ndarray, rows: np.ndarray) -> np.ndarray:
     """Return the table of pairs without those of some rows of the body table."""
     return np.ascontiguousarray(pairs[~(rows[pairs["a"]] | rows[pairs["b"]])])
+
+
+def larger_table(pairs: np.ndarray, count: int) -> np.ndarray:
+    """Return a table of pairs with so many rows, in which ropes stand as they did."""
+    table = np.zeros(count, pairs.dtype)
+    ropes = pairs[pairs["kind"] == ROPE]
+    table[: len(ropes)] = ropes
+    return table
+
+
+def ropes_without(pairs: np.ndarray, rows: np.ndarray) -> np.ndarray:
+    """Return the table of a broad phase without the ropes of some rows of the body table.
+
+    What it had of other pairs is listed anew.
+    """
+    if not (pairs["kind"] == ROPE).any():
+        return pairs
+    return larger_table(pairs_without(pairs, rows), len(pairs))
 
 
 def make_untouchable(bodies: np.ndarray, templates: np.ndarray, rows: np.ndarray) -> np.ndarray:

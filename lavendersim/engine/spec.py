@@ -46,6 +46,11 @@ class Spec(NamedTuple):
         """Return this structure with fewer effects."""
         return self._replace(effects=tuple(e for e in self.effects if e not in effects))
 
+    @property
+    def touches(self) -> bool:
+        """Whether steps may have contacts: a taut rope is one."""
+        return bool(self.shape_pairs) or self.has("rope")
+
     def collides(self, pair: str) -> bool:
         """Whether the manifold of `pair` is part of this engine."""
         return pair in self.shape_pairs

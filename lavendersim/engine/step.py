@@ -60,7 +60,7 @@ def make_advance(spec: Spec) -> Any:
 
     parameters, counters: records of shape (1,); the latter say how many steps are done.
     """
-    touches, record_residuals = bool(spec.shape_pairs), has_hook(spec, "sweep_row")
+    touches, record_residuals = spec.touches, has_hook(spec, "sweep_row")
     # The row of a step hashes the poses, whether or not they are logged.
     make_log_pose: Any = BY_NAME["pose_log"].hooks.log_pose
     log_pose = make_log_pose(spec) if spec.has("step_log") else None

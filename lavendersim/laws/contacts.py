@@ -27,7 +27,10 @@ _GEOMETRY = {
     *("kinematic", "restitution", "rotation", "static_friction", "surface_velocity"),
 }
 # Impulses of these are in no pose and no velocity, or they are no contact of three numbers.
-_UNKNOWN = ("cohesion", "drag", "rolling_friction", "spring", "torsional_friction", "varying_force")
+_UNKNOWN = (
+    *("cohesion", "drag", "rolling_friction", "rope", "spring", "torsional_friction"),
+    "varying_force",
+)
 
 # Of a body's radius: what pushes nearer than that and cannot meet it pushes across a gap [-].
 AROUND: Final = 0.1

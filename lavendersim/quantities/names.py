@@ -1,4 +1,4 @@
-"""Name types: a field of such a type must name a body, plane, measure or axis that exists.
+"""Name types: a field of such a type must name what exists: a body, plane, measure, axis.
 
 Which names exist is known to the file that is read: it is asked in the context of the validation.
 """
@@ -12,7 +12,7 @@ from pydantic import AfterValidator, StringConstraints, ValidationInfo
 
 from lavendersim.quantities.quantity import sentence_error
 
-NamedKind = Literal["body", "plane", "measure", "axis", "surface"]
+NamedKind = Literal["body", "plane", "measure", "axis", "surface", "connection"]
 
 
 def _known(kind: NamedKind, name: str, info: ValidationInfo) -> str:
@@ -27,6 +27,7 @@ BodyName = Annotated[str, AfterValidator(partial(_known, "body"))]
 PlaneName = Annotated[str, AfterValidator(partial(_known, "plane"))]
 MeasureName = Annotated[str, AfterValidator(partial(_known, "measure"))]
 AxisName = Annotated[str, AfterValidator(partial(_known, "axis"))]
+ConnectionName = Annotated[str, AfterValidator(partial(_known, "connection"))]
 SurfaceName = Annotated[str, AfterValidator(partial(_known, "surface"))]
 
 # A constant's name: it stands in formulas, where `-` subtracts.

@@ -29,6 +29,7 @@ from .classes import RowClass
 from .colliders import colliders
 from .drive_tables import drive_tables
 from .pair_tables import pair_tables
+from .ropes import with_ends, with_ropes
 from .stages import later_forms
 from .trigger_table import trigger_table
 
@@ -39,8 +40,8 @@ _NO_STEPS = (1, 0)
 class Scene(NamedTuple):
     """The arrays of one scene, as the engine takes them, and the names of its bodies.
 
-    Behind the rows of the bodies stand those of the parts of compounds; `names` and `poses` end
-    before them.
+    Behind the rows of the bodies stand those of the parts of compounds and of the ends of ropes;
+    `names` and `poses` end before them.
     """
 
     names: list[str]
@@ -151,7 +152,8 @@ def build(config: CellConfig, spec: Spec) -> Scene:
     rows = colliders(described)
     poses = np.array([pose_of(body) for body in described]).reshape(-1, 7)
     bodies, hulls = body_table(spec, rows, poses)
-    velocities = allocate_velocities(spec, len(rows))
+    bodies = with_ends(spec, bodies, config)
+    velocities = allocate_velocities(spec, len(bodies))
     turns = "wx" in (velocities.dtype.names or ())
     for velocity, body in zip(velocities, described, strict=False):  # parts have none
         velocity["vx"], velocity["vy"], velocity["vz"] = body.velocity
@@ -164,7 +166,7 @@ def build(config: CellConfig, spec: Spec) -> Scene:
         names=list(config.scene.bodies),
         bodies=bodies,
         velocities=velocities,
-        pairs=tables.pairs,
+        pairs=with_ropes(spec, tables.pairs, bodies, config.scene),
         parameters=_parameters(config, clock),
         poses=poses,
         clock=clock,

@@ -207,7 +207,7 @@ class BodyEvents:
         engine, scene = self._engine, self._scene
         described = list(self._bodies.values())
         rows = colliders(described)
-        for record, row in zip(engine.bodies, rows, strict=True):
+        for record, row in zip(engine.bodies, rows, strict=False):  # ends of ropes have none
             if row.owner == index:
                 fill_effects(record, row.body)
         if engine.spec.has("broad_phase"):

@@ -13,11 +13,13 @@ from lavendersim.cell import (
     changes_of_gravity,
 )
 from lavendersim.engine.effects import EFFECTS, BodyFacts, Facts, PairFacts
+from lavendersim.engine.effects.rope import turned as turned_by_ropes
 from lavendersim.geometry.bodies import is_movable
 from lavendersim.geometry.shapes import bounding_radius
 
 from .classes import RowPair, class_pairs
 from .colliders import colliders, parts_of
+from .ropes import facts_of_ropes
 from .stages import later_forms, stages_of
 
 
@@ -31,7 +33,7 @@ def _body_facts(config: CellConfig) -> Iterator[BodyFacts]:
     acting = [one for effect in EFFECTS if effect.acts_on for one in effect.acts_on(config.scene)]
     pulled = {name for name, _ in acting}
     moving = [effect.moves for effect in EFFECTS if effect.moves]
-    turned = levers | {name for name, turns in acting if turns}
+    turned = levers | {name for name, turns in acting if turns} | {*turned_by_ropes(config.scene)}
     later = later_forms(config)
     for name, body in config.scene.bodies.items():
         inertia = body.inertia or (0.0, 0.0, 0.0)
@@ -84,18 +86,22 @@ def facts_of(config: CellConfig, record: bool = True) -> Facts:
     names = list(config.scene.bodies)
     numerics = config.numerics
     pairs, row_pairs = _pairs_over_time(config)
+    ropes = tuple(facts_of_ropes(config.scene))
     owners = [row.owner for row in colliders(list(config.scene.bodies.values()))]
     return Facts(
         bodies=tuple(_body_facts(config)),
-        pairs=tuple(
-            PairFacts(
-                a=names[owners[pair.a]],
-                b=names[owners[pair.b]],
-                shape_pair=pair.shape_pair,
-                row_pairs=pair.row_pairs,
-                surface=pair.surface,
-            )
-            for pair in pairs
+        pairs=(
+            *(
+                PairFacts(
+                    a=names[owners[pair.a]],
+                    b=names[owners[pair.b]],
+                    shape_pair=pair.shape_pair,
+                    row_pairs=pair.row_pairs,
+                    surface=pair.surface,
+                )
+                for pair in pairs
+            ),
+            *ropes,
         ),
         gravity=config.scene.gravity,
         triggers=tuple(one.when.text for one in config.triggered),
@@ -103,7 +109,7 @@ def facts_of(config: CellConfig, record: bool = True) -> Facts:
         stabilisation_gain=numerics.stabilisation_gain,
         projection=numerics.projection if numerics.projection_sweeps else 0.0,
         warm_start=numerics.warm_start,
-        pair_count=row_pairs,
+        pair_count=row_pairs + len(ropes),
         speculative=numerics.speculative,
         impacts=numerics.impacts,
         simultaneous_impacts=numerics.simultaneous_impacts,

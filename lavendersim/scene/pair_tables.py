@@ -15,6 +15,7 @@ from lavendersim.cell import CellBody, Surface
 from lavendersim.cell.mixing import mixed
 from lavendersim.engine.collide import SHAPE_PAIRS
 from lavendersim.engine.collide.broad.broad_phase import template_dtype
+from lavendersim.engine.collide.rope import ROPE
 from lavendersim.engine.effects import surface_fields
 from lavendersim.engine.record_layout import allocate_pairs
 from lavendersim.engine.removal import NO_PAIR
@@ -45,7 +46,7 @@ def pair_tables(
     later: bodies as events make them; their classes have templates, too.
     """
     if spec.has("broad_phase"):
-        classes, bodies["material"] = classes_of(rows)
+        classes, bodies["material"][: len(rows)] = classes_of(rows)
         of_later = (class_of(row) for row in colliders(list(later)))
         every = tuple(dict.fromkeys([*classes, *of_later]))
         pairs = allocate_pairs(spec, PAIRS_PER_BODY * len(bodies))
@@ -55,7 +56,7 @@ def pair_tables(
     for index, (line, pair) in enumerate(zip(pairs, candidates, strict=True)):
         line["a"], line["b"], line["key"] = pair.a, pair.b, index
         line["kind"] = SHAPE_PAIRS[pair.shape_pair].kind
-        _fill(line, pair.surface)
+        fill_surface(line, pair.surface)
     return PairTables(pairs, np.zeros((0, 0), template_dtype([])), ())
 
 
@@ -71,12 +72,14 @@ def list_materials(
 def mix_again(pairs: np.ndarray, rows: Sequence[Collider], owner: int) -> None:
     """Mix the surfaces of all pairs of one body, which has changed its own, anew."""
     for line in pairs:
+        if line["kind"] == ROPE:  # it has no surface
+            continue
         a, b = rows[line["a"]], rows[line["b"]]
         if owner in (a.owner, b.owner):
-            _fill(line, mixed(a.body.surface, b.body.surface))
+            fill_surface(line, mixed(a.body.surface, b.body.surface))
 
 
-def _fill(record: np.void, surface: Surface) -> None:
+def fill_surface(record: np.void, surface: Surface) -> None:
     """Write the surface properties that a record holds; absent effects have no column."""
     for name in Surface.model_fields:
         if name in (record.dtype.names or ()):
@@ -93,5 +96,5 @@ def _templates(spec: Spec, classes: Sequence[RowClass]) -> np.ndarray:
             swap, name = ordered((one.kind, other.kind))
             template = templates[i, j]
             template["kind"], template["swap"] = SHAPE_PAIRS[name].kind, swap
-            _fill(template, mixed(one.surface, other.surface))
+            fill_surface(template, mixed(one.surface, other.surface))
     return templates

@@ -167,6 +167,7 @@ SCENES: dict[str, Callable[[], dict[str, Any]]] = {
 # For each effect scenes that do not require it, with what it would act on if it did.
 CASES: dict[str, tuple[str, ...]] = {
     "compound": ("frictional balls",),
+    "rope": ("balls",),
     "broad_phase": ("balls",),
     "gravity": ("drifting balls",),
     "external_force": ("frictional balls",),

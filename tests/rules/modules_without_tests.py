@@ -24,6 +24,7 @@ DECLARATIONS = {
     "figures/specs/row_against_index.py": "fields of a panel's config",
     "figures/specs/stability_map.py": "fields of a panel's config",
     "measures/specs/catalogue.py": "a union of models",
+    "measures/specs/connections.py": "fields of a measure's config",
     "measures/specs/convergence.py": "fields of a measure's config",
     "measures/specs/energy.py": "fields of a measure's config",
     "measures/specs/impact.py": "fields of a measure's config",

@@ -27,7 +27,7 @@ SECTIONS = {
     "accelerate": ("gravity", "external_force", "drag", "spring", "kinematic"),
     "collide": ("compound", "broad_phase", "speculative", "fast_bodies"),
     "rows": (
-        *("contact_torque", "friction", "frictionless_contact"),
+        *("contact_torque", "friction", "frictionless_contact", "rope"),
         *("stabilisation", "compliance", "restitution", "surface_velocity", "capture_in_sweeps"),
         *("cohesion", "contact_spring", "static_friction", "falling_restitution"),
     ),

@@ -63,6 +63,8 @@ ELSEWHERE = {
         "engine/effects/falling_restitution.py": "lowers its coefficient",
         "engine/effects/fast_bodies.py": "captured, it gives energy",
         "engine/effects/impact_energy.py": "takes the place of its law",
+        "engine/effects/rope.py": "a rope has one of its own, by the same name",
+        "scene/ropes.py": "a rope has one of its own, by the same name",
         "engine/foreseen_impacts.py": "a rebound tells an impact from a lasting contact",
         "engine/overlooked_points.py": "a rebound tells an impact from a lasting contact",
     },
@@ -116,7 +118,7 @@ ASKED = {
         ),
         "impact_order": (
             *("effects/impact_time", "effects/overlooked_points", "effects/sliding_stops"),
-            *("effects/warm_start", "memory", "midpoint_geometry"),
+            *("contact", "effects/warm_start", "memory", "midpoint_geometry"),
             *("parts", "respond", "runner/log_size"),
         ),
         "overlooked_points": (
@@ -147,6 +149,14 @@ ASKED = {
         "projection": ("integrate", "memory"),
         "surface_velocity": ("effects/static_friction",),
         "capture_in_sweeps": ("effects/restitution",),
+    },
+    "rows that collision detection does not make: along the line of two ends": {
+        "rope": (
+            *("approach", "collide/broad/broad_phase", "collide/narrow_phase", "collide/swept"),
+            *("contact", "effects/impact_order", "flush_contacts", "foreseen_impacts"),
+            *("midpoint_geometry", "midpoint_rows", "spec", "scene/facts", "scene/ropes"),
+            "measures/kinds/connections",
+        ),
     },
     "arrays that an engine has only with it, and who is awake": {
         "sleeping": (

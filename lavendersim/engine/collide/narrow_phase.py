@@ -16,6 +16,7 @@ from ..vectors import Vec3, dot
 from .manifold.point import LEFT_OUT, WHOLE, manifold_normal
 from .pairs import SHAPE_PAIRS
 from .records import put_normal
+from .rope import ROPE, make_rope
 from .swept import make_is_fast, make_swept_manifold
 
 
@@ -30,7 +31,21 @@ def displacement(of_a, of_b, share, dt):
 
 
 def make_manifold(spec: Spec, names: tuple[str, ...]):
-    """Return `kernel(kind, a, b, margin, scratch) -> count` for these pairs."""
+    """Return `kernel(kind, a, b, margin, scratch) -> count` for these pairs, and for ropes."""
+    of_shapes = _make_manifold_of_shapes(spec, names)
+    if not spec.has("rope"):
+        return of_shapes
+    rope = make_rope(spec)
+
+    def manifold_or_rope(kind, a, b, margin, scratch):
+        if kind == ROPE:
+            return rope(a, b, margin, scratch)
+        return of_shapes(kind, a, b, margin, scratch)
+
+    return kernel(manifold_or_rope, spec)
+
+
+def _make_manifold_of_shapes(spec: Spec, names: tuple[str, ...]):
     if not names:
 
         def no_manifold(kind, a, b, margin, scratch):
@@ -45,7 +60,7 @@ def make_manifold(spec: Spec, names: tuple[str, ...]):
             return own_manifold(a, b, margin, scratch)
 
         return kernel(only_manifold, spec)
-    others = make_manifold(spec, names[1:])
+    others = _make_manifold_of_shapes(spec, names[1:])
 
     def manifold(kind, a, b, margin, scratch):
         if kind == own_kind:
@@ -70,7 +85,7 @@ def make(spec: Spec):
     is_fast: Any = make_is_fast(spec) if sweeps else None
     swept_manifold: Any = make_swept_manifold(spec, manifold) if sweeps else None
     share = 0.5 if spec.has("midpoint") else 1.0
-    compound = spec.has("compound")
+    compound, ropes = spec.has("compound"), spec.has("rope")
     sleeps, still = made_once(spec, "is_still")
     overlooks = spec.has("overlooked_points")
     note_left_out: Any = make_note_left_out(spec) if overlooks else None
@@ -125,6 +140,8 @@ def make(spec: Spec):
                 contact.x, contact.y, contact.z = point.x, point.y, point.z
                 put_normal(contact, n)
                 contact.phi = point.phi
+                if ropes:
+                    contact.span = bodies[i].hx - point.phi if pairs[p].kind == ROPE else 0.0
                 if sweeps:
                     # Across n B's surface is touched where B will be at the impact.
                     along = dot(d, n)

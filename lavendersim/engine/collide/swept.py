@@ -31,7 +31,7 @@ from typing import NamedTuple
 
 from ..compile import inner, kernel
 from ..effects.fast_bodies import FAST
-from ..records import PLANE, TOUCHING
+from ..records import PLANE, ROPE_END, TOUCHING
 from ..spec import Spec
 from ..vectors import Vec3, dot, plus_scaled, position
 from .convex.separation import make_separation
@@ -61,12 +61,16 @@ class Impact(NamedTuple):
 def make_is_fast(spec: Spec):
     """Return `kernel(a, b, d)`: whether the displacement d relative to each other exceeds FAST R.
 
-    Never with a plane: its normal is the same from everywhere.
+    Never with a plane: its normal is the same from everywhere; nor the ends of a rope.
     """
+    ropes = spec.has("rope")
 
     def is_fast(a, b, d):
         if a.shape == PLANE or b.shape == PLANE:
             return False
+        if ropes:
+            if a.shape == ROPE_END:
+                return False
         far = FAST * min(a.bound, b.bound)
         return dot(d, d) > far * far
 

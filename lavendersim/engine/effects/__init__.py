@@ -18,6 +18,7 @@ from .time_functions import TimeFunction
 # Order matters within a hook: kernels of one hook run in this order.
 NAMES: Final = (
     "compound",
+    "rope",
     "broad_phase",
     "gravity",
     "external_force",

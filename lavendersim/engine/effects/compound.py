@@ -1,7 +1,8 @@
 """Compounds: bodies of several parts. Parts collide; contacts act on the body that owns them.
 
     x = X + R p,   q = Q p_q        part (x, q), owner (X, Q), place in the owner's frame (p, p_q)
-Parts are rows of the body table behind all bodies; every other row is its own owner.
+Parts are rows of the body table behind all bodies; every other row is its own owner. The ends of
+ropes are parts that touch nothing.
 """
 
 from math import sqrt
@@ -16,6 +17,8 @@ def decide(facts: Facts) -> Decision:
     whole = [body.name for body in facts.bodies if body.parts]
     if whole:
         return Decision(True, f"{named(whole)}: made of parts")
+    if any(pair.shape_pair == "rope" for pair in facts.pairs):
+        return Decision(True, "ends of ropes are tied to bodies, and follow them")
     return Decision(False, "every body is one shape")
 
 

@@ -47,6 +47,7 @@ class PairFacts(NamedTuple):
     surface: Any  # of the contact: the surface keys of the effects, mixed
     shape_pair: str = ""  # name of the manifold
     row_pairs: int = 1  # how many pairs it stands for
+    off_centre: bool = False  # a rope, whose line may miss a centre of mass that it pulls
 
     @property
     def resists_turning(self) -> bool:

@@ -106,7 +106,7 @@ def make_order(spec: Spec) -> Any:
     keep_motion = make_keep_motion(spec)
     edged = drop_flush is not None
     turns = spec.has("rotation")
-    springs = spec.has("contact_spring")
+    springs, ropes = spec.has("contact_spring"), spec.has("rope")
     work = REBOUND if spec.has("restitution") else WORK
     stops, first_stop = made_once(spec, "first_stop")
 
@@ -168,6 +168,8 @@ def make_order(spec: Spec) -> Any:
                 deep = contact.phi < -OVERLAP
                 if springs:
                     deep = deep and state.pairs[contact.pair].compliance == 0.0
+                if ropes:  # too long by what its turn left: nothing is inside of anything
+                    deep = deep and contact.span == 0.0
                 if deep:
                     counters.unordered = 1
                     return count, left

@@ -47,6 +47,7 @@ class Reading:
             "body": bodies_of(self.root),
             "plane": self.root.get(*BODIES).entries,
             "measure": self.root.get("measure").entries,
+            "connection": self.root.get("scene", "connections").entries,
             "surface": self.root.get("scene", "surfaces").entries,
             "axis": self._axes,
         }

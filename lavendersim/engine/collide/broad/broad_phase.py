@@ -10,13 +10,14 @@ The list is valid as long as every body stays in its fat bounds.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ...compile import kernel
-from ...records import COMPOUND, I8, PAIR, PLANE, Field, dtype
+from ...records import COMPOUND, I8, PAIR, PLANE, ROPE_END, Field, dtype
 from ...spec import Spec
+from ..rope import make_count_ropes
 from .fat_bounds import FAT_BOUNDS, make_is_valid, make_place_bounds
 from .pair_rows import make_put_pair, make_write_rows
 from .tree import (
@@ -107,6 +108,7 @@ def template_dtype(surface: list[Field]) -> np.dtype:
 def make_sort_leaves(spec: Spec):
     """Return `kernel(bodies, work) -> leaves`: bodies with bounds, sorted for the tree."""
     compound, sleeps = spec.has("compound"), spec.has("sleeping")
+    ropes = spec.has("rope")
 
     def sort_leaves(bodies, work):
         fat_bounds, codes, order, leaves = work.fat_bounds, work.codes, work.order, work.leaves
@@ -116,6 +118,9 @@ def make_sort_leaves(spec: Spec):
         for i in range(bodies.shape[0]):
             if bodies[i].shape == PLANE or bodies[i].shape == COMPOUND:
                 continue
+            if ropes:
+                if bodies[i].shape == ROPE_END:
+                    continue
             r = fat_bounds[i]
             low_x, low_y, low_z = min(low_x, r.x), min(low_y, r.y), min(low_z, r.z)
             high_x, high_y, high_z = max(high_x, r.x), max(high_y, r.y), max(high_z, r.z)
@@ -158,8 +163,11 @@ def make(spec: Spec, surface: list[Field] | tuple[Field, ...] = ()):
     -1 when there are too few rows; `work.state["needed"]` says how many it takes.
     surface: the fields that templates have beside `kind` and `swap`, see `template_dtype`. Rows
     of `bodies` need `material`; with the effect `compound`, parts need `owner`, the row of their
-    body, and every other row has its own there. Pairs that nothing can push get no row.
+    body, and every other row has its own there. Pairs that nothing can push get no row. Rows of
+    ropes stay where they are, before all others.
     """
+    ropes = spec.has("rope")
+    count_ropes: Any = make_count_ropes(spec) if ropes else None
     is_valid, place_bounds, sort_leaves = (
         make_is_valid(spec),
         make_place_bounds(spec),
@@ -200,19 +208,22 @@ def make(spec: Spec, surface: list[Field] | tuple[Field, ...] = ()):
     find_pairs = kernel(find_pairs, spec)
 
     def broad_phase(bodies, velocities, pairs, templates, params, work):
-        state = work.state[0]
+        state, kept, rows = work.state[0], 0, pairs
+        if ropes:
+            kept = count_ropes(pairs)
+            rows = pairs[kept:]
         if state.listed == 1:
             if is_valid(bodies, velocities, params, work.fat_bounds):
-                return state.count
+                return kept + state.count
         state.listed = 0
         place_bounds(bodies, velocities, params, work.fat_bounds)
         found = find_pairs(bodies, templates, work)
-        state.needed = found
-        if found > min(pairs.shape[0], work.found.first.shape[0]):
+        state.needed = kept + found
+        if found > min(rows.shape[0], work.found.first.shape[0]):
             return -1
-        write_rows(bodies, templates, work, found, pairs)
+        write_rows(bodies, templates, work, found, rows)
         state.listed, state.count = 1, found
         state.rebuilds += 1
-        return found
+        return kept + found
 
     return kernel(broad_phase, spec)

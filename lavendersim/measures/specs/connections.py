@@ -1,0 +1,23 @@
+"""Models of measures of what connects bodies: ropes."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import Field
+
+from lavendersim.measures.specs.base import Measure, Seconds
+from lavendersim.quantities.names import ConnectionName
+from lavendersim.quantities.readings import CONTACTS
+
+
+class Tension(Measure):
+    """Force [N] by which a rope pulls at the end of the run; 0 in steps in which it is slack."""
+
+    READS = CONTACTS
+    kind: Literal["tension"]
+    connection: ConnectionName = Field(description="name of the rope")
+    last: Seconds = Field(default=0.25, description="length of the window at the end [s]")
+    statistic: Literal["mean", "largest"] = Field(
+        default="mean", description="mean of the window, or the largest of a step in it"
+    )

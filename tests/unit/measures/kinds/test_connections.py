@@ -1,0 +1,54 @@
+"""Tension: the mean, or the largest, of what a rope pulls by in the last window of a run."""
+
+from __future__ import annotations
+
+import math
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from lavendersim.measures import evaluate
+from lavendersim.measures.specs.connections import Tension
+
+DT = 0.01
+
+
+def log() -> SimpleNamespace:
+    """Ten steps: rope 1 pulls with 2 N, once 4 N; rope 2 with 7 N in the last; surfaces touch."""
+    pulls = [(step, 1, 2.0) for step in range(1, 9)] + [(9, 1, 4.0), (10, 2, 7.0), (10, 0, 100.0)]
+    contact = np.zeros(
+        len(pulls), [("step", "i8"), ("rope", "i8"), ("force_n", "f8"), ("impulse_n", "f8")]
+    )
+    contact["step"], contact["rope"], contact["force_n"] = zip(*pulls, strict=True)
+    contact["impulse_n"] = DT * contact["force_n"]
+    step = np.zeros(11, [("step", "i8"), ("time", "f8")])
+    step["step"], step["time"] = np.arange(11), DT * np.arange(11)
+    ropes = {
+        name: SimpleNamespace(between=between)
+        for name, between in {"idle": "ww", "line": "wb", "leash": "bw"}.items()
+    }
+    bodies = {"w": SimpleNamespace(fixed=True), "b": SimpleNamespace(fixed=False)}
+    scene = SimpleNamespace(connections=ropes, bodies=bodies)
+    return SimpleNamespace(step=step, contact=contact, config=SimpleNamespace(scene=scene))
+
+
+def tension(connection: str, last: float = 0.04, **more: str) -> float:
+    spec = Tension(kind="tension", connection=connection, last=last, **more)
+    return evaluate(spec, log())
+
+
+def test_it_is_the_mean_of_the_window_slack_steps_included() -> None:
+    # Steps 7 to 10: 2, 2, 4 and 0 N.
+    assert tension("line") == pytest.approx(2.0, rel=1e-15)
+    assert tension("leash") == pytest.approx(7.0 / 4.0, rel=1e-15)
+
+
+def test_the_largest_is_that_of_a_step() -> None:
+    assert tension("line", statistic="largest") == 4.0
+    assert tension("line", last=0.01, statistic="largest") == 0.0
+
+
+def test_what_pulls_nothing_and_a_window_beyond_the_run_have_none() -> None:
+    assert math.isnan(tension("idle"))
+    assert math.isnan(tension("line", last=1.0))
