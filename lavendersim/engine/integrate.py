@@ -18,7 +18,7 @@ from .records import NOT_FINITE, TURNS_TOO_FAST
 from .rotation import inertia_times, inverse_inertia_times, is_round, orient, turn
 from .row_terms import row_terms
 from .spec import Spec
-from .spring_turn import PLACED, make_twist
+from .spring_turn import BOTH, PLACED, make_twist
 
 # MOTION.carried: a contact carries the body from its impact on, or through the whole step.
 AFTERWARDS = 1
@@ -249,6 +249,14 @@ def make_displace(spec: Spec) -> Any:
     _, jump = made_once(spec, "add_spin")
 
     def displace(body, v, m, dt):
+        if springs:
+            if body.sprung == BOTH:
+                body.x += body.shift_x
+                body.y += body.shift_y
+                body.z += body.shift_z
+                if turns:
+                    twist(body, v, dt)
+                return True
         if at_surface:
             if m.tau < dt:
                 rest = dt - m.tau

@@ -15,10 +15,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from .acceleration import COLUMNS
 from .collide.broad.broad_phase import allocate_broad_phase
 from .collide.convex.hull_geometry import HullGeometry
 from .collide.scratch import Scratch, allocate_scratch
 from .contact_lists import ContactLists, allocate_contact_lists
+from .effects import has_hook
 from .integrate import keeps_motion
 from .ordering import Ordering, allocate_ordering
 from .record_layout import (
@@ -83,12 +85,23 @@ class Middle(NamedTuple):
     lead: np.ndarray  # (n,) velocities before forces and impulses, spins those at the middle
 
 
+class SpringTrial(NamedTuple):
+    """What springs and contacts that act on each other are tried with (`spring_contacts`)."""
+
+    impulses: np.ndarray  # (4, 9 l) of l springs: those in use, what they are off by; the last
+    changes: np.ndarray  # (2, COLUMNS, 9 l): of the impulses, and of what they are off by
+    lost: np.ndarray  # (1,) energy that what they act on lost in this part [J]
+    bodies: np.ndarray  # (n,) where the step leads to
+    velocities: np.ndarray  # (n,)
+
+
 class Workspace(NamedTuple):
     """What a step works in."""
 
     collision: Scratch
     trial: Trial
     middle: Middle
+    beside: SpringTrial
     ordering: Ordering
     contact_lists: ContactLists  # of each body, `flush_contacts`
     overlooked: Overlooked
@@ -158,6 +171,8 @@ def allocate_workspace(
     bodies, near = len(state.bodies), spec.has("broad_phase")
     centred = bodies if spec.has("contact_midpoint") else 0
     tried = 1 if spec.has("impact_order") else 0
+    links = len(state.links) if centred and has_hook(spec, "act_beside") else 0
+    coupled = bodies if links else 0
     empty = Workspace(
         collision=allocate_scratch(hulls),
         trial=Trial(
@@ -169,6 +184,13 @@ def allocate_workspace(
             np.zeros(centred, state.bodies.dtype),
             np.zeros(centred, state.velocities.dtype),
             np.zeros(centred, state.velocities.dtype),
+        ),
+        beside=SpringTrial(
+            np.zeros((4, 9 * links)),
+            np.zeros((2, COLUMNS, 9 * links)),
+            np.zeros(1),
+            np.zeros(coupled, state.bodies.dtype),
+            np.zeros(coupled, state.velocities.dtype),
         ),
         ordering=allocate_ordering(bodies, 0),
         contact_lists=allocate_contact_lists(0, 0),

@@ -30,6 +30,7 @@ from .midpoint_rows import (
 )
 from .parts import make_forget_history
 from .residual import make_residual
+from .rotation import inertia_times, inverse_inertia_times, is_round
 from .row_terms import row_terms
 from .solvers.solver import ContactSystem
 from .spec import Spec
@@ -61,6 +62,7 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
     at_surface, loaded = spec.has("impact_time"), preload is not None
     forget_history = make_forget_history(spec)
     residual = make_residual(spec)
+    beside = has_hook(spec, "act_beside")
 
     def has_impact(contacts, count):
         found = False
@@ -88,6 +90,26 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
         for i in range(free.shape[0]):
             before, m = free[i], motion[i]
             m.dvx, m.dvy, m.dvz = before.vx - m.vx, before.vy - m.vy, before.vz - m.vz
+
+    def twist_midway(bodies, poses, velocities):
+        # What springs add to the spin of the middle is their impulse by the inertia there.
+        for i in range(bodies.shape[0]):
+            body, start, v = bodies[i], poses[i], velocities[i]
+            if start.sprung > 0 and not is_round(start):
+                x, y, z = start.to_wx, start.to_wy, start.to_wz
+                x, y, z = x - start.spun_x, y - start.spun_y, z - start.spun_z
+                lx, ly, lz = inertia_times(start, x, y, z)
+                lx, ly, lz = inverse_inertia_times(body, lx, ly, lz)
+                v.wx, v.wy, v.wz = v.wx + (lx - x), v.wy + (ly - y), v.wz + (lz - z)
+
+    twist_midway = kernel(twist_midway, spec)
+
+    def note_solved(bodies, velocities):
+        for i in range(bodies.shape[0]):
+            body, v = bodies[i], velocities[i]
+            body.solved_x, body.solved_y, body.solved_z = v.wx, v.wy, v.wz
+
+    note_solved = kernel(note_solved, spec)
 
     forget_load: Any = kernel(forget, spec) if loaded else None
 
@@ -121,6 +143,9 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
             unturned = stand_midway(bodies, velocities, motion, lead, poses, params.dt)
             look(state, count, poses, workspace)
             restore(velocities, free, lead, motion)
+            if beside and turns:
+                twist_midway(bodies, poses, velocities)
+                note_solved(bodies, velocities)
             if loaded:
                 forget_load(free, motion)
             if carries_inertia:

@@ -78,7 +78,8 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
     overlooks = spec.has("overlooked_points")
     look_over: Any = make_look_over(spec) if overlooks else None
 
-    def respond(state, count, workspace, params, counters, log):
+    def solve_part(state, count, workspace, params, counters, log, passes):
+        # From velocities without impulses of contacts; whether bodies then stand at the middle.
         bodies, velocities, motion = state.bodies, state.velocities, state.motion
         lasts = True  # an impulse of an instant is no guess for a force
         if ordered:
@@ -130,15 +131,38 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
             settle(system, motion, workspace.solver, params, counters, log.residual)
         midway = False
         if centred:
-            if moving:
+            if moving and passes:
                 midway = midpoint_passes(state, count, workspace, params, counters, log)
+        return midway
+
+    solve_part = kernel(solve_part, spec)
+    beside = False
+    act_beside: Any = None
+    limit_projection: Any = None
+    if centred:
+        beside, act_beside = made_once(spec, "act_beside", solve_part)
+        _, limit_projection = made_once(spec, "limit_projection")
+
+    def respond(state, count, workspace, params, counters, log):
+        bodies, velocities, motion = state.bodies, state.velocities, state.motion
+        contacts, cache = state.contacts, state.cache
+        lasts = True
+        if ordered:
+            lasts = params.dt > INSTANT
+        missed, unturned = counters.midpoint_not_converged, counters.gyroscopic_not_converged
+        midway = solve_part(state, count, workspace, params, counters, log, True)
+        if beside:
+            if lasts:
+                before = (missed, unturned)
+                midway = act_beside(state, count, workspace, params, counters, log, midway, before)
         if overlooks:
             if lasts and workspace.overlooked.noted[0] > 0:
                 poses = workspace.middle.poses if midway else bodies
                 cut = look_over(state, poses, workspace.overlooked, params)
                 if cut > 0.0:
-                    if midway:
-                        stand_up(bodies, poses)
+                    if centred:
+                        if midway:
+                            stand_up(bodies, poses)
                     return cut
         if stores and lasts:
             counters.contact_energy = contact_energy(contacts, count, velocities, params)
@@ -150,9 +174,16 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
             classify(contacts, count, motion, params)
         counters.projection_sweeps = 0
         if projects and lasts:
+            system = ContactSystem(contacts, workspace.ordering.order, count, bodies, velocities)
             counters.projection_sweeps = project_positions(
                 system, motion, state.pseudo, workspace.solver, params
             )
+            if beside:
+                if counters.projection_sweeps > 0 and state.links.shape[0] > 0:
+                    if midway:
+                        stand_up(bodies, workspace.middle.poses)
+                        midway = False
+                    limit_projection(state, workspace, params)
         if centred:
             if midway:
                 stand_up(bodies, workspace.middle.poses)

@@ -17,7 +17,7 @@ and angular momentum are kept. What is lost is most of the energy of the swing, 
 from __future__ import annotations
 
 from math import sqrt
-from typing import Any
+from typing import Any, NamedTuple
 
 from .compile import kernel
 from .spec import Spec
@@ -35,8 +35,15 @@ LIKE = 0.5
 ROUND_OFF = 1e-12
 
 
-def make_limit(spec: Spec, place: Any) -> Any:
-    """Return `kernel(links, bodies, velocities, motion, dt)`: no group of bodies gains energy.
+class LimitKernels(NamedTuple):
+    """What is done with springs whose impulses are not found."""
+
+    limit: Any  # (links, bodies, velocities, motion, dt): no group of bodies gains energy
+    settle: Any  # (links, bodies, velocities, motion, group, dt): implicit Euler, of one group
+
+
+def make_limit(spec: Spec, place: Any) -> LimitKernels:
+    """Return the kernels.
 
     place: kernel of `effects.spring`. Velocities: with the impulses of springs as far as found.
     """
@@ -329,4 +336,4 @@ def make_limit(spec: Spec, place: Any) -> Any:
             if bodies[i].group == i + 1:
                 limit_group(links, bodies, velocities, motion, i + 1, dt)
 
-    return kernel(limit, spec)
+    return LimitKernels(kernel(limit, spec), settle)

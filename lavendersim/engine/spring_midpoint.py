@@ -49,22 +49,29 @@ class SpringPose(NamedTuple):
     r_b: Vec3  # lever of B's [m]
 
 
-def make_act_midway(spec: Spec, place: Any) -> Any:
-    """Return `kernel(links, bodies, velocities, motion, params, counters)`: springs act.
+class SpringSolve(NamedTuple):
+    """Kernels that find the impulses of springs."""
 
-    place: kernel of `effects.spring`. Velocities change; counters.spring_not_converged counts the
-    solves that find no impulses, whose bodies `spring_limit` places.
+    note_start: Any  # (links, bodies, velocities, motion): before springs act
+    find: Any  # (links, bodies, velocities, motion, dt) -> found, safe; of what is `again`
+
+
+def make_find(spec: Spec, place: Any) -> SpringSolve:
+    """Return the kernels; place: kernel of `effects.spring`.
+
+    safe: the impulses are that of the gradient, and so to all digits; what is not may win energy.
     """
     from .rotation import inverse_inertia_times, is_round
 
     turns, uneven = spec.has("rotation"), spec.has("gyroscopic")
     mean_spin: Any = make_mean_spin(spec) if turns else None
-    limit: Any = make_limit(spec, place)
 
     def mean_lever(body, r, v, m, dt):
         # r: at the start, world.
         if turns:
-            a = scaled(0.25 * dt, Vec3(m.wx + v.wx, m.wy + v.wy, m.wz + v.wz))
+            late = body.late_turn
+            x, y, z = late * (v.wx - m.wx), late * (v.wy - m.wy), late * (v.wz - m.wz)
+            a = scaled(0.25 * dt, Vec3(m.wx + v.wx + x, m.wy + v.wy + y, m.wz + v.wz + z))
             if uneven:
                 if body.sprung == TWISTED and not is_round(body):
                     body.unturned = 0 if mean_spin(body, v, m, dt) else 1
@@ -103,6 +110,12 @@ def make_act_midway(spec: Spec, place: Any) -> Any:
 
     rate_of = kernel(rate_of, spec)
 
+    def later(body, v, m):
+        # How much more than by the mean a body is carried, by velocities.
+        return scaled(body.late, Vec3(v.vx - m.vx, v.vy - m.vy, v.vz - m.vz))
+
+    later = kernel(later, spec)
+
     def improve(link, bodies, velocities, motion, dt, linear):
         # One Newton step on the impulse of a spring; returns the change of its size and its size.
         body_a, body_b = bodies[link.a], bodies[link.b]
@@ -118,6 +131,8 @@ def make_act_midway(spec: Spec, place: Any) -> Any:
             mb.vy + vb.vy - ma.vy - va.vy,
             mb.vz + vb.vz - ma.vz - va.vz,
         )
+        if body_a.late != 0.0 or body_b.late != 0.0:
+            moved = plus(moved, minus(later(body_b, vb, mb), later(body_a, va, ma)))
         middle = minus(plus(plus(between, scaled(0.25 * dt, moved)), arm_b), arm_a)
         length_1 = length(minus(scaled(2.0, middle), before))
         if linear and length_0 > 0.0:
@@ -129,7 +144,9 @@ def make_act_midway(spec: Spec, place: Any) -> Any:
         u, d = scaled(2.0 / sum_of, middle), scaled(1.0 / size, middle)
         if linear and length_0 > 0.0:
             u = d = start.d
-        k = response_of(body_a, arm_a, d) + response_of(body_b, arm_b, d)
+        k_a, k_b = response_of(body_a, arm_a, d), response_of(body_b, arm_b, d)
+        k = k_a + k_b
+        reach = k_a * (1.0 + body_a.late) + k_b * (1.0 + body_b.late)  # of the length's change
         force = link.stiffness * (0.5 * sum_of - link.rest_length)
         force += link.damping * (length_1 - length_0) / dt
         slope = 0.5 * link.stiffness + link.damping / dt
@@ -145,8 +162,8 @@ def make_act_midway(spec: Spec, place: Any) -> Any:
         missing = minus(scaled(dt * force, u), old)
         along = dot(missing, d)
         across = minus(missing, scaled(along, d))
-        along /= 1.0 + 0.5 * dt * dt * slope * k
-        stiff = 0.5 * dt * dt * k * force / max(sum_of, length_0)
+        along /= 1.0 + 0.5 * dt * dt * slope * reach
+        stiff = 0.5 * dt * dt * reach * force / max(sum_of, length_0)
         change = plus(scaled(along, d), scaled(1.0 / (1.0 + max(stiff, 0.0)), across))
         new = plus(old, change)
         link.force, link.px, link.py, link.pz = force, new.x, new.y, new.z
@@ -158,7 +175,7 @@ def make_act_midway(spec: Spec, place: Any) -> Any:
         link.lbx, link.lby, link.lbz = spun_b.x, spun_b.y, spun_b.z
         # What round-off of places leaves of the impulse.
         places = length(position(body_a)) + length(position(body_b)) + length_0
-        rounded = ROUND_OFF * dt * slope * places / (1.0 + 0.5 * dt * dt * slope * k)
+        rounded = ROUND_OFF * dt * slope * places / (1.0 + 0.5 * dt * dt * slope * reach)
         return length(change), length(new), rounded
 
     improve = kernel(improve, spec)
@@ -166,6 +183,8 @@ def make_act_midway(spec: Spec, place: Any) -> Any:
     def forget(links):
         for k in range(links.shape[0]):
             link = links[k]
+            if link.again == 0:
+                continue
             link.force, link.px, link.py, link.pz = 0.0, 0.0, 0.0, 0.0
             link.lax, link.lay, link.laz = 0.0, 0.0, 0.0
             link.lbx, link.lby, link.lbz = 0.0, 0.0, 0.0
@@ -194,6 +213,8 @@ def make_act_midway(spec: Spec, place: Any) -> Any:
     def begin_anew(links, bodies, velocities, motion):
         for i in range(bodies.shape[0]):
             body, v, m = bodies[i], velocities[i], motion[i]
+            if body.again == 0:
+                continue
             if body.inv_m > 0.0 and body.joined == 1:
                 v.vx, v.vy, v.vz = m.vx + m.dvx, m.vy + m.dvy, m.vz + m.dvz
                 v.wx, v.wy, v.wz = body.free_wx, body.free_wy, body.free_wz
@@ -203,14 +224,20 @@ def make_act_midway(spec: Spec, place: Any) -> Any:
 
     begin_anew = kernel(begin_anew, spec)
 
-    def note_start(links, bodies, velocities):
+    def note_start(links, bodies, velocities, motion):
         # What springs twist, and its spin before they do.
         for i in range(bodies.shape[0]):
             body, v = bodies[i], velocities[i]
-            body.sprung, body.unturned = 0, 0
+            body.sprung, body.unturned, body.again = 0, 0, 1
+            body.late, body.late_turn = 0.0, 0.0
+            m = motion[i]
+            body.pulled_x, body.pulled_y, body.pulled_z = m.dvx, m.dvy, m.dvz
             if turns:
                 body.free_wx, body.free_wy, body.free_wz = v.wx, v.wy, v.wz
+                body.spun_x, body.spun_y, body.spun_z = v.wx, v.wy, v.wz
                 body.turn_x, body.turn_y, body.turn_z = v.wx, v.wy, v.wz
+        for k in range(links.shape[0]):
+            links[k].again = 1
         if turns:
             for k in range(links.shape[0]):
                 link = links[k]
@@ -220,8 +247,6 @@ def make_act_midway(spec: Spec, place: Any) -> Any:
                         a.sprung = TWISTED if a.inv_m > 0.0 else 0
                     if link.bx != 0.0 or link.by != 0.0 or link.bz != 0.0:
                         b.sprung = TWISTED if b.inv_m > 0.0 else 0
-
-    note_start = kernel(note_start, spec)
 
     def is_gradient(links, bodies, dt):
         # Whether no spring off a centre has the damper of those that steps do not resolve.
@@ -243,7 +268,7 @@ def make_act_midway(spec: Spec, place: Any) -> Any:
         found = True
         for i in range(bodies.shape[0]):
             body, v, m = bodies[i], velocities[i], motion[i]
-            if body.sprung == TWISTED:
+            if body.sprung == TWISTED and body.again == 1:
                 body.unturned = 0 if mean_spin(body, v, m, dt) else 1
                 found = found and body.unturned == 0
         return found
@@ -255,7 +280,9 @@ def make_act_midway(spec: Spec, place: Any) -> Any:
             changed, largest = 0.0, 0.0
             for k in range(links.shape[0]):
                 link = links[k]
-                if link.active == 0 or bodies[link.a].inv_m + bodies[link.b].inv_m == 0.0:
+                if link.again == 0 or link.active == 0:
+                    continue
+                if bodies[link.a].inv_m + bodies[link.b].inv_m == 0.0:
                     continue
                 change, size = newton_step(link, bodies, velocities, motion, dt)
                 changed, largest = max(changed, change), max(largest, size)
@@ -277,20 +304,20 @@ def make_act_midway(spec: Spec, place: Any) -> Any:
 
     turns_little = kernel(turns_little, spec)
 
-    def act(links, bodies, velocities, motion, params, counters):
-        note_start(links, bodies, velocities)
+    def find(links, bodies, velocities, motion, dt):
+        # From velocities that all else leads to; whether all are found, and in which digits.
         forget(links)
-        safe = is_gradient(links, bodies, params.dt)
+        safe = is_gradient(links, bodies, dt)
         found = False
         for number in range(PASSES):
             changed, largest = 0.0, 0.0
             for k in range(links.shape[0]):
                 link = links[k]
-                if link.active == 0 or bodies[link.a].inv_m + bodies[link.b].inv_m == 0.0:
+                if link.again == 0 or link.active == 0:
                     continue
-                change, size, rounded = improve(
-                    link, bodies, velocities, motion, params.dt, number == 0
-                )
+                if bodies[link.a].inv_m + bodies[link.b].inv_m == 0.0:
+                    continue
+                change, size, rounded = improve(link, bodies, velocities, motion, dt, number == 0)
                 changed, largest = max(changed, change), max(largest, size)
                 link.lost = 1 if change > NEARLY * largest + rounded else 0
             if number > 0 and changed <= FOUND * largest:
@@ -301,19 +328,41 @@ def make_act_midway(spec: Spec, place: Any) -> Any:
             for k in range(links.shape[0]):
                 found = found and links[k].lost == 0
         if turns:
-            found = is_turned(bodies, velocities, motion, params.dt) and found
+            found = is_turned(bodies, velocities, motion, dt) and found
             if not found:
                 begin_anew(links, bodies, velocities, motion)
-                found = improve_all(links, bodies, velocities, motion, params.dt)
+                found = improve_all(links, bodies, velocities, motion, dt)
             # In a turn of radians the digits of the impulses are fewer.
-            safe = safe and turns_little(bodies, params.dt)
+            safe = safe and turns_little(bodies, dt)
+        return found, safe
+
+    return SpringSolve(kernel(note_start, spec), kernel(find, spec))
+
+
+def make_act_midway(spec: Spec, place: Any) -> Any:
+    """Return `kernel(links, bodies, velocities, motion, params, counters)`: springs act.
+
+    place: kernel of `effects.spring`. Velocities change; counters.spring_not_converged counts the
+    solves that find no impulses, whose bodies `spring_limit` places.
+    """
+    turns = spec.has("rotation")
+    note_start, find = make_find(spec, place)
+    limit: Any = make_limit(spec, place).limit
+
+    def act(links, bodies, velocities, motion, params, counters):
+        note_start(links, bodies, velocities, motion)
+        found, safe = find(links, bodies, velocities, motion, params.dt)
         if not found:
             counters.spring_not_converged += 1
         if not (found and safe):
             limit(links, bodies, velocities, motion, params.dt)
-        if turns:
-            for i in range(bodies.shape[0]):
-                body, v = bodies[i], velocities[i]
+        for i in range(bodies.shape[0]):
+            body, v, m = bodies[i], velocities[i], motion[i]
+            body.to_vx, body.to_vy, body.to_vz = v.vx, v.vy, v.vz
+            body.sprung_x = v.vx - m.vx - body.pulled_x
+            body.sprung_y = v.vy - m.vy - body.pulled_y
+            body.sprung_z = v.vz - m.vz - body.pulled_z
+            if turns:
                 body.to_wx, body.to_wy, body.to_wz = v.wx, v.wy, v.wz
 
     return kernel(act, spec)

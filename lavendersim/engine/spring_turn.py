@@ -23,6 +23,7 @@ FOUND = 1e-28
 # BODY.sprung: what springs do to its turn.
 TWISTED = 1  # they act off its centre
 PLACED = 2  # they say where it goes: `spring_limit`
+BOTH = 3  # and contacts with them: `spring_contacts`
 
 
 def make_mean_spin(spec: Spec) -> Any:

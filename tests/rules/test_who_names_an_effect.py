@@ -45,6 +45,7 @@ ELSEWHERE = {
         "engine/effects/impact_order.py": TIME,
         "engine/foreseen_impacts.py": TIME,
         "engine/impact_rows.py": TIME,
+        "engine/spring_contacts.py": "gives energy back",
         "engine/effects/contact_spring.py": "is another law of it",
     },
     "contact_spring": {
@@ -56,6 +57,7 @@ ELSEWHERE = {
         "engine/effects/impact_time.py": SPRING,
         "engine/effects/projection.py": SPRING,
         "engine/midpoint_rows.py": SPRING,
+        "engine/spring_contacts.py": "gives energy back",
     },
     "cohesion": {"engine/foreseen_impacts.py": "what opens is drawn as long as it is closed"},
     "restitution": {
@@ -93,10 +95,11 @@ ASKED = {
             *("integrate", "midpoint_geometry", "midpoint_passes", "midpoint_rows"),
             "overlooked_points",
             *("solvers/newton/minimise", "spring_midpoint", "step_doubling", "scene/events"),
-            *("spring_group", "spring_limit"),
+            *("effects/projection", "spring_contacts", "spring_group", "spring_limit"),
+            "spring_projection",
         ),
         "gyroscopic": ("integrate", "midpoint_geometry", "spring_midpoint", "spring_turn"),
-        "kinematic": ("effects/sleeping", "integrate", "midpoint_geometry"),
+        "kinematic": ("effects/sleeping", "integrate", "midpoint_geometry", "spring_contacts"),
         "compound": (
             *("collide/broad/broad_phase", "collide/broad/fat_bounds", "collide/narrow_phase"),
             "impact_location",
@@ -125,7 +128,7 @@ ASKED = {
             *("collide/narrow_phase", "collide/pairs/cylinder_plane", "foreseen_impacts"),
             *("impact_location", "impact_rows", "memory", "midpoint_geometry", "respond", "step"),
         ),
-        "spring": ("integrate",),
+        "spring": ("effects/projection", "integrate"),
         "error_control": (
             *("effects/projection", "effects/warm_start", "parts", "step", "step_doubling"),
         ),
@@ -141,13 +144,13 @@ ASKED = {
         "contact_spring": (
             *("effects/impact_order", "effects/impact_time", "effects/pairwise_impacts"),
             *("effects/projection", "foreseen_impacts", "impact_rows", "midpoint_jumps"),
-            "midpoint_rows",
+            *("midpoint_rows", "spring_contacts"),
         ),
-        "compliance": ("foreseen_impacts",),
+        "compliance": ("foreseen_impacts", "spring_contacts"),
         "cohesion": ("foreseen_impacts",),
         "restitution": ("foreseen_impacts", "overlooked_points"),
         "projection": ("integrate", "memory"),
-        "surface_velocity": ("effects/static_friction",),
+        "surface_velocity": ("effects/static_friction", "spring_contacts"),
         "capture_in_sweeps": ("effects/restitution",),
     },
     "rows that collision detection does not make: along the line of two ends": {

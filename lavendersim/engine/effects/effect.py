@@ -122,6 +122,8 @@ class Hooks:
     recapture: Maker | None = None  # (contact, w, params) -> w, in every sweep
     limit_impacts: Maker | None = None  # made with (spec, solve, classify); after the solve
     choose_impulses: Maker | None = None  # (system, workspace, params, counters), once solved
+    act_beside: Maker | None = None  # made with (spec, solve): `spring_contacts`
+    limit_projection: Maker | None = None  # (state, workspace, params), once it is found
     spring_row: Maker | None = None  # (contact, v_n, params): its target and gamma
     contact_energy: Maker | None = None  # (contacts, count, velocities, params) -> stored [J]
     sweep_row: Maker | None = None  # (params, counters, rows, sweep, residual): after each sweep

@@ -64,12 +64,34 @@ def make_mean_rate(spec):
     return kernel(mean_rate, spec)
 
 
+def make_mean_velocity(spec):
+    """Return `kernel(body, v, m, out)`: the velocity that carries a body, of what springs turn."""
+    from ..integrate import LASTING
+
+    turns = spec.has("rotation")
+
+    def mean_velocity(body, v, m, out):
+        late = 1.0
+        if m.carried == 0 or m.carried == LASTING:
+            late = 0.5
+        out.vx, out.vy = m.vx + late * (v.vx - m.vx), m.vy + late * (v.vy - m.vy)
+        out.vz = m.vz + late * (v.vz - m.vz)
+        if turns:
+            out.wx, out.wy = m.wx + late * (v.wx - m.wx), m.wy + late * (v.wy - m.wy)
+            out.wz = m.wz + late * (v.wz - m.wz)
+            if body.sprung > 0 and m.carried == 0:
+                out.wx, out.wy, out.wz = body.turn_x, body.turn_y, body.turn_z
+
+    return kernel(mean_velocity, spec)
+
+
 def make(spec):
     """Return `kernel(system, motion, pseudo, workspace, params) -> sweeps made`."""
     from ..contact import make_normal_velocity
     from ..row_terms import row_terms
     from ..solvers.packed.apart import make_push_apart
     from ..solvers.packed.late import FEWEST_CONTACTS, packs_late
+    from ..spring_turn import PLACED
 
     normal_velocity = make_normal_velocity(spec)
     packs = packs_late(spec)
@@ -81,9 +103,12 @@ def make(spec):
     at_surface = spec.has("impact_time")
     mean_rate: Any = make_mean_rate(spec) if at_surface else None
     controlled = spec.has("error_control")
+    joined = spec.has("spring") and midpoint
+    mean_velocity: Any = make_mean_velocity(spec) if joined else None
 
     def project_positions(system, motion, pseudo, workspace, params):
         contacts, count, velocities = system.contacts, system.count, system.velocities
+        bodies = system.bodies
         share, asked = params.projection, False
         if controlled:
             share *= params.dt / params.timestep
@@ -101,9 +126,19 @@ def make(spec):
                 if ma.tau < params.dt or mb.tau < params.dt:
                     va, vb = velocities[contact.a], velocities[contact.b]
                     v_n = mean_rate(contact, va, vb, ma, mb, params.dt)
+            if joined:
+                if bodies[contact.a].sprung > 0 or bodies[contact.b].sprung > 0:
+                    ua, ub = pseudo[contact.a], pseudo[contact.b]
+                    mean_velocity(bodies[contact.a], velocities[contact.a], motion[contact.a], ua)
+                    mean_velocity(bodies[contact.b], velocities[contact.b], motion[contact.b], ub)
+                    v_n = normal_velocity(contact, ua, ub)
             excess = -(contact.phi + v_n * params.dt) - params.slop
             if springs:
                 if contact.spring_compliance > 0.0:  # it rests where its force holds it
+                    excess = 0.0
+            if joined:
+                a, b = bodies[contact.a], bodies[contact.b]
+                if a.sprung >= PLACED or b.sprung >= PLACED:  # there it would do work
                     excess = 0.0
             contact.correction = share * max(excess, 0.0)
             contact.push = 0.0

@@ -170,6 +170,20 @@ def is_iterated(spec: Spec) -> bool:
     return spec.has("midpoint")
 
 
+def make_act_beside(spec: Spec, solve: Kernel) -> Kernel:
+    """Return the kernel of springs and contacts that act on each other in a step."""
+    from ..spring_contacts import make_act_beside_contacts
+
+    return make_act_beside_contacts(spec, make_place(spec), solve)
+
+
+def make_limit_projection(spec: Spec) -> Kernel:
+    """Return the kernel by which the positional projection does no work on springs."""
+    from ..spring_projection import make_limit_projection
+
+    return make_limit_projection(spec, make_place(spec))
+
+
 def make_step_row(spec: Spec) -> Kernel:
     """Return `kernel(row, bodies, counters)` that says how often they were not found."""
     iterated = is_iterated(spec)
@@ -221,6 +235,15 @@ _MOVED: list[tuple[str, str]] = [
     *[(f"free_w{axis}", "f8") for axis in "xyz"],  # spin before springs act [rad/s]
     *[(f"to_{kind}{axis}", "f8") for kind in "vw" for axis in "xyz"],  # velocity, spin aimed at
     *[(f"from_{axis}", "f8") for axis in ("x", "y", "z", "qw", "qx", "qy", "qz")],  # pose
+    ("again", "i8"),  # 1: its springs are looked for; 2: and contacts push what they join
+    # How much later than in the mean of the step its velocity carries and turns it: -1 to 1.
+    *[("late", "f8"), ("late_turn", "f8")],
+    *[(f"pulled_{axis}", "f8") for axis in "xyz"],  # change of velocity by forces alone [m/s]
+    *[(f"spun_{axis}", "f8") for axis in "xyz"],  # spin before springs act, contacts left out
+    *[(f"push_{axis}", "f8") for axis in "xyz"],  # what contacts add to its velocity [m/s]
+    *[(f"twist_{axis}", "f8") for axis in "xyz"],  # angular impulse of contacts [N m s]
+    *[(f"solved_{axis}", "f8") for axis in "xyz"],  # spin before contacts act, where it stands then
+    *[(f"sprung_{axis}", "f8") for axis in "xyz"],  # change of velocity by springs [m/s]
 ]
 _OUTER = "of springs on movable bodies from those that do not move, world"
 
@@ -246,6 +269,7 @@ EFFECT = Effect(
             ("damping", "f8"),  # c [N s/m]
             ("rest_length", "f8"),  # l_0 [m]
             *[(f"{end}{axis}", "f8") for end in "ab" for axis in "xyz"],  # points, body frame [m]
+            ("again", "i8"),  # 1: its impulse is looked for
             ("lost", "i8"),  # 1: its impulse in this step is not found
             ("force", "f8"),  # of this step, positive where it pulls [N]
             *[(f"p{axis}", "f8") for axis in "xyz"],  # impulse on A in this step, world [N s]
@@ -272,5 +296,11 @@ EFFECT = Effect(
         stored="spring_energy",
         outer=("spring_impulse_x", "spring_impulse_y", "spring_impulse_z"),
     ),
-    hooks=Hooks(act_between=make_act, link_row=make_link_row, step_row=make_step_row),
+    hooks=Hooks(
+        act_between=make_act,
+        act_beside=make_act_beside,
+        limit_projection=make_limit_projection,
+        link_row=make_link_row,
+        step_row=make_step_row,
+    ),
 )

@@ -1,0 +1,63 @@
+"""Springs that act on bodies beside contacts give no energy, however stiff and far off the centres.
+
+Drawn nets of uneven boxes over a floor, of which springs tie the first to it: they hit the floor
+and each other, slide and are drawn over it. There is no gravity, and no rebound: the energy of
+bodies and springs falls in every step.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from shared_runs import States, config, flow, plane, run_scenes
+from test_springs_at_the_middle import spring
+
+# k K dt^2 of the stiffest spring, whether there is friction, steps a second.
+NETS = [
+    (softness, friction, rate)
+    for softness in (1.0, 30.0, 1e3, 1e5)
+    for friction in (0.0, 0.5)
+    for rate in (60, 240)
+]
+
+
+def net(number: int, softness: float, friction: float, rate: int) -> str:
+    """Three boxes above each other, 20 mm apart at least, that fly and turn."""
+    draw = np.random.default_rng(number)
+    bodies, springs, height, before = {"floor": plane()}, "", 0.0, np.zeros(3)
+    for i in range(3):
+        size = 10.0 ** draw.uniform(-1.3, -0.3, 3)
+        mass = float(10.0 ** draw.uniform(-1.0, 1.0))
+        height += 0.5 * float(np.linalg.norm(size)) + 0.02
+        bodies[f"b{i}"] = (
+            f"{{shape: {{kind: box, size: {flow(size)}}}, mass: {mass!r}, surface: one, "
+            f"position: {flow([*draw.normal(0.0, 0.1, 2), height])}, "
+            f"velocity: {flow(draw.normal(size=3))}, "
+            f"angular_velocity: {flow(draw.normal(size=3))}}}"
+        )
+        height += 0.5 * float(np.linalg.norm(size)) + 0.02
+        point = draw.normal(size=3) * size * 0.5
+        least = mass / 6.0 * float(np.sort(size * size)[0])
+        stiffness = float(softness * rate**2 / (1.0 / mass + point @ point / least))
+        near = draw.normal(size=3) * (before * 0.5 if i else np.array([0.1, 0.1, 0.0]))
+        ends = f", point_a: {flow(near)}, point_b: {flow(point)}"
+        springs += spring(f"b{i - 1}" if i else "floor", f"b{i}", stiffness, 0.1, ends)
+        before = size
+    text = config(bodies, rate, 40.0 / rate, f"restitution: 0, friction: {friction}")
+    return text.replace("  bodies:\n", f"  springs:\n{springs}  bodies:\n", 1)
+
+
+@pytest.fixture(scope="module")
+def ran() -> dict[str, States]:
+    return run_scenes({f"{one}": net(number, *one) for number, one in enumerate(NETS)})
+
+
+@pytest.mark.parametrize("one", NETS)
+def test_springs_beside_contacts_give_no_energy(
+    ran: dict[str, States], one: tuple[float, float, int]
+) -> None:
+    states = ran[f"{one}"]
+    energy = states.energy() + states.step["spring_energy"]
+    # A solve leaves 1e-9 m/s of velocities of some m/s, against impulses of what is stored.
+    assert np.diff(energy).max() <= 1e-9 * energy[0]
+    assert len(states.contact) > 0, "nothing touches"
