@@ -225,3 +225,20 @@ def test_sweeps_end_at_the_noise_or_at_their_limit(rng) -> None:
         RESPECT(contacts, 4, velocities, noise)
         assert scene.velocities.tobytes() == expected.tobytes()
     assert abs(held @ stacked(limit)).max() < abs(held @ stacked(once)).max()
+
+
+@pytest.mark.parametrize("frictional", [0, 1])
+def test_one_visit_of_a_contact_stops_its_slip_where_it_has_friction(frictional: int, rng) -> None:
+    """Along both tangents at once, by the inverse of their block."""
+    spec = SPEC.including("contact_torque", "frictionless_contact")
+    respect = interpreted(error_estimate.make_respect_contacts(spec))
+    scene = drawn(spec, rng, [(0, 1)], fixed=())
+    scene.contacts["gamma"], scene.contacts["frictional"] = 0.0, frictional
+    _, velocities, contacts = views(scene)
+    respect(contacts, 1, velocities, np.inf)
+    after = scene.jacobian @ scene.motion
+    if frictional:
+        assert after[1:] == pytest.approx([0.0, 0.0], abs=1e-13)
+    else:
+        assert after[0] == pytest.approx(0.0, abs=1e-13)
+        assert np.hypot(*after[1:]) > 1e-3
