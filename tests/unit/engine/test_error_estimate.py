@@ -1,7 +1,7 @@
-"""The estimate is Richardson's of order 2, in the units of its docstring, and contacts take theirs.
+"""The estimate is Richardson's of order 2, and contacts take theirs from differences.
 
-Halves of length h/2 of a method of order 2 end at x + E/4, the whole at x + E: they differ by 3/4 E,
-and a third of that is what the halves are off by.
+Halves of length h/2 of a method of order 2 end at x + E/4, the whole at x + E: they differ by 3/4
+E, and a third of that is what the halves are off by.
 """
 
 from __future__ import annotations
@@ -42,7 +42,10 @@ class Pair:
     """Bodies after halves and after the whole, with paths and what is left of the run."""
 
     def __init__(self, count: int = 1, spec: Spec = FREE) -> None:
-        self.bodies, self.velocities = allocate_bodies(spec, count), allocate_velocities(spec, count)
+        self.bodies, self.velocities = (
+            allocate_bodies(spec, count),
+            allocate_velocities(spec, count),
+        )
         self.bodies["inv_m"], self.bodies["bound"] = 1.0, 0.5
         if "qw" in self.bodies.dtype.names:
             self.bodies["qw"] = 1.0
@@ -172,7 +175,7 @@ def test_paths_are_those_of_the_centre_and_of_the_rim() -> None:
 
 
 def sticking(scene: Drawn) -> np.ndarray:
-    """Return rows of the Jacobian that hold: of contacts that push, tangents of those that stick."""
+    """Return rows of the Jacobian that hold: of what pushes, tangents of what sticks."""
     rows = []
     for k, contact in enumerate(scene.contacts):
         if contact["lambda_n"] > 0.0 and contact["gamma"] == 0.0:

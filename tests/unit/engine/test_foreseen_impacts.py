@@ -1,4 +1,4 @@
-"""Impacts ahead by the closed form of a gap at constant acceleration, and which of them are too slow.
+"""Impacts ahead by the closed form of a gap at constant acceleration, and which are too slow.
 
 Two balls come nearer along x: the gap is phi + v t + a t^2/2, and its first root is when they meet.
 """
@@ -138,7 +138,7 @@ def test_what_touches_and_approaches_meets_now() -> None:
 
 
 def test_one_that_leaves_waits_and_one_that_forces_bring_back_does_not() -> None:
-    """It is out of the slop at the end by phi + v t - a t^2/2, and faster than what forces change."""
+    """It is out of the slop at the end, at phi + v t - a t^2/2, and faster than forces change."""
     change = 0.1
     for share in (1.0 - HAIR, 1.0 + HAIR):
         # v = change: it has phi + v t/2 at the end, more than the slop.
@@ -178,8 +178,8 @@ def test_a_glance_is_an_impact_at_a_slower_speed() -> None:
         row.motion["dvz"] = [0.5 * change, -0.5 * change]
         row.motion["ahead_z"] = 0.0
         row.motion["vx"][1] = 1.0  # v^2/r dt = 0.1 m/s, more than BENDS of what forces change
-        assert (row.foresee()[2] == pytest.approx(2.0 * SLOP / 0.02)) == due
-        assert 1.0 / RADIUS * STEP > BENDS * change
+        assert (row.foresee()[2] == pytest.approx(gap * SLOP / 0.02)) == due
+        assert BENDS * change < 1.0 / RADIUS * STEP
         assert GLANCING * change < 0.02
 
 
