@@ -256,7 +256,7 @@ def test_round_bodies_that_lose_a_feature_keep_their_contact() -> None:
     scene.contacts["feature"] = 77
     scene.moves(1, (0.01, 0.0, 0.0))
     row = scene.look()[0]
-    np.testing.assert_array_equal(vector(row), vector(row, "at_") + [0.01, 0.0, 0.0])
+    np.testing.assert_array_equal(vector(row), np.add(vector(row, "at_"), (0.01, 0, 0)))
 
 
 def test_what_is_passed_on_to_the_next_face_stays() -> None:
@@ -264,7 +264,9 @@ def test_what_is_passed_on_to_the_next_face_stays() -> None:
     scene.contacts["passed_on"][2] = 1
     scene.moves(1, (0.03, 0.0, 0.0), tilted(2.0))
     for row in scene.look():
-        np.testing.assert_allclose(vector(row), vector(row, "at_") + [0.03, 0, 0], atol=1e-15)
+        np.testing.assert_allclose(
+            vector(row), np.add(vector(row, "at_"), (0.03, 0, 0)), atol=1e-15
+        )
 
 
 def test_swept_contacts_are_no_longer_aside_where_their_features_are() -> None:
