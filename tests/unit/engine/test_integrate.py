@@ -315,11 +315,13 @@ def test_what_a_body_that_jumps_pushes_jumps_with_it() -> None:
         {"a": 1, "b": 2, "lasts": 1},
         {"a": FLOOR, "b": 1},
         {"a": FLOOR, "b": 4, "lasts": 1},
+        {"a": 5, "b": 6, "lasts": 1},
     ]
+    expected = [ALWAYS, ALWAYS, ALWAYS, LASTING, LASTING, LASTING]
     for rows in (chain, chain[::-1]):
-        assert [c for c, _ in classified(rows, 5)][1:] == [ALWAYS, ALWAYS, ALWAYS, LASTING]
+        assert [c for c, _ in classified(rows, 7)][1:] == expected
     flipped = [row | {"a": row["b"], "b": row["a"]} for row in chain]
-    assert [c for c, _ in classified(flipped, 5)][1:] == [ALWAYS, ALWAYS, ALWAYS, LASTING]
+    assert [c for c, _ in classified(flipped, 7)][1:] == expected
 
 
 def moved_all(spec: Spec, body: Body, pseudo: Any = None, moved: bool = False) -> tuple[int, int]:

@@ -179,14 +179,12 @@ def test_what_no_part_of_the_step_reaches_is_far_and_what_rests_has_no_order() -
     assert still.part(DT) == (1, DT)
     state.bodies["x"][2] = 0.4 + 0.05
     assert still.part(DT)[1] == DT  # it parts
-    state.contacts["located"] = 0
-    state.motion["reach"] = 0.0
-    state.contacts["phi"][0] = 0.01
-    moves = still.order(
-        still.state, 1, still.workspace, one_row(dt=DT, timestep=DT, slop=1e-5), still.counters
-    )
-    assert moves == (1, DT)
-    assert state.contacts["located"][0] == FAR
+    params = one_row(dt=DT, timestep=DT, slop=1e-5)
+    for reaches, far in (((0.0, 0.0), True), ((0.02, 0.0), False), ((0.0, 0.02), False)):
+        state.contacts["located"], state.contacts["phi"][0] = 0, 0.01
+        state.motion["reach"][:2] = reaches
+        still.order(still.state, 1, still.workspace, params, still.counters)
+        assert (state.contacts["located"][0] == FAR) == far
 
 
 def test_what_overlaps_leaves_the_step_without_order() -> None:
