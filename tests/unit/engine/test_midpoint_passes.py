@@ -11,11 +11,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from ball_on_ball import GRAVITY, RADIUS, REACH, SPEED, angle_of, ball_on_ball, pendulum
 from drawn_contacts import put_vector
 from interpreted import interpreted
-from interpreted_steps import Steps
-from laboratory import resolved, sphere
-from scipy.integrate import solve_ivp
 
 from lavendersim.engine import midpoint_passes
 from lavendersim.engine.compile import chain
@@ -23,35 +21,11 @@ from lavendersim.engine.contact import make_append_contact
 from lavendersim.engine.effects import made_by
 from lavendersim.engine.midpoint_passes import PASSES, make_stand_up
 
-RADIUS, SMALL, GRAVITY = 0.5, 0.1, 9.81
-REACH = RADIUS + SMALL
-# Solves end at 1e-12 m/s, passes at 1e-9 m/s where they do no better.
-NUMERICS: dict[str, Any] = {
-    **{"integrator": "midpoint_contact", "impacts": "in_order", "speculative": True},
-    **{"tolerance": 1e-12, "sweeps": 400, "slop": 1e-6},
-}
 
-
-def on_a_ball(timestep: str = "1/100", speed: float = 0.8, **surface: float) -> Steps:
-    """Return a ball that leaves the top of a fixed one."""
-    bodies = {
-        "ground": sphere(RADIUS, (0.0, 0.0, 0.0), fixed=True, **surface),
-        "ball": sphere(SMALL, (0.0, 0.0, REACH), velocity=(speed, 0.0, 0.0), **surface),
-    }
-    if surface:  # it rolls
-        bodies["ball"]["angular_velocity"] = [0.0, speed / SMALL, 0.0]
-    return Steps(resolved(bodies, (0.0, 0.0, -GRAVITY), timestep=timestep, **NUMERICS))
-
-
-def angle_of(steps: Steps) -> float:
-    x, _, z = steps.places[1]
-    return float(np.arctan2(x, z))
-
-
-@pytest.mark.parametrize("surface", [{}, {"friction": 0.9}])
-def test_energy_and_the_circle_are_kept(surface: dict[str, float]) -> None:
+@pytest.mark.parametrize("friction", [0.0, 0.9])
+def test_energy_and_the_circle_are_kept(friction: float) -> None:
     """Rolling, too: what sticks slips by nothing in the mean."""
-    steps = on_a_ball(**surface)
+    steps = ball_on_ball(friction=friction)
     rows = steps.run(20)
     energy = rows["kinetic_energy"] + rows["potential_energy"]
     assert rows["midpoint_not_converged"].tolist() == [0] * 20
@@ -61,20 +35,11 @@ def test_energy_and_the_circle_are_kept(surface: dict[str, float]) -> None:
     assert angle_of(steps) > 0.25
 
 
-def pendulum(speed: float, time: float) -> float:
-    """Return the angle of an inverted pendulum: theta'' = g/R sin theta."""
-    found = solve_ivp(
-        lambda _, y: (y[1], GRAVITY / REACH * np.sin(y[0])), (0.0, time), (0.0, speed / REACH),
-        rtol=1e-12, atol=1e-14,
-    )  # fmt: skip
-    return float(found.y[0, -1])
-
-
 def test_it_is_of_second_order() -> None:
     """A quarter of the error at half the timestep; the rest is of the next even order."""
-    expected, errors = pendulum(0.8, 0.16), []
+    expected, errors = pendulum(0.16), []
     for timestep, count in (("1/50", 8), ("1/100", 16), ("1/200", 32)):
-        steps = on_a_ball(timestep)
+        steps = ball_on_ball(timestep)
         steps.run(count)
         errors.append(abs(angle_of(steps) - expected))
     assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.05)
@@ -84,7 +49,7 @@ def test_it_is_of_second_order() -> None:
 
 def test_a_ball_that_lifts_off_flies_from_the_start_of_its_step() -> None:
     """At v^2 > g R on the top no contact holds it: a parabola, to the last digits."""
-    steps = on_a_ball(speed=3.0)
+    steps = ball_on_ball(speed=3.0)
     steps.run(5)
     t = 0.05
     expected = (3.0 * t, 0.0, REACH - 0.5 * GRAVITY * t * t)
@@ -94,8 +59,8 @@ def test_a_ball_that_lifts_off_flies_from_the_start_of_its_step() -> None:
 class Passes:
     """The kernel after a solve at the start, with a solver by hand."""
 
-    def __init__(self, solve: Any, speed: float = 0.8, impact: int = 0, **counters: int) -> None:
-        self.steps = on_a_ball()
+    def __init__(self, solve: Any, speed: float = SPEED, impact: int = 0, **counters: int) -> None:
+        self.steps = ball_on_ball()
         engine, spec = self.steps.engine, self.steps.spec
         self.state, self.workspace, self.log, parameters, _ = self.steps.arrays()
         self.arrays, self.parameters = engine.state, parameters[0]
