@@ -298,7 +298,10 @@ def test_the_first_impact_of_a_body_counts_and_one_that_stays_is_carried() -> No
     for rows in ([MET, later], [later, MET]):
         assert classified(rows)[1] == (AFTERWARDS, 0.25)
         assert classified([*rows, LASTS])[1] == (AFTERWARDS, 0.25)
-    assert classified([MET, {"a": FLOOR, "b": 1}])[1][0] == ALWAYS
+    carried = {"a": FLOOR, "b": 1}
+    for rows in ([MET, carried], [carried, MET], [carried, later]):
+        flipped = [row | {"a": 1, "b": FLOOR} for row in rows]
+        assert classified(rows)[1][0] == classified(flipped)[1][0] == ALWAYS
     assert classified([MET, LASTS])[1] == (0, 0.25)
 
 
