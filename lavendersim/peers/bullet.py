@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Final
 
-from lavendersim.peers.declaration import EngineSetting, Peer, Variant
+from lavendersim.peers.declaration import Count, EngineSetting, Peer, Variant
 from lavendersim.quantities.quantity import Quantity
 
 PEER: Final = Peer(
@@ -24,9 +24,7 @@ PEER: Final = Peer(
         ),
     },
     settings=(
-        EngineSetting(
-            name="iterations", type=Annotated[int, Quantity(whole=True, minimum=1)], doc="at most"
-        ),
+        EngineSetting(name="iterations", type=Count, doc="at most"),
         EngineSetting(
             name="residual_threshold", type=Annotated[float, Quantity(minimum=0)], doc="to stop at"
         ),
