@@ -206,7 +206,7 @@ def test_a_missing_effect_of_another_is_named() -> None:
         )
 
 
-def test_arrays_are_told_apart_as_the_compiler_does() -> None:
+def test_arrays_differ_as_they_do_to_the_compiler() -> None:
     """By dtype, dimensions, order in memory and whether they may be written; not by their size."""
     types = engines._types_of
     plain = np.zeros((2, 3))

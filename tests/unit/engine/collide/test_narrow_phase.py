@@ -171,7 +171,7 @@ def test_a_fast_ball_touches_where_it_will_meet(midpoint: bool) -> None:
 
 @pytest.mark.parametrize("names", [(), PAIRS[:1], PAIRS])
 def test_only_the_manifolds_of_a_plan_are_in_it(names: tuple[str, ...]) -> None:
-    """Every kind is told from the others; of a plan with one kind it is not asked."""
+    """Every kind differs from the others; of a plan with one kind it is not asked."""
     spec = SPEC._replace(shape_pairs=names)
     manifold = interpreted(make_manifold(spec, names))
     balls = Balls([(0.0, 0.0, 0.9), (0.0, 0.0, 2.5)], [1.0, 1.0])
