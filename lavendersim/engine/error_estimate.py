@@ -182,8 +182,8 @@ def make_estimate(spec: Spec) -> Any:
                 speed = max(speed, paths[i].fastest, body.bound / params.duration)
                 path = max(body.bound, paths[i].length + speed * left)
                 error = max(off / path, dv / speed)
-                # A NaN is larger than anything.
-                if not error <= largest:
+                # A NaN is larger than anything, and than what comes after it.
+                if not error <= largest and largest == largest:
                     largest, worst = error, i
                     floor = max(PLACE_NOISE / path, noise / speed)
         return SHARE * largest, SHARE * floor, worst

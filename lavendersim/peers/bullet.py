@@ -8,6 +8,7 @@ from lavendersim.peers.declaration import (
     IMPULSE,
     POINT,
     TANGENTIAL,
+    Count,
     EngineSetting,
     Knobs,
     Peer,
@@ -32,9 +33,7 @@ PEER: Final = Peer(
         ),
     },
     settings=(
-        EngineSetting(
-            name="iterations", type=Annotated[int, Quantity(whole=True, minimum=1)], doc="at most"
-        ),
+        EngineSetting(name="iterations", type=Count, doc="at most"),
         EngineSetting(
             name="residual_threshold", type=Annotated[float, Quantity(minimum=0)], doc="to stop at"
         ),

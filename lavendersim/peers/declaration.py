@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, Final, NamedTuple
+from typing import Annotated, Any, Final, NamedTuple
+
+from lavendersim.quantities.quantity import Quantity
 
 Value = float | int | str | bool
+Count = Annotated[int, Quantity(whole=True, minimum=1)]  # of iterations, sweeps and the like
 
 # What of a contact an engine may tell: a point, a unit normal from A to B, the gap [m]; the normal
 # impulse on B, the tangential one as a vector in world axes [N s]; the coefficient that it used.

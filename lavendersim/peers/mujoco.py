@@ -9,6 +9,7 @@ from lavendersim.peers.declaration import (
     IMPULSE,
     POINT,
     TANGENTIAL,
+    Count,
     EngineSetting,
     Knobs,
     Peer,
@@ -65,9 +66,7 @@ PEER: Final = Peer(
         EngineSetting(
             name="solver", type=Literal["Newton", "CG", "PGS"], doc="of the convex problem"
         ),
-        EngineSetting(
-            name="iterations", type=Annotated[int, Quantity(whole=True, minimum=1)], doc="at most"
-        ),
+        EngineSetting(name="iterations", type=Count, doc="at most"),
         EngineSetting(
             name="tolerance", type=Annotated[float, Quantity(minimum=0)], doc="to stop at"
         ),

@@ -4,10 +4,17 @@ from __future__ import annotations
 
 from typing import Annotated, Final
 
-from lavendersim.peers.declaration import IMPULSE, POINT, EngineSetting, Knobs, Peer, Variant
+from lavendersim.peers.declaration import (
+    IMPULSE,
+    POINT,
+    Count,
+    EngineSetting,
+    Knobs,
+    Peer,
+    Variant,
+)
 from lavendersim.quantities.quantity import Quantity
 
-_COUNT = Annotated[int, Quantity(whole=True, minimum=1)]
 _LENGTH = Annotated[float, Quantity("m", above=0)]
 
 PEER: Final = Peer(
@@ -31,8 +38,8 @@ PEER: Final = Peer(
         ),
     },
     settings=(
-        EngineSetting(name="iterations", type=_COUNT, doc="of the solver, each a small step"),
-        EngineSetting(name="internal_iterations", type=_COUNT, doc="sweeps of each"),
+        EngineSetting(name="iterations", type=Count, doc="of the solver, each a small step"),
+        EngineSetting(name="internal_iterations", type=Count, doc="sweeps of each"),
         EngineSetting(name="allowed_error", type=_LENGTH, doc="[m] penetration left alone"),
         EngineSetting(
             name="stiff_steps",

@@ -149,7 +149,8 @@ def put(row: np.void, kind: str, half, centre=(0.0, 0.0, 0.0), matrix=None, **pr
     row["shape"] = solids.KINDS.index(kind)
     row["hx"], row["hy"], row["hz"] = half
     row["offset"] = properties.get("offset", 0.0)
-    row["hull"] = properties.get("hull", 0)
+    if kind == "hull":
+        row["hull"] = properties.get("hull", 0)
     row["x"], row["y"], row["z"] = centre
     turned = np.eye(3) if matrix is None else matrix
     for i in range(3):

@@ -4,7 +4,7 @@
     lavendersim/engine/collide/pairs tests/unit/engine/collide/test_pairs_swapped.py
 
 A law of several packages is no unit's: it stands in tests/physics, tests/runner or their like.
-Every module has a test that is named after it, is a declaration, or is listed as one without.
+Every module has a test that is named after it, or is a declaration.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ import ast
 from pathlib import Path
 
 import pytest
-from modules_without_tests import DECLARATIONS, WITHOUT_A_TEST
+from declarations import DECLARATIONS
 from sources import ROOT
 
 PACKAGE = ROOT / "lavendersim"
@@ -77,17 +77,10 @@ def untested(modules: set[Path], tests: set[Path], excused: set[Path]) -> list[P
     return sorted((modules - subjects - excused) | (excused & subjects) | (excused - modules))
 
 
-def test_every_module_has_a_unit_test_or_is_listed_without() -> None:
+def test_every_module_has_a_unit_test_or_is_a_declaration() -> None:
     modules = {file for file in PACKAGE.rglob("*.py") if file.name != "__init__.py"}
-    listed = [
-        PACKAGE / folder / f"{name}.py"
-        for folder, names in WITHOUT_A_TEST.items()
-        for name in names.split()
-    ]
     declarations = {PACKAGE / name for name in DECLARATIONS}
-    assert len(listed) == len(set(listed))
-    assert not declarations & set(listed)
-    wrong = untested(modules, set(UNIT.rglob("test_*.py")), declarations | set(listed))
+    wrong = untested(modules, set(UNIT.rglob("test_*.py")), declarations)
     assert [str(module.relative_to(PACKAGE)) for module in wrong] == []
 
 

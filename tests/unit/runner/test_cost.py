@@ -17,25 +17,14 @@ from lavendersim.figures.work_precision import compose, draw_work_precision
 from lavendersim.measures.cost_table import CostRow
 from lavendersim.runner import open_run, run
 from lavendersim.runner.cost import Costed, take_cost
+from tests.bouncing_ball_config import BOUNCING_BALL
 from tests.older_runs import without_digests
 
-BALL = """\
+QUESTION = """\
 question: What does a bounce cost?
 expected: Finer steps come closer to e^2 h.
-scene:
-  bodies:
-    floor: {shape: {kind: plane}}
-    ball:
-      shape: {kind: sphere, radius: 0.1}
-      mass: 1.0
-      surface: {restitution: 0.8}
-      release: {above: floor, clearance: 0.2}
-numerics: {preset: chapter, slop: 0.002}
-duration: 0.6
-sweep:
-  phase: {path: scene.bodies.ball.release.phase, values: [0, 1/3, 2/3]}
-measure:
-  apex: {kind: apex_error, body: ball, above: floor}
+"""
+COST = """\
   sinking: {kind: max_penetration, body: ball}
 expect:
   - {name: the apex is exact, measure: apex, at_most: 0}
@@ -50,6 +39,7 @@ cost:
   targets: [0.5, 1e-9]
   repeats: 7
 """
+BALL = QUESTION + BOUNCING_BALL + COST
 
 
 @pytest.fixture(scope="module")

@@ -11,22 +11,9 @@ from lavendersim.experiment.sweeps.cost_grid import (
     over_the_grid,
     settings_of,
 )
+from tests.bouncing_ball_config import BOUNCING_BALL
 
-GRID = """\
-scene:
-  bodies:
-    floor: {shape: {kind: plane}}
-    ball:
-      shape: {kind: sphere, radius: 0.1}
-      mass: 1.0
-      surface: {restitution: 0.8}
-      release: {above: floor, clearance: 0.2}
-numerics: {preset: chapter, slop: 0.002}
-duration: 0.6
-sweep:
-  phase: {path: scene.bodies.ball.release.phase, values: [0, 1/3, 2/3]}
-measure:
-  apex: {kind: apex_error, body: ball, above: floor}
+COST = """\
 cost:
   error: {measure: apex}
   solvers: all
@@ -34,6 +21,7 @@ cost:
   sweeps: [2, 8]
   warm_start: [true]
 """
+GRID = BOUNCING_BALL + COST
 
 
 def test_the_grid_is_the_product_of_its_lists_with_what_the_config_specifies_first() -> None:

@@ -1,7 +1,4 @@
-"""Modules that no unit test is named after: declarations with the reason, and those still without.
-
-`test_unit_tests_mirror_the_source.py` reads both. A module that gets a test leaves its list.
-"""
+"""Modules that no unit test is named after: declarations, each with what it declares."""
 
 from __future__ import annotations
 
@@ -37,19 +34,4 @@ DECLARATIONS = {
     "peers/bullet.py": "a declaration",
     "peers/mujoco.py": "a declaration",
     "peers/rapier.py": "a declaration",
-}
-
-# Folder: modules, without `.py`. A debt, to be made shorter: nothing is added here.
-WITHOUT_A_TEST = {
-    "engine": """
-        difference_kernel engine error_estimate flush_contacts foreseen_impacts
-        integrate kernel_parts midpoint_geometry midpoint_passes midpoint_rows part_compiler
-        respond spring_midpoint step_doubling
-    """,
-    "engine/collide": """
-        narrow_phase
-    """,
-    "engine/effects": """
-        impact_order
-    """,
 }
