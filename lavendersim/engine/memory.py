@@ -16,12 +16,14 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from .acceleration import COLUMNS
+from .anderson import FixedPoint, allocate_fixed_point
 from .collide.broad.broad_phase import allocate_broad_phase
 from .collide.convex.hull_geometry import HullGeometry
 from .collide.scratch import Scratch, allocate_scratch
 from .contact_lists import ContactLists, allocate_contact_lists
 from .effects import has_hook
 from .integrate import keeps_motion
+from .midpoint_mixing import WORDS
 from .ordering import Ordering, allocate_ordering
 from .record_layout import (
     allocate_links,
@@ -83,6 +85,7 @@ class Middle(NamedTuple):
     poses: np.ndarray  # (n,) rows of the bodies at its start
     free: np.ndarray  # (n,) velocities that forces alone lead to
     lead: np.ndarray  # (n,) velocities before forces and impulses, spins those at the middle
+    rounds: FixedPoint  # (6 n,) velocities by which bodies stand there, `midpoint_mixing`
 
 
 class SpringTrial(NamedTuple):
@@ -184,6 +187,7 @@ def allocate_workspace(
             np.zeros(centred, state.bodies.dtype),
             np.zeros(centred, state.velocities.dtype),
             np.zeros(centred, state.velocities.dtype),
+            allocate_fixed_point(WORDS * centred),
         ),
         beside=SpringTrial(
             np.zeros((4, 9 * links)),

@@ -7,6 +7,7 @@ start.
 
 from __future__ import annotations
 
+from math import inf
 from typing import Any
 
 from .compile import kernel
@@ -20,6 +21,7 @@ from .midpoint_geometry import (
     make_take_kept,
 )
 from .midpoint_jumps import make_carry_along
+from .midpoint_mixing import NO_PASS, make_mix_velocities
 from .midpoint_rows import (
     SAME,
     make_begin_slip,
@@ -37,6 +39,9 @@ from .spec import Spec
 
 # Each pass gains some two digits where bodies turn by a tenth of a radian in a step.
 PASSES = 8
+# More are made, up to so many, of solves that converge, as long as one of IDLE brings the least
+# that was missed down to the share GAIN [-].
+MOST_PASSES, IDLE, GAIN = 32, 4, 0.9
 # From this one on a contact that still comes and goes is none of the middle (`midpoint_jumps`).
 SETTLED = 3
 
@@ -61,7 +66,7 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
     keeps_free, keep_free = made_once(spec, "keep_free")
     at_surface, loaded = spec.has("impact_time"), preload is not None
     forget_history = make_forget_history(spec)
-    residual = make_residual(spec)
+    residual, mix_velocities = make_residual(spec), make_mix_velocities(spec)
     beside = has_hook(spec, "act_beside")
 
     def has_impact(contacts, count):
@@ -116,7 +121,7 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
     def midpoint_passes(state, count, workspace, params, counters, log):
         bodies, velocities, motion = state.bodies, state.velocities, state.motion
         contacts, cache, pairs = state.contacts, state.cache, state.pairs
-        poses, free, lead = workspace.middle
+        poses, free, lead, rounds = workspace.middle
         if counters.not_converged == 1:
             return False
         if at_surface:
@@ -137,7 +142,9 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
         order = workspace.ordering.order
         system = ContactSystem(contacts, order, count, bodies, velocities)
         missed, unturned, torn = 0.0, 0, False
-        for k in range(PASSES):
+        least, idle, columns = inf, 0, NO_PASS
+        for k in range(MOST_PASSES):
+            columns = mix_velocities(bodies, velocities, rounds, columns)
             if warms:
                 store_contacts(contacts, count, bodies, cache, counters, params)
             unturned = stand_midway(bodies, velocities, motion, lead, poses, params.dt)
@@ -180,14 +187,20 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
                 torn = carry_along(contacts, count, motion)
             if missed <= SAME and not torn:
                 break
+            idle += 1
+            if missed < GAIN * least:
+                least, idle = missed, 0
+            if k >= PASSES - 1 and (idle >= IDLE or counters.not_converged == 1):
+                break
         # A pass may miss what solves leave.
         left = not missed <= max(SAME, params.tolerance)
         if counters.not_converged == 1 or torn or left:
             counters.midpoint_not_converged += 1
         if uneven:
             counters.gyroscopic_not_converged += unturned
-        if counters.not_converged == 1 or torn:
-            # What is solved at the start is better than what is not solved at the middle.
+        if counters.not_converged == 1 or torn or left:
+            # What is solved at the start is better than what is not solved at the middle, or at no
+            # middle: where passes end without one hangs on the last bit, and may give energy.
             for i in range(bodies.shape[0]):
                 bodies[i], velocities[i] = poses[i], free[i]
             if loaded:

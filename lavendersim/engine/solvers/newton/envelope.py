@@ -12,6 +12,7 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
+from ...anderson import FixedPoint, allocate_fixed_point
 from ...compile import inner
 from ...records import F8, Field, dtype
 
@@ -42,6 +43,7 @@ class Envelope(NamedTuple):
     change: np.ndarray  # (6 bodies,) of the velocities in this round: v - v^k
     mass: np.ndarray  # (bodies,) MASS, by position
     rows: np.ndarray  # (9, 6) rows n, t1, t2 of one contact: body A's, body B's, and scaled
+    shifts: FixedPoint  # (contacts,), see `shifts`
     packed: Any = ()  # what sweeps between two calls work in, where they pack contacts
 
 
@@ -62,6 +64,7 @@ def allocate_envelope(bodies: int, contacts: int, capacity: int, packed: Any = (
         np.zeros(rows),
         np.zeros(bodies, dtype(MASS)),
         np.zeros((9, DOF)),
+        allocate_fixed_point(contacts),
         packed,
     )
 

@@ -6,8 +6,9 @@ onto Coulomb's cone, with De Saxce's shift s = mu |v_t^k| along the normal, with
 projection onto the cone would lift what slides. Kept for a round, it leaves a convex problem
 (`minimise`). At rest s = 0, and a round shrinks the error by softness over the least
 eigenvalue of the scaled Delassus operator; where that is not what a round leaves, the shifts are,
-and the next ones go by their secants. A round must end exactly: what it leaves undone comes back in
-the impulses, times E. Torques take part (`torques`).
+and the next ones go by their secants, each by its own, then all together (`shifts`). A round must
+end exactly: what it leaves undone comes back in the impulses, times E. Torques take part
+(`torques`).
 
 The first round is stiff and takes contacts to be at rest: a load that is carried without slip is
 found at once, through a tower or a pyramid. Where that fails, rounds begin soft, where few contacts
@@ -19,6 +20,7 @@ from __future__ import annotations
 from math import inf, sqrt
 from typing import Any
 
+from ...anderson import NO_ROUND
 from ...compile import inner, kernel, separate
 from ...contact import make_apply_block
 from ...residual import make_residual
@@ -27,8 +29,18 @@ from ...spec import Spec
 from ...spin_block import resists_turning
 from .envelope import lay_out
 from .minimise import make_assemble_mass, make_minimise
-from .response import make_projected_impulse, make_start
-from .rounds import EXACTNESS, FAILURES, SOFTEST, after_failed, after_kept, begin_rounds, is_kept
+from .response import PLAIN, SECANT, TOGETHER, make_projected_impulse, make_start
+from .rounds import (
+    EXACTNESS,
+    FAILURES,
+    SOFTEST,
+    after_failed,
+    after_kept,
+    after_stalled,
+    begin_rounds,
+    is_kept,
+)
+from .shifts import PATIENCE, make_shift_together
 from .torques import make_accept_torques, make_keep_torques, make_restore_torques
 
 # Newton steps in a call; fewer than these are not worth beginning.
@@ -150,6 +162,8 @@ def make_newton(spec: Spec):
     restore_best = make_restore(spec, "best", set_impulse)
     begin, kept = kernel(begin_rounds, spec), kernel(is_kept, spec)
     go_on, go_softer = kernel(after_kept, spec), kernel(after_failed, spec)
+    stay, slides = kernel(after_stalled, spec), row_terms(spec).frictional
+    shift_together: Any = make_shift_together(spec)
 
     def newton(system, workspace, size, most, tolerance, sticking_guess):
         contacts, count, velocities = system.contacts, system.count, system.velocities
@@ -159,7 +173,8 @@ def make_newton(spec: Spec):
         for c in range(count):
             lightest = min(lightest, 1.0 / contacts[c].k_n)
         least, _ = residual(contacts, count, velocities)
-        now, stalls = least, False
+        now, stalls = least, PLAIN
+        stalled, columns = 0, NO_ROUND
         keep(contacts, count)
         rounds = begin(STICKING if sticking_guess else SOFTEST)
         steps, guess_holds = 0, sticking_guess
@@ -167,6 +182,10 @@ def make_newton(spec: Spec):
             off = max(least, tolerance)
             at_rest = sticking_guess and steps == 0
             softness = rounds.softness
+            if slides:
+                if stalled >= PATIENCE:
+                    columns = shift_together(contacts, count, velocities, workspace.shifts, columns)
+                    stalls = TOGETHER
             start(contacts, count, velocities, softness, at_rest, stalls)
             made, found = minimise(
                 contacts, count, size, workspace, EXACTNESS * softness * lightest * off * off
@@ -181,11 +200,13 @@ def make_newton(spec: Spec):
                     break
                 keeps = kept(largest, least, at_rest)
                 if keeps:
-                    stalls, now = largest > STALLED * now, largest
+                    stalls = SECANT if largest > STALLED * now else PLAIN
+                    stalled += stalls
+                    now = largest
                     if largest <= least:
                         least = largest
                         keep(contacts, count)
-                    rounds = go_on(rounds)
+                    rounds = stay(rounds) if stalled >= PATIENCE and slides else go_on(rounds)
                 else:
                     restore_start(contacts, count, velocities)
             if not keeps:
@@ -193,6 +214,8 @@ def make_newton(spec: Spec):
                 rounds = go_softer(rounds, at_rest)
                 if rounds.failed > FAILURES:
                     break
+                if stalls == TOGETHER:  # what led to it is no guide
+                    stalls, stalled, columns = PLAIN, 1, NO_ROUND
                 if at_rest:
                     guess_holds = False
         if now > least:

@@ -19,7 +19,15 @@ from ...spin_block import resists_turning
 from .envelope import DOF, OF_A, OF_B, T1, T2, WX, WY, WZ, factorise, solve_factorised
 from .matrix import make_assemble
 from .response import make_fill_rows, make_projected_impulse, make_stiffness
-from .rounds import LENGTHS, SLOPE_LEFT, STEPS_OF_A_ROUND, is_at_minimum, is_slow
+from .rounds import (
+    IDLE_STEPS,
+    LENGTHS,
+    SLOPE_LEFT,
+    STEPS_OF_A_ROUND,
+    is_at_minimum,
+    is_idle,
+    is_slow,
+)
 from .torques import (
     make_advance_spin,
     make_directional_spin,
@@ -132,6 +140,7 @@ def make_descend(spec: Spec, projected_impulse: Any, stiffness: Any, torques: bo
     gather_torque = make_gather_torque(spec)
     torque_slope, advance_spin = make_torque_slope(spec), make_advance_spin(spec)
     at_minimum, slow = kernel(is_at_minimum, spec), kernel(is_slow, spec)
+    gains_nothing = kernel(is_idle, spec)
 
     def multiply(workspace, x, p, i):
         # Row i of block p of M x.
@@ -216,6 +225,7 @@ def make_descend(spec: Spec, projected_impulse: Any, stiffness: Any, torques: bo
 
     def descend(contacts, count, size, workspace, enough, first):
         rows = DOF * size
+        before, idle = 0.0, 0
         for done in range(STEPS_OF_A_ROUND):
             gather(contacts, count, size, workspace)
             assemble(contacts, count, size, workspace)
@@ -231,6 +241,11 @@ def make_descend(spec: Spec, projected_impulse: Any, stiffness: Any, torques: bo
                 first = slope
             if at_minimum(slope, first, enough):
                 return done + 1, slope == slope
+            if gains_nothing(slope, before, first):
+                idle += 1
+                if idle == IDLE_STEPS:
+                    return done + 1, True
+            before = slope
             if slow(done, slope, first):
                 return done + 1, False
             directional_derivative(contacts, count, workspace)

@@ -20,13 +20,17 @@ from ...spin_block import resists_turning
 from .envelope import OF_A, OF_B, T1, T2, WX, WY, WZ, N, X, Y, Z
 from .torques import make_start_torques
 
+# How De Saxce's shifts of a round follow from those of the round before.
+PLAIN, SECANT, TOGETHER = 0, 1, 2
+
 
 def make_start(spec: Spec):
     """Return `kernel(contacts, count, velocities, softness, at_rest, stalls)`.
 
     A round begins, around the impulses of now. 1/softness is the stiffness of a projected impulse,
     relative to the row's own effective mass [-]; at_rest: what slides is taken to stop;
-    stalls: shifts go on by the secant of their last two.
+    stalls: how shifts go on, PLAIN, each by the SECANT of its last two, or as they are, brought on
+    TOGETHER before (`shifts`).
     """
     compliant = row_terms(spec).compliant
     start_velocity = by_friction(spec, _make_start_normal, _make_start_block)
@@ -99,10 +103,10 @@ def _make_start_block(spec: Spec):
         if at_rest:
             contact.shift, contact.defect, contact.shift_change = 0.0, 0.0, 0.0
         else:
-            squared = (
-                contact.velocity_1 * contact.velocity_1 + contact.velocity_2 * contact.velocity_2
-            )
-            update_shift(contact, contact.mu * sqrt(squared), stalls)
+            if stalls != TOGETHER:
+                one, two = contact.velocity_1, contact.velocity_2
+                slip = sqrt(one * one + two * two)
+                update_shift(contact, contact.mu * slip, stalls == SECANT)
             contact.velocity_n += contact.shift
         contact.stiff_t = 1.0 / (softness * contact.k_t)
         contact.start_1, contact.start_2 = contact.lambda_1, contact.lambda_2

@@ -17,6 +17,9 @@ from typing import NamedTuple
 # Softness of the second round where the first failed, and the least [-].
 SOFTEST = 1e-2
 STIFFEST = 1e-8
+# The least where the shifts are what is off: a stiffer round brings no more, and what slides at v
+# has impulses with round-off of 1e-16 v over the softness [-].
+STIFF_ENOUGH = 1e-6
 # Softness falls by this factor from round to round, by its root after one that failed: the same
 # round again would fail again [-].
 CUT = 0.03
@@ -36,6 +39,9 @@ STEPS_OF_A_ROUND = 24
 LOOK_BACK, LOOKED_FOR = 8, 0.1
 # Nothing is left to gain below this share of what the first step gains: round-off [-].
 ROUND_OFF = 1e-20
+# Below this share steps that gain no less than the one before are round-off [-]; so many of them
+# end a round.
+NOTHING, IDLE_STEPS = 1e-8, 2
 # A length is good when it leaves this share of the slope along the step [-]; trials of it. Scenes
 # halve the interval, where a slope costs next to nothing; problems by themselves go by secants.
 SLOPE_LEFT = 0.2
@@ -67,6 +73,12 @@ def after_kept(rounds: Rounds) -> Rounds:
     return Rounds(softness, rounds.softness, rounds.cut, rounds.failed)
 
 
+def after_stalled(rounds: Rounds) -> Rounds:
+    """Return the rounds after one that is kept and brought little: stiff enough, and no stiffer."""
+    softness = max(rounds.softness * rounds.cut, min(rounds.softness, STIFF_ENOUGH))
+    return Rounds(softness, rounds.softness, rounds.cut, rounds.failed)
+
+
 def after_failed(rounds: Rounds, keeps_cut: bool) -> Rounds:
     """Return the rounds after one that is not kept; keeps_cut: that says nothing of the cut."""
     cut = rounds.cut if keeps_cut else sqrt(rounds.cut)
@@ -79,6 +91,14 @@ def is_at_minimum(slope: float, first: float, enough: float) -> bool:
     first: slope of the round's first step; enough: the slope need not be steeper.
     """
     return not slope < min(ROUND_OFF * first, -enough)
+
+
+def is_idle(slope: float, before: float, first: float) -> bool:
+    """Whether a step gains no less than the one before it, and next to nothing: round-off.
+
+    What the function has lost since the round's first step may be no digit of what it is made of.
+    """
+    return slope > NOTHING * first and slope <= before
 
 
 def is_slow(step: int, slope: float, first: float) -> bool:

@@ -12,13 +12,16 @@ from lavendersim.engine.solvers.newton.rounds import (
     CUT,
     FIRST,
     SOFTEST,
+    STIFF_ENOUGH,
     STIFFEST,
     WORSE,
     Rounds,
     after_failed,
     after_kept,
+    after_stalled,
     begin_rounds,
     is_at_minimum,
+    is_idle,
     is_kept,
 )
 
@@ -63,7 +66,26 @@ def test_a_step_with_nothing_to_gain_is_the_last(slope: float) -> None:
     assert not is_at_minimum(-1e-7, -1.0, 1e-8)
 
 
-@pytest.mark.parametrize(("name", "more"), [("after_kept", ()), ("after_failed", (False,))])
+def test_rounds_that_bring_little_are_stiff_enough_and_no_stiffer() -> None:
+    now, soft = begin_rounds(SOFTEST), []
+    for _ in range(5):
+        soft.append(now.softness)
+        now = after_stalled(now)
+    expected = [max(SOFTEST * CUT**k, STIFF_ENOUGH) for k in range(5)]
+    assert soft == pytest.approx(expected, rel=1e-14)
+    stiff = Rounds(STIFFEST, STIFFEST, CUT, 0)  # one that is stiffer already stays as it is
+    assert after_stalled(stiff).softness == STIFFEST
+
+
+def test_steps_that_gain_as_much_as_the_one_before_are_idle_where_it_is_next_to_nothing() -> None:
+    assert is_idle(-2e-28, -1e-28, -1.0)
+    assert not is_idle(-1e-28, -2e-28, -1.0)  # it still falls
+    assert not is_idle(-0.2, -0.1, -1.0)  # contacts change their state
+
+
+@pytest.mark.parametrize(
+    ("name", "more"), [("after_kept", ()), ("after_stalled", ()), ("after_failed", (False,))]
+)
 def test_kernels_and_plain_functions_have_the_same_bits(name: str, more: tuple[bool, ...]) -> None:
     """Square roots and products are rounded once, by IEEE 754, in both."""
     plain = getattr(rounds, name)
