@@ -50,6 +50,8 @@ WORKED_IN = {
     },
     "contact_midpoint": {
         ".middle.poses": BODIES, ".middle.free": BODIES, ".middle.lead": BODIES,
+        ".middle.rounds.point": 6 * BODIES, ".middle.rounds.defect": 6 * BODIES,
+        ".middle.rounds.last_point": 6 * BODIES, ".middle.rounds.last_defect": 6 * BODIES,
     },
     "sleeping": {".islands": BODIES},
     "problem_log": {".free_velocities": BODIES},
