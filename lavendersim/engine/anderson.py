@@ -19,7 +19,7 @@ import numpy as np
 from .compile import kernel
 from .spec import Spec
 
-# Rounds that are looked back at.
+# Rounds that are looked back at, but for where more pay.
 DEPTH = 4
 # Columns, where no round has been made yet.
 NO_ROUND = -1
@@ -34,16 +34,16 @@ class FixedPoint(NamedTuple):
     defect: np.ndarray  # (n,) f
     last_point: np.ndarray  # (n,) those of the round before
     last_defect: np.ndarray  # (n,)
-    moved: np.ndarray  # (DEPTH, n) dX, newest first
-    led_to: np.ndarray  # (DEPTH, n) dF
-    moved_basis: np.ndarray  # (DEPTH, n) dX as dF becomes orthogonal
-    led_to_basis: np.ndarray  # (DEPTH, n) dF, orthogonal
+    moved: np.ndarray  # (depth, n) dX, newest first
+    led_to: np.ndarray  # (depth, n) dF
+    moved_basis: np.ndarray  # (depth, n) dX as dF becomes orthogonal
+    led_to_basis: np.ndarray  # (depth, n) dF, orthogonal
 
 
-def allocate_fixed_point(size: int) -> FixedPoint:
-    """Return the arrays of a fixed point of so many numbers."""
+def allocate_fixed_point(size: int, depth: int = DEPTH) -> FixedPoint:
+    """Return the arrays of a fixed point of so many numbers; depth: rounds looked back at."""
     rows = [np.zeros(size) for _ in range(4)]
-    return FixedPoint(*rows, *(np.zeros((DEPTH, size)) for _ in range(4)))
+    return FixedPoint(*rows, *(np.zeros((depth, size)) for _ in range(4)))
 
 
 def make_bring_on(spec: Spec) -> Any:
@@ -55,7 +55,7 @@ def make_bring_on(spec: Spec) -> Any:
     def push_column(rounds, size, columns):
         moved, led_to = rounds.moved, rounds.led_to
         if columns > NO_ROUND:
-            columns = min(columns + 1, DEPTH)
+            columns = min(columns + 1, moved.shape[0])
             for k in range(columns - 1, 0, -1):
                 for i in range(size):
                     moved[k, i], led_to[k, i] = moved[k - 1, i], led_to[k - 1, i]

@@ -15,7 +15,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .acceleration import COLUMNS
 from .anderson import FixedPoint, allocate_fixed_point
 from .collide.broad.broad_phase import allocate_broad_phase
 from .collide.convex.hull_geometry import HullGeometry
@@ -79,6 +78,10 @@ class Trial(NamedTuple):
     contact: np.ndarray  # (1,)
 
 
+# Rounds that are looked back at where springs and contacts act on each other.
+SPRING_ROUNDS = 16
+
+
 class Middle(NamedTuple):
     """What a step keeps while its contacts are looked at in its middle (`midpoint_passes`)."""
 
@@ -91,9 +94,11 @@ class Middle(NamedTuple):
 class SpringTrial(NamedTuple):
     """What springs and contacts that act on each other are tried with (`spring_contacts`)."""
 
-    impulses: np.ndarray  # (4, 9 l) of l springs: those in use, what they are off by; the last
-    changes: np.ndarray  # (2, COLUMNS, 9 l): of the impulses, and of what they are off by
+    rounds: FixedPoint  # (9 l,) impulses of l springs: those in use, and what they are off by
     lost: np.ndarray  # (1,) energy that what they act on lost in this part [J]
+    passes: np.ndarray  # (1,) whether contacts are looked for at the middle
+    midway: np.ndarray  # (1,) whether bodies stand there, before springs act beside contacts
+    before: np.ndarray  # (2,) midpoint_ and gyroscopic_not_converged before contacts were solved
     bodies: np.ndarray  # (n,) where the step leads to
     velocities: np.ndarray  # (n,)
 
@@ -190,9 +195,11 @@ def allocate_workspace(
             allocate_fixed_point(WORDS * centred),
         ),
         beside=SpringTrial(
-            np.zeros((4, 9 * links)),
-            np.zeros((2, COLUMNS, 9 * links)),
+            allocate_fixed_point(9 * links, SPRING_ROUNDS),
             np.zeros(1),
+            np.zeros(1, np.int64),
+            np.zeros(1, np.int64),
+            np.zeros(2, np.int64),
             np.zeros(coupled, state.bodies.dtype),
             np.zeros(coupled, state.velocities.dtype),
         ),

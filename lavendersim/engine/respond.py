@@ -15,7 +15,7 @@ from typing import Any
 from . import ordering
 from .compile import chain, kernel, separate
 from .contact import make_append_contact, make_apply_start
-from .effects import made_by, made_once
+from .effects import has_hook, made_by, made_once
 from .integrate import keeps_motion, make_classify
 from .midpoint_passes import make_midpoint_passes, make_stand_up
 from .midpoint_rows import make_lasting, make_stirs
@@ -78,7 +78,9 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
     overlooks = spec.has("overlooked_points")
     look_over: Any = make_look_over(spec) if overlooks else None
 
-    def solve_part(state, count, workspace, params, counters, log, passes):
+    beside = centred and has_hook(spec, "act_beside")
+
+    def solve_part(state, count, workspace, params, counters, log):
         # From velocities without impulses of contacts; whether bodies then stand at the middle.
         bodies, velocities, motion = state.bodies, state.velocities, state.motion
         lasts = True  # an impulse of an instant is no guess for a force
@@ -131,16 +133,17 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
             settle(system, motion, workspace.solver, params, counters, log.residual)
         midway = False
         if centred:
-            if moving and passes:
+            if beside:
+                moving = moving and workspace.beside.passes[0] == 1
+            if moving:
                 midway = midpoint_passes(state, count, workspace, params, counters, log)
         return midway
 
     solve_part = kernel(solve_part, spec)
-    beside = False
     act_beside: Any = None
     limit_projection: Any = None
-    if centred:
-        beside, act_beside = made_once(spec, "act_beside", solve_part)
+    if beside:
+        _, act_beside = made_once(spec, "act_beside", solve_part)
         _, limit_projection = made_once(spec, "limit_projection")
 
     def respond(state, count, workspace, params, counters, log):
@@ -149,12 +152,16 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
         lasts = True
         if ordered:
             lasts = params.dt > INSTANT
-        missed, unturned = counters.midpoint_not_converged, counters.gyroscopic_not_converged
-        midway = solve_part(state, count, workspace, params, counters, log, True)
+        if beside:
+            springs = workspace.beside
+            springs.before[0] = counters.midpoint_not_converged
+            springs.before[1] = counters.gyroscopic_not_converged
+            springs.passes[0] = 1
+        midway = solve_part(state, count, workspace, params, counters, log)
         if beside:
             if lasts:
-                before = (missed, unturned)
-                midway = act_beside(state, count, workspace, params, counters, log, midway, before)
+                springs.midway[0] = 1 if midway else 0
+                midway = act_beside(state, count, workspace, params, counters, log)
         if overlooks:
             if lasts and workspace.overlooked.noted[0] > 0:
                 poses = workspace.middle.poses if midway else bodies

@@ -4,10 +4,10 @@ A spring's impulse is that of the discrete gradient (`spring_midpoint`) for the 
 contacts included: only then is its work the change of its energy. So bodies that springs join and
 contacts push, the union, are solved in turns: springs with what contacts gave as given, contacts
 with the springs' impulses as given. That converges by itself, slowly where steps do not resolve a
-spring, and in a few passes by Anderson's acceleration. Where it does not, or where the union would
-have more energy at the end of the step than it began with and forces gave it, it is placed: springs
-act by s times the implicit Euler rule along where they stand, s = 1, 1/4, 1/16, ..., 0, contacts
-after them, and bodies move by
+spring, and in a few passes by Anderson's acceleration (`anderson`). Where it does not, or where the
+union would have more energy at the end of the step than it began with and forces gave it, it is
+placed: springs act by s times the implicit Euler rule along where they stand, s = 1, 1/4, 1/16,
+..., 0, contacts after them, and bodies move by
     x_1 = x_0 + dt (V_c + t (v - V_c)),   turned by dt t omega;   t = 1, 1/2, 1/4, ...
 V_c: the centre's, 0 of what touches or is tied to what does not move. The first pair (s, t) is
 taken for which the energy is enough; at s = t = 0 it is.
@@ -17,104 +17,47 @@ from __future__ import annotations
 
 from typing import Any
 
-from .acceleration import COLUMNS, advance_by, note_change
+from .anderson import NO_ROUND, make_bring_on
 from .compile import kernel
 from .effects import made_once
-from .integrate import make_classify, make_displace, make_finish
+from .integrate import make_classify, make_finish
 from .midpoint_passes import make_stand_up
 from .parts import make_forget_history
 from .spec import Spec
 from .spring_limit import make_limit
 from .spring_midpoint import make_find
-from .spring_turn import BOTH, TWISTED
-from .vectors import Vec3, cross, length, minus, plus_scaled, scaled
+from .spring_turn import TWISTED
+from .spring_unions import make_unions
+from .vectors import Vec3, cross, length
 
 PASSES = 40
 # Change of velocity by springs, of the solver's tolerance, at which they are found [-].
 FOUND = 0.01
 # The same of impulses, of the largest [-].
 ROUND_OFF = 1e-13
-# Energy won in a step, of what there is, that solves and round-off leave [-].
-GAINED = 1e-10
-# BODY.again while unions are looked for: a contact pushes it.
-PUSHED = 2
 # Sizes of the springs' impulses, each a quarter of the last, and of what bodies move by, a half.
 SIZES, SHARES = 8, 12
 
 
 def make_act_beside_contacts(spec: Spec, place: Any, solve: Any) -> Any:
-    """Return `kernel(state, count, workspace, params, counters, log, midway, before) ->
-    midway`.
+    """Return `kernel(state, count, workspace, params, counters, log) -> midway`.
 
-    place: kernel of `effects.spring`; solve: kernel `(state, count, workspace, params, counters,
-    log, passes) -> midway` that solves contacts from velocities without their impulses. midway:
-    whether bodies stand at the middle of the step.
-    before: counts of what was not found (`midpoint_passes`) before contacts were solved.
+    place: kernel of `effects.spring`; solve: kernel of the same arguments that solves contacts from
+    velocities without their impulses. midway: whether bodies stand at the middle of the step.
     """
     from .rotation import inertia_times, inverse_inertia_times
 
     turns = spec.has("rotation")
-    kinematic = spec.has("kinematic")
     find = make_find(spec, place).find
     settle = make_limit(spec, place).settle
-    classify, displace = make_classify(spec), make_displace(spec)
+    join, gains, put = make_unions(spec, place)
+    classify, bring_on = make_classify(spec), make_bring_on(spec)
     finish, stand_up = make_finish(spec), make_stand_up(spec)
     forget_history = make_forget_history(spec)
     carries_inertia, refresh_inertia = made_once(spec, "refresh_inertia")
     warms, store_contacts = made_once(spec, "store")
     # What surfaces that move or give way do is no loss.
     gives = spec.has("surface_velocity") or spec.has("contact_spring") or spec.has("compliance")
-
-    def unite(a, b):
-        if a.group > 0 and b.group > 0 and a.group != b.group:
-            a.group = b.group = min(a.group, b.group)
-            return True
-        return False
-
-    unite = kernel(unite, spec)
-
-    def join(links, rows, contacts, count, first):
-        # Unions of bodies, with a spring and a contact that pushes or did; how many springs they
-        # have. first: nothing was joined before in this part.
-        for i in range(rows.shape[0]):
-            rows[i].group = i + 1 if rows[i].inv_m > 0.0 else 0
-            if first:
-                rows[i].again = 0
-        changed = True
-        while changed:
-            changed = False
-            for k in range(links.shape[0]):
-                if links[k].active == 1:
-                    changed = unite(rows[links[k].a], rows[links[k].b]) or changed
-            for c in range(count):
-                if contacts[c].lambda_n > 0.0:
-                    changed = unite(rows[contacts[c].a], rows[contacts[c].b]) or changed
-        for c in range(count):
-            if contacts[c].lambda_n > 0.0:
-                for i in (contacts[c].a, contacts[c].b):
-                    if rows[i].inv_m > 0.0:
-                        rows[i].again = max(rows[i].again, PUSHED)
-        # Their first bodies tell of all: what is pushed and has a spring, or was joined before.
-        for i in range(rows.shape[0]):
-            if rows[i].group > 0:
-                head = rows[rows[i].group - 1]
-                if head.again != 1 and rows[i].again > 0:
-                    head.again = rows[i].again
-        found = 0
-        for k in range(links.shape[0]):
-            link = links[k]
-            group = max(rows[link.a].group, rows[link.b].group)
-            link.again = 0
-            if link.active == 1 and group > 0 and rows[group - 1].again > 0:
-                rows[group - 1].again = link.again = 1
-                found += 1
-        for i in range(rows.shape[0]):
-            group = rows[i].group
-            if group > 0:
-                rows[i].again = 1 if rows[group - 1].again == 1 else 0
-        return found
-
-    join = kernel(join, spec)
 
     def read(links, x):
         for k in range(links.shape[0]):
@@ -241,93 +184,6 @@ def make_act_beside_contacts(spec: Spec, place: Any, solve: Any) -> Any:
 
     impose = kernel(impose, spec)
 
-    def inner_energy(body, v):
-        energy = 0.5 * (v.vx * v.vx + v.vy * v.vy + v.vz * v.vz) / body.inv_m
-        if turns:
-            x, y, z = inertia_times(body, v.wx, v.wy, v.wz)
-            energy += 0.5 * (x * v.wx + y * v.wy + z * v.wz)
-        return energy
-
-    inner_energy = kernel(inner_energy, spec)
-
-    def stored(link, bodies):
-        stretch = place(link, bodies[link.a], bodies[link.b]).length - link.rest_length
-        return 0.5 * link.stiffness * stretch * stretch
-
-    stored = kernel(stored, spec)
-
-    def gains(links, rows, velocities, motion, beside, dt):
-        # Whether unions have more energy where the step leads to. rows: where it begins.
-        moved, moving = beside.bodies, beside.velocities
-        won, had = 0.0, 0.0
-        for i in range(rows.shape[0]):
-            moved[i] = rows[i]
-            row, m = rows[i], motion[i]
-            if kinematic:
-                if row.again == 0 and row.kinematic == 1:
-                    for k in range(links.shape[0]):
-                        if links[k].again == 1 and (links[k].a == i or links[k].b == i):
-                            return False
-            if row.again == 0:
-                continue
-            moving[i] = velocities[i]
-            displace(moved[i], moving[i], m, dt)
-            before, after = inner_energy(row, m), inner_energy(moved[i], moving[i])
-            x, y, z = moved[i].x - row.x, moved[i].y - row.y, moved[i].z - row.z
-            fx, fy, fz = m.dvx - row.sprung_x, m.dvy - row.sprung_y, m.dvz - row.sprung_z
-            work = (fx * x + fy * y + fz * z) / (row.inv_m * dt)
-            if turns:
-                v = velocities[i]
-                fx, fy, fz = row.spun_x - m.wx, row.spun_y - m.wy, row.spun_z - m.wz
-                fx, fy, fz = inertia_times(row, fx, fy, fz)
-                work += 0.5 * (fx * (v.wx + m.wx) + fy * (v.wy + m.wy) + fz * (v.wz + m.wz))
-            won, had = won + (after - before - work), had + before + after
-        for k in range(links.shape[0]):
-            if links[k].again == 1:
-                before, after = stored(links[k], rows), stored(links[k], moved)
-                won, had = won + (after - before), had + before + after
-        beside.lost[0] = max(-won, 0.0)
-        return not won <= GAINED * had
-
-    gains = kernel(gains, spec)
-
-    def put(links, rows, contacts, count, velocities, motion, t, dt):
-        # Where unions are moved to.
-        for i in range(rows.shape[0]):
-            if rows[i].group != i + 1 or rows[i].again == 0:
-                continue
-            group, anchored = i + 1, False
-            for k in range(links.shape[0]):
-                a, b = rows[links[k].a], rows[links[k].b]
-                if links[k].again == 1 and max(a.group, b.group) == group:
-                    anchored = anchored or a.inv_m == 0.0 or b.inv_m == 0.0
-            for c in range(count):
-                a, b = rows[contacts[c].a], rows[contacts[c].b]
-                if contacts[c].lambda_n > 0.0 and max(a.group, b.group) == group:
-                    anchored = anchored or a.inv_m == 0.0 or b.inv_m == 0.0
-            mass, centre, mean = 0.0, Vec3(0.0, 0.0, 0.0), Vec3(0.0, 0.0, 0.0)
-            if not anchored:
-                for j in range(rows.shape[0]):
-                    v, m = velocities[j], motion[j]
-                    if rows[j].group == group:
-                        one = 1.0 / rows[j].inv_m
-                        mass += one
-                        centre = plus_scaled(centre, one, Vec3(v.vx, v.vy, v.vz))
-                        both = Vec3(m.vx + v.vx, m.vy + v.vy, m.vz + v.vz)
-                        mean = plus_scaled(mean, 0.5 * one, both)
-                centre, mean = scaled(1.0 / mass, centre), scaled(1.0 / mass, mean)
-            for j in range(rows.shape[0]):
-                row, v = rows[j], velocities[j]
-                if row.group == group:
-                    u = minus(Vec3(v.vx, v.vy, v.vz), centre)
-                    shift = scaled(dt, plus_scaled(mean, t, u))
-                    row.shift_x, row.shift_y, row.shift_z = shift.x, shift.y, shift.z
-                    if turns:
-                        row.turn_x, row.turn_y, row.turn_z = t * v.wx, t * v.wy, t * v.wz
-                    row.sprung = BOTH
-
-    put = kernel(put, spec)
-
     def take_settled(links, bodies, velocities, motion, x, dt):
         for i in range(bodies.shape[0]):
             body, m = bodies[i], motion[i]
@@ -351,19 +207,19 @@ def make_act_beside_contacts(spec: Spec, place: Any, solve: Any) -> Any:
 
     take_settled = kernel(take_settled, spec)
 
-    def act_beside(state, count, workspace, params, counters, log, midway, before):
+    def act_beside(state, count, workspace, params, counters, log):
         links, bodies, contacts = state.links, state.bodies, state.contacts
         velocities, motion, cache = state.velocities, state.motion, state.cache
         poses, dt = workspace.middle.poses, params.dt
-        x, f = workspace.beside.impulses[0], workspace.beside.impulses[1]
-        last_x, last_f = workspace.beside.impulses[2], workspace.beside.impulses[3]
-        dx, df = workspace.beside.changes[0], workspace.beside.changes[1]
-        workspace.beside.lost[0] = 0.0
+        beside = workspace.beside
+        rounds, before, midway = beside.rounds, beside.before, beside.midway[0] == 1
+        x, f = rounds.point, rounds.defect
+        beside.lost[0] = 0.0
         joined = join(links, poses if midway else bodies, contacts, count, True)
         if joined == 0:
             return midway
         read(links, x)
-        columns, fresh, done, misses = 0, True, False, 0
+        columns, done, misses = NO_ROUND, False, 0
         for _ in range(PASSES):
             classify(contacts, count, motion, params)
             note_push(bodies, poses if midway else bodies, velocities, motion, midway)
@@ -376,42 +232,35 @@ def make_act_beside_contacts(spec: Spec, place: Any, solve: Any) -> Any:
             misses += 0 if found else 1
             moved, same = compare(links, bodies, x, f)
             done = found and (same or moved <= FOUND * params.tolerance)
-            if not fresh and not done:
-                for i in range(x.shape[0]):
-                    dx[columns, i], df[columns, i] = x[i] - last_x[i], f[i] - last_f[i]
-                columns = note_change(dx, df, columns)
-            for i in range(x.shape[0]):
-                last_x[i], last_f[i] = x[i], f[i]
-            advance_by(x, f, dx, df, columns)
-            fresh = False
-            if columns == COLUMNS - 1:
-                columns, fresh = 0, True
+            columns = bring_on(rounds, x.shape[0], columns)
             impose(links, bodies, velocities, motion, x)
             finish(bodies, velocities, motion, params)
             if warms:
                 store_contacts(contacts, count, bodies, cache, counters, params)
             forget_history(counters, log.residual)
             sweeps = counters.sweeps
-            counters.midpoint_not_converged, counters.gyroscopic_not_converged = before
-            midway = solve(state, count, workspace, params, counters, log, True)
+            counters.midpoint_not_converged = before[0]
+            counters.gyroscopic_not_converged = before[1]
+            midway = solve(state, count, workspace, params, counters, log)
             counters.sweeps += sweeps
             if done or misses > 2:
                 break
             again = join(links, poses if midway else bodies, contacts, count, False)
             if again != joined:
-                joined, columns, fresh = again, 0, True
+                joined, columns = again, NO_ROUND
                 read(links, x)
         rows = poses if midway else bodies
         join(links, rows, contacts, count, False)
         classify(contacts, count, motion, params)
         if gives:
             return midway
-        if not gains(links, rows, velocities, motion, workspace.beside, dt):
+        if not gains(links, rows, velocities, motion, beside, dt):
             return midway
         counters.spring_not_converged += 1
         if midway:
             stand_up(bodies, poses)
         take_settled(links, bodies, velocities, motion, x, dt)
+        beside.passes[0] = 0
         size = 1.0
         for number in range(SIZES):
             if number == SIZES - 1:
@@ -424,8 +273,9 @@ def make_act_beside_contacts(spec: Spec, place: Any, solve: Any) -> Any:
             finish(bodies, velocities, motion, params)
             forget_history(counters, log.residual)
             sweeps = counters.sweeps
-            counters.midpoint_not_converged, counters.gyroscopic_not_converged = before
-            solve(state, count, workspace, params, counters, log, False)
+            counters.midpoint_not_converged = before[0]
+            counters.gyroscopic_not_converged = before[1]
+            solve(state, count, workspace, params, counters, log)
             counters.sweeps += sweeps
             join(links, bodies, contacts, count, False)
             classify(contacts, count, motion, params)
@@ -433,8 +283,8 @@ def make_act_beside_contacts(spec: Spec, place: Any, solve: Any) -> Any:
             for last in range(SHARES):
                 if number == SIZES - 1 and last == SHARES - 1:
                     share = 0.0
-                put(links, bodies, contacts, count, velocities, motion, share, dt)
-                if not gains(links, bodies, velocities, motion, workspace.beside, dt):
+                put(state, bodies, count, share, dt)
+                if not gains(links, bodies, velocities, motion, beside, dt):
                     return False
                 share *= 0.5
             size *= 0.25

@@ -13,6 +13,7 @@ from ..spec import Spec
 from .decision import BodyFacts, Decision, Facts, PairFacts
 from .effect import CHAINED, Choice, Column, Derived, Effect, Hooks, hook_names
 from .keys import TurnOf
+from .rope import pulling
 from .time_functions import TimeFunction
 
 # Order matters within a hook: kernels of one hook run in this order.
@@ -160,6 +161,7 @@ __all__ = [
     "hook_names",
     "made_by",
     "made_once",
+    "pulling",
     "row_fields",
     "surface_fields",
 ]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from lavendersim.engine.effects.rope import pulling
+from lavendersim.engine.effects import pulling
 from lavendersim.measures.columns import last_window, summed_by_step
 from lavendersim.measures.interfaces import Trace
 from lavendersim.measures.registration import measure

@@ -48,7 +48,7 @@ def test_slack_beyond_the_margin_has_no_point_and_ends_in_one_place_a_direction(
     assert (count, point["phi"], normal.tolist()) == (1, LENGTH, [0.0, 0.0, 1.0])
 
 
-def test_pairs_of_ropes_are_told_from_those_of_shapes() -> None:
+def test_pairs_of_ropes_are_not_those_of_shapes() -> None:
     manifold, scratch = interpreted(make_manifold(SPEC, SPEC.shape_pairs)), scratch_of([])
     a, b = row(end((0.0, 0.0, 0.0))), row(end((0.8, 0.0, 0.0)))
     assert manifold(ROPE, a, b, 1e-9, scratch) == 1

@@ -39,8 +39,8 @@ def test_ends_stand_behind_the_bodies_where_they_are_tied() -> None:
     assert scene.bodies["owner"][:3].tolist() == [0, 1, 2]
     places = np.column_stack([ends[axis] for axis in "xyz"])
     # x of the box is y of the world.
-    wanted = [(0, 0, 1), (0, 0.1, 0.2), (0, 0, 0), (3, 0, 1)]
-    np.testing.assert_allclose(places, wanted, atol=1e-15)
+    expected = [(0, 0, 1), (0, 0.1, 0.2), (0, 0, 0), (3, 0, 1)]
+    np.testing.assert_allclose(places, expected, atol=1e-15)
     # The first as long as it is far: sqrt(0.1^2 + 0.8^2).
     np.testing.assert_allclose(ends["hx"], [0.65**0.5, 0.65**0.5, 4.0, 4.0], rtol=1e-15)
     assert ends["hy"].tolist() == [0.0, 0.0, 1.0, 1.0]

@@ -1,0 +1,176 @@
+"""Unions: bodies that springs join and contacts push, their energy, and where a step moves them.
+
+A union is solved as one where springs and contacts act on each other (`spring_contacts`). Its first
+body has its number, BODY.group, and tells of all, BODY.again.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+from .compile import kernel
+from .integrate import make_displace
+from .spec import Spec
+from .spring_turn import BOTH
+from .vectors import Vec3, minus, plus_scaled, scaled
+
+# Energy won in a step, of what there is, that solves and round-off leave [-].
+GAINED = 1e-10
+# BODY.again while unions are looked for: a contact pushes it.
+PUSHED = 2
+
+
+class Unions(NamedTuple):
+    """Kernels of the unions of a part of a step."""
+
+    join: Any  # (links, rows, contacts, count, first) -> how many springs unions have
+    gains: Any  # (links, rows, velocities, motion, beside, dt) -> whether they win energy
+    put: Any  # (state, rows, count, t, dt): where they are moved to
+
+
+def make_unions(spec: Spec, place: Any) -> Unions:
+    """Return the kernels; place: kernel of `effects.spring`. rows: bodies where the step begins."""
+    from .rotation import inertia_times
+
+    turns, kinematic = spec.has("rotation"), spec.has("kinematic")
+    displace = make_displace(spec)
+
+    def unite(a, b):
+        if a.group > 0 and b.group > 0 and a.group != b.group:
+            a.group = b.group = min(a.group, b.group)
+            return True
+        return False
+
+    unite = kernel(unite, spec)
+
+    def join(links, rows, contacts, count, first):
+        # Unions of bodies, with a spring and a contact that pushes or did; how many springs they
+        # have. first: nothing was joined before in this part.
+        for i in range(rows.shape[0]):
+            rows[i].group = i + 1 if rows[i].inv_m > 0.0 else 0
+            if first:
+                rows[i].again = 0
+        changed = True
+        while changed:
+            changed = False
+            for k in range(links.shape[0]):
+                if links[k].active == 1:
+                    changed = unite(rows[links[k].a], rows[links[k].b]) or changed
+            for c in range(count):
+                if contacts[c].lambda_n > 0.0:
+                    changed = unite(rows[contacts[c].a], rows[contacts[c].b]) or changed
+        for c in range(count):
+            if contacts[c].lambda_n > 0.0:
+                for i in (contacts[c].a, contacts[c].b):
+                    if rows[i].inv_m > 0.0:
+                        rows[i].again = max(rows[i].again, PUSHED)
+        # Their first bodies tell of all: what is pushed and has a spring, or was joined before.
+        for i in range(rows.shape[0]):
+            if rows[i].group > 0:
+                head = rows[rows[i].group - 1]
+                if head.again != 1 and rows[i].again > 0:
+                    head.again = rows[i].again
+        found = 0
+        for k in range(links.shape[0]):
+            link = links[k]
+            group = max(rows[link.a].group, rows[link.b].group)
+            link.again = 0
+            if link.active == 1 and group > 0 and rows[group - 1].again > 0:
+                rows[group - 1].again = link.again = 1
+                found += 1
+        for i in range(rows.shape[0]):
+            group = rows[i].group
+            if group > 0:
+                rows[i].again = 1 if rows[group - 1].again == 1 else 0
+        return found
+
+    join = kernel(join, spec)
+
+    def inner_energy(body, v):
+        energy = 0.5 * (v.vx * v.vx + v.vy * v.vy + v.vz * v.vz) / body.inv_m
+        if turns:
+            x, y, z = inertia_times(body, v.wx, v.wy, v.wz)
+            energy += 0.5 * (x * v.wx + y * v.wy + z * v.wz)
+        return energy
+
+    inner_energy = kernel(inner_energy, spec)
+
+    def stored(link, bodies):
+        stretch = place(link, bodies[link.a], bodies[link.b]).length - link.rest_length
+        return 0.5 * link.stiffness * stretch * stretch
+
+    stored = kernel(stored, spec)
+
+    def gains(links, rows, velocities, motion, beside, dt):
+        # Whether unions have more energy where the step leads to. rows: where it begins.
+        moved, moving = beside.bodies, beside.velocities
+        won, had = 0.0, 0.0
+        for i in range(rows.shape[0]):
+            moved[i] = rows[i]
+            row, m = rows[i], motion[i]
+            if kinematic:
+                if row.again == 0 and row.kinematic == 1:
+                    for k in range(links.shape[0]):
+                        if links[k].again == 1 and (links[k].a == i or links[k].b == i):
+                            return False
+            if row.again == 0:
+                continue
+            moving[i] = velocities[i]
+            displace(moved[i], moving[i], m, dt)
+            before, after = inner_energy(row, m), inner_energy(moved[i], moving[i])
+            x, y, z = moved[i].x - row.x, moved[i].y - row.y, moved[i].z - row.z
+            fx, fy, fz = m.dvx - row.sprung_x, m.dvy - row.sprung_y, m.dvz - row.sprung_z
+            work = (fx * x + fy * y + fz * z) / (row.inv_m * dt)
+            if turns:
+                v = velocities[i]
+                fx, fy, fz = row.spun_x - m.wx, row.spun_y - m.wy, row.spun_z - m.wz
+                fx, fy, fz = inertia_times(row, fx, fy, fz)
+                work += 0.5 * (fx * (v.wx + m.wx) + fy * (v.wy + m.wy) + fz * (v.wz + m.wz))
+            won, had = won + (after - before - work), had + before + after
+        for k in range(links.shape[0]):
+            if links[k].again == 1:
+                before, after = stored(links[k], rows), stored(links[k], moved)
+                won, had = won + (after - before), had + before + after
+        beside.lost[0] = max(-won, 0.0)
+        return not won <= GAINED * had
+
+    gains = kernel(gains, spec)
+
+    def put(state, rows, count, t, dt):
+        links, contacts = state.links, state.contacts
+        velocities, motion = state.velocities, state.motion
+        # Where unions are moved to.
+        for i in range(rows.shape[0]):
+            if rows[i].group != i + 1 or rows[i].again == 0:
+                continue
+            group, anchored = i + 1, False
+            for k in range(links.shape[0]):
+                a, b = rows[links[k].a], rows[links[k].b]
+                if links[k].again == 1 and max(a.group, b.group) == group:
+                    anchored = anchored or a.inv_m == 0.0 or b.inv_m == 0.0
+            for c in range(count):
+                a, b = rows[contacts[c].a], rows[contacts[c].b]
+                if contacts[c].lambda_n > 0.0 and max(a.group, b.group) == group:
+                    anchored = anchored or a.inv_m == 0.0 or b.inv_m == 0.0
+            mass, centre, mean = 0.0, Vec3(0.0, 0.0, 0.0), Vec3(0.0, 0.0, 0.0)
+            if not anchored:
+                for j in range(rows.shape[0]):
+                    v, m = velocities[j], motion[j]
+                    if rows[j].group == group:
+                        one = 1.0 / rows[j].inv_m
+                        mass += one
+                        centre = plus_scaled(centre, one, Vec3(v.vx, v.vy, v.vz))
+                        both = Vec3(m.vx + v.vx, m.vy + v.vy, m.vz + v.vz)
+                        mean = plus_scaled(mean, 0.5 * one, both)
+                centre, mean = scaled(1.0 / mass, centre), scaled(1.0 / mass, mean)
+            for j in range(rows.shape[0]):
+                row, v = rows[j], velocities[j]
+                if row.group == group:
+                    u = minus(Vec3(v.vx, v.vy, v.vz), centre)
+                    shift = scaled(dt, plus_scaled(mean, t, u))
+                    row.shift_x, row.shift_y, row.shift_z = shift.x, shift.y, shift.z
+                    if turns:
+                        row.turn_x, row.turn_y, row.turn_z = t * v.wx, t * v.wy, t * v.wz
+                    row.sprung = BOTH
+
+    return Unions(join, gains, kernel(put, spec))
