@@ -42,7 +42,6 @@ from lavendersim.trace.writer import (
     ABSENT,
     DESCRIPTION,
     ENDING,
-    KEPT_BYTES,
     TIMESTEP_CHANGES,
     UNTOLD,
 )
@@ -52,6 +51,9 @@ if TYPE_CHECKING:
 
 COMPLETE = "complete"
 INCOMPLETE = "incomplete"
+# Of contacts that take up to so many bytes parts are kept for the next measure: what a log holds in
+# memory does not grow with it.
+KEPT_BYTES = 8 * 1024 * 1024
 MOST_SHOWN = 8  # names of bodies, to a person who looks at a trace
 RECOVERED = "recovered"  # how the status of a log begins that `recover` made of a part of one
 

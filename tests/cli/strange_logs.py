@@ -39,7 +39,7 @@ from lavendersim.trace.source import LogFile
 from lavendersim.trace.wire import Template
 from lavendersim.trace.writer import DESCRIPTION, ENDING, RESOLVED, TIMESTEP_CHANGES
 
-MEMORY = 3 * 1024**3  # [byte] of addresses; 1.4 GB of them are libraries
+MEMORY = 7 * 1024**3 // 2  # [byte] of addresses; libraries and their threads take up to 3.2 GB
 LONGEST = 120  # [s] of ten verbs, on a busy machine
 COLUMNS = layout.CHANNELS["/contact_columns"]
 
