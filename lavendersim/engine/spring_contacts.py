@@ -57,7 +57,8 @@ def make_act_beside_contacts(spec: Spec, place: Any, solve: Any) -> Any:
     carries_inertia, refresh_inertia = made_once(spec, "refresh_inertia")
     warms, store_contacts = made_once(spec, "store")
     # What surfaces that move or give way do is no loss.
-    gives = spec.has("surface_velocity") or spec.has("contact_spring") or spec.has("compliance")
+    moving_surfaces = spec.has("surface_velocity")
+    elastic, regularised = spec.has("contact_spring"), spec.has("compliance")
 
     def read(links, x):
         for k in range(links.shape[0]):
@@ -252,7 +253,11 @@ def make_act_beside_contacts(spec: Spec, place: Any, solve: Any) -> Any:
         rows = poses if midway else bodies
         join(links, rows, contacts, count, False)
         classify(contacts, count, motion, params)
-        if gives:
+        if moving_surfaces:
+            return midway
+        if elastic:
+            return midway
+        if regularised:
             return midway
         if not gains(links, rows, velocities, motion, beside, dt):
             return midway
