@@ -10,7 +10,8 @@ placed: springs act by s times the implicit Euler rule along where they stand, s
 ..., 0, contacts after them, and bodies move by
     x_1 = x_0 + dt (V_c + t (v - V_c)),   turned by dt t omega;   t = 1, 1/2, 1/4, ...
 V_c: the centre's, 0 of what touches or is tied to what does not move. The first pair (s, t) is
-taken for which the energy is enough; at s = t = 0 it is.
+taken for which the energy is enough; at s = t = 0 it is. Where surfaces move or give way energy
+tells nothing: s = t = 1 is taken of what is not found.
 """
 
 from __future__ import annotations
@@ -253,13 +254,16 @@ def make_act_beside_contacts(spec: Spec, place: Any, solve: Any) -> Any:
         rows = poses if midway else bodies
         join(links, rows, contacts, count, False)
         classify(contacts, count, motion, params)
+        gives = False
         if moving_surfaces:
-            return midway
+            gives = True
         if elastic:
-            return midway
+            gives = True
         if regularised:
+            gives = True
+        if gives and done:
             return midway
-        if not gains(links, rows, velocities, motion, beside, dt):
+        if not gives and not gains(links, rows, velocities, motion, beside, dt):
             return midway
         counters.spring_not_converged += 1
         if midway:
@@ -289,7 +293,7 @@ def make_act_beside_contacts(spec: Spec, place: Any, solve: Any) -> Any:
                 if number == SIZES - 1 and last == SHARES - 1:
                     share = 0.0
                 put(state, bodies, count, share, dt)
-                if not gains(links, bodies, velocities, motion, beside, dt):
+                if gives or not gains(links, bodies, velocities, motion, beside, dt):
                     return False
                 share *= 0.5
             size *= 0.25

@@ -24,6 +24,7 @@ MEANT = {
     "hard/control/gain_of_one.yaml",
     "hard/degenerate/same_place.yaml",
     "hard/found/cohesion_of_what_turns.yaml",
+    "hard/found/springs_beside_what_gives_way.yaml",
     "hard/found/sweeps_of_a_step_solved_anew.yaml",
     "hard/found/torque_beyond_its_cone.yaml",
     "hard/overlap/pyramid_pressed.yaml",

@@ -20,7 +20,7 @@ from plain_facts import body_facts, facts, one_row, pair_facts
 from lavendersim.engine.approach import FAR, OVERLAP
 from lavendersim.engine.collide import narrow_phase
 from lavendersim.engine.effects import impact_order
-from lavendersim.engine.effects.impact_order import CROWD, EFFECT, LOOKS, WORK, make_order
+from lavendersim.engine.effects.impact_order import CROWD, EFFECT, LOOKS, REBOUND, make_order
 
 NUMERICS = {"impacts": "in_order", "speculative": True, "timestep": "1/10", "slop": 1e-5}
 DT, RADIUS = 0.1, 0.1
@@ -213,9 +213,10 @@ def test_an_impact_of_a_crowd_is_not_made_by_itself(balls: int, unordered: int) 
 
 
 def test_a_step_spends_its_work_and_goes_on_without_order() -> None:
+    """Balls that rebound have more of it."""
     rows = 3
     own = 1 + rows + rows // LOOKS
-    for before, unordered in ((WORK - own, 0), (WORK - own + 1, 1)):
+    for before, unordered in ((REBOUND - own, 0), (REBOUND - own + 1, 1)):
         step = row_of_balls(rows + 1)
         step.counters.spent = before
         step.part(DT)
