@@ -96,7 +96,9 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
             before, m = free[i], motion[i]
             m.dvx, m.dvy, m.dvz = before.vx - m.vx, before.vy - m.vy, before.vz - m.vz
 
-    def twist_midway(bodies, poses, velocities):
+    twists = beside and turns
+
+    def twist(bodies, poses, velocities):
         # What springs add to the spin of the middle is their impulse by the inertia there.
         for i in range(bodies.shape[0]):
             body, start, v = bodies[i], poses[i], velocities[i]
@@ -107,14 +109,14 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
                 lx, ly, lz = inverse_inertia_times(body, lx, ly, lz)
                 v.wx, v.wy, v.wz = v.wx + (lx - x), v.wy + (ly - y), v.wz + (lz - z)
 
-    twist_midway = kernel(twist_midway, spec)
+    twist_midway: Any = kernel(twist, spec) if twists else None
 
-    def note_solved(bodies, velocities):
+    def note(bodies, velocities):
         for i in range(bodies.shape[0]):
             body, v = bodies[i], velocities[i]
             body.solved_x, body.solved_y, body.solved_z = v.wx, v.wy, v.wz
 
-    note_solved = kernel(note_solved, spec)
+    note_solved: Any = kernel(note, spec) if twists else None
 
     forget_load: Any = kernel(forget, spec) if loaded else None
 
@@ -150,7 +152,7 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
             unturned = stand_midway(bodies, velocities, motion, lead, poses, params.dt)
             look(state, count, poses, workspace)
             restore(velocities, free, lead, motion)
-            if beside and turns:
+            if twists:
                 twist_midway(bodies, poses, velocities)
                 note_solved(bodies, velocities)
             if loaded:
