@@ -76,13 +76,16 @@ def made_cell(
 ) -> CellConfig:
     """Return a cell of bodies, each the data of `body_data` or what is given to it.
 
-    sections: `events`, `duration`, `record`, `effects`, `study` in place of those of a plain cell.
+    sections: `events`, `duration`, `record`, `effects`, `study` in place of those of a plain cell,
+    and `forces`, `connections` of its scene.
     """
+    own = {name: sections.pop(name) for name in ("connections",) if name in sections}
     cell = {
         "scene": {
             "gravity": list(gravity),
             "bodies": {name: body_data(**body) for name, body in bodies.items()},
             "forces": sections.pop("forces", []),
+            **own,
         },
         "events": [],
         "duration": 1.0,

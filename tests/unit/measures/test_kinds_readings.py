@@ -39,6 +39,14 @@ VALUES = {
     "along": (0.0, 0.0, 1.0),
     "part": "natural_map",
     "level": 0.1,
+    "connection": "line",
+}
+LINE = {
+    "kind": "rope",
+    "between": ["floor", "ball"],
+    "points": [[0.0, 0.0, 9.0], [0.0, 0.0, 0.0]],
+    "length": 9.0,
+    "restitution": 0.0,
 }
 
 
@@ -78,8 +86,10 @@ def watched(**body: Any) -> Watched:
     spins = {f"angular_momentum_{axis}": np.ones(len(HEIGHTS)) for axis in "xyz"}
     step = append_fields(log.step, list(spins), list(spins.values()), usemask=False)
     config = ball_and_floor(**body)
-    config["scene"] |= TILTED
-    made = Watched(step=step, contact=log.contact, pose=log.pose, resolved=config)
+    config["scene"] |= {**TILTED, "connections": {"line": LINE}}
+    ropes = np.zeros(len(log.contact), np.int64)
+    contact = append_fields(log.contact, "rope", ropes, usemask=False)
+    made = Watched(step=step, contact=contact, pose=log.pose, resolved=config)
     made.velocity = np.zeros((*log.pose.shape[:2], 6))
     made.__dict__["asked"] = set()
     return made
