@@ -5,8 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from lavendersim import Simulator
+from lavendersim import Simulator, load_experiment
 from lavendersim.errors import UsageError
+from lavendersim.scene.plan import plan_of
+from lavendersim.simulator.actions import with_limits
 
 BOX = {
     "scene": {
@@ -62,7 +64,7 @@ def test_a_torque_about_a_principal_axis_turns_as_euler_says() -> None:
 
 
 def test_velocities_are_set_before_the_step() -> None:
-    sim = Simulator(BOX, actions={"box": {"velocity": 2.0, "angular_velocity": 50.0}})
+    sim = Simulator(BOX, actions=LIMITS)
     for _ in range(50):  # until the config's force has ended
         sim.step()
     start = box_of(sim.step({"box": {"velocity": [1, 0, 0]}})[0], "position")
@@ -80,8 +82,9 @@ def test_the_plan_has_what_the_limits_require_and_nothing_else() -> None:
         }
         bodies = {**BOX["scene"]["bodies"], "target": target}
         scene = {"gravity": [0, 0, 0], "bodies": bodies}
-        limits = {"box": inputs} if inputs else None
-        return set(Simulator({**BOX, "scene": scene}, actions=limits).plan.spec.effects)
+        (cell,) = load_experiment({**BOX, "scene": scene}).cells()
+        config = with_limits(cell.config, {"box": inputs}) if inputs else cell.config
+        return {*plan_of(config).spec.effects}
 
     bare = plan()
     assert "external_force" not in bare
@@ -144,7 +147,7 @@ def test_limits_that_cannot_be_are_refused(limits: dict, message: str) -> None:
     ],
 )
 def test_actions_beyond_what_was_declared_are_refused(action: dict, message: str) -> None:
-    sim = Simulator(BOX, actions={"box": {"force": 10.0}})
+    sim = Simulator(BOX, actions={"box": {k: v for k, v in LIMITS["box"].items() if k != "torque"}})
     before = sim.steps_done
     with pytest.raises(UsageError) as caught:
         sim.step(action)
