@@ -11,14 +11,13 @@ import typer
 def again(configs: list[Path], once: Callable[[], None]) -> None:
     """Do it once, and again after every save; what is wrong with a config is printed meanwhile."""
     from lavendersim.errors import LavenderError
-    from lavendersim.runner.watched_files import saves, stamps_of
+    from lavendersim.runner.watched_files import saves
 
-    for _ in saves(configs):
+    for files in saves(configs):
         try:
             once()
         except typer.Exit:
             pass  # what failed is printed
         except LavenderError as error:
             typer.echo(str(error), err=True)
-        files = len(stamps_of(configs))
         typer.echo(f"watching {files} file{'s' * (files != 1)}; Ctrl-C ends it", err=True)

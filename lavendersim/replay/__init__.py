@@ -10,15 +10,13 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from lavendersim.replay.viewpoint import Viewpoint
+from lavendersim.replay.viewpoint import DEFAULT_VIEW, Viewpoint
 
 if TYPE_CHECKING:
     from lavendersim.replay.pair import LogPair
     from lavendersim.trace import Trace
 
 __all__ = ["Viewpoint", "open_viewer", "pair_of", "save", "screenshot", "video"]
-
-DEFAULT_VIEW = Viewpoint()
 
 
 def pair_of(a: Trace, b: Trace, names: tuple[str, str], overlay: bool = False) -> LogPair:

@@ -28,14 +28,14 @@ from lavendersim.replay.drivers import (
     require_vulkan,
     viewer_program,
 )
-from lavendersim.replay.recording import DEFAULT_VIEW, moment_to_show, write_rrd
+from lavendersim.replay.recording import moment_to_show, write_rrd
 from lavendersim.replay.timeline import TIMELINE
+from lavendersim.replay.viewpoint import DEFAULT_VIEW, Viewpoint
 
 if TYPE_CHECKING:
     from rerun.experimental import ViewerState
 
     from lavendersim.replay.pair import LogPair
-    from lavendersim.replay.viewpoint import Viewpoint
     from lavendersim.trace import Trace
 
 Answer = TypeVar("Answer")

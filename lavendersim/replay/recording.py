@@ -17,12 +17,10 @@ from lavendersim.replay.camera import camera_of
 from lavendersim.replay.force_scale import force_scale
 from lavendersim.replay.pair import LogPair
 from lavendersim.replay.pair_recording import record_pair
-from lavendersim.replay.viewpoint import Viewpoint
+from lavendersim.replay.viewpoint import DEFAULT_VIEW, Viewpoint
 
 if TYPE_CHECKING:
     from lavendersim.trace import Trace
-
-DEFAULT_VIEW = Viewpoint()
 
 
 def new_stream(title: str) -> rr.RecordingStream:

@@ -14,14 +14,14 @@ from rerun.experimental import ViewerClient
 
 from lavendersim.errors import LavenderError
 from lavendersim.replay.drivers import require_display, viewer_program
-from lavendersim.replay.recording import DEFAULT_VIEW, moment_to_show, new_stream, record
+from lavendersim.replay.recording import moment_to_show, new_stream, record
 from lavendersim.replay.timeline import TIMELINE
+from lavendersim.replay.viewpoint import DEFAULT_VIEW, Viewpoint
 
 if TYPE_CHECKING:
     import numpy as np
 
     from lavendersim.replay.pair import LogPair
-    from lavendersim.replay.viewpoint import Viewpoint
     from lavendersim.trace import Trace
 
 LOADED_SECONDS = 30.0  # a viewer that is not open yet starts in 1-5 s, and then takes the recording

@@ -32,6 +32,9 @@ class Viewpoint(NamedTuple):
     speed: float | None = None
 
 
+DEFAULT_VIEW: Final = Viewpoint()
+
+
 def camera_from(text: str) -> str | Place:
     """Read a side or a place: "above", "3,-2,1".
 

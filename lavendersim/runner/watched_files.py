@@ -10,11 +10,11 @@ from pathlib import Path
 from typing import Final
 
 from lavendersim.errors import UsageError
+from lavendersim.measures.specs.own import FILE as OWN_MEASURES
 
 from .configs import find_configs
 
 POLL: Final = 0.3  # [s] between two looks
-OWN_MEASURES: Final = "measures.py"
 _EXTENDS: Final = re.compile(rb"^extends:\s*[\"']?([^\"'#\r\n]+)", re.MULTILINE)
 
 Stamps = dict[Path, tuple[int, int]]  # when it was last written [ns], bytes
