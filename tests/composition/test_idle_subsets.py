@@ -2,11 +2,13 @@
 
 A kind of scene holds what decides its plan (shapes, numerics, which coefficients are zero) and
 draws the rest: how many bodies, sizes, masses, places, motions, surfaces. Its scenes therefore
-share one pruned engine and a fuller one for each subset: compiling is what this test costs. A
-subset is drawn at random for each kind; the effects that it leaves out are the next one, so that
-two subsets hold every effect that may idle, in company that nobody chose.
+share one pruned engine and a fuller one for each subset. A subset is drawn at random for each kind;
+the effects that it leaves out are the next one, so that two subsets hold every effect that may
+idle, in company that nobody chose.
 
-`LAVENDER_TEST_SUBSETS` and `LAVENDER_TEST_SCENES` draw more than 2 subsets and 30 scenes on each.
+Kernels run in the interpreter. `LAVENDER_TEST_EVERYTHING=1` compiles the engines, which is what it
+costs then, and draws 30 scenes of 2 s on each; `LAVENDER_TEST_SUBSETS` and `LAVENDER_TEST_SCENES`
+draw more.
 """
 
 from __future__ import annotations
@@ -27,8 +29,10 @@ from laboratory import box, plane, planned, sphere
 from lavendersim.engine.spec import Spec
 
 SUBSETS = int(os.environ.get("LAVENDER_TEST_SUBSETS", "2"))
-SCENES = int(os.environ.get("LAVENDER_TEST_SCENES", "30"))
-STEPS = 480  # 2 s: bodies that bounced apart have come to rest, most of them
+COMPILED = bool(os.environ.get("LAVENDER_TEST_EVERYTHING"))
+SCENES = int(os.environ.get("LAVENDER_TEST_SCENES", "30" if COMPILED else "4"))
+# 2 s: bodies that bounced apart have come to rest, most of them; 0.4 s: they have met.
+STEPS = 480 if COMPILED else 96
 SOME = settings(
     max_examples=SCENES,
     deadline=None,
@@ -134,7 +138,9 @@ KINDS = [Kind(draw) for draw in (smooth, rough, conjugate)]
 
 @pytest.fixture(scope="module", autouse=True)
 def compiled() -> None:
-    """Compile the engines of all kinds on both cores."""
+    """Compile the engines of all kinds on both cores, where they are to be."""
+    if not COMPILED:
+        return
     engines = []
     for kind in KINDS:
         cell = first(kind)
@@ -169,7 +175,7 @@ def test_a_random_subset_of_idle_effects_changes_no_bit(kind: Kind, subset: int)
     @given(kind.scenes)
     def equal(scene: dict[str, Any]) -> None:
         assert planned(scene).spec.effects == lean.effects
-        one, other = Run(scene, lean, STEPS), Run(scene, full, STEPS)
+        one, other = (Run(scene, spec, STEPS, interpreted=not COMPILED) for spec in (lean, full))
         contacts.append(len(one.tables["contact"]))
         assert differences(one, other, *more_sweeps) == []
         if not full.has("residual_log"):

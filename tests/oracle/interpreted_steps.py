@@ -12,6 +12,20 @@ from lavendersim.engine.spec import Spec
 from lavendersim.engine.step import make_advance
 
 
+def interpreted_bench(cell: dict[str, Any], spec: Spec | None = None) -> Bench:
+    """Return a scene whose engine runs its kernels in the interpreter, for as long as it lives."""
+    bench = Bench(cell, spec)
+    advance = interpreted(make_advance(bench.spec))
+
+    def entry(*arguments: Any) -> int:
+        *arrays, steps = arguments
+        with np.errstate(over="ignore"):  # hashes of states
+            return int(advance(*map(records, arrays), steps))
+
+    bench.engine._entry = entry
+    return bench
+
+
 class Steps:
     """A resolved cell at its start, and its steps."""
 
