@@ -7,6 +7,7 @@ before it types them, so a pruned kernel is as small as one that never had the e
 from __future__ import annotations
 
 import gc
+import threading
 import warnings
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -90,13 +91,21 @@ def separate(kernel: Any, spec: Spec) -> Any:
 
     For what is large, is called a few times a step and is the same in many plans (`separate_code`).
     """
-    if Kernel is not None and not ROUND.issuperset(spec.shape_pairs):
+    if Kernel is not None and isinstance(kernel, Kernel) and not ROUND.issuperset(spec.shape_pairs):
         kernel.separate = True
     return kernel
 
 
 # Lists that want to know what is composed: (module, name of the kernel).
 _listeners: list[list[tuple[str, str]]] = []
+
+
+# Whether kernels of this thread are named alone, see `naming`.
+_of_thread = threading.local()
+
+
+def _are_named() -> bool:
+    return getattr(_of_thread, "named", False)
 
 
 @contextmanager
@@ -110,11 +119,25 @@ def composing() -> Iterator[list[tuple[str, str]]]:
         _listeners.pop()  # the innermost; lists that are equal are not the same
 
 
+@contextmanager
+def naming() -> Iterator[list[tuple[str, str]]]:
+    """Note the same of kernels that stay plain functions: who wants their names calls none.
+
+    Most of what it takes to compose an engine is numba's objects.
+    """
+    before, _of_thread.named = _are_named(), True
+    try:
+        with composing() as composed:
+            yield composed
+    finally:
+        _of_thread.named = before
+
+
 def kernel(function: Callable[..., Any], spec: Spec) -> Any:
     """Compile `function`, made for `spec`, for use inside other kernels."""
     for composed in _listeners:
         composed.append((function.__module__, function.__name__))
-    return inner(function)
+    return function if _are_named() else inner(function)
 
 
 def once(make: Callable[[Spec], Any]) -> Callable[[Spec], Any]:
@@ -122,18 +145,19 @@ def once(make: Callable[[Spec], Any]) -> Callable[[Spec], Any]:
 
     Who listens to what is composed hears of them each time.
     """
-    made: dict[Spec, tuple[Any, list[tuple[str, str]]]] = {}
+    made: dict[tuple[Spec, bool], tuple[Any, list[tuple[str, str]]]] = {}
 
     @wraps(make)
     def shared(spec: Spec) -> Any:
-        if spec not in made:
+        key = spec, _are_named()
+        if key not in made:
             with composing() as composed:
                 kernels = make(spec)
-            made[spec] = kernels, composed
+            made[key] = kernels, composed
         else:
             for composed in _listeners:
-                composed.extend(made[spec][1])
-        return made[spec][0]
+                composed.extend(made[key][1])
+        return made[key][0]
 
     return shared
 

@@ -19,7 +19,7 @@ from typing import Any
 from .approach import NEVER, make_note_acceleration
 from .collide import narrow_phase
 from .collide.iteration_limits import forget_limits, has_limits, make_count_limits
-from .compile import chain, composing, kernel, uncollected
+from .compile import chain, kernel, naming, uncollected
 from .effects import BY_NAME, has_hook, made_by, made_once
 from .integrate import (
     keeps_motion,
@@ -329,7 +329,7 @@ def kernels_of(spec: Spec) -> dict[str, list[str]]:
 
     Module names are relative to the engine: `effects.friction`, `solvers.adaptive`, `step`.
     """
-    with uncollected(), composing() as composed:
+    with uncollected(), naming() as composed:
         make_advance(spec)
     engine = __name__.rpartition(".")[0] + "."
     kernels: dict[str, list[str]] = {}

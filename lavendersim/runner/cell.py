@@ -37,6 +37,7 @@ from .bounds import Bounds
 from .call_length import CallLength, block_steps
 from .cell_outcome import CellOutcome, EndedCell, note_measured
 from .environment import versions
+from .freed_memory import keep_freed_memory
 from .interruption import deferred, raise_noted
 from .measured import Measured, measure_cell
 from .problem_dump import ProblemDump
@@ -191,6 +192,7 @@ def run_and_measure(job: CellJob, began: Began | None = None) -> EndedCell:
 
     What ended is noted in the directory of its run.
     """
+    keep_freed_memory()
 
     def closed(outcome: CellOutcome) -> None:
         assert outcome.log is not None

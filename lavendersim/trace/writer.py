@@ -130,8 +130,6 @@ class TraceWriter:
         if unknown := absent.keys() - layout.CHANNELS.keys():
             raise ValueError(f"no topics of a log: {sorted(unknown)}")
         self._topics = layout.CHANNELS.keys() - absent.keys()
-        if not config.record.velocities:  # whoever says nothing of absent topics has every other
-            self._topics -= {"/velocities"}
         self._path, self._config, self._as_written = Path(path), config, as_written
         self._bodies = config.scene.bodies
         self._clock = config.clock
@@ -220,6 +218,9 @@ class TraceWriter:
     def _begin(self, block: Block) -> None:
         """Write the scene's geometry and open the streams: the columns are known now."""
         columns = block.step.dtype, block.contact.dtype, block.residual.dtype
+        # Rows have them unasked where the config's `effects` switch their log on by hand.
+        if not self._config.record.velocities and block.pose.shape[2:] == (layout.POSE,):
+            self._topics -= {"/velocities"}
         self._form = form = form_of(tuple(self._bodies), columns, frozenset(self._topics))
         if "/robot_description" in self._topics:
             self._describe_geometry(block.pose[0, :, : layout.POSE].astype(np.float64))

@@ -3,14 +3,24 @@
 from __future__ import annotations
 
 import gc
+from typing import Any
 
 import numpy as np
 import pytest
 from numba import int64, njit
 from numba.core.errors import TypingError
 
-from lavendersim.engine.compile import compiling, inner
+from lavendersim.engine.compile import (
+    compiling,
+    composing,
+    inner,
+    kernel,
+    naming,
+    once,
+    separate,
+)
 from lavendersim.engine.kernel_parts import STORE
+from lavendersim.engine.spec import Spec
 
 
 def chain_of_two():
@@ -139,3 +149,25 @@ def test_numba_s_own_function_may_call_a_kernel() -> None:
         return 2 * square_plus_one(x)
 
     assert twice(3) == 20
+
+
+def test_kernels_that_are_named_alone_are_plain_functions_and_are_given_to_nobody_else() -> None:
+    def one(x):
+        return x
+
+    @once
+    def make(spec: Spec) -> Any:
+        return separate(kernel(one, spec), spec)
+
+    spec = Spec(shape_pairs=("box_box",))
+    with naming() as first:
+        assert make(spec) is one
+        assert not hasattr(one, "separate")
+    with naming() as again:  # made before: listed all the same
+        make(spec)
+    assert first == again == [(one.__module__, "one")]
+    with composing() as composed:  # a kernel, though its name was asked for before
+        assert make(spec).py_func is one
+    assert composed == first
+    with naming():
+        assert make(spec) is one

@@ -53,6 +53,16 @@ def test_who_has_just_written_a_log_reads_the_same(block: Block, tmp_path: Path)
     assert at_hand.velocity.tobytes() == from_file.velocity.tobytes()
 
 
+def test_velocities_that_rows_have_unasked_are_written(block: Block, tmp_path: Path) -> None:
+    # `effects: {velocity_log: on}` without `record.velocities`
+    writer = TraceWriter(tmp_path / "run.mcap", CONFIG, "", {})
+    writer.append(block)
+    assert trace_of(writer.close("complete")).velocity.tobytes() == block.pose[:, :, 7:].tobytes()
+    trace = open_trace(tmp_path / "run.mcap")
+    assert trace.pose.tobytes() == np.ascontiguousarray(block.pose[:, :, :7]).tobytes()
+    assert trace.velocity.tobytes() == np.ascontiguousarray(block.pose[:, :, 7:]).tobytes()
+
+
 def test_a_table_has_a_row_for_every_body(block: Block, tmp_path: Path) -> None:
     path = write(tmp_path / "run.mcap", [block], config=VELOCITIES)
     table = pa.table(open_trace(path).table("velocity"))
