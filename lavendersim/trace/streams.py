@@ -47,10 +47,13 @@ Laid = tuple[bytes | memoryview, list[Messages]]
 
 
 class Chunk:
-    """The bytes of a chunk, filled part by part, and where its messages stand in it."""
+    """The bytes of a chunk, filled part by part, and where its messages stand in it.
+
+    They are the thread's own memory, which its next chunk fills anew.
+    """
 
     def __init__(self, prologue: bytes, size: int) -> None:
-        self.data = np.empty(len(prologue) + size, np.uint8)
+        self.data = scratch("chunk", (len(prologue) + size,), np.uint8)
         self.data[: len(prologue)] = np.frombuffer(prologue, np.uint8)
         self.end = len(prologue)  # of what is filled
         self._entries: dict[int, list[NDArray[Any]]] = {}
