@@ -93,7 +93,7 @@ def scene(rng: np.random.Generator) -> tuple[Any, Starts]:
     Two spheres, a plane, a body of another shape; places that are no numbers, and two at one place.
     """
     bodies = np.zeros((4, FIELDS))
-    bodies[0, NORMAL], bodies[0, OFFSET] = [0.6, 0.0, 0.8], -0.3
+    bodies[0, NORMAL], bodies[0, OFFSET] = [0.48, 0.6, 0.64], -0.3
     bodies[1:3, RADIUS] = 0.1, 0.25
     positions = rng.normal(size=(5, 4, 3))
     positions[2, 1] = np.nan
