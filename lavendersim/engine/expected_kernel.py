@@ -2,7 +2,7 @@
 
 The operations of `trace.predictors` and `trace.sphere_contacts` in their order, each of which IEEE
 754 rounds in one way alone, so that who reads the log finds the same bits. What is no number has
-many bit patterns: where any comes up, the caller is told, and asks the reader's own formulas.
+many bit patterns: where any comes up, the caller learns it, and asks the reader's own formulas.
 Compiled once, for the contacts of all logs.
 """
 
