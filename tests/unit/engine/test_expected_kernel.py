@@ -75,7 +75,7 @@ def test_a_number_is_expected_as_the_reader_expects_it(predictor: int, rng) -> N
 
 @pytest.mark.parametrize("predictor", [UNIT, GAP, LAW])
 @pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
-def test_whoever_asks_is_told_of_what_is_no_number(predictor: int, bad: float, rng) -> None:
+def test_whoever_asks_learns_of_what_is_no_number(predictor: int, bad: float, rng) -> None:
     """Each column in turn: what is a number in spite of it has the reader's bits, too."""
     for row in range(len(sources_of(predictor))):
         numbers = np.abs(columns_of(predictor, rng)) + 0.01
