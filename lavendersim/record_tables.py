@@ -7,17 +7,19 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
 
-def copied(table: NDArray[Any], room: int = 0) -> NDArray[Any]:
-    """Return a copy of a structured table (n,); room: for more behind each row [byte], not set."""
-    if room:
-        return widened(table, _with_room(table.dtype, room))
+# What a row of a step or of a contact needs behind it for its time, so that none is copied for it.
+ROOM_FOR_TIME: Final = 8  # [byte]
+
+
+def copied(table: NDArray[Any]) -> NDArray[Any]:
+    """Return a copy of a structured table (n,), with what stands in the room behind its rows."""
     return _as_bytes(table).copy().view(table.dtype)
 
 
@@ -54,7 +56,8 @@ def widen(table: NDArray[Any], wide: NDArray[Any]) -> None:
 
 
 @lru_cache(maxsize=256)
-def _with_room(row: np.dtype[Any], room: int) -> np.dtype[Any]:
+def with_room(row: np.dtype[Any], room: int = ROOM_FOR_TIME) -> np.dtype[Any]:
+    """Return the dtype of the same fields with more behind each row [byte]."""
     import numpy as np
 
     fields: Mapping[str, Any] = row.fields or {}

@@ -31,6 +31,10 @@ from .step import advance_for
 BLOCK_STEPS = 512
 # Contacts that memory is taken for at first, at most: more are made room for when they come.
 FIRST_CONTACTS = 1024
+# So many contacts [byte] are handed on in the memory that the step wrote them into, and it gets
+# another: to copy them takes as long as to compress them. Fewer, or in memory of which less than
+# half is in use, are copied, and nothing is kept that holds no row.
+HANDED_ON = 256 * 1024
 
 
 class Rows(NamedTuple):
@@ -207,17 +211,22 @@ class Engine:
             self._entry = _entries[self._types] = compiled[0].entry_point
         return status
 
-    def take_rows(self, room: int = 0) -> Rows:
-        """Return copies of the rows written since the last call and empty the columns.
+    def take_rows(self) -> Rows:
+        """Return the rows written since the last call, for the caller to keep, and empty the log.
 
-        room: for more behind each row of contacts [byte].
+        Behind each row of a step or a contact is room for its time, with any content.
         """
         count, log = self.counters[0], self.log
+        contact = log.contact[: count["contact_rows"]]
+        if contact.nbytes >= HANDED_ON and 2 * len(contact) >= len(log.contact):
+            self.log = log._replace(contact=np.empty(len(log.contact), log.contact.dtype))
+        else:
+            contact = copied(contact)
         history = log.residual[: count["residual_rows"]]
         rows = Rows(
             copied(log.step[: count["step_rows"]]),
             log.pose[: count["step_rows"]].copy(),
-            copied(log.contact[: count["contact_rows"]], room),
+            contact,
             history[history["step"] <= count["step"]],  # of steps that are done
         )
         self._keep_unfinished(log)

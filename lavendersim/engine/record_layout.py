@@ -12,6 +12,8 @@ from typing import Literal
 
 import numpy as np
 
+from lavendersim.record_tables import with_room
+
 from .collide.shapes import shapes_in
 from .effects import EFFECTS, effects_of, row_fields
 from .records import (
@@ -76,14 +78,14 @@ def cache_dtype(spec: Spec) -> np.dtype:
 
 @cache
 def step_row_dtype(spec: Spec) -> np.dtype:
-    """Return the row that the log has of a step."""
-    return dtype(row_fields(spec, "step"))
+    """Return the row that the log has of a step, with room for its time."""
+    return with_room(dtype(row_fields(spec, "step")))
 
 
 @cache
 def contact_row_dtype(spec: Spec) -> np.dtype:
-    """Return the row that the log has of a contact."""
-    return dtype(row_fields(spec, "contact"))
+    """Return the row that the log has of a contact, with room for its time."""
+    return with_room(dtype(row_fields(spec, "contact")))
 
 
 @cache

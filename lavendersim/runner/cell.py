@@ -24,11 +24,10 @@ from lavendersim.measures.specs.always import Always
 from lavendersim.measures.specs.catalogue import MeasureSpec
 from lavendersim.measures.step_checks import checks_of
 from lavendersim.measures.verdict import failure
-from lavendersim.record_tables import widened
 from lavendersim.scene.build import Scene, build
 from lavendersim.scene.events import EventQueue
 from lavendersim.scene.plan import Plan
-from lavendersim.trace import ROOM_FOR_TIME, Block, TraceWriter, Written, trace_of
+from lavendersim.trace import Block, TraceWriter, Written, trace_of
 from lavendersim.trace.recorded import described, partly_recorded
 from lavendersim.trace.whole import INTERRUPTED
 
@@ -94,12 +93,14 @@ class CellJob(NamedTuple):
 
 @cache
 def _with_time(row: np.dtype[Any]) -> np.dtype[Any]:
-    return np.dtype([*row.descr, ("time_ns", "i8")])
+    """Return a row of steps that has its time in the room behind it."""
+    fields = [(name, row[name]) for name in row.names or ()]
+    return np.dtype([*fields, ("time_ns", "i8")])
 
 
 def block_of(rows: Rows, clock: Clock) -> Block:
     """Return the rows of some steps as the log takes them, with their time."""
-    step = widened(rows.step, _with_time(rows.step.dtype))
+    step = rows.step.view(_with_time(rows.step.dtype))
     step["time_ns"] = clock.nanoseconds(rows.step["step"])
     return Block(step=step, contact=rows.contact, pose=rows.pose, residual=rows.residual)
 
@@ -287,7 +288,7 @@ def simulate(job: CellJob, began: Began | None = None) -> Simulated:
             if result == DIVERGED:
                 status = divergence(scene, engine)
             start = perf_counter_ns()
-            rows = engine.take_rows(room=ROOM_FOR_TIME)
+            rows = engine.take_rows()
             if len(rows.step):
                 block, broken = bounds.within(block_of(rows, scene.clock), result == DIVERGED)
                 if broken:

@@ -11,7 +11,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from lavendersim.trace.blocks import ROOM_FOR_TIME, Block
+    from lavendersim.trace.blocks import Block
     from lavendersim.trace.opening import open_trace
     from lavendersim.trace.reader import Trace
     from lavendersim.trace.recovery import RecoveryReport, recover
@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from lavendersim.trace.written_trace import trace_of
 
 _HOME = {
-    "ROOM_FOR_TIME": "blocks",
     "Block": "blocks",
     "ExpectedLog": "whole",
     "LogDigest": "whole",
@@ -35,7 +34,6 @@ _HOME = {
 }
 
 __all__ = [
-    "ROOM_FOR_TIME",
     "Block",
     "ExpectedLog",
     "LogDigest",

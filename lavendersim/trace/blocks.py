@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any, Final, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lavendersim.trace.wire import Rows
-
-# What a row of contacts needs behind it for its time, so that no row is copied for it.
-ROOM_FOR_TIME: Final = 8  # [byte]
 
 
 class Block(NamedTuple):

@@ -44,6 +44,7 @@ from lavendersim.trace.sphere_contacts import (
     Floats,
     Starts,
     expected_contacts,
+    place_contacts,
 )
 
 DERIVED: dict[str, Derived] = {
@@ -156,25 +157,35 @@ def pack(
         pack_columns,
     )  # late: numba
 
-    keys = _keys(rows, names)
+    tables = [words_of(part) for part in rows]
+    known_keys, columns = tuple(name for name in KEY if name in names), _numbers(names)
+    count = sum(map(len, tables))
+
+    def gather(order: NDArray[np.intp], wanted: tuple[str, ...], words: predictors.Words) -> None:
+        first = 0
+        for table in tables:
+            gather_columns()(table, first, order, _places(wanted, rows[0].dtype), words)
+            first += len(table)
+
+    keys = np.empty((len(known_keys), count), np.int64)
+    gather(np.arange(count), known_keys, keys.view(np.uint64))
     order, persists = _order(keys)
-    count, columns = len(order), _numbers(names)
     words = scratch("words", (len(columns), count), np.uint64)
-    stored, first = _places(columns, rows[0].dtype), 0
-    for part in rows:
-        gather_columns()(words_of(part), first, order, stored, words)
-        first += len(part)
+    gather(order, columns, words)
     named = dict(zip(columns, words, strict=True))
-    spheres = _expected_by(starts, keys, names, order)
-    if spheres is not None and not _is_of_spheres(spheres, named):
-        spheres = None  # others have predictors of their own
+    spheres = None
+    if starts is not None and {"body_a", "body_b"} <= {*names}:
+        spheres = place_contacts(keys, order, starts)
+        if not _is_of_spheres(spheres, named):
+            spheres = None  # others have predictors of their own
     special, asked = _asked(columns, spheres is not None)
     expected = scratch("expected", (len(asked) + 1, count), np.uint64)
     for place, (name, predictor) in enumerate(asked):
         if predictor == SPHERES and spheres is not None:
             expected[place] = spheres.columns[name].view(np.uint64)
         else:
-            expected[place] = predictors.expected(predictor, named, persists, constants)
+            sources = np.array([columns.index(one) for one in SPECIAL[name][1]], np.int64)
+            predictors.expect(predictor, (words, sources, persists), constants, expected[place])
     known = np.zeros(count, bool) if spheres is None else spheres.known
     chosen = np.zeros(len(columns), np.int64)
     planes = scratch("planes", (8, len(columns), count), np.uint8)
@@ -307,14 +318,6 @@ def _chosen(packed: Packed, columns: Sequence[str]) -> dict[str, int]:
 @lru_cache(maxsize=64)
 def _numbers(names: tuple[str, ...]) -> tuple[str, ...]:
     return tuple(name for name in names if name not in KEY)
-
-
-def _keys(rows: Tables, names: tuple[str, ...]) -> Integers:
-    known = [name for name in KEY if name in names]
-    keys = np.empty((len(known), sum(map(len, rows))), np.int64)
-    for key, name in zip(keys, known, strict=True):
-        np.concatenate([part[name] for part in rows], out=key)
-    return keys
 
 
 def _order(keys: Integers) -> tuple[NDArray[np.intp], NDArray[np.bool_]]:

@@ -151,7 +151,7 @@ def closed(payload: bytes | memoryview, messages: Iterable[Messages]) -> Closed:
 
 def message_index(messages: Messages) -> bytes:
     """Return a MessageIndex record; mcap's own writes entry by entry."""
-    entries = messages.entries.astype(INDEX_ENTRY).tobytes()
+    entries = messages.entries.astype(INDEX_ENTRY, copy=False).tobytes()
     body = struct.pack("<HI", messages.channel, len(entries)) + entries
     return struct.pack("<BQ", Opcode.MESSAGE_INDEX, len(body)) + body
 

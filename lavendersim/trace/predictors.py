@@ -113,6 +113,31 @@ def expected(
     return found.view(np.uint64)
 
 
+def expect(
+    predictor: int,
+    rows: tuple[Words, NDArray[np.int64], NDArray[np.bool_]],
+    constants: Constants,
+    out: Words,
+) -> None:
+    """Write the same into `out`, by a kernel.
+
+    rows: columns (m, n) in the order of keys; which of them the predictor needs, in the order of
+    SPECIAL; and whether each row follows one of its key.
+    """
+    from lavendersim.engine.expected_kernel import expect_numbers  # late: numba
+
+    words, sources, persists = rows
+    if predictor == AFTER:
+        out[:1] = 0
+        np.multiply(words[sources[0], :-1], persists[1:], out=out[1:])
+    elif expect_numbers()(
+        predictor, words.view(np.float64), sources, tuple(constants), out.view(np.float64)
+    ):  # what is no number has the bits that a reader finds
+        names = next(names for code, names in SPECIAL.values() if code == predictor)
+        named = {name: words[source] for name, source in zip(names, sources, strict=True)}
+        out[:] = expected(predictor, named, persists, constants)
+
+
 def _expected(predictor: int, of: Mapping[str, Floats], constants: Constants) -> Floats:
     if predictor == UNIT:
         return _unit(of["nx"], of["ny"])

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from lavendersim.cell.shapes import CellShape, Plane
 from lavendersim.cell.shapes.sphere import Sphere
 from lavendersim.geometry.shapes import half_space
+from lavendersim.trace.scratch import scratch
 
 Floats = NDArray[np.float64]
 RADIUS, NORMAL, OFFSET, POSITION = 0, slice(1, 4), 4, slice(5, 8)
@@ -75,6 +76,18 @@ def expected_contacts(
                 for column, numbers in zip(table, contacts(one[at], other[at], mine), strict=True):
                     column[at] = np.where(np.isnan(numbers), 0.0, numbers)  # of many bit patterns
     return Expected(dict(zip(COLUMNS, table, strict=True)), spheres | on_plane)
+
+
+def place_contacts(keys: NDArray[np.int64], order: NDArray[np.intp], starts: Starts) -> Expected:
+    """Return the same of contacts in an order, by a kernel: (k, n) keys, bodies first.
+
+    In memory that is used again when this thread asks again.
+    """
+    from lavendersim.engine.expected_kernel import place_contacts as kernel  # late: numba
+
+    table = scratch("placed", (len(COLUMNS) + 1, len(order)), np.float64)
+    kernel()(keys, order, starts.step, starts.bodies, starts.positions, table)
+    return Expected(dict(zip(COLUMNS, table, strict=False)), table[-1] == 1.0)
 
 
 def _of_spheres(a: NDArray[np.int64], b: NDArray[np.int64], starts: Starts) -> list[Floats]:

@@ -47,25 +47,31 @@ Laid = tuple[bytes | memoryview, list[Messages]]
 
 
 class Chunk:
-    """The bytes of a chunk, filled part by part, and where its messages stand in it."""
+    """The bytes of a chunk, filled part by part, and where its messages stand in it.
+
+    They are the thread's own memory, which its next chunk fills anew.
+    """
 
     def __init__(self, prologue: bytes, size: int) -> None:
-        self.data = np.empty(len(prologue) + size, np.uint8)
+        self.data = scratch("chunk", (len(prologue) + size,), np.uint8)
         self.data[: len(prologue)] = np.frombuffer(prologue, np.uint8)
         self.end = len(prologue)  # of what is filled
-        self._entries: dict[int, list[NDArray[Any]]] = {}
+        self._entries: dict[int, list[NDArray[np.uint64]]] = {}
 
     def note(self, topic: str, heads: Rows, starts: Rows) -> None:
         """Note where messages stand; heads: words of their steps."""
-        entries = np.empty(len(starts), INDEX_ENTRY)
-        entries["time"], entries["offset"] = heads[:, TIME], starts
+        entries = np.empty((len(starts), 2), np.uint64)  # words of INDEX_ENTRY
+        entries[:, 0], entries[:, 1] = heads[:, TIME], starts
         self._entries.setdefault(layout.CHANNELS[topic], []).append(entries)
 
     def filled(self) -> Laid:
         """Return bytes and index."""
         assert self.end == len(self.data), "a chunk has other bytes than were counted"
-        entries = sorted(self._entries.items())
-        return self.data.data, [Messages(c, np.concatenate(parts)) for c, parts in entries]
+        messages = [
+            Messages(channel, np.concatenate(parts).view(INDEX_ENTRY)[:, 0])
+            for channel, parts in sorted(self._entries.items())
+        ]
+        return self.data.data, messages
 
 
 class Light:

@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lavendersim.record_tables import widened
+from lavendersim.record_tables import ROOM_FOR_TIME, widened
 from lavendersim.trace import decode, layout
-from lavendersim.trace.blocks import ROOM_FOR_TIME, Block
+from lavendersim.trace.blocks import Block
 from lavendersim.trace.contact_columns import column_form
 from lavendersim.trace.reader import RecordedPoses, Trace
 from lavendersim.trace.recorded import is_recorded

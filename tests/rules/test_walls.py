@@ -68,6 +68,8 @@ DECLARATIONS = {"lavendersim.engine.effects", "lavendersim.engine.solvers"}
 OF_THE_WRITER = {
     ("lavendersim/trace/message_form.py", "lavendersim.engine.message_kernel"),
     ("lavendersim/trace/contact_columns.py", "lavendersim.engine.difference_kernel"),
+    ("lavendersim/trace/predictors.py", "lavendersim.engine.expected_kernel"),
+    ("lavendersim/trace/sphere_contacts.py", "lavendersim.engine.expected_kernel"),
     ("lavendersim/trace/points.py", "lavendersim.engine.point_kernel"),
 }
 # Who may import a library of others; what is not listed is imported by nobody.

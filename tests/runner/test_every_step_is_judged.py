@@ -17,6 +17,8 @@ import lavendersim
 from lavendersim.measures import outcomes_of
 from lavendersim.measures.specs.always import CHECKS, Always
 from lavendersim.runner import Finished
+from lavendersim.runner.bounds import Bounds
+from lavendersim.trace import Block
 
 # A ball slides to rolling; another is pushed and turned by a force and a torque, bounces, falls on
 # the first, and is moved, thrown and made heavier by events.
@@ -171,9 +173,21 @@ def test_one_broken_step_breaks_exactly_its_law(
     assert bodies in outcomes[min(laws)].reason
 
 
+def pulls(log: Falsified) -> None:
+    log.contact["impulse_n"][log.sliding()] *= -1e-6
+
+
+def is_no_number(log: Falsified) -> None:
+    for name in ("kinetic_energy", "momentum_x", "residual"):
+        log.step[name][BROKEN] = np.nan
+    log.contact["impulse_t1"][log.sliding()] = np.nan
+    log.contact["penetration"][log.sliding()] = np.nan
+    log.pose[BROKEN, log.bodies.index("low")] = np.nan
+
+
 def test_a_pull_is_reported_with_its_bodies(finished: Finished) -> None:
     log = Falsified(finished.run.cells[0].trace())
-    log.contact["impulse_n"][log.sliding()] *= -1e-6
+    pulls(log)
     outcome = outcomes_of(Always(), log)["impulses"]
     assert not outcome.passed
     assert "floor and low" in outcome.reason
@@ -181,13 +195,29 @@ def test_a_pull_is_reported_with_its_bodies(finished: Finished) -> None:
 
 def test_a_number_that_is_none_passes_nothing(finished: Finished) -> None:
     log = Falsified(finished.run.cells[0].trace())
-    for name in ("kinetic_energy", "momentum_x", "residual"):
-        log.step[name][BROKEN] = np.nan
-    log.contact["impulse_t1"][log.sliding()] = np.nan
-    log.contact["penetration"][log.sliding()] = np.nan
-    log.pose[BROKEN, log.bodies.index("low")] = np.nan
+    is_no_number(log)
     outcomes = outcomes_of(Always(speed=20.0), log)
     assert [name for name, outcome in outcomes.items() if outcome.passed] == []
+
+
+@pytest.mark.parametrize("breaking", [*BREAKS, pulls, is_no_number], ids=lambda one: one.__name__)
+def test_a_run_tells_of_itself_what_its_log_tells(
+    finished: Finished, breaking: Callable[[Falsified], None]
+) -> None:
+    """Kernels over the blocks of a run, however cut, and numpy over its log: the same outcomes."""
+    log = Falsified(finished.run.cells[0].trace())
+    breaking(log)
+    always = Always(speed=20.0, stop=False)
+    bounds = Bounds(always, list(log.bodies), log.config, log.clock, log.absent)
+    for cut in np.split(np.arange(len(log.step)), [1, BROKEN - 1, BROKEN, BROKEN + 1, 150]):
+        steps = log.step["step"][cut]
+        low, high = np.searchsorted(log.contact["step"], [steps[0], steps[-1] + 1])
+        none = np.zeros(0, [("step", "i8")])
+        bounds.within(Block(log.step[cut], log.contact[low:high], log.pose[cut], none))
+    assert bounds.worst is not None
+    by_log = outcomes_of(always, log)
+    assert not all(outcome.passed for outcome in by_log.values())
+    assert repr(bounds.worst.outcomes(log.status, log)) == repr(by_log)  # NaN, too, is the same
 
 
 def test_a_check_that_is_none_is_not_made(finished: Finished) -> None:

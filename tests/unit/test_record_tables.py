@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from lavendersim.record_tables import copied, joined, widened
+from lavendersim.record_tables import ROOM_FOR_TIME, copied, joined, widened, with_room
 
 ROW = np.dtype([("a", "f8"), ("b", "i8"), ("c", "u8")])
 
@@ -27,10 +27,12 @@ def test_a_copy_has_the_bytes_and_shares_none(count: int) -> None:
 
 
 @pytest.mark.parametrize("count", [0, 1, 50])
-def test_a_copy_may_have_room_behind_each_row(count: int) -> None:
-    rows = table(count)
-    copy = copied(rows, room=8)
-    assert (copy.dtype.names, copy.dtype.itemsize) == (ROW.names, ROW.itemsize + 8)
+def test_a_row_may_have_room_behind_it(count: int) -> None:
+    """What stands there is copied along, and is no column."""
+    rows, roomy = table(count), with_room(ROW)
+    copy = copied(widened(rows, roomy))
+    assert copy.dtype == roomy
+    assert (roomy.names, roomy.itemsize) == (ROW.names, ROW.itemsize + ROOM_FOR_TIME)
     wide = copy.view(np.dtype([*ROW.descr, ("behind", "i8")]))
     wide["behind"] = -1
     for name in ROW.names or ():

@@ -120,6 +120,28 @@ def test_rows_are_taken_before_contacts_grow() -> None:
     assert len(engine.take_rows().step) == 3
 
 
+@pytest.mark.parametrize("share", [0.75, 0.25])
+def test_rows_that_fill_their_memory_are_handed_on_in_it(share: float, monkeypatch) -> None:
+    """The next go elsewhere; where less than half of it is in use, rows are copied."""
+    engine = heap()
+    engine.advance(5)
+    count = int(engine.counters["contact_rows"][0])
+    expected = engine.log.contact[:count].copy()
+    memory_of_it = np.zeros(int(count / share), engine.log.contact.dtype)
+    memory_of_it[:count] = expected
+    engine.log = engine.log._replace(contact=memory_of_it)
+    monkeypatch.setattr(engines, "HANDED_ON", 1)
+    taken = engine.take_rows().contact
+    assert np.shares_memory(taken, memory_of_it) == (share > 0.5)
+    assert np.shares_memory(engine.log.contact, memory_of_it) == (share <= 0.5)
+    assert len(engine.log.contact) == len(memory_of_it)
+    assert len(taken) == count > 0
+    engine.advance(5)
+    assert int(engine.counters["contact_rows"][0]) > 0
+    for name in expected.dtype.names or ():
+        assert taken[name].tobytes() == expected[name].tobytes()
+
+
 def test_rows_that_are_taken_are_copies_and_are_gone() -> None:
     engine = heap()
     engine.advance(2)

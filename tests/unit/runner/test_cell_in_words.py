@@ -13,6 +13,7 @@ from lavendersim.engine.engine import Rows
 from lavendersim.engine.records import INACCURATE, NOT_FINITE, TURNS_TOO_FAST
 from lavendersim.experiment import load_experiment_text
 from lavendersim.measures.specs.always import Always
+from lavendersim.record_tables import with_room
 from lavendersim.runner.cell import (
     CellJob,
     CellOfLog,
@@ -67,7 +68,7 @@ def test_an_interruption_names_its_signal() -> None:
 
 
 def test_rows_of_a_log_have_the_time_of_their_step_in_whole_nanoseconds() -> None:
-    step = np.zeros(4, [("step", "i8"), ("x", "f8")])
+    step = np.zeros(4, with_room(np.dtype([("step", "i8"), ("x", "f8")])))
     step["step"], step["x"] = [0, 1, 2, 3], [5.0, 6.0, 7.0, 8.0]
     none = np.zeros(0)
     block = block_of(Rows(step=step, contact=none, pose=none, residual=none), CELL.clock)

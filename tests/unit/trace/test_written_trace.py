@@ -11,8 +11,8 @@ from sample import AS_WRITTEN, BODIES, METADATA, SCENE, moving, run, split, with
 
 from lavendersim.cell import CellConfig
 from lavendersim.errors import UsageError
-from lavendersim.record_tables import copied
-from lavendersim.trace import ROOM_FOR_TIME, Block, TraceWriter, open_trace
+from lavendersim.record_tables import widened, with_room
+from lavendersim.trace import Block, TraceWriter, open_trace
 from lavendersim.trace.reader import Trace
 from lavendersim.trace.written_trace import WrittenTrace, trace_of
 from tests.made_cells import made_cell
@@ -63,7 +63,9 @@ def test_memory_and_file_are_the_same_log(tmp_path: Path, record: dict[str, Any]
 def test_rows_with_room_for_their_time_are_not_copied(tmp_path: Path) -> None:
     """The log has the same bytes, each part is the memory of its block, and the time is right."""
     blocks = split(moving(200), [1, 60, 99])
-    roomy = [one._replace(contact=copied(one.contact, ROOM_FOR_TIME)) for one in blocks]
+    roomy = [
+        one._replace(contact=widened(one.contact, with_room(one.contact.dtype))) for one in blocks
+    ]
     plain, _ = both(tmp_path / "a.mcap", blocks)
     memory, file = both(tmp_path / "b.mcap", roomy)
     assert (tmp_path / "a.mcap").read_bytes() == (tmp_path / "b.mcap").read_bytes()
