@@ -20,6 +20,7 @@ from .midpoint_geometry import (
     make_stay,
     make_take_kept,
 )
+from .midpoint_impulses import make_go_on, make_impulse_of
 from .midpoint_jumps import make_carry_along
 from .midpoint_mixing import NO_PASS, make_mix_velocities
 from .midpoint_rows import (
@@ -60,8 +61,7 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
     stand_midway, look, shift = make_stand_midway(spec), make_look(spec), make_shift(spec)
     widen, carry_along = make_widen(spec), make_carry_along(spec)
     carries_inertia, refresh_inertia = made_once(spec, "refresh_inertia")
-    warms, match_contacts = made_once(spec, "match")
-    _, store_contacts = made_once(spec, "store")
+    impulse_of, go_on = make_impulse_of(spec), make_go_on(spec)
     apply_start, take_kept = make_apply_start(spec), make_take_kept(spec)
     keeps_free, keep_free = made_once(spec, "keep_free")
     at_surface, loaded = spec.has("impact_time"), preload is not None
@@ -122,7 +122,7 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
 
     def midpoint_passes(state, count, workspace, params, counters, log):
         bodies, velocities, motion = state.bodies, state.velocities, state.motion
-        contacts, cache, pairs = state.contacts, state.cache, state.pairs
+        contacts, pairs = state.contacts, state.pairs
         poses, free, lead, rounds = workspace.middle
         if counters.not_converged == 1:
             return False
@@ -147,8 +147,6 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
         least, idle, columns = inf, 0, NO_PASS
         for k in range(MOST_PASSES):
             columns = mix_velocities(bodies, velocities, rounds, columns)
-            if warms:
-                store_contacts(contacts, count, bodies, cache, counters, params)
             unturned = stand_midway(bodies, velocities, motion, lead, poses, params.dt)
             look(state, count, poses, workspace)
             restore(velocities, free, lead, motion)
@@ -161,6 +159,7 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
                 refresh_inertia(bodies, velocities)
             for c in range(count):
                 contact = contacts[c]
+                impulse = impulse_of(contact)
                 append_contact(contact, bodies, velocities, motion, pairs[contact.pair], params)
                 shift(contact, lead, params)
                 if contact.jumps == 1:
@@ -169,17 +168,16 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
                     stay(contact, bodies, poses)
                     append_contact(contact, bodies, velocities, motion, pairs[contact.pair], params)
                     widen(contact, params)
+                go_on(contact, impulse)
             if loaded:
                 for c in range(count):
                     preload(contacts[c], velocities, motion)
             if keeps_free:
                 keep_free(velocities, workspace.free_velocities)
-            if warms:
-                match_contacts(contacts, count, bodies, cache, counters, params)
-                for c in range(count):
-                    contact = contacts[c]
-                    if contact.lambda_n > 0.0:
-                        apply_start(contact, velocities[contact.a], velocities[contact.b])
+            for c in range(count):
+                contact = contacts[c]
+                if contact.lambda_n > 0.0:
+                    apply_start(contact, velocities[contact.a], velocities[contact.b])
             missed, _ = residual(contacts, count, velocities)
             forget_history(counters, log.residual)
             solve(system, workspace.solver, params, counters, log.residual)
