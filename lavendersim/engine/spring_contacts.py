@@ -51,7 +51,7 @@ def make_act_beside_contacts(spec: Spec, place: Any, solve: Any) -> Any:
     turns = spec.has("rotation")
     find = make_find(spec, place).find
     settle = make_limit(spec, place).settle
-    join, gains, put = make_unions(spec, place)
+    join, gains, pull, put = make_unions(spec, place)
     classify, bring_on = make_classify(spec), make_bring_on(spec)
     finish, stand_up = make_finish(spec), make_stand_up(spec)
     forget_history = make_forget_history(spec)
@@ -143,8 +143,8 @@ def make_act_beside_contacts(spec: Spec, place: Any, solve: Any) -> Any:
 
     compare = kernel(compare, spec)
 
-    def impose(links, bodies, velocities, motion, x):
-        # Velocities before contacts, with these impulses of springs.
+    def impose(links, bodies, velocities, motion, x, size):
+        # Velocities before contacts, with these impulses of springs and this share of the forces.
         for i in range(bodies.shape[0]):
             body, v, m = bodies[i], velocities[i], motion[i]
             if body.again == 1:
@@ -180,6 +180,15 @@ def make_act_beside_contacts(spec: Spec, place: Any, solve: Any) -> Any:
                     x_, y, z = inverse_inertia_times(body, body.twist_x, body.twist_y, body.twist_z)
                     body.to_wx, body.to_wy = body.spun_x + x_, body.spun_y + y
                     body.to_wz = body.spun_z + z
+                if size < 1.0:
+                    rest = 1.0 - size
+                    body.to_vx -= rest * (body.pulled_x - body.push_x)
+                    body.to_vy -= rest * (body.pulled_y - body.push_y)
+                    body.to_vz -= rest * (body.pulled_z - body.push_z)
+                    if turns:
+                        body.to_wx -= rest * (body.spun_x - m.wx)
+                        body.to_wy -= rest * (body.spun_y - m.wy)
+                        body.to_wz -= rest * (body.spun_z - m.wz)
             v.vx, v.vy, v.vz = body.to_vx, body.to_vy, body.to_vz
             if turns:
                 v.wx, v.wy, v.wz = body.to_wx, body.to_wy, body.to_wz
@@ -235,7 +244,7 @@ def make_act_beside_contacts(spec: Spec, place: Any, solve: Any) -> Any:
             moved, same = compare(links, bodies, x, f)
             done = found and (same or moved <= FOUND * params.tolerance)
             columns = bring_on(rounds, x.shape[0], columns)
-            impose(links, bodies, velocities, motion, x)
+            impose(links, bodies, velocities, motion, x, 1.0)
             finish(bodies, velocities, motion, params)
             if warms:
                 store_contacts(contacts, count, bodies, cache, counters, params)
@@ -269,6 +278,7 @@ def make_act_beside_contacts(spec: Spec, place: Any, solve: Any) -> Any:
         if midway:
             stand_up(bodies, poses)
         take_settled(links, bodies, velocities, motion, x, dt)
+        pull(links, contacts, bodies, count)
         beside.passes[0] = 0
         size = 1.0
         for number in range(SIZES):
@@ -278,7 +288,7 @@ def make_act_beside_contacts(spec: Spec, place: Any, solve: Any) -> Any:
                 f[i] = size * x[i]
             if carries_inertia:
                 refresh_inertia(bodies, velocities)
-            impose(links, bodies, velocities, motion, f)
+            impose(links, bodies, velocities, motion, f, size)
             finish(bodies, velocities, motion, params)
             forget_history(counters, log.residual)
             sweeps = counters.sweeps
