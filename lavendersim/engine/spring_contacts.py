@@ -9,8 +9,10 @@ union would have more energy at the end of the step than it began with and force
 placed: springs act by s times the implicit Euler rule along where they stand, s = 1, 1/4, 1/16,
 ..., 0, contacts after them, and bodies move by
     x_1 = x_0 + dt (V_c + t (v - V_c)),   turned by dt t omega;   t = 1, 1/2, 1/4, ...
-V_c: the centre's, 0 of what touches or is tied to what does not move. The first pair (s, t) is
-taken for which the energy is enough; at s = t = 0 it is. Where surfaces move or give way energy
+V_c: the centre's, 0 of what touches or is tied to what does not move. Forces act s times, too, but
+for what they change of V_c: else they would drive what does not move on. The first pair (s, t) is
+taken for which the energy is enough, first with the rebounds of impacts without order, which may
+themselves give energy, then without; at s = t = 0 it is, and what is held there slows down. Where surfaces move or give way energy
 tells nothing: s = t = 1 is taken of what is not found.
 """
 
@@ -59,6 +61,7 @@ def make_act_beside_contacts(spec: Spec, place: Any, solve: Any) -> Any:
     warms, store_contacts = made_once(spec, "store")
     # What surfaces that move or give way do is no loss.
     moving_surfaces = spec.has("surface_velocity")
+    rebounds = spec.has("restitution") and spec.has("impact_order")
     elastic, regularised = spec.has("contact_spring"), spec.has("compliance")
 
     def read(links, x):
@@ -280,8 +283,12 @@ def make_act_beside_contacts(spec: Spec, place: Any, solve: Any) -> Any:
         take_settled(links, bodies, velocities, motion, x, dt)
         pull(links, contacts, bodies, count)
         beside.passes[0] = 0
-        size = 1.0
-        for number in range(SIZES):
+        size, rebounding = 1.0, False
+        if rebounds:
+            rebounding = counters.unordered == 1
+        for number in range(-SIZES if rebounding else 0, SIZES):
+            if number == 0:
+                size, beside.impacts[0] = 1.0, 0
             if number == SIZES - 1:
                 size = 0.0
             for i in range(x.shape[0]):

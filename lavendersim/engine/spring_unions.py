@@ -16,6 +16,8 @@ from .vectors import Vec3, minus, plus_scaled, scaled
 
 # Energy won in a step, of what there is, that solves and round-off leave [-].
 GAINED = 1e-10
+# Share of its velocities that what is not moved at all keeps: else it would stand for ever [-].
+HELD = 0.5
 # BODY.again while unions are looked for: a contact pushes it.
 PUSHED = 2
 
@@ -103,7 +105,8 @@ def make_unions(spec: Spec, place: Any) -> Unions:
     stored = kernel(stored, spec)
 
     def gains(links, rows, velocities, motion, beside, dt):
-        # Whether unions have more energy where the step leads to. rows: where it begins.
+        # Whether unions have more energy where the step leads to, or it leads nowhere. rows: where
+        # it begins.
         moved, moving = beside.bodies, beside.velocities
         won, had = 0.0, 0.0
         for i in range(rows.shape[0]):
@@ -117,7 +120,8 @@ def make_unions(spec: Spec, place: Any) -> Unions:
             if row.again == 0:
                 continue
             moving[i] = velocities[i]
-            displace(moved[i], moving[i], m, dt)
+            if not displace(moved[i], moving[i], m, dt):
+                return True  # it turns by more than a step can turn it
             before, after = inner_energy(row, m), inner_energy(moved[i], moving[i])
             x, y, z = moved[i].x - row.x, moved[i].y - row.y, moved[i].z - row.z
             # Of the forces as they are, whatever share of them changed its velocity.
@@ -207,5 +211,9 @@ def make_unions(spec: Spec, place: Any) -> Unions:
                     if turns:
                         row.turn_x, row.turn_y, row.turn_z = t * v.wx, t * v.wy, t * v.wz
                     row.sprung = BOTH
+                    if t == 0.0 and anchored:
+                        v.vx, v.vy, v.vz = HELD * v.vx, HELD * v.vy, HELD * v.vz
+                        if turns:
+                            v.wx, v.wy, v.wz = HELD * v.wx, HELD * v.wy, HELD * v.wz
 
     return Unions(join, gains, pull, kernel(put, spec))
