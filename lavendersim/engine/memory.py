@@ -97,6 +97,7 @@ class SpringTrial(NamedTuple):
     rounds: FixedPoint  # (9 l,) impulses of l springs: those in use, and what they are off by
     lost: np.ndarray  # (1,) energy that what they act on lost in this part [J]
     passes: np.ndarray  # (1,) whether contacts are looked for at the middle
+    impacts: np.ndarray  # (1,) whether those without order happen at their times
     midway: np.ndarray  # (1,) whether bodies stand there, before springs act beside contacts
     before: np.ndarray  # (2,) midpoint_ and gyroscopic_not_converged before contacts were solved
     bodies: np.ndarray  # (n,) where the step leads to
@@ -197,6 +198,7 @@ def allocate_workspace(
         beside=SpringTrial(
             allocate_fixed_point(9 * links, SPRING_ROUNDS),
             np.zeros(1),
+            np.zeros(1, np.int64),
             np.zeros(1, np.int64),
             np.zeros(1, np.int64),
             np.zeros(2, np.int64),

@@ -99,6 +99,8 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
         if ordered:
             # Motion between impacts has none, unless they are left without order.
             predicted = not lasts or counters.unordered == 1
+            if beside:
+                predicted = predicted and workspace.beside.impacts[0] == 1
             if not predicted:
                 for c in range(count):
                     contacts[c].is_impact, contacts[c].tau = 0, params.dt
@@ -156,7 +158,7 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
             springs = workspace.beside
             springs.before[0] = counters.midpoint_not_converged
             springs.before[1] = counters.gyroscopic_not_converged
-            springs.passes[0] = 1
+            springs.passes[0], springs.impacts[0] = 1, 1
         midway = solve_part(state, count, workspace, params, counters, log)
         if beside:
             if lasts:

@@ -9,9 +9,11 @@ union would have more energy at the end of the step than it began with and force
 placed: springs act by s times the implicit Euler rule along where they stand, s = 1, 1/4, 1/16,
 ..., 0, contacts after them, and bodies move by
     x_1 = x_0 + dt (V_c + t (v - V_c)),   turned by dt t omega;   t = 1, 1/2, 1/4, ...
-V_c: the centre's, 0 of what touches or is tied to what does not move. The first pair (s, t) is
-taken for which the energy is enough; at s = t = 0 it is. Where surfaces move or give way energy
-tells nothing: s = t = 1 is taken of what is not found.
+V_c: the centre's, 0 of what touches or is tied to what does not move. Forces act s times, too, but
+for what they change of V_c: else they would drive what does not move on. The first pair (s, t) is
+taken for which the energy is enough, first with the rebounds of impacts without order, which may
+themselves give energy, then without; at s = t = 0 it is, and what is held there slows down. Where
+surfaces move or give way energy tells nothing: s = t = 1 is taken of what is not found.
 """
 
 from __future__ import annotations
@@ -51,7 +53,7 @@ def make_act_beside_contacts(spec: Spec, place: Any, solve: Any) -> Any:
     turns = spec.has("rotation")
     find = make_find(spec, place).find
     settle = make_limit(spec, place).settle
-    join, gains, put = make_unions(spec, place)
+    join, gains, pull, put = make_unions(spec, place)
     classify, bring_on = make_classify(spec), make_bring_on(spec)
     finish, stand_up = make_finish(spec), make_stand_up(spec)
     forget_history = make_forget_history(spec)
@@ -59,6 +61,7 @@ def make_act_beside_contacts(spec: Spec, place: Any, solve: Any) -> Any:
     warms, store_contacts = made_once(spec, "store")
     # What surfaces that move or give way do is no loss.
     moving_surfaces = spec.has("surface_velocity")
+    rebounds = spec.has("restitution") and spec.has("impact_order")
     elastic, regularised = spec.has("contact_spring"), spec.has("compliance")
 
     def read(links, x):
@@ -143,8 +146,8 @@ def make_act_beside_contacts(spec: Spec, place: Any, solve: Any) -> Any:
 
     compare = kernel(compare, spec)
 
-    def impose(links, bodies, velocities, motion, x):
-        # Velocities before contacts, with these impulses of springs.
+    def impose(links, bodies, velocities, motion, x, size):
+        # Velocities before contacts, with these impulses of springs and this share of the forces.
         for i in range(bodies.shape[0]):
             body, v, m = bodies[i], velocities[i], motion[i]
             if body.again == 1:
@@ -180,6 +183,15 @@ def make_act_beside_contacts(spec: Spec, place: Any, solve: Any) -> Any:
                     x_, y, z = inverse_inertia_times(body, body.twist_x, body.twist_y, body.twist_z)
                     body.to_wx, body.to_wy = body.spun_x + x_, body.spun_y + y
                     body.to_wz = body.spun_z + z
+                if size < 1.0:
+                    rest = 1.0 - size
+                    body.to_vx -= rest * (body.pulled_x - body.push_x)
+                    body.to_vy -= rest * (body.pulled_y - body.push_y)
+                    body.to_vz -= rest * (body.pulled_z - body.push_z)
+                    if turns:
+                        body.to_wx -= rest * (body.spun_x - m.wx)
+                        body.to_wy -= rest * (body.spun_y - m.wy)
+                        body.to_wz -= rest * (body.spun_z - m.wz)
             v.vx, v.vy, v.vz = body.to_vx, body.to_vy, body.to_vz
             if turns:
                 v.wx, v.wy, v.wz = body.to_wx, body.to_wy, body.to_wz
@@ -235,7 +247,7 @@ def make_act_beside_contacts(spec: Spec, place: Any, solve: Any) -> Any:
             moved, same = compare(links, bodies, x, f)
             done = found and (same or moved <= FOUND * params.tolerance)
             columns = bring_on(rounds, x.shape[0], columns)
-            impose(links, bodies, velocities, motion, x)
+            impose(links, bodies, velocities, motion, x, 1.0)
             finish(bodies, velocities, motion, params)
             if warms:
                 store_contacts(contacts, count, bodies, cache, counters, params)
@@ -269,16 +281,21 @@ def make_act_beside_contacts(spec: Spec, place: Any, solve: Any) -> Any:
         if midway:
             stand_up(bodies, poses)
         take_settled(links, bodies, velocities, motion, x, dt)
+        pull(links, contacts, bodies, count)
         beside.passes[0] = 0
-        size = 1.0
-        for number in range(SIZES):
+        size, rebounding = 1.0, False
+        if rebounds:
+            rebounding = counters.unordered == 1
+        for number in range(-SIZES if rebounding else 0, SIZES):
+            if number == 0:
+                size, beside.impacts[0] = 1.0, 0
             if number == SIZES - 1:
                 size = 0.0
             for i in range(x.shape[0]):
                 f[i] = size * x[i]
             if carries_inertia:
                 refresh_inertia(bodies, velocities)
-            impose(links, bodies, velocities, motion, f)
+            impose(links, bodies, velocities, motion, f, size)
             finish(bodies, velocities, motion, params)
             forget_history(counters, log.residual)
             sweeps = counters.sweeps

@@ -26,6 +26,7 @@ class GroupKernels(NamedTuple):
     centre_of: Any  # (bodies, velocities, group) -> mass, centre, V
     momentum_of: Any  # (bodies, velocities, group, centre, V) -> h, energy beside the centre's
     rigid_spin: Any  # (bodies, group, centre, h) -> omega_c; 0 for a line that has no spin about it
+    angular: Any  # (body, omega) -> angular momentum; omega where nothing turns
 
 
 def make_group(spec: Spec, place: Any) -> GroupKernels:
@@ -145,5 +146,5 @@ def make_group(spec: Spec, place: Any) -> GroupKernels:
     rigid_spin = kernel(rigid_spin, spec)
 
     return GroupKernels(
-        label, within, stored, spin_of, set_velocity, centre_of, momentum_of, rigid_spin
+        label, within, stored, spin_of, set_velocity, centre_of, momentum_of, rigid_spin, angular
     )

@@ -6,6 +6,8 @@ The group of bodies that springs join (`spring_group`) is then placed by the fir
 for which its energy is enough:
     what the impulses so far lead to
     x_0 + dt (V_c + t (v - V_c)), turned by dt t omega;    t = 1, 1/2, 1/4, ..., 0
+Of a group that something holds it is what it had as the step began and the work of forces over the
+way to that pose: it hangs from its springs, and what it does not fall it does not gain.
 v, omega: with the impulses J = dt (k (l_0 - L) + s v_l)/(1 + dt s K), s = k dt + c, of the implicit
 Euler rule along d_0, all springs at once, which change no omega by more than a radian in a step;
 V_c: of the group's centre. In a pose springs store V_1 and the angular momentum h takes
@@ -56,7 +58,7 @@ def make_limit(spec: Spec, place: Any) -> LimitKernels:
     label, within, stored = group_of.label, group_of.within, group_of.stored
     spin_of, set_velocity = group_of.spin_of, group_of.set_velocity
     centre_of, momentum_of = group_of.centre_of, group_of.momentum_of
-    rigid_spin = group_of.rigid_spin
+    rigid_spin, angular = group_of.rigid_spin, group_of.angular
 
     def fit(links, bodies, velocities, group, kept):
         # Velocities of bodies that stand in their pose: what they may have. Returns the share of
@@ -121,9 +123,21 @@ def make_limit(spec: Spec, place: Any) -> LimitKernels:
 
     freed = kernel(freed, spec)
 
+    def work_on(body, m, dt):
+        # Of forces and torques, over the way of the step; body: where it begins.
+        pulled, shift = Vec3(m.dvx, m.dvy, m.dvz), Vec3(body.shift_x, body.shift_y, body.shift_z)
+        work = dot(pulled, shift) / (body.inv_m * dt)
+        if turns:
+            x, y, z = body.free_wx - m.wx, body.free_wy - m.wy, body.free_wz - m.wz
+            gained = angular(body, Vec3(x, y, z))
+            work += dot(gained, Vec3(body.turn_x, body.turn_y, body.turn_z))
+        return work
+
+    work_on = kernel(work_on, spec)
+
     def as_found(bodies, velocities, motion, group, dt):
-        # The pose that impulses lead to, with the velocities there.
-        found = True
+        # The pose that impulses lead to, with the velocities there; the work of forces.
+        found, work = True, 0.0
         for i in range(bodies.shape[0]):
             body, v, m = bodies[i], velocities[i], motion[i]
             if body.group == group:
@@ -134,11 +148,13 @@ def make_limit(spec: Spec, place: Any) -> LimitKernels:
                     found = found and body.unturned == 0
                     if body.sprung == 0:
                         body.turn_x, body.turn_y, body.turn_z = v.wx, v.wy, v.wz
+                work += work_on(body, m, dt)
+                if turns:
                     twist(body, v, dt)
                 body.x += body.shift_x
                 body.y += body.shift_y
                 body.z += body.shift_z
-        return found
+        return found, work
 
     as_found = kernel(as_found, spec)
 
@@ -210,9 +226,9 @@ def make_limit(spec: Spec, place: Any) -> LimitKernels:
 
     take = kernel(take, spec)
 
-    def aim(bodies, velocities, group, centre, t, dt):
-        # centre: its mean velocity in the step, and that at its end.
-        centred, ended = centre
+    def aim(bodies, velocities, motion, group, centre, t, dt):
+        # centre: its mean velocity in the step, and that at its end. Returns the work of forces.
+        centred, ended, work = centre[0], centre[1], 0.0
         for i in range(bodies.shape[0]):
             body, v = bodies[i], velocities[i]
             if body.group == group:
@@ -227,6 +243,8 @@ def make_limit(spec: Spec, place: Any) -> LimitKernels:
                     w = plus_scaled(free, TURN / angle, gained)
                 set_velocity(v, u, w)
                 body.turn_x, body.turn_y, body.turn_z = t * w.x, t * w.y, t * w.z
+                work += work_on(body, motion[i], dt)
+        return work
 
     aim = kernel(aim, spec)
 
@@ -271,7 +289,12 @@ def make_limit(spec: Spec, place: Any) -> LimitKernels:
         for i in range(bodies.shape[0]):
             body = bodies[i]
             if body.group == group:
-                u, w = freed(body, motion[i])
+                m = motion[i]
+                u, w = freed(body, m)
+                if anchored:  # what forces add is their work over the way that is found
+                    u = Vec3(m.vx, m.vy, m.vz)
+                    if turns:
+                        w = Vec3(m.wx, m.wy, m.wz)
                 set_velocity(velocities[i], u, w)
                 body.from_x, body.from_y, body.from_z = body.x, body.y, body.z
                 if turns:
@@ -292,13 +315,14 @@ def make_limit(spec: Spec, place: Any) -> LimitKernels:
             body, v = bodies[i], velocities[i]
             if body.group == group:
                 take(body, v)
-        turned = as_found(bodies, velocities, motion, group, dt)
+        turned, work = as_found(bodies, velocities, motion, group, dt)
+        had = budget + work if anchored else budget
         if turned and found:
             after_centre, after_speed = zero, zero
             if not anchored:
                 _, after_centre, after_speed = centre_of(bodies, velocities, group)
             _, energy = momentum_of(bodies, velocities, group, after_centre, after_speed)
-            if energy + stored(links, bodies, group) <= budget * (1.0 + ROUND_OFF):
+            if energy + stored(links, bodies, group) <= had * (1.0 + ROUND_OFF):
                 restore(bodies, group)
                 for i in range(bodies.shape[0]):
                     body, v = bodies[i], velocities[i]
@@ -307,7 +331,7 @@ def make_limit(spec: Spec, place: Any) -> LimitKernels:
                 return
         share = -1.0
         if turned:
-            share = fit(links, bodies, velocities, group, (anchored, h, budget))
+            share = fit(links, bodies, velocities, group, (anchored, h, had))
         restore(bodies, group)
         if not share >= LIKE:
             settle(links, bodies, velocities, motion, group, dt)
@@ -316,9 +340,10 @@ def make_limit(spec: Spec, place: Any) -> LimitKernels:
             for number in range(HALVINGS + 1):
                 if number == HALVINGS:
                     t = 0.0
-                aim(bodies, velocities, group, (centred, ended), t, dt)
+                work = aim(bodies, velocities, motion, group, (centred, ended), t, dt)
+                had = budget + work if anchored else budget
                 move(bodies, group, dt)
-                share = fit(links, bodies, velocities, group, (anchored, h, budget))
+                share = fit(links, bodies, velocities, group, (anchored, h, had))
                 restore(bodies, group)
                 if share >= 0.0:
                     break

@@ -16,6 +16,8 @@ from .vectors import Vec3, minus, plus_scaled, scaled
 
 # Energy won in a step, of what there is, that solves and round-off leave [-].
 GAINED = 1e-10
+# Share of its velocities that what is not moved at all keeps: else it would stand for ever [-].
+HELD = 0.5
 # BODY.again while unions are looked for: a contact pushes it.
 PUSHED = 2
 
@@ -25,6 +27,7 @@ class Unions(NamedTuple):
 
     join: Any  # (links, rows, contacts, count, first) -> how many springs unions have
     gains: Any  # (links, rows, velocities, motion, beside, dt) -> whether they win energy
+    pull: Any  # (links, contacts, bodies, count): notes what forces change of their centres
     put: Any  # (state, rows, count, t, dt): where they are moved to
 
 
@@ -102,7 +105,8 @@ def make_unions(spec: Spec, place: Any) -> Unions:
     stored = kernel(stored, spec)
 
     def gains(links, rows, velocities, motion, beside, dt):
-        # Whether unions have more energy where the step leads to. rows: where it begins.
+        # Whether unions have more energy where the step leads to, or it leads nowhere. rows: where
+        # it begins.
         moved, moving = beside.bodies, beside.velocities
         won, had = 0.0, 0.0
         for i in range(rows.shape[0]):
@@ -116,16 +120,21 @@ def make_unions(spec: Spec, place: Any) -> Unions:
             if row.again == 0:
                 continue
             moving[i] = velocities[i]
-            displace(moved[i], moving[i], m, dt)
+            if not displace(moved[i], moving[i], m, dt):
+                return True  # it turns by more than a step can turn it
             before, after = inner_energy(row, m), inner_energy(moved[i], moving[i])
             x, y, z = moved[i].x - row.x, moved[i].y - row.y, moved[i].z - row.z
-            fx, fy, fz = m.dvx - row.sprung_x, m.dvy - row.sprung_y, m.dvz - row.sprung_z
+            # Of the forces as they are, whatever share of them changed its velocity.
+            fx, fy, fz = row.pulled_x, row.pulled_y, row.pulled_z
             work = (fx * x + fy * y + fz * z) / (row.inv_m * dt)
             if turns:
                 v = velocities[i]
                 fx, fy, fz = row.spun_x - m.wx, row.spun_y - m.wy, row.spun_z - m.wz
                 fx, fy, fz = inertia_times(row, fx, fy, fz)
-                work += 0.5 * (fx * (v.wx + m.wx) + fy * (v.wy + m.wy) + fz * (v.wz + m.wz))
+                if row.sprung == BOTH:
+                    work += fx * row.turn_x + fy * row.turn_y + fz * row.turn_z
+                else:
+                    work += 0.5 * (fx * (v.wx + m.wx) + fy * (v.wy + m.wy) + fz * (v.wz + m.wz))
             won, had = won + (after - before - work), had + before + after
         for k in range(links.shape[0]):
             if links[k].again == 1:
@@ -136,6 +145,43 @@ def make_unions(spec: Spec, place: Any) -> Unions:
 
     gains = kernel(gains, spec)
 
+    def is_anchored(links, contacts, rows, count, group):
+        # Whether a union touches or is tied to what does not move.
+        anchored = False
+        for k in range(links.shape[0]):
+            a, b = rows[links[k].a], rows[links[k].b]
+            if links[k].again == 1 and max(a.group, b.group) == group:
+                anchored = anchored or a.inv_m == 0.0 or b.inv_m == 0.0
+        for c in range(count):
+            a, b = rows[contacts[c].a], rows[contacts[c].b]
+            if contacts[c].lambda_n > 0.0 and max(a.group, b.group) == group:
+                anchored = anchored or a.inv_m == 0.0 or b.inv_m == 0.0
+        return anchored
+
+    is_anchored = kernel(is_anchored, spec)
+
+    def pull(links, contacts, rows, count):
+        # What forces change of the velocity of a union's centre; 0 where something holds it.
+        for i in range(rows.shape[0]):
+            if rows[i].group != i + 1 or rows[i].again == 0:
+                continue
+            mass, mean = 0.0, Vec3(0.0, 0.0, 0.0)
+            if not is_anchored(links, contacts, rows, count, i + 1):
+                for j in range(rows.shape[0]):
+                    row = rows[j]
+                    if row.group == i + 1:
+                        one = 1.0 / row.inv_m
+                        mass += one
+                        pulled = Vec3(row.pulled_x, row.pulled_y, row.pulled_z)
+                        mean = plus_scaled(mean, one, pulled)
+                mean = scaled(1.0 / mass, mean)
+            for j in range(rows.shape[0]):
+                row = rows[j]
+                if row.group == i + 1:
+                    row.push_x, row.push_y, row.push_z = mean.x, mean.y, mean.z
+
+    pull = kernel(pull, spec)
+
     def put(state, rows, count, t, dt):
         links, contacts = state.links, state.contacts
         velocities, motion = state.velocities, state.motion
@@ -143,15 +189,8 @@ def make_unions(spec: Spec, place: Any) -> Unions:
         for i in range(rows.shape[0]):
             if rows[i].group != i + 1 or rows[i].again == 0:
                 continue
-            group, anchored = i + 1, False
-            for k in range(links.shape[0]):
-                a, b = rows[links[k].a], rows[links[k].b]
-                if links[k].again == 1 and max(a.group, b.group) == group:
-                    anchored = anchored or a.inv_m == 0.0 or b.inv_m == 0.0
-            for c in range(count):
-                a, b = rows[contacts[c].a], rows[contacts[c].b]
-                if contacts[c].lambda_n > 0.0 and max(a.group, b.group) == group:
-                    anchored = anchored or a.inv_m == 0.0 or b.inv_m == 0.0
+            group = i + 1
+            anchored = is_anchored(links, contacts, rows, count, group)
             mass, centre, mean = 0.0, Vec3(0.0, 0.0, 0.0), Vec3(0.0, 0.0, 0.0)
             if not anchored:
                 for j in range(rows.shape[0]):
@@ -172,5 +211,9 @@ def make_unions(spec: Spec, place: Any) -> Unions:
                     if turns:
                         row.turn_x, row.turn_y, row.turn_z = t * v.wx, t * v.wy, t * v.wz
                     row.sprung = BOTH
+                    if t == 0.0 and anchored:
+                        v.vx, v.vy, v.vz = HELD * v.vx, HELD * v.vy, HELD * v.vz
+                        if turns:
+                            v.wx, v.wy, v.wz = HELD * v.wx, HELD * v.wy, HELD * v.wz
 
-    return Unions(join, gains, kernel(put, spec))
+    return Unions(join, gains, pull, kernel(put, spec))

@@ -15,7 +15,7 @@ from lavendersim.engine.spring_unions import make_unions
 
 SPEC = Spec(effects=("spring", "contact_midpoint"))
 UNIONS = make_unions(SPEC, make_place(SPEC))
-JOIN, PUT = interpreted(UNIONS.join), interpreted(UNIONS.put)
+JOIN, PUT, PULL = (interpreted(one) for one in (UNIONS.join, UNIONS.put, UNIONS.pull))
 SHIFT = ("shift_x", "shift_y", "shift_z")
 BODY = np.dtype([("inv_m", "f8"), *((n, "f8") for n in SHIFT), ("group", "i8"), ("again", "i8"), ("sprung", "i8")])  # noqa: E501  # fmt: skip
 LINK = np.dtype([("a", "i8"), ("b", "i8"), ("active", "i8"), ("again", "i8")])
@@ -86,3 +86,39 @@ def test_a_union_on_the_floor_is_moved_by_a_share_of_its_velocities() -> None:
     assert moved(True, 0.0) == pytest.approx(0.0, abs=0.0)
     after = np.array([[0.0, 0.0, 2.0], [0.0, 4.0, 2.0]])
     assert moved(True, 0.25) == pytest.approx(0.025 * after, rel=1e-15)
+
+
+@pytest.mark.parametrize(("floor", "centre"), [(False, -7.0), (True, 0.0)])
+def test_forces_change_the_velocity_of_a_centre_that_nothing_holds(
+    floor: bool, centre: float
+) -> None:
+    """Of 1 and 3 kg that forces make faster by -4 and -8 m/s: (1 * -4 + 3 * -8) / 4."""
+    rows = pulled(0.0, 1.0, 1.0 / 3.0)
+    rows.array["pulled_z"] = 0.0, -4.0, -8.0
+    links, contacts = table(LINK, (1, 2, 1, 0)), table(CONTACT, (0, 1, 1.0), (1, 2, 1.0))
+    count = 2 if floor else 1
+    contacts = contacts if floor else table(CONTACT, (1, 2, 1.0))
+    JOIN(links, rows, contacts, count, True)
+    PULL(links, contacts, rows, count)
+    assert rows.array["push_z"][1:] == pytest.approx([centre, centre], rel=1e-15)
+
+
+def pulled(*inverse_masses: float) -> Rows:
+    names = [f"{kind}_{axis}" for kind in ("pulled", "push") for axis in "xyz"]
+    rows = np.zeros(len(inverse_masses), [*BODY.descr, *((name, "f8") for name in names)])
+    rows["inv_m"] = inverse_masses
+    return Rows(rows)
+
+
+def test_what_is_held_and_not_moved_slows_down() -> None:
+    """Else it would stand in each step as in the one before."""
+    rows, links = bodies(0.0, 1.0), table(LINK, (0, 1, 1, 0))
+    contacts = table(CONTACT, (0, 1, 1.0))
+    JOIN(links, rows, contacts, 1, True)
+    velocities = table(VELOCITY, (0, 0, 0), (0.0, 4.0, 2.0))
+    motion = table(VELOCITY, (0, 0, 0), (0.0, 0, 0))
+    state = SimpleNamespace(links=links, contacts=contacts, velocities=velocities, motion=motion)
+    PUT(state, rows, 1, 0.5, 0.1)
+    assert velocities.array["vy"][1] == 4.0
+    PUT(state, rows, 1, 0.0, 0.1)
+    assert 0.0 < velocities.array["vy"][1] < 4.0
