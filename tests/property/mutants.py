@@ -27,6 +27,7 @@ import tempfile
 import time
 from collections import Counter
 from collections.abc import Iterator
+from fnmatch import fnmatch
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -34,7 +35,7 @@ from hypothesis import HealthCheck, Phase, settings
 
 from tests.property import compiled_mutants, interpreter_mode
 from tests.property.compiled_mutants import BROKEN, ENDLESS, SEEN, UNSEEN
-from tests.property.engine_mutants import ENGINE, ROOT, Mutant, applied, drawn
+from tests.property.engine_mutants import ENGINE, GROUPS, ROOT, Mutant, applied, drawn
 from tests.property.forked_tests import (
     Collected,
     Done,
@@ -54,7 +55,7 @@ TESTS = (
 # [s] of a processor, and of a clock on a busy machine: of a test that finds which lines it reaches,
 # of a file of such tests in these, and of the tests of a mutant, which may never end.
 ONE, FILE, ALL = (1.5, 20.0), 10.0, (20.0, 300.0)
-BUDGET = 15.0  # [s] of tests by the first of these clocks
+BUDGET = 6.0  # [s] of tests by the first of these clocks
 PROFILE: dict[str, Any] = {  # of tests that draw; nothing is drawn otherwise in another run
     "max_examples": 20,
     "database": None,
@@ -241,6 +242,7 @@ def main() -> int:
     parser.add_argument("--count", type=int, default=20)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--only", nargs="+", default=[], metavar="FILE", help="patterns of files")
+    parser.add_argument("--groups", nargs="+", choices=GROUPS, help="of those drawn, these alone")
     parser.add_argument("--tests", nargs="+", metavar="TEST", help="in place of those of the file")
     parser.add_argument("--keep", type=Path, help="file of results, one line each")
     parser.add_argument("--jobs", type=int, default=1, help="mutants at a time")
@@ -248,6 +250,9 @@ def main() -> int:
     parser.add_argument("--compiled", action="store_true", help="what is not seen, compiled")
     asked = parser.parse_args()
     chosen = drawn(asked.count, asked.seed, asked.only)
+    if asked.groups:
+        patterns = [pattern for name in asked.groups for pattern in GROUPS[name]]
+        chosen = [m for m in chosen if any(fnmatch(m.file, pattern) for pattern in patterns)]
     results = kept(asked.keep)
     unseen = (UNSEEN, UNREACHED)
     if asked.compiled:
