@@ -19,6 +19,7 @@ from __future__ import annotations
 import argparse
 import ast
 import csv
+import importlib
 import json
 import os
 import signal
@@ -127,6 +128,8 @@ def work_of(tests: Collected, mutant: Mutant, names: list[str]) -> Work:
 
     def work(said: Path) -> None:
         path = ROOT / ENGINE / mutant.file
+        module = (ENGINE / mutant.file).with_suffix("").as_posix().replace("/", ".")
+        importlib.import_module(module)  # some are not loaded before a test asks for them
         if not interpreter_mode.broken(path, applied(path.read_text(), mutant)):
             said.write_text(json.dumps(Row(BROKEN)))
             return
