@@ -250,6 +250,7 @@ def main() -> int:
     parser.add_argument("--keep", type=Path, help="file of results, one line each")
     parser.add_argument("--jobs", type=int, default=1, help="mutants at a time")
     parser.add_argument("--seconds", type=float, default=float("inf"), help="no more after these")
+    parser.add_argument("--again", action="store_true", help="what was not seen, by new tests")
     parser.add_argument("--compiled", action="store_true", help="what is not seen, compiled")
     asked = parser.parse_args()
     chosen = drawn(asked.count, asked.seed, asked.only)
@@ -262,7 +263,8 @@ def main() -> int:
         due = [m for m in chosen if results.get(m, Row(UNSEEN)).result in unseen
                and results.get(m, Row("")).why != "compiled"]  # fmt: skip
     else:
-        due = [m for m in chosen if m not in results]
+        retried = (BROKEN, *(unseen if asked.again else ()))
+        due = [m for m in chosen if results.get(m, Row(BROKEN)).result in retried]
     if due:
         results |= dict((compiled if asked.compiled else interpreted)(asked, due))
     counts: Counter[tuple[str, str]] = Counter()
