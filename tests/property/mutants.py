@@ -55,7 +55,7 @@ TESTS = (
 )
 # [s] of a processor, and of a clock on a busy machine: of a test that finds which lines it reaches,
 # of a file of such tests in these, and of the tests of a mutant, which may never end.
-ONE, FILE, ALL = (1.5, 20.0), 10.0, (20.0, 300.0)
+ONE, FILE, ALL = (1.5, 20.0), 10.0, (8.0, 120.0)
 BUDGET = 6.0  # [s] of tests by the first of these clocks
 PROFILE: dict[str, Any] = {  # of tests that draw; nothing is drawn otherwise in another run
     "max_examples": 20,
