@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import yaml
 from fuzz_balances import State, state_of, unbalanced
-from fuzz_units import heavier, told_apart
+from fuzz_units import heavier, differences
 
 from lavendersim.cell import CellConfig
 from lavendersim.engine.engine import Engine, Rows
@@ -125,7 +125,7 @@ def _broken(tree: dict[str, Any], shared: Spec | None) -> list[str]:
         found += unbalanced(config, other.rows, other.states, other.steps - bool(other.said))
         if not one.said:
             (twin,) = loaded(heavier(tree))[0].cells()
-            found += told_apart(one.rows, run(twin.config, spec, steps).rows)
+            found += differences(one.rows, run(twin.config, spec, steps).rows)
     return found
 
 

@@ -58,7 +58,7 @@ def _impulses(rows: Any) -> np.ndarray:
     return np.column_stack([rows.contact[name] for name in names])
 
 
-def told_apart(one: Any, other: Any, ratio: float = RATIO) -> list[str]:
+def differences(one: Any, other: Any, ratio: float = RATIO) -> list[str]:
     """Return what differs of two runs' rows but by the unit."""
     if rounds(one):
         return []
