@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import yaml
 from fuzz_balances import State, state_of, unbalanced
-from fuzz_units import heavier, differences
+from fuzz_units import differences, heavier
 
 from lavendersim.cell import CellConfig
 from lavendersim.engine.engine import Engine, Rows
