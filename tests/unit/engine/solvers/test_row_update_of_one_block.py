@@ -1,4 +1,4 @@
-"""A corner that lands on a floor of high friction sticks after one visit: the block's solution is its own."""
+"""A corner that lands where the floor grips sticks after one visit, as its block is solved."""
 
 from __future__ import annotations
 
