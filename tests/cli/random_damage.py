@@ -1,6 +1,6 @@
 """Bits, cuts and exchanged chunks at random in logs of finished runs, under every verb.
 
-    python tests/cli/random_damage.py --flips 1000 --cuts 200 --exchanges 50
+    python -m tests.cli.random_damage --flips 1000 --cuts 200 --exchanges 50
 
 Of each damaged log nothing may be drawn, shown or read with another number: a verb exits 3, or
 prints what it prints of the whole one. What `recover` saves has the numbers of the whole log.

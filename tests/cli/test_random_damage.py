@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from random_damage import KINDS, counted
 
-# `python tests/cli/random_damage.py` has as many as one has time for.
+# `python -m tests.cli.random_damage` has as many as one has time for.
 FLIPS, CUTS, EXCHANGES = 12, 4, 4
 
 

@@ -28,7 +28,7 @@ from lavendersim.scene.build import Scene
 ROUND_OFF = 1e-9
 # Of separations: faces and rims are found to some 1e-6 of the sizes (`separation.ascend`).
 NEAR = 1e-5
-MOVED = ("teleport", "remove")
+MOVED = ("teleport", "orientation", "remove")
 
 
 class State(NamedTuple):
@@ -39,6 +39,7 @@ class State(NamedTuple):
     velocity: np.ndarray  # (n, 3) [m/s]
     spin: np.ndarray  # (n, 3) [rad/s]
     force: np.ndarray  # (n, 3) [N], constant in this step
+    gravity: np.ndarray  # (3,) [m/s^2]
     bound: np.ndarray  # [m]
     dt: float  # [s]
 
@@ -65,6 +66,7 @@ def state_of(engine: Engine, scene: Scene) -> State:
         _columns(velocities, ("vx", "vy", "vz")),
         _columns(velocities, ("wx", "wy", "wz")),
         _columns(bodies, ("fx", "fy", "fz")),
+        _columns(engine.parameters, ("gx", "gy", "gz"))[0],
         np.where(bodies["shape"] == PLANE, 0.0, bodies["bound"]),  # of a plane none
         float(engine.parameters["dt"][0]),
     )
@@ -109,7 +111,7 @@ def _drag(body: Any) -> tuple[float, ...]:
 
 
 def _momentum(config: CellConfig, contacts: list[np.ndarray], states: Any) -> list[str]:
-    gravity, names = np.array(config.scene.gravity), [*config.scene.bodies]
+    names = [*config.scene.bodies]
     pulled = np.array(_pulled(config))
     for number, ((before, after), rows) in enumerate(zip(states, contacts, strict=False), start=1):
         push = _impulses(rows)
@@ -117,7 +119,7 @@ def _momentum(config: CellConfig, contacts: list[np.ndarray], states: Any) -> li
         for sign, column in ((-1.0, "body_a"), (1.0, "body_b")):
             np.add.at(gained, rows[column], sign * push)
             np.add.at(size, rows[column], np.abs(push).sum(axis=1) + np.abs(rows["impulse_n"]))
-        weight = (before.mass[:, None] * gravity + before.force) * before.dt
+        weight = (before.mass[:, None] * before.gravity + before.force) * before.dt
         change = before.mass[:, None] * (after.velocity - before.velocity)
         size += np.abs(weight).sum(axis=1)
         size += before.mass * (np.abs(after.velocity) + np.abs(before.velocity)).sum(axis=1)
@@ -134,9 +136,11 @@ def _momentum(config: CellConfig, contacts: list[np.ndarray], states: Any) -> li
 def is_calm(config: CellConfig) -> bool:
     """Whether nothing but weight can give energy to the bodies of a scene."""
     scene, numerics = config.scene, config.numerics
-    if scene.forces or scene.springs or config.events:
+    if scene.forces or scene.springs or config.events or config.triggered:
         return False
     if numerics.stabilisation_gain > 0.0 or numerics.projection > 0.0:
+        return False
+    if any(rope.restitution > 0.0 for rope in scene.connections.values()):
         return False
     return not any(
         body.kinematic
@@ -176,7 +180,8 @@ def _energy(config: CellConfig, rows: Rows, contacts: list[np.ndarray], states: 
 
 def _penetration(config: CellConfig, rows: Rows, states: Any) -> list[str]:
     deepest, poses = rows.step["max_penetration"], rows.pose
-    anew = {event.at for event in config.events if any(getattr(event, key, None) for key in MOVED)}
+    events = (*config.events, *(one.event for one in config.triggered))
+    anew = any(getattr(event, key, None) for event in events for key in MOVED)
     if anew or any(before.asleep.any() for before, _ in states):
         return []
     most, reach_before = np.inf, 0.0

@@ -1,6 +1,7 @@
-"""What drives a drawn scene beside its bodies: functions of time, forces, springs, events, pairs.
+"""What drives a drawn scene beside bodies: functions of time, forces, springs, ropes, events.
 
-Functions take the pen of `fuzz_scenes`, which draws numbers and knows what the plan has.
+And what holds between two surfaces. Functions take the pen of `fuzz_scenes`, which draws numbers
+and knows what the plan has.
 """
 
 from __future__ import annotations
@@ -94,17 +95,39 @@ def forces(pen: Any, movable: list[str], duration: float) -> list[dict[str, Any]
     ]
 
 
-def events(pen: Any, bodies: dict[str, Any], movable: list[str], pushed: Any, plan: Any) -> Any:
-    """Return sudden changes of bodies, removals and changes of the timestep.
+def ropes(pen: Any, sizes: dict[str, float], movable: list[str]) -> dict[str, Any]:
+    """Return ropes between points of bodies: taut as the run begins, slack, or too short."""
+    if not pen.has("rope") or len(sizes) < 2:
+        return {}
+    made: dict[str, Any] = {}
+    for k in range(pen.draw(st.integers(1, 2))):
+        one = pen.draw(st.sampled_from(movable))
+        other = pen.draw(st.sampled_from([name for name in sizes if name != one]))
+        rope: dict[str, Any] = {
+            "kind": "rope",
+            "between": [one, other],
+            "points": [pen.vector(0.5 * sizes[name]) for name in (one, other)],
+        }
+        if pen.draw(st.booleans()):
+            rope["length"] = pen.power(-2.0, 2.0)
+        if pen.has("restitution"):
+            rope["restitution"] = pen.share()
+        made[f"rope_{k}"] = rope
+    return made
 
-    pushed: forces, which act to the end: their bodies are not removed.
+
+def events(pen: Any, bodies: dict[str, Any], movable: list[str], pushed: Any, plan: Any) -> Any:
+    """Return sudden changes of bodies, removals, changes of the timestep, of gravity, of surfaces.
+
+    Some happen when a state is come to. pushed: forces, which act to the end: their bodies are not
+    removed.
     """
     busy = {one["body"] for one in pushed}
     dt, duration = Fraction(plan["timestep"]), plan["duration"]
     made: list[dict[str, Any]] = []
     gone: dict[str, float] = {}
     for _ in range(pen.draw(st.integers(0, 3))):
-        at, kind = duration * pen.share(), pen.draw(st.sampled_from((0, 1, 0, 1, 2, 3, 4, 5)))
+        at, kind = duration * pen.share(), pen.draw(st.sampled_from((0, 1, 0, 1, *range(2, 9))))
         if kind == 0:
             factor_of_dt = pen.draw(st.sampled_from((Fraction(1, 3), Fraction(1, 2), 2, 5)))
             made.append({"at": at, "timestep": str(dt * factor_of_dt)})
@@ -117,17 +140,36 @@ def events(pen: Any, bodies: dict[str, Any], movable: list[str], pushed: Any, pl
                 gone[pen.draw(st.sampled_from(free))] = at
                 made.append({"at": at, "body": [*gone][-1], "remove": True})
             continue
+        when = {"at": at} if pen.draw(st.booleans()) else trigger(pen, bodies, movable)
+        if kind == 2:
+            if pen.has("gravity"):
+                made.append({**when, "gravity": pen.some_vector(-1.0, 2.0)})
+            continue
         there = [name for name in movable if name not in gone]
         changes: dict[int, dict[str, Any]] = {
-            2: {"scale_mass": pen.power(-3.0, 3.0)},
-            3: {"teleport": pen.vector(1.0)},
-            4: {"velocity": pen.vector(10.0), "contact_cache": "clear"},
-            5: {"angular_velocity": pen.vector(10.0)},
+            3: {"scale_mass": pen.power(-3.0, 3.0)},
+            4: {"teleport": pen.vector(1.0)},
+            5: {"velocity": pen.vector(10.0), "contact_cache": "clear"},
+            6: {"angular_velocity": pen.vector(10.0)},
+            7: {"surface": pen.surface(1.0)},
+            8: {"orientation": [1.0, *pen.vector(1.0)]},
         }
         if there:
             body = pen.draw(st.sampled_from(there))
-            made.append({"at": at, "body": body, **changes[kind]})
+            made.append({**when, "body": body, **changes[kind]})
     return made
+
+
+def trigger(pen: Any, bodies: dict[str, Any], movable: list[str]) -> dict[str, Any]:
+    """Return a state of one body, or of two, that makes an event happen."""
+    kind = pen.draw(st.sampled_from(("touches", "leaves", "faster_than", "slower_than", "above")))
+    body = pen.draw(st.sampled_from(movable))
+    if kind in ("touches", "leaves"):
+        other = pen.draw(st.sampled_from([name for name in bodies if name != body]))
+        return {"when": {kind: [body, other]}}
+    if kind == "above":
+        return {"when": {"body": body, "along": pen.some_vector(0.0, 0.0), kind: pen.share()}}
+    return {"when": {"body": body, kind: pen.power(-2.0, 2.0)}}
 
 
 def paired(pen: Any, bodies: dict[str, Any]) -> dict[str, Any]:

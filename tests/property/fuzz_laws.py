@@ -3,7 +3,8 @@
 Nothing is asked of accuracy here: a few sweeps at a thirtieth of a second solve little. What is
 asked holds for any sweep of any solver: contacts push, friction stays within its cone, the log is
 consistent with itself, a state that is no number ends the run and says whose it is, the same run
-gives the same bits, in one piece or step by step, and what `fuzz_balances` says of each step.
+gives the same bits, in one piece or step by step, and in another unit of mass (`fuzz_units`), and
+what `fuzz_balances` says of each step.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import yaml
 from fuzz_balances import State, state_of, unbalanced
+from fuzz_units import differences, heavier
 
 from lavendersim.cell import CellConfig
 from lavendersim.engine.engine import Engine, Rows
@@ -67,6 +69,7 @@ def run(config: CellConfig, spec: Spec, steps: int, by_step: bool = False) -> En
     engine = scene.engine(spec, BLOCK)
     events = EventQueue(engine, scene, config.events, config.triggered)
     blocks, status, done, states = [], RUNNING, 0, []
+    engine.advance(0)  # as a run does: triggers may be met by the initial state
     while True:
         events.apply_due(done)
         before = state_of(engine, scene) if by_step else None
@@ -120,6 +123,9 @@ def _broken(tree: dict[str, Any], shared: Spec | None) -> list[str]:
         found += _contacts(one, config.numerics.friction_cone)
         found += _immovable(one, config)
         found += unbalanced(config, other.rows, other.states, other.steps - bool(other.said))
+        if not one.said:
+            (twin,) = loaded(heavier(tree))[0].cells()
+            found += differences(one.rows, run(twin.config, spec, steps).rows)
     return found
 
 

@@ -12,7 +12,7 @@ from fractions import Fraction
 from typing import Any, NamedTuple
 
 import numpy as np
-from fuzz_drives import events, forces, motion, paired, springs
+from fuzz_drives import events, forces, motion, paired, ropes, springs
 from hypothesis import strategies as st
 
 from lavendersim.engine.collide import SHAPE_PAIRS
@@ -282,10 +282,11 @@ def configs(draw: Any, plan: Drawn) -> dict[str, Any]:
     numerics = pen.numerics()
     pen.duration = float(draw(st.integers(20, 60)) * Fraction(numerics["timestep"]))
     bodies: dict[str, Any] = {}
+    sizes: dict[str, float] = {}
     places = [(np.zeros(3), 0.0)]
     for k in range(draw(st.integers(2, 8))):
         body, size = pen.body(k == 0, places[draw(st.integers(0, len(places) - 1))])
-        bodies[f"body_{k}"] = body
+        bodies[f"body_{k}"], sizes[f"body_{k}"] = body, size
         places.append((np.array(body["position"]), size))
     if draw(st.booleans()):
         shape = {"kind": "plane", "offset": -pen.power(-2.0, 1.0)}
@@ -302,6 +303,7 @@ def configs(draw: Any, plan: Drawn) -> dict[str, Any]:
             "bodies": bodies,
             "forces": pushed,
             "springs": springs(pen, bodies, movable),
+            "connections": ropes(pen, sizes, movable),
         },
         "events": [] if pen.calm else events(pen, bodies, movable, pushed, times),
         "numerics": numerics,

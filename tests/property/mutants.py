@@ -2,167 +2,241 @@
 
     python -m tests.property.mutants --count 300 --seed 1 --keep mutants.csv
     python -m tests.property.mutants --count 20 --only 'effects/*' 'step.py'
+    python -m tests.property.mutants --count 300 --seed 1 --keep mutants.csv --compiled
 
-Each mutant changes a sign, a factor, an index or a count by one, or turns a comparison round, in a
-copy of the package. On it run the tests of `tests_of`, until one fails: the mutant is seen. They
-are a part of the suite: what they do not see, the whole suite may. Kernels are compiled without
-LLVM's optimisation, which takes a third of the time and changes no law; what the mutant leaves
-alone is not compiled again. Mutants are drawn from a seed, in turns from every group of files.
-`--keep` holds a line for each; started again, the program goes on behind them.
+Each mutant changes a sign, a factor, an index or a count by one, or turns a comparison round. Tests
+are collected once, and run once with kernels in Python's interpreter, to know which lines each
+reaches: some minutes, kept beside `--keep`. On a mutant run those that reach its line, in a fork
+whose kernels are interpreted, too, from the quickest on, until one fails: the mutant is seen, at a
+second or two. They are a part of the suite: what they do not see, the whole suite may.
+`--compiled` tries what they did not see on compiled kernels and more tests, at some 20 s each.
+Mutants are drawn from a seed, in turns from every group of files. `--keep` holds a line for each;
+started again, the program goes on behind them.
 """
 
 from __future__ import annotations
 
 import argparse
+import ast
 import csv
+import importlib
+import json
 import os
-import shutil
 import signal
 import sys
 import tempfile
 import time
 from collections import Counter
+from collections.abc import Iterator
 from fnmatch import fnmatch
 from pathlib import Path
+from typing import Any, NamedTuple
 
-from tests.property.engine_mutants import ENGINE, ROOT, Mutant, applied, drawn
+from hypothesis import HealthCheck, Phase, settings
 
-COPIED = ("lavendersim", "tests", "configs", "docs", "pyproject.toml")
-# Tests that see most of what breaks, in this order; those of a file's own name come before them.
-ANY = (
+from tests.property import compiled_mutants, interpreter_mode
+from tests.property.compiled_mutants import BROKEN, ENDLESS, SEEN, UNSEEN
+from tests.property.engine_mutants import ENGINE, GROUPS, ROOT, Mutant, applied, drawn
+from tests.property.forked_tests import (
+    Collected,
+    Done,
+    TookTooLong,
+    Work,
+    collected,
+    forks,
+    reached,
+)
+
+TESTS = (
+    *("tests/unit/engine", "tests/unit/problems", "tests/oracle"),
     *("tests/physics/test_impulse_is_force_times_step.py", "tests/property/test_momentum.py"),
     *("tests/property/test_energy.py", "tests/property/test_symmetries.py"),
-    *("configs/scenes/rest.yaml", "configs/scenes/oblique_impact.yaml"),
-    *("configs/scenes/stack_of_six.yaml", "configs/scenes/free_rotation.yaml"),
-    *("configs/scenes/incline.yaml", "tests/physics/test_impacts_in_order.py"),
-    *("tests/physics/test_springs_at_the_middle.py", "tests/property/test_zoo_momentum.py"),
+    *("tests/physics/test_impacts_in_order.py", "tests/physics/test_pairwise_impacts.py"),
 )
-OF_FILES = {
-    "collide/*": ("tests/unit/engine/collide",),
-    "collide/broad/*": ("tests/unit/engine/collide/broad", "configs/hard/fast/bullet.yaml"),
-    "solvers/*": (
-        *("tests/unit/engine/solvers", "tests/unit/problems/test_by_kernel_and_matrix.py"),
-        "configs/scenes/friction_laws.yaml",
-    ),
-    "effects/*": ("tests/unit/engine/effects", "tests/physics/test_undetermined_forces.py"),
-    "effects/*spring*": ("tests/physics/test_contact_springs.py",),
-    "effects/impact*": ("tests/physics/test_pairwise_impacts.py",),
-    "effects/sleeping.py": ("tests/physics/test_sleeping_configs.py",),
-    "effects/*motion.py": ("tests/physics/test_functions_of_time.py",),
-    "effects/varying_force.py": ("tests/physics/test_functions_of_time.py",),
-    "effects/time_functions.py": ("tests/physics/test_functions_of_time.py",),
-    "effects/surface_velocity.py": ("tests/physics/test_moving_surfaces.py",),
-    "effects/fast_bodies.py": ("tests/physics/test_fast_misses.py",),
-    "effects/error_control.py": ("tests/physics/test_error_control.py",),
-    "step_doubling.py": ("tests/physics/test_error_control.py",),
-    "error_estimate.py": ("tests/physics/test_error_control.py",),
-    "drives.py": ("tests/physics/test_functions_of_time.py",),
-    "spring_midpoint.py": ("tests/physics/test_springs_at_the_middle.py",),
-    "midpoint_*": ("tests/physics/test_contact_at_second_order.py",),
-    "impact_*": (
-        "tests/physics/test_impacts_in_order.py",
-        "tests/physics/test_pairwise_impacts.py",
-    ),
-    "foreseen_impacts.py": ("tests/physics/test_impacts_in_order.py",),
-    "integrate.py": ("tests/physics/test_divergence.py",),
-    "stronge.py": ("configs/scenes/rod_end.yaml",),
+# [s] of a processor, and of a clock on a busy machine: of a test that finds which lines it reaches,
+# of a file of such tests in these, and of the tests of a mutant, which may never end.
+ONE, FILE, ALL = (1.5, 20.0), 10.0, (8.0, 120.0)
+BUDGET = 6.0  # [s] of tests by the first of these clocks
+PROFILE: dict[str, Any] = {  # of tests that draw; nothing is drawn otherwise in another run
+    "max_examples": 20,
+    "database": None,
+    "derandomize": True,
+    "deadline": None,
+    "phases": [Phase.explicit, Phase.generate],
+    "suppress_health_check": list(HealthCheck),
 }
-LIMIT = 120.0  # [s] of the tests of a mutant, which may never end
-FIRST = 1800.0  # [s] of all tests on what is whole, with kernels cold
-UNUSED = ("-k", "not coal")  # another library's distances, which is not always there
-SEEN, UNSEEN, ENDLESS, BROKEN = "seen", "unseen", "never ends", "broken"
-FIELDS = ("file", "line", "column", "kind", "old", "new", "result", "by", "seconds")
+UNREACHED = "no test reaches it"
+FIELDS = ("file", "line", "column", "kind", "old", "new", "result", "by", "why", "seconds")
+
+Reach = dict[str, dict[int, list[tuple[float, str]]]]  # tests by file and line, with their seconds
 
 
-def tests_of(file: str) -> list[str]:
-    """Return the tests that are run on mutants of a file, in their order."""
-    path = Path(file)
-    own = [Path("tests/unit/engine") / path.parent / f"test_{path.name}"]
-    own += [Path("configs/effects") / f"{path.stem}.yaml"]
-    named = [one.as_posix() for one in own if (ROOT / one).exists()]
-    named += [
-        test for pattern, tests in OF_FILES.items() if fnmatch(file, pattern) for test in tests
+class Row(NamedTuple):
+    """What became of a mutant."""
+
+    result: str
+    by: str = ""
+    why: str = ""
+    seconds: float = 0.0
+
+
+def reach_of(tests: Collected, jobs: int, keep: Path | None) -> Reach:
+    """Return which tests reach which lines of the engine; from a file, where that is there."""
+    whole = keep.with_suffix(".reach") if keep is not None else None
+    if whole is not None and whole.exists():
+        rows = [json.loads(text) for text in whole.read_text().splitlines()]
+    else:
+        rows = []
+        for row in reached(tests, jobs, ROOT / ENGINE, ONE, FILE):
+            rows.append(row)
+            if len(rows) % 500 == 0:
+                print(f"{len(rows)} tests pass interpreted", flush=True)
+        if whole is not None:
+            whole.write_text("".join(json.dumps(row) + "\n" for row in rows))
+    print(f"{len(rows)} of {len(tests.items)} tests pass interpreted", flush=True)
+    found: Reach = {}
+    for name, seconds, lines in rows:
+        for file, line in lines:
+            found.setdefault(file, {}).setdefault(line, []).append((seconds, name))
+    return found
+
+
+def quickest(mutant: Mutant, reach: Reach) -> list[str]:
+    """Return tests that reach a mutant's line, or its function, the quickest first, to a budget."""
+    lines = reach.get(mutant.file, {})
+    text = (ROOT / ENGINE / mutant.file).read_text()
+    around = [
+        min([node.lineno, *(mark.lineno for mark in node.decorator_list)])
+        for node in ast.walk(ast.parse(text))
+        if isinstance(node, ast.FunctionDef)
+        and node.lineno <= mutant.line <= (node.end_lineno or 0)
     ]
-    return [*dict.fromkeys([*named, *ANY])]
+    names: list[str] = []
+    left = BUDGET
+    for line in (mutant.line, max(around)):
+        for seconds, name in sorted(lines.get(line, [])):
+            left -= seconds
+            if left < 0.0 and names:
+                return names
+            if name not in names:
+                names.append(name)
+    return names
 
 
-def copied(folder: Path) -> Path:
-    """Return a copy of the package and its tests, to be broken."""
-    place = folder / "copy"
-    place.mkdir()
-    for name in COPIED:
-        path = ROOT / name
-        if path.is_dir():
-            shutil.copytree(path, place / name, ignore=shutil.ignore_patterns("__pycache__"))
-        else:
-            shutil.copy(path, place / name)
-    return place
+def work_of(tests: Collected, mutant: Mutant, names: list[str]) -> Work:
+    """Return what a fork does: break a line, and run tests until one fails."""
+
+    def work(said: Path) -> None:
+        path = ROOT / ENGINE / mutant.file
+        module = (ENGINE / mutant.file).with_suffix("").as_posix().replace("/", ".")
+        importlib.import_module(module)  # some are not loaded before a test asks for them
+        if not interpreter_mode.broken(path, applied(path.read_text(), mutant)):
+            said.write_text(json.dumps(Row(BROKEN)))
+            return
+        outcomes = tests.outcomes(names, ALL)
+        for name, one in zip(names, outcomes, strict=True):
+            if one.failed:
+                result = ENDLESS if one.why.endswith(TookTooLong.__name__) else SEEN
+                said.write_text(json.dumps(Row(result, name, one.why)))
+                return
+        said.write_text(json.dumps(Row(UNSEEN)))
+
+    return work
 
 
-def forked(place: Path, kernels: Path, targets: list[str], said: Path, limit: float = LIMIT) -> str:
-    """Run tests of a copy in a process of its own; returns the result, as long as it may take."""
-    process = os.fork()
-    if process == 0:
-        _child(place, kernels, targets, said)
-    begin = time.monotonic()
-    while True:
-        done, status = os.waitpid(process, os.WNOHANG)
-        if done:
-            code = os.waitstatus_to_exitcode(status)
-            return {0: UNSEEN, 1: SEEN}.get(code, SEEN if code < 0 else BROKEN)
-        if time.monotonic() - begin > limit:
-            os.kill(process, signal.SIGKILL)
-            os.waitpid(process, 0)
-            return ENDLESS
-        time.sleep(0.01)
+def failing_on_what_is_whole(tests: Collected, names: set[str], jobs: int) -> int:
+    """Run tests that saw a mutant without one, each in a fork; returns how many fail."""
+
+    def alone(name: str) -> Work:
+        def work(said: Path) -> None:
+            (one,) = tests.outcomes([name], ALL)
+            said.write_text(one.why if one.failed else "passed")
+
+        return work
+
+    count = 0
+    for done in forks(map(alone, sorted(names)), jobs, ALL):
+        if done.said != "passed":
+            count += 1
+            print(f"fails on what is whole: {sorted(names)[done.number]}: {done.said}")
+    return count
 
 
-def _child(place: Path, kernels: Path, targets: list[str], said: Path) -> None:
-    code = 3
-    try:
-        with said.open("w") as out:
-            os.dup2(out.fileno(), 1)
-            os.dup2(out.fileno(), 2)
-        for name in [*sys.modules]:  # of the package that is whole
-            if name.partition(".")[0] in ("lavendersim", "lavender_cli", "tests"):
-                del sys.modules[name]
-        os.environ |= {"LAVENDER_CACHE_DIR": str(kernels), "PYTHONPATH": str(place)}
-        sys.path.insert(0, str(place))
-        os.chdir(place)
-        import pytest
-
-        options = ["-n", "0", "-x", "-q", "-p", "no:cacheprovider", "--tb=no"]
-        code = int(pytest.main([*options, *UNUSED, *targets]))
-        sys.stdout.flush()
-    finally:
-        os._exit(code)
+def ended(done: Done) -> Row:
+    """Return what a fork found; one that is killed by its limit never ends, or crashed."""
+    if done.said:
+        return Row(*json.loads(done.said))._replace(seconds=done.seconds)
+    late = done.status in (-signal.SIGKILL, -signal.SIGXCPU)
+    result = ENDLESS if late else SEEN if done.status < 0 else BROKEN
+    return Row(result, why=f"status {done.status}", seconds=done.seconds)
 
 
-def first_failure(said: str) -> str:
-    """Return the test that failed first, by pytest's summary."""
-    failed = [line for line in said.splitlines() if line.startswith(("FAILED ", "ERROR "))]
-    return failed[0].split(" ")[1] if failed else ""
+def interpreted(asked: Any, chosen: list[Mutant]) -> Iterator[tuple[Mutant, Row]]:
+    """Try mutants on interpreted kernels; yields each as it ends."""
+    found: list[tuple[Mutant, Row]] = []
+
+    def task(tests: Collected) -> int:
+        reach = reach_of(tests, asked.jobs, asked.keep)
+        begin = time.monotonic()
+        sure = {mutant: quickest(mutant, reach) for mutant in chosen}
+        tried = [mutant for mutant in chosen if sure[mutant]]
+        for mutant in chosen:
+            if not sure[mutant]:
+                found.append((mutant, Row(UNREACHED)))
+                _append(asked.keep, *found[-1])
+
+        def works() -> Iterator[Work]:
+            for mutant in tried:
+                if time.monotonic() - begin > asked.seconds:
+                    return
+                yield work_of(tests, mutant, sure[mutant])
+
+        for done in forks(works(), asked.jobs, ALL):
+            found.append((tried[done.number], ended(done)))
+            _append(asked.keep, *found[-1])
+        return failing_on_what_is_whole(tests, {row.by for _, row in found if row.by}, asked.jobs)
+
+    settings.register_profile("mutants", **PROFILE)
+    settings.load_profile("mutants")
+    interpreter_mode.begin()
+    if collected(list(asked.tests or TESTS), task):
+        raise SystemExit("tests could not be collected, or fail on what is whole")
+    yield from found
 
 
-def tried(mutant: Mutant, place: Path, kernels: Path, targets: list[str]) -> tuple[str, str]:
-    """Break the copy, run tests, and put it back; returns the result and which test failed."""
-    path = place / ENGINE / mutant.file
-    whole = path.read_text()
-    path.write_text(applied(whole, mutant))
-    said = place / "said"
-    try:
-        result = forked(place, kernels, targets, said)
-        return result, first_failure(said.read_text(errors="replace"))
-    finally:
-        path.write_text(whole)
+def compiled(asked: Any, chosen: list[Mutant]) -> Iterator[tuple[Mutant, Row]]:
+    """Try mutants on compiled kernels; yields each as it ends."""
+    os.environ["NUMBA_OPT"] = "0"
+    with tempfile.TemporaryDirectory() as folder:
+        place, kernels = compiled_mutants.copied(Path(folder)), Path(folder) / "kernels"
+        tests = {m: asked.tests or compiled_mutants.tests_of(m.file) for m in chosen}
+        # Parts of kernels are kept here, so that a mutant compiles what differs; nothing fails yet.
+        said = Path(folder) / "said"
+        whole = sorted({test for names in tests.values() for test in names})
+        limit = compiled_mutants.FIRST
+        if compiled_mutants.forked(place, kernels, whole, said, limit) != UNSEEN:
+            raise SystemExit(f"a test fails on what is whole: {said.read_text()[-2000:]}")
+        begin = time.monotonic()
+        for mutant, names in tests.items():
+            if time.monotonic() - begin > asked.seconds:
+                return
+            started = time.monotonic()
+            result, by = compiled_mutants.tried(mutant, place, kernels, names)
+            row = Row(result, by, "compiled", time.monotonic() - started)
+            _append(asked.keep, mutant, row)
+            yield mutant, row
 
 
-def kept(path: Path | None) -> dict[tuple[str, ...], dict[str, str]]:
-    """Return the lines of a file of results, by mutant."""
+def kept(path: Path | None) -> dict[Mutant, Row]:
+    """Return what a file of results says of each mutant last."""
     if path is None or not path.exists():
         return {}
     with path.open(newline="") as file:
-        return {tuple(row[name] for name in FIELDS[:6]): row for row in csv.DictReader(file)}
+        rows = [[row[name] for name in FIELDS] for row in csv.DictReader(file)]
+    return {
+        Mutant(file, int(line), int(column), *change): Row(result, by, why, float(seconds))
+        for file, line, column, *change, result, by, why, seconds in rows
+    }
 
 
 def main() -> int:
@@ -171,56 +245,52 @@ def main() -> int:
     parser.add_argument("--count", type=int, default=20)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--only", nargs="+", default=[], metavar="FILE", help="patterns of files")
+    parser.add_argument("--groups", nargs="+", choices=GROUPS, help="of those drawn, these alone")
     parser.add_argument("--tests", nargs="+", metavar="TEST", help="in place of those of the file")
     parser.add_argument("--keep", type=Path, help="file of results, one line each")
+    parser.add_argument("--jobs", type=int, default=1, help="mutants at a time")
     parser.add_argument("--seconds", type=float, default=float("inf"), help="no more after these")
+    parser.add_argument("--again", action="store_true", help="what was not seen, by new tests")
+    parser.add_argument("--compiled", action="store_true", help="what is not seen, compiled")
     asked = parser.parse_args()
-    os.environ["NUMBA_OPT"] = "0"
-    results = kept(asked.keep)
     chosen = drawn(asked.count, asked.seed, asked.only)
+    if asked.groups:
+        patterns = [pattern for name in asked.groups for pattern in GROUPS[name]]
+        chosen = [m for m in chosen if any(fnmatch(m.file, pattern) for pattern in patterns)]
+    results = kept(asked.keep)
+    unseen = (UNSEEN, UNREACHED)
+    if asked.compiled:
+        due = [m for m in chosen if results.get(m, Row(UNSEEN)).result in unseen
+               and results.get(m, Row("")).why != "compiled"]  # fmt: skip
+    else:
+        retried = (BROKEN, *(unseen if asked.again else ()))
+        due = [m for m in chosen if results.get(m, Row(BROKEN)).result in retried]
+    if due:
+        results |= dict((compiled if asked.compiled else interpreted)(asked, due))
     counts: Counter[tuple[str, str]] = Counter()
-    with tempfile.TemporaryDirectory() as folder:
-        place, kernels = copied(Path(folder)), Path(folder) / "kernels"
-        # Parts of kernels are kept here, so that a mutant compiles what differs; nothing fails yet.
-        whole = {test for one in chosen for test in asked.tests or tests_of(one.file)}
-        said = Path(folder) / "said"
-        if forked(place, kernels, sorted(whole), said, FIRST) != UNSEEN:
-            print(f"a test fails on what is whole: {said.read_text()[-2000:]}")
-            return 1
-        begin = time.monotonic()
-        for mutant in chosen:
-            key = tuple(map(str, mutant))
-            if key not in results:
-                if time.monotonic() - begin > asked.seconds:
-                    break
-                started = time.monotonic()
-                result, by = tried(mutant, place, kernels, asked.tests or tests_of(mutant.file))
-                took = f"{time.monotonic() - started:.1f}"
-                results[key] = dict(zip(FIELDS, (*key, result, by, took), strict=True))
-                _append(asked.keep, results[key])
-            row = results[key]
-            counts[row["kind"], row["result"]] += 1
-            if row["result"] not in (SEEN, ENDLESS):
-                print(f"{row['result']}: {mutant.file}:{mutant.line}:{mutant.column + 1}: "
-                      f"{mutant.kind}: {mutant.old} -> {mutant.new}", flush=True)  # fmt: skip
-    tried_all = sum(counts.values())
-    seen = sum(n for (_, result), n in counts.items() if result in (SEEN, ENDLESS))
+    for mutant in chosen:
+        if mutant in results:
+            row = results[mutant]
+            counts[mutant.kind, row.result] += 1
+            if row.result not in (SEEN, ENDLESS):
+                print(f"{row.result}: {mutant.file}:{mutant.line}:{mutant.column + 1}: "
+                      f"{mutant.kind}: {mutant.old} -> {mutant.new}")  # fmt: skip
     for kind in sorted({kind for kind, _ in counts}):
-        of_kind = {result: n for (k, result), n in sorted(counts.items()) if k == kind}
-        print(f"{kind}: {of_kind}")
-    print(f"{seen} of {tried_all} mutants are seen")
+        print(f"{kind}: { {result: n for (k, result), n in sorted(counts.items()) if k == kind} }")
+    seen = sum(n for (_, result), n in counts.items() if result in (SEEN, ENDLESS))
+    print(f"{seen} of {sum(counts.values())} mutants are seen")
     return int(any(result == BROKEN for _, result in counts))
 
 
-def _append(path: Path | None, row: dict[str, str]) -> None:
+def _append(path: Path | None, mutant: Mutant, row: Row) -> None:
     if path is None:
         return
     new = not path.exists()
     with path.open("a", newline="") as file:
-        writer = csv.DictWriter(file, FIELDS)
+        writer = csv.writer(file)
         if new:
-            writer.writeheader()
-        writer.writerow(row)
+            writer.writerow(FIELDS)
+        writer.writerow((*mutant, *row[:-1], f"{row.seconds:.1f}"))
 
 
 if __name__ == "__main__":

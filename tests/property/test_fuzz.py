@@ -111,15 +111,26 @@ def test_what_is_removed_neither_moves_nor_touches(monkeypatch: pytest.MonkeyPat
     assert "immovable: ball is removed, and moved" in broken(tree)
 
 
+def test_a_mass_that_stands_as_a_number_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A force, pushing at both ends of the unit, that is not proportional to mass."""
+    tree = _fall()
+    push = {"body": "ball", "from": 0.0, "to": 0.1, "force": [1.0, 0.0, 0.0]}
+    tree["scene"]["forces"] = [push | {"torque": [0.0, 0.0, 0.0]}]
+    assert broken(tree) == []
+    monkeypatch.setattr("fuzz_units.WITH", ("mass",))
+    assert [said.split(":")[0] for said in broken(tree)] == ["units"]
+
+
 def test_scenes_have_all_that_drives_them() -> None:
     """Of a hundred configs each has some of what the fuzz draws beside bodies."""
     trees: list[dict[str, Any]] = []
     drawn(configs(FULL), 100, trees.append, 0)
     events = {key for tree in trees for event in tree["events"] for key in event}
-    assert {"timestep", "remove"} <= events
+    assert {"timestep", "remove", "when", "gravity", "surface", "orientation"} <= events
     scenes = [tree["scene"] for tree in trees]
     assert any("surface_pairs" in scene for scene in scenes)
     assert any(scene["springs"] for scene in scenes)
+    assert any(scene["connections"] for scene in scenes)
     assert any("factor" in force for scene in scenes for force in scene["forces"])
     bodies = [body for scene in scenes for body in scene["bodies"].values()]
     assert any("motion" in body for body in bodies)

@@ -5,14 +5,21 @@
 
 from __future__ import annotations
 
+import importlib.util
 import os
+import signal
 import subprocess
 import sys
+import time
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from tests.property.engine_mutants import applied, groups, mutants_of
+from tests.property.forked_tests import forks
+from tests.property.interpreter_mode import broken
 
 ROOT = Path(__file__).parents[2]
 KERNEL = """\
@@ -47,6 +54,31 @@ def test_each_kind_of_mutant_changes_one_piece_of_a_kernel() -> None:
 
 def test_every_group_of_files_has_mutants_enough_to_draw_from() -> None:
     assert all(len(mutants) > 300 for mutants in groups().values())
+
+
+def test_what_a_broken_module_made_before_and_makes_afterwards_is_broken(tmp_path: Path) -> None:
+    path = tmp_path / "broken_module.py"
+    path.write_text("def make(a):\n    def add(x):\n        return a + x\n\n    return add\n")
+    spec = importlib.util.spec_from_file_location("broken_module", path)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    before = module.make(5)
+    assert before(3) == 8
+    assert broken(path, path.read_text().replace("a + x", "a - x")) == 2  # the maker, and its own
+    assert (before(3), module.make(7)(3)) == (2, 4)
+
+
+def test_a_fork_says_how_it_ended_and_does_not_outlive_its_limits() -> None:
+    def works() -> Iterator[Callable[[Path], Any]]:
+        yield lambda said: said.write_text("done")
+        yield lambda said: os.kill(os.getpid(), signal.SIGTERM)
+        yield lambda said: time.sleep(60)
+
+    found = {one.number: one for one in forks(works(), 3, (5.0, 1.0))}
+    assert [found[k].status for k in range(3)] == [0, -signal.SIGTERM, -signal.SIGKILL]
+    assert found[0].said == "done"
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="forks")

@@ -52,6 +52,14 @@ def test_values_are_lines_between_knots_and_a_sine(t: float) -> None:
         assert value(*drive_of(amplitude), t) == pytest.approx(exact(t, amplitude), abs=1e-14)
 
 
+@pytest.mark.parametrize("time", [-5.0, 77.0])
+def test_before_its_first_knot_stands_the_one_before_whatever_that_is(time: float) -> None:
+    """Knots of another drive stand there."""
+    drive, knots = drive_of()
+    knots.array["time"][:2] = time
+    assert last_knot(drive, knots, 0.1) == 1
+
+
 def test_the_last_knot_is_the_last_of_those_at_one_time() -> None:
     drive, knots = drive_of()
     for t, expected in ((0.1, 1), (0.5, 2), (0.9, 2), (1.0, 4), (2.5, 5), (9.0, 5)):

@@ -110,6 +110,17 @@ def test_it_is_richardsons_of_a_velocity_in_its_fastest(turning: bool, rng) -> N
     assert slow.estimate()[0] == pytest.approx(off / (0.5 / DURATION) / 3.0, rel=1e-11)
 
 
+def test_a_spin_that_both_have_is_no_error(rng) -> None:
+    """R |w_1 - w| of bodies that turn, about every axis; 0.5 m is R."""
+    pair, off, spin = Pair(), 1e-4, rng.normal(size=3)
+    along = random_frame(rng)[0]
+    put_vector(pair.velocities[0], "w", spin)
+    put_vector(pair.other[0], "w", spin + off * along / 0.5)
+    pair.paths["fastest"] = 30.0
+    # Of 1 rad/s the difference keeps digits to 1e-16.
+    assert pair.estimate()[0] == pytest.approx(off / 30.0 / 3.0, rel=1e-10)
+
+
 def test_what_is_left_of_the_run_goes_on_at_the_fastest() -> None:
     pair = Pair()
     pair.whole["y"], pair.paths["length"], pair.paths["fastest"] = 1e-3, 2.0, 5.0

@@ -109,11 +109,12 @@ def test_a_gap_that_turning_opens_is_to_be_closed(rng) -> None:
         assert row.contact.target == (pytest.approx(gap / DT + b) if share < 1.0 else 9.0)
 
 
-def test_a_swept_gap_is_no_gap_of_the_two_that_last(rng) -> None:
+@pytest.mark.parametrize("axis", "xyz")
+def test_a_swept_gap_is_no_gap_of_the_two_that_last(axis: str, rng) -> None:
     for aside, lasts in ((0.0, 1), (1e-3, 0)):
         row = Row(rng, SWEPT)
         row.turned_by(0.5)
-        row.begins(begin_n=0.0, phi=SLOP + 1e-4, at_ty=-aside).shift()
+        row.begins(begin_n=0.0, phi=SLOP + 1e-4, **{f"at_t{axis}": -aside}).shift()
         assert row.contact.lasts == lasts
         closed = Row(rng, SWEPT)
         closed.turned_by(0.5)
@@ -200,17 +201,25 @@ def test_what_moves_slower_than_solves_leave_is_still() -> None:
 TURNING = interpreted(midpoint_rows.make_is_turning(SPEC))
 
 
-def turning(shapes: Any, velocities: Any, spins: Any, kernel: Any = TURNING) -> bool:
+def turning_along(
+    axes: tuple[str, str], shapes: Any, velocities: Any, spins: Any, kernel: Any = TURNING
+) -> bool:
     scene = drawn(SPEC, np.random.default_rng(3), [(0, 1)], fixed=())
     motion = np.zeros(2, dtype(MOTION))
     scene.bodies["shape"], scene.bodies["bound"] = shapes, [0.2, 0.5]
-    motion["vx"], motion["wz"] = velocities, spins
+    for axis, along in zip(axes, (velocities, spins), strict=True):
+        motion[axis] = along
     arrays = (scene.bodies, motion)
     return bool(kernel(records(scene.contacts), 1, *(records(a) for a in arrays), PARAMS))
 
 
-def test_geometry_changes_by_what_turns_and_by_bodies_that_go_round_each_other() -> None:
+@pytest.mark.parametrize("axes", [("vx", "wz"), ("vy", "wx"), ("vz", "wy")])
+def test_geometry_changes_by_what_turns_and_by_bodies_that_go_round_each_other(axes: Any) -> None:
     """By (v/r + w) (v + w r) dt in the step, with the radius of the lesser."""
+
+    def turning(*given: Any) -> bool:
+        return turning_along(axes, *given)
+
     balls, plane = (SPHERE, SPHERE), (PLANE, SPHERE)
     for share, turns in ((1.0 - 1e-6, False), (1.0 + 1e-6, True)):
         v = np.sqrt(share * SAME * 0.2 / DT)

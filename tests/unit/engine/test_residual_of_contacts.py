@@ -94,6 +94,14 @@ def test_the_convex_law_lifts_what_slides(rng) -> None:
     # Inside the cone all of w is lacking, at the tip what the dual cone has not.
     inside = row(CONVEX, rng, (1e-3, 2e-3, -2e-3), (2.0, 0.1, 0.1), mu=MU)
     assert residual(CONVEX, inside) == pytest.approx(3e-3, abs=1e-13)
+    # In both tangents, whatever the impulse that it slides against.
+    for turn in (0.3, 2.0, 4.0):
+        c, s = np.cos(turn), np.sin(turn)
+        slip, push = (
+            np.array([MU * 0.7, 0.7 * c, 0.7 * s]),
+            np.array([1.9, -1.9 * MU * c, -1.9 * MU * s]),
+        )
+        assert residual(CONVEX, row(CONVEX, rng, slip, push, mu=MU)) == pytest.approx(0, abs=1e-13)
     closing = row(CONVEX, rng, (-0.3, 0.0, 0.0), (0.0, 0.0, 0.0), mu=MU)
     assert residual(CONVEX, closing) == pytest.approx(0.3, abs=1e-13)
 
