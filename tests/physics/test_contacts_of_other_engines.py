@@ -25,6 +25,7 @@ TELLING = [
     if "impulse_n" in peer.reports(variant)
 ]
 DT, STEPS = 1.0 / 240.0, 40
+ONE_POINT = ("drake", "drake-sap", "drake-stiff")  # of a pair of bodies: a box on a face tilts
 CREEP = {"mujoco-discrete": 0.05}  # [m/s] it chatters: no push in one step, twice in the next
 # The upper box comes before the floor, the lower one after it: who is A differs from pair to pair.
 # Gravity leans, so that friction is due; the boxes slide off where there is none.
@@ -91,10 +92,11 @@ def spin_of(poses: np.ndarray, velocities: np.ndarray, inertia: np.ndarray) -> n
     return np.asarray(np.einsum("bij,bj->bi", turn, local * inertia))
 
 
-# Relative to the momenta of a step. Round-off of 53 and of 24 bits through a hundred sums; but two
-# solvers stop before that, and report impulses of another iterate than the velocities they leave.
+# Relative to the momenta of a step. Round-off of 53 and of 24 bits through a hundred sums; but some
+# solvers stop before that (Drake's at 1e-5 of its terms), and report impulses of another iterate
+# than the velocities they leave.
 ROUNDING = {True: 1e-9, False: 1e-4}
-STOPPED_EARLY = {"mujoco-cg": 1e-3, "mujoco-discrete": 1e-4}
+STOPPED_EARLY = {"mujoco-cg": 1e-3, "mujoco-discrete": 1e-4, **dict.fromkeys(ONE_POINT, 1e-5)}
 
 
 def rounding(engine: str) -> float:
@@ -111,7 +113,7 @@ def test_impulses_of_a_step_are_the_change_of_momentum_of_each_body(engine: str)
         np.testing.assert_allclose(step.pushed, step.linear, atol=rounding(engine))
 
 
-@pytest.mark.parametrize("engine", TELLING)
+@pytest.mark.parametrize("engine", [one for one in TELLING if one.values[0] not in ONE_POINT])
 def test_a_stack_at_rest_is_held_by_its_weight_without_a_moment(engine: str) -> None:
     """Upper: 3 kg, 30 N up. Lower: 20 N in sum, 50 N from the floor. Of the last 20 steps the mean:
     a box that creeps or chatters at v gains m v in them, and 5 mm/s of 5 kg over 20 steps are 0.6 %
