@@ -21,7 +21,6 @@ from lavendersim.experiment.models.tree import (
 from lavendersim.experiment.resolve.arrangements import centres, turns_of
 from lavendersim.experiment.resolve.frames import Frames
 from lavendersim.experiment.resolve.gravity import gravity_vector
-from lavendersim.experiment.resolve.perturbation import perturbed
 from lavendersim.experiment.resolve.placement import below, released_position
 from lavendersim.experiment.resolve.shape import quaternion_of, resolve_shape
 from lavendersim.experiment.resolve.surface_pairs import surface_of
@@ -29,6 +28,7 @@ from lavendersim.geometry.quaternions import IDENTITY, Quaternion, product, to_b
 from lavendersim.geometry.vectors import unit
 from lavendersim.quantities.quantity import Vector3
 
+AS_WRITTEN = 0  # the seed that moves nothing
 _ORIGIN: Vector3 = (0.0, 0.0, 0.0)
 
 
@@ -58,7 +58,10 @@ def resolve_scene(scene: Scene, timestep: Fraction, duration: float) -> tuple[Ce
             as_written = quaternion_of((source or arrangement.body).orientation)
             written[member] = as_written if turn == IDENTITY else product(turn, as_written)
 
-    bodies = perturbed(bodies, scene.perturbation, gravity)
+    if scene.perturbation is not None and scene.perturbation.seed != AS_WRITTEN:
+        from lavendersim.geometry.perturbed_bodies import perturbed  # late: few scenes need it
+
+        bodies = perturbed(bodies, scene.perturbation.seed, scene.perturbation.distance, gravity)
     frames = Frames(written, bodies)
     turned = frames.vector
     forces = tuple(_force(force, duration, turned) for force in scene.forces)

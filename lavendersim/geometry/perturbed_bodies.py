@@ -15,28 +15,24 @@ import numpy as np
 
 from lavendersim.cell.body import CellBody
 from lavendersim.cell.shapes import Plane
-from lavendersim.experiment.models.scene import Perturbation
 from lavendersim.geometry.bodies import is_movable, rotation_of
 from lavendersim.geometry.shapes import extent
 from lavendersim.quantities.quantity import Vector3
 
-AS_WRITTEN: Final = 0  # the seed that moves nothing
 INDEPENDENT: Final = 1e-9  # what is left of a unit normal within the span of others: round-off
 
 
 def perturbed(
-    bodies: Mapping[str, CellBody], perturbation: Perturbation | None, gravity: Vector3
+    bodies: Mapping[str, CellBody], seed: int, distance: float, gravity: Vector3
 ) -> dict[str, CellBody]:
-    """Return the bodies at their perturbed places; the same ones without a perturbation."""
-    if perturbation is None or perturbation.seed == AS_WRITTEN:
-        return dict(bodies)
-    kept = _directions(bodies, perturbation.distance, gravity)
+    """Return the bodies at their perturbed places; distance [m], gravity [m/s^2]."""
+    kept = _directions(bodies, distance, gravity)
     # `random()` alone gives the same numbers in every version of Python.
-    draw = random.Random(perturbation.seed).random
+    draw = random.Random(seed).random
     found = {}
     for name, body in bodies.items():
         if is_movable(body):
-            shift = perturbation.distance * (2.0 * np.array([draw(), draw(), draw()]) - 1.0)
+            shift = distance * (2.0 * np.array([draw(), draw(), draw()]) - 1.0)
             shift -= kept.T @ (kept @ shift)
             x, y, z = (float(one) for one in np.array(body.position) + shift)
             body = body.model_copy(update={"position": (x, y, z)})
