@@ -9,7 +9,18 @@ import typer
 
 from lavender_cli import claims, printing, progress, solver_matrix, time_errors
 from lavender_cli.prediction import Yes, confirm, with_refined
-from lavender_cli.run import Configs, Engines, Jobs, Refine, Runs, Set, Strict, Sweep, overrides_of
+from lavender_cli.run import (
+    Configs,
+    Engines,
+    Jobs,
+    Refine,
+    Runs,
+    Set,
+    Starts,
+    Strict,
+    Sweep,
+    overrides_of,
+)
 
 
 def check(
@@ -33,6 +44,7 @@ def check(
         ),
     ] = None,
     engine: Engines = None,
+    starts: Starts = None,
     refine: Refine = False,
     values: Set = None,
     axes: Sweep = None,
@@ -50,6 +62,7 @@ def check(
     no pass, but no error either.
     """
     from lavendersim.errors import UsageError
+    from lavendersim.experiment.sweeps import perturbed_starts
     from lavendersim.figures import check_page_path, write_report
     from lavendersim.runner import load_all, run
     from lavendersim.runner.prediction import planned_before
@@ -67,18 +80,23 @@ def check(
             raise UsageError("a matrix is of cases as they stand: leave out --set and --sweep")
         if refine:
             raise UsageError("--refine tells time errors of one run: leave out --solver, --engine")
+        if starts and solver:
+            raise UsageError("--starts is for engines: leave out --solver")
         # a wrong name is refused before any file is read
         columns = catalogue.chosen(engine) if engine else chosen(solver or ())
+    perturbed = perturbed_starts.overrides_of(starts)
+    if not columns:
+        overrides += perturbed
     experiments = load_all(configs, not full, overrides, strict)
     if report is not None:
         check_page_path(report)  # not after an hour of runs
     printing.warn_of_untried(experiments, columns if engine else ())
     if columns:
         cases = [one for one in experiments if not about_something_else(one)]
-        confirm(([one] * len(columns) for one in cases), runs, jobs, yes)
-        if not solver_matrix.check_by(
-            experiments, columns, runs, jobs, report, as_json, bool(engine)
-        ):
+        count = len(columns) * (starts or 1)
+        confirm(([one] * count for one in cases), runs, jobs, yes)
+        by_engine = perturbed if engine else None
+        if not solver_matrix.check_by(experiments, columns, runs, jobs, report, as_json, by_engine):
             raise typer.Exit(1)
         return
     planned = [planned_before(one, jobs) for one in experiments]

@@ -9,7 +9,7 @@ import typer
 
 from lavender_cli import printing, progress
 from lavender_cli.prediction import Yes, confirm
-from lavender_cli.run import Configs, Engines, Jobs, Runs, Set, Strict, Sweep, overrides_of
+from lavender_cli.run import Configs, Engines, Jobs, Runs, Set, Starts, Strict, Sweep, overrides_of
 
 if TYPE_CHECKING:
     from lavendersim.measures.cost_table import CostRow, CostTable
@@ -32,6 +32,7 @@ def cost(
         int | None, typer.Option("--repeats", help="Rounds in place of the config's; 7 or more.")
     ] = None,
     engine: Engines = None,
+    starts: Starts = None,
     plot: Annotated[bool, typer.Option("--plot/--no-plot", help="Draw the figure.")] = True,
     jobs: Jobs = 1,
     strict: Strict = False,
@@ -48,6 +49,7 @@ def cost(
     Exits 1 when no engine reaches a target that was given.
     """
     from lavendersim.errors import UsageError
+    from lavendersim.experiment.sweeps import perturbed_starts
     from lavendersim.peers import catalogue
     from lavendersim.runner import load_all
     from lavendersim.runner.cost import check_cost, grid_of, take_cost
@@ -56,10 +58,11 @@ def cost(
 
     sought = [percentage(target) for target in targets or ()]
     engines = catalogue.chosen(engine) if engine else ()
+    given = [*overrides_of(values, axes), *perturbed_starts.overrides_of(starts)]
     # In a folder those with a section `cost` are meant; a file that is named must have one.
     experiments = [
         one
-        for one in load_all(configs, overrides=overrides_of(values, axes), strict=strict)
+        for one in load_all(configs, overrides=given, strict=strict)
         if one.config.cost is not None or one.path in configs
     ]
     if not experiments:
@@ -169,7 +172,7 @@ def _residual(number: float | None, form: str) -> str:
 
 def _cells(row: CostRow) -> tuple[str, ...]:
     from lavendersim.quantities.short_times import short_time
-    from lavendersim.runner.cost_targets import effort_of, percent, rate_of, settings_of, steps_of
+    from lavendersim.runner.cost_targets import effort_of, rate_of, settings_of, steps_of
 
     spread = row.ns_per_second
     name, start = f"{row.solver:28} {row.preset:7}", "warm" if row.warm_start else "cold"
@@ -178,7 +181,7 @@ def _cells(row: CostRow) -> tuple[str, ...]:
         knobs = f"{row.engine:28} {', '.join(settings_of(row)):7} {rate_of(row.timestep):>13}"
     return (
         knobs,
-        "none" if row.error is None else percent(row.error),
+        _error_of(row),
         row.worst_at,
         "" if row.order is None else f"{row.order:.1f}",
         _residual_of(row),
@@ -189,6 +192,16 @@ def _cells(row: CostRow) -> tuple[str, ...]:
             short_time(one / 1e9) for one in (spread.lower_quartile, spread.upper_quartile)
         ),
     )
+
+
+def _error_of(row: CostRow) -> str:
+    """Return the worst error; of perturbed starts the least before it."""
+    from lavendersim.runner.cost_targets import percent
+
+    if row.error is None:
+        return "none"
+    least = "" if row.least_error is None else f"{percent(row.least_error)} to "
+    return f"{least}{percent(row.error)}"
 
 
 def _residual_of(row: CostRow) -> str:

@@ -61,6 +61,14 @@ Engines = Annotated[
         help="What simulates it, with commas between several; `all`: every one installed.",
     ),
 ]
+Starts = Annotated[
+    int | None,
+    typer.Option(
+        "--starts",
+        metavar="N",
+        help="Start N times: as written, then with every body moved a little, drawn by seed.",
+    ),
+]
 Strict = Annotated[
     bool, typer.Option("--strict", help="What of a config is suspicious is an error.")
 ]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -37,16 +38,18 @@ def check_by(
     jobs: int,
     report: Path | None,
     as_json: bool,
-    engines: bool = False,
+    of_engines: list[str] | None = None,
 ) -> bool:
     """Run every case by every solver and print the matrix; False where more than known fails.
 
-    engines: these are engines; what one cannot do is refused, which is no failure.
+    of_engines: these are engines, with overrides for each case; what one cannot do is refused,
+    which is no failure. None: solvers.
     """
+    engines = of_engines is not None
     from lavendersim.errors import UsageError
     from lavendersim.runner.solver_matrix import cases_of, entries, make_engine_entry, make_entry
 
-    make = make_engine_entry if engines else make_entry
+    make = make_entry if of_engines is None else partial(make_engine_entry, more=of_engines)
     cases, left_out = cases_of(experiments)
     if not cases:
         name, why = next(iter(left_out.items()))
@@ -185,5 +188,7 @@ def _failures(bad: Sequence[Entry]) -> Table:
     table.add_column()
     for entry in bad:
         word, style = WORDS[entry.verdict]
-        table.add_row(f"  {entry.case}", Text(word, style), entry.why)
+        over = f" (over its starts {entry.least:.3g} to {entry.most:.3g})"
+        why = f"{entry.why}{over if entry.least == entry.least else ''}"
+        table.add_row(f"  {entry.case}", Text(word, style), why)
     return table

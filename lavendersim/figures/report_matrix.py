@@ -113,10 +113,15 @@ def _entry(entry: Any, folder: Path) -> dict[str, Any]:
         text += f"\nleast margin {entry.margin:.3g} of a bound"
     if entry.claim and entry.claim not in text:
         text += f"\n{entry.claim}"
+    if entry.least == entry.least:
+        text += f"\nover its starts {entry.least:.3g} to {entry.most:.3g}"
     log = "" if entry.log is None else address(entry.log, folder)
     found = {"look": look, "text": text, "was_run": True, "log": log, "cost": entry.cost}
+    found |= {"number": "", "spread": ""}
     if entry.claim and not math.isnan(entry.number):
         found["number"] = f"{entry.number:.2g}"
+        if entry.least == entry.least:
+            found["spread"] = f"{entry.least:.2g} to {entry.most:.2g}"
     elif math.isnan(entry.cost):
         found["number"] = entry.verdict  # no run, and nothing to tell in a number
     return found

@@ -18,7 +18,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from lavendersim.figures.cost_looks import RINGS, Looks, drawn, handles_of
+from lavendersim.figures.cost_looks import FLOOR, RINGS, Looks, drawn, handles_of
 from lavendersim.figures.drawing import describe
 from lavendersim.figures.engine_looks import EngineLooks
 from lavendersim.figures.engine_looks import handles_of as handles_of_engines
@@ -31,6 +31,7 @@ WIDTH, LEGEND_WIDTH, HEIGHT = 5.6, 2.9, 5.0  # [inch] of a panel, of the legend
 SECOND_WIDTH: Final = 4.2  # [inch]
 GAPS: Final = (0.1, 0.04167)  # [inch] around a panel
 BAND: Final = 0.94  # share of the axis from which on settings without an error stand
+PERTURBED: Final = "perturbed starts, markers at the greatest"
 AnyLooks = Looks | EngineLooks
 CAPTION: Final = (
     "Error of {measure}{truth}, against the processor's time for a simulated second of physics: "
@@ -95,6 +96,8 @@ def _caption(table: CostTable) -> str:
         reference += f" (the worst of {table.cells_per_setting} cells of {', '.join(table.axes)})"
     said = table.sentences or [target.sentence for target in table.targets]
     said += [f"{engine} refused: {why}" for engine, why in table.refused.items()]
+    if any(row.least_error is not None for row in table.rows):
+        said = [f"Upright lines end at the least error over {PERTURBED}", *said]
     return (OF_ENGINES if table.compares_engines else CAPTION).format(
         measure=table.error.measure,
         truth=reference,
@@ -159,6 +162,9 @@ def _draw_setting(axes: Any, row: CostRow, size: float, looks: AnyLooks) -> None
     colour = looks.colour(row)
     ends = [spread.low / size, spread.high / size]
     axes.plot(ends, [level, level], color=colour, linewidth=1.4, **place)
+    if row.least_error is not None and row.error is not None:  # over perturbed starts
+        errors = [max(row.least_error, FLOOR), level]
+        axes.plot([row.cost / size] * 2, errors, color=colour, linewidth=1.4)
     axes.plot(row.cost / size, level, **looks.mark(row), **place, zorder=3)
     if row.failed:
         crossed = {"marker": "x", "markersize": 9, "color": DARK, "markeredgewidth": 1.2}

@@ -52,6 +52,7 @@ class CostRow:
     warm_start: bool
     accuracy: float | None = None  # None: every step is one timestep long
     error: float | None  # relative, of the worst cell
+    least_error: float | None = None  # over perturbed starts, of each the worst cell; None: one
     worst_at: str  # the coordinates of that cell; "" without a sweep
     order: float | None  # observed, against the next coarser timestep
     law: str  # whose problem is solved

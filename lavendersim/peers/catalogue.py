@@ -13,7 +13,7 @@ from lavendersim.quantities.found import nearest, quoted
 
 LAVENDER: Final = "lavender"
 ALL: Final = "all"
-MODULES: Final = ("mujoco", "rapier", "bullet")  # one file each; the order is that of `all`
+MODULES: Final = ("mujoco", "rapier", "bullet", "physx", "dart", "drake")  # in the order of `all`
 
 PEERS: Final[dict[str, Peer]] = {
     name: import_module(f"lavendersim.peers.{name}").PEER for name in MODULES

@@ -30,6 +30,7 @@ SECONDS: Final = 0.5  # between two messages, at the most, but for a step that t
 # What an engine reads back of what it was given, relative: numbers of 53 and of 24 bits, each
 # through an inverse and a product or two (MuJoCo's text has 17 digits, Rapier keeps 1/m).
 ROUNDING: Final = {True: 1e-12, False: 1e-5}
+COEFFICIENTS: Final = ("friction", "restitution")  # in the order of `World.mixed`
 
 
 def run(task: Task, pipe: Connection) -> str:
@@ -92,6 +93,25 @@ def misbuilt(scene: Scene, world: Any, peer: Peer) -> str:
             return (
                 f"{peer.title} has another {what} of {bodies[k].name}: {has[k].tolist()}, "
                 f"expected {asked[k].tolist()}"
+            )
+    return _mixed_otherwise(scene, world, peer)
+
+
+def _mixed_otherwise(scene: Scene, world: Any, peer: Peer) -> str:
+    """Return which contact the engine gives other coefficients than lavender; empty: none."""
+    moves = np.array([body.moves for body in scene.bodies])
+    meet = np.triu(moves[:, None] | moves, 1)
+    for key, found in zip(COEFFICIENTS, world.mixed(), strict=True):
+        if key not in peer.surface_keys:
+            continue
+        asked = scene.mixed(key)
+        off = meet & ~(np.abs(found - asked) <= ROUNDING[peer.double] * asked)  # NaN is off, too
+        if off.any():
+            a, b = (int(one) for one in np.argwhere(off)[0])
+            names = f"{scene.bodies[a].name} and {scene.bodies[b].name}"
+            return (
+                f"{peer.title} has another {key} between {names}: {found[a, b]:g}, "
+                f"expected {asked[a, b]:g}"
             )
     return ""
 

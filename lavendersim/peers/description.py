@@ -9,8 +9,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from itertools import combinations
-from math import sqrt
-from typing import Any, NamedTuple
+from math import inf, sqrt
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 
@@ -20,6 +20,17 @@ from lavendersim.geometry.bodies import is_movable
 from lavendersim.geometry.rotations import unit_quaternion
 from lavendersim.peers.world import CannotRun, Floats
 from lavendersim.quantities.scalars import exact
+
+SAME: Final = 1e-15  # relative, of a coefficient and what a rule makes: round-off
+
+
+def _itself(required: float) -> float:
+    return required
+
+
+def harmonic_mean(a: float, b: float) -> float:
+    """Return 2ab / (a + b); 0 of two zeros."""
+    return 2.0 * a * b / (a + b) if a + b else 0.0
 
 
 class PeerBody(NamedTuple):
@@ -36,6 +47,13 @@ class PeerBody(NamedTuple):
     orientation: tuple[float, ...]  # unit quaternion w x y z, body to world
     velocity: tuple[float, float, float]  # [m/s]
     spin: tuple[float, float, float]  # world axes [rad/s]
+
+    def pieces(self) -> list[tuple[Any, tuple[float, ...], tuple[float, ...]]]:
+        """Return shape, position [m] and orientation of each part, in the body's frame."""
+        parts = getattr(self.shape, "parts", None)
+        if parts is None:
+            return [(self.shape, (0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0))]
+        return [(one.shape, one.position, _unit(one.orientation)) for one in parts]
 
 
 class Scene:
@@ -68,15 +86,30 @@ class Scene:
 
     def by_product(self, key: str) -> list[float]:
         """Return of each body a value such that the product of two is that of their contact."""
-        return self._values(key, [sqrt, lambda required: required], lambda a, b: a * b)
+        return self._values(key, [sqrt, _itself], lambda a, b: a * b, (1.0, _itself))
 
     def by_least(self, key: str) -> list[float]:
         """Return of each body a value such that the lesser of two is that of their contact."""
-        return self._values(key, [lambda required: required], min)
+        return self._values(key, [_itself], min, (inf, _itself))
 
     def by_larger(self, key: str) -> list[float]:
         """Return of each body a value such that the larger of two is that of their contact."""
-        return self._values(key, [lambda required: required], max)
+        return self._values(key, [_itself], max, (0.0, _itself))
+
+    def by_mean(self, key: str) -> list[float]:
+        """Return of each body a value such that the mean of two is that of their contact."""
+        return self._values(
+            key, [_itself], lambda a, b: 0.5 * (a + b), (0.0, lambda required: 2.0 * required)
+        )
+
+    def by_harmonic_mean(self, key: str) -> list[float]:
+        """Return of each body a value such that 2ab / (a + b) is that of their contact."""
+        return self._values(
+            key,
+            [_itself],
+            harmonic_mean,
+            (1.0, lambda required: required / (2.0 - required) if required < 2.0 else inf),
+        )
 
     def by_first(self, keys: tuple[str, ...]) -> tuple[list[tuple[float, ...]], bool] | None:
         """Return values of each body such that a contact has those of the body that stays, or of
@@ -113,6 +146,17 @@ class Scene:
                 found[rows[one.body]] += np.array((*one.force, *one.torque))
         return found
 
+    def mixed(self, key: str) -> Floats:
+        """Return a coefficient of the contacts of every two bodies (bodies, bodies)."""
+        kinds = {id(body.surface): body.surface for body in self.bodies}
+        table = np.array(
+            [[getattr(mixed(a, b), key) for b in kinds.values()] for a in kinds.values()]
+        )
+        places = {one: place for place, one in enumerate(kinds)}
+        of = [places[id(body.surface)] for body in self.bodies]
+        found: Floats = table[np.ix_(of, of)].astype(np.float64)
+        return found
+
     def _both(self, a: int, b: int) -> bool:
         return self.bodies[a].moves and self.bodies[b].moves
 
@@ -124,8 +168,12 @@ class Scene:
         key: str,
         inverses: list[Callable[[float], float]],
         rule: Callable[[float, float], float],
+        left_to_fixed: tuple[float, Callable[[float], float]],
     ) -> list[float]:
-        """Return values of bodies from which a rule makes those of pairs, or raise CannotRun."""
+        """Return values of bodies from which a rule makes those of pairs, or raise CannotRun.
+
+        left_to_fixed: what bodies that move have, where those that stay decide, and what these.
+        """
         required = self._of_pairs(key)
         tried = [
             [inverse(getattr(body.surface, key)) for body in self.bodies] for inverse in inverses
@@ -136,13 +184,23 @@ class Scene:
         ]
         # What moves leaves the choice to what stays, where moving bodies meet nothing else.
         of_fixed = {b if self.bodies[a].moves else a: value for (a, b), value in required.items()}
-        top = 0.0 if rule is max else max([1.0, *required.values()])
-        tried.append([top if body.moves else of_fixed.get(body.row, 0.0) for body in self.bodies])
+        moving, beside = left_to_fixed
+        most = 2.0 * max([1.0, *required.values()])  # any that is larger than all
+        tried.append(
+            [
+                min(moving, most) if body.moves else beside(of_fixed.get(body.row, 0.0))
+                for body in self.bodies
+            ]
+        )
         for values in tried:
             made = ((rule(values[a], values[b]), value) for (a, b), value in required.items())
-            if all(abs(one - value) <= 4e-16 * value for one, value in made):
+            if all(abs(one - value) <= SAME * value for one, value in made):
                 return values
         raise CannotRun(f"its rule of mixing makes no such {key} of these surfaces")
+
+
+def _unit(orientation: Any) -> tuple[float, ...]:
+    return tuple(float(one) for one in unit_quaternion(orientation))
 
 
 def _body(row: int, name: str, body: Any) -> PeerBody:
@@ -156,7 +214,7 @@ def _body(row: int, name: str, body: Any) -> PeerBody:
         body.mass if moves else 0.0,
         body.inertia if moves else (0.0, 0.0, 0.0),
         body.position,
-        tuple(float(one) for one in unit_quaternion(body.orientation)),
+        _unit(body.orientation),
         body.velocity,
         body.angular_velocity,
     )

@@ -32,6 +32,11 @@ class World(Protocol):
     def velocities(self) -> Floats:
         """Return vx vy vz [m/s] of the centre of mass, wx wy wz [rad/s], world axes (bodies, 6)."""
 
+    def mixed(self) -> tuple[Floats, Floats]:
+        """Return friction and restitution of contacts of every two bodies of the scene, by the
+        engine's rule from what is read back of it, each (bodies, bodies); NaN where it has none.
+        """
+
     def push(self, loads: Floats) -> None:
         """Have forces [N] and torques [N m], world axes, act in the next step (bodies, 6)."""
 

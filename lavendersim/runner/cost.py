@@ -165,6 +165,7 @@ def _rows(
             **_numerics(setting),
             accuracy=setting.accuracy,
             error=_known(error.error),
+            least_error=error.least,
             worst_at=error.worst_at,
             order=order,
             law=law,
@@ -213,7 +214,7 @@ COLUMNS: Final = (
     *("role", "preset", "timestep", "solver", "sweeps", "tolerance", "warm_start", "accuracy"),
     *("error", "worst_at", "order", "worst_residual", "not_converged_steps", "failed", "front"),
     *("median", "lower_quartile", "upper_quartile", "low", "high", "compile_s", "law"),
-    *("engine", "settings"),
+    *("engine", "settings", "least_error"),
 )
 
 

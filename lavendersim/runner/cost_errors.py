@@ -20,6 +20,7 @@ from lavendersim.cell import CellConfig
 from lavendersim.errors import UNREPORTED
 from lavendersim.experiment import Experiment
 from lavendersim.experiment.sweeps.cost_grid import Setting
+from lavendersim.experiment.sweeps.perturbed_starts import spread_of, start_of
 from lavendersim.measures import Values, judge
 from lavendersim.measures.closed_forms import evaluate_form
 from lavendersim.measures.specs.base import ClosedForm
@@ -65,6 +66,7 @@ class SettingError(NamedTuple):
     """How wrong a setting is."""
 
     error: float  # relative, of the worst cell; NaN where there is none
+    least: float | None  # over perturbed starts, of each the worst cell; None: they are not swept
     worst_at: str  # the coordinates of that cell; "" without a sweep
     residual: float  # [m/s] the worst of any step of any cell
     not_converged: int  # steps above the tolerance asked for
@@ -101,12 +103,23 @@ def _error_of(experiment: Experiment, run: SettingRun, truth: SettingRun | None)
     worst = int(np.argmax([math.inf if math.isnan(error) else error for error in errors] or [0]))
     return SettingError(
         error=errors[worst] if errors else NAN,
+        least=_least(experiment, taken, errors),
         worst_at=labels[taken[worst]] if errors else "",
         residual=max(outcome.accuracy.worst_residual for outcome in run.outcomes),
         not_converged=sum(outcome.accuracy.not_converged for outcome in run.outcomes),
         steps=sum(outcome.steps for outcome in run.outcomes),
         failed=_failure(experiment, run, errors),
     )
+
+
+def _least(experiment: Experiment, taken: list[int], errors: list[float]) -> float | None:
+    """Return the least error of any start; None where one has none, or they are not swept."""
+    cells, worst = experiment.cells(), dict[int, float]()
+    for place, error in zip(taken, errors, strict=True):
+        if (seed := start_of(cells[place].coordinates)) is not None:
+            worst[seed] = max(error, worst.get(seed, 0.0)) if error == error else math.inf
+    spread = spread_of(worst)
+    return spread[0] if spread is not None and math.isfinite(spread[0]) else None
 
 
 def _cell_error(

@@ -17,6 +17,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, Literal, NamedTuple
 
+from lavendersim.experiment.sweeps.perturbed_starts import spread_of, start_of
 from lavendersim.measures import Verdict
 from lavendersim.measures.always import PREFIX
 from lavendersim.measures.controls import of_completion
@@ -56,6 +57,8 @@ class Entry(NamedTuple):
     detail: str = ""  # the whole message
     margin: float = math.nan  # the least share of a bound that is left over all claims [-]
     number: float = math.nan  # behind the verdict: of the claim that failed, or nearest its bound
+    least: float = math.nan  # of that number over perturbed starts; NaN: it started once
+    most: float = math.nan
     claim: str = ""  # which, with its bound; "" where no number decided
     cost: float = math.nan  # physics per simulated second, one processor [s/s]
     run: Path | None = None  # its directory
@@ -94,6 +97,7 @@ def entry_of(case: str, solver: str, finished: Finished) -> Entry:
     known = [one.margin for one in finished.raw if not math.isnan(one.margin)]
     margin = min(known, default=math.nan)
     behind = next(iter(undeclared or failed or _nearest(finished.raw)), None)
+    least, most = _spread(finished, behind)
     return Entry(
         case,
         solver,
@@ -102,6 +106,8 @@ def entry_of(case: str, solver: str, finished: Finished) -> Entry:
         detail,
         margin,
         number=math.nan if behind is None else behind.measured,
+        least=least,
+        most=most,
         claim="" if behind is None else _line(behind),
         cost=_cost(finished),
         run=finished.run.path,
@@ -113,6 +119,19 @@ def _nearest(verdicts: Sequence[Verdict]) -> list[Verdict]:
     """Return the verdict with the least of its bound left; none where no claim has a bound."""
     bounded = [one for one in verdicts if one.judged and not math.isnan(one.margin)]
     return [min(bounded, key=lambda one: one.margin)] if bounded else []
+
+
+def _spread(finished: Finished, behind: Verdict | None) -> tuple[float, float]:
+    """Return the least and the greatest number of a claim over perturbed starts; NaN: one."""
+    starts = {str(cell.path): start_of(cell.coordinates) for cell in finished.run.cells}
+    shown: dict[int, Verdict] = {}  # by seed, the verdict with the least of its bound left
+    for one in finished.raw if behind is not None else ():
+        seed = starts.get(one.path)
+        same = behind is not None and one.name == behind.name and math.isfinite(one.measured)
+        if seed is not None and same and (seed not in shown or one.margin < shown[seed].margin):
+            shown[seed] = one
+    spread = spread_of({seed: one.measured for seed, one in shown.items()})
+    return spread or (math.nan, math.nan)
 
 
 def _of_unjudged(verdicts: Sequence[Verdict]) -> tuple[Word, str]:

@@ -1,6 +1,7 @@
 """What was drawn at random for a cell, in words for its log.
 
-Only the jitter of a grid is drawn; a resolved cell holds the places that came of it, not its seed.
+The jitter of a grid and perturbed starts are drawn; a resolved cell holds the places that came of
+them, not their seeds.
 """
 
 from __future__ import annotations
@@ -17,13 +18,17 @@ class Seeds:
 
     def __init__(self, experiment: Experiment) -> None:
         arrangements = experiment.tree.get("scene", "arrangements").entries
-        self._jittered = any(
-            arrangement.get("kind").text == "grid" for arrangement in arrangements.values()
+        self._drawn = (
+            any(arrangement.get("kind").text == "grid" for arrangement in arrangements.values())
+            or bool(experiment.tree.get("scene", "perturbation"))
+            or any(path.startswith("scene.perturbation") for path in experiment.swept)
         )
 
     def of(self, cell: Cell) -> str:
-        """Return `ball: 1, rod: 7` for the arrangements that are jittered, or that none is."""
-        drawn = ", ".join(_drawn(cell.tree)) if self._jittered else ""
+        """Return `ball: 1, rod: 7` for the arrangements that are jittered, or that none is; and of
+        perturbed starts.
+        """
+        drawn = ", ".join(_drawn(cell.tree)) if self._drawn else ""
         return drawn or NONE
 
 
@@ -31,3 +36,5 @@ def _drawn(tree: Node) -> Iterator[str]:
     for name, arrangement in tree.get("scene", "arrangements").entries.items():
         if arrangement.get("jitter").number:
             yield f"{name}: {int(arrangement.get('seed').number or 0)}"
+    if seed := int(tree.get("scene", "perturbation", "seed").number or 0):
+        yield f"perturbation: {seed}"

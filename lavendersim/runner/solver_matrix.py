@@ -82,9 +82,9 @@ def make_entry(pair: CaseAndSolver) -> Entry:
     return _entry(pair, lambda case: load_experiment(case.path, case.reduced, pair.solver))
 
 
-def make_engine_entry(pair: CaseAndSolver) -> Entry:
-    """Run a case by an engine, whose name stands in the place of a solver's."""
-    given = catalogue.overrides_of([pair.solver])
+def make_engine_entry(pair: CaseAndSolver, more: Sequence[str] = ()) -> Entry:
+    """Run a case by an engine, whose name stands in the place of a solver's; more: overrides."""
+    given = [*catalogue.overrides_of([pair.solver]), *more]
     return _entry(pair, lambda case: load_experiment(case.path, case.reduced, overrides=given))
 
 

@@ -14,7 +14,11 @@ CLAIM = """
 measure: {height: {kind: position, body: ball, along: [0, 0, 1], time: 0.5}}
 expect: [{name: height, measure: height, equals: {value: 2.77375, absolute: 0.03}}]
 always: {}
+figure:
+  caption: What the ball has.
+  panels: [{kind: time_series, column: energy, x_label: "t [s]", y_label: "energy [J]"}]
 """
+REPLAY = ("replay", "--cell", "1", "--save", "ball.rrd")
 
 
 def write(folder: Path, name: str, text: str) -> Path:
@@ -44,9 +48,11 @@ def test_both_engines_run_two_scenes_end_to_end(tmp_path: Path) -> None:
     assert [cell["measures"]["height"] for cell in cells] == pytest.approx(
         [2.77375, 2.77375 - 9.81 * 0.01 * 0.25], abs=1e-9
     )
-    for verb in ("show", "judge", "verify"):
-        found = lavender(verb, where=tmp_path)
+    for words in (("show",), ("judge",), ("verify",), ("plot",), REPLAY):
+        found = lavender(*words, where=tmp_path)
         assert found.returncode == 0, found.stdout + found.stderr
+    assert [*tmp_path.rglob("ball*.png")]
+    assert (tmp_path / "ball.rrd").stat().st_size > 0
     assert "always: residual: not judged" in lavender("judge", where=tmp_path).stdout
 
 
@@ -56,7 +62,17 @@ def test_a_matrix_marks_what_is_refused_and_goes_on(tmp_path: Path) -> None:
     text = (BALL + CLAIM).replace("mass: 2,", "mass: 2, drag: {linear: 0.001},")
     text = text.replace("always: {}", "always: {momentum: none}")
     write(tmp_path, "drag.yaml", text)
-    words = ("check", ".", "-e", "lavender,mujoco", "--report", "engines.html", "--json")
+    words = (
+        "check",
+        ".",
+        "-e",
+        "lavender,mujoco",
+        "--starts",
+        "2",
+        "--report",
+        "engines.html",
+        "--json",
+    )
     done = lavender(*words, where=tmp_path)
     found = json.loads(done.stdout)
     verdicts = {
@@ -69,6 +85,10 @@ def test_a_matrix_marks_what_is_refused_and_goes_on(tmp_path: Path) -> None:
         ("drag", "mujoco"): "refused",
     }
     assert done.returncode == 0, done.stderr
+    # An energy that a level shift of a ball in flight leaves alone is the same of both starts.
+    spread = [(one["least"], one["most"]) for one in found["entries"] if one["least"] is not None]
+    assert len(spread) == 3
+    assert all(0.0 <= least <= most for least, most in spread)
     assert "refused" in (tmp_path / "engines.html").read_text()
 
 

@@ -25,6 +25,7 @@ TELLING = [
     if "impulse_n" in peer.reports(variant)
 ]
 DT, STEPS = 1.0 / 240.0, 40
+ONE_POINT = ("drake", "drake-sap", "drake-stiff")  # of a pair of bodies: a box on a face tilts
 CREEP = {"mujoco-discrete": 0.05}  # [m/s] it chatters: no push in one step, twice in the next
 # The upper box comes before the floor, the lower one after it: who is A differs from pair to pair.
 # Gravity leans, so that friction is due; the boxes slide off where there is none.
@@ -51,6 +52,7 @@ class Step(NamedTuple):
     turning: np.ndarray  # (bodies, 3) change of angular momentum about the centre [N m s]
     pushed: np.ndarray  # (bodies, 3) sum of impulses
     twisted: np.ndarray  # (bodies, 3) sum of their moments about the centre at the step's start
+    least: float  # of the normal impulses: contacts push [N s]
 
 
 def steps_of(engine: str, **values: float) -> list[Step]:
@@ -70,9 +72,9 @@ def steps_of(engine: str, **values: float) -> list[Step]:
         after = world.poses(), world.velocities()
         linear = mass * (after[1][:, :3] - before[1][:, :3] - DT * np.array(scene.gravity))
         turning = spin_of(*after, inertia) - spin_of(*before, inertia)
-        pushed, twisted = np.zeros_like(linear), np.zeros_like(linear)
+        pushed, twisted, least = np.zeros_like(linear), np.zeros_like(linear), 0.0
         for a, b, *reported in world.contacts():
-            impulse = reported[7] * np.array(reported[3:6])
+            impulse, least = reported[7] * np.array(reported[3:6]), min(least, reported[7])
             if TANGENTIAL[0] in peer_of(engine).reports(engine):
                 impulse = impulse + reported[8:11]
             for body, sign in ((a, -1.0), (b, 1.0)):
@@ -80,7 +82,7 @@ def steps_of(engine: str, **values: float) -> list[Step]:
                     pushed[rows[body]] += sign * impulse
                     lever = np.array(reported[:3]) - before[0][rows[body], :3]
                     twisted[rows[body]] += np.cross(lever, sign * impulse)
-        found.append(Step(linear, turning, pushed, twisted))
+        found.append(Step(linear, turning, pushed, twisted, least))
     return found
 
 
@@ -91,10 +93,11 @@ def spin_of(poses: np.ndarray, velocities: np.ndarray, inertia: np.ndarray) -> n
     return np.asarray(np.einsum("bij,bj->bi", turn, local * inertia))
 
 
-# Relative to the momenta of a step. Round-off of 53 and of 24 bits through a hundred sums; but two
-# solvers stop before that, and report impulses of another iterate than the velocities they leave.
+# Relative to the momenta of a step. Round-off of 53 and of 24 bits through a hundred sums; but some
+# solvers stop before that (Drake's at 1e-5 of its terms), and report impulses of another iterate
+# than the velocities they leave.
 ROUNDING = {True: 1e-9, False: 1e-4}
-STOPPED_EARLY = {"mujoco-cg": 1e-3, "mujoco-discrete": 1e-4}
+STOPPED_EARLY = {"mujoco-cg": 1e-3, "mujoco-discrete": 1e-4, **dict.fromkeys(ONE_POINT, 1e-5)}
 
 
 def rounding(engine: str) -> float:
@@ -109,9 +112,10 @@ def test_impulses_of_a_step_are_the_change_of_momentum_of_each_body(engine: str)
     friction = {"friction": 0.5, "along": 2.0, "across": 1.0} if reported else {"friction": 0.0}
     for step in steps_of(engine, **friction):
         np.testing.assert_allclose(step.pushed, step.linear, atol=rounding(engine))
+        assert step.least >= -rounding(engine)
 
 
-@pytest.mark.parametrize("engine", TELLING)
+@pytest.mark.parametrize("engine", [one for one in TELLING if one.values[0] not in ONE_POINT])
 def test_a_stack_at_rest_is_held_by_its_weight_without_a_moment(engine: str) -> None:
     """Upper: 3 kg, 30 N up. Lower: 20 N in sum, 50 N from the floor. Of the last 20 steps the mean:
     a box that creeps or chatters at v gains m v in them, and 5 mm/s of 5 kg over 20 steps are 0.6 %

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from lavendersim.errors import NotReportedError
-from lavendersim.peers.catalogue import peer_of
+from lavendersim.peers.catalogue import PEERS, peer_of
 from tests.engines import BALL, BOX, log_of, needs, run_by
 
 
@@ -32,6 +32,9 @@ SINGLE = 1e-5  # 50 sums of numbers of 3 m with 24 bits: 50 * 1.8e-7
         every("mujoco-rk4", 0.0, 2e-14),
         every("bullet", EULER, 2e-14),
         every("bullet-accurate", EULER, 2e-14),
+        every("physx", EULER, SINGLE),
+        every("dart", EULER, 2e-14),
+        every("drake", EULER, 2e-14),
         every("rapier", EULER / 4, SINGLE),  # each of its 4 iterations is a small step
         every("rapier-stiff", EULER / 8, SINGLE),
     ],
@@ -110,7 +113,7 @@ def test_a_log_has_the_columns_of_ours_and_reasons_for_the_others(tmp_path: Path
         log.contact["approach_velocity"]
 
 
-@pytest.mark.parametrize("engine", [every("mujoco"), every("rapier"), every("bullet")])
+@pytest.mark.parametrize("engine", [every(name) for name in PEERS])
 def test_two_runs_are_the_same_bytes(engine: str, tmp_path: Path) -> None:
     logs = [
         run_by(BOX, engine, tmp_path / name).run.cells[0].path.read_bytes() for name in ("a", "b")

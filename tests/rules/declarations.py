@@ -32,6 +32,9 @@ DECLARATIONS = {
     "measures/specs/steady.py": "fields of a measure's config",
     "peers/messages.py": "fields of messages",
     "peers/bullet.py": "a declaration",
+    "peers/dart.py": "a declaration",
+    "peers/drake.py": "a declaration",
+    "peers/physx.py": "a declaration",
     "peers/mujoco.py": "a declaration",
     "peers/rapier.py": "a declaration",
 }

@@ -98,7 +98,10 @@ LIBRARIES = {
     "rich": {"cli"},
     "pytest": {"pytest_plugin"},
     "gymnasium": {"simulator"},
-    **{library: {"peers"} for library in ("mujoco", "pybullet", "rapier3d")},
+    **{
+        library: {"peers"}
+        for library in ("mujoco", "pybullet", "rapier3d", "sapien", "dartpy", "pydrake")
+    },
 }
 IMPORTS = imports()
 

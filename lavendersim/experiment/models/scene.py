@@ -85,6 +85,20 @@ class Force(ConfigModel):
             at.refuse(end.mark, removal.sentence("to", name))
 
 
+class Perturbation(ConfigModel):
+    """Small differences of where bodies start, drawn by a seed: no symmetry is luck."""
+
+    seed: Annotated[int, Quantity(whole=True, minimum=0, maximum=2**53)] = Field(
+        default=0,
+        description="equal seeds give equal scenes (Python's Mersenne twister); 0: as written",
+    )
+    distance: Annotated[float, Quantity("m", above=0)] = Field(
+        default=1e-5,
+        description="[m] every movable body is moved by up to so much along each axis, evenly "
+        "drawn, but not along gravity nor the normals of planes that bodies stand on",
+    )
+
+
 class Scene(declared("Scene", ConfigModel, SCENE_KEYS)):  # type: ignore[misc]
     """What is there; bodies in the order in which they are written, then those arranged."""
 
@@ -108,6 +122,9 @@ class Scene(declared("Scene", ConfigModel, SCENE_KEYS)):  # type: ignore[misc]
         description="name: one body in many places (name_1, name_2, ...), behind `bodies`",
     )
     forces: tuple[Force, ...] = Field(default=(), description="forces and torques over time")
+    perturbation: Perturbation | None = Field(
+        default=None, description="differences of where bodies start; none: as written"
+    )
 
     @classmethod
     def rules(cls, at: Place) -> None:

@@ -28,6 +28,7 @@ from lavendersim.geometry.quaternions import IDENTITY, Quaternion, product, to_b
 from lavendersim.geometry.vectors import unit
 from lavendersim.quantities.quantity import Vector3
 
+AS_WRITTEN = 0  # the seed that moves nothing
 _ORIGIN: Vector3 = (0.0, 0.0, 0.0)
 
 
@@ -57,6 +58,10 @@ def resolve_scene(scene: Scene, timestep: Fraction, duration: float) -> tuple[Ce
             as_written = quaternion_of((source or arrangement.body).orientation)
             written[member] = as_written if turn == IDENTITY else product(turn, as_written)
 
+    if scene.perturbation is not None and scene.perturbation.seed != AS_WRITTEN:
+        from lavendersim.geometry.perturbed_bodies import perturbed  # late: few scenes need it
+
+        bodies = perturbed(bodies, scene.perturbation.seed, scene.perturbation.distance, gravity)
     frames = Frames(written, bodies)
     turned = frames.vector
     forces = tuple(_force(force, duration, turned) for force in scene.forces)

@@ -82,6 +82,12 @@ class World:
         rows = [pybullet.getDynamicsInfo(number, -1, **self._here) for number in self._numbers]
         return np.array([(row[0], *row[2]) for row in rows])
 
+    def mixed(self) -> tuple[Floats, Floats]:
+        """Return friction and restitution of every two bodies: products."""
+        rows = [pybullet.getDynamicsInfo(number, -1, **self._here) for number in self._rows]
+        friction, restitution = (np.array([row[k] for row in rows]) for k in (1, 5))
+        return np.outer(friction, friction), np.outer(restitution, restitution)
+
     def poses(self) -> Floats:
         """Return poses."""
         found = np.empty((len(self._numbers), 7))

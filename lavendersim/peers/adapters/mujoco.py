@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from itertools import product
-from math import log, pi, sqrt
 from typing import Any, Final
 
 import mujoco
@@ -12,11 +11,10 @@ import numpy as np
 
 from lavendersim.peers.declaration import Value
 from lavendersim.peers.description import PeerBody, Scene
+from lavendersim.peers.restitution_spring import restitutions, spring_of
 from lavendersim.peers.world import Floats
 
-# An underdamped contact spring stands for a coefficient of restitution: it swings for so many
-# steps. Shorter swings are resolved worse by MuJoCo's integrators.
-SWING_STEPS: Final = 12
+KEYS: Final = ("friction", "restitution")
 OPTIONS: Final = ("solver", "iterations", "tolerance", "cone", "integrator", "impratio")
 
 
@@ -31,8 +29,7 @@ class World:
         self._of, self._dt = settings, scene.timestep
         self.model = mujoco.MjModel.from_xml_string(self._xml(scene))
         self.data = mujoco.MjData(self.model)
-        geoms = [self.model.geom(k).name for k in range(self.model.ngeom)]
-        self._rows = [int(name.split("_")[1]) for name in geoms]
+        self._rows = [int(self.model.geom(k).name.split("_")[1]) for k in range(self.model.ngeom)]
         for k, body in enumerate(scene.movable):  # a free joint's spin is in the body's frame
             turn, inverse = np.zeros(3), np.array(body.orientation) * (1.0, -1.0, -1.0, -1.0)
             mujoco.mju_rotVecQuat(turn, np.array(body.spin), inverse)
@@ -44,10 +41,7 @@ class World:
         soft = dt * float(get("time_constant_steps", 0.0)) or get("time_constant", 0.02)
         reference, share = (soft, get("damping_ratio", 1.0)), get("impedance")
         if restitution > 0.0:  # (-stiffness, -damping): a free half swing keeps e of the speed
-            decay = -log(restitution) / pi  # zeta / sqrt(1 - zeta^2)
-            zeta = decay / sqrt(1.0 + decay * decay)
-            natural = pi / (SWING_STEPS * dt * sqrt(1.0 - zeta * zeta))
-            reference, share = (-natural * natural, -2.0 * zeta * natural), share or 0.9999
+            reference, share = spring_of(restitution, dt), share or 0.9999
         impedance = f'solimp="{share} {share} 0.001"' if share else ""
         margin, dim = get("margin", 0.0), 3 if friction else 1
         return f'solref="{_text(reference)}" {impedance} margin="{margin}" condim="{dim}"'
@@ -68,31 +62,28 @@ class World:
         return f'<geom name="{name}" {form} {place} {rest}/>'
 
     def _xml(self, scene: Scene) -> str:
-        keys, get = ("friction", "restitution"), self._of.get
+        shared = scene.by_first(KEYS)
         meshes: list[str] = []
-        pairs: list[str] = []
-        shared = scene.by_first(keys)
-        bodies = []
+        bodies, pairs = [], []
         for body in scene.bodies:
             rest = 'contype="0" conaffinity="0"'
             if shared is not None:
-                values, differ = shared
-                mu, e = values[body.row]
+                (mu, e), differ = shared[0][body.row], shared[1]
                 first = int(differ and not body.moves)  # its values are those of its contacts
                 rest = f'priority="{first}" friction="{mu:.17g} 0 0" {self._contact(mu, e)}'
             geoms = "".join(self._geom(*part, rest, meshes) for part in _parts(body))
             place = f'pos="{_text(body.position)}" quat="{_text(body.orientation)}"'
             inertial = f'<inertial pos="0 0 0" mass="{body.mass:.17g}" diaginertia='
             free = f'<freejoint/>{inertial}"{_text(body.inertia)}"/>' if body.moves else ""
-            plane = body.shape.kind == "plane"
-            bodies.append(geoms if plane else f"<body {place}>{free}{geoms}</body>")
+            whole = f"<body {place}>{free}{geoms}</body>"
+            bodies.append(geoms if body.shape.kind == "plane" else whole)
         for a, b in scene.pairs() if shared is None else ():
-            mu, e = (scene.of_pair(key, a, b) for key in keys)
+            mu, e = (scene.of_pair(key, a, b) for key in KEYS)
             rest = f'friction="{_text((mu, mu, 0, 0, 0))}" {self._contact(mu, e)}'
             for (one, *_), (other, *_) in product(_parts(a), _parts(b)):
                 pairs.append(f'<pair geom1="{one}" geom2="{other}" {rest}/>')
         options = " ".join(f'{key}="{self._of[key]}"' for key in OPTIONS if key in self._of)
-        ahead = 'speculative="enable"' if get("speculative") else ""
+        ahead = 'speculative="enable"' if self._of.get("speculative") else ""
         return f"""<mujoco><compiler autolimits="false" boundmass="0" boundinertia="0"/>
   <option timestep="{self._dt:.17g}" gravity="{_text(scene.gravity)}" {options}>
     <flag autoreset="disable" {ahead}/></option>
@@ -102,8 +93,20 @@ class World:
     def inertias(self) -> Floats:
         """Return mass and principal moments."""
         moving = self.model.body_dofnum > 0
-        mass, inertia = self.model.body_mass[moving], self.model.body_inertia[moving]
-        return np.column_stack([mass, inertia])
+        return np.column_stack([self.model.body_mass[moving], self.model.body_inertia[moving]])
+
+    def mixed(self) -> tuple[Floats, Floats]:
+        """Return friction and restitution of every two bodies: by priority, else the larger."""
+        model, rows = self.model, self._rows
+        geoms = [rows.index(row) for row in range(max(rows) + 1)]
+        first = model.geom_priority[geoms]
+        own = np.array([model.geom_friction[geoms, 0], restitutions(model.geom_solref[geoms])])
+        one, other = own[:, :, None], own[:, None]
+        found = np.choose(1 + np.sign(first[:, None] - first), (other, np.maximum(one, other), one))
+        of_pairs = np.array([model.pair_friction[:, 0], restitutions(model.pair_solref)])
+        for k, (a, b) in enumerate(zip(model.pair_geom1, model.pair_geom2, strict=True)):
+            found[:, [rows[a], rows[b]], [rows[b], rows[a]]] = of_pairs[:, k, None]
+        return found[0], found[1]
 
     def poses(self) -> Floats:
         """Return poses."""
@@ -140,10 +143,7 @@ class World:
 
 def _parts(body: PeerBody) -> list[tuple[str, Any, str]]:
     """Return name, shape and place of each piece of a body."""
-    if body.shape.kind != "compound":
-        return [(f"g_{body.row}", body.shape, "")]
-    places = [f'pos="{_text(p.position)}" quat="{_text(p.orientation)}"' for p in body.shape.parts]
     return [
-        (f"g_{body.row}_{k}", part.shape, place)
-        for k, (part, place) in enumerate(zip(body.shape.parts, places, strict=True))
+        (f"g_{body.row}_{k}", shape, f'pos="{_text(position)}" quat="{_text(turn)}"')
+        for k, (shape, position, turn) in enumerate(body.pieces())
     ]

@@ -41,7 +41,7 @@ class World:
         # Both of its rules are given: roots are multiplied, the larger restitution is taken.
         self._friction = scene.by_product("friction")
         self._restitution = scene.by_larger("restitution")
-        handles = [self._add(body) for body in scene.bodies]
+        self._all = handles = [self._add(body) for body in scene.bodies]
         self._rows = {handle.index: row for row, handle in enumerate(handles)}
         self._handles = [handles[body.row] for body in scene.movable]
         for one in self._bodies():  # else only its first step would do it
@@ -86,6 +86,14 @@ class World:
             moments = body.mass_properties.principal_inertia
             found.append((body.mass, moments.x, moments.y, moments.z))
         return np.array(found)
+
+    def mixed(self) -> tuple[Floats, Floats]:
+        """Return friction and restitution of every two bodies, by the rules that were given."""
+        handles = [self._world.rigid_bodies[one].colliders[0] for one in self._all]
+        colliders = [self._world.colliders[one] for one in handles]
+        friction = np.array([one.friction for one in colliders])
+        restitution = np.array([one.restitution for one in colliders])
+        return np.outer(friction, friction), np.maximum.outer(restitution, restitution)
 
     def poses(self) -> Floats:
         """Return poses."""

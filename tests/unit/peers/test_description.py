@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from lavendersim.experiment import load_experiment_text
-from lavendersim.peers.description import Scene
+from lavendersim.peers.description import Scene, harmonic_mean
 from lavendersim.peers.world import CannotRun
 
 TWO = """
@@ -68,3 +68,28 @@ def test_a_force_acts_in_steps_that_start_within_its_time() -> None:
     found = scene(0.2, 0.0, 0.8, 0.0)
     assert [found.loads(step) is None for step in (1, 2, 3)] == [True, False, True]
     np.testing.assert_array_equal(found.loads(2), [[0.0] * 6, [1.0, 2.0, 3.0, 0.0, 0.0, 0.0]])
+
+
+def test_means_are_those_that_a_resting_body_completes() -> None:
+    """Two floors that differ: the ball has nothing to say, each floor twice its mixture, or
+    v / (2 - v) beside 1.
+    """
+    text = TWO.format(0.2, 0.0, 0.8, 0.0).replace("surface: ball}}", "surface: ball}")
+    text = "\n".join(line for line in text.splitlines() if "    b:" not in line)
+    text = text.replace("forces: [{body: b", "forces: [{body: a")
+    found = Scene(load_experiment_text(text, "one.yaml").cells()[0].config)
+    floor, wall, ball = (mu for mu in found.by_mean("friction"))
+    assert [0.5 * (one + ball) for one in (floor, wall)] == pytest.approx([0.4, 0.8], rel=1e-15)
+    floor, wall, ball = (mu for mu in found.by_harmonic_mean("friction"))
+    mixed = [harmonic_mean(one, ball) for one in (floor, wall)]
+    assert mixed == pytest.approx([0.4, 0.8], rel=2e-15)
+    assert harmonic_mean(0.0, 0.0) == 0.0
+    asked = found.mixed("friction")
+    assert asked[0, 2] == asked[2, 0] == pytest.approx(0.4)
+    assert asked[1, 2] == pytest.approx(0.8)
+
+
+def test_a_rule_that_three_surfaces_cannot_follow_is_refused() -> None:
+    """Balls that meet each other leave nothing to the floors."""
+    with pytest.raises(CannotRun, match="no such friction"):
+        scene(0.2, 0.0, 0.8, 0.0).by_mean("friction")

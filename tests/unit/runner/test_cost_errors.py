@@ -85,3 +85,30 @@ def test_a_setting_that_leaves_more_than_its_share_not_converged_has_failed(
     (error,) = errors_of(experiment, [run_of])
     assert (error.error, error.residual, error.not_converged) == (0.25, 2e-3, not_converged)
     assert error.failed == said  # a hundredth, two of two hundred, may be
+
+
+def test_perturbed_starts_show_the_least_error_beside_the_worst() -> None:
+    """Two timesteps at each of three starts: of each start the worse, of these the least."""
+    axes = ["sweep start_seed=scene.perturbation.seed:[0, 1, 2]"]
+    axes += ["sweep height=scene.bodies.ball.mass:[0.3, 0.4]"]
+    experiment = load_experiment_text(BALL, "ball.yaml", overrides=axes)
+    errors = {
+        (0, 0.3): 0.5,
+        (0, 0.4): 0.1,
+        (1, 0.3): 0.2,
+        (1, 0.4): 0.3,
+        (2, 0.3): 0.9,
+        (2, 0.4): 0,
+    }
+    measured = [
+        {"apex": errors[cell.coordinates["start_seed"], cell.coordinates["height"]], "sinking": 0.0}
+        for cell in experiment.cells()
+    ]
+    cells, outcomes = [CELL] * len(measured), [outcome(200, 0)] * len(measured)
+    (setting, *_) = settings_of(experiment)
+    (error,) = errors_of(experiment, [SettingRun(setting, cells, outcomes, measured)])
+    assert (error.error, error.least) == (0.9, 0.3)
+    measured[0]["apex"] = math.nan
+    (error,) = errors_of(experiment, [SettingRun(setting, cells, outcomes, measured)])
+    assert math.isnan(error.error)
+    assert error.least == 0.3

@@ -34,6 +34,7 @@ class Ran:
     controlled: tuple[str, ...] = ()  # nodes that a declared failure has taken over
     ended: str = ""  # status of cell b
     declared: tuple[str, ...] = ()  # names of claims that are; of those in `controlled`, if none
+    starts: tuple[dict[str, int], ...] = ({}, {})  # coordinates of a and b
     outcomes: list[Any] = field(
         default_factory=lambda: [
             SimpleNamespace(physics_ns=1_000_000, steps=10),
@@ -49,8 +50,18 @@ class Ran:
     def run(self) -> Any:
         whole = SimpleNamespace(config=SimpleNamespace(clock=Clock(Fraction(1, 100))))
         cells = [
-            SimpleNamespace(path=Path("run/cells/a.mcap"), label="cell a", status="complete"),
-            SimpleNamespace(path=Path("run/cells/b.mcap"), label="cell b", status=self.ended),
+            SimpleNamespace(
+                path=Path("run/cells/a.mcap"),
+                label="cell a",
+                status="complete",
+                coordinates=self.starts[0],
+            ),
+            SimpleNamespace(
+                path=Path("run/cells/b.mcap"),
+                label="cell b",
+                status=self.ended,
+                coordinates=self.starts[1],
+            ),
         ]
         controls = self.declared or {node.split()[0] for node in self.controlled}
         experiment = SimpleNamespace(
@@ -134,3 +145,15 @@ def test_a_cell_that_ended_early_says_how(status: str, word: str) -> None:
 def test_the_cost_is_the_physics_of_all_cells_over_their_simulated_time() -> None:
     # 4 ms for (10 + 30) / 100 s
     assert entry(verdict("stands a", True)).cost == pytest.approx(0.004 / 0.4, rel=1e-12)
+
+
+def test_over_perturbed_starts_the_number_has_its_spread() -> None:
+    """Of each start the verdict that leaves least of its bound; other claims say nothing of it."""
+    high = verdict("claim at b", False, margin=-1.0)._replace(measured=4.0)
+    low = verdict("claim at a", True, margin=0.5)._replace(measured=0.5)
+    lower = verdict("claim early at a", True, margin=0.75)._replace(measured=0.25)
+    raw = [lower, low, high, verdict("other at a", True, margin=0.9)]
+    seeds = ({"start_seed": 0}, {"start_seed": 1})
+    found = entry_of("case", "engine", Ran(raw, starts=seeds))
+    assert (found.number, found.least, found.most) == (4.0, 0.5, 4.0)
+    assert math.isnan(entry_of("case", "engine", Ran(raw)).least)

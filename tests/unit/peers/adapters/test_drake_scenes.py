@@ -1,0 +1,35 @@
+"""Drake has what it was given, and every shape where lavender has it."""
+
+from __future__ import annotations
+
+import pytest
+
+from lavendersim.experiment import load_experiment_text
+from lavendersim.peers.catalogue import PEERS
+from lavendersim.peers.child import misbuilt
+from lavendersim.peers.description import Scene
+from tests.engines import BALL, BOX, SHAPES, needs, placed
+
+pytestmark = needs("drake")
+PEER = PEERS["drake"]
+
+
+@pytest.mark.parametrize("variant", PEER.variants)
+@pytest.mark.parametrize("text", [BALL, BOX])
+def test_a_scene_is_built_as_described(text: str, variant: str) -> None:
+    from lavendersim.peers.adapters.drake import World
+
+    scene = Scene(load_experiment_text(text, "scene").cells()[0].config)
+    assert misbuilt(scene, World(scene, PEER.variants[variant].settings), PEER) == ""
+
+
+@pytest.mark.parametrize("kind", sorted(PEER.shapes - {"plane"}))
+def test_a_shape_is_as_deep_in_a_plane_as_its_extent_says(kind: str) -> None:
+    """Contacts are those of the step's start; the floor is of its world, 0.25 m up."""
+    from lavendersim.peers.adapters.drake import World
+
+    scene = Scene(placed(SHAPES[kind], -1e-3))
+    world = World(scene, {})
+    assert misbuilt(scene, world, PEER) == ""
+    world.step()
+    assert min(row[8] for row in world.contacts()) == pytest.approx(-1e-3, abs=1e-9)
