@@ -114,8 +114,8 @@ ASKED = {
         ),
         "contact_midpoint": (
             *("contact", "effects/contact_spring", "effects/friction", "effects/projection"),
-            "effects/prescribed_motion",
-            *("integrate", "memory", "respond"),
+            *("effects/joint", "effects/prescribed_motion"),
+            *("integrate", "joint_turn", "memory", "respond"),
         ),
         "impact_time": (
             *("contact", "effects/cohesion", "effects/restitution", "effects/speculative"),

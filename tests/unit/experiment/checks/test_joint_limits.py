@@ -44,7 +44,7 @@ def test_numerics_that_joints_cannot_have_are_refused_at_their_place(key: str) -
     [
         (
             "  connections:",
-            "  springs: [{between: [hook, bob], stiffness: 9, rest_length: 1}]\n  connections:",
+            "  springs: [{a: hook, b: bob, stiffness: 9}]\n  connections:",
             "5:3",
         ),
         (
