@@ -92,7 +92,10 @@ def make(spec: Spec, loggers):
             out.target = contact.target
             out.residual = residual
             log_more(out, contact, va, vb)
-            if friction:
+            cone = True
+            if bilateral:
+                cone = contact.bilateral == 0
+            if friction and cone:
                 watch_coulomb(counters, written - 1, contact, out.slip_t1, out.slip_t2)
             force += out.force_n
             # A NaN is deeper than anything, or it would not be seen.
