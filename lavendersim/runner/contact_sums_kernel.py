@@ -90,9 +90,8 @@ def _make_sum(spec: Spec) -> Any:
                 x, y, z = row[columns[NX]], row[columns[NY]], row[columns[NZ]]
                 jx, jy, jz = x * net, y * net, z * net
                 excess, pressing = larger(-n, 0.0), larger(n, 0.0)
-                if columns[JOINT] >= 0:
-                    if words[columns[JOINT]] > 0:  # of either sign
-                        excess = 0.0
+                if columns[JOINT] >= 0 and words[columns[JOINT]] > 0:  # of either sign
+                    excess = 0.0
                 if columns[IMPULSE_T1] >= 0:
                     one, two = row[columns[IMPULSE_T1]], row[columns[IMPULSE_T2]]
                     tx, ty, tz = row[columns[T1X]], row[columns[T1Y]], row[columns[T1Z]]
