@@ -20,7 +20,7 @@ def row_terms(spec: Spec) -> RowTerms:
 
 
 def make_acts(spec: Spec) -> Any:
-    """Return `kernel(contact) -> whether` its bodies are held or pushed by it in this step.
+    """Return `kernel(contact) -> whether` it holds or pushes its bodies in this step.
 
     What is bilateral holds, whatever its impulse.
     """

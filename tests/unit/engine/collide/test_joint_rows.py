@@ -43,7 +43,7 @@ def test_each_row_has_the_distance_of_the_ends_along_its_axis(axis: int) -> None
     assert point["feature"] == FIRST_JOINT + ROWS * NUMBER + axis
 
 
-def test_rows_are_told_by_kind_and_feature() -> None:
+def test_kind_and_feature_say_which_row_it_is() -> None:
     assert [interpreted(axis_of)(FIRST_AXIS - axis) for axis in range(3)] == [0, 1, 2]
     number = interpreted(number_of)
     assert [number(FIRST_JOINT + ROWS * k + 2) for k in (0, 7)] == [1, 8]
