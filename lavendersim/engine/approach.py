@@ -10,6 +10,7 @@ from typing import Any
 from .compile import inner, kernel
 from .effects import made_once
 from .records import PLANE, TOUCHING
+from .row_terms import row_terms
 from .spec import Spec
 from .vectors import Vec3, cross, dot, length, minus, plus, position, scaled
 
@@ -55,7 +56,7 @@ def make_expect(spec: Spec) -> Any:
     Forces do, of what is free. What touches and neither approaches nor parts is kept from it by its
     contacts: it is reckoned to accelerate as in the last part of a step.
     """
-    slowest = make_slowest(spec)
+    slowest, bilateral = make_slowest(spec), row_terms(spec).bilateral
 
     def hold(body, m, left):
         if body.inv_m > 0.0 and (m.dvx != 0.0 or m.dvy != 0.0 or m.dvz != 0.0):
@@ -69,7 +70,10 @@ def make_expect(spec: Spec) -> Any:
             m.ahead_x, m.ahead_y, m.ahead_z = m.dvx, m.dvy, m.dvz
         for c in range(count):
             contact = contacts[c]
-            if contact.phi <= TOUCHING:
+            touches = contact.phi <= TOUCHING
+            if bilateral:
+                touches = touches or contact.bilateral == 1
+            if touches:
                 if abs(contact.rate) <= slowest(contact, bodies, motion):
                     hold(bodies[contact.a], motion[contact.a], left)
                     hold(bodies[contact.b], motion[contact.b], left)

@@ -25,7 +25,7 @@ from .spin_block import (
     make_resists_turning,
     resists_turning,
 )
-from .vectors import Vec3, length, position
+from .vectors import Vec3, cross, length, position
 
 
 @inner
@@ -52,6 +52,22 @@ def add_levers(contact, body_a, body_b, b, round_a, round_b):
     contact.lever_bx, contact.lever_by, contact.lever_bz = lx, ly, lz
     contact.turn_bx, contact.turn_by, contact.turn_bz = tx, ty, tz
     return k + lx * tx + ly * ty + lz * tz
+
+
+@inner
+def add_arms(contact, body_a, body_b):
+    """Fill the angular parts of a joint's row, which has its arms; returns what they add to k_n."""
+    n = Vec3(contact.nx, contact.ny, contact.nz)
+    lever = cross(Vec3(contact.arm_ax, contact.arm_ay, contact.arm_az), n)
+    x, y, z = inverse_inertia_times(body_a, lever.x, lever.y, lever.z)
+    contact.lever_ax, contact.lever_ay, contact.lever_az = lever.x, lever.y, lever.z
+    contact.turn_ax, contact.turn_ay, contact.turn_az = x, y, z
+    k = lever.x * x + lever.y * y + lever.z * z
+    lever = cross(Vec3(contact.arm_bx, contact.arm_by, contact.arm_bz), n)
+    x, y, z = inverse_inertia_times(body_b, lever.x, lever.y, lever.z)
+    contact.lever_bx, contact.lever_by, contact.lever_bz = lever.x, lever.y, lever.z
+    contact.turn_bx, contact.turn_by, contact.turn_bz = x, y, z
+    return k + lever.x * x + lever.y * y + lever.z * z
 
 
 def make_normal_velocity(spec: Spec):
@@ -185,7 +201,7 @@ def make_apply_start(spec: Spec):
 def make_complete_row(spec: Spec):
     """Return `kernel(contact, body_a, body_b) -> k_n` of a row without friction: its levers."""
     torque, swept = row_terms(spec).levers, spec.has("fast_bodies")
-    ropes = spec.has("rope")
+    ropes, bilateral = spec.has("rope"), row_terms(spec).bilateral
 
     def complete_row(contact, body_a, body_b):
         k_n = body_a.inv_m + body_b.inv_m
@@ -201,6 +217,9 @@ def make_complete_row(spec: Spec):
             if ropes:
                 if contact.span > 0.0:
                     round_a, round_b = False, False
+            if bilateral:
+                if contact.bilateral == 1:
+                    return k_n + add_arms(contact, body_a, body_b)
             k_n += add_levers(contact, body_a, body_b, b, round_a, round_b)
         return k_n
 
@@ -249,7 +268,7 @@ def make_append_contact(spec: Spec, capture):
     preparing = made_by(spec, "prepare")
     prepares = bool(preparing)
     prepare: Any = chain(preparing, spec) if prepares else None
-    ropes = spec.has("rope")
+    ropes, bilateral = spec.has("rope"), terms.bilateral
     stirred: Any = make_stirred(spec) if ropes else None
 
     def append_contact(contact, bodies, velocities, motion, pair, params):
@@ -291,6 +310,11 @@ def make_append_contact(spec: Spec, capture):
         if compliant:
             contact.gamma = 0.0
         capture(contact, pair, params)
+        if bilateral:
+            if contact.bilateral == 1:  # its ends are together, and stay
+                contact.target = 0.0
+                if friction:
+                    contact.mu, contact.lambda_1, contact.lambda_2 = 0.0, 0.0, 0.0
         softened = k_n
         if compliant:
             softened += contact.gamma

@@ -268,7 +268,7 @@ class Engine:
             templates = removal.make_untouchable(self.bodies, self.workspace.templates, rows)
             self.workspace = self.workspace._replace(templates=templates)
             self.list_pairs_anew()
-            pairs = removal.ropes_without(self.state.pairs, rows)
+            pairs = removal.connections_without(self.state.pairs, rows)
         else:
             pairs = removal.pairs_without(self.state.pairs, rows)
         self.state = self.state._replace(pairs=pairs)

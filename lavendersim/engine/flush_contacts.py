@@ -43,7 +43,7 @@ def make_drop_flush(spec: Spec) -> Any:
     support, radius = make_support(spec), make_radius(spec)
     rate, slowest = make_rate(spec), make_slowest(spec)
     keep_present, list_contacts = make_keep_present(spec), make_list_contacts(spec)
-    sleeps, ropes = spec.has("sleeping"), spec.has("rope")
+    sleeps, connects, joins = spec.has("sleeping"), spec.connects, spec.has("joint")
 
     def passes(state, contact, other, workspace, params, least):
         bodies, motion = state.bodies, state.motion
@@ -93,6 +93,9 @@ def make_drop_flush(spec: Spec) -> Any:
                 entry = lists.following[entry]
                 if other.pair == contact.pair or other.phi > params.slop + TOUCHING:
                     continue
+                if joins:
+                    if state.pairs[other.pair].kind < ROPE:  # it is no face
+                        continue
                 if passes(state, contact, other, workspace, params, least):
                     flush, other.passed_on = True, 1
         return flush
@@ -105,8 +108,8 @@ def make_drop_flush(spec: Spec) -> Any:
         for c in range(count):
             contact = contacts[c]
             row = state.pairs[contact.pair]
-            if ropes:
-                if row.kind == ROPE:
+            if connects:
+                if row.kind <= ROPE:
                     continue
             ajar = contact.phi > params.slop and contact.located != FAR
             ajar = ajar and not (bodies[row.a].shape == SPHERE and bodies[row.b].shape == SPHERE)

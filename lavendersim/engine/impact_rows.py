@@ -9,6 +9,7 @@ from .compile import kernel
 from .effects import made_once
 from .overlooked_points import make_note_waiting
 from .records import TOUCHING
+from .row_terms import row_terms
 from .spec import Spec
 
 
@@ -27,6 +28,7 @@ def _make_together(spec: Spec) -> Any:
     An impact is handed on from body to body, as far as it goes.
     """
     slowest, springs = make_slowest(spec), spec.has("contact_spring")
+    bilateral = row_terms(spec).bilateral
 
     def hands_on(contact, bodies, motion):
         # What does not move hands nothing on.
@@ -43,6 +45,8 @@ def _make_together(spec: Spec) -> Any:
             takes_part = contact.phi <= TOUCHING or (contact.phi <= slop and contact.waits == 0)
             if springs:
                 takes_part = takes_part and pairs[contact.pair].compliance == 0.0
+            if bilateral:
+                takes_part = takes_part or contact.bilateral == 1
             if takes_part:
                 takes_part = contact.rate <= slowest(contact, bodies, motion)
             contact.waits = 0 if takes_part else 1

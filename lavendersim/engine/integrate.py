@@ -16,7 +16,7 @@ from .effects import made_once
 from .effects.gyroscopic import make_turn_by_mean
 from .records import NOT_FINITE, TURNS_TOO_FAST
 from .rotation import inertia_times, inverse_inertia_times, is_round, orient, turn
-from .row_terms import row_terms
+from .row_terms import make_acts, row_terms
 from .spec import Spec
 from .spring_turn import BOTH, PLACED, make_twist
 
@@ -123,9 +123,33 @@ def make_stand(spec: Spec) -> Any:
     return kernel(stand, spec)
 
 
+def make_share_impacts(spec: Spec) -> Any:
+    """Return `kernel(contacts, count, motion)`: bodies that joints join have their impact at once.
+
+    Each moves on the velocities before it up to the first of theirs, or their joint would tear.
+    """
+
+    def share_impacts(contacts, count, motion):
+        again = True
+        while again:
+            again = False
+            for c in range(count):
+                contact = contacts[c]
+                if contact.bilateral == 1 and contact.inv_m_a > 0.0 and contact.inv_m_b > 0.0:
+                    a, b = motion[contact.a], motion[contact.b]
+                    if a.tau != b.tau:
+                        a.tau = b.tau = min(a.tau, b.tau)
+                        again = True
+
+    return kernel(share_impacts, spec)
+
+
 def make_classify(spec: Spec) -> Any:
     """Return `kernel(contacts, count, motion, params)`: free, carried or in an impact."""
     at_surface, centred = spec.has("impact_time"), spec.has("contact_midpoint")
+    acts = make_acts(spec)
+    joined = at_surface and row_terms(spec).bilateral
+    share_impacts: Any = make_share_impacts(spec) if joined else None
 
     def classify(contacts, count, motion, params):
         abrupt, flown = False, False
@@ -133,7 +157,7 @@ def make_classify(spec: Spec) -> Any:
             motion[i].carried, motion[i].tau = 0, params.dt
         for c in range(count):
             contact = contacts[c]
-            if contact.lambda_n > 0.0:
+            if acts(contact):
                 a, b = motion[contact.a], motion[contact.b]
                 kind = 0
                 if at_surface:
@@ -152,11 +176,13 @@ def make_classify(spec: Spec) -> Any:
                     if not lasts:
                         a.carried, b.carried = ALWAYS, ALWAYS
                         abrupt = True
+        if joined:
+            share_impacts(contacts, count, motion)
         if at_surface:
             if flown:  # what had its impact before flies on to it
                 for c in range(count):
                     contact = contacts[c]
-                    if contact.lambda_n > 0.0 and contact.is_impact == AHEAD:
+                    if acts(contact) and contact.is_impact == AHEAD:
                         a, b = motion[contact.a], motion[contact.b]
                         if a.tau == params.dt:
                             a.carried = ALWAYS
@@ -165,7 +191,7 @@ def make_classify(spec: Spec) -> Any:
         if centred:
             for c in range(count):
                 contact = contacts[c]
-                if contact.lambda_n > 0.0 and contact.lasts == 1:
+                if acts(contact) and contact.lasts == 1:
                     a, b = motion[contact.a], motion[contact.b]
                     if a.carried == 0 and a.tau == params.dt:
                         a.carried = LASTING
@@ -176,7 +202,7 @@ def make_classify(spec: Spec) -> Any:
                 abrupt = False
                 for c in range(count):
                     contact = contacts[c]
-                    if contact.lambda_n > 0.0 and contact.lasts == 1:
+                    if acts(contact) and contact.lasts == 1:
                         a, b = motion[contact.a], motion[contact.b]
                         if a.carried == LASTING and b.carried != LASTING:
                             if contact.inv_m_a > 0.0 and contact.inv_m_b > 0.0:

@@ -11,15 +11,17 @@ from typing import Any
 
 from .collide.manifold.point import WHOLE, manifold_normal
 from .collide.narrow_phase import make_manifold
-from .collide.records import UNBOUNDED, put_normal
+from .collide.records import UNBOUNDED, put_arms, put_normal
 from .collide.rope import ROPE
 from .compile import inner, kernel
 from .effects import made_once
 from .effects.gyroscopic import make_turn_midway
+from .joint_turn import mean_lever
 from .records import BOX, HULL, PLANE, TOUCHING
 from .rotation import half_turn, is_round
 from .row_terms import row_terms
 from .spec import Spec
+from .vectors import minus, position
 
 # Contacts are looked for at the middle up to this share of a body's size apart.
 APART = 0.1
@@ -108,6 +110,7 @@ def make_look(spec: Spec) -> Any:
     swept, stay = spec.has("fast_bodies"), make_stay(spec)
     ordered, nearest = spec.has("impact_order"), make_nearest(spec)
     overlooks, ropes = spec.has("overlooked_points"), spec.has("rope")
+    arms = row_terms(spec).bilateral and row_terms(spec).levers
 
     def look(state, count, poses, workspace):
         bodies, contacts = state.bodies, state.contacts
@@ -153,6 +156,14 @@ def make_look(spec: Spec) -> Any:
                     if ropes:
                         if row.kind == ROPE:
                             contact.span = a.hx - point.phi
+                    if arms:
+                        if row.kind < ROPE:
+                            one, other = bodies[contact.a], bodies[contact.b]
+                            arm_a = minus(position(a), position(one))
+                            arm_b = minus(position(b), position(other))
+                            arm_a = mean_lever(one, poses[contact.a], arm_a)
+                            arm_b = mean_lever(other, poses[contact.b], arm_b)
+                            put_arms(contact, arm_a, arm_b)
                     contact.x, contact.y, contact.z = point.x, point.y, point.z
                     put_normal(contact, manifold_normal(scratch.manifold))
                     if swept:
@@ -168,6 +179,7 @@ def make_look(spec: Spec) -> Any:
 def make_stay(spec: Spec) -> Any:
     """Return `kernel(contact, bodies, poses)`: the contact of the start, where the bodies stand."""
     swept = spec.has("fast_bodies")
+    arms = row_terms(spec).bilateral and row_terms(spec).levers
 
     def stay(contact, bodies, poses):
         body, before = bodies[contact.b], poses[contact.b]
@@ -180,6 +192,11 @@ def make_stay(spec: Spec) -> Any:
         if swept:
             contact.tangential_x, contact.tangential_y = contact.at_tx, contact.at_ty
             contact.tangential_z = contact.at_tz
+        if arms:
+            if contact.bilateral == 1:
+                contact.arm_ax, contact.arm_ay = contact.at_arm_ax, contact.at_arm_ay
+                contact.arm_az, contact.arm_bx = contact.at_arm_az, contact.at_arm_bx
+                contact.arm_by, contact.arm_bz = contact.at_arm_by, contact.at_arm_bz
 
     return kernel(stay, spec)
 
@@ -189,6 +206,7 @@ def make_keep_start(spec: Spec) -> Any:
     swept, friction = spec.has("fast_bodies"), row_terms(spec).frictional
     terms = row_terms(spec)
     torsional, rolling = terms.torsional, terms.rolling
+    arms = terms.bilateral and terms.levers
 
     def keep_start(contacts, count):
         for c in range(count):
@@ -205,6 +223,11 @@ def make_keep_start(spec: Spec) -> Any:
             if swept:
                 contact.at_tx, contact.at_ty = contact.tangential_x, contact.tangential_y
                 contact.at_tz = contact.tangential_z
+            if arms:
+                if contact.bilateral == 1:
+                    contact.at_arm_ax, contact.at_arm_ay = contact.arm_ax, contact.arm_ay
+                    contact.at_arm_az, contact.at_arm_bx = contact.arm_az, contact.arm_bx
+                    contact.at_arm_by, contact.at_arm_bz = contact.arm_by, contact.arm_bz
 
     return kernel(keep_start, spec)
 

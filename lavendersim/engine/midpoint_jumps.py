@@ -12,6 +12,7 @@ from __future__ import annotations
 from typing import Any
 
 from .compile import kernel
+from .row_terms import make_acts
 from .spec import Spec
 
 
@@ -20,7 +21,7 @@ def make_carry_along(spec: Spec) -> Any:
 
     Of contacts that are solved, `lasts` and `jumps` as they were then.
     """
-    springs = spec.has("contact_spring")
+    springs, acts = spec.has("contact_spring"), make_acts(spec)
 
     def spread(contacts, count, motion):
         # What is pushed by a body that jumps, jumps with it.
@@ -29,7 +30,7 @@ def make_carry_along(spec: Spec) -> Any:
             again = False
             for c in range(count):
                 contact = contacts[c]
-                if contact.lambda_n > 0.0 and contact.inv_m_a > 0.0 and contact.inv_m_b > 0.0:
+                if acts(contact) and contact.inv_m_a > 0.0 and contact.inv_m_b > 0.0:
                     a, b = motion[contact.a], motion[contact.b]
                     if a.jumps != b.jumps:
                         a.jumps, b.jumps, again = 1, 1, True
@@ -42,7 +43,7 @@ def make_carry_along(spec: Spec) -> Any:
         abrupt = False
         for c in range(count):
             contact = contacts[c]
-            if contact.lambda_n > 0.0 and contact.lasts == 0:
+            if acts(contact) and contact.lasts == 0:
                 abrupt = True
                 if contact.inv_m_a > 0.0:
                     motion[contact.a].jumps = 1

@@ -34,7 +34,7 @@ from .midpoint_rows import (
 from .parts import make_forget_history
 from .residual import make_residual
 from .rotation import inertia_times, inverse_inertia_times, is_round
-from .row_terms import row_terms
+from .row_terms import make_acts, row_terms
 from .solvers.solver import ContactSystem
 from .spec import Spec
 
@@ -54,6 +54,7 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
     append_contact, preload: kernels of `respond`; preload: None where nothing is preloaded.
     """
     friction, turns = row_terms(spec).frictional, spec.has("rotation")
+    bilateral, acts = row_terms(spec).bilateral, make_acts(spec)
     uneven = has_hook(spec, "turn_uneven")
     is_turning, begin_slip = make_is_turning(spec), make_begin_slip(spec)
     lasting = make_lasting(spec)
@@ -176,7 +177,7 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
                 keep_free(velocities, workspace.free_velocities)
             for c in range(count):
                 contact = contacts[c]
-                if contact.lambda_n > 0.0:
+                if acts(contact):
                     apply_start(contact, velocities[contact.a], velocities[contact.b])
             missed, _ = residual(contacts, count, velocities)
             forget_history(counters, log.residual)
@@ -217,7 +218,10 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
                     preload(contacts[c], velocities, motion)
             for c in range(count):
                 contact = contacts[c]
-                if contact.kept_n > 0.0:
+                kept = contact.kept_n > 0.0
+                if bilateral:
+                    kept = kept or contact.bilateral == 1
+                if kept:
                     take_kept(contact)
                     apply_start(contact, velocities[contact.a], velocities[contact.b])
             forget_history(counters, log.residual)
@@ -227,7 +231,7 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
         counters.sweeps = sweeps
         for c in range(count):
             contact = contacts[c]
-            if contact.lambda_n > 0.0:
+            if acts(contact):
                 motion[contact.a].midway, motion[contact.b].midway = 1, 1
         for i in range(motion.shape[0]):
             if motion[i].midway == 0:  # it flies, from the start of the step

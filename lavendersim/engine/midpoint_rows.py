@@ -15,9 +15,11 @@ from .collide.records import UNBOUNDED
 from .compile import kernel
 from .contact import make_normal_velocity
 from .effects import made_once
+from .joint_turn import make_joint_velocity
 from .records import PLANE
 from .row_terms import row_terms
 from .spec import Spec
+from .vectors import length
 
 # Change of a surface's velocity in half a step that a row may miss [m/s]: what solves leave.
 SAME = 1e-9
@@ -30,6 +32,9 @@ CALM = 100.0 * SAME
 FORCED, TURNED = 0.05, 0.5
 # It may have a gap of this share of what the turning of its surfaces moves them by.
 AJAR = 0.25
+# Ends of a joint that part by more than this share of what their turning parts them by half a step
+# later are torn: their mean velocity in the step is half of that, not none [-].
+TORN = 0.5
 # It slides throughout when the slip is so many times its change.
 SLIDES = 2.0
 
@@ -89,7 +94,7 @@ def make_is_turning(spec: Spec) -> Any:
 def make_lasting(spec: Spec) -> Any:
     """Return `kernel(contact, params)`, of a row completed at the start: whether it lasts."""
     friction, springs = row_terms(spec).frictional, spec.has("contact_spring")
-    ropes = spec.has("rope")
+    ropes, bilateral = spec.has("rope"), row_terms(spec).bilateral
 
     def lasting(contact, params):
         contact.begin_n = contact.v_n_pre - contact.dv_n
@@ -104,6 +109,9 @@ def make_lasting(spec: Spec) -> Any:
         contact.lasts, contact.jumps = 1 if closed and calm else 0, 0
         if springs:
             if contact.spring_compliance > 0.0:  # its force has no jump
+                contact.lasts = 1
+        if bilateral:
+            if contact.bilateral == 1:
                 contact.lasts = 1
         if friction:
             contact.slides = 0
@@ -157,12 +165,22 @@ def make_shift(spec: Spec) -> Any:
     friction, frictionless = terms.frictional, terms.frictionless
     springs, spring_row = made_once(spec, "spring_row")
     swept, ropes = spec.has("fast_bodies"), spec.has("rope")
+    bilateral = terms.bilateral
+    joint_velocity: Any = make_joint_velocity(spec) if bilateral else None
     normal_velocity = make_normal_velocity(spec)
     relative_velocity = make_relative_velocity(spec)
 
     def shift(contact, lead, params):
         la, lb = lead[contact.a], lead[contact.b]
         contact.middle_n = normal_velocity(contact, la, lb)
+        if bilateral:
+            if contact.bilateral == 1:
+                contact.lasts = 1
+                contact.target = contact.middle_n
+                # Of a joint that an impact or its first velocities tear, nothing is thrown back.
+                if contact.begin_torn > TORN * length(joint_velocity(contact, la, lb)):
+                    contact.target -= contact.begin_n
+                return
         kept = min(contact.begin_n, 0.0)
         if ropes:
             # What its ends approach by is no mode to damp: it is what keeps length and energy.
@@ -222,7 +240,12 @@ def make_widen(spec: Spec) -> Any:
     that curve away from each other may come nearer by their rate at the start and yet not meet.
     """
 
+    bilateral = row_terms(spec).bilateral
+
     def widen(contact, params):
+        if bilateral:
+            if contact.bilateral == 1:
+                return
         opens = contact.middle_n - contact.begin_n
         if contact.phi > params.slop and opens > 0.0:
             mean = contact.v_n_pre - 0.5 * contact.dv_n

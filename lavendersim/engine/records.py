@@ -27,7 +27,7 @@ CAPSULE: Final = 3
 CYLINDER: Final = 4
 HULL: Final = 5
 COMPOUND: Final = 6
-ROPE_END: Final = -1  # where a rope is tied to a body: `collide.rope`
+ROPE_END: Final = -1  # where a rope or a joint is on a body: `collide.rope`, `collide.joint`
 
 # Surfaces closer than this touch [m]. Bodies placed face to face leave gaps of round-off size
 # (1e-16 at 1 m, 1e-11 at 100 km); without it one corner of a box rests while another falls a step.

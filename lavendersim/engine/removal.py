@@ -50,19 +50,19 @@ def pairs_without(pairs: np.ndarray, rows: np.ndarray) -> np.ndarray:
 
 
 def larger_table(pairs: np.ndarray, count: int) -> np.ndarray:
-    """Return a table of pairs with so many rows, in which ropes stand as they did."""
+    """Return a table of pairs with so many rows, in which ropes and joints stand as they did."""
     table = np.zeros(count, pairs.dtype)
-    ropes = pairs[pairs["kind"] == ROPE]
+    ropes = pairs[pairs["kind"] <= ROPE]
     table[: len(ropes)] = ropes
     return table
 
 
-def ropes_without(pairs: np.ndarray, rows: np.ndarray) -> np.ndarray:
-    """Return the table of a broad phase without the ropes of some rows of the body table.
+def connections_without(pairs: np.ndarray, rows: np.ndarray) -> np.ndarray:
+    """Return the table of a broad phase without ropes and joints of some rows of the body table.
 
     What it had of other pairs is listed anew.
     """
-    if not (pairs["kind"] == ROPE).any():
+    if not (pairs["kind"] <= ROPE).any():
         return pairs
     return larger_table(pairs_without(pairs, rows), len(pairs))
 

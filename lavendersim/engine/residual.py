@@ -3,7 +3,8 @@
 Natural map of the complementarity 0 <= lambda_n, 0 <= w with w = v_n + target + gamma lambda_n:
     r = | min((k_n + gamma) lambda_n, w) |
 zero exactly at a solution, continuous, and in velocity units because lambda is scaled by the row's
-own inverse mass. Of friction, with the disc (or the pyramid's square) of radius mu lambda_n:
+own inverse mass; of what is bilateral r = |w|. Of friction, with the disc (or the pyramid's
+square) of radius mu lambda_n:
     r_t = | k_t lambda_t - proj(k_t lambda_t - v_t) |
 Of the convex relaxation (`row_update`), with w = (w_n, v_t), k >= |K| and P_K onto the cone itself:
     r = | k lambda - P_K(k lambda - w) |
@@ -32,12 +33,15 @@ def make_row_residual(spec: Spec):
 
 def make_normal_residual(spec: Spec):
     """Return `kernel(contact, v_n) -> r` [m/s]: Signorini's law, of the normal alone."""
-    compliant = row_terms(spec).compliant
+    compliant, bilateral = row_terms(spec).compliant, row_terms(spec).bilateral
 
     def normal_residual(contact, v_n):
         w = v_n + contact.target
         if compliant:
             w += contact.gamma * contact.lambda_n
+        if bilateral:
+            if contact.bilateral == 1:
+                return abs(w)
         # A NaN in the first place of min stays, in the second it is dropped.
         return abs(min(w, contact.lambda_n / contact.inv_k))
 

@@ -17,13 +17,16 @@ from .compile import chain, kernel, separate
 from .contact import make_append_contact, make_apply_start
 from .effects import has_hook, made_by, made_once
 from .integrate import keeps_motion, make_classify
+from .joint_turn import make_joint_velocity
 from .midpoint_passes import make_midpoint_passes, make_stand_up
 from .midpoint_rows import make_lasting, make_stirs
 from .overlooked_points import make_look_over
 from .records import INSTANT
+from .row_terms import make_acts, row_terms
 from .solvers.catalogue import SOLVERS
 from .solvers.solver import ContactSystem
 from .spec import Spec
+from .vectors import length
 
 
 def make_solve(spec: Spec) -> Any:
@@ -56,6 +59,7 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
     warms, match_contacts = made_once(spec, "match")
     _, store_contacts = made_once(spec, "store")
     apply_start: Any = make_apply_start(spec) if warms else None
+    acts = make_acts(spec)
     watched, note = made_once(spec, "note_slip")
     keeps = keeps_motion(spec)
     classify: Any = make_classify(spec) if watched or keeps else None
@@ -71,6 +75,8 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
     ordered, centred = spec.has("impact_order"), spec.has("contact_midpoint")
     lasting: Any = make_lasting(spec) if centred else None
     stirs: Any = make_stirs(spec) if centred else None
+    bilateral = row_terms(spec).bilateral
+    joint_velocity: Any = make_joint_velocity(spec) if bilateral else None
     midpoint_passes: Any = None
     if centred:
         midpoint_passes = make_midpoint_passes(spec, append_contact, preload, solve)
@@ -110,6 +116,12 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
         if centred:
             for c in range(count):
                 lasting(contacts[c], params)
+            if bilateral:
+                for c in range(count):
+                    contact = contacts[c]
+                    if contact.bilateral == 1:
+                        ma, mb = motion[contact.a], motion[contact.b]
+                        contact.begin_torn = length(joint_velocity(contact, ma, mb))
             moving = lasts and stirs(bodies, motion)
             if moving:
                 for i in range(velocities.shape[0]):
@@ -123,7 +135,7 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
             match_contacts(contacts, count, bodies, cache, counters, params)
             for c in range(count):
                 contact = contacts[c]
-                if contact.lambda_n > 0.0:
+                if acts(contact):
                     va, vb = velocities[contact.a], velocities[contact.b]
                     apply_start(contact, va, vb)
         order_contacts(bodies, contacts, count, workspace.ordering)

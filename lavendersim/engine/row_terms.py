@@ -19,6 +19,24 @@ def row_terms(spec: Spec) -> RowTerms:
     return RowTerms(**terms | {"frictionless": terms["frictionless"] or not terms["frictional"]})
 
 
+def make_acts(spec: Spec) -> Any:
+    """Return `kernel(contact) -> whether` it holds or pushes its bodies in this step.
+
+    What is bilateral holds, whatever its impulse.
+    """
+    if not row_terms(spec).bilateral:
+
+        def pushes(contact):
+            return contact.lambda_n > 0.0
+
+        return kernel(pushes, spec)
+
+    def acts(contact):
+        return contact.lambda_n > 0.0 or contact.bilateral == 1
+
+    return kernel(acts, spec)
+
+
 def by_friction(spec: Spec, make_frictionless: Any, make_frictional: Any) -> Any:
     """Return the kernel for the contacts that an engine has: of one kind, or by the contact.
 

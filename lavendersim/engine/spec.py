@@ -48,8 +48,13 @@ class Spec(NamedTuple):
 
     @property
     def touches(self) -> bool:
-        """Whether steps may have contacts: a taut rope is one."""
-        return bool(self.shape_pairs) or self.has("rope")
+        """Whether steps may have contacts: a taut rope is one, and a joint has rows of theirs."""
+        return bool(self.shape_pairs) or self.connects
+
+    @property
+    def connects(self) -> bool:
+        """Whether there are connections with rows of their own: ropes, joints."""
+        return self.has("rope") or self.has("joint")
 
     def collides(self, pair: str) -> bool:
         """Whether the manifold of `pair` is part of this engine."""

@@ -28,8 +28,8 @@ _GEOMETRY = {
 }
 # Impulses of these are in no pose and no velocity, or they are no contact of three numbers.
 _UNKNOWN = (
-    *("cohesion", "drag", "rolling_friction", "rope", "spring", "torsional_friction"),
-    "varying_force",
+    *("cohesion", "drag", "joint", "rolling_friction", "rope", "spring"),
+    *("torsional_friction", "varying_force"),
 )
 
 # Of a body's radius: what pushes nearer than that and cannot meet it pushes across a gap [-].

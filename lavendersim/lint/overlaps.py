@@ -14,6 +14,7 @@ import numpy as np
 
 from lavendersim.cell import CellBody, Plane
 from lavendersim.cell.shapes import CellSimple
+from lavendersim.engine.effects import holding
 from lavendersim.errors import Defect
 from lavendersim.experiment import Cell, body_path
 from lavendersim.geometry.bodies import is_movable
@@ -62,7 +63,8 @@ def overlaps(cell: Cell) -> Iterator[Defect]:
     if behind is not None:
         how = f"starts {behind.depth:.3g} m behind the surface of {behind.other}"
         yield _defect(cell, behind.name, f"{behind.name} {how}")
-    inside = _inside(parts)
+    joined = [{*one.between} for one in holding(cell.config.scene).values() if not one.collide]
+    inside = [one for one in _inside(parts) if {one.name, one.other} not in joined]
     if inside:
         deepest = max(inside)
         far = f"{deepest.depth:.3g} m " if deepest.depth > 0.0 else ""

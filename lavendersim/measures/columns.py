@@ -42,12 +42,14 @@ def contact_parts(trace: Trace) -> Iterator[Rows]:
 def contacts_of(trace: Trace, body: str, other: str | None = None) -> Rows:
     """Return the contact rows of a body (with one other body, if named), in rising step.
 
-    Of its surfaces: a taut rope has its row, and is none of them.
+    Of its surfaces: a taut rope has its row, a joint several, and they are none of them.
     """
     index = list(trace.bodies).index(body)
     rows = trace.contact
     if "rope" in (rows.dtype.names or ()):
         rows = rows[rows["rope"] == 0]
+    if "joint" in (rows.dtype.names or ()):
+        rows = rows[rows["joint"] == 0]
     touches = (rows["body_a"] == index) | (rows["body_b"] == index)
     if other is not None:
         partner = list(trace.bodies).index(other)

@@ -90,6 +90,8 @@ def excesses(trace: Trace, contacts: Rows) -> Floats:
     """
     pushed, names = contacts["impulse_n"], contacts.dtype.names or ()
     excess: Floats = np.maximum(-pushed, 0.0)
+    if "joint" in names:  # of either sign
+        excess = np.where(contacts["joint"] > 0, 0.0, excess)
     pressing = np.maximum(pushed, 0.0)
     if "impulse_t1" in names:
         mu = friction_of(trace, contacts)

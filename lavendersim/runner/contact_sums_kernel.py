@@ -27,11 +27,11 @@ COLUMNS: Final = (
     *("step", "body_a", "body_b", "nx", "ny", "nz", "t1x", "t1y", "t1z"),
     *("separation", "penetration", "normal_velocity", "impulse_n", "impulse_t1", "impulse_t2"),
     *("friction", "torsional_friction", "angular_impulse_n"),
-    *("rolling_friction", "angular_impulse_t1", "angular_impulse_t2"),
+    *("rolling_friction", "angular_impulse_t1", "angular_impulse_t2", "joint"),
 )
 STEP, A, B, NX, NY, NZ, T1X, T1Y, T1Z = range(9)
 SEPARATION, PENETRATION, NORMAL_VELOCITY, IMPULSE_N, IMPULSE_T1, IMPULSE_T2 = range(9, 15)
-FRICTION, TORSIONAL, ANGULAR_N, ROLLING, ANGULAR_T1, ANGULAR_T2 = range(15, 21)
+FRICTION, TORSIONAL, ANGULAR_N, ROLLING, ANGULAR_T1, ANGULAR_T2, JOINT = range(15, 22)
 # Columns of what the kernel fills for each step.
 NOT_FINITE, DEEPEST, EXCESS, OUTER_X, OUTER_Y, OUTER_Z, SIZE, OPENED, PULLED = range(9)
 EXPONENT: Final = 0x7FF << 52  # of a float64 that is not finite all these bits are set
@@ -90,6 +90,8 @@ def _make_sum(spec: Spec) -> Any:
                 x, y, z = row[columns[NX]], row[columns[NY]], row[columns[NZ]]
                 jx, jy, jz = x * net, y * net, z * net
                 excess, pressing = larger(-n, 0.0), larger(n, 0.0)
+                if columns[JOINT] >= 0 and words[columns[JOINT]] > 0:  # of either sign
+                    excess = 0.0
                 if columns[IMPULSE_T1] >= 0:
                     one, two = row[columns[IMPULSE_T1]], row[columns[IMPULSE_T2]]
                     tx, ty, tz = row[columns[T1X]], row[columns[T1Y]], row[columns[T1Z]]

@@ -28,6 +28,7 @@ from .body_rows import body_table, pose_of
 from .classes import RowClass
 from .colliders import colliders
 from .drive_tables import drive_tables
+from .joints import joined_bodies, with_joint_ends, with_joints
 from .pair_tables import pair_tables
 from .ropes import with_ends, with_ropes
 from .stages import later_forms
@@ -40,8 +41,8 @@ _NO_STEPS = (1, 0)
 class Scene(NamedTuple):
     """The arrays of one scene, as the engine takes them, and the names of its bodies.
 
-    Behind the rows of the bodies stand those of the parts of compounds and of the ends of ropes;
-    `names` and `poses` end before them.
+    Behind the rows of the bodies stand those of the parts of compounds and of the ends of ropes and
+    joints; `names` and `poses` end before them.
     """
 
     names: list[str]
@@ -153,6 +154,8 @@ def build(config: CellConfig, spec: Spec) -> Scene:
     poses = np.array([pose_of(body) for body in described]).reshape(-1, 7)
     bodies, hulls = body_table(spec, rows, poses)
     bodies = with_ends(spec, bodies, config)
+    first_joint = len(bodies)
+    bodies = with_joint_ends(spec, bodies, config)
     velocities = allocate_velocities(spec, len(bodies))
     turns = "wx" in (velocities.dtype.names or ())
     for velocity, body in zip(velocities, described, strict=False):  # parts have none
@@ -160,13 +163,14 @@ def build(config: CellConfig, spec: Spec) -> Scene:
         if turns:
             velocity["wx"], velocity["wy"], velocity["wz"] = body.angular_velocity
     later = [one for forms in later_forms(config).values() for one in forms]
-    tables = pair_tables(spec, rows, bodies, later)
+    tables = pair_tables(spec, rows, bodies, later, joined_bodies(config.scene))
+    pairs = with_ropes(spec, tables.pairs, bodies[:first_joint], config.scene)
     clock = config.clock
     return Scene(
         names=list(config.scene.bodies),
         bodies=bodies,
         velocities=velocities,
-        pairs=with_ropes(spec, tables.pairs, bodies, config.scene),
+        pairs=with_joints(spec, pairs, bodies, first_joint),
         parameters=_parameters(config, clock),
         poses=poses,
         clock=clock,

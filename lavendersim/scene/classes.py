@@ -6,6 +6,7 @@ pair of classes.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -17,6 +18,11 @@ from lavendersim.geometry.bodies import is_movable
 from .colliders import Collider
 
 _PAIR_BY_SHAPES = {pair.shapes: name for name, pair in SHAPE_PAIRS.items()}
+
+
+# Pairs of bodies that do not touch since a joint joins them, each by its rows in order.
+Joined = frozenset[tuple[int, int]]
+NOTHING_JOINED: Joined = frozenset()
 
 
 class RowClass(NamedTuple):
@@ -60,7 +66,28 @@ def ordered(kinds: tuple[str, str]) -> tuple[bool, str]:
     return True, _PAIR_BY_SHAPES[kinds[1], kinds[0]]
 
 
-def class_pairs(rows: Sequence[Collider]) -> list[RowPair]:
+def is_joined(rows: Sequence[Collider], a: int, b: int, joined: Joined) -> bool:
+    """Whether a joint keeps the bodies of two rows from touching."""
+    one, other = rows[a].owner, rows[b].owner
+    return (min(one, other), max(one, other)) in joined
+
+
+def _count_joined(
+    rows: Sequence[Collider], members: Sequence[int], joined: Joined
+) -> Counter[tuple[int, int]]:
+    """Return how many pairs of rows of two classes do not touch since they are joined."""
+    of_body: dict[int, list[int]] = {}
+    for row, number in enumerate(members):
+        of_body.setdefault(rows[row].owner, []).append(number)
+    return Counter(
+        (min(one, other), max(one, other))
+        for a, b in joined
+        for one in of_body[a]
+        for other in of_body[b]
+    )
+
+
+def class_pairs(rows: Sequence[Collider], joined: Joined = NOTHING_JOINED) -> list[RowPair]:
     """Return every pair of classes of which rows may touch, in the order of their first rows.
 
     Parts of one body do not touch each other; `row_pairs` counts theirs too.
@@ -73,6 +100,7 @@ def class_pairs(rows: Sequence[Collider]) -> list[RowPair]:
         known = first[number]
         if not known or (len(known) == 1 and rows[known[0]].owner != rows[row].owner):
             known.append(row)
+    apart = _count_joined(rows, members, joined)
     found = []
     for i, one in enumerate(classes):
         for j in range(i, len(classes)):
@@ -81,7 +109,12 @@ def class_pairs(rows: Sequence[Collider]) -> list[RowPair]:
             if not pairs or not one.touches(other):
                 continue
             count = sizes[i] * (sizes[i] - 1) // 2 if i == j else sizes[i] * sizes[j]
-            a, b = min(pairs, key=sorted)
+            count -= apart[i, j]
+            if count == 0:
+                continue
+            # Named by two that touch, where the first of the classes are such.
+            free = [pair for pair in pairs if not is_joined(rows, *pair, joined)]
+            a, b = min(free or pairs, key=sorted)
             swap, name = ordered((rows[a].kind, rows[b].kind))
             if swap:
                 a, b = b, a

@@ -12,13 +12,20 @@ from lavendersim.cell import (
     changes_of_bodies,
     changes_of_gravity,
 )
-from lavendersim.engine.effects import EFFECTS, BodyFacts, Facts, PairFacts
+from lavendersim.engine.effects import (
+    EFFECTS,
+    BodyFacts,
+    Facts,
+    PairFacts,
+    turned_by_joints,
+)
 from lavendersim.engine.effects.rope import turned as turned_by_ropes
 from lavendersim.geometry.bodies import is_movable
 from lavendersim.geometry.shapes import bounding_radius
 
 from .classes import RowPair, class_pairs
 from .colliders import colliders, parts_of
+from .joints import facts_of_joints, joined_bodies
 from .ropes import facts_of_ropes
 from .stages import later_forms, stages_of
 
@@ -33,7 +40,8 @@ def _body_facts(config: CellConfig) -> Iterator[BodyFacts]:
     acting = [one for effect in EFFECTS if effect.acts_on for one in effect.acts_on(config.scene)]
     pulled = {name for name, _ in acting}
     moving = [effect.moves for effect in EFFECTS if effect.moves]
-    turned = levers | {name for name, turns in acting if turns} | {*turned_by_ropes(config.scene)}
+    turned = levers | {name for name, turns in acting if turns}
+    turned |= {*turned_by_ropes(config.scene), *turned_by_joints(config.scene)}
     later = later_forms(config)
     for name, body in config.scene.bodies.items():
         inertia = body.inertia or (0.0, 0.0, 0.0)
@@ -73,7 +81,8 @@ def _pairs_over_time(config: CellConfig) -> tuple[list[RowPair], int]:
 
     No event lets bodies touch that could not before: the number is that of any stage.
     """
-    of_stages = [class_pairs(colliders(list(one.values()))) for one in stages_of(config)]
+    joined = joined_bodies(config.scene)
+    of_stages = [class_pairs(colliders(list(one.values())), joined) for one in stages_of(config)]
     pairs = list(of_stages[0])
     for later in of_stages[1:]:
         known = {pair[:4] for pair in pairs}
@@ -86,7 +95,7 @@ def facts_of(config: CellConfig, record: bool = True) -> Facts:
     names = list(config.scene.bodies)
     numerics = config.numerics
     pairs, row_pairs = _pairs_over_time(config)
-    ropes = tuple(facts_of_ropes(config.scene))
+    ropes, joints = tuple(facts_of_ropes(config.scene)), tuple(facts_of_joints(config.scene))
     owners = [row.owner for row in colliders(list(config.scene.bodies.values()))]
     return Facts(
         bodies=tuple(_body_facts(config)),
@@ -102,6 +111,7 @@ def facts_of(config: CellConfig, record: bool = True) -> Facts:
                 for pair in pairs
             ),
             *ropes,
+            *joints,
         ),
         gravity=config.scene.gravity,
         triggers=tuple(one.when.text for one in config.triggered),
@@ -109,7 +119,7 @@ def facts_of(config: CellConfig, record: bool = True) -> Facts:
         stabilisation_gain=numerics.stabilisation_gain,
         projection=numerics.projection if numerics.projection_sweeps else 0.0,
         warm_start=numerics.warm_start,
-        pair_count=row_pairs + len(ropes),
+        pair_count=row_pairs + len(ropes) + sum(pair.row_pairs for pair in joints),
         speculative=numerics.speculative,
         impacts=numerics.impacts,
         simultaneous_impacts=numerics.simultaneous_impacts,

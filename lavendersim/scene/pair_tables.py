@@ -22,7 +22,15 @@ from lavendersim.engine.removal import NO_PAIR
 from lavendersim.engine.spec import Spec
 
 from .candidates import candidate_pairs
-from .classes import RowClass, class_of, classes_of, ordered
+from .classes import (
+    NOTHING_JOINED,
+    Joined,
+    RowClass,
+    class_of,
+    classes_of,
+    is_joined,
+    ordered,
+)
 from .colliders import Collider, colliders
 
 # Rows of pairs that a scene with a broad phase starts with, per body: a densely packed pile of
@@ -39,11 +47,16 @@ class PairTables(NamedTuple):
 
 
 def pair_tables(
-    spec: Spec, rows: Sequence[Collider], bodies: np.ndarray, later: Iterable[CellBody] = ()
+    spec: Spec,
+    rows: Sequence[Collider],
+    bodies: np.ndarray,
+    later: Iterable[CellBody] = (),
+    joined: Joined = NOTHING_JOINED,
 ) -> PairTables:
     """Return the rows of pairs and the templates; fills `material` of bodies that have it.
 
-    later: bodies as events make them; their classes have templates, too.
+    later: bodies as events make them; their classes have templates, too. joined: pairs of bodies
+    that do not touch; a broad phase knows them by the rows of joints.
     """
     if spec.has("broad_phase"):
         classes, bodies["material"][: len(rows)] = classes_of(rows)
@@ -51,7 +64,11 @@ def pair_tables(
         every = tuple(dict.fromkeys([*classes, *of_later]))
         pairs = allocate_pairs(spec, PAIRS_PER_BODY * len(bodies))
         return PairTables(pairs, _templates(spec, every), every)
-    candidates = candidate_pairs([row.body for row in rows if row.part is None])
+    candidates = [
+        pair
+        for pair in candidate_pairs([row.body for row in rows if row.part is None])
+        if not is_joined(rows, pair.a, pair.b, joined)
+    ]
     pairs = allocate_pairs(spec, len(candidates))
     for index, (line, pair) in enumerate(zip(pairs, candidates, strict=True)):
         line["a"], line["b"], line["key"] = pair.a, pair.b, index
@@ -72,7 +89,7 @@ def list_materials(
 def mix_again(pairs: np.ndarray, rows: Sequence[Collider], owner: int) -> None:
     """Mix the surfaces of all pairs of one body, which has changed its own, anew."""
     for line in pairs:
-        if line["kind"] == ROPE:  # it has no surface
+        if line["kind"] <= ROPE:  # it has no surface
             continue
         a, b = rows[line["a"]], rows[line["b"]]
         if owner in (a.owner, b.owner):

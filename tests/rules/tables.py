@@ -27,7 +27,7 @@ SECTIONS = {
     "accelerate": ("gravity", "external_force", "drag", "spring", "kinematic"),
     "collide": ("compound", "broad_phase", "speculative", "fast_bodies"),
     "rows": (
-        *("contact_torque", "friction", "frictionless_contact", "rope"),
+        *("contact_torque", "friction", "frictionless_contact", "rope", "joint"),
         *("stabilisation", "compliance", "restitution", "surface_velocity", "capture_in_sweeps"),
         *("cohesion", "contact_spring", "static_friction", "falling_restitution"),
     ),

@@ -19,7 +19,7 @@ WITHOUT_UNIT = {
     "advance_not_converged", "impact_not_converged", "midpoint_not_converged",
     "gyroscopic_not_converged", "spring_not_converged", "least_norm_not_converged",
     "signorini_contact", "cone_contact", "dissipation_contact",
-    "body_a", "body_b", "feature", "rope", "nx", "ny", "nz", "t1x", "t1y", "t1z",
+    "body_a", "body_b", "feature", "joint", "rope", "nx", "ny", "nz", "t1x", "t1y", "t1z",
 }  # fmt: skip
 # The step of a contact or a residual is the number of the message that carries it.
 OF_THE_MESSAGE = "step"

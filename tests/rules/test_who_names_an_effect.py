@@ -114,8 +114,8 @@ ASKED = {
         ),
         "contact_midpoint": (
             *("contact", "effects/contact_spring", "effects/friction", "effects/projection"),
-            "effects/prescribed_motion",
-            *("integrate", "memory", "respond"),
+            *("effects/joint", "effects/prescribed_motion"),
+            *("integrate", "joint_turn", "memory", "respond"),
         ),
         "impact_time": (
             *("contact", "effects/cohesion", "effects/restitution", "effects/speculative"),
@@ -155,12 +155,15 @@ ASKED = {
         "surface_velocity": ("effects/static_friction", "spring_contacts"),
         "capture_in_sweeps": ("effects/restitution",),
     },
-    "rows that collision detection does not make: along the line of two ends": {
+    "rows that collision detection does not make: of what connects two ends": {
         "rope": (
-            *("approach", "collide/broad/broad_phase", "collide/narrow_phase", "collide/swept"),
-            *("contact", "effects/impact_order", "flush_contacts", "foreseen_impacts"),
-            *("midpoint_geometry", "midpoint_rows", "spec", "scene/facts", "scene/ropes"),
-            "effects/__init__",
+            *("approach", "collide/narrow_phase", "contact", "effects/impact_order"),
+            *("foreseen_impacts", "midpoint_geometry", "midpoint_rows", "spec"),
+            *("scene/facts", "scene/ropes", "effects/__init__"),
+        ),
+        "joint": (
+            *("collide/broad/broad_phase", "collide/narrow_phase", "effects/triggers"),
+            *("effects/rope", "flush_contacts", "spec", "scene/joints", "effects/__init__"),
         ),
     },
     "arrays that an engine has only with it, and who is awake": {

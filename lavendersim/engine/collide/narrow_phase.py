@@ -11,11 +11,13 @@ from ..compile import inner, kernel
 from ..effects import made_once
 from ..overlooked_points import make_note_left_out
 from ..records import TOUCHING
+from ..row_terms import row_terms
 from ..spec import Spec
-from ..vectors import Vec3, dot
+from ..vectors import Vec3, dot, minus, position
+from .joint import make_joint
 from .manifold.point import LEFT_OUT, WHOLE, manifold_normal
 from .pairs import SHAPE_PAIRS
-from .records import put_normal
+from .records import put_arms, put_normal
 from .rope import ROPE, make_rope
 from .swept import make_is_fast, make_swept_manifold
 
@@ -31,7 +33,21 @@ def displacement(of_a, of_b, share, dt):
 
 
 def make_manifold(spec: Spec, names: tuple[str, ...]):
-    """Return `kernel(kind, a, b, margin, scratch) -> count` for these pairs, and for ropes."""
+    """Return `kernel(kind, a, b, margin, scratch) -> count`: these pairs, ropes and joints."""
+    others = _make_manifold_of_ropes(spec, names)
+    if not spec.has("joint"):
+        return others
+    joint = make_joint(spec)
+
+    def manifold_or_joint(kind, a, b, margin, scratch):
+        if kind < ROPE:
+            return joint(kind, a, b, scratch)
+        return others(kind, a, b, margin, scratch)
+
+    return kernel(manifold_or_joint, spec)
+
+
+def _make_manifold_of_ropes(spec: Spec, names: tuple[str, ...]):
     of_shapes = _make_manifold_of_shapes(spec, names)
     if not spec.has("rope"):
         return of_shapes
@@ -86,6 +102,7 @@ def make(spec: Spec):
     swept_manifold: Any = make_swept_manifold(spec, manifold) if sweeps else None
     share = 0.5 if spec.has("midpoint") else 1.0
     compound, ropes = spec.has("compound"), spec.has("rope")
+    bilateral, levers = row_terms(spec).bilateral, row_terms(spec).levers
     sleeps, still = made_once(spec, "is_still")
     overlooks = spec.has("overlooked_points")
     note_left_out: Any = make_note_left_out(spec) if overlooks else None
@@ -142,6 +159,14 @@ def make(spec: Spec):
                 contact.phi = point.phi
                 if ropes:
                     contact.span = bodies[i].hx - point.phi if pairs[p].kind == ROPE else 0.0
+                if bilateral:
+                    contact.bilateral = 1 if pairs[p].kind < ROPE else 0
+                    if levers and contact.bilateral == 1:
+                        put_arms(
+                            contact,
+                            minus(position(bodies[i]), position(bodies[owner_i])),
+                            minus(position(bodies[j]), position(bodies[owner_j])),
+                        )
                 if sweeps:
                     # Across n B's surface is touched where B will be at the impact.
                     along = dot(d, n)

@@ -90,6 +90,13 @@ def normal_of(record):
 
 
 @inner
+def put_arms(contact, a, b):
+    """Write the levers of a joint's row: of A and of B [m]."""
+    contact.arm_ax, contact.arm_ay, contact.arm_az = a.x, a.y, a.z
+    contact.arm_bx, contact.arm_by, contact.arm_bz = b.x, b.y, b.z
+
+
+@inner
 def put_normal(record, n):
     """Write the fields nx, ny, nz of a record."""
     record.nx, record.ny, record.nz = n.x, n.y, n.z

@@ -19,16 +19,16 @@ ROPE = -2
 FIRST_ROPE = 1 << 48
 
 
-def make_count_ropes(spec: Spec):
-    """Return `kernel(pairs) -> how many` rows are ropes: they stand before all others."""
+def make_count_connections(spec: Spec):
+    """Return `kernel(pairs) -> how many` rows are of ropes and joints, before all others."""
 
-    def count_ropes(pairs):
+    def count_connections(pairs):
         count = 0
-        while count < pairs.shape[0] and pairs[count].kind == ROPE:
+        while count < pairs.shape[0] and pairs[count].kind <= ROPE:
             count += 1
         return count
 
-    return kernel(count_ropes, spec)
+    return kernel(count_connections, spec)
 
 
 def make_rope(spec: Spec):

@@ -61,14 +61,14 @@ class Impact(NamedTuple):
 def make_is_fast(spec: Spec):
     """Return `kernel(a, b, d)`: whether the displacement d relative to each other exceeds FAST R.
 
-    Never with a plane: its normal is the same from everywhere; nor the ends of a rope.
+    Never with a plane: its normal is the same from everywhere; nor the ends of ropes and joints.
     """
-    ropes = spec.has("rope")
+    ends = spec.connects
 
     def is_fast(a, b, d):
         if a.shape == PLANE or b.shape == PLANE:
             return False
-        if ropes:
+        if ends:
             if a.shape == ROPE_END:
                 return False
         far = FAST * min(a.bound, b.bound)

@@ -12,6 +12,7 @@ from ..records import Field
 from ..spec import Spec
 from .decision import BodyFacts, Decision, Facts, PairFacts
 from .effect import CHAINED, Choice, Column, Derived, Effect, Hooks, hook_names
+from .joint import holding, turned_by_joints
 from .keys import TurnOf
 from .rope import pulling
 from .time_functions import TimeFunction
@@ -20,6 +21,7 @@ from .time_functions import TimeFunction
 NAMES: Final = (
     "compound",
     "rope",
+    "joint",
     "broad_phase",
     "gravity",
     "external_force",
@@ -158,10 +160,12 @@ __all__ = [
     "columns_of",
     "effects_of",
     "has_hook",
+    "holding",
     "hook_names",
     "made_by",
     "made_once",
     "pulling",
     "row_fields",
     "surface_fields",
+    "turned_by_joints",
 ]

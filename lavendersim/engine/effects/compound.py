@@ -19,6 +19,8 @@ def decide(facts: Facts) -> Decision:
         return Decision(True, f"{named(whole)}: made of parts")
     if any(pair.shape_pair == "rope" for pair in facts.pairs):
         return Decision(True, "ends of ropes are tied to bodies, and follow them")
+    if any(pair.shape_pair == "joint" for pair in facts.pairs):
+        return Decision(True, "ends of joints are tied to bodies, and follow them")
     return Decision(False, "every body is one shape")
 
 

@@ -34,7 +34,7 @@ def make(spec: Spec, loggers):
 
     speculative = spec.has("speculative")
     loads = any(effect.hooks.preload for effect in effects_of(spec))
-    friction = row_terms(spec).frictional
+    friction, bilateral = row_terms(spec).frictional, row_terms(spec).bilateral
     row_residual, forget = make_row_residual(spec), make_forget(spec)
     watch_signorini, watch_coulomb = make_watch_signorini(spec), make_watch_coulomb(spec)
     log_more = chain(loggers, spec)
@@ -66,6 +66,8 @@ def make(spec: Spec, loggers):
                     acts = acts or contact.loaded == 1
                 # What touches without a push has a row in the part that ends the step.
                 touches = contact.phi <= TOUCHING and last
+                if bilateral:
+                    acts = acts or contact.bilateral == 1
                 if not (touches or acts):
                     watch_signorini(counters, -1, contact, v_n)
                     continue
@@ -78,7 +80,10 @@ def make(spec: Spec, loggers):
             out.x, out.y, out.z = contact.x, contact.y, contact.z
             out.nx, out.ny, out.nz = contact.nx, contact.ny, contact.nz
             out.separation = contact.phi
-            out.penetration = max(0.0 - contact.phi, 0.0)
+            if bilateral:
+                if contact.bilateral == 1:  # it has no inside
+                    out.separation = abs(contact.phi)
+            out.penetration = max(0.0 - out.separation, 0.0)
             out.approach_velocity = contact.v_n_pre
             out.normal_velocity = v_n
             out.impulse_n = contact.lambda_n
@@ -87,7 +92,10 @@ def make(spec: Spec, loggers):
             out.target = contact.target
             out.residual = residual
             log_more(out, contact, va, vb)
-            if friction:
+            cone = True
+            if bilateral:
+                cone = contact.bilateral == 0
+            if friction and cone:
                 watch_coulomb(counters, written - 1, contact, out.slip_t1, out.slip_t2)
             force += out.force_n
             # A NaN is deeper than anything, or it would not be seen.

@@ -18,7 +18,9 @@ def decide(facts: Facts) -> Decision:
         return Decision(True, f"{named(levered)}: contact normals may miss the centre of mass")
     for pair in facts.pairs:
         if pair.off_centre:
-            return Decision(True, f"{pair.a} and {pair.b}: a rope pulls off the centre of mass")
+            return Decision(
+                True, f"{pair.a} and {pair.b}: a {pair.shape_pair} pulls off the centre of mass"
+            )
         if pair.surface.friction > 0.0:
             return Decision(True, f"{pair.a} and {pair.b}: friction acts off the centre of mass")
         if pair.resists_turning:

@@ -47,7 +47,7 @@ class PairFacts(NamedTuple):
     surface: Any  # of the contact: the surface keys of the effects, mixed
     shape_pair: str = ""  # name of the manifold
     row_pairs: int = 1  # how many pairs it stands for
-    off_centre: bool = False  # a rope, whose line may miss a centre of mass that it pulls
+    off_centre: bool = False  # a rope or joint that may pull past a centre of mass
 
     @property
     def resists_turning(self) -> bool:
@@ -88,6 +88,11 @@ class Facts(NamedTuple):
     problems: bool = False  # contact problems of some steps are dumped
     timestep: float = 0.0  # [s]
     duration: float = 0.0  # [s]
+
+
+def meeting(facts: Facts) -> list[PairFacts]:
+    """Return the pairs that may meet: not those of joints, which are never apart."""
+    return [pair for pair in facts.pairs if pair.shape_pair != "joint"]
 
 
 class Decision(NamedTuple):

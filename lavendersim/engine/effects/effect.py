@@ -183,6 +183,7 @@ class RowTerms:
     torsional: bool = False  # an angular impulse psi_n about n: see `spin_block` [N m s]
     rolling: bool = False  # psi_1, psi_2 in the tangent plane [N m s]
     levers: bool = False  # of rows of a normal: impulses turn bodies
+    bilateral: bool = False  # some of a normal have no cone: `bilateral` is 1, either sign [N s]
     shifted: bool = False  # surface_1, surface_2 add to the slip [m/s]
 
 

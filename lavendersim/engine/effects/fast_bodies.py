@@ -15,7 +15,7 @@ the start of a step does: up to m |g| dt times the speed in every bounce (`measu
 
 from math import hypot, inf, sqrt
 
-from .decision import BodyFacts, Decision, Facts
+from .decision import BodyFacts, Decision, Facts, meeting
 from .effect import Column, Effect, Fields, Hooks, kernel
 
 # Share of the smaller bounding radius that a pair may close in a step before it is fast [-].
@@ -32,7 +32,9 @@ def decide(facts: Facts) -> Decision:
         return Decision(False, "speculative is false")
     bodies = {body.name: body for body in facts.bodies}
     between = [
-        pair for pair in facts.pairs if "plane" not in (bodies[pair.a].shape, bodies[pair.b].shape)
+        pair
+        for pair in meeting(facts)
+        if "plane" not in (bodies[pair.a].shape, bodies[pair.b].shape)
     ]
     if not between:
         return Decision(False, "only planes can be run into, and their normal is everywhere alike")

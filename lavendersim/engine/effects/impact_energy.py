@@ -69,6 +69,7 @@ def make_settle(spec: Spec, solve: Any, classify: Any) -> Any:
     leave = make_leave(spec)
     some_frictionless = row_terms(spec).frictionless
     forget_history = make_forget_history(spec)
+    bilateral = row_terms(spec).bilateral
 
     def work_of(contacts, count, velocities, motion, params):
         # Of all impulses, at each body's time of impact: before and after it forces work alone.
@@ -77,6 +78,9 @@ def make_settle(spec: Spec, solve: Any, classify: Any) -> Any:
         total, size = 0.0, 0.0
         for c in range(count):
             contact = contacts[c]
+            if bilateral:
+                if contact.bilateral == 1:  # it does no work
+                    continue
             if contact.lambda_n > 0.0:
                 va, vb = velocities[contact.a], velocities[contact.b]
                 v, v_1, v_2 = slip_velocity(contact, va, vb)

@@ -24,7 +24,7 @@ from typing import Any
 
 from ..records import TOUCHING
 from ..spec import Spec
-from .decision import Decision, Facts
+from .decision import Decision, Facts, meeting
 from .effect import Choice, Column, Effect, Fields, Hooks, kernel
 
 # Rows of contacts that the parts of one step may have in all.
@@ -63,7 +63,7 @@ def decide(facts: Facts) -> Decision:
     """On when the numerics ask for it and impacts may follow each other, or turn as they come."""
     if facts.impacts != "in_order":
         return Decision(False, f"impacts are {facts.impacts}")
-    if not facts.pairs:
+    if not meeting(facts):
         return Decision(False, "nothing can touch")
     only = facts.pairs[0]
     rigid = only.surface.compliance == 0.0  # where a spring begins to push is met in time
@@ -97,6 +97,7 @@ def make_order(spec: Spec) -> Any:
     from ..foreseen_impacts import make_follow, make_foresee
     from ..impact_location import make_locate
     from ..impact_rows import make_keep_motion, make_keep_present, make_mark_impact
+    from ..row_terms import row_terms
     from . import made_once
 
     expect = make_expect(spec)
@@ -107,6 +108,7 @@ def make_order(spec: Spec) -> Any:
     edged = drop_flush is not None
     turns = spec.has("rotation")
     springs, ropes = spec.has("contact_spring"), spec.has("rope")
+    bilateral = row_terms(spec).bilateral
     work = REBOUND if spec.has("restitution") else WORK
     stops, first_stop = made_once(spec, "first_stop")
 
@@ -127,6 +129,9 @@ def make_order(spec: Spec) -> Any:
             contact = contacts[c]
             contact.waits, contact.located, contact.due, contact.rate = 0, GUESSED, NEVER, 0.0
             contact.passed_on = 0
+            if bilateral:
+                if contact.bilateral == 1:  # it neither meets nor parts
+                    continue
             if contact.phi > TOUCHING:
                 # Beyond what both can move: no part of this step, whatever happens in it.
                 if contact.phi > motion[contact.a].reach + motion[contact.b].reach:
@@ -163,6 +168,10 @@ def make_order(spec: Spec) -> Any:
             contact = contacts[c]
             if contact.located == FAR:
                 continue
+            if bilateral:
+                if contact.bilateral == 1:
+                    touching += 1
+                    continue
             if contact.phi <= TOUCHING:
                 touching += 1
                 deep = contact.phi < -OVERLAP

@@ -12,9 +12,10 @@ no flight: the contact is then a plastic one.
 """
 
 from math import sqrt
+from typing import Any
 
 from ..records import TOUCHING
-from .decision import Decision, Facts
+from .decision import Decision, Facts, meeting
 from .effect import Choice, Effect, Fields, Hooks, kernel
 
 # Slower than so many times what forces change in a step, surfaces come to rest, without an impact.
@@ -25,17 +26,18 @@ def decide(facts: Facts) -> Decision:
     """On when the numerics ask for it and something can touch."""
     if facts.impacts == "captured":
         return Decision(False, f"impacts are {facts.impacts}")
-    if facts.pairs:
+    if meeting(facts):
         return Decision(True, f"impacts are {facts.impacts}")
     return Decision(False, "nothing can touch")
 
 
 def make_foresee(spec):
     """Return `kernel(contact, params)`: when the surfaces meet in free flight, and how fast."""
-
+    from ..row_terms import row_terms
     from . import made_once
 
     ordered, springs = spec.has("impact_order"), spec.has("contact_spring")
+    bilateral = row_terms(spec).bilateral
     falls, restitution_at = made_once(spec, "restitution_at")
 
     def foresee(contact, params):
@@ -43,6 +45,9 @@ def make_foresee(spec):
         contact.tau, contact.is_impact = dt, 0
         if springs:
             if contact.spring_compliance > 0.0:
+                return
+        if bilateral:
+            if contact.bilateral == 1:
                 return
         v, a = contact.v_n_pre - contact.dv_n, contact.dv_n / dt
         # Surfaces that touch or overlap meet at once.
@@ -81,6 +86,9 @@ def make_mark_carried(spec):
     They lie on what they touch as the step begins, or stay with what they met (`motion.carried`).
     """
     from ..integrate import AFTERWARDS, ALWAYS, IMPACT
+    from ..row_terms import row_terms
+
+    bilateral = row_terms(spec).bilateral
 
     def mark_carried(contacts, count, motion, params):
         for i in range(motion.shape[0]):
@@ -93,6 +101,9 @@ def make_mark_carried(spec):
                     how = AFTERWARDS
             elif contact.phi <= params.slop:
                 how = ALWAYS
+            if bilateral:
+                if contact.bilateral == 1:  # it lies on nothing
+                    continue
             a, b = motion[contact.a], motion[contact.b]
             if contact.inv_m_a > 0.0:
                 a.carried = max(a.carried, how)
@@ -108,9 +119,12 @@ def make_predict_impacts(spec):
     Of a body's contacts the first to meet is the impact, with those that meet at the same place
     within the slop; later ones are treated from that time on.
     """
-    from ..integrate import AHEAD, IMPACT
+    from ..integrate import AHEAD, IMPACT, make_share_impacts
+    from ..row_terms import row_terms
     from . import made_once
 
+    bilateral = row_terms(spec).bilateral
+    share_impacts: Any = make_share_impacts(spec) if bilateral else None
     foresee, springs = make_foresee(spec), spec.has("contact_spring")
     falls, _ = made_once(spec, "restitution_at")
     mark_carried = make_mark_carried(spec)
@@ -146,6 +160,8 @@ def make_predict_impacts(spec):
                     motion[contact.b].tau = min(motion[contact.b].tau, contact.tau)
         if not meets:
             return
+        if bilateral:
+            share_impacts(contacts, count, motion)
         for c in range(count):
             contact = contacts[c]
             if contact.tau < dt:
@@ -159,6 +175,9 @@ def make_predict_impacts(spec):
             contact = contacts[c]
             if springs:
                 if contact.spring_compliance > 0.0:
+                    continue
+            if bilateral:
+                if contact.bilateral == 1:
                     continue
             first = first_impact(contact, motion, dt)
             if first >= dt or contact.is_impact == IMPACT:

@@ -33,6 +33,8 @@ def decide(facts: Facts) -> Decision:
         return Decision(False, f"over_relaxation is {facts.over_relaxation:g}")
     if facts.mistake == "capture_in_sweeps":
         return Decision(False, "restitution is captured anew in every sweep")
+    if any(pair.shape_pair == "joint" for pair in facts.pairs):
+        return Decision(False, "rows of joints have no cone, and are not packed")
     if not facts.pairs:
         return Decision(False, "nothing can touch")
     return Decision(True, f"{movable} movable bodies have contacts enough to visit eight at a time")

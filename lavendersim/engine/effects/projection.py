@@ -18,6 +18,9 @@ from typing import Any
 from .decision import Decision, Facts
 from .effect import Effect, Fields, Hooks, kernel
 
+# What ends of a joint are apart by, or a push changes, and is left [m]: far below what turns leave.
+TOGETHER = 1e-12
+
 
 def decide(facts: Facts) -> Decision:
     """On when a share of the penetration is to be projected out."""
@@ -88,6 +91,7 @@ def make_mean_velocity(spec):
 def make(spec):
     """Return `kernel(system, motion, pseudo, workspace, params) -> sweeps made`."""
     from ..contact import make_normal_velocity
+    from ..joint_turn import make_turned_apart
     from ..row_terms import row_terms
     from ..solvers.packed.apart import make_push_apart
     from ..solvers.packed.late import FEWEST_CONTACTS, packs_late
@@ -99,6 +103,8 @@ def make(spec):
     push_apart_packed: Any = make_push_apart(spec) if packs else None
     torque = row_terms(spec).levers
     friction, midpoint = row_terms(spec).frictional, spec.has("midpoint")
+    bilateral = row_terms(spec).bilateral
+    turned_apart: Any = make_turned_apart(spec) if bilateral else None
     centred, springs = spec.has("contact_midpoint"), spec.has("contact_spring")
     at_surface = spec.has("impact_time")
     mean_rate: Any = make_mean_rate(spec) if at_surface else None
@@ -116,7 +122,10 @@ def make(spec):
             contact = contacts[c]
             v_n = normal_velocity(contact, velocities[contact.a], velocities[contact.b])
             if midpoint:
-                if contact.lambda_n == 0.0:
+                free = contact.lambda_n == 0.0
+                if bilateral:
+                    free = free and contact.bilateral == 0
+                if free:
                     v_n -= 0.5 * contact.dv_n
                 elif centred:
                     if contact.lasts == 1:
@@ -141,10 +150,17 @@ def make(spec):
                 if a.sprung >= PLACED or b.sprung >= PLACED:  # there it would do work
                     excess = 0.0
             contact.correction = share * max(excess, 0.0)
+            if bilateral:
+                if contact.bilateral == 1:
+                    left = turned_apart(contact, velocities, motion, params.dt)
+                    contact.correction = -(contact.phi + v_n * params.dt + left)
             contact.push = 0.0
             contact.inv_k_n = 1.0 / contact.k_n
             if contact.correction > 0.0:
                 asked = True
+            if bilateral:
+                if abs(contact.correction) > TOGETHER:
+                    asked = True
         if not asked:
             return 0
         for i in range(pseudo.shape[0]):
@@ -168,8 +184,10 @@ def make(spec):
 def _make_push_apart(spec):
     """Return `kernel(system, pseudo, sweeps) -> sweeps made`, over the records of contacts."""
     from ..contact import make_apply_impulse, make_normal_velocity
+    from ..row_terms import row_terms
 
     normal_velocity, apply_impulse = make_normal_velocity(spec), make_apply_impulse(spec)
+    bilateral = row_terms(spec).bilateral
 
     def push_apart(system, pseudo, sweeps):
         contacts, order = system.contacts, system.order
@@ -181,10 +199,15 @@ def _make_push_apart(spec):
                 ua, ub = pseudo[contact.a], pseudo[contact.b]
                 missing = contact.correction - normal_velocity(contact, ua, ub)
                 push = max(contact.push + missing * contact.inv_k_n, 0.0)
+                least = 0.0
+                if bilateral:
+                    if contact.bilateral == 1:
+                        push = contact.push + missing * contact.inv_k_n
+                        least = TOGETHER * contact.inv_k_n
                 change = push - contact.push
                 contact.push = push
                 apply_impulse(contact, ua, ub, change)
-                if change != 0.0:
+                if not abs(change) <= least:  # a NaN is greater
                     changed = True
             made += 1
             if not changed:  # nor would anything in the sweeps that are left

@@ -21,6 +21,7 @@ from lavendersim.quantities.quantity import Quantity, Vector, Vector3
 from ..spec import Spec
 from .decision import Decision, Facts, named
 from .effect import Column, Effect, Fields, Hooks, Kernel, RowTerms, kernel
+from .joint import BallJoint
 from .keys import SceneKey, TurnOf
 
 _CENTRE: Vector3 = (0.0, 0.0, 0.0)
@@ -61,13 +62,15 @@ class Rope(ConfigModel):
         return " and ".join(self.between)
 
 
-Connections = dict[NewName, Rope]
+Connections = dict[NewName, Annotated[Rope | BallJoint, ModelField(discriminator="kind")]]
 
 
 def resolve(connections: Connections, turn: TurnOf) -> Connections:
     """Return them with their points in the frames of principal axes."""
     return {
-        name: one.model_copy(
+        name: one
+        if isinstance(one, BallJoint)
+        else one.model_copy(
             update={
                 "points": tuple(
                     turn(body, point) for body, point in zip(one.between, one.points, strict=True)
@@ -83,7 +86,8 @@ def pulling(scene: Any) -> Mapping[str, Rope]:
     return {
         name: one
         for name, one in scene.connections.items()
-        if any(_moves(scene.bodies[body]) for body in one.between)
+        if not isinstance(one, BallJoint)
+        and any(_moves(scene.bodies[body]) for body in one.between)
     }
 
 
@@ -127,7 +131,7 @@ EFFECT = Effect(
             name="connections",
             type=Connections,
             default={},
-            doc="name: what connects two bodies, a rope",
+            doc="name: what connects two bodies, a rope or a ball joint",
             resolve=resolve,
         ),
     ),

@@ -7,13 +7,13 @@ within the slop of each other rest where they are: closing gaps of round-off siz
 stack moving.
 """
 
-from .decision import Decision, Facts
+from .decision import Decision, Facts, meeting
 from .effect import Choice, Effect, Hooks, kernel
 
 
 def decide(facts: Facts) -> Decision:
     """On when the numerics ask for it and something can touch."""
-    if facts.speculative and facts.pairs:
+    if facts.speculative and meeting(facts):
         return Decision(True, "speculative is true")
     return Decision(False, "nothing can touch" if facts.speculative else "speculative is false")
 

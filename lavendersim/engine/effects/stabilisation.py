@@ -1,13 +1,13 @@
 """Stabilisation: bias velocity b = -(beta/dt) max(d - slop, 0) that separates what penetrates."""
 
-from .decision import Decision, Facts
+from .decision import Decision, Facts, meeting
 from .effect import Effect, Hooks, kernel
 
 
 def decide(facts: Facts) -> Decision:
     """On when the gain is positive."""
     gain = facts.stabilisation_gain
-    if gain > 0.0 and facts.pairs:
+    if gain > 0.0 and meeting(facts):
         return Decision(True, f"stabilisation_gain is {gain:g}")
     return Decision(False, "stabilisation_gain is 0" if gain == 0.0 else "nothing can touch")
 

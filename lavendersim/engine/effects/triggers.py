@@ -38,10 +38,14 @@ def make(spec: Spec) -> Any:
     from ..vectors import Vec3, dot
 
     contacts, sleeps = spec.has("contact_log"), spec.has("sleeping")
+    joins = spec.has("joint")
 
     def press(one, contact_rows, first, count):
         for c in range(first, first + count):
             row = contact_rows[c]
+            if joins:
+                if row.joint > 0:  # its bodies do not touch there
+                    continue
             if row.impulse_n > 0.0:
                 if row.body_a == one.a and row.body_b == one.b:
                     return True

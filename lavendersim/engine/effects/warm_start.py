@@ -29,7 +29,7 @@ def make(spec):
 
     friction = row_terms(spec).frictional
     terms = row_terms(spec)
-    torsional, rolling = terms.torsional, terms.rolling
+    torsional, rolling, bilateral = terms.torsional, terms.rolling, terms.bilateral
 
     def match_contacts(contacts, count, bodies, cache, counters, params):
         if counters.cached == 0:
@@ -60,6 +60,9 @@ def make(spec):
                         cosine = old.nx * contact.nx + old.ny * contact.ny + old.nz * contact.nz
                         dx, dy, dz = old.rx - rx, old.ry - ry, old.rz - rz
                         distance = dx * dx + dy * dy + dz * dz
+                        if bilateral:
+                            if contact.bilateral == 1:  # wherever its bodies have turned
+                                distance = 0.0
                         if cosine >= params.cache_normal_cosine and distance <= best:
                             best, chosen = distance, k
                     k += 1

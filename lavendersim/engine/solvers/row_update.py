@@ -2,6 +2,7 @@
 
 Normal, compliant:
     lambda_n <- max(0, lambda_n - (v_n + b + b_rest + gamma lambda_n) / (k_n + gamma))
+without the bound by 0 where the row is `bilateral`.
 Friction, with v_t after the normal's change:
     lambda_t <- lambda_t - K_tt^-1 v_t                              where that is in the disc: stick
                 proj(lambda_t - v_t / k_t),  |lambda_t| <= mu lambda_n          otherwise: slide
@@ -48,6 +49,7 @@ def _make_normal(spec: Spec):
     recaptures, capture_again = made_once(spec, "recapture")
     normal_velocity = make_frictionless_velocity(spec)
     apply_impulse = make_frictionless_impulse(spec)
+    bilateral = row_terms(spec).bilateral
 
     def solve_contact_velocity(contact, contacts, velocities, params):
         va, vb = velocities[contact.a], velocities[contact.b]
@@ -61,6 +63,9 @@ def _make_normal(spec: Spec):
             w *= params.over_relaxation
         # In this order a NaN stays and is reported; max(0.0, NaN) would be 0.
         lambda_new = max(lambda_old - w * contact.inv_k, 0.0)
+        if bilateral:
+            if contact.bilateral == 1:
+                lambda_new = lambda_old - w * contact.inv_k
         contact.lambda_n = lambda_new
         change = lambda_new - lambda_old
         apply_impulse(contact, va, vb, change)

@@ -1,4 +1,4 @@
-"""Models of measures of what connects bodies: ropes."""
+"""Models of measures of what connects bodies: ropes and joints."""
 
 from __future__ import annotations
 
@@ -20,4 +20,16 @@ class Tension(Measure):
     last: Seconds = Field(default=0.25, description="length of the window at the end [s]")
     statistic: Literal["mean", "largest"] = Field(
         default="mean", description="mean of the window, or the largest of a step in it"
+    )
+
+
+class JointForce(Measure):
+    """Magnitude of the force [N] that a joint passes on at the end of the run."""
+
+    READS = CONTACTS
+    kind: Literal["joint_force"]
+    connection: ConnectionName = Field(description="name of the joint")
+    last: Seconds = Field(default=0.25, description="length of the window at the end [s]")
+    statistic: Literal["mean", "largest"] = Field(
+        default="mean", description="magnitude of the window's mean force, or its largest of a step"
     )

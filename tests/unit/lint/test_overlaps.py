@@ -68,6 +68,14 @@ def test_parts_of_one_body_may_overlap_and_many_pairs_are_one_sentence() -> None
     assert "so do 2 more pairs" in defect.message
 
 
+def test_bodies_that_a_joint_joins_may_overlap_and_those_that_still_touch_not() -> None:
+    text = config(body("a", "box", 0.0), body("b", "box", 0.9))
+    joint = "  connections: {c: {kind: ball, between: [a, b], at: [0.5, 0, 10]}}\n  bodies:\n"
+    assert found(text.replace("  bodies:\n", joint, 1)) == []
+    touching = joint.replace("10]", "10], collide: true")
+    assert len(found(text.replace("  bodies:\n", touching, 1))) == 1
+
+
 def test_bodies_that_never_move_may_overlap() -> None:
     fixed = [body(name, "box", 0.0).replace("mass: 1", "fixed: true") for name in "ab"]
     assert found(config(*fixed, body("c", "box", 5.0))) == []

@@ -49,6 +49,8 @@ LINE = {
     "restitution": 0.0,
 }
 
+ARM = {"kind": "ball", "between": ["floor", "ball"], "at": [0.0, 0.0, 0.0]}
+
 
 # What a measure asks for may hang on the body: some are of what turns, of balls, of free bodies.
 SPIN = [0.1, 5.0, 0.1]
@@ -86,9 +88,9 @@ def watched(**body: Any) -> Watched:
     spins = {f"angular_momentum_{axis}": np.ones(len(HEIGHTS)) for axis in "xyz"}
     step = append_fields(log.step, list(spins), list(spins.values()), usemask=False)
     config = ball_and_floor(**body)
-    config["scene"] |= {**TILTED, "connections": {"line": LINE}}
+    config["scene"] |= {**TILTED, "connections": {"line": LINE, "arm": ARM}}
     ropes = np.zeros(len(log.contact), np.int64)
-    contact = append_fields(log.contact, "rope", ropes, usemask=False)
+    contact = append_fields(log.contact, ["rope", "joint"], [ropes, ropes], usemask=False)
     made = Watched(step=step, contact=contact, pose=log.pose, resolved=config)
     made.velocity = np.zeros((*log.pose.shape[:2], 6))
     made.__dict__["asked"] = set()
@@ -102,6 +104,8 @@ def asked_of(log: Watched) -> frozenset[str]:
 def spec_of(model: type[Measure], *optional: str) -> Measure:
     needed = [name for name, field in model.model_fields.items() if field.is_required()]
     given = {name: VALUES[name] for name in (*needed, *optional) if name != "kind"}
+    if model is KINDS["joint_force"]:
+        given["connection"] = "arm"
     kind = get_args(model.model_fields["kind"].annotation)[0]
     return model.model_validate({"kind": kind, **given})
 

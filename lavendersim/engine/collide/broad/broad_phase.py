@@ -17,9 +17,9 @@ import numpy as np
 from ...compile import kernel
 from ...records import COMPOUND, I8, PAIR, PLANE, ROPE_END, Field, dtype
 from ...spec import Spec
-from ..rope import make_count_ropes
+from ..rope import make_count_connections
 from .fat_bounds import FAT_BOUNDS, make_is_valid, make_place_bounds
-from .pair_rows import make_put_pair, make_write_rows
+from .pair_rows import make_put_pair, make_without_joined, make_write_rows
 from .tree import (
     BOUNDS,
     DIGITS,
@@ -108,7 +108,7 @@ def template_dtype(surface: list[Field]) -> np.dtype:
 def make_sort_leaves(spec: Spec):
     """Return `kernel(bodies, work) -> leaves`: bodies with bounds, sorted for the tree."""
     compound, sleeps = spec.has("compound"), spec.has("sleeping")
-    ropes = spec.has("rope")
+    connects = spec.connects
 
     def sort_leaves(bodies, work):
         fat_bounds, codes, order, leaves = work.fat_bounds, work.codes, work.order, work.leaves
@@ -118,7 +118,7 @@ def make_sort_leaves(spec: Spec):
         for i in range(bodies.shape[0]):
             if bodies[i].shape == PLANE or bodies[i].shape == COMPOUND:
                 continue
-            if ropes:
+            if connects:
                 if bodies[i].shape == ROPE_END:
                     continue
             r = fat_bounds[i]
@@ -164,10 +164,11 @@ def make(spec: Spec, surface: list[Field] | tuple[Field, ...] = ()):
     surface: the fields that templates have beside `kind` and `swap`, see `template_dtype`. Rows
     of `bodies` need `material`; with the effect `compound`, parts need `owner`, the row of their
     body, and every other row has its own there. Pairs that nothing can push get no row. Rows of
-    ropes stay where they are, before all others.
+    ropes and joints stay where they are, before all others; bodies that a joint joins are no pair.
     """
-    ropes = spec.has("rope")
-    count_ropes: Any = make_count_ropes(spec) if ropes else None
+    connects, joins = spec.connects, spec.has("joint")
+    count_connections: Any = make_count_connections(spec) if connects else None
+    without_joined: Any = make_without_joined(spec) if joins else None
     is_valid, place_bounds, sort_leaves = (
         make_is_valid(spec),
         make_place_bounds(spec),
@@ -209,8 +210,8 @@ def make(spec: Spec, surface: list[Field] | tuple[Field, ...] = ()):
 
     def broad_phase(bodies, velocities, pairs, templates, params, work):
         state, kept, rows = work.state[0], 0, pairs
-        if ropes:
-            kept = count_ropes(pairs)
+        if connects:
+            kept = count_connections(pairs)
             rows = pairs[kept:]
         if state.listed == 1:
             if is_valid(bodies, velocities, params, work.fat_bounds):
@@ -218,6 +219,9 @@ def make(spec: Spec, surface: list[Field] | tuple[Field, ...] = ()):
         state.listed = 0
         place_bounds(bodies, velocities, params, work.fat_bounds)
         found = find_pairs(bodies, templates, work)
+        if joins:
+            if found <= work.found.first.shape[0]:
+                found = without_joined(bodies, pairs, kept, work, found)
         state.needed = kept + found
         if found > min(rows.shape[0], work.found.first.shape[0]):
             return -1

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 
 from ...compile import kernel
 from ...spec import Spec
+from ..rope import ROPE
 
 
 def make_copy_fields(spec: Spec, names: Sequence[str]):
@@ -45,6 +46,47 @@ def make_put_pair(spec: Spec):
         return found + 1
 
     return kernel(put_pair, spec)
+
+
+def make_without_joined(spec: Spec):
+    """Return `kernel(bodies, pairs, kept, work, found) -> found`: pairs of joined bodies left out.
+
+    The first `kept` rows of pairs are joints and then ropes, those of joints by the bodies of their
+    ends; hz of an end is 1 where the two bodies touch each other, too.
+    """
+
+    def are_joined(bodies, pairs, kept, a, b):
+        low, high = 0, kept
+        while low < high:
+            middle = (low + high) // 2
+            row = pairs[middle]
+            first, second = bodies[row.a].owner, bodies[row.b].owner
+            if row.kind < ROPE and (first < a or (first == a and second < b)):
+                low = middle + 1
+            else:
+                high = middle
+        while low < kept:
+            row = pairs[low]
+            if row.kind == ROPE or bodies[row.a].owner != a or bodies[row.b].owner != b:
+                return False
+            if bodies[row.a].hz == 0.0:
+                return True
+            low += 1
+        return False
+
+    are_joined = kernel(are_joined, spec)
+
+    def without_joined(bodies, pairs, kept, work, found):
+        listed, left = work.found, 0
+        for p in range(found):
+            i, j = listed.first[p], listed.second[p]
+            one, other = bodies[i].owner, bodies[j].owner
+            if not are_joined(bodies, pairs, kept, min(one, other), max(one, other)):
+                listed.first[left], listed.second[left] = i, j
+                left += 1
+        return left
+
+    return kernel(without_joined, spec)
 
 
 def make_write_rows(spec: Spec, surface: Sequence[str]):

@@ -40,13 +40,16 @@ def make_find_face(spec: Spec) -> Any:
 
 def _make_find_normal(spec: Spec) -> Any:
     normal_velocity, compliant = make_frictionless_velocity(spec), row_terms(spec).compliant
-    tangents = row_terms(spec).frictional
+    tangents, bilateral = row_terms(spec).frictional, row_terms(spec).bilateral
 
     def find_normal(contact, va, vb, still):
         parting = normal_velocity(contact, va, vb) + contact.target
         if compliant:
             parting += contact.gamma * contact.lambda_n
         contact.face = STICKS if contact.lambda_n > 0.0 or parting <= still else OPEN
+        if bilateral:
+            if contact.bilateral == 1:
+                contact.face = STICKS
         contact.start_n = contact.lambda_n
         if tangents:
             contact.start_1, contact.start_2 = 0.0, 0.0

@@ -65,7 +65,7 @@ def make_begin(spec: Spec, stiffness: Any) -> Any:
     contacts are taken to carry [N s].
     """
     terms = row_terms(spec)
-    friction, compliant = terms.frictional, terms.compliant
+    friction, compliant, bilateral = terms.frictional, terms.compliant, terms.bilateral
     fill_rows, body_of = make_fill_rows(spec), make_body_of(spec)
     assemble = make_assemble(spec, stiffness, torques=False)
     directional_derivative = make_directional_derivative(spec, torques=False)
@@ -95,7 +95,10 @@ def make_begin(spec: Spec, stiffness: Any) -> Any:
             gradient[r] = 0.0
         for c in range(count):
             contact = contacts[c]
-            if contact.face != OPEN and contact.start_n > 0.0:
+            loaded = contact.face != OPEN and contact.start_n > 0.0
+            if bilateral:
+                loaded = loaded or contact.bilateral == 1
+            if loaded:
                 fill_rows(contact, rows)
                 for own in (OF_A, OF_B):
                     p = body_of(contact, workspace, own)
@@ -146,7 +149,7 @@ def make_least_norm(spec: Spec) -> Any:
     were chosen and have hardly changed, and where the residual would grow. Those that are not found
     in ROUNDS are counted in counters.least_norm_not_converged.
     """
-    friction = row_terms(spec).frictional
+    friction, bilateral = row_terms(spec).frictional, row_terms(spec).bilateral
     spins, limits_torque = resists_turning(spec), make_limits_torque(spec)
     residual, assemble_mass = make_residual(spec), make_assemble_mass(spec)
     find_face, face_impulse = make_find_face(spec), make_face_impulse(spec)
@@ -201,9 +204,12 @@ def make_least_norm(spec: Spec) -> Any:
                 if limits_torque(contact):
                     return
             least, most = min(least, contact.k_n), max(most, contact.k_n)
-            fastest = max(fastest, contact.k_n * contact.lambda_n)
-            load += contact.lambda_n
-            loaded += 1 if contact.lambda_n > 0.0 else 0
+            n = contact.lambda_n
+            if bilateral:
+                n = abs(n)
+            fastest = max(fastest, contact.k_n * n)
+            load += n
+            loaded += 1 if n > 0.0 else 0
         counters.unchosen, counters.chosen = 0.0, fastest
         if loaded == 0:
             return

@@ -121,10 +121,14 @@ def make_projected_impulse(spec: Spec):
 
 def make_projected_normal(spec: Spec):
     """Return the same kernel for contacts without friction."""
+    bilateral = row_terms(spec).bilateral
 
     def frictionless_impulse(contact, length):
         n = contact.scale * contact.start_n
         n -= contact.stiff_n * (contact.velocity_n + length * contact.step_n)
+        if bilateral:
+            if contact.bilateral == 1:
+                return n, 0.0, 0.0
         return max(n, 0.0), 0.0, 0.0
 
     return kernel(frictionless_impulse, spec)
@@ -170,8 +174,12 @@ def make_stiffness(spec: Spec):
 
 def make_frictionless_stiffness(spec: Spec):
     """Return the same kernel for contacts without friction."""
+    bilateral = row_terms(spec).bilateral
 
     def frictionless_stiffness(contact):
+        if bilateral:
+            if contact.bilateral == 1:
+                return Stiffness(contact.stiff_n, 0.0, 0.0, 0.0, 0.0, 0.0)
         n = contact.scale * contact.start_n - contact.stiff_n * contact.velocity_n
         return Stiffness((contact.stiff_n if n > 0.0 else 0.0), 0.0, 0.0, 0.0, 0.0, 0.0)
 

@@ -8,7 +8,7 @@ from interpreted import interpreted, records
 from single_bodies import row, scratch_of
 
 from lavendersim.engine.collide.narrow_phase import make_manifold
-from lavendersim.engine.collide.rope import FIRST_ROPE, ROPE, make_count_ropes, make_rope
+from lavendersim.engine.collide.rope import FIRST_ROPE, ROPE, make_count_connections, make_rope
 from lavendersim.engine.record_layout import allocate_bodies, allocate_pairs
 from lavendersim.engine.spec import Spec
 
@@ -55,6 +55,6 @@ def test_pairs_of_ropes_are_not_those_of_shapes() -> None:
     assert scratch.manifold.points.array[0]["feature"] == FIRST_ROPE + NUMBER
     pairs = allocate_pairs(SPEC, 4)
     pairs["kind"] = [ROPE, ROPE, 0, ROPE]
-    assert interpreted(make_count_ropes(SPEC))(records(pairs)) == 2
+    assert interpreted(make_count_connections(SPEC))(records(pairs)) == 2
     pairs["kind"] = ROPE
-    assert interpreted(make_count_ropes(SPEC))(records(pairs)) == 4
+    assert interpreted(make_count_connections(SPEC))(records(pairs)) == 4

@@ -1,4 +1,4 @@
-"""Tension: the mean, or the largest, of what a rope pulls by in the last window of a run."""
+"""What a rope pulls by, or a joint passes on: the mean, or the largest, of a run's last window."""
 
 from __future__ import annotations
 
@@ -8,8 +8,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from lavendersim.engine.effects.joint import BallJoint
 from lavendersim.measures import evaluate
-from lavendersim.measures.specs.connections import Tension
+from lavendersim.measures.specs.connections import JointForce, Tension
 
 DT = 0.01
 
@@ -52,3 +53,32 @@ def test_the_largest_is_that_of_a_step() -> None:
 def test_what_pulls_nothing_and_a_window_beyond_the_run_have_none() -> None:
     assert math.isnan(tension("idle"))
     assert math.isnan(tension("line", last=1.0))
+
+
+def joint_force(connection: str, last: float = 0.04, **more: str) -> float:
+    """Ten steps of joint 1: (3, 0, -4) N, in the last (3, 12, 4); joint 0 holds nothing."""
+    rows = [
+        (step, 1, axis, force)
+        for step in range(1, 11)
+        for axis, force in enumerate((3.0, 0.0, -4.0) if step < 10 else (3.0, 12.0, 4.0))
+    ]
+    names = ("step", "joint", "nx", "ny", "nz", "force_n")
+    contact = np.zeros(len(rows), [(n, "i8" if n in names[:2] else "f8") for n in names])
+    for out, (step, joint, axis, force) in zip(contact, rows, strict=True):
+        out["step"], out["joint"], out["force_n"] = step, joint, force
+        out[names[2 + axis]] = 1.0
+    made = log()
+    joints = {
+        name: BallJoint.model_construct(kind="ball", between=tuple(between))
+        for name, between in {"idle": "ww", "arm": "wb"}.items()
+    }
+    made.contact, made.config.scene.connections = contact, joints
+    return evaluate(JointForce(kind="joint_force", connection=connection, last=last, **more), made)
+
+
+def test_force_of_a_joint_is_the_magnitude_of_its_mean_or_the_largest_of_a_step() -> None:
+    # Steps 7 to 10: (3, 0, -4) three times and (3, 12, 4): mean (3, 3, -2).
+    assert joint_force("arm") == pytest.approx(22.0**0.5, rel=1e-15)
+    assert joint_force("arm", statistic="largest") == 13.0
+    assert math.isnan(joint_force("idle"))
+    assert math.isnan(joint_force("arm", last=1.0))

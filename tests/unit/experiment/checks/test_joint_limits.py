@@ -1,0 +1,70 @@
+"""What joints cannot be with is refused where the file has it, and nothing is without joints."""
+
+from __future__ import annotations
+
+import pytest
+
+from lavendersim.errors import ConfigError
+from lavendersim.experiment import load_experiment_text
+
+TEXT = """\
+scene:
+  bodies:
+    hook: {shape: {kind: sphere, radius: 0.01}, fixed: true, position: [0, 0, 1]}
+    bob: {shape: {kind: sphere, radius: 0.1}, mass: 1, position: [0, 0, 0]}
+  connections:
+    arm: {kind: ball, between: [hook, bob], at: [0, 0, 1]}
+numerics: {timestep: 1/100}
+duration: 0.1
+"""
+CASES = {
+    "solver": ("solver: jacobi", "which jacobi does not solve; expected adaptive or projected"),
+    "impacts": ("impacts: at_surface", "expected in_order or captured"),
+    "simultaneous_impacts": ("simultaneous_impacts: pairwise", "expected together"),
+    "accuracy": ("accuracy: 1e-4", "substeps have none"),
+    "sleeping": ("sleeping: true", "does not sleep"),
+}
+
+
+@pytest.mark.parametrize("key", CASES)
+def test_numerics_that_joints_cannot_have_are_refused_at_their_place(key: str) -> None:
+    written, sentence = CASES[key]
+    text = TEXT.replace("{timestep: 1/100}", f"{{timestep: 1/100, {written}}}")
+    with pytest.raises(ConfigError) as refused:
+        load_experiment_text(text, "x.yaml").cells()
+    column = text.splitlines()[6].index(written) + 1
+    assert f"x.yaml:7:{column}: {key}: the scene has joints" in str(refused.value)
+    assert sentence in str(refused.value)
+    without = text.replace("    arm: {kind: ball, between: [hook, bob], at: [0, 0, 1]}\n", "")
+    load_experiment_text(without.replace("  connections:\n", ""), "x.yaml").cells()
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "place"),
+    [
+        (
+            "  connections:",
+            "  springs: [{a: hook, b: bob, stiffness: 9}]\n  connections:",
+            "5:3",
+        ),
+        (
+            "numerics: {timestep: 1/100}",
+            "study: {mistake: capture_in_sweeps}\nnumerics: {preset: chapter, tolerance: 1e-9}",
+            "7:9",
+        ),
+        ("duration:", "record: {problems: every 2}\nduration:", "8:10"),
+    ],
+)
+def test_sections_that_joints_cannot_have_are_refused_at_their_place(
+    old: str, new: str, place: str
+) -> None:
+    with pytest.raises(ConfigError) as refused:
+        load_experiment_text(TEXT.replace(old, new), "x.yaml").cells()
+    assert "the scene has joints" in str(refused.value)
+    assert f"x.yaml:{place}" in str(refused.value)
+
+
+def test_numerics_that_joints_can_have_are_taken() -> None:
+    for numerics in ("chapter", "{timestep: 1/100}", "{solver: projected_gauss_seidel}"):
+        text = TEXT.replace("numerics: {timestep: 1/100}", f"numerics: {numerics}")
+        assert load_experiment_text(text, "x.yaml").cells()[0].config
