@@ -26,7 +26,7 @@ def section(names: list[str], cone: str, wrong: float, seed: int = 0) -> Section
     random = np.random.default_rng(seed)
     counts = random.integers(0, 6, STEPS)
     counts[0] = 0
-    integers = ("step", "body_a", "body_b")
+    integers = ("step", "body_a", "body_b", "joint")
     fields = [
         (name, "i8" if name in integers else "f8") for name in dict.fromkeys(("step", *names))
     ]
@@ -38,6 +38,8 @@ def section(names: list[str], cone: str, wrong: float, seed: int = 0) -> Section
             rows[name] = np.where(random.random(len(rows)) < wrong, out, numbers)
     rows["step"] = np.repeat(np.arange(STEPS), counts)
     rows["body_a"], rows["body_b"] = random.integers(0, 4, (2, len(rows)))
+    if "joint" in names:
+        rows["joint"] = random.integers(0, 2, len(rows))
     surface = {"friction": 0.4}
     sphere = {"shape": {"kind": "sphere", "radius": 0.1}, "mass": 1.0}
     slides = {"friction": 0.2, "static_friction": 0.3, "stribeck_velocity": 0.1}

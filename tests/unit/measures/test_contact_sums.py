@@ -69,8 +69,17 @@ def test_one_falsified_number_is_seen_in_its_step_alone(
     part.contact["impulse_n"] = 1.0
     for name in ("friction", "torsional_friction", "rolling_friction"):
         part.contact[name] = 0.01
+    part.contact["joint"] = 0
     before = getattr(sums_of(part), field).copy()
     assert not before.any()
     part.contact[column][7] = number
     changed = np.flatnonzero(getattr(sums_of(part), field))
     assert changed.tolist() == [part.contact["step"][7]]
+
+
+def test_impulse_of_a_joint_has_either_sign() -> None:
+    part = section(FORMS["frictionless"], "disc", 0.0)
+    part.contact["impulse_n"], part.contact["joint"] = -3.0, 1
+    assert not sums_of(part).excess.any()
+    part.contact["joint"] = 0
+    assert (sums_of(part).excess > 0.0).sum() == len(np.unique(part.contact["step"]))
