@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import os
 from pathlib import Path
 
 import pytest
@@ -17,6 +18,11 @@ pytest.register_assert_rewrite("tests.marked_config")
 # tests a process ran before, would change every world that is drawn.
 if hasattr(providers, "_get_local_constants"):
     providers._get_local_constants = providers.Constants
+
+# Kernels of the suite are not optimised, where nothing else is said: that takes two fifths of the
+# time of a plan, and the suite compiles hundreds, each for a few thousand steps. No bit depends on
+# it (`tests/unit/engine/test_optimised_kernels.py`); `NUMBA_OPT=3 pytest` runs what users run.
+os.environ.setdefault("NUMBA_OPT", "0")
 
 ROOT = Path(__file__).parents[1]
 # `pytest -m quick`: what must be seen before every commit. One claim of every layer, in at most two

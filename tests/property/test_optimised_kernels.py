@@ -1,0 +1,58 @@
+"""Optimised kernels give the bits of those that are not: what most of this suite runs stands for both.
+
+Neither numba nor LLVM is allowed to reorder or to contract (`compile_options.OPTIONS`). One scene
+strikes, turns and slides; in the other contacts are swept eight at a time, by vectors.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+RUN = """
+import hashlib, sys
+from lavendersim.experiment import load_experiment
+from lavendersim.scene.build import build
+from lavendersim.scene.plan import plan_of_cell
+from numba import config
+
+cell = load_experiment(sys.argv[1]).cells()[0]
+spec = plan_of_cell(cell).spec
+engine = build(cell.config, spec).engine(spec)
+engine.advance(int(sys.argv[2]))
+assert engine.counters["step"][0] > 0
+states = engine.bodies.tobytes() + engine.velocities.tobytes() + engine.take_rows().step.tobytes()
+print(config.OPT.level if hasattr(config.OPT, "level") else config.OPT, spec.has("packed_sweeps"))
+print(hashlib.sha256(states).hexdigest())
+"""
+
+
+def states(config: str, steps: int, optimised: int) -> list[str]:
+    """Return the level of optimisation, whether contacts are packed, and what the states hash to."""
+    done = subprocess.run(
+        [sys.executable, "-c", RUN, str(ROOT / "configs" / config), str(steps)],
+        env=os.environ | {"NUMBA_OPT": str(optimised)},
+        capture_output=True,
+        text=True,
+        timeout=600,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout.splitlines()
+
+
+@pytest.mark.parametrize(
+    ("config", "steps", "packed"),
+    [("scenes/oblique_impact.yaml", 120, False), ("scenes/pile.yaml", 40, True)],
+    ids=["impact", "pile"],
+)
+def test_optimised_kernels_give_the_same_bits(config: str, steps: int, packed: bool) -> None:
+    (plain, one), (optimised, other) = (states(config, steps, level) for level in (0, 3))
+    assert plain.endswith(str(packed))
+    assert plain != optimised
+    assert one == other
