@@ -1,4 +1,4 @@
-"""Optimised kernels give the bits of those that are not: what most of this suite runs stands for both.
+"""Optimised kernels give the bits of those that are not: what the suite compiles stands for both.
 
 Neither numba nor LLVM is allowed to reorder or to contract (`compile_options.OPTIONS`). One scene
 strikes, turns and slides; in the other contacts are swept eight at a time, by vectors.
@@ -33,7 +33,7 @@ print(hashlib.sha256(states).hexdigest())
 
 
 def states(config: str, steps: int, optimised: int) -> list[str]:
-    """Return the level of optimisation, whether contacts are packed, and what the states hash to."""
+    """Return the level, whether contacts are packed, and the hash of the states."""
     done = subprocess.run(
         [sys.executable, "-c", RUN, str(ROOT / "configs" / config), str(steps)],
         env=os.environ | {"NUMBA_OPT": str(optimised)},
