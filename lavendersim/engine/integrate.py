@@ -14,6 +14,7 @@ from typing import Any
 from .compile import kernel
 from .effects import made_once
 from .effects.gyroscopic import make_turn_by_mean
+from .joined_impacts import make_share_impacts
 from .records import NOT_FINITE, TURNS_TOO_FAST
 from .rotation import inertia_times, inverse_inertia_times, is_round, orient, turn
 from .row_terms import make_acts, row_terms
@@ -121,27 +122,6 @@ def make_stand(spec: Spec) -> Any:
             m.dvx, m.dvy, m.dvz = 0.0, 0.0, 0.0
 
     return kernel(stand, spec)
-
-
-def make_share_impacts(spec: Spec) -> Any:
-    """Return `kernel(contacts, count, motion)`: bodies that joints join have their impact at once.
-
-    Each moves on the velocities before it up to the first of theirs, or their joint would tear.
-    """
-
-    def share_impacts(contacts, count, motion):
-        again = True
-        while again:
-            again = False
-            for c in range(count):
-                contact = contacts[c]
-                if contact.bilateral == 1 and contact.inv_m_a > 0.0 and contact.inv_m_b > 0.0:
-                    a, b = motion[contact.a], motion[contact.b]
-                    if a.tau != b.tau:
-                        a.tau = b.tau = min(a.tau, b.tau)
-                        again = True
-
-    return kernel(share_impacts, spec)
 
 
 def make_classify(spec: Spec) -> Any:
@@ -324,9 +304,7 @@ def make_displace(spec: Spec) -> Any:
                 half = 0.5 * dt
                 x, y, z = half * (m.vx + v.vx), half * (m.vy + v.vy), half * (m.vz + v.vz)
             if turns and (lasting or m.midway == 1):
-                body.x += x
-                body.y += y
-                body.z += z
+                body.x, body.y, body.z = body.x + x, body.y + y, body.z + z
                 even = True
                 if uneven:
                     even = is_round(body)
@@ -364,9 +342,7 @@ def make_displace(spec: Spec) -> Any:
             if m.carried == 0:
                 half = 0.5 * dt
                 x, y, z = x - half * m.dvx, y - half * m.dvy, z - half * m.dvz
-        body.x += x
-        body.y += y
-        body.z += z
+        body.x, body.y, body.z = body.x + x, body.y + y, body.z + z
         if twists:
             if m.carried == 0:
                 return turn_in_halves(body, v, m, dt)

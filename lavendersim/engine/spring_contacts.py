@@ -12,8 +12,8 @@ placed: springs act by s times the implicit Euler rule along where they stand, s
 V_c: the centre's, 0 of what touches or is tied to what does not move. Forces act s times, too, but
 for what they change of V_c: else they would drive what does not move on. The first pair (s, t) is
 taken for which the energy is enough, first with the rebounds of impacts without order, which may
-themselves give energy, then without; at s = t = 0 it is, and what is held there slows down. Where
-surfaces move or give way energy tells nothing: s = t = 1 is taken of what is not found.
+themselves give energy, then without; at s = t = 0 it is, and what stays in place there slows down.
+Where surfaces move or give way energy tells nothing: s = t = 1 is taken of what is not found.
 """
 
 from __future__ import annotations

@@ -226,9 +226,11 @@ def make_limit(spec: Spec, place: Any) -> LimitKernels:
 
     take = kernel(take, spec)
 
-    def aim(bodies, velocities, motion, group, centre, t, dt):
-        # centre: its mean velocity in the step, and that at its end. Returns the work of forces.
+    def aim(bodies, velocities, motion, group, centre, part):
+        # centre: its mean velocity in the step, and that at its end; part: the share of the way,
+        # and the timestep. Returns the work of forces.
         centred, ended, work = centre[0], centre[1], 0.0
+        t, dt = part
         for i in range(bodies.shape[0]):
             body, v = bodies[i], velocities[i]
             if body.group == group:
@@ -340,7 +342,7 @@ def make_limit(spec: Spec, place: Any) -> LimitKernels:
             for number in range(HALVINGS + 1):
                 if number == HALVINGS:
                     t = 0.0
-                work = aim(bodies, velocities, motion, group, (centred, ended), t, dt)
+                work = aim(bodies, velocities, motion, group, (centred, ended), (t, dt))
                 had = budget + work if anchored else budget
                 move(bodies, group, dt)
                 share = fit(links, bodies, velocities, group, (anchored, h, had))

@@ -17,7 +17,7 @@ from .vectors import Vec3, minus, plus_scaled, scaled
 # Energy won in a step, of what there is, that solves and round-off leave [-].
 GAINED = 1e-10
 # Share of its velocities that what is not moved at all keeps: else it would stand for ever [-].
-HELD = 0.5
+SLOWED = 0.5
 # BODY.again while unions are looked for: a contact pushes it.
 PUSHED = 2
 
@@ -212,8 +212,8 @@ def make_unions(spec: Spec, place: Any) -> Unions:
                         row.turn_x, row.turn_y, row.turn_z = t * v.wx, t * v.wy, t * v.wz
                     row.sprung = BOTH
                     if t == 0.0 and anchored:
-                        v.vx, v.vy, v.vz = HELD * v.vx, HELD * v.vy, HELD * v.vz
+                        v.vx, v.vy, v.vz = SLOWED * v.vx, SLOWED * v.vy, SLOWED * v.vz
                         if turns:
-                            v.wx, v.wy, v.wz = HELD * v.wx, HELD * v.wy, HELD * v.wz
+                            v.wx, v.wy, v.wz = SLOWED * v.wx, SLOWED * v.wy, SLOWED * v.wz
 
     return Unions(join, gains, pull, kernel(put, spec))

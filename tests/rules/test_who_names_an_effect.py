@@ -70,6 +70,7 @@ ELSEWHERE = {
         "engine/effects/impact_order.py": "impacts that rebound take more rows",
         "engine/foreseen_impacts.py": "a rebound tells an impact from a lasting contact",
         "engine/overlooked_points.py": "a rebound tells an impact from a lasting contact",
+        "engine/spring_contacts.py": "rebounds beside springs may give energy",
     },
     "speculative": {
         "engine/effects/decision.py": FACT,
@@ -124,7 +125,7 @@ ASKED = {
         "impact_order": (
             *("effects/impact_time", "effects/overlooked_points", "effects/sliding_stops"),
             *("contact", "effects/warm_start", "memory", "midpoint_geometry"),
-            *("parts", "respond", "runner/log_size"),
+            *("parts", "respond", "runner/log_size", "spring_contacts"),
         ),
         "overlooked_points": (
             *("collide/narrow_phase", "collide/pairs/cylinder_plane", "foreseen_impacts"),
@@ -150,7 +151,9 @@ ASKED = {
         ),
         "compliance": ("foreseen_impacts", "spring_contacts"),
         "cohesion": ("foreseen_impacts",),
-        "restitution": ("effects/impact_order", "foreseen_impacts", "overlooked_points"),
+        "restitution": (
+            *("effects/impact_order", "foreseen_impacts", "overlooked_points", "spring_contacts"),
+        ),
         "projection": ("integrate", "memory"),
         "surface_velocity": ("effects/static_friction", "spring_contacts"),
         "capture_in_sweeps": ("effects/restitution",),

@@ -119,7 +119,8 @@ def make_predict_impacts(spec):
     Of a body's contacts the first to meet is the impact, with those that meet at the same place
     within the slop; later ones are treated from that time on.
     """
-    from ..integrate import AHEAD, IMPACT, make_share_impacts
+    from ..integrate import AHEAD, IMPACT
+    from ..joined_impacts import make_share_impacts
     from ..row_terms import row_terms
     from . import made_once
 
