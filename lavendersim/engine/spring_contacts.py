@@ -304,6 +304,7 @@ def make_act_beside_contacts(spec: Spec, place: Any, solve: Any) -> Any:
             solve(state, count, workspace, params, counters, log)
             counters.sweeps += sweeps
             join(links, bodies, contacts, count, False)
+            pull(links, contacts, bodies, count)  # of what has joined
             classify(contacts, count, motion, params)
             share = 1.0
             for last in range(SHARES):

@@ -75,7 +75,7 @@ def untried(engines: Iterable[str]) -> list[str]:
     """Return a sentence for each engine whose installed version no test has run, each once."""
     peers = {peer_of(engine).name: peer_of(engine) for engine in engines if engine != LAVENDER}
     return [
-        f"{peer.title} {version} was never tried with lavender; tests have run "
+        f"{peer.title} of {peer.package} {version} was never tried with lavender; tests have run "
         f"{', '.join(peer.tried)}"
         for name, peer in peers.items()
         if (version := installed_version(name)) and version not in peer.tried

@@ -76,7 +76,8 @@ def misbuilt(scene: Scene, world: Any, peer: Peer) -> str:
     """Return what the engine has otherwise than it was described; empty where nothing."""
     bodies = scene.movable
     required = {
-        "mass and inertia": ([(b.mass, *b.inertia) for b in bodies], world.inertias()),
+        "mass": ([b.mass for b in bodies], world.inertias()[:, :1]),
+        "inertia": ([b.inertia for b in bodies], world.inertias()[:, 1:]),
         "position": ([b.position for b in bodies], world.poses()[:, :3]),
         "orientation": ([b.orientation for b in bodies], world.poses()[:, 3:]),
         "velocity": ([b.velocity for b in bodies], world.velocities()[:, :3]),

@@ -12,7 +12,7 @@ from pydantic import AfterValidator, StringConstraints, ValidationInfo
 
 from lavendersim.quantities.quantity import sentence_error
 
-NamedKind = Literal["body", "plane", "measure", "axis", "surface", "connection"]
+NamedKind = Literal["body", "plane", "measure", "axis", "surface", "rope", "joint"]
 
 
 def _known(kind: NamedKind, name: str, info: ValidationInfo) -> str:
@@ -27,7 +27,8 @@ BodyName = Annotated[str, AfterValidator(partial(_known, "body"))]
 PlaneName = Annotated[str, AfterValidator(partial(_known, "plane"))]
 MeasureName = Annotated[str, AfterValidator(partial(_known, "measure"))]
 AxisName = Annotated[str, AfterValidator(partial(_known, "axis"))]
-ConnectionName = Annotated[str, AfterValidator(partial(_known, "connection"))]
+RopeName = Annotated[str, AfterValidator(partial(_known, "rope"))]
+JointName = Annotated[str, AfterValidator(partial(_known, "joint"))]
 SurfaceName = Annotated[str, AfterValidator(partial(_known, "surface"))]
 
 # A constant's name: it stands in formulas, where `-` subtracts.

@@ -65,6 +65,7 @@ def with_joint_ends(spec: Spec, bodies: np.ndarray, config: CellConfig) -> np.nd
         for end, owner in zip(ends, places[number], strict=True):
             pose = pose_of(config.scene.bodies[names[owner]])
             end["shape"], end["owner"] = ROPE_END, owner
+            end["bound"] = bodies[owner]["bound"]  # how far it may go before pairs are listed anew
             end["px"], end["py"], end["pz"] = rotation_matrix(pose[3:]).T @ (at - pose[:3])
             end["pqw"] = 1.0
             end["x"], end["y"], end["z"] = at

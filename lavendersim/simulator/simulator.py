@@ -167,6 +167,9 @@ class Simulator:
         """Return contact sums of the last step, float64 (bodies, 4), see BODY_CONTACT_COLUMNS."""
         data = np.zeros((len(self._scene.names), len(BODY_CONTACT_COLUMNS)))
         contact = self._rows.contact
+        for connection in ("rope", "joint"):  # whose rows are of no surface
+            if connection in (contact.dtype.names or ()):
+                contact = contact[contact[connection] == 0]
         for side in ("body_a", "body_b"):
             np.add.at(data[:, 0], contact[side], 1.0)
             np.add.at(data[:, 1], contact[side], contact["force_n"])

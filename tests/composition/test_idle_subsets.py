@@ -30,7 +30,7 @@ from lavendersim.engine.spec import Spec
 
 SUBSETS = int(os.environ.get("LAVENDER_TEST_SUBSETS", "2"))
 COMPILED = bool(os.environ.get("LAVENDER_TEST_EVERYTHING"))
-SCENES = int(os.environ.get("LAVENDER_TEST_SCENES", "30" if COMPILED else "4"))
+SCENES = int(os.environ.get("LAVENDER_TEST_SCENES", "30" if COMPILED else "2"))
 # 2 s: bodies that bounced apart have come to rest, most of them; 0.4 s: they have met.
 STEPS = 480 if COMPILED else 96
 SOME = settings(

@@ -2,8 +2,8 @@
 
     phi = n . (x_B - x_A),   n one of the world's axes;   x_A, x_B: where the joint is on each body
 The two rows of the body table that stand for its ends follow the bodies that they are of
-(`effects.compound`), and touch nothing. Both bodies get the impulse at one point, half way between
-the ends, so that it is no torque on the two together.
+(`effects.compound`), and touch nothing. Each body gets the impulse at its own end: ends that are
+apart by d, within what projection leaves, are turned by the two together by d x p.
 """
 
 from __future__ import annotations

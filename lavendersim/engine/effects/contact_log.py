@@ -97,7 +97,8 @@ def make(spec: Spec, loggers):
                 cone = contact.bilateral == 0
             if friction and cone:
                 watch_coulomb(counters, written - 1, contact, out.slip_t1, out.slip_t2)
-            force += out.force_n
+            if cone:
+                force += out.force_n
             # A NaN is deeper than anything, or it would not be seen.
             if out.penetration > deepest or out.penetration != out.penetration:
                 deepest = out.penetration

@@ -137,7 +137,7 @@ EFFECT = Effect(
         Column(
             "total_normal_force",
             "f8",
-            "sum of normal forces, each impulse / timestep",
+            "sum of normal forces of what touches, each impulse / timestep",
             "N",
             number=7,
         ),

@@ -47,10 +47,15 @@ class Reading:
             "body": bodies_of(self.root),
             "plane": self.root.get(*BODIES).entries,
             "measure": self.root.get("measure").entries,
-            "connection": self.root.get("scene", "connections").entries,
+            "rope": self._connections("rope"),
+            "joint": self._connections("ball"),
             "surface": self.root.get("scene", "surfaces").entries,
             "axis": self._axes,
         }
+
+    def _connections(self, kind: str) -> list[str]:
+        connections = self.root.get("scene", "connections").entries
+        return [name for name, one in connections.items() if one.get("kind").text == kind]
 
     @cached_property
     def _swept(self) -> dict[str, list[Node]]:

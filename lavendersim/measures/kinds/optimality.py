@@ -37,10 +37,18 @@ def optimality(spec: Optimality, trace: Trace) -> Floats:
         np.asarray(trace.contact["target"])  # NotReportedError: another engine does not tell it
     largest = [
         [np.max(one) for one in _violations(trace, contacts)]
-        for contacts in contact_parts(trace)
+        for contacts in map(_of_cones, contact_parts(trace))
         if len(contacts["step"]) and "target" in (contacts.dtype.names or ())
     ]
     return np.max(largest, axis=0) if largest else np.array([NAN])
+
+
+def _of_cones(contacts: Rows) -> Rows:
+    """Return the rows that have a cone; those of joints are equations."""
+    if "joint" not in (contacts.dtype.names or ()):
+        return contacts
+    rows: Rows = contacts[contacts["joint"] == 0]
+    return rows
 
 
 def _violations(trace: Trace, contacts: Rows) -> list[Floats]:

@@ -7,7 +7,7 @@ from typing import Literal
 from pydantic import Field
 
 from lavendersim.measures.specs.base import Measure, Seconds
-from lavendersim.quantities.names import ConnectionName
+from lavendersim.quantities.names import JointName, RopeName
 from lavendersim.quantities.readings import CONTACTS
 
 
@@ -16,7 +16,7 @@ class Tension(Measure):
 
     READS = CONTACTS
     kind: Literal["tension"]
-    connection: ConnectionName = Field(description="name of the rope")
+    connection: RopeName = Field(description="name of the rope")
     last: Seconds = Field(default=0.25, description="length of the window at the end [s]")
     statistic: Literal["mean", "largest"] = Field(
         default="mean", description="mean of the window, or the largest of a step in it"
@@ -28,7 +28,7 @@ class JointForce(Measure):
 
     READS = CONTACTS
     kind: Literal["joint_force"]
-    connection: ConnectionName = Field(description="name of the joint")
+    connection: JointName = Field(description="name of the joint")
     last: Seconds = Field(default=0.25, description="length of the window at the end [s]")
     statistic: Literal["mean", "largest"] = Field(
         default="mean", description="magnitude of the window's mean force, or its largest of a step"

@@ -44,4 +44,6 @@ def test_a_version_that_was_never_tried_is_reported_once(monkeypatch: pytest.Mon
     names = ["lavender", "mujoco", "mujoco-stiff", "rapier", "bullet"]
     (sentence,) = catalogue.untried(names)
     tried = ", ".join(catalogue.PEERS["mujoco"].tried)
-    assert sentence == f"MuJoCo 99.1 was never tried with lavender; tests have run {tried}"
+    assert (
+        sentence == f"MuJoCo of mujoco 99.1 was never tried with lavender; tests have run {tried}"
+    )

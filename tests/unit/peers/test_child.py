@@ -44,8 +44,8 @@ class Built:
 @pytest.mark.parametrize(
     ("change", "what"),
     [
-        ("inertias 0", "mass and inertia"),
-        ("inertias 3", "mass and inertia"),
+        ("inertias 0", "mass"),
+        ("inertias 3", "inertia"),
         ("poses 1", "position"),
         ("poses 4", "orientation"),
         ("velocities 2", "velocity"),

@@ -35,7 +35,8 @@ def can_pack(spec: Spec) -> bool:
     """Whether sweeps over packed contacts do what those over the records of this engine do."""
     plain = not spec.over_relaxation and spec.order != "symmetric"
     captured_once = not made_once(spec, "recapture")[0]
-    return plain and captured_once and spec.friction_cone == "disc" and spec.operator == "bodies"
+    cones = spec.friction_cone == "disc" and not row_terms(spec).bilateral
+    return plain and captured_once and cones and spec.operator == "bodies"
 
 
 def are_blocks(spec: Spec) -> bool:

@@ -180,3 +180,14 @@ def test_of_an_engine_that_tells_no_targets_the_laws_are_not_judged(tmp_path: Pa
     assert len(log.contact) > 0
     with pytest.raises(NotReportedError):
         evaluate(SPEC, log)
+
+
+def test_rows_of_joints_have_no_cone() -> None:
+    log = log_with({"impulse_n": -3.0})
+    log.step["residual"] = [9.0, 0.0, 9.0]
+    assert evaluate(SPEC, log)[PUSHING] > 0.0
+    ones = np.ones(len(log.contact), np.int64)
+    log.contact = recfunctions.append_fields(log.contact, "joint", ones, usemask=False)
+    assert math.isnan(evaluate(SPEC, log)[0])  # there is no other row
+    log.contact["joint"] = 0
+    assert evaluate(SPEC, log)[PUSHING] > 0.0
