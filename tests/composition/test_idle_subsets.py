@@ -31,8 +31,8 @@ from lavendersim.engine.spec import Spec
 SUBSETS = int(os.environ.get("LAVENDER_TEST_SUBSETS", "2"))
 COMPILED = bool(os.environ.get("LAVENDER_TEST_EVERYTHING"))
 SCENES = int(os.environ.get("LAVENDER_TEST_SCENES", "30" if COMPILED else "2"))
-# 2 s: bodies that bounced apart have come to rest, most of them; 0.4 s: they have met.
-STEPS = 480 if COMPILED else 96
+# 2 s: bodies that bounced apart have come to rest, most of them; 0.3 s: they have met.
+STEPS = 480 if COMPILED else 72
 SOME = settings(
     max_examples=SCENES,
     deadline=None,
@@ -162,32 +162,36 @@ def first(kind: Kind) -> dict[str, Any]:
     return found[0]
 
 
-@pytest.mark.parametrize("subset", range(SUBSETS))
 @pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.name)
-def test_a_random_subset_of_idle_effects_changes_no_bit(kind: Kind, subset: int) -> None:
+def test_random_subsets_of_idle_effects_change_no_bit(kind: Kind) -> None:
     lean, fuller = kind.engines(first(kind))
-    full = fuller[subset]
-    assert set(full.effects) > set(lean.effects)
-    more_sweeps = ("sweeps",) if full.has("residual_log") or full.has("broad_phase") else ()
+    assert all(set(full.effects) > set(lean.effects) for full in fuller)
     contacts = []
 
     @SOME
     @given(kind.scenes)
     def equal(scene: dict[str, Any]) -> None:
         assert planned(scene).spec.effects == lean.effects
-        one, other = (Run(scene, spec, STEPS, interpreted=not COMPILED) for spec in (lean, full))
+        one = Run(scene, lean, STEPS, interpreted=not COMPILED)
         contacts.append(len(one.tables["contact"]))
-        assert differences(one, other, *more_sweeps) == []
-        if not full.has("residual_log"):
-            # A pair out of reach of each other, which the broad phase does not list, may have a
-            # contact ahead that one sweep finds to be none: it is not logged, and pushes nothing.
-            steps, others = one.tables["step"], other.tables["step"]
-            touch = steps["contact_count"] > 0
-            assert np.array_equal(steps["sweeps"][touch], others["sweeps"][touch])
-            assert (others["sweeps"][~touch] <= steps["sweeps"][~touch]).all()
+        for full in fuller:
+            compare(one, Run(scene, full, STEPS, interpreted=not COMPILED), full)
 
     equal()
-    assert np.median(contacts) > 100
+    assert max(contacts) > 100
+
+
+def compare(one: Run, other: Run, full: Spec) -> None:
+    """Compare a run with that of a fuller engine."""
+    more_sweeps = ("sweeps",) if full.has("residual_log") or full.has("broad_phase") else ()
+    assert differences(one, other, *more_sweeps) == []
+    if not full.has("residual_log"):
+        # A pair out of reach of each other, which the broad phase does not list, may have a
+        # contact ahead that one sweep finds to be none: it is not logged, and pushes nothing.
+        steps, others = one.tables["step"], other.tables["step"]
+        touch = steps["contact_count"] > 0
+        assert np.array_equal(steps["sweeps"][touch], others["sweeps"][touch])
+        assert (others["sweeps"][~touch] <= steps["sweeps"][~touch]).all()
 
 
 @pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.name)
