@@ -1,6 +1,6 @@
 """Random configs break no law, on the engine with everything and on drawn ones; nor do old finds.
 
-`LAVENDER_TEST_FUZZ` draws more than 300 configs; `tests/property/fuzz.py` draws them on more plans.
+`LAVENDER_TEST_FUZZ` draws more than 150 configs; `tests/property/fuzz.py` draws them on more plans.
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ from idle import compile_together
 
 from lavendersim.engine.collide import SHAPE_PAIRS
 
-CONFIGS = int(os.environ.get("LAVENDER_TEST_FUZZ", "300"))
+CONFIGS = int(os.environ.get("LAVENDER_TEST_FUZZ", "150"))
 ENGINES = {"everything": FULL, **{f"drawn {k}": plan for k, plan in enumerate(drawn_plans(2))}}
 SHARE = {"everything": 8, "drawn 0": 1, "drawn 1": 1}  # tenths of the configs
 FOUND = sorted((Path(__file__).parents[2] / "configs" / "hard" / "found").glob("*.yaml"))
 
 
 @pytest.fixture(scope="module", autouse=True)
-def compiled() -> None:
+def compiled(optimised: None) -> None:
     """Compile the engines on both cores."""
     engines = []
     for plan in ENGINES.values():

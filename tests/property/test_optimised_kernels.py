@@ -1,7 +1,7 @@
 """Optimised kernels give the bits of those that are not: what the suite compiles stands for both.
 
-Neither numba nor LLVM is allowed to reorder or to contract (`compile_options.OPTIONS`). One scene
-strikes, turns and slides; in the other contacts are swept eight at a time, by vectors.
+Neither numba nor LLVM is allowed to reorder or to contract (`compile_options.OPTIONS`). Spheres of
+the scene strike, turn and slide; contacts are swept eight at a time, by vectors.
 """
 
 from __future__ import annotations
@@ -10,8 +10,6 @@ import os
 import subprocess
 import sys
 from pathlib import Path
-
-import pytest
 
 ROOT = Path(__file__).parents[2]
 RUN = """
@@ -27,7 +25,7 @@ engine = build(cell.config, spec).engine(spec)
 engine.advance(int(sys.argv[2]))
 assert engine.counters["step"][0] > 0
 states = engine.bodies.tobytes() + engine.velocities.tobytes() + engine.take_rows().step.tobytes()
-print(config.OPT.level if hasattr(config.OPT, "level") else config.OPT, spec.has("packed_sweeps"))
+print(int(config.OPT), spec.has("packed_sweeps"))
 print(hashlib.sha256(states).hexdigest())
 """
 
@@ -46,13 +44,7 @@ def states(config: str, steps: int, optimised: int) -> list[str]:
     return done.stdout.splitlines()
 
 
-@pytest.mark.parametrize(
-    ("config", "steps", "packed"),
-    [("scenes/oblique_impact.yaml", 120, False), ("scenes/pile.yaml", 40, True)],
-    ids=["impact", "pile"],
-)
-def test_optimised_kernels_give_the_same_bits(config: str, steps: int, packed: bool) -> None:
-    (plain, one), (optimised, other) = (states(config, steps, level) for level in (0, 3))
-    assert plain.endswith(str(packed))
-    assert plain != optimised
+def test_optimised_kernels_give_the_same_bits() -> None:
+    (plain, one), (optimised, other) = (states("scenes/pile.yaml", 40, level) for level in (0, 3))
+    assert (plain, optimised) == ("0 True", "3 True")
     assert one == other
