@@ -124,12 +124,12 @@ def test_absent_effects_leave_no_kernel_of_theirs_at_all() -> None:
     cell = SCENES["single ball"]()
     lean = planned(cell).spec
     full = lean.including(*MODULES)
-    drop, everything = code(cell, lean), code(cell, full)
-    modules = {module for module, _ in drop.kernels if module.startswith("effects.")}
+    modules = {module for module, _ in code(cell, lean).kernels if module.startswith("effects.")}
     assert modules <= {f"effects.{name}" for name in lean.effects}
     # Every effect makes the kernels that both have wider, so less is left than the share of their
     # number.
-    assert drop.size / everything.size < len(drop.kernels) / len(everything.kernels)
+    drop, everything = statements(lean), statements(full)
+    assert sum(drop.values()) / sum(everything.values()) < len(drop) / len(everything)
 
 
 @pytest.mark.parametrize("scene", ["balls", "frictional balls", "boxes"])

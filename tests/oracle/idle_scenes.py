@@ -168,6 +168,7 @@ SCENES: dict[str, Callable[[], dict[str, Any]]] = {
 CASES: dict[str, tuple[str, ...]] = {
     "compound": ("frictional balls",),
     "rope": ("balls",),
+    "joint": ("balls",),
     "broad_phase": ("balls",),
     "gravity": ("drifting balls",),
     "external_force": ("frictional balls",),
