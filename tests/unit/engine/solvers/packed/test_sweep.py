@@ -6,11 +6,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from laboratory import EVERYTHING
 from packed_scenes import BLOCKS, SCENES, found, mechanics, natural_maps
 
 from lavendersim.engine.solvers.catalogue import SOLVERS
 from lavendersim.engine.solvers.packed.lanes import WIDTH
 from lavendersim.engine.solvers.packed.layout import BLOCK, INV_K, K_N, W_N
+from lavendersim.engine.solvers.packed.sweep import can_pack
 from tests.benchmarks.prepared_contacts import Solve
 
 PACKED = ("block_gauss_seidel", "coloured_gauss_seidel")
@@ -184,3 +186,8 @@ def test_contacts_that_are_no_such_blocks_are_swept_as_records(solver: str) -> N
         declared = SOLVERS[solver]
         assert declared.allocate(spec, 2, 2) == ()
         assert declared.iteration(spec).sweep.py_func.__name__ == "sweep_in_order"
+
+
+def test_rows_of_joints_are_never_packed() -> None:
+    assert can_pack(EVERYTHING)
+    assert not can_pack(EVERYTHING.including("joint"))
