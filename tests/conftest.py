@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import os
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -87,3 +88,16 @@ def drop(tmp_path: Path) -> Path:
     path = tmp_path / "drop.yaml"
     path.write_text(DROP)
     return path
+
+
+@pytest.fixture(scope="module")
+def optimised() -> Iterator[None]:
+    """Compile as users do, here and in processes that are started: what makes millions of steps."""
+    from numba import config  # late: most tests here ask for it themselves
+
+    before = os.environ["NUMBA_OPT"]
+    os.environ["NUMBA_OPT"] = "3"
+    config.reload_config()
+    yield
+    os.environ["NUMBA_OPT"] = before
+    config.reload_config()

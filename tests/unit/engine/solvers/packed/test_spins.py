@@ -17,6 +17,7 @@ from tests.benchmarks.prepared_contacts import Solve
 
 G, DT, RADIUS = 9.81, 1.0 / 240.0, 0.1
 COUNT = 300
+pytestmark = pytest.mark.usefixtures("optimised")  # some ten million contacts are swept
 
 
 def made(bodies: dict, gravity: tuple, steps: int) -> Bench:
