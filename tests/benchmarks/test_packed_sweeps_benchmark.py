@@ -19,7 +19,6 @@ def test_both_engines_of_every_scene_are_timed(tmp_path: Path) -> None:
     assert done.returncode == 0, done.stderr
     rows = {row["scene"]: row for row in json.loads(output.read_text())["scenes"]}
     assert {scene: row["bodies"] for scene, row in rows.items()} == {"frictional pile": 40}
-    assert rows["frictional pile"]["contacts"] > 0
     for row in rows.values():
         assert row["with"]["us_per_step"] > 0.0
         assert row["ratio"] == pytest.approx(

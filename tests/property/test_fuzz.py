@@ -113,9 +113,9 @@ def test_a_mass_that_stands_as_a_number_is_seen(monkeypatch: pytest.MonkeyPatch)
 
 
 def test_scenes_have_all_that_drives_them() -> None:
-    """Of a hundred configs each has some of what the fuzz draws beside bodies."""
+    """Of four hundred configs each has some of what the fuzz draws beside bodies."""
     trees: list[dict[str, Any]] = []
-    drawn(configs(FULL), 100, trees.append, 0)
+    drawn(configs(FULL), 400, trees.append, 0)
     events = {key for tree in trees for event in tree["events"] for key in event}
     assert {"timestep", "remove", "when", "gravity", "surface", "orientation"} <= events
     scenes = [tree["scene"] for tree in trees]

@@ -39,7 +39,8 @@ from lavendersim.engine import impact_location, midpoint_passes, spring_midpoint
 from lavendersim.engine.collide import swept
 from lavendersim.engine.collide.convex import separation
 from lavendersim.engine.solvers.newton import least_norm
-separation.ASCENTS = midpoint_passes.PASSES = least_norm.ROUNDS = 1
+separation.ASCENTS = least_norm.ROUNDS = 1
+midpoint_passes.PASSES = midpoint_passes.MOST_PASSES = 1
 swept.ADVANCES = impact_location.PASSES = spring_midpoint.PASSES = 2
 """
 STARVES = {f"{name}_not_converged" for name in ("ascent", "midpoint", "spring")}
