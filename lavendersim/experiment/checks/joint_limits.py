@@ -15,6 +15,7 @@ from lavendersim.experiment.text.report import Report
 # Solvers whose sweeps take rows without a cone.
 SOLVERS = ("adaptive", "projected_gauss_seidel")
 IMPACTS = ("in_order", "captured")
+MOVES = ("teleport", "orientation")  # of an event: at once, whatever joints there are
 
 
 def refuse_beside_joints(config: CellConfig, tree: Node, report: Report) -> None:
@@ -27,6 +28,13 @@ def refuse_beside_joints(config: CellConfig, tree: Node, report: Report) -> None
         written = key in parent.entries
         mark = key_mark(parent, key) if written else locate(tree, path)[1].mark
         report.add(mark, f"{key}: {sentence}")
+    joined = {name for one in holding(config.scene).values() for name in one.between}
+    for event in tree.get("events").items:
+        name = event.get("body").text
+        for key in MOVES:
+            if name in joined and key in event.entries:
+                sentence = f"{name} has a joint, which this would tear; leave it out"
+                report.add(key_mark(event, key), f"{key}: {sentence}")
 
 
 def _limits(config: CellConfig) -> Iterator[tuple[Path, str]]:

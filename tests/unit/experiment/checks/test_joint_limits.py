@@ -64,6 +64,20 @@ def test_sections_that_joints_cannot_have_are_refused_at_their_place(
     assert f"x.yaml:{place}" in str(refused.value)
 
 
+@pytest.mark.parametrize("change", ["teleport: [0, 0, 3]", "orientation: [0, 1, 0, 0]"])
+def test_an_event_that_would_tear_a_joint_is_refused_at_its_place(change: str) -> None:
+    key = change.partition(":")[0]
+    text = TEXT + f"events: [{{at: 0.05, body: bob, {change}}}]\n"
+    with pytest.raises(ConfigError) as refused:
+        load_experiment_text(text, "x.yaml").cells()
+    column = text.splitlines()[8].index(change) + 1
+    assert str(refused.value) == (
+        f"x.yaml:9:{column}: {key}: bob has a joint, which this would tear; leave it out"
+    )
+    pushed = text.replace(change, "velocity: [1, 0, 0]")
+    assert load_experiment_text(pushed, "x.yaml").cells()[0].config
+
+
 def test_numerics_that_joints_can_have_are_taken() -> None:
     for numerics in ("chapter", "{timestep: 1/100}", "{solver: projected_gauss_seidel}"):
         text = TEXT.replace("numerics: {timestep: 1/100}", f"numerics: {numerics}")
