@@ -8,6 +8,7 @@ import numpy as np
 
 from lavendersim.cell import Sphere, Surface
 from lavendersim.cell.mixing import mixed
+from lavendersim.engine.effects import rows_of_surfaces
 from lavendersim.errors import UsageError
 from lavendersim.geometry.bodies import is_movable, mass_of
 from lavendersim.geometry.rotations import rotation_matrix, unit_quaternion
@@ -45,11 +46,7 @@ def contacts_of(trace: Trace, body: str, other: str | None = None) -> Rows:
     Of its surfaces: a taut rope has its row, a joint several, and they are none of them.
     """
     index = list(trace.bodies).index(body)
-    rows = trace.contact
-    if "rope" in (rows.dtype.names or ()):
-        rows = rows[rows["rope"] == 0]
-    if "joint" in (rows.dtype.names or ()):
-        rows = rows[rows["joint"] == 0]
+    rows = rows_of_surfaces(trace.contact)
     touches = (rows["body_a"] == index) | (rows["body_b"] == index)
     if other is not None:
         partner = list(trace.bodies).index(other)

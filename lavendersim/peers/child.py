@@ -74,10 +74,10 @@ def _states(first: int, poses: Any, speeds: Any, rows: Any, spent: int, reported
 
 def misbuilt(scene: Scene, world: Any, peer: Peer) -> str:
     """Return what the engine has otherwise than it was described; empty where nothing."""
-    bodies = scene.movable
+    bodies, inertias = scene.movable, world.inertias()
     required = {
-        "mass": ([b.mass for b in bodies], world.inertias()[:, :1]),
-        "inertia": ([b.inertia for b in bodies], world.inertias()[:, 1:]),
+        "mass": ([b.mass for b in bodies], inertias[:, :1]),
+        "inertia": ([b.inertia for b in bodies], inertias[:, 1:]),
         "position": ([b.position for b in bodies], world.poses()[:, :3]),
         "orientation": ([b.orientation for b in bodies], world.poses()[:, 3:]),
         "velocity": ([b.velocity for b in bodies], world.velocities()[:, :3]),

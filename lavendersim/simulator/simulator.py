@@ -18,6 +18,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from lavendersim.engine.effects import rows_of_surfaces
 from lavendersim.engine.engine import Engine, Rows
 from lavendersim.engine.records import DIVERGED
 from lavendersim.errors import UsageError
@@ -166,10 +167,7 @@ class Simulator:
     def body_contact_data(self) -> np.ndarray:
         """Return contact sums of the last step, float64 (bodies, 4), see BODY_CONTACT_COLUMNS."""
         data = np.zeros((len(self._scene.names), len(BODY_CONTACT_COLUMNS)))
-        contact = self._rows.contact
-        for connection in ("rope", "joint"):  # whose rows are of no surface
-            if connection in (contact.dtype.names or ()):
-                contact = contact[contact[connection] == 0]
+        contact = rows_of_surfaces(self._rows.contact)
         for side in ("body_a", "body_b"):
             np.add.at(data[:, 0], contact[side], 1.0)
             np.add.at(data[:, 1], contact[side], contact["force_n"])

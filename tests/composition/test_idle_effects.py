@@ -17,7 +17,6 @@ well, so that `sweeps` counts more where a tolerance, or an exact solution, ends
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable
 from typing import Any
 
@@ -29,14 +28,14 @@ from laboratory import planned
 from lavendersim.engine.collide import SHAPE_PAIRS
 from lavendersim.engine.effects import EFFECTS
 from lavendersim.engine.spec import Spec
+from tests.thorough import THOROUGH
 
 NOTHING_TOUCHES = {"flying brick"}
 # Where solves end early without it.
 MORE_SWEEPS = {"residual_log": ("sweeps",)}
-EVERYTHING = bool(os.environ.get("LAVENDER_TEST_EVERYTHING"))
 SOME_STEPS = 84  # 0.35 s: what is thrown has landed, and what bounces has been up
 # Everything at once: no effect is idle for the sake of another one that is absent.
-TOGETHER = list(SCENES) if EVERYTHING else ["frictional balls", "flying brick"]
+TOGETHER = list(SCENES) if THOROUGH else ["frictional balls", "flying brick"]
 # Shape pairs that do not occur in a scene.
 BALLS_ALONE = ("sphere_plane", "sphere_sphere")
 FOREIGN = {
@@ -47,7 +46,7 @@ FOREIGN = {
 
 def cases() -> list[tuple[str, str]]:
     """Return the pairs of an effect and a scene that are to be compared."""
-    if not EVERYTHING:
+    if not THOROUGH:
         return [(name, scene) for name, scenes in CASES.items() for scene in scenes]
     return [
         (name, scene)
@@ -105,11 +104,11 @@ def test_an_idle_effect_changes_no_bit(name: str, scene: str) -> None:
     assert may_idle(cell, name, record=name not in UNLOGGED)
     assert not lean.has(name)
     assert full.has(name)
-    how = {"steps": STEPS} if EVERYTHING else {"steps": SOME_STEPS, "interpreted": True}
+    how = {"steps": STEPS} if THOROUGH else {"steps": SOME_STEPS, "interpreted": True}
     one, other = (Run(cell, spec, **how) for spec in (lean, full))
     assert differences(one, other, *MORE_SWEEPS.get(name, ())) == []
     if scene in CASES[name] and scene not in NOTHING_TOUCHES and name not in UNLOGGED:
-        assert len(one.tables["contact"]) > (100 if EVERYTHING else 50)
+        assert len(one.tables["contact"]) > (100 if THOROUGH else 50)
 
 
 @pytest.mark.parametrize("scene", TOGETHER)
@@ -136,7 +135,7 @@ def test_every_shape_pair_is_foreign_to_one_of_the_scenes() -> None:
 
 
 ENGINES: dict[Any, Callable[..., Engines]] = {
-    **({test_an_idle_effect_changes_no_bit: with_effect} if EVERYTHING else {}),
+    **({test_an_idle_effect_changes_no_bit: with_effect} if THOROUGH else {}),
     test_all_idle_effects_together_change_no_bit: with_all_effects,
     test_shape_pairs_that_do_not_occur_change_no_bit: with_shape_pairs,
 }

@@ -27,12 +27,12 @@ from idle_scenes import BRICK, CONJUGATE, CUBE, cell
 from laboratory import box, plane, planned, sphere
 
 from lavendersim.engine.spec import Spec
+from tests.thorough import THOROUGH
 
 SUBSETS = int(os.environ.get("LAVENDER_TEST_SUBSETS", "2"))
-COMPILED = bool(os.environ.get("LAVENDER_TEST_EVERYTHING"))
-SCENES = int(os.environ.get("LAVENDER_TEST_SCENES", "30" if COMPILED else "2"))
+SCENES = int(os.environ.get("LAVENDER_TEST_SCENES", "30" if THOROUGH else "2"))
 # 2 s: bodies that bounced apart have come to rest, most of them; 0.3 s: they have met.
-STEPS = 480 if COMPILED else 72
+STEPS = 480 if THOROUGH else 72
 SOME = settings(
     max_examples=SCENES,
     deadline=None,
@@ -139,7 +139,7 @@ KINDS = [Kind(draw) for draw in (smooth, rough, conjugate)]
 @pytest.fixture(scope="module", autouse=True)
 def compiled() -> None:
     """Compile the engines of all kinds on both cores, where they are to be."""
-    if not COMPILED:
+    if not THOROUGH:
         return
     engines = []
     for kind in KINDS:
@@ -172,10 +172,10 @@ def test_random_subsets_of_idle_effects_change_no_bit(kind: Kind) -> None:
     @given(kind.scenes)
     def equal(scene: dict[str, Any]) -> None:
         assert planned(scene).spec.effects == lean.effects
-        one = Run(scene, lean, STEPS, interpreted=not COMPILED)
+        one = Run(scene, lean, STEPS, interpreted=not THOROUGH)
         contacts.append(len(one.tables["contact"]))
         for full in fuller:
-            compare(one, Run(scene, full, STEPS, interpreted=not COMPILED), full)
+            compare(one, Run(scene, full, STEPS, interpreted=not THOROUGH), full)
 
     equal()
     assert max(contacts) > 100

@@ -10,7 +10,6 @@ engines are then those of `test_idle_effects`; who runs both compiles them once.
 
 from __future__ import annotations
 
-import os
 from collections import Counter
 from functools import cache
 from typing import Any
@@ -25,6 +24,7 @@ from machine_code import Code, code_of
 from lavendersim.engine.effects import EFFECTS
 from lavendersim.engine.spec import Spec
 from lavendersim.engine.step import advance_for, kernels_of
+from tests.thorough import THOROUGH
 
 # Effects that have no kernel in their own file: they widen others, or theirs stand elsewhere.
 NO_KERNEL = {
@@ -50,7 +50,7 @@ TOUCHING = {"impact_time": "balls", "speculative": "balls", "contact_spring": "b
 CALLED_BY = {"pose_log": ("step_log",)}
 # A force, a law at contacts, one at impacts and one at the end of a step: 10 s each to compile.
 SOME = ("drag", "friction", "restitution", "sleeping")
-READ = CASES if os.environ.get("LAVENDER_TEST_EVERYTHING") else SOME
+READ = CASES if THOROUGH else SOME
 RECORDS = ("body", "velocity", "pair", "contact", "cache", "contact_row", "step_row")
 
 

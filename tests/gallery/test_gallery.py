@@ -9,7 +9,6 @@ hand.
 
 from __future__ import annotations
 
-import os
 import re
 import warnings
 from pathlib import Path
@@ -17,12 +16,12 @@ from pathlib import Path
 import pytest
 
 from lavendersim.runner import load_all, run
+from tests.thorough import THOROUGH
 
 HERE = Path(__file__).parent
 SCENES = sorted(HERE.glob("*.yaml"))
 NOT_YET = sorted((HERE / "not_yet").glob("*.yaml"))
-EVERYTHING = bool(os.environ.get("LAVENDER_TEST_EVERYTHING"))
-TELLING = [one for one in NOT_YET if EVERYTHING or one.stem in ("coin", "heap_of_balls")]
+TELLING = [one for one in NOT_YET if THOROUGH or one.stem in ("coin", "heap_of_balls")]
 # A bound that was broken, by how much, whose, and when.
 STOPPED = re.compile(r"beyond bounds: \w+ \S+ .*, at most \S+,.* in step \d+ \(t = \S+ s\)")
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -12,17 +13,22 @@ from lavendersim.engine.spec import Spec
 from lavendersim.engine.step import make_advance
 
 
-def interpreted_bench(cell: dict[str, Any], spec: Spec | None = None) -> Bench:
-    """Return a scene whose engine runs its kernels in the interpreter, for as long as it lives."""
-    bench = Bench(cell, spec)
-    advance = interpreted(make_advance(bench.spec))
+def interpreted_advance(spec: Spec) -> Callable[..., int]:
+    """Return what an engine calls, as a Python function of the same arrays and number of steps."""
+    advance = interpreted(make_advance(spec))
 
     def entry(*arguments: Any) -> int:
         *arrays, steps = arguments
         with np.errstate(over="ignore"):  # hashes of states
             return int(advance(*map(records, arrays), steps))
 
-    bench.engine._entry = entry
+    return entry
+
+
+def interpreted_bench(cell: dict[str, Any], spec: Spec | None = None) -> Bench:
+    """Return a scene whose engine runs its kernels in the interpreter, for as long as it lives."""
+    bench = Bench(cell, spec)
+    bench.engine._entry = interpreted_advance(bench.spec)
     return bench
 
 
@@ -32,18 +38,19 @@ class Steps:
     def __init__(self, cell: dict[str, Any], spec: Spec | None = None) -> None:
         self.bench = Bench(cell, spec)
         self.engine, self.spec = self.bench.engine, self.bench.spec
-        self._advance = interpreted(make_advance(self.spec))
+        self._advance = interpreted_advance(self.spec)
+
+    def _arrays(self) -> tuple[Any, ...]:
+        engine = self.engine
+        return engine.state, engine.workspace, engine.log, engine.parameters, engine.counters
 
     def arrays(self) -> list[Any]:
         """Return state, workspace, log, parameters and counters as kernels read them."""
-        engine = self.engine
-        arrays = engine.state, engine.workspace, engine.log, engine.parameters, engine.counters
-        return [records(array) for array in arrays]
+        return [records(array) for array in self._arrays()]
 
     def advance(self, steps: int) -> int:
         """Make so many steps; return what the kernel says."""
-        with np.errstate(over="ignore"):  # hashes of states
-            return int(self._advance(*self.arrays(), steps))
+        return self._advance(*self._arrays(), steps)
 
     def run(self, steps: int) -> np.ndarray:
         """Make so many steps; return their rows of the log."""

@@ -119,6 +119,14 @@ def has_hook(spec: Spec, hook: str) -> bool:
     return any(getattr(effect.hooks, hook) is not None for effect in effects_of(spec))
 
 
+def rows_of_surfaces(rows: Any) -> Any:
+    """Return the logged contacts without those of ropes and joints, which are of no surface."""
+    for connection in ("rope", "joint"):
+        if connection in (rows.dtype.names or ()):
+            rows = rows[rows[connection] == 0]
+    return rows
+
+
 def surface_fields(spec: Spec) -> list[Field]:
     """Return the columns that surfaces bring to pairs."""
     return [field for effect in effects_of(spec) for field in effect.fields.pair]
@@ -166,6 +174,7 @@ __all__ = [
     "made_once",
     "pulling",
     "row_fields",
+    "rows_of_surfaces",
     "surface_fields",
     "turned_by_joints",
 ]

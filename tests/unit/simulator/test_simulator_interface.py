@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from numpy.lib.recfunctions import append_fields
 
 import lavendersim
 from lavendersim.errors import UsageError
@@ -55,6 +56,19 @@ def test_a_resting_ball_is_carried(sim: lavendersim.Simulator) -> None:
     assert data.shape == (2, len(BODY_CONTACT_COLUMNS))
     # one contact and one row: the solve is exact, so only rounding is left
     assert data[:, 1] == pytest.approx([WEIGHT, WEIGHT], rel=1e-12)
+
+
+@pytest.mark.parametrize("connection", ["rope", "joint"])
+def test_rows_of_connections_are_no_contacts_of_bodies(
+    sim: lavendersim.Simulator, connection: str
+) -> None:
+    for _ in range(720):
+        sim.step()
+    own = sim._rows.contact
+    rows = append_fields(np.repeat(own, 2), connection, np.arange(2 * len(own)) % 2, usemask=False)
+    before = sim.body_contact_data()
+    sim._rows = sim._rows._replace(contact=rows)
+    assert np.array_equal(sim.body_contact_data(), before)
 
 
 def test_reset_returns_to_the_same_bits(sim: lavendersim.Simulator) -> None:
