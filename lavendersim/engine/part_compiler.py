@@ -31,8 +31,9 @@ from numba.core.typed_passes import NativeLowering
 from numba.core.typing.templates import make_concrete_template, signature
 
 from .compiler_shortcuts import packer_of, quick, shortened
-from .kernel_lowering import KernelLowering
+from .kernel_lowering import KernelLowering, is_direct
 from .kernel_parts import STORE, KernelPart, key_of, symbol_of
+from .memory_references import REFERENCES, are_rows
 from .separate_code import merge, optimise, separate_code
 
 if llvm_version_info < (17, 0, 0):
@@ -129,6 +130,10 @@ def _prepare(state: Any, function: Any, symbol: str) -> None:
         return default_mangler(name, argtypes, abi_tags=abi_tags, uid=uid)
 
     def declare_function(module: Any, called: Any) -> Any:
+        own = isinstance(called, ExternalFunctionDescriptor) or called.mangled_name == entry
+        if not own and any(map(are_rows, called.argtypes)):
+            # It would be handed seven numbers for each array, and read them as two.
+            raise NotImplementedError(f"a kernel calls {called.qualname} of numba with an array")
         expected = context.call_conv.get_function_type(called.restype, called.argtypes)
         there = module.globals.get(called.mangled_name)
         if there is not None and there.function_type != expected:
@@ -137,8 +142,11 @@ def _prepare(state: Any, function: Any, symbol: str) -> None:
             module = ir.Module(context=module.context)
         return type(context).declare_function(context, module, called)
 
+    entry = mangle(symbol, ())
     context = state.targetctx  # made for this compilation alone
     context.mangler, context.declare_function = mangler, declare_function
+    if is_direct(context, state.flags):
+        context.data_model_manager = REFERENCES
     context.get_arg_packer = packer_of(context.data_model_manager)
     state.typingctx = quick(state.typingctx)
 

@@ -90,9 +90,9 @@ def test_only_arguments_that_it_reads_are_handed_over(optimised):
     run(make_caller(alone))
     [part] = parts_of(alone)
     code = STORE.code(part)
-    # Where the value returned goes; of the rows their address and their count; the scale. Numba
-    # hands over an address for exceptions and two arrays of seven numbers.
-    assert len(code.types) == 2 + 7 + 7 + 1
+    # Where the value returned goes; of the rows their address and their count; the scale. There are
+    # an address for exceptions and another array, too.
+    assert len(code.types) == 2 + 2 + 2 + 1
     assert len(code.read) == 4
 
 
