@@ -43,8 +43,8 @@ from .records import (
     WOKEN,
 )
 from .respond import make_pass_by, make_respond
-from .row_terms import row_terms
 from .spec import Spec
+from .step_counts import make_reset_counts
 from .step_doubling import (
     GO_ON,
     MISSED,
@@ -105,11 +105,10 @@ def make_advance(spec: Spec) -> Any:
     stand: Any = make_stand(spec) if ordered else None
     iterates = touches and has_limits(spec)
     count_limits: Any = make_count_limits(spec) if iterates else None
-    limits_impacts, chooses = has_hook(spec, "limit_impacts"), has_hook(spec, "choose_impulses")
+    reset_counts = make_reset_counts(spec)
     triggered, meet_triggers = made_once(spec, "meet_triggers")
     overlooks = spec.has("overlooked_points")
     forget_whole: Any = make_forget_whole(spec) if overlooks else None
-    midway = row_terms(spec).shifted
     sleeps, measure_speeds = made_once(spec, "measure_speeds")
     _, wake = made_once(spec, "wake")
     _, update_sleeping = made_once(spec, "update_sleeping")
@@ -136,18 +135,7 @@ def make_advance(spec: Spec) -> Any:
                 begins = counters.parts == 0
             if begins:
                 params.timestep = params.dt
-                if iterates:
-                    counters.gjk_not_converged, counters.epa_not_converged = 0, 0
-                    counters.ascent_not_converged, counters.advance_not_converged = 0, 0
-                    counters.impact_not_converged = 0
-                if limits_impacts:
-                    counters.stronge_not_converged = 0
-                if midway:
-                    counters.midpoint_not_converged, counters.gyroscopic_not_converged = 0, 0
-                if linked:
-                    counters.spring_not_converged = 0
-                if chooses:
-                    counters.least_norm_not_converged = 0
+                reset_counts(counters)
             if ordered and not controlled:
                 params.dt = params.timestep - counters.elapsed
             if begins:

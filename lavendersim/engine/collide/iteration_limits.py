@@ -41,6 +41,16 @@ def has_limits(spec: Spec) -> bool:
     return has_gjk(spec) or has_advance(spec) or has_hook(spec, "order_impacts")
 
 
+def limits_of(spec: Spec) -> list[str]:
+    """Return the counters of searches that come with shapes alone; effects name their own."""
+    searches = {
+        "gjk_not_converged": has_gjk,
+        "epa_not_converged": has_epa,
+        "ascent_not_converged": has_ascent,
+    }
+    return [name for name, has in searches.items() if has(spec)]
+
+
 @inner
 def forget_limits(scratch):
     """Forget what was counted in a part of the step that is begun anew."""

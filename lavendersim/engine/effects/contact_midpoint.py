@@ -80,6 +80,7 @@ EFFECT = Effect(
         ],
         contact_with=contact_fields,
     ),
+    counts=("midpoint_not_converged",),
     step_columns=(
         Column(
             "midpoint_not_converged",

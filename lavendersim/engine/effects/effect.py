@@ -222,6 +222,7 @@ class Effect:
     contact_columns: tuple[Column, ...] = ()  # of /contacts
     step_columns: tuple[Column, ...] = ()  # of /step
     residual_columns: tuple[Column, ...] = ()  # of /residuals
+    counts: tuple[str, ...] = ()  # counters of its own that begin at 0 in every step
     channels: tuple[str, ...] | None = None  # of the log; None: it is no log
     hooks: Hooks = Hooks()
 

@@ -147,6 +147,7 @@ EFFECT = Effect(
             ("tangential_z", "f8"),
         ],
     ),
+    counts=("advance_not_converged",),
     step_columns=(
         Column(
             "advance_not_converged",

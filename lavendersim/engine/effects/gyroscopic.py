@@ -215,6 +215,7 @@ EFFECT = Effect(
     decide=decide,
     per="body",
     needs=("rotation",),
+    counts=("gyroscopic_not_converged",),
     step_columns=(
         Column(
             "gyroscopic_not_converged",

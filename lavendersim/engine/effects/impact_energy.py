@@ -179,6 +179,7 @@ EFFECT = Effect(
             ("pre_2", "f8"),
         ],
     ),
+    counts=("stronge_not_converged",),
     step_columns=(
         Column("stronge", "i8", "1 when Stronge's law of restitution replaced Newton's", number=19),
         Column(

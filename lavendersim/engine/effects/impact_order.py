@@ -246,6 +246,7 @@ EFFECT = Effect(
             ("due", "f8"),  # when the surfaces meet, from the start of the part [s]
         ],
     ),
+    counts=("impact_not_converged",),
     step_columns=(
         Column("parts", "i8", "parts that the step was made in, impacts included", number=33),
         Column("unordered", "i8", "1 when impacts of the step were left without order", number=34),

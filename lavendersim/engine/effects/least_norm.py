@@ -75,6 +75,7 @@ EFFECT = Effect(
     needs=("newton",),
     chosen_by=Choice("undetermined_forces"),
     fields=Fields(contact_with=contact_fields),
+    counts=("least_norm_not_converged",),
     step_columns=(
         Column(
             "least_norm_not_converged",

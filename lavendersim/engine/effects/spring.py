@@ -277,6 +277,7 @@ EFFECT = Effect(
             *[(f"l{end}{axis}", "f8") for end in "ab" for axis in "xyz"],
         ],
     ),
+    counts=("spring_not_converged",),
     step_columns=(
         Column("spring_energy", "f8", "energy that springs store", "J", number=27),
         Column("spring_impulse_x", "f8", f"impulse {_OUTER} x", "N s", number=28),
