@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from lavendersim.cell import AnyEvent, CellConfig, happened, met_after
 from lavendersim.clock import Clock
-from lavendersim.errors import TraceError, unanswerable
+from lavendersim.errors import OtherVersionError, TraceError, unanswerable
 from lavendersim.record_tables import joined
 from lavendersim.trace import decode, layout
 from lavendersim.trace.absent import absent_table, table_without
@@ -347,6 +347,13 @@ class Trace:
         TraceError where another version wrote it so that this one cannot read it.
         """
         return self._source.config()
+
+    def config_data(self) -> dict[str, Any]:
+        """Return the config of this cell as plain data, of whatever version it is."""
+        try:
+            return dict(json.loads(self.config.as_json()))
+        except OtherVersionError:
+            return self._source.config_data()
 
     @cached_property
     def events(self) -> tuple[AnyEvent, ...]:

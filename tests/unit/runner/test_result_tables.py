@@ -56,7 +56,7 @@ def run(*rows: CellResult, checks: tuple[Verdict, ...] = ()) -> Any:
         for one in EXPERIMENT.cells()
     ]
     kept = RunResults("a", False, None, rows, None, checks, True)
-    return SimpleNamespace(experiment=EXPERIMENT, cells=cells, results=lambda: kept, path=Path("run"))  # noqa: E501  # fmt: skip
+    return SimpleNamespace(not_understood="", experiment=EXPERIMENT, cells=cells, results=lambda: kept, path=Path("run"))  # noqa: E501  # fmt: skip
 
 
 def row(index: int, measure: Any, **violations: Any) -> CellResult:
