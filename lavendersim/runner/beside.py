@@ -60,7 +60,7 @@ class Beside(Generic[Task, Result]):
             return
         self._tasks.append(task)
         with suppress(OSError):  # it died: `results` does the task
-            self._pipe.send(task)
+            self._pipe.send([task])
 
     def results(self, wait: bool = True) -> Iterator[Result]:
         """Yield the results of tasks in their order; an exception of one is raised here.
