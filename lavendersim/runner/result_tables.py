@@ -17,11 +17,13 @@ from lavendersim.arrow import Batch, Field, Kind, Table
 from lavendersim.arrow.fields import distinct
 from lavendersim.measures.judging import cells_of_claims
 from lavendersim.measures.meanings import meaning_of
+from lavendersim.quantities.unit_at import unit_at
 
 from .log_tables import key_fields
 from .run_results import CellResult
 
 if TYPE_CHECKING:
+    from lavendersim.experiment import Experiment
     from lavendersim.measures.verdict import Verdict
 
     from .run_directory import Run
@@ -81,7 +83,10 @@ def cells_table(run: Run) -> Table:
     fields = distinct(
         {
             "key": key_fields(run),
-            "axis": [Field(axis, kind, f"axis {axis!r}") for axis, (kind, _) in axes.items()],
+            "axis": [
+                Field(axis, kind, f"axis {axis!r}", _unit_of(known, axis, kind))
+                for axis, (kind, _) in axes.items()
+            ],
             "cell": list(_STATE),
             "measure": [
                 Field(name, kind, *(meaning_of(known.measures[name]) if known else ("measure",)))
@@ -120,6 +125,15 @@ def verdicts_table(run: Run) -> Table:
         *([getattr(one, field.name) for one in checks] for field in _VERDICT),
     ]
     return Table("verdicts", fields, _batches(fields, columns, len(checks)))
+
+
+def _unit_of(experiment: Experiment | None, axis: str, kind: Kind) -> str:
+    """Return the unit of an axis of numbers: of all that it varies, where they have the same."""
+    if experiment is None or kind not in ("i8", "f8"):
+        return ""
+    paths = [path for path, name in experiment.swept.items() if name == axis]
+    units = {unit_at(experiment.config, path) for path in paths}
+    return units.pop() if len(units) == 1 else ""
 
 
 def _places(run: Run, checks: Sequence[Verdict]) -> dict[str, int]:
