@@ -4,8 +4,8 @@
     statuses = worlds.advance(240, threads=2)
     rows = [engine.take_rows() for engine in engines]
 
-A thread steps a block of worlds by one call of a kernel, without the interpreter lock. What is
-called for a world is `advance`, with views of its rows: bits are those of the engine alone, and an
+A thread steps a block of worlds by one call of a kernel, without the interpreter lock. It makes the
+steps of a world by `advance`, with views of its rows: bits are those of the engine alone, and an
 engine stays one, whose steps, rows and events are its own. One that needs more room than the worlds
 were given gets arrays of its own, and goes on by itself from then on.
 """
