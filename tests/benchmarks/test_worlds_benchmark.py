@@ -22,6 +22,9 @@ def test_every_case_is_run_with_one_process_and_with_two(monkeypatch: pytest.Mon
         assert one.others == 0.0  # it starts no process,
         assert many.others > 0.0  # and the processes that are started are waited for
     assert len(list(worlds.lines_of(found))) == 1 + len(configs)
+    assert worlds.apart(configs["drops"], 1) > 0.0
+    one, more = worlds.in_one_call(configs["drops"], 3, 1)
+    assert min(one, more) > 0.0
 
 
 def test_ratios_are_of_throughput_and_bounded_by_processor_time() -> None:

@@ -1,6 +1,7 @@
 """How many worlds a machine steps in a second, from config to verdict: one process against two.
 
-    python -m tests.benchmarks.worlds [--share 1] [--repeats 3] [--output FILE.json] [--check]
+    python -m tests.benchmarks.worlds [--share 1] [--repeats 3] [--check] [--apart]
+                                      [--output FILE.json]
 
 A world is one cell of a sweep whose cells differ in numbers alone: 10,000 drops of one second, and
 2,000 stacks of six blocks. Each is planned, stepped, logged, measured and judged, with one process
@@ -12,6 +13,10 @@ the ratio that processor times allow stands beside it: what one process takes, o
 where nobody else asks for the cores. Before the first cell begins and after the last has ended one
 process works alone, between them the cores share what there is to do. A quiet machine does no
 better. Whatever else runs makes times longer, never shorter: of the repeats the least counts.
+
+--apart: runs of one process, as many beside each other as there are PROCESSES, that know nothing of
+one another. Where a cell of theirs takes longer than of one run alone, that is the machine: caches,
+memory and cores that are shared with others.
 
 In one call: the same worlds as engines that advance together (`engine.worlds`), stepped and not
 logged, by one thread and by as many as there are processes; at most MOST of a kind, as they are all
@@ -38,6 +43,7 @@ from lavendersim.engine.worlds import Worlds
 from lavendersim.experiment import load_experiment_text
 from lavendersim.runner import Progress, run
 from lavendersim.runner.environment import environment
+from lavendersim.runner.workers import work
 from lavendersim.scene.build import build
 from lavendersim.scene.plan import plan_of_cell
 
@@ -157,6 +163,21 @@ def in_one_call(text: str, most: int, repeats: int) -> tuple[float, float]:
     return best[0], best[1]
 
 
+def alone(text: str) -> Taken:
+    """Run a config with one process."""
+    return taken(text, 1)
+
+
+def apart(text: str, repeats: int) -> float:
+    """Return the processor time [ms] of a cell in runs beside each other."""
+    return min(
+        1e3 * one.own / one.worlds
+        for _ in range(repeats)
+        for _, one in work(alone, [text] * PROCESSES, PROCESSES)
+        if isinstance(one, Taken)
+    )
+
+
 def measure(configs: dict[str, str], repeats: int) -> dict[str, list[tuple[Taken, Taken]]]:
     """Run every config with one process and with PROCESSES, in turn; pairs by name."""
     found: dict[str, list[tuple[Taken, Taken]]] = {name: [] for name in configs}
@@ -218,9 +239,12 @@ def main() -> int:
     parser.add_argument("--repeats", type=int, default=3, help="interleaved rounds")
     parser.add_argument("--output", type=Path, help="JSON file for all samples")
     parser.add_argument("--check", action="store_true", help="exit 1 below the bar")
+    parser.add_argument("--apart", action="store_true", help="runs that share nothing, too")
     arguments = parser.parse_args()
     found = measure(cases(arguments.share), arguments.repeats)
     print("\n".join(lines_of(found)))
+    for name, text in cases(arguments.share).items() if arguments.apart else ():
+        print(f"{name:14} {PROCESSES} runs apart: {apart(text, arguments.repeats):.2f} ms a cell")
     for name, text in cases(arguments.share).items():
         one, more = in_one_call(text, MOST[name], arguments.repeats)
         print(f"{name:14} in one call, stepped alone {one:19.0f} {more:17.0f} {more / one:6.2f}")
