@@ -51,6 +51,7 @@ def diff(
 
 def _print(found: Comparison) -> None:
     typer.echo(f"A  {found.a.path}\nB  {found.b.path}")
+    _lines([f"compared as it is written: {one}" for one in found.not_understood])
     if found.equal:
         typer.echo("equal but for the machine and times")
     _section("config", [_change(one.path, one.a, one.b) for one in found.config])

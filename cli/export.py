@@ -40,7 +40,7 @@ def export(
     printing.report_damage(damaged, "nothing is exported" if not allow_incomplete else "")
     names = None if tables is None else [name.strip() for name in tables.split(",")]
     written = export_run(opened, file_format, output or opened.path / "export", names)
-    for sentence in written.left_out:
+    for sentence in filter(None, (opened.not_understood, *written.left_out)):
         typer.echo(sentence, err=True)
     for file in written.files:
         typer.echo(file)

@@ -10,6 +10,7 @@ import sys
 import traceback
 import warnings
 from collections.abc import Callable
+from contextlib import ExitStack
 from typing import Annotated, TextIO, cast
 
 import typer
@@ -129,15 +130,19 @@ def main() -> None:
         else python_format(message, category, *where, **line)
     )
 
+    signals = ExitStack()
     if sys.argv[1:2] and sys.argv[1] in WORKING:
+        from lavendersim.runner.interruption import handled
         from lavendersim.runner.unread_output import Unread
 
+        signals.enter_context(handled())  # while it plans and draws, too
         sys.stdout = cast(TextIO, Unread(sys.stdout))
     elif hasattr(signal, "SIGPIPE") and not sys.stdout.isatty():
         # As other tools do: a reader that has seen enough ends the writer, without a message.
         signal.signal(signal.SIGPIPE, signal.SIG_DFL)
     try:
-        app(prog_name="lavender")  # by which a shell asks for completions
+        with signals:
+            app(prog_name="lavender")  # by which a shell asks for completions
     except LavenderError as error:
         typer.echo(str(error), err=True)
         sys.exit(error.exit_code)

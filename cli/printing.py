@@ -63,15 +63,13 @@ def mark(passed: bool | None) -> str:
 
 def print_unjudged(finished: Any) -> None:
     """Print the measures of which nothing is expected: of each the range over the cells."""
-    from lavendersim.measures.meanings import described_kinds
+    from lavendersim.measures.meanings import RATIO, meaning_of
 
     experiment, taken = finished.run.experiment, finished.run.taken
-    names = experiment.unjudged
-    kinds = described_kinds() if names else {}
-    for name in names:
+    for name in experiment.unjudged:
         values = [cell[name] for cell in taken.values() if name in cell]
         numbers = [value for value in values if isinstance(value, float | int)]
-        unit = kinds[experiment.measures[name].kind].unit
+        unit = meaning_of(experiment.measures[name])[1].removeprefix(RATIO)
         if numbers:
             typer.echo(f"        {name}: {digits_between(numbers)} {unit}".rstrip())
         for reason in dict.fromkeys(value for value in values if isinstance(value, str)):

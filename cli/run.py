@@ -153,10 +153,6 @@ def run(
             raise typer.BadParameter(f"{option}: watched runs are whole", param_hint="--watch")
         again(configs, lambda: run(**given))
         return
-    from lavendersim.runner import finished_run, load_all
-    from lavendersim.runner import run as run_experiment
-    from lavendersim.runner.prediction import planned_before
-
     if into is not None or shard is not None:
         asked = {"--plot": plot, "--refine": refine, "--resume": resume, "--json": as_json}
         asked |= {
@@ -172,17 +168,22 @@ def run(
         raise typer.BadParameter(f"{executor!r}, expected {DASK!r}", param_hint="--executor")
     # Every file is read before the first run, so a defect anywhere leaves nothing half done.
     overrides = overrides_of(values, axes, engine)
-    experiments = load_all(configs, overrides=overrides, strict=strict)
-    printing.warn_of_untried(experiments)
     where = [] if runs == Path("runs") else ["--runs", str(runs)]
     command = _command(configs, overrides, "--resume", *where)
-    good, tables, with_overheads = True, [], []
-    planned: list[Prepared | None] = [None] * len(experiments)
-    if not resume:  # it was asked before
-        planned = [planned_before(one, 1 if executor or dask else jobs) for one in experiments]
-        each = (with_refined(one) if refine else [one] for one in experiments)
-        confirm(each, runs, jobs, yes, [one for one in planned if one])
-    with Drawing(experiments if plot else ()) as drawing:
+    with _interruptible(command):
+        from lavendersim.runner import finished_run, load_all
+        from lavendersim.runner import run as run_experiment
+        from lavendersim.runner.prediction import planned_before
+
+        experiments = load_all(configs, overrides=overrides, strict=strict)
+        printing.warn_of_untried(experiments)
+        good, tables, with_overheads = True, [], []
+        planned: list[Prepared | None] = [None] * len(experiments)
+        if not resume:  # it was asked before
+            planned = [planned_before(one, 1 if executor or dask else jobs) for one in experiments]
+            each = (with_refined(one) if refine else [one] for one in experiments)
+            confirm(each, runs, jobs, yes, [one for one in planned if one])
+    with _interruptible(command), Drawing(experiments if plot else ()) as drawing:
         for number, experiment in enumerate(experiments):
             whole = finished_run(experiment, runs) if resume else None
             if whole is not None:
@@ -194,7 +195,7 @@ def run(
                     tables.append({**results.as_json, "run": whole.path, "figures": []})
                 continue
             printing.warn_of_mistakes(experiment)
-            with _resumable(command), ExitStack() as open_now:
+            with _on_full_disk(command), ExitStack() as open_now:
                 shown = open_now.enter_context(progress.reporting(experiment.name))
                 workers: Executor | None = None
                 if executor is not None or dask is not None:
@@ -262,15 +263,25 @@ def _print_figures(figures: list[Path]) -> None:
 
 
 @contextmanager
-def _resumable(command: str) -> Iterator[None]:
-    """Print the command that goes on with what is run where that ends too early."""
+def _interruptible(command: str) -> Iterator[None]:
+    """Print the command that goes on with what is run where a signal ends that."""
+    from lavendersim.runner.interruption import handled
+
     try:
-        yield
+        with handled():  # what a library makes of a signal is that signal
+            yield
     except KeyboardInterrupt as end:  # it says by what, and where what was simulated is
         if str(end):
             typer.echo(str(end), err=True)
         typer.echo(f"go on with: {command}", err=True)
         raise
+
+
+@contextmanager
+def _on_full_disk(command: str) -> Iterator[None]:
+    """Print the command that goes on with what is run where the disk ends that."""
+    try:
+        yield
     except OSError as error:
         if error.errno in DISK:
             typer.echo(f"go on with: {command}", err=True)
@@ -294,25 +305,27 @@ def _run_shard(
 ) -> None:
     """Run cells into a folder that other workers share; nothing is judged before the merge."""
     from lavendersim.errors import UsageError
-    from lavendersim.runner import load_all
-    from lavendersim.runner.shards import part_of, run_shard
 
     into, shard = place
     if into is None:
         raise UsageError("--shard: expected --into DIR, the folder that its cells are run into")
     if refused := [option for option, given in asked.items() if given]:
         raise UsageError(f"{refused[0]} with --into: cells are not judged before `lavender merge`")
-    part = part_of(shard) if shard is not None else None
-    experiments = load_all(configs, overrides=overrides, strict=strict)
-    if len(experiments) > 1:
-        raise UsageError(f"--into {into}: expected one config, not {len(experiments)}")
-    experiment = experiments[0]
-    printing.warn_of_untried(experiments)
-    printing.warn_of_mistakes(experiment)
     given = ["--into", str(into), *(["--shard", shard] if shard is not None else [])]
     command = _command(configs, overrides, *given)
-    with _resumable(command), progress.reporting(experiment.name) as shown:
-        done = run_shard(experiment, into, part, jobs, shown)
+    with _interruptible(command), _on_full_disk(command):
+        from lavendersim.runner import load_all
+        from lavendersim.runner.shards import part_of, run_shard
+
+        part = part_of(shard) if shard is not None else None
+        experiments = load_all(configs, overrides=overrides, strict=strict)
+        if len(experiments) > 1:
+            raise UsageError(f"--into {into}: expected one config, not {len(experiments)}")
+        experiment = experiments[0]
+        printing.warn_of_untried(experiments)
+        printing.warn_of_mistakes(experiment)
+        with progress.reporting(experiment.name) as shown:
+            done = run_shard(experiment, into, part, jobs, shown)
     for sentence in done.lost:
         typer.echo(f"{experiment.name}: {sentence}", err=True)
     of = "" if shard is None else f" of part {shard}"

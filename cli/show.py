@@ -48,16 +48,14 @@ def show(
         printing.as_json(results.as_json)
         _end(opened.cut())
         return
-    experiment = opened.experiment
     typer.echo(f"{typer.style(opened.name, bold=True)}  {opened.path}")
-    for name, text in (
-        ("question", experiment.config.question),
-        ("expected", experiment.config.expected),
-    ):
-        if text:
+    if opened.not_understood:
+        typer.echo(opened.not_understood, err=True)
+    for name in ("question", "expected"):
+        if text := opened.config_data.get(name):
             typer.echo(f"{name}  {text}")
-    if experiment.options.solver is not None:
-        typer.echo(f"solver  {experiment.options.solver}, instead of the config's")
+    if opened.options.solver is not None:
+        typer.echo(f"solver  {opened.options.solver}, instead of the config's")
     logged = plans_of(opened.cells)
     for plan in logged.plans:
         print_plan(plan, len(opened.cells))

@@ -81,4 +81,4 @@ class TraceError(LavenderError):
 
 
 class OtherVersionError(TraceError):
-    """A whole log of a version whose configs this one cannot read."""
+    """A whole log, or a run, of a version whose configs this one cannot read."""

@@ -1,4 +1,4 @@
-"""Runs as older versions left them: before digests, and before residuals."""
+"""Runs as older versions left them: before digests, before residuals, and of other keys."""
 
 from __future__ import annotations
 
@@ -15,6 +15,18 @@ def without_digests(run: Path) -> Path:
         del row["config"], row["log"]
     (run / "cells.json").write_text(json.dumps(index))
     (run / "DONE").write_text("")
+    return run
+
+
+def of_other_keys(run: Path) -> Path:
+    """Let a finished run be of a config that has a key which there is no more; returns it."""
+    without_digests(run)
+    index = json.loads((run / "cells.json").read_text())
+    for row in index["cells"]:
+        del row["coordinates"]  # nor had the index of the first versions
+    (run / "cells.json").write_text(json.dumps(index))
+    config = run / "config.yaml"
+    config.write_text("former: 3\n" + config.read_text())
     return run
 
 

@@ -56,6 +56,7 @@ class Comparison(NamedTuple):
     resolved: dict[Difference, int]  # of cells, beside that; in how many pairs
     versions: list[Difference]
     machine: list[Difference]
+    not_understood: list[str]  # a sentence on each config of another version
     pairing: Pairing
     measures: list[MeasureChange]
     verdicts: list[VerdictChange]
@@ -81,6 +82,7 @@ class Comparison(NamedTuple):
             "resolved": [{**one._asdict(), "cells": n} for one, n in self.resolved.items()],
             "versions": [one._asdict() for one in self.versions],
             "machine": [one._asdict() for one in self.machine],
+            "not_understood": self.not_understood,
             "paired_by": list(self.pairing.axes),
             "pairs": len(self.pairing.pairs),
             "only_a": self.pairing.only_a,
@@ -95,7 +97,10 @@ class Comparison(NamedTuple):
 
 
 def compare(a: Run, b: Run) -> Comparison:
-    """Compare two finished runs. UsageError where one is not, TraceError where one is damaged."""
+    """Compare two finished runs. UsageError where one is not, TraceError where one is damaged.
+
+    A config that this version does not understand is compared as it was written.
+    """
     results = a.results(), b.results()
     pairing = paired(a.cells, b.cells)
     written = list(differences(_written(a), _written(b)))
@@ -103,7 +108,7 @@ def compare(a: Run, b: Run) -> Comparison:
     resolved: dict[str, tuple[Difference, int]] = {}
     states: list[CellStates] = []
     for pair in pairing.pairs:
-        configs = [json.loads(cell.config.as_json()) for cell in (pair.a, pair.b)]
+        configs = [cell.trace().config_data() for cell in (pair.a, pair.b)]
         for one in differences(configs[0], configs[1]):
             if one.path not in known:
                 first, count = resolved.get(one.path, (one, 0))
@@ -120,6 +125,7 @@ def compare(a: Run, b: Run) -> Comparison:
         {Difference(o.path, _shown(o.a), _shown(o.b)): n for o, n in resolved.values()},
         _named(environments, VERSIONS),
         _named(environments, MACHINE),
+        list(dict.fromkeys(run.not_understood for run in (a, b) if run.not_understood)),
         pairing,
         _measures(pairing, results),
         _verdicts(*results),
@@ -146,9 +152,8 @@ def _states_of(pair: CellPair) -> CellStates:
 
 def _written(run: Run) -> dict[str, Any]:
     """Return the config as it was read, with what the command line made of it."""
-    experiment = run.experiment
-    options = {"--solver": experiment.options.solver, "reduced": experiment.options.reduced}
-    return {**experiment.tree.data, **{name: one for name, one in options.items() if one}}
+    options = {"--solver": run.options.solver, "reduced": run.options.reduced}
+    return {**run.config_data, **{name: one for name, one in options.items() if one}}
 
 
 def _shown(value: Any) -> Any:

@@ -110,6 +110,10 @@ class Engine:
         self._types = (spec, _types_of((self.state, self.workspace, self.log)))
         self._entry = _entries.get(self._types)
 
+    def note_memory(self) -> None:
+        """Take up arrays that were put in the place of its own: equal in type, shape and values."""
+        self._done = self.counters["step"]
+
     @property
     def bodies(self) -> np.ndarray:
         """Records of the bodies and of their parts."""

@@ -99,6 +99,12 @@ def load_experiment_text(
     return experiment if divisor == 1 else experiment.refined(divisor)
 
 
+def unchecked_data(raw: bytes) -> dict[str, Any]:
+    """Return what a config says, as plain data, where no more than YAML is asked of it."""
+    root = parse(raw, Report("config"), len(raw))
+    return dict(root.data) if root is not None and isinstance(root.data, dict) else {}
+
+
 def _load(
     raw: bytes, name: str, size: int, options: ConfigOptions, file: Path | None = None
 ) -> Experiment:

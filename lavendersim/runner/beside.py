@@ -8,7 +8,6 @@ here when results are taken.
 from __future__ import annotations
 
 import os
-import signal
 import warnings
 from collections import deque
 from collections.abc import Callable, Iterator
@@ -17,6 +16,7 @@ from multiprocessing import get_context
 from typing import Any, Generic, TypeVar
 
 from .forking import may_fork
+from .interruption import forked_to_end
 from .workers import PATIENCE, end_with_parent, serve
 
 Task = TypeVar("Task")
@@ -60,7 +60,7 @@ class Beside(Generic[Task, Result]):
             return
         self._tasks.append(task)
         with suppress(OSError):  # it died: `results` does the task
-            self._pipe.send(task)
+            self._pipe.send([task])
 
     def results(self, wait: bool = True) -> Iterator[Result]:
         """Yield the results of tasks in their order; an exception of one is raised here.
@@ -107,7 +107,8 @@ class Beside(Generic[Task, Result]):
 
 
 def _begin(pipe: Any, others: Any, function: Callable[[Any], Any], prepare: Any) -> None:
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the process that asks
+    if forked_to_end():  # Ctrl-C is for the process that asks
+        return
     end_with_parent()  # while it prepares, too
     others.close()  # the parent's end: else the pipe would not end with the parent
     with suppress(Exception):  # raised again by the first task

@@ -6,10 +6,13 @@ written. How cells ended while the run goes on stands beside it, see `run_index`
 
 from __future__ import annotations
 
+import json
+import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from fractions import Fraction
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from lavendersim.config_options import ConfigOptions
 from lavendersim.durable_files import write_in_pieces
@@ -20,6 +23,9 @@ from .run_tables import read_table
 
 if TYPE_CHECKING:
     from lavendersim.trace import ExpectedLog, LogDigest
+
+
+_RATIO: Final = re.compile(r"-?\d+/\d*[1-9]\d*")
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,5 +133,26 @@ def _row_of(row: Mapping[str, Any]) -> IndexRow:
         row["status"],
         row.get("config", ""),
         digest_of(row.get("log")),
-        row.get("coordinates", {}),
+        row["coordinates"] if "coordinates" in row else _in_label(row["label"]),
     )
+
+
+def swept_values(coordinates: Mapping[str, Any]) -> dict[str, Any]:
+    """Return coordinates of the index as a sweep has them: JSON has ratios as texts."""
+    return {
+        axis: Fraction(value) if isinstance(value, str) and _RATIO.fullmatch(value) else value
+        for axis, value in coordinates.items()
+    }
+
+
+def _in_label(label: str) -> dict[str, Any]:
+    """Return the coordinates that a label names: the first versions kept no others."""
+    parts = (part.split("=", 1) for part in label.split(", ") if "=" in part)
+    return {axis: _value(text) for axis, text in parts}
+
+
+def _value(text: str) -> Any:
+    try:
+        return json.loads(text)
+    except ValueError:
+        return text

@@ -121,6 +121,8 @@ def make_directory(experiment: Experiment, root: Path, in_text: Sequence[str] = 
 def _short(override: str) -> str:
     """Return an override as part of a directory's name: the end of its path, and its value."""
     path, _, value = override.partition("=")
+    if override.startswith("sweep "):  # sweep NAME=PATH:[VALUES]
+        value = value.partition(":")[2].strip("[] ")
     return re.sub(r"[^\w.=+]+", "_", f"{re.split('[. ]', path)[-1]}={value}")[:MOST_OVERRIDE]
 
 

@@ -16,6 +16,7 @@ from typing import Any, Final
 
 from lavendersim.trace.whole import INTERRUPTED
 
+_ASKED: Final = ("_raw_object_cache_getbuffer", "_raw_object_cache_notify")  # of llvmlite
 SIGNALS: Final = ("SIGINT", "SIGTERM", "SIGHUP")  # those of them that a system has
 
 
@@ -39,7 +40,17 @@ def _take(number: int, frame: Any) -> None:
         _Noted.signal = _Noted.signal or name
         return
     _Noted.raised = name
-    raise Interrupted(f"{INTERRUPTED} by {name}")
+    if not _is_asked_by_llvm(frame):
+        raise Interrupted(f"{INTERRUPTED} by {name}")
+
+
+def _is_asked_by_llvm(frame: Any) -> bool:
+    """Whether LLVM waits for an object that is kept: left without an answer it ends the process."""
+    while frame is not None:
+        if frame.f_code.co_name in _ASKED:
+            return True
+        frame = frame.f_back
+    return False
 
 
 def _is_main() -> bool:

@@ -10,6 +10,7 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any, Final
 
+_encode: Final = json.JSONEncoder(allow_nan=False).encode
 _PLAIN: Final = frozenset({str, int, bool, type(None)})
 
 
@@ -18,16 +19,19 @@ def text_of(table: Mapping[str, Any]) -> str:
     return "".join(pieces_of(table))
 
 
-def pieces_of(table: Mapping[str, Any]) -> Iterator[str]:
+def pieces_of(
+    table: Mapping[str, Any], instead: Callable[[float], Any] | None = None
+) -> Iterator[str]:
     """Yield the same text in pieces: of many cells the whole is larger than what it is made of.
 
-    A list of rows may be an iterator, whose rows are made as they are written.
+    A list of rows may be an iterator, whose rows are made as they are written. instead: what rows
+    have for a number that JSON does not have; without it such a number is a ValueError.
     """
     yield "{\n"
     between = ""
     for key, value in table.items():
-        yield f"{between} {_text(key)}: "
-        yield from _rows(value) if _is_of_rows(value) else (_text(value),)
+        yield f"{between} {_encode(key)}: "
+        yield from _rows(value, instead) if _is_of_rows(value) else (_encode(value),)
         between = ",\n"
     yield "\n}\n"
 
@@ -52,13 +56,17 @@ def _is_of_rows(value: Any) -> bool:
     return isinstance(value, Iterator)
 
 
-def _rows(rows: Iterable[Mapping[str, Any]]) -> Iterator[str]:
+def _rows(
+    rows: Iterable[Mapping[str, Any]], instead: Callable[[float], Any] | None
+) -> Iterator[str]:
     between = "[\n"
     for row in rows:
-        yield f"{between}  {_text(row)}"
+        try:
+            text = _encode(row)
+        except ValueError:  # few have such a number, and to look for one takes longer
+            if instead is None:
+                raise
+            text = _encode(finite(row, instead))
+        yield f"{between}  {text}"
         between = ",\n"
     yield "\n ]" if between == ",\n" else "[]"
-
-
-def _text(value: Any) -> str:
-    return json.dumps(value, allow_nan=False)

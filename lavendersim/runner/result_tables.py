@@ -17,11 +17,13 @@ from lavendersim.arrow import Batch, Field, Kind, Table
 from lavendersim.arrow.fields import distinct
 from lavendersim.measures.judging import cells_of_claims
 from lavendersim.measures.meanings import meaning_of
+from lavendersim.quantities.unit_at import unit_at
 
 from .log_tables import key_fields
 from .run_results import CellResult
 
 if TYPE_CHECKING:
+    from lavendersim.experiment import Experiment
     from lavendersim.measures.verdict import Verdict
 
     from .run_directory import Run
@@ -62,26 +64,32 @@ _VERDICT: Final = (
 def cells_table(run: Run) -> Table:
     """Return the table of cells. UsageError where the run did not finish."""
     results = run.results()
-    rows, experiment = results.cells, run.experiment
-    places = cells_of_claims(experiment)
+    rows, places = results.cells, _places(run, results.checks)
+    known = None if run.not_understood else run.experiment
+    named: Iterator[str] = (name for row in rows for name in row.measures)
+    swept: Iterator[str] = (axis for cell in run.cells for axis in cell.coordinates)
     judged: dict[int, list[Verdict]] = {}
     for check in results.checks:
         if (index := places.get(check.node)) is not None:
             judged.setdefault(index, []).append(check)
     axes = {
-        axis: _typed([cell.coordinates.get(axis) for cell in run.cells]) for axis in experiment.axes
+        axis: _typed([cell.coordinates.get(axis) for cell in run.cells])
+        for axis in (known.axes if known else dict.fromkeys(swept))
     }
     measures = {
         name: _typed([_number(row.measures.get(name)) for row in rows])
-        for name in experiment.measures
+        for name in (known.measures if known else dict.fromkeys(named))
     }
     fields = distinct(
         {
             "key": key_fields(run),
-            "axis": [Field(axis, kind, f"axis {axis!r}") for axis, (kind, _) in axes.items()],
+            "axis": [
+                Field(axis, kind, f"axis {axis!r}", _unit_of(known, axis, kind))
+                for axis, (kind, _) in axes.items()
+            ],
             "cell": list(_STATE),
             "measure": [
-                Field(name, kind, *meaning_of(experiment.measures[name]))
+                Field(name, kind, *(meaning_of(known.measures[name]) if known else ("measure",)))
                 for name, (kind, _) in measures.items()
             ],
             "of_measures": [_NOT_MEASURED],
@@ -107,7 +115,7 @@ def cells_table(run: Run) -> Table:
 def verdicts_table(run: Run) -> Table:
     """Return the table of verdicts; those on several cells have no cell."""
     checks = run.results().checks
-    places = cells_of_claims(run.experiment)
+    places = _places(run, checks)
     found = [places.get(check.node) for check in checks]
     order = {cell.index: place for place, cell in enumerate(run.cells)}
     fields = [*key_fields(run), *(field for field in _VERDICT)]
@@ -117,6 +125,24 @@ def verdicts_table(run: Run) -> Table:
         *([getattr(one, field.name) for one in checks] for field in _VERDICT),
     ]
     return Table("verdicts", fields, _batches(fields, columns, len(checks)))
+
+
+def _unit_of(experiment: Experiment | None, axis: str, kind: Kind) -> str:
+    """Return the unit of an axis of numbers: of all that it varies, where they have the same."""
+    if experiment is None or kind not in ("i8", "f8"):
+        return ""
+    paths = [path for path, name in experiment.swept.items() if name == axis]
+    units = {unit_at(experiment.config, path) for path in paths}
+    return units.pop() if len(units) == 1 else ""
+
+
+def _places(run: Run, checks: Sequence[Verdict]) -> dict[str, int]:
+    """Return the cell of each claim that is on one cell alone, by its node."""
+    if not run.not_understood:
+        return cells_of_claims(run.experiment)
+    by_label = {cell.label: cell.index for cell in run.cells}
+    where = {one.node: one.node.removeprefix(one.name).removeprefix(" at ") for one in checks}
+    return {node: by_label[label] for node, label in where.items() if label in by_label}
 
 
 def _batches(

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any
 
 from lavendersim.config_options import ConfigOptions
 from lavendersim.durable_files import flush_folder, write_whole
-from lavendersim.errors import TraceError, UsageError
+from lavendersim.errors import ConfigError, OtherVersionError, TraceError, UsageError
 
-from .cells_index import CellsIndex, IndexRow, read_index, with_ended
+from .cells_index import CellsIndex, IndexRow, read_index, swept_values, with_ended
 from .run_index import PENDING
 from .run_seal import DONE, read_sealed, sealed
 from .run_tables import read_table, renamed
@@ -110,15 +110,41 @@ class Run:
 
     @cached_property
     def experiment(self) -> Experiment:
-        """The experiment as it was run."""
+        """The experiment as it was run. OtherVersionError where its config is not understood."""
         if self.ran is not None:
             return self.ran
         from lavendersim.experiment import load_experiment_text  # late: see `RunCell.trace`
 
         text = read_sealed(self.path / CONFIG)
         options = self.options._asdict()
-        experiment = load_experiment_text(text, str(self.path / CONFIG), **options)
+        try:
+            experiment = load_experiment_text(text, str(self.path / CONFIG), **options)
+        except ConfigError as error:  # it was read when it was run
+            first, more = str(error.defects[0]).partition(";")[0], len(error.defects) - 1
+            others = f", and {more} more" if more else ""
+            raise OtherVersionError(
+                f"{first}{others}: this version does not understand the run's config"
+            ) from None
         return replace(experiment, name=self.name)
+
+    @cached_property
+    def not_understood(self) -> str:
+        """Why this version does not understand the config, in a sentence; empty where it does."""
+        try:
+            _ = self.experiment
+        except OtherVersionError as error:
+            return str(error)
+        return ""
+
+    @property
+    def config_data(self) -> dict[str, Any]:
+        """The config with its overrides, as plain data; of another version as it was written."""
+        if not self.not_understood:
+            return dict(self.experiment.tree.data)
+        from lavendersim.experiment.load import unchecked_data  # late: see `RunCell.trace`
+
+        overrides = dict(one.split("=", 1) for one in self.options.overrides)
+        return unchecked_data(read_sealed(self.path / CONFIG)) | overrides
 
     @cached_property
     def name(self) -> str:
@@ -142,15 +168,15 @@ class Run:
     @cached_property
     def cells(self) -> tuple[RunCell, ...]:
         """The cells that were run, in the order of the sweep."""
-        cells = {cell.index: cell for cell in self.experiment.cells()}
+        known = {} if self.not_understood else {one.index: one for one in self.experiment.cells()}
         return tuple(
             RunCell(
                 row.index,
                 row.label,
-                cells[row.index].coordinates,
+                known[row.index].coordinates if known else swept_values(row.coordinates),
                 self.path / row.file,
                 row.status,
-                cells[row.index].config if self.ran is not None else None,
+                known[row.index].config if self.ran is not None else None,
                 allow_incomplete=self.allow_incomplete,
                 expected=row.expected,
             )

@@ -50,7 +50,13 @@ class CellResult:
     @property
     def as_json(self) -> dict[str, Any]:
         """The row as the file has it."""
-        row = {
+        plain: dict[str, Any] = finite(self.row, str)
+        return plain
+
+    @property
+    def row(self) -> dict[str, Any]:
+        """The same with numbers that JSON does not have."""
+        return {
             "index": self.index,
             "label": self.label,
             "status": self.status,
@@ -65,8 +71,6 @@ class CellResult:
             **self.violations,
             **self.at_limit,
         }
-        plain: dict[str, Any] = finite(row, str)
-        return plain
 
 
 @dataclass(frozen=True)
@@ -89,17 +93,19 @@ class RunResults(Mapping[str, Any]):
     def as_json(self) -> dict[str, Any]:
         """The table as the file has it."""
         table = dict(self._pieces())
-        return table | {name: list(table[name]) for name in ("cells", "checks")}
+        return table | {
+            name: [finite(row, str) for row in table[name]] for name in ("cells", "checks")
+        }
 
     def _pieces(self) -> Iterator[tuple[str, Any]]:
-        """Yield the entries of the table; rows are made while they are written."""
+        """Yield the entries of the table; rows are made while they are written, NaN is in them."""
         yield "experiment", self.experiment
         yield "reduced", self.reduced
         yield "solver", self.solver
-        yield "cells", (row.as_json for row in self.cells)
+        yield "cells", (row.row for row in self.cells)
         if self.compile_s is not None:
             yield "compile_s", self.compile_s
-        yield "checks", (finite(verdict.row, str) for verdict in self.checks)
+        yield "checks", (verdict.row for verdict in self.checks)
         yield "passed", self.passed
         if self.overheads is not None:
             yield "overheads", finite(dict(self.overheads), str)
@@ -126,7 +132,7 @@ class RunResults(Mapping[str, Any]):
         """Write the table; numbers keep all their digits."""
         from .json_table import pieces_of  # late: who lists runs writes none
 
-        write_in_pieces(path, pieces_of(dict(self._pieces())), flush=False)
+        write_in_pieces(path, pieces_of(dict(self._pieces()), str), flush=False)
 
 
 def read_results(path: Path) -> RunResults:

@@ -51,6 +51,10 @@ def _tables(run: Run) -> Iterator[str]:
 
 
 def _contents(run: Run) -> Iterator[str]:
+    if run.not_understood:
+        yield from filter(None, (cell.damage() for cell in run.cells))
+        yield f"{run.not_understood}; its measures and verdicts are not compared"
+        return
     judged = judge_again(run)
     yield from judged.damaged
     if not run.finished:

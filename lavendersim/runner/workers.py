@@ -3,7 +3,8 @@
 A task whose process dies is done once more; where that one dies too, its death is its result, and
 the other tasks go on. Each process has a pipe and a task ahead, so that it does not wait for this
 one between two short tasks. A forked one has all tasks in memory, and is sent their indices; to one
-that is spawned the tasks themselves are sent.
+that is spawned the tasks themselves are sent. Of tasks of milliseconds each has more ahead, and
+this process wakes for several results at once: it shares the cores with those that work.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ from multiprocessing import get_context, parent_process
 from multiprocessing.connection import Connection, wait
 from queue import SimpleQueue
 from threading import Thread
+from time import monotonic, sleep
 from typing import Any, Final, Generic, NamedTuple, TypeVar
 
 from .forking import may_fork
@@ -32,7 +34,9 @@ Task = TypeVar("Task")
 Result = TypeVar("Result")
 
 AHEAD: Final = 2  # tasks that a process is given: the one it does, and the next,
-PLENTY: Final = 4  # while more of them wait than so many for each process
+PLENTY: Final = 4  # while more of them wait than so many for each process;
+MOST_AHEAD: Final = 12  # where they are so short that results are taken
+EVERY: Final = 0.02  # [s] together
 TRIES: Final = 2  # of a task
 STILLBORN: Final = 3  # processes one after the other that may die before they are ready
 PATIENCE: Final = 2.0  # [s] for a process to end when it is asked to
@@ -122,11 +126,11 @@ class _Worker:
         self.given: deque[int] = deque()
         self.ready = False
 
-    def give(self, index: int) -> None:
-        """Hand over a task."""
-        self.given.append(index)
+    def give(self, indices: Sequence[int]) -> None:
+        """Hand over tasks."""
+        self.given.extend(indices)
         with suppress(OSError):  # it died: its pipe says so where results are read
-            self.pipe.send(index if self._forked else self._tasks[index])
+            self.pipe.send(indices if self._forked else [self._tasks[one] for one in indices])
 
     def death(self) -> Death:
         self.process.join()
@@ -150,38 +154,61 @@ class _Crew(Generic[Task, Result]):
         self._tries = [0] * len(tasks)
         self._workers: list[_Worker] = []
         self._stillborn = 0
+        self._done, self._begun = 0, monotonic()
 
     def results(self, workers: int) -> Iterator[tuple[Task, Result | Death]]:
         for _ in range(workers):
             self._start()
         while self._waiting or any(worker.given for worker in self._workers):
-            for ahead in range(1, AHEAD + 1):
-                for worker in self._workers:
-                    self._give(worker, ahead)
+            ahead = self._ahead()
+            self._give(ahead)
+            if ahead > AHEAD and all(len(worker.given) > AHEAD for worker in self._workers):
+                sleep(EVERY / 2)
             ready = wait([worker.pipe for worker in self._workers])
             for worker in [one for one in self._workers if one.pipe in ready]:
-                try:
-                    message = worker.pipe.recv()
-                except (EOFError, OSError):  # it died, maybe within a message
-                    yield from self._replace(worker)
-                    continue
-                if message is None:
-                    worker.ready, self._stillborn = True, 0
-                    continue
-                good, result = message
-                index = worker.given.popleft()
-                if not good:
-                    raise result
-                yield self._tasks[index], result
+                yield from self._results_of(worker)
 
-    def _give(self, worker: _Worker, ahead: int) -> None:
-        """Give a process a task if it has fewer than so many, and there is one for it.
+    def _results_of(self, worker: _Worker) -> Iterator[tuple[Task, Result | Death]]:
+        """Yield what a process has sent so far."""
+        more = True
+        while more:
+            try:
+                message = worker.pipe.recv()
+                more = bool(worker.given) and worker.pipe.poll()
+            except (EOFError, OSError):  # it died, maybe within a message
+                yield from self._replace(worker)
+                return
+            if message is None:
+                worker.ready, self._stillborn = True, 0
+                continue
+            good, result = message
+            index = worker.given.popleft()
+            if not good:
+                raise result
+            self._done += 1
+            yield self._tasks[index], result
+
+    def _ahead(self) -> int:
+        """Return how many tasks a process is given, by what tasks took so far."""
+        each = (monotonic() - self._begun) * len(self._workers) / max(self._done, 1)  # [s]
+        if self._done < AHEAD * len(self._workers) or each >= EVERY:
+            return AHEAD
+        return max(AHEAD, min(MOST_AHEAD, int(EVERY / each) + AHEAD))
+
+    def _give(self, ahead: int) -> None:
+        """Give each process as many tasks as it may have, in turns, while there are some.
 
         Towards the end none stands behind another that may be long while a process has nothing.
         """
-        least = PLENTY * len(self._workers) if ahead > 1 else 0
-        if len(self._waiting) > least and len(worker.given) < ahead:
-            worker.give(self._waiting.popleft())
+        taken: list[list[int]] = [[] for _ in self._workers]
+        for most in range(1, ahead + 1):
+            least = most * PLENTY // AHEAD * len(self._workers) if most > 1 else 0
+            for worker, indices in zip(self._workers, taken, strict=True):
+                if len(self._waiting) > least and len(worker.given) + len(indices) < most:
+                    indices.append(self._waiting.popleft())
+        for worker, indices in zip(self._workers, taken, strict=True):
+            if indices:
+                worker.give(indices)
 
     def _start(self) -> None:
         others = [worker.pipe for worker in self._workers]
@@ -234,7 +261,7 @@ def _serve_forked(
     tasks: Sequence[Any],
     parents: Sequence[Connection],
 ) -> None:
-    """Do the tasks whose indices come through the pipe."""
+    """Do the tasks whose indices come through the pipe, several in a message."""
     for one in parents:  # else another process's pipe would not end with the parent
         one.close()
     gc.freeze()  # a collection would write to, and so copy, every page of what is shared
@@ -262,7 +289,8 @@ def serve(pipe: Connection, function: Callable[[Any], Any]) -> None:
 def _receive(pipe: Connection, tasks: SimpleQueue[Any]) -> None:
     try:
         while True:
-            tasks.put((pipe.recv(),))
+            for one in pipe.recv():
+                tasks.put((one,))
     except (EOFError, OSError):
         tasks.put(None)
 

@@ -6,13 +6,17 @@ A log is data of whoever made it. What it claims of itself (a chunk of 100 GB, a
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Iterable
 from fractions import Fraction
+from functools import lru_cache
 from typing import Final
 
 import zstandard
 from mcap.records import Chunk, ChunkIndex
+
+from lavendersim.clock import Clock
 
 # Chunks are closed at 16 MiB; one step of many contacts may need more. What contacts and poses are
 # compressed to is a third to a hundredth; zstd alone could give 30,000 times as much.
@@ -104,3 +108,12 @@ def check_counts(counts: Iterable[int], columns: int, stored: int) -> None:
         raise ValueError("contacts are not as many as their bytes")
     if not columns and any(counts):
         raise ValueError("contacts have no columns")
+
+
+@lru_cache(maxsize=64)  # the logs of a sweep mostly have the same
+def clock_of(timestep: str, changes: str) -> Clock:
+    """Return the times of the steps of a log; changes of the timestep as JSON."""
+    clock = Clock.counted(timestep_of(timestep), changes_of(json.loads(changes)))
+    if clock.stretches[-1].begin.denominator.bit_length() > MOST_BITS:
+        raise ValueError("its times are no simple ratios")
+    return clock

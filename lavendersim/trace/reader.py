@@ -17,21 +17,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lavendersim.cell import AnyEvent, CellConfig, happened, met_after
-from lavendersim.clock import Clock
-from lavendersim.errors import TraceError, unanswerable
+from lavendersim.errors import OtherVersionError, TraceError, unanswerable
 from lavendersim.record_tables import joined
 from lavendersim.trace import decode, layout
 from lavendersim.trace.absent import absent_table, table_without
 from lavendersim.trace.contact_columns import known_rules
 from lavendersim.trace.forms import RULES
 from lavendersim.trace.index import ChunkContent, damage
-from lavendersim.trace.limits import (
-    MOST_BITS,
-    changes_of,
-    names_of,
-    reasons_of,
-    timestep_of,
-)
+from lavendersim.trace.limits import clock_of, names_of, reasons_of
 from lavendersim.trace.positions import Positions
 from lavendersim.trace.recorded import KEYS, RECORDED, is_recorded, partly_recorded
 from lavendersim.trace.schema import FORMAT, RESIDUAL_COLUMNS, STEP_COLUMNS, Column
@@ -91,7 +84,7 @@ class Trace:
                     f"{path}: log format {description['format']}, this version reads {FORMAT}"
                 )
             self.bodies = [*_names(description["bodies"])]
-            self.clock = _clock(description["timestep"], description.get(TIMESTEP_CHANGES, "[]"))
+            self.clock = clock_of(description["timestep"], description.get(TIMESTEP_CHANGES, "[]"))
             # topic -> why this log does without it; logs before there was a choice have them all
             self.absent = {**_reasons(description.get(ABSENT, "{}"))}
             if source.schema(layout.CHANNELS["/velocities"]) is None:  # nor in older logs
@@ -348,6 +341,13 @@ class Trace:
         """
         return self._source.config()
 
+    def config_data(self) -> dict[str, Any]:
+        """Return the config of this cell as plain data, of whatever version it is."""
+        try:
+            return dict(json.loads(self.config.as_json()))
+        except OtherVersionError:
+            return self._source.config_data()
+
     @cached_property
     def events(self) -> tuple[AnyEvent, ...]:
         """The events of the run at their times; of those with a trigger, what was met, and when."""
@@ -389,12 +389,3 @@ def _names(bodies: str) -> list[str]:
 @lru_cache(maxsize=64)
 def _reasons(absent: str) -> dict[str, str]:
     return reasons_of(json.loads(absent))
-
-
-@lru_cache(maxsize=64)
-def _clock(timestep: str, changes: str) -> Clock:
-    """Return the times of the steps of a log; logs before timesteps could change have none."""
-    clock = Clock.counted(timestep_of(timestep), changes_of(json.loads(changes)))
-    if clock.stretches[-1].begin.denominator.bit_length() > MOST_BITS:
-        raise ValueError("its times are no simple ratios")
-    return clock

@@ -62,6 +62,9 @@ class Source(Protocol):
     def config(self) -> CellConfig:
         """Return the config of the cell; OtherVersionError where this version cannot read it."""
 
+    def config_data(self) -> dict[str, Any]:
+        """Return the config of the cell as the plain data that the log holds."""
+
     def schema(self, channel: int) -> Schema | None:
         """Return the schema of a channel; None where the log has no such channel."""
 
@@ -225,6 +228,10 @@ class JustWritten:
     def config(self) -> CellConfig:
         """Return the config of the cell."""
         return self._written.config
+
+    def config_data(self) -> dict[str, Any]:
+        """Return the config of the cell as the plain data that the log holds."""
+        return dict(json.loads(self._written.config.as_json()))
 
     def schema(self, channel: int) -> Schema | None:
         """Return the schema of a channel; None where the log has no such channel."""

@@ -36,6 +36,7 @@ sweep: {mass: {path: scene.bodies.ball.mass, values: [1, 2, 3]}}
 measure:
   top: {kind: highest, body: ball, above: 0.05, at: {mass: [1, 2]}}
   twice: {kind: ratio, measure: top, to: top}
+  unjudged: {kind: highest, body: ball}
 expect:
   - {name: the top, measure: top, equals: {value: 0.15, within: 1.0e-12}}
 """
@@ -59,6 +60,7 @@ def test_a_run_takes_them_and_keeps_which_file_they_are_of(config: Path, tmp_pat
     done = lavender("run", config, where=tmp_path)
     assert done.returncode == 0, done.stderr
     assert "pass  the top" in done.stdout
+    assert "unjudged: 0.2 m\n" in done.stdout  # with the unit of its docstring
     results = json.loads((tmp_path / "runs/latest/results.json").read_text())
     tops = [row["measures"].get("top") for row in results["cells"]]
     assert tops[:2] == pytest.approx([0.15, 0.15], abs=1e-12)

@@ -28,7 +28,7 @@ NO_PAIRING = Pairing(("e",), [], [], [])
 
 
 def comparison(**changes: Any) -> Comparison:
-    empty: Any = Comparison(RUN, RUN, [], {}, [], [], NO_PAIRING, [], [], {}, [SAME])
+    empty: Any = Comparison(RUN, RUN, [], {}, [], [], [], NO_PAIRING, [], [], {}, [SAME])
     return empty._replace(**changes)
 
 

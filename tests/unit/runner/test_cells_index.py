@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import json
 import re
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +17,7 @@ from lavendersim.runner.cells_index import (
     CellsIndex,
     IndexRow,
     read_index,
+    swept_values,
     with_ended,
     write_index,
 )
@@ -77,3 +79,12 @@ def test_what_is_no_index_is_refused(tmp_path: Path, table: dict[str, Any], why:
     path.write_text(json.dumps(table))
     with pytest.raises(TraceError, match=re.escape(f"{path}: damaged: {why}")):
         read_index(path)
+
+
+def test_coordinates_that_an_older_index_lacks_stand_in_its_labels(tmp_path: Path) -> None:
+    row = ROW | {"label": "e=0.5, timestep=1/480, solver=jacobi"}
+    (tmp_path / "cells.json").write_text(json.dumps({"experiment": "a", "cells": [row]}))
+    (read,) = read_index(tmp_path / "cells.json").cells
+    assert read.coordinates == {"e": 0.5, "timestep": "1/480", "solver": "jacobi"}
+    assert swept_values(read.coordinates)["timestep"] == Fraction(1, 480)
+    assert swept_values({"a": "1/0", "b": "x/2"}) == {"a": "1/0", "b": "x/2"}

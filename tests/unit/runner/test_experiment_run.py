@@ -52,6 +52,7 @@ def test_a_name_is_no_longer_than_a_file_system_takes(tmp_path: Path) -> None:
     path = make_directory(made(), tmp_path, in_text=[f"a.key_{k}={'x' * 99}" for k in range(9)])
     assert len(path.name) <= len("20260101T000000Z.000-") + MOST_NAME + len("-12345678")
     assert _short("scene.bodies.ball.mass=1/3") == "mass=1_3"
+    assert _short("sweep e=scene.bodies.ball.surface.restitution:[0.2, 0.5]") == "e=0.2_0.5"
     assert "/" not in _short("a.b=../../etc")
 
 

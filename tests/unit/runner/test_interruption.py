@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 
+from lavender_cli.run import _interruptible
 from lavendersim import open_run, open_trace
 from lavendersim.errors import TraceError
 from lavendersim.runner.interruption import (
@@ -214,3 +215,40 @@ def test_signals_to_a_process_that_is_just_forked_end_it_without_a_word() -> Non
             ends = [os.waitpid(forked(one), 0)[1] for one in (noting, beginning)]
         raise_noted()  # nothing came to this one
     assert [os.waitstatus_to_exitcode(end) for end in ends] == [1, -signal.SIGTERM]
+
+
+def _raw_object_cache_getbuffer(number: int) -> str:
+    """Stand for llvmlite's answer to LLVM, by its name."""
+    os.kill(os.getpid(), number)
+    return "an object"
+
+
+def test_what_llvm_waits_for_is_not_cut_off() -> None:
+    """Without an answer LLVM ends the process by SIGSEGV; the next cell ends the run instead."""
+    with handled():
+        assert _raw_object_cache_getbuffer(signal.SIGTERM) == "an object"
+        with deferred() as signalled:
+            assert signalled() == "SIGTERM"
+        with pytest.raises(Interrupted, match="by SIGTERM"):
+            raise_noted()
+
+
+@pytest.mark.parametrize("name", SIGNALS)
+@pytest.mark.parametrize("translates", [False, True])
+def test_a_signal_before_the_first_cell_prints_the_command(
+    name: str, translates: bool, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A library that is called back may make another exception of it."""
+
+    def planned() -> None:
+        try:
+            os.kill(os.getpid(), getattr(signal, name))
+        except KeyboardInterrupt as end:
+            if translates:
+                raise ValueError(f"no JSON: {end}") from None
+            raise
+
+    with pytest.raises(KeyboardInterrupt), _interruptible("lavender run a.yaml --resume"):
+        planned()
+    said = f"interrupted by {name}\ngo on with: lavender run a.yaml --resume\n"
+    assert capsys.readouterr().err == said

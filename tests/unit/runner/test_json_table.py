@@ -53,3 +53,9 @@ def test_rows_may_be_made_as_they_are_written(count: int) -> None:
         assert len(made) - text.count("index") in (0, 1)  # one is made, the others are written
     assert text == text_of({"cells": rows, "passed": True})
     assert made == rows
+
+
+def test_rows_have_something_instead_where_json_has_no_number() -> None:
+    rows = [{"x": 1.0}, {"x": float("nan"), "deep": [{"y": float("-inf")}]}]
+    text = "".join(pieces_of({"cells": rows}, str))
+    assert json.loads(text) == {"cells": [{"x": 1.0}, {"x": "nan", "deep": [{"y": "-inf"}]}]}

@@ -56,7 +56,7 @@ def run(*rows: CellResult, checks: tuple[Verdict, ...] = ()) -> Any:
         for one in EXPERIMENT.cells()
     ]
     kept = RunResults("a", False, None, rows, None, checks, True)
-    return SimpleNamespace(experiment=EXPERIMENT, cells=cells, results=lambda: kept, path=Path("run"))  # noqa: E501  # fmt: skip
+    return SimpleNamespace(not_understood="", experiment=EXPERIMENT, cells=cells, results=lambda: kept, path=Path("run"))  # noqa: E501  # fmt: skip
 
 
 def row(index: int, measure: Any, **violations: Any) -> CellResult:
@@ -76,6 +76,8 @@ def test_cells_have_axes_state_measures_and_costs() -> None:
     assert found["cell"] == [0, 1]
     assert found["dt"] == [0.01, pytest.approx(1 / 300)]
     assert found["passed"] == [True, False]
+    units = {one.name: one.unit for one in cells_table(run(row(0, 1.5), row(1, 2.5))).fields}
+    assert (units["dt"], units["m"]) == ("s", "s")
     assert found["failed"] == [[], ["low at dt=1/300"]]
     assert found["m"] == [1.5, None]
     assert found["not_measured"] == [[], ["m: no contact"]]
