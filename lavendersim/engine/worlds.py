@@ -5,7 +5,7 @@
     rows = [engine.take_rows() for engine in engines]
 
 A thread steps a block of worlds by one call of a kernel, without the interpreter lock. It makes the
-steps of a world by `advance`, with views of its rows: bits are those of the engine alone, and an
+steps of a world by `advance`, at the address of its rows: bits are those of the engine alone. An
 engine stays one, whose steps, rows and events are its own. One that needs more room than the worlds
 were given gets arrays of its own, and goes on by itself from then on.
 """
@@ -17,19 +17,38 @@ from concurrent.futures import ThreadPoolExecutor
 from functools import cache, partial
 from itertools import pairwise
 from operator import itemgetter
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from .compile import compiling, kernel, uncollected
+from .compile import Kernel, compiling, kernel, uncollected
 from .engine import Engine
 from .kernel_cache import cached
+from .memory import Log, State, Workspace
+from .memory_references import memory_at, words_of
 from .records import CONTACTS_FULL, PAIRS_FULL, ROWS_FULL, WOKEN
 from .spec import Spec
 from .step import make_advance
 
 # A world that returns one of these goes on by its engine, which makes room for it.
 _UNFINISHED = (CONTACTS_FULL, PAIRS_FULL, ROWS_FULL, WOKEN)
+
+
+class _World(NamedTuple):
+    """The memory of one world."""
+
+    state: State
+    workspace: Workspace
+    log: Log
+
+
+class _Numbers(NamedTuple):
+    """What a call needs of n worlds beside their memory."""
+
+    parameters: np.ndarray  # (n, 1) records
+    counters: np.ndarray  # (n, 1) records
+    left: np.ndarray  # (n,) steps to do; -1: the world goes on by itself
+    status: np.ndarray  # (n,) what the steps returned
 
 
 class Worlds:
@@ -50,9 +69,9 @@ class Worlds:
             view = _mapped(self._memory, itemgetter(number))
             engine.state, engine.workspace, engine.log, engine.parameters, engine.counters = view
             engine.note_memory()
-            self._views.append((engine.state, engine.workspace, engine.log))
-        body, classes = _call_of(memories[0])
-        self._kernel = _kernel_for(engines[0].spec, body, classes)
+            self._views.append(_World(engine.state, engine.workspace, engine.log))
+        self._places = np.array([words_of(view) for view in self._views])
+        self._kernel = _kernel_for(engines[0].spec)
         self._status = np.zeros(len(engines), np.int64)
 
     def advance(self, steps: int, threads: int = 1) -> list[int]:
@@ -77,7 +96,7 @@ class Worlds:
         return all(one is other for one, other in zip(now, self._views[number], strict=True))
 
     def _call(self, left: np.ndarray, threads: int) -> None:
-        if not self._kernel.overloads:  # compiled by one thread
+        if Kernel is not None and not self._kernel.overloads:  # compiled by one thread
             with compiling():
                 self._step_block(left, (0, 0))
         ends = np.linspace(0, len(left), threads + 1).astype(int).tolist()
@@ -89,7 +108,14 @@ class Worlds:
             list(pool.map(partial(self._step_block, left), blocks))
 
     def _step_block(self, left: np.ndarray, block: tuple[int, int]) -> None:
-        self._kernel(*self._memory, left, *block, self._status)
+        if Kernel is None:  # memory has no address there
+            for number in range(*block):
+                if left[number] >= 0:
+                    self._status[number] = self.engines[number].advance(int(left[number]))
+            return
+        _, _, _, parameters, counters = self._memory
+        numbers = _Numbers(parameters, counters, left, self._status)
+        self._kernel(self._views[0], self._places, numbers, block)
 
 
 def _memory_of(engine: Engine) -> tuple[Any, ...]:
@@ -143,44 +169,23 @@ def _stacked(memories: Sequence[Any]) -> Any:
     return state, workspace, log, parameters, counters
 
 
-def _call_of(memory: tuple[Any, ...]) -> tuple[str, tuple[type, ...]]:
-    """Return the arguments of `advance` for world w as source text, and the tuples it names."""
-    classes: dict[type, None] = {}
-
-    def text(part: Any, name: str) -> str:
-        if isinstance(part, np.ndarray):
-            return f"{name}[w]"
-        if not isinstance(part, tuple):
-            return name
-        fields = getattr(part, "_fields", None)
-        if fields is None:
-            items = (text(one, f"{name}[{k}]") for k, one in enumerate(part))
-            return f"({''.join(f'{item}, ' for item in items)})"
-        classes[type(part)] = None
-        inner = (text(getattr(part, field), f"{name}.{field}") for field in fields)
-        return f"{type(part).__name__}({', '.join(inner)})"
-
-    names = "state", "workspace", "log", "parameters", "counters"
-    call = ", ".join(text(part, name) for part, name in zip(memory, names, strict=True))
-    return call, tuple(classes)
-
-
 @cache
-def _kernel_for(spec: Spec, call: str, classes: tuple[type, ...]) -> Any:
-    """Return the kernel of a block of worlds; numba has no tuples made by loops over fields."""
-    source = f"""
-def make(advance, {", ".join(one.__name__ for one in classes)}):
-    def advance_worlds(state, workspace, log, parameters, counters, left, first, last, status):
-        for w in range(first, last):
-            if left[w] >= 0:
-                status[w] = advance({call}, left[w])
-    return advance_worlds
-"""
+def _kernel_for(spec: Spec) -> Any:
+    """Return the kernel of a block of worlds, which takes the memory of each by its address."""
 
     def make(spec: Spec) -> Any:
-        names: dict[str, Any] = {"__name__": __name__}
-        exec(compile(source, __file__, "exec"), names)
-        return kernel(names["make"](make_advance(spec), *classes), spec)
+        advance = make_advance(spec)
+
+        def advance_worlds(like, places, numbers, block):
+            for w in range(block[0], block[1]):
+                if numbers.left[w] >= 0:
+                    world: Any = memory_at(like, places[w])  # type: ignore[call-arg]
+                    params, counters = numbers.parameters[w], numbers.counters[w]
+                    numbers.status[w] = advance(
+                        world.state, world.workspace, world.log, params, counters, numbers.left[w]
+                    )
+
+        return kernel(advance_worlds, spec)
 
     with uncollected():
         return cached(make, spec)
