@@ -42,14 +42,14 @@ def _holds_arrays(kind: Any) -> bool:
     return isinstance(kind, types.Array)
 
 
-class Reference(PrimitiveModel):
+class MemoryModel(PrimitiveModel):
     """Memory as kernels hold it: where it lies, in the layout of numba's own value."""
 
     def __init__(self, models: Any, kind: Any) -> None:
         super().__init__(models, kind, BYTES)
 
 
-class Rows(ArrayModel):
+class RowsModel(ArrayModel):
     """Rows side by side, as kernels hand them to each other: where they begin, how many."""
 
     def get_argument_type(self) -> Any:
@@ -92,7 +92,7 @@ class _References(DataModelManager):
         """Return the model of a type."""
         known = self._cache.get(fetype)
         if known is None:
-            own = Reference if is_memory(fetype) else Rows if are_rows(fetype) else None
+            own = MemoryModel if is_memory(fetype) else RowsModel if are_rows(fetype) else None
             known = own(self, fetype) if own else super().lookup(fetype)
             self._cache[fetype] = known
         return known

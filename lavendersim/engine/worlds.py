@@ -34,7 +34,7 @@ from .step import make_advance
 _UNFINISHED = (CONTACTS_FULL, PAIRS_FULL, ROWS_FULL, WOKEN)
 
 
-class _World(NamedTuple):
+class _WorldMemory(NamedTuple):
     """The memory of one world."""
 
     state: State
@@ -42,7 +42,7 @@ class _World(NamedTuple):
     log: Log
 
 
-class _Numbers(NamedTuple):
+class _CallOfWorlds(NamedTuple):
     """What a call needs of n worlds beside their memory."""
 
     parameters: np.ndarray  # (n, 1) records
@@ -69,7 +69,7 @@ class Worlds:
             view = _mapped(self._memory, itemgetter(number))
             engine.state, engine.workspace, engine.log, engine.parameters, engine.counters = view
             engine.note_memory()
-            self._views.append(_World(engine.state, engine.workspace, engine.log))
+            self._views.append(_WorldMemory(engine.state, engine.workspace, engine.log))
         self._places = np.array([words_of(view) for view in self._views])
         self._kernel = _kernel_for(engines[0].spec)
         self._status = np.zeros(len(engines), np.int64)
@@ -114,7 +114,7 @@ class Worlds:
                     self._status[number] = self.engines[number].advance(int(left[number]))
             return
         _, _, _, parameters, counters = self._memory
-        numbers = _Numbers(parameters, counters, left, self._status)
+        numbers = _CallOfWorlds(parameters, counters, left, self._status)
         self._kernel(self._views[0], self._places, numbers, block)
 
 
