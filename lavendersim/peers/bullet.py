@@ -46,6 +46,7 @@ PEER: Final = Peer(
     ),
     shapes=frozenset({"plane", "sphere", "box", "capsule", "cylinder"}),
     surface_keys=frozenset({"friction", "restitution"}),
+    mixing={"friction": "product", "restitution": "product"},
     tells=POINT + IMPULSE + TANGENTIAL,
     momentum=True,
     repeats="the same bits on one machine",

@@ -42,6 +42,7 @@ PEER: Final = Peer(
     ),
     shapes=frozenset({"plane", "sphere", "box"}),
     surface_keys=frozenset({"friction", "restitution"}),
+    mixing={"friction": "least", "restitution": "product"},
     forces=True,
     tells=POINT + IMPULSE + TANGENTIAL,
     momentum=True,

@@ -67,6 +67,7 @@ PEER: Final = Peer(
     ),
     shapes=frozenset({"plane", "sphere", "box", "capsule", "cylinder", "compound"}),
     surface_keys=frozenset({"friction"}),
+    mixing={"friction": "harmonic_mean"},
     forces=True,
     tells=POINT + IMPULSE + TANGENTIAL,
     momentum=True,

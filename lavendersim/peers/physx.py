@@ -54,6 +54,7 @@ PEER: Final = Peer(
     ),
     shapes=frozenset({"plane", "sphere", "box", "capsule", "hull", "compound"}),
     surface_keys=frozenset({"friction", "restitution"}),
+    mixing={"friction": "mean", "restitution": "mean"},
     forces=True,
     tells=POINT + IMPULSE,
     repeats="the same bits on one machine",

@@ -54,6 +54,7 @@ PEER: Final = Peer(
     ),
     shapes=frozenset({"plane", "sphere", "box"}),
     surface_keys=frozenset({"friction", "restitution"}),
+    mixing={"friction": "product", "restitution": "larger"},
     forces=True,
     tells=POINT + IMPULSE,
     repeats="the same bits on one machine, in one thread",

@@ -8,9 +8,12 @@ from typing import Any
 import numpy as np
 import pybullet
 
+from lavendersim.peers.bullet import PEER
 from lavendersim.peers.declaration import Value
 from lavendersim.peers.description import PeerBody, Scene
 from lavendersim.peers.world import CannotRun, Floats
+
+FASTEST = 1e30  # [m/s], [rad/s] of a multibody; its own 100 would be cut off without a word
 
 
 class World:
@@ -30,8 +33,8 @@ class World:
                 own[of_bullet] = settings[name]
         pybullet.setPhysicsEngineParameter(**own, **self._here)
         # Bullet multiplies the coefficients of two bodies.
-        self._friction = scene.by_product("friction")
-        self._restitution = scene.by_product("restitution")
+        self._friction = scene.values("friction", PEER)
+        self._restitution = scene.values("restitution", PEER)
         numbers = [self._add(body) for body in scene.bodies]
         self._numbers = [numbers[body.row] for body in scene.movable]
         self._rows, self._dt = {number: row for row, number in enumerate(numbers)}, scene.timestep
@@ -69,6 +72,7 @@ class World:
             "restitution": self._restitution[body.row],
             "linearDamping": 0.0,
             "angularDamping": 0.0,
+            "maxJointVelocity": FASTEST,
         }
         if body.moves:  # inertia alone would take the mass of a plain rigid body away
             changes |= {"mass": body.mass, "localInertiaDiagonal": body.inertia}

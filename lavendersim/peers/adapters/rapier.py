@@ -15,6 +15,7 @@ from rapier3d import Collider, MassProperties, PhysicsWorld, RigidBody
 
 from lavendersim.peers.declaration import Value
 from lavendersim.peers.description import PeerBody, Scene
+from lavendersim.peers.rapier import PEER
 from lavendersim.peers.world import Floats
 
 
@@ -39,8 +40,8 @@ class World:
             softness = rapier3d.SpringCoefficients(frequency, 5.0)
             own.contact_softness = own.static_contact_softness = softness
         # Both of its rules are given: roots are multiplied, the larger restitution is taken.
-        self._friction = scene.by_product("friction")
-        self._restitution = scene.by_larger("restitution")
+        self._friction = scene.values("friction", PEER)
+        self._restitution = scene.values("restitution", PEER)
         self._all = handles = [self._add(body) for body in scene.bodies]
         self._rows = {handle.index: row for row, handle in enumerate(handles)}
         self._handles = [handles[body.row] for body in scene.movable]
