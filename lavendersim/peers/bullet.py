@@ -49,5 +49,8 @@ PEER: Final = Peer(
     mixing={"friction": "product", "restitution": "product"},
     tells=POINT + IMPULSE + TANGENTIAL,
     momentum=True,
+    counted=True,
+    iterations="of Gauss-Seidel, in the island with the most",
+    capacity="no limit, at most 4 points a pair of shapes",
     repeats="the same bits on one machine",
 )

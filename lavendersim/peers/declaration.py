@@ -66,6 +66,9 @@ class Peer:
     forces: bool = False  # constant ones at the centre of mass, for a while
     tells: tuple[str, ...] = ()  # of contacts, of the above; none: it tells of no contact
     momentum: bool = False  # its impulses are all that acts beside gravity and forces of a step
+    counted: bool = False  # its adapter counts the iterations of each step (`World.iterations`)
+    iterations: str = ""  # what these are; or how many a step has, where it does not count them
+    capacity: str = ""  # for how many contacts it has room, and what becomes of more
     repeats: str = ""  # whether two runs agree to the bit, in words
 
     def reports(self, engine: str) -> tuple[str, ...]:

@@ -57,5 +57,7 @@ PEER: Final = Peer(
     mixing={"friction": "product", "restitution": "larger"},
     forces=True,
     tells=POINT + IMPULSE,
+    iterations="as many as are set, 4 small steps by default",
+    capacity="no limit",
     repeats="the same bits on one machine, in one thread",
 )

@@ -23,6 +23,7 @@ class World:
         client = pybullet.connect(pybullet.DIRECT)
         self._here: dict[str, Any] = {"physicsClientId": client}
         self._rigid = bool(settings.get("rigid", False))
+        self._told: Any = None
         pybullet.setGravity(*scene.gravity, **self._here)
         own: dict[str, Any] = {"fixedTimeStep": scene.timestep}
         for name, of_bullet in (
@@ -112,7 +113,13 @@ class World:
 
     def step(self) -> None:
         """Advance by one timestep."""
-        pybullet.stepSimulation(**self._here)
+        self._told = pybullet.stepSimulation(**self._here)
+
+    def iterations(self) -> int:
+        """Return those of the last step; told from the first call on."""
+        if not self._told:
+            pybullet.setPhysicsEngineParameter(reportSolverAnalytics=1, **self._here)
+        return max((one["numIterationsUsed"] for one in self._told or ()), default=0)
 
     def contacts(self) -> list[tuple[float, ...]]:
         """Return the contacts of the last step, at points of their collision detection.

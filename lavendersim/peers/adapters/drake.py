@@ -128,9 +128,8 @@ class World:
             pair, impulse = one.point_pair(), one.contact_force() * self._dt
             normal = -pair.nhat_BA_W
             push = float(impulse @ normal)
-            rows = self._rows[pair.id_A], self._rows[pair.id_B]
-            place = (*one.contact_point(), *normal, -pair.depth)
-            found.append((*rows, *place, push, *(impulse - push * normal)))
+            rows = self._rows[pair.id_A], self._rows[pair.id_B], *one.contact_point()
+            found.append((*rows, *normal, -pair.depth, push, *(impulse - push * normal)))
         return found
 
 
