@@ -95,6 +95,7 @@ def _caption(table: CostTable) -> str:
     if table.axes:
         reference += f" (the worst of {table.cells_per_setting} cells of {', '.join(table.axes)})"
     said = table.sentences or [target.sentence for target in table.targets]
+    said += [f"{engine}: {effort}" for engine, effort in table.efforts.items()]
     said += [f"{engine} refused: {why}" for engine, why in table.refused.items()]
     if any(row.least_error is not None for row in table.rows):
         said = [f"Upright lines end at the least error over {PERTURBED}", *said]

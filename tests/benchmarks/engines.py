@@ -1,0 +1,248 @@
+"""The tables of other engines in README.md and docs/results.md, with the raw samples behind them.
+
+    python -m tests.benchmarks.engines [--runs runs/engines]   runs COMMANDS, keeps samples, writes tables
+    python -m tests.benchmarks.engines --tables                writes the tables from what is kept
+
+Every number is of `lavender check` or `lavender cost` with `--engine all`, of one commit on one machine.
+Kept in docs/engines are every entry of the matrix (check.json), every setting with every sample of its time
+(cost.json), and commands, commit, versions and the SHA-256 of every log (logs.json). Logs themselves are not
+kept. The same versions make the same bytes on a machine like it, so that the commands make them again, and
+logs.json says whether they are the same.
+"""
+
+from __future__ import annotations
+
+import argparse
+import hashlib
+import json
+import re
+import subprocess
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from lavendersim.measures.cost_table import CostRow, CostTable
+from lavendersim.peers.catalogue import PEERS, installed_version
+from lavendersim.quantities.short_times import short_time
+from lavendersim.runner.cost_targets import error_of, name_of, percent
+from lavendersim.runner.environment import processor, versions
+
+ROOT = Path(__file__).resolve().parents[2]
+KEPT = ROOT / "docs" / "engines"
+PAGES = (ROOT / "README.md", ROOT / "docs" / "results.md")
+SCENES = ("rest", "stack_of_six", "heavy_on_light", "oblique_impact")
+TRACKERS = ("launched_box", "pressed_against_a_wall")
+# The config's own grid has every solver of lavender's; beside other engines its default is enough.
+GRID = (
+    "solvers=[adaptive]",
+    "timesteps=[1/240]",
+    "tolerances=[1e-9]",
+    "warm_start=[true]",
+    "accuracies=[1e-4]",
+)
+COMMANDS = {
+    "check": [
+        *("lavender", "check"),
+        *(f"configs/scenes/{name}.yaml" for name in SCENES),
+        *(f"configs/trackers/{name}.yaml" for name in TRACKERS),
+        *("--engine", "all", "--yes", "--json"),
+    ],
+    "cost": [
+        *("lavender", "cost", "configs/cost/stack_of_six.yaml"),
+        *("--engine", "all", "--target", "0.1%", "--no-plot", "--yes", "--json"),
+        *(word for one in GRID for word in ("--set", f"cost.{one}")),
+    ],
+}
+PLACES = ("run", "log", "figures")  # where somebody's run lay
+
+
+def take(runs: Path) -> None:
+    """Run every command and keep what it says."""
+    KEPT.mkdir(exist_ok=True)
+    for name, words in COMMANDS.items():
+        done = subprocess.run(
+            [*words, "--runs", str(runs)], cwd=ROOT, stdout=subprocess.PIPE, text=True
+        )
+        if done.returncode > 1:  # 1: an engine fails a case, or no engine reaches the target
+            sys.exit(f"{' '.join(words)}: exit code {done.returncode}")
+        _write(f"{name}.json", without_places(json.loads(done.stdout)))
+    engines = {
+        peer.package: installed_version(name)
+        for name, peer in PEERS.items()
+        if installed_version(name)
+    }
+    made = {
+        "commands": {name: " ".join(words) for name, words in COMMANDS.items()},
+        "commit": _git("rev-parse", "HEAD"),
+        "changed": bool(_git("status", "--porcelain", "--untracked-files=no")),
+        "processor": processor(),
+        "versions": versions() | engines,
+        "sha256": digests(runs),
+    }
+    _write("logs.json", made)
+
+
+def _git(*words: str) -> str:
+    return subprocess.run(["git", *words], cwd=ROOT, capture_output=True, text=True).stdout.strip()
+
+
+def _write(name: str, data: Any) -> None:
+    (KEPT / name).write_text(json.dumps(data, indent=1) + "\n")
+
+
+def without_places(data: Any) -> Any:
+    """Return what a command said without the paths of its run."""
+    if isinstance(data, dict):
+        return {key: without_places(one) for key, one in data.items() if key not in PLACES}
+    return [without_places(one) for one in data] if isinstance(data, list) else data
+
+
+def digests(runs: Path) -> dict[str, dict[str, str]]:
+    """Return by experiment the SHA-256 of each log, by the cell that it is of."""
+    found: dict[str, dict[str, str]] = {}
+    for log in sorted(runs.glob("*/cells/*.mcap")):
+        # 20261126T055000Z-rest-...: the name begins with its time
+        own = found.setdefault(log.parent.parent.name.partition("-")[2], {})
+        own[log.stem] = hashlib.sha256(log.read_bytes()).hexdigest()
+    return found
+
+
+def tables() -> str:
+    """Return the tables, and what they are of."""
+    check, (cost,), made = (
+        json.loads((KEPT / f"{name}.json").read_text()) for name in ("check", "cost", "logs")
+    )
+    table = CostTable.of({key: one for key, one in cost.items() if key not in PLACES})
+    versions_ = made["versions"]
+    engines = ", ".join(
+        f"{peer.title} ({peer.package} {versions_[peer.package]})"
+        for peer in PEERS.values()
+        if peer.package in versions_
+    )
+    commit = made["commit"][:8] + (" and changes" if made["changed"] else "")
+    return "\n".join(
+        [
+            "```sh",
+            *made["commands"].values(),
+            "```",
+            "",
+            *cost_lines(table),
+            "",
+            *check_lines(check),
+            "",
+            f"Commit {commit}, {made['processor']}; {engines}. Times are medians of {table.repeats} "
+            "interleaved rounds; errors are ranges over three starts, the worst counts. Every sample, and the "
+            "SHA-256 of every log, is kept in `docs/engines`; `python -m tests.benchmarks.engines` makes all "
+            "of it anew.",
+        ]
+    )
+
+
+def cost_lines(table: CostTable) -> list[str]:
+    """Return an engine a row: at its own defaults, and the cheapest setting at the first target."""
+    answers = {one.engine: one for one in table.targets}
+    lines = [
+        f"| stack of six, 2 s | own defaults: error | a simulated second | contacts, iterations a step | cheapest at {percent(table.targets[0].target)} | a simulated second |",
+        "|---|---:|---:|---|---|---:|",
+    ]
+    for engine in table.engines:
+        rows = [row for row in table.rows if row.family == engine]
+        own = next(
+            row
+            for row in rows
+            if row.role == "specified"
+            or (row.engine == engine and not row.settings and not row.is_lavender)
+        )
+        answer = answers[engine]
+        reached = table.rows[answer.row] if answer.row is not None else None
+        best = min((row for row in rows if row.is_answer), key=error_of, default=None)
+        missed = (
+            "every setting failed" if best is None else f"none; at best {percent(error_of(best))}"
+        )
+        lines.append(
+            f"| {own.title} | {spread_of(own)} | {time_of(own)} | {counts_of(own)} | "
+            f"{missed if reached is None else name_of(reached)} | {'' if reached is None else time_of(reached)} |"
+        )
+    return lines
+
+
+def spread_of(row: CostRow) -> str:
+    """Return the errors of a setting over its starts; or that it failed."""
+    if row.failed or row.error is None:
+        return "failed" + ("" if row.error is None else f", {percent(row.error)}")
+    least = "" if row.least_error is None else f"{percent(row.least_error)} to "
+    return f"{least}{percent(row.error)}"
+
+
+def time_of(row: CostRow) -> str:
+    """Return the cost of a setting."""
+    return "" if row.ns_per_second is None else short_time(row.cost / 1e9)
+
+
+def counts_of(row: CostRow) -> str:
+    """Return the contacts and iterations of a step."""
+    return ", ".join(
+        "not told" if one is None else f"{one:.3g}" for one in (row.contacts, row.iterations)
+    )
+
+
+def check_lines(check: dict[str, Any]) -> list[str]:
+    """Return a case a row and an engine a column: verdict, number, its range over starts."""
+    engines = list(check["solvers"])
+    lines = [f"| case | {' | '.join(engines)} |", "|---|" + "---|" * len(engines)]
+    found = {(one["case"], one["solver"]): one for one in check["entries"]}
+    for case in check["cases"]:
+        cells = [_entry(found[case, engine]) for engine in engines]
+        lines.append(f"| {case.rpartition('/')[2]} | {' | '.join(cells)} |")
+    return lines
+
+
+def _entry(one: dict[str, Any]) -> str:
+    if one["number"] is None:
+        return str(one["verdict"])
+    low, high = one["least"], one["most"]
+    spread = f" ({low:.2g} to {high:.2g})" if low is not None and low != high else ""
+    return f"{one['verdict']} {one['number']:.2g}{spread}"
+
+
+def write_tables() -> None:
+    """Write the tables where pages have room for them."""
+    text = tables()
+    for page in PAGES:
+        before = page.read_text()
+        part = (
+            "\n".join(text.splitlines()) if page.name != "README.md" else "\n".join(cost_only(text))
+        )
+        after = re.sub(
+            r"(<!-- engines -->\n).*?(<!-- end -->)",
+            lambda found: f"{found[1]}\n{part}\n\n{found[2]}",
+            before,
+            flags=re.S,
+        )
+        page.write_text(after)
+
+
+def cost_only(text: str) -> list[str]:
+    """Return the first table of a text."""
+    lines = [line for line in text.splitlines() if line.startswith("|")]
+    return lines[
+        : next((k for k, line in enumerate(lines) if line.startswith("| case")), len(lines))
+    ]
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Take the samples, unless they are there, and write the tables."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--runs", type=Path, default=ROOT / "runs" / "engines")
+    parser.add_argument("--tables", action="store_true")
+    given = parser.parse_args(arguments)
+    if not given.tables:
+        take(given.runs.resolve())
+    write_tables()
+
+
+if __name__ == "__main__":
+    main()
