@@ -50,10 +50,12 @@ class Costed(NamedTuple):
 
 
 def check_cost(experiment: Experiment, repeats: int | None = None) -> None:
-    """Raise ConfigError without a section `cost`, UsageError for too few repeats."""
+    """Raise ConfigError without a section `cost`, UsageError for too few repeats, engines swept."""
     if experiment.config.cost is None:
         sentence = "no section cost: it says which measure is compared with which truth"
         raise ConfigError([experiment.cells()[0].defect(("cost",), sentence)])
+    if "engine" in experiment.axes:
+        raise UsageError("engines are chosen by --engine: leave out --sweep engine")
     if repeats is not None and repeats < FEWEST_REPEATS:
         raise UsageError(f"--repeats: expected {FEWEST_REPEATS} or more, found {repeats}; {FEW}")
 

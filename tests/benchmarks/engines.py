@@ -1,13 +1,13 @@
 """The tables of other engines in README.md and docs/results.md, with the raw samples behind them.
 
-    python -m tests.benchmarks.engines [--runs runs/engines]   runs COMMANDS, keeps samples, writes tables
-    python -m tests.benchmarks.engines --tables                writes the tables from what is kept
+    python -m tests.benchmarks.engines [--runs DIR]   runs COMMANDS, keeps samples, writes tables
+    python -m tests.benchmarks.engines --tables       writes the tables from what is kept
 
-Every number is of `lavender check` or `lavender cost` with `--engine all`, of one commit on one machine.
-Kept in docs/engines are every entry of the matrix (check.json), every setting with every sample of its time
-(cost.json), and commands, commit, versions and the SHA-256 of every log (logs.json). Logs themselves are not
-kept. The same versions make the same bytes on a machine like it, so that the commands make them again, and
-logs.json says whether they are the same.
+Every number is of `lavender check` or `lavender cost` with `--engine all`, of one commit on one
+machine. Kept in docs/engines are every entry of the matrix (check.json), every setting with every
+sample of its time (cost.json), and commands, commit, versions and the SHA-256 of every log
+(logs.json). Logs themselves are not kept. The same versions make the same bytes on a machine like
+it, so that the commands make them again, and logs.json says whether they are the same.
 """
 
 from __future__ import annotations
@@ -15,7 +15,6 @@ from __future__ import annotations
 import argparse
 import hashlib
 import json
-import re
 import subprocess
 import sys
 from collections.abc import Sequence
@@ -31,7 +30,7 @@ from lavendersim.runner.environment import processor, versions
 ROOT = Path(__file__).resolve().parents[2]
 KEPT = ROOT / "docs" / "engines"
 PAGES = (ROOT / "README.md", ROOT / "docs" / "results.md")
-SCENES = ("rest", "stack_of_six", "oblique_impact")
+SCENES = ("rest", "stack_of_six", "heavy_on_light")
 TRACKERS = ("launched_box", "pressed_against_a_wall")
 # The config's own grid has every solver of lavender's; beside other engines its default is enough.
 GRID = (
@@ -131,10 +130,10 @@ def tables() -> str:
             "",
             *check_lines(check),
             "",
-            f"Commit {commit}, {made['processor']}; {engines}. Times are medians of {table.repeats} "
-            "interleaved rounds; errors are ranges over three starts, the worst counts. Every sample, and the "
-            "SHA-256 of every log, is kept in `docs/engines`; `python -m tests.benchmarks.engines` makes all "
-            "of it anew.",
+            f"Commit {commit}, {made['processor']}; {engines}. Times are medians of "
+            f"{table.repeats} interleaved rounds; errors are ranges over three starts, the worst "
+            "counts. Every sample, and the SHA-256 of every log, is kept in `docs/engines`; "
+            "`python -m tests.benchmarks.engines` makes all of it anew.",
         ]
     )
 
@@ -143,7 +142,8 @@ def cost_lines(table: CostTable) -> list[str]:
     """Return an engine a row: at its own defaults, and the cheapest setting at the first target."""
     answers = {one.engine: one for one in table.targets}
     lines = [
-        f"| stack of six, 2 s | own defaults: error | a simulated second | contacts, iterations a step | cheapest at {percent(table.targets[0].target)} | a simulated second |",
+        "| stack of six, 2 s | own defaults: error | a simulated second | contacts, iterations "
+        f"a step | cheapest at {percent(table.targets[0].target)} | a simulated second |",
         "|---|---:|---:|---|---|---:|",
     ]
     for engine in table.engines:
@@ -162,7 +162,8 @@ def cost_lines(table: CostTable) -> list[str]:
         )
         lines.append(
             f"| {own.title} | {spread_of(own)} | {time_of(own)} | {counts_of(own)} | "
-            f"{missed if reached is None else name_of(reached)} | {'' if reached is None else time_of(reached)} |"
+            f"{missed if reached is None else name_of(reached)} | "
+            f"{'' if reached is None else time_of(reached)} |"
         )
     return lines
 
@@ -210,17 +211,17 @@ def write_tables() -> None:
     """Write the tables where pages have room for them."""
     text = tables()
     for page in PAGES:
-        before = page.read_text()
-        part = (
-            "\n".join(text.splitlines()) if page.name != "README.md" else "\n".join(cost_only(text))
-        )
-        after = re.sub(
-            r"(<!-- engines -->\n).*?(<!-- end -->)",
-            lambda found: f"{found[1]}\n{part}\n\n{found[2]}",
-            before,
-            flags=re.S,
-        )
-        page.write_text(after)
+        part = "\n".join(cost_only(text)) if page.name == "README.md" else text
+        page.write_text(with_part(page.read_text(), part))
+
+
+def with_part(page: str, part: str) -> str:
+    """Return a page with a part between its marks."""
+    before, begin, rest = page.partition("<!-- engines -->\n")
+    _, end, after = rest.partition("<!-- end -->")
+    if not begin or not end:
+        sys.exit("a page has no marks for the tables of engines")
+    return f"{before}{begin}\n{part}\n\n{end}{after}"
 
 
 def cost_only(text: str) -> list[str]:
