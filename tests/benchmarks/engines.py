@@ -32,14 +32,6 @@ KEPT = ROOT / "docs" / "engines"
 PAGES = (ROOT / "README.md", ROOT / "docs" / "results.md")
 SCENES = ("rest", "stack_of_six", "heavy_on_light")
 TRACKERS = ("launched_box", "pressed_against_a_wall")
-# The config's own grid has every solver of lavender's; beside other engines its default is enough.
-GRID = (
-    "solvers=[adaptive]",
-    "timesteps=[1/240]",
-    "tolerances=[1e-9]",
-    "warm_start=[true]",
-    "accuracies=[1e-4]",
-)
 COMMANDS = {
     "check": [
         *("lavender", "check"),
@@ -48,9 +40,8 @@ COMMANDS = {
         *("--engine", "all", "--yes", "--json"),
     ],
     "cost": [
-        *("lavender", "cost", "configs/cost/stack_of_six.yaml"),
+        *("lavender", "cost", "configs/cost/stack_by_engines.yaml"),
         *("--engine", "all", "--target", "0.1%", "--no-plot", "--yes", "--json"),
-        *(word for one in GRID for word in ("--set", f"cost.{one}")),
     ],
 }
 PLACES = ("run", "log", "figures", "kernel cache")  # where somebody's run and kernels lay

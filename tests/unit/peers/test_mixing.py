@@ -56,6 +56,14 @@ def test_a_floor_makes_up_for_balls_that_meet(rule: str, values: tuple[float, fl
         assert RULES[rule].mix(found[a], found[b]) == pytest.approx(asked, rel=1e-15)
 
 
+def test_a_product_leaves_the_floor_what_balls_do_not_have() -> None:
+    """Balls of 0.5 meet each other at 0.5, so that each has its root; a floor of 0.8 gives 0.8."""
+    ball, floor = Surface(restitution=0.5), Surface(restitution=0.8)
+    bodies = [(floor, False), (ball, True), (ball, True)]
+    found = values_by({"restitution": "product"}, "restitution", bodies)
+    assert found == pytest.approx([0.8 * 2.0**0.5, 0.5**0.5, 0.5**0.5], rel=1e-15)
+
+
 @pytest.mark.parametrize(("rule", "low", "high"), [("larger", 0.2, 0.8), ("mean", 0.1, 0.9)])
 def test_what_no_values_give_names_its_two_bodies(rule: str, low: float, high: float) -> None:
     """The larger of 0.8 and anything is no 0.4; a mean of 0.9 and v is 0.3 for no v above 0."""
