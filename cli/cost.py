@@ -204,7 +204,7 @@ def _cells(row: CostRow) -> tuple[str, ...]:
 
 def _counts(row: CostRow) -> tuple[str, ...]:
     return tuple(
-        "not told" if one is None else f"{one:.3g}" for one in (row.contacts, row.iterations)
+        "not reported" if one is None else f"{one:.3g}" for one in (row.contacts, row.iterations)
     )
 
 

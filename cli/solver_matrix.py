@@ -146,7 +146,7 @@ def print_matrix(
             if of_engines:
                 console.print()
                 console.print(solver, style="bold")
-                console.print(told_of(solver), style="dim")
+                console.print(effort_line(solver), style="dim")
                 console.print(_failures(bad))
             elif bad:
                 console.print()
@@ -209,17 +209,17 @@ def _why(entry: Entry) -> str:
     text = entry.why or entry.claim
     if entry.least == entry.least:
         text += f" (over its starts {entry.least:.3g} to {entry.most:.3g})"
-    told = [
+    reported = [
         f"{value:.3g} {name} a step"
         for value, name in ((entry.contacts, "contacts"), (entry.iterations, "iterations"))
         if value == value
     ]
-    if told and entry.cost == entry.cost:
-        told.insert(0, f"{short_time(entry.cost)} per simulated s")
-    return "; ".join(filter(None, (text, ", ".join(told))))
+    if reported and entry.cost == entry.cost:
+        reported.insert(0, f"{short_time(entry.cost)} per simulated s")
+    return "; ".join(filter(None, (text, ", ".join(reported))))
 
 
-def told_of(engine: str) -> str:
+def effort_line(engine: str) -> str:
     """Return what an engine's iterations are, and for how many contacts it has room."""
     from lavendersim.peers import catalogue
 

@@ -71,7 +71,7 @@ PEER: Final = Peer(
     forces=True,
     tells=POINT + IMPULSE + TANGENTIAL,
     momentum=True,
-    iterations="not told by its Python",
+    iterations="not reported by its Python",
     capacity="no limit; one point, or one patch, a pair of shapes",
     repeats="the same bits on one machine",
 )

@@ -10,7 +10,6 @@ from lavendersim.cell.choices import NO_MISTAKE
 from lavendersim.cell.record import NONE
 from lavendersim.cell.surface import PairedSurface
 from lavendersim.engine.effects import BODY_KEYS, SCENE_KEYS, SURFACE_KEYS
-from lavendersim.geometry.bodies import is_movable
 from lavendersim.peers.catalogue import peer_of
 from lavendersim.peers.declaration import Peer
 from lavendersim.peers.mixing import RULES, Unmixable, values_by
@@ -70,8 +69,10 @@ def _of_bodies(config: CellConfig, peer: Peer) -> Iterator[tuple[Path, str]]:
 
 def _of_mixing(config: CellConfig, peer: Peer) -> Iterator[tuple[Path, str]]:
     """Yield the coefficients that its own rule does not make of any values of two bodies."""
+    from lavendersim.geometry.bodies import is_movable  # late: it loads numpy
+
     bodies = config.scene.bodies
-    for key in peer.mixing if bodies else ():
+    for key in peer.mixing:
         surfaces = [(one.surface, is_movable(one)) for one in bodies.values()]
         found = values_by(peer.mixing, key, surfaces)
         if not isinstance(found, Unmixable):

@@ -63,7 +63,7 @@ class Entry(NamedTuple):
     most: float = math.nan
     claim: str = ""  # which, with its bound; "" where no number decided
     cost: float = math.nan  # physics per simulated second, one processor [s/s]
-    contacts: float = math.nan  # a step, on average; NaN: not told, or a matrix of solvers
+    contacts: float = math.nan  # a step, on average; NaN: not reported, or a matrix of solvers
     iterations: float = math.nan  # a step, likewise
     run: Path | None = None  # its directory
     log: Path | None = None  # of the first cell that failed, or of the first

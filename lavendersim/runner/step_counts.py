@@ -16,7 +16,7 @@ CONTACTS, ITERATIONS = "contact_count", "sweeps"  # columns of /step
 class StepCounts(NamedTuple):
     """Of the steps of several cells together."""
 
-    contacts: float | None = None  # a step, on average; None: not told
+    contacts: float | None = None  # a step, on average; None: not reported
     iterations: float | None = None
 
 
@@ -38,9 +38,9 @@ def _mean(logs: list[Any], name: str) -> float | None:
 
 def in_words(counts: StepCounts) -> str:
     """Return the counts of a step as people say them: `12 contacts, 3.4 iterations a step`."""
-    told = [
+    reported = [
         f"{value:.3g} {name}"
         for value, name in zip(counts, ("contacts", "iterations"), strict=True)
         if value is not None
     ]
-    return f"{', '.join(told)} a step" if told else "nothing told of a step's contacts"
+    return f"{', '.join(reported)} a step" if reported else "nothing reported of a step's contacts"

@@ -44,7 +44,10 @@ COMMANDS = {
         *("--engine", "all", "--target", "0.1%", "--no-plot", "--yes", "--json"),
     ],
 }
-PLACES = ("run", "log", "figures", "kernel cache")  # where somebody's run and kernels lay
+# Where somebody's run and kernels lay.
+PLACES = ("run", "log", "figures", "detail", "kernel cache")
+# What an engine has by itself, where its knob is swept.
+OWN = {"rapier": {"iterations": 4}, "bullet": {"iterations": 50}, "physx": {"iterations": 10}}
 
 
 def take(runs: Path) -> None:
@@ -122,8 +125,10 @@ def tables() -> str:
             *check_lines(check),
             "",
             f"Commit {commit}, {made['processor']}; {engines}. Times are medians of "
-            f"{table.repeats} interleaved rounds; errors are ranges over three starts, the worst "
-            "counts. Every sample, and the SHA-256 of every log, is kept in `docs/engines`; "
+            f"{table.repeats} interleaved rounds, other work was on the machine. Errors are ranges over "
+            "three starts, the worst counts. A square has the number of the first claim that failed, "
+            "or of the one nearest its bound, and the range of the worst cell of each start; "
+            "check.json names the claims. Every sample, and the SHA-256 of every log, is kept in `docs/engines`; "
             "`python -m tests.benchmarks.engines` makes all of it anew.",
         ]
     )
@@ -139,12 +144,7 @@ def cost_lines(table: CostTable) -> list[str]:
     ]
     for engine in table.engines:
         rows = [row for row in table.rows if row.family == engine]
-        own = next(
-            row
-            for row in rows
-            if row.role == "specified"
-            or (row.engine == engine and not row.settings and not row.is_lavender)
-        )
+        own = next(row for row in rows if is_own(row))
         answer = answers[engine]
         reached = table.rows[answer.row] if answer.row is not None else None
         best = min((row for row in rows if row.is_answer), key=error_of, default=None)
@@ -157,6 +157,13 @@ def cost_lines(table: CostTable) -> list[str]:
             f"{'' if reached is None else time_of(reached)} |"
         )
     return lines
+
+
+def is_own(row: CostRow) -> bool:
+    """Return whether a setting is its engine's own, of lavender what the config specifies."""
+    if row.is_lavender:
+        return row.role == "specified"
+    return row.engine == row.family and row.settings == OWN.get(row.family, {})
 
 
 def spread_of(row: CostRow) -> str:
@@ -175,7 +182,7 @@ def time_of(row: CostRow) -> str:
 def counts_of(row: CostRow) -> str:
     """Return the contacts and iterations of a step."""
     return ", ".join(
-        "not told" if one is None else f"{one:.3g}" for one in (row.contacts, row.iterations)
+        "not reported" if one is None else f"{one:.3g}" for one in (row.contacts, row.iterations)
     )
 
 

@@ -10,6 +10,8 @@ import pytest
 from tests.benchmarks import engines
 from tests.made_costs import cost_table, row_data
 
+TEN = {"iterations": 10}
+
 
 def test_nothing_that_is_kept_says_where_somebody_ran_it() -> None:
     said = {"rows": [{"error": 1, "log": "/home/a/b.mcap"}], "machine": {"kernel cache": "/home"}}
@@ -29,7 +31,9 @@ def test_an_engine_that_misses_the_target_says_how_near_it_came() -> None:
     target = {"target": 0.001, "sentence": "", "fragment": None}
     table = cost_table(
         row_data(role="specified", error=1e-4, contacts=24.0, iterations=2.0),
-        row_data(engine="physx", solver="", error=0.02, least_error=0.01, contacts=24.0),
+        row_data(
+            engine="physx", settings=TEN, solver="", error=0.02, least_error=0.01, contacts=24.0
+        ),
         targets=[
             target | {"reached": True, "row": 0, "engine": "lavender"},
             target | {"reached": False, "row": None, "engine": "physx"},
@@ -37,7 +41,7 @@ def test_an_engine_that_misses_the_target_says_how_near_it_came() -> None:
     )
     ours, theirs = engines.cost_lines(table)[2:]
     assert ours.startswith("| lavender | 0.01 % | 2 ms | 24, 2 | adaptive, 240 Hz, 8 sweeps, warm")
-    assert theirs == "| PhysX | 1 % to 2 % | 2 ms | 24, not told | none; at best 2 % |  |"
+    assert theirs == "| PhysX | 1 % to 2 % | 2 ms | 24, not reported | none; at best 2 % |  |"
 
 
 def test_a_square_has_its_number_and_its_range_over_starts() -> None:

@@ -108,11 +108,11 @@ def test_the_plan_of_another_engine_says_its_law(tmp_path: Path) -> None:
 def test_the_matrix_of_engines_says_of_every_square_its_number_spread_and_steps(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    """Also of what passes; what was not told has no number, and stands in the engine's line."""
+    """Also of what passes; what was not reported has no number, and stands in the engine's line."""
     claim = "drift: 1e-7, expected at most 1e-06"
-    told = {"claim": claim, "cost": 0.002, "contacts": 24.0, "iterations": 1.5}
+    reported = {"claim": claim, "cost": 0.002, "contacts": 24.0, "iterations": 1.5}
     made = [
-        Entry("tall/tower", "lavender", "passes", least=1e-8, most=1e-7, **told),
+        Entry("tall/tower", "lavender", "passes", least=1e-8, most=1e-7, **reported),
         Entry("tall/tower", "drake-hydroelastic", "passes", claim=claim, cost=0.5),
     ]
     case = Case("tall/tower", Path("tower.yaml"), False, "")
@@ -121,7 +121,7 @@ def test_the_matrix_of_engines_says_of_every_square_its_number_spread_and_steps(
     shown = capsys.readouterr().out
     of_steps = "2 ms per simulated s, 24 contacts a step, 1.5 iterations a step"
     assert f"{claim} (over its starts 1e-08 to 1e-07); {of_steps}" in shown
-    assert "iterations: not told by its Python; room for contacts: no limit" in shown
+    assert "iterations: not reported by its Python; room for contacts: no limit" in shown
     assert shown.count(claim) == 2
     print_matrix([case], engines, made, {}, width=300)  # of solvers what passes is not listed
     assert claim not in capsys.readouterr().out

@@ -23,7 +23,7 @@ class World:
         client = pybullet.connect(pybullet.DIRECT)
         self._here: dict[str, Any] = {"physicsClientId": client}
         self._rigid = bool(settings.get("rigid", False))
-        self._told: Any = None
+        self._reported: Any = None
         pybullet.setGravity(*scene.gravity, **self._here)
         own: dict[str, Any] = {"fixedTimeStep": scene.timestep}
         for name, of_bullet in (
@@ -113,13 +113,13 @@ class World:
 
     def step(self) -> None:
         """Advance by one timestep."""
-        self._told = pybullet.stepSimulation(**self._here)
+        self._reported = pybullet.stepSimulation(**self._here)
 
     def iterations(self) -> int:
-        """Return those of the last step; told from the first call on."""
-        if not self._told:
+        """Return those of the last step; reported from the first call on."""
+        if not self._reported:
             pybullet.setPhysicsEngineParameter(reportSolverAnalytics=1, **self._here)
-        return max((one["numIterationsUsed"] for one in self._told or ()), default=0)
+        return max((one["numIterationsUsed"] for one in self._reported or ()), default=0)
 
     def contacts(self) -> list[tuple[float, ...]]:
         """Return the contacts of the last step, at points of their collision detection.

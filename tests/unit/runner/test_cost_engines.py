@@ -112,11 +112,11 @@ def test_contacts_and_iterations_stand_beside_time_where_an_engine_tells_them(
 ) -> None:
     """A ball in flight has none; RK4 tells of no contacts; efforts say what these are."""
     table = costed.table
-    told = {row.engine: (row.contacts, row.iterations) for row in table.rows}
-    assert told["mujoco-rk4"] == (None, 0.0)
-    assert told["mujoco-cg"] == (0.0, 0.0)
+    reported = {row.engine: (row.contacts, row.iterations) for row in table.rows}
+    assert reported["mujoco-rk4"] == (None, 0.0)
+    assert reported["mujoco-cg"] == (0.0, 0.0)
     assert table.efforts.keys() == {row.engine for row in table.rows}
     assert "512 MB" in table.efforts["mujoco-cg"]
     (line,) = {one for one in lines_of(table) if one.strip().startswith("mujoco-rk4: iterations")}
     assert "of its last stage" in line
-    assert "not told" in next(one for one in lines_of(table) if "mujoco-rk4  " in one)
+    assert "not reported" in next(one for one in lines_of(table) if "mujoco-rk4  " in one)

@@ -68,7 +68,7 @@ def test_an_impulse_along_tangents_is_the_vector_that_was_reported() -> None:
     assert found["force_n"].tolist() == [200.0] * 4  # 2 N s in 1/100 s
 
 
-def test_a_count_that_is_not_told_has_no_column() -> None:
+def test_a_count_that_is_not_reported_has_no_column() -> None:
     """An engine may tell its iterations and no contacts, or contacts and no iterations."""
     config = load_experiment_text(BALL, "ball.yaml").cells()[0].config
     pose, velocity = np.tile([0.0, 0, 0, 1, 0, 0, 0], (2, 1, 1)), np.zeros((2, 1, 6))

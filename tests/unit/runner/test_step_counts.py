@@ -29,7 +29,7 @@ def test_what_a_log_does_not_have_is_none_and_not_zero() -> None:
     assert counts_of([cell(contact_count=[3])]) == StepCounts()  # it made no step
 
 
-def test_counts_in_words_leave_out_what_is_not_told() -> None:
+def test_counts_in_words_leave_out_what_is_not_reported() -> None:
     assert in_words(StepCounts(12.0, 3.456)) == "12 contacts, 3.46 iterations a step"
     assert in_words(StepCounts(12.0)) == "12 contacts a step"
-    assert in_words(StepCounts()) == "nothing told of a step's contacts"
+    assert in_words(StepCounts()) == "nothing reported of a step's contacts"
