@@ -128,8 +128,8 @@ def tables() -> str:
             f"{table.repeats} interleaved rounds, other work was on the machine. Errors are ranges "
             "over three starts, the worst counts. A square has the number of the first claim that "
             "failed, or of the one nearest its bound, and the range of the worst cell of each "
-            "start; check.json names the claims. Every sample, and the SHA-256 of every log, is kept "
-            "in `docs/engines`; `python -m tests.benchmarks.engines` makes all of it anew.",
+            "start; check.json names the claims. Every sample, and the SHA-256 of every log, is "
+            "kept in `docs/engines`; `python -m tests.benchmarks.engines` makes all of it anew.",
         ]
     )
 
