@@ -94,7 +94,7 @@ def without_places(data: Any) -> Any:
 def digests(runs: Path) -> dict[str, dict[str, str]]:
     """Return by experiment the SHA-256 of each log, by the cell that it is of."""
     found: dict[str, dict[str, str]] = {}
-    for log in sorted(runs.glob("*/cells/*.mcap")):
+    for log in sorted(runs.glob("*-*/cells/*.mcap")):  # not those of `latest`, which is one of them
         # 20261126T055000Z-rest-...: the name begins with its time
         own = found.setdefault(log.parent.parent.name.partition("-")[2], {})
         own[log.stem] = hashlib.sha256(log.read_bytes()).hexdigest()

@@ -23,6 +23,7 @@ def test_a_log_has_its_digest_under_its_experiment(tmp_path: Path) -> None:
     cells = tmp_path / "20261126T055000Z-rest-engine=all-1d4c6cdb" / "cells"
     cells.mkdir(parents=True)
     (cells / "ab.mcap").write_bytes(b"")
+    (tmp_path / "latest").symlink_to(cells.parent)
     empty = "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855"
     assert engines.digests(tmp_path) == {"rest-engine=all-1d4c6cdb": {"ab": empty}}
 
