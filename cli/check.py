@@ -84,6 +84,7 @@ def check(
             raise UsageError("--starts is for engines: leave out --solver")
         # a wrong name is refused before any file is read
         columns = catalogue.chosen(engine) if engine else chosen(solver or ())
+        starts = perturbed_starts.starts_of(starts, columns) if engine else None
     perturbed = perturbed_starts.overrides_of(starts)
     if not columns:
         overrides += perturbed

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from lavendersim.measures.cost_table import CostRow, CostTable
 
 HEADER = ("setting", "error", "worst at", "order", "residual m/s", "per simulated s", "quartiles")
+BESIDE = ("contacts", "iterations")  # a step; where other engines are in the table
 MARKS = {"specified": "specified", "chapter": "the chapter's", "grid": ""}
 
 
@@ -58,6 +59,7 @@ def cost(
 
     sought = [percentage(target) for target in targets or ()]
     engines = catalogue.chosen(engine) if engine else ()
+    starts = perturbed_starts.starts_of(starts, engines)
     given = [*overrides_of(values, axes), *perturbed_starts.overrides_of(starts)]
     # In a folder those with a section `cost` are meant; a file that is named must have one.
     experiments = [
@@ -128,8 +130,13 @@ def lines_of(table: CostTable) -> list[str]:
 
     rows = table.rows
     cells = [HEADER, *(_cells(row) for row in rows)]
+    if table.compares_engines:
+        cells = [
+            (*text, *beside)
+            for text, beside in zip(cells, [BESIDE, *map(_counts, rows)], strict=True)
+        ]
     # an empty column is left out
-    shown = [column for column in range(len(HEADER)) if any(row[column] for row in cells[1:])]
+    shown = [column for column in range(len(cells[0])) if any(row[column] for row in cells[1:])]
     widths = {column: max(len(row[column]) for row in cells) for column in shown}
     lines = [
         f"{typer.style(table.experiment, bold=True)}: error of {table.error.measure}, "
@@ -153,6 +160,7 @@ def lines_of(table: CostTable) -> list[str]:
     if compiled:
         span = f"{compiled[0]:.1f} to {compiled[-1]:.1f} s"
         lines.append(f"  compile time, once and in no cost: {span} an engine")
+    lines += [f"  {engine}: {effort}" for engine, effort in table.efforts.items()]
     lines += [f"  {engine}: REFUSED: {why}" for engine, why in table.refused.items()]
     return lines + (table.sentences or [target.sentence for target in table.targets])
 
@@ -191,6 +199,12 @@ def _cells(row: CostRow) -> tuple[str, ...]:
         else " to ".join(
             short_time(one / 1e9) for one in (spread.lower_quartile, spread.upper_quartile)
         ),
+    )
+
+
+def _counts(row: CostRow) -> tuple[str, ...]:
+    return tuple(
+        "not reported" if one is None else f"{one:.3g}" for one in (row.contacts, row.iterations)
     )
 
 

@@ -89,6 +89,8 @@ def law_of(engine: str) -> dict[str, str]:
         "law": peer.law,
         "precision": "double" if peer.double else "single",
         "tells": ", ".join(reported) or "nothing of contacts",
+        "iterations": peer.iterations,
+        "capacity": peer.capacity,
         "repeats": peer.repeats,
     }
 

@@ -66,7 +66,8 @@ Starts = Annotated[
     typer.Option(
         "--starts",
         metavar="N",
-        help="Start N times: as written, then with every body moved a little, drawn by seed.",
+        help="Start N times: as written, then with every body moved a little, drawn by seed; 3 "
+        "where several engines are compared.",
     ),
 ]
 Strict = Annotated[

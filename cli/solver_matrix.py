@@ -73,7 +73,7 @@ def check_by(
         if as_json:
             printing.as_json(as_data(cases, solvers, made, left_out))
         else:
-            print_matrix(cases, solvers, made, left_out)
+            print_matrix(cases, solvers, made, left_out, of_engines=engines)
     printing.report_damage(damaged)
     if damaged:
         raise typer.Exit(printing.DAMAGED)
@@ -132,13 +132,23 @@ def print_matrix(
     made: Sequence[Entry],
     left_out: dict[str, str],
     width: int | None = None,
+    of_engines: bool = False,
 ) -> None:
-    """Print the matrix, what failed below it, and what is not in it, wrapped to the terminal."""
+    """Print the matrix, what failed below it, and what is not in it, wrapped to the terminal.
+
+    of_engines: every entry stands below it, with its number, its spread and what its steps had.
+    """
     with printing.by_rich(width, UNWRAPPED) as console:
         console.print(_matrix(cases, solvers, made))
         for solver in solvers:
-            bad = [one for one in made if one.solver == solver and one.verdict != "passes"]
-            if bad:
+            own = [one for one in made if one.solver == solver]
+            bad = own if of_engines else [one for one in own if one.verdict != "passes"]
+            if of_engines:
+                console.print()
+                console.print(solver, style="bold")
+                console.print(effort_line(solver), style="dim")
+                console.print(_failures(bad))
+            elif bad:
                 console.print()
                 console.print(solver, style="bold")
                 console.print(_failures(bad))
@@ -188,7 +198,29 @@ def _failures(bad: Sequence[Entry]) -> Table:
     table.add_column()
     for entry in bad:
         word, style = WORDS[entry.verdict]
-        over = f" (over its starts {entry.least:.3g} to {entry.most:.3g})"
-        why = f"{entry.why}{over if entry.least == entry.least else ''}"
-        table.add_row(f"  {entry.case}", Text(word, style), why)
+        table.add_row(f"  {entry.case}", Text(word, style), _why(entry))
     return table
+
+
+def _why(entry: Entry) -> str:
+    """Return what is behind an entry: its claim, over its starts, and what its steps cost."""
+    from lavendersim.quantities.short_times import short_time
+
+    text = entry.why or entry.claim
+    if entry.least == entry.least:
+        text += f" (over its starts {entry.least:.3g} to {entry.most:.3g})"
+    reported = [
+        f"{value:.3g} {name} a step"
+        for value, name in ((entry.contacts, "contacts"), (entry.iterations, "iterations"))
+        if value == value
+    ]
+    if reported and entry.cost == entry.cost:
+        reported.insert(0, f"{short_time(entry.cost)} per simulated s")
+    return "; ".join(filter(None, (text, ", ".join(reported))))
+
+
+def effort_line(engine: str) -> str:
+    """Return what an engine's iterations are, and for how many contacts it has room."""
+    from lavendersim.peers import catalogue
+
+    return catalogue.effort_of(engine)

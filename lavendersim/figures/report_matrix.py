@@ -106,7 +106,7 @@ def _families(matrix: Matrix, folder: Path) -> list[dict[str, Any]]:
 
 def _entry(entry: Any, folder: Path) -> dict[str, Any]:
     if entry is None:
-        return {"look": NOT_RUN, "text": NOT_RUN.words, "was_run": False, "log": ""}
+        return {"look": NOT_RUN, "text": NOT_RUN.words, "was_run": False, "log": "", "counts": []}
     look = LOOKS[entry.verdict]
     text = look.words if entry.verdict == "passes" else f"{entry.verdict}: {entry.why}"
     if not math.isnan(entry.margin):
@@ -115,9 +115,15 @@ def _entry(entry: Any, folder: Path) -> dict[str, Any]:
         text += f"\n{entry.claim}"
     if entry.least == entry.least:
         text += f"\nover its starts {entry.least:.3g} to {entry.most:.3g}"
+    counts = [
+        f"{value:.3g} {name} a step"
+        for value, name in ((entry.contacts, "contacts"), (entry.iterations, "iterations"))
+        if not math.isnan(value)
+    ]
+    text += f"\n{', '.join(counts)}" if counts else ""
     log = "" if entry.log is None else address(entry.log, folder)
     found = {"look": look, "text": text, "was_run": True, "log": log, "cost": entry.cost}
-    found |= {"number": "", "spread": ""}
+    found |= {"number": "", "spread": "", "counts": counts}
     if entry.claim and not math.isnan(entry.number):
         found["number"] = f"{entry.number:.2g}"
         if entry.least == entry.least:

@@ -94,7 +94,8 @@ def _caption(table: CostTable) -> str:
         reference = f", against the same run at a timestep of {truth.timestep} s"
     if table.axes:
         reference += f" (the worst of {table.cells_per_setting} cells of {', '.join(table.axes)})"
-    said = table.sentences or [target.sentence for target in table.targets]
+    said = [*(table.sentences or [target.sentence for target in table.targets])]
+    said += [f"{engine}: {effort}" for engine, effort in table.efforts.items()]
     said += [f"{engine} refused: {why}" for engine, why in table.refused.items()]
     if any(row.least_error is not None for row in table.rows):
         said = [f"Upright lines end at the least error over {PERTURBED}", *said]

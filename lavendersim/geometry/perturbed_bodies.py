@@ -1,8 +1,8 @@
 """Bodies moved a little at the start, drawn by a seed, so that no symmetry of a scene is luck.
 
 Each movable body is moved by up to `distance` along each world axis, then put back along gravity
-and along the normals of the planes on which some body stands: bodies stay on their floors, towers
-on each other.
+and along the normals of the planes, and of the faces of fixed boxes, that some body touches: bodies
+stay on their floors and at their walls, towers on each other.
 """
 
 from __future__ import annotations
@@ -12,13 +12,15 @@ from collections.abc import Mapping
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from lavendersim.cell.body import CellBody
-from lavendersim.cell.shapes import Plane
+from lavendersim.cell.shapes import Box, Plane
 from lavendersim.geometry.bodies import is_movable, rotation_of
 from lavendersim.geometry.shapes import extent
 from lavendersim.quantities.quantity import Vector3
 
+Floats = NDArray[np.float64]
 INDEPENDENT: Final = 1e-9  # what is left of a unit normal within the span of others: round-off
 
 
@@ -40,13 +42,14 @@ def perturbed(
     return found
 
 
-def _directions(
-    bodies: Mapping[str, CellBody], distance: float, gravity: Vector3
-) -> np.ndarray[tuple[int, int], np.dtype[np.float64]]:
+def _directions(bodies: Mapping[str, CellBody], distance: float, gravity: Vector3) -> Floats:
     """Return orthonormal directions along which nothing is moved (k, 3)."""
     movable = [body for body in bodies.values() if is_movable(body)]
     planes = [body.shape for body in bodies.values() if isinstance(body.shape, Plane)]
     normals = [np.array(plane.normal) for plane in planes if _stood_on(plane, movable, distance)]
+    for body in bodies.values():
+        if isinstance(body.shape, Box) and not is_movable(body):
+            normals += _touched_faces(body, body.shape, movable, distance)
     pull = np.array(gravity)
     if pull.any():
         normals.append(pull / np.linalg.norm(pull))
@@ -56,6 +59,28 @@ def _directions(
         if (size := float(np.linalg.norm(rest))) > INDEPENDENT:
             kept = np.vstack([kept, rest / size])
     return kept
+
+
+def _touched_faces(
+    box: CellBody, shape: Box, movable: list[CellBody], within: float
+) -> list[Floats]:
+    """Return the axes of a box at whose faces some body is as near as bodies are moved."""
+    turn, half = rotation_of(box), 0.5 * np.array(shape.size)
+    found = []
+    for body in movable:
+        away = turn.T @ (np.array(body.position) - np.array(box.position))
+        own = rotation_of(body)
+        reach = [  # towards the box and away from it, along each of its axes
+            (extent(body.shape, own, -axis), extent(body.shape, own, axis)) for axis in turn.T
+        ]
+        gaps = [
+            max(place - low, -place - high) - size
+            for place, (low, high), size in zip(away, reach, half, strict=True)
+        ]
+        nearest = int(np.argmax(gaps))  # outside the box it is apart along this axis, or along none
+        if abs(gaps[nearest]) < within:
+            found.append(turn[:, nearest])
+    return found
 
 
 def _stood_on(plane: Plane, movable: list[CellBody], within: float) -> bool:

@@ -68,6 +68,8 @@ class CostRow:
     front: bool = False  # whether none of its engine is cheaper and as good
     engine: str = LAVENDER  # or a variant of another, which has no numerics but the timestep
     settings: dict[str, Any] = field(default_factory=dict)  # of that engine, beside the variant's
+    contacts: float | None = None  # a step, on average; None: its engine does not tell
+    iterations: float | None = None  # a step, likewise
 
     @property
     def family(self) -> str:
@@ -134,6 +136,7 @@ class CostTable:
     targets: list[CostAnswer]  # of several engines one each
     refused: dict[str, str] = field(default_factory=dict)  # engine -> why it cannot do the scene
     sentences: list[str] = field(default_factory=list)  # a target, all engines; of several
+    efforts: dict[str, str] = field(default_factory=dict)  # engine -> its iterations, its capacity
 
     @property
     def engines(self) -> list[str]:

@@ -46,7 +46,11 @@ PEER: Final = Peer(
     ),
     shapes=frozenset({"plane", "sphere", "box", "capsule", "cylinder"}),
     surface_keys=frozenset({"friction", "restitution"}),
+    mixing={"friction": "product", "restitution": "product"},
     tells=POINT + IMPULSE + TANGENTIAL,
     momentum=True,
+    counted=True,
+    iterations="of Gauss-Seidel, in the island with the most",
+    capacity="no limit, at most 4 points a pair of shapes",
     repeats="the same bits on one machine",
 )

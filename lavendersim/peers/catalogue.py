@@ -18,6 +18,7 @@ MODULES: Final = ("mujoco", "rapier", "bullet", "physx", "dart", "drake")  # in 
 PEERS: Final[dict[str, Peer]] = {
     name: import_module(f"lavendersim.peers.{name}").PEER for name in MODULES
 }
+OURS: Final = ("sweeps of a step's solves", "grows with the contacts")
 # Every name that `engine` may have.
 NAMES: Final = (LAVENDER, *(variant for peer in PEERS.values() for variant in peer.variants))
 
@@ -69,6 +70,16 @@ def overrides_of(engines: Sequence[str]) -> list[str]:
     if len(engines) == 1:
         return [f"set engine={engines[0]}"]
     return [f"sweep engine=engine:[{', '.join(engines)}]"] if engines else []
+
+
+def effort_of(engine: str) -> str:
+    """Return what the iterations of an engine are, and for how many contacts it has room."""
+    iterations, capacity = OURS if engine == LAVENDER else _effort(peer_of(engine))
+    return f"iterations: {iterations}; room for contacts: {capacity}"
+
+
+def _effort(peer: Peer) -> tuple[str, str]:
+    return peer.iterations, peer.capacity
 
 
 def untried(engines: Iterable[str]) -> list[str]:

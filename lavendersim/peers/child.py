@@ -45,6 +45,7 @@ def run(task: Task, pipe: Connection) -> str:
     reported = len(peer.reports(task.engine))
     poses, speeds = [world.poses()], [world.velocities()]
     rows: list[tuple[float, ...]] = []
+    counts = [world.iterations()] if peer.counted else []
     first, spent, pushed, sent = 0, 0, False, perf_counter()
     for step in range(1, scene.steps + 1):
         loads = scene.loads(step)
@@ -56,20 +57,24 @@ def run(task: Task, pipe: Connection) -> str:
         spent += perf_counter_ns() - start
         poses.append(world.poses())
         speeds.append(world.velocities())
+        if peer.counted:
+            counts.append(world.iterations())
         if reported:
             rows += [(step, *row) for row in world.contacts()]
         if len(poses) == MOST_STEPS or perf_counter() - sent > SECONDS:
-            pipe.send(_states(first, poses, speeds, rows, spent, reported))
-            poses, speeds, rows = [], [], []
+            pipe.send(_states(first, (poses, speeds, rows, counts), spent, reported))
+            poses, speeds, rows, counts = [], [], [], []
             first, spent, sent = step + 1, 0, perf_counter()
     if poses:
-        pipe.send(_states(first, poses, speeds, rows, spent, reported))
+        pipe.send(_states(first, (poses, speeds, rows, counts), spent, reported))
     return ""
 
 
-def _states(first: int, poses: Any, speeds: Any, rows: Any, spent: int, reported: int) -> States:
+def _states(first: int, of_steps: tuple[Any, ...], spent: int, reported: int) -> States:
+    poses, speeds, rows, counts = of_steps
     contacts = np.array(rows, dtype=np.float64).reshape(-1, 3 + reported)
-    return States(first, np.array(poses), np.array(speeds), contacts, spent)
+    iterations = np.array(counts, dtype=np.int64) if counts else None
+    return States(first, np.array(poses), np.array(speeds), contacts, spent, iterations)
 
 
 def misbuilt(scene: Scene, world: Any, peer: Peer) -> str:

@@ -60,9 +60,15 @@ class Peer:
     swept: tuple[Knobs, ...]  # by `lavender cost`; the variant of its own defaults is among them
     shapes: frozenset[str]
     surface_keys: frozenset[str]  # of surfaces, that it obeys
+    # By surface key the rule (`mixing.RULES`) by which it mixes two bodies; one that is missing is
+    # given to it pair by pair, or is no key of its own.
+    mixing: Mapping[str, str] = field(default_factory=dict)
     forces: bool = False  # constant ones at the centre of mass, for a while
     tells: tuple[str, ...] = ()  # of contacts, of the above; none: it tells of no contact
     momentum: bool = False  # its impulses are all that acts beside gravity and forces of a step
+    counted: bool = False  # its adapter counts the iterations of each step (`World.iterations`)
+    iterations: str = ""  # what these are; or how many a step has, where it does not count them
+    capacity: str = ""  # for how many contacts it has room, and what becomes of more
     repeats: str = ""  # whether two runs agree to the bit, in words
 
     def reports(self, engine: str) -> tuple[str, ...]:

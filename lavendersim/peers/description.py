@@ -2,15 +2,14 @@
 
 Engines mix the coefficients of two bodies by rules of their own (product, least, greatest). An
 adapter asks for the values of bodies from which its engine's rule makes the mixed ones of lavender:
-`by_product`, `by_first`; where there are none it says so instead of taking others.
+`values`, `by_first`. Where there are none the scene was refused when it was read (`limits`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from itertools import combinations
-from math import inf, sqrt
-from typing import Any, Final, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -18,19 +17,10 @@ from lavendersim.cell import CellConfig
 from lavendersim.cell.mixing import mixed
 from lavendersim.geometry.bodies import is_movable
 from lavendersim.geometry.rotations import unit_quaternion
+from lavendersim.peers.declaration import Peer
+from lavendersim.peers.mixing import Unmixable, values_by
 from lavendersim.peers.world import CannotRun, Floats
 from lavendersim.quantities.scalars import exact
-
-SAME: Final = 1e-15  # relative, of a coefficient and what a rule makes: round-off
-
-
-def _itself(required: float) -> float:
-    return required
-
-
-def harmonic_mean(a: float, b: float) -> float:
-    """Return 2ab / (a + b); 0 of two zeros."""
-    return 2.0 * a * b / (a + b) if a + b else 0.0
 
 
 class PeerBody(NamedTuple):
@@ -84,32 +74,15 @@ class Scene:
         """Return a coefficient of a contact of two bodies."""
         return float(getattr(mixed(a.surface, b.surface), key))
 
-    def by_product(self, key: str) -> list[float]:
-        """Return of each body a value such that the product of two is that of their contact."""
-        return self._values(key, [sqrt, _itself], lambda a, b: a * b, (1.0, _itself))
-
-    def by_least(self, key: str) -> list[float]:
-        """Return of each body a value such that the lesser of two is that of their contact."""
-        return self._values(key, [_itself], min, (inf, _itself))
-
-    def by_larger(self, key: str) -> list[float]:
-        """Return of each body a value such that the larger of two is that of their contact."""
-        return self._values(key, [_itself], max, (0.0, _itself))
-
-    def by_mean(self, key: str) -> list[float]:
-        """Return of each body a value such that the mean of two is that of their contact."""
-        return self._values(
-            key, [_itself], lambda a, b: 0.5 * (a + b), (0.0, lambda required: 2.0 * required)
-        )
-
-    def by_harmonic_mean(self, key: str) -> list[float]:
-        """Return of each body a value such that 2ab / (a + b) is that of their contact."""
-        return self._values(
-            key,
-            [_itself],
-            harmonic_mean,
-            (1.0, lambda required: required / (2.0 - required) if required < 2.0 else inf),
-        )
+    def values(self, key: str, peer: Peer) -> list[float]:
+        """Return of each body a value such that the engine's own rule of mixing, which it declares,
+        makes the coefficient of every contact; raises CannotRun.
+        """
+        surfaces = [(body.surface, body.moves) for body in self.bodies]
+        found = values_by(peer.mixing, key, surfaces)
+        if isinstance(found, Unmixable):
+            raise CannotRun(f"its rule of mixing makes no such {key} of these surfaces")
+        return found
 
     def by_first(self, keys: tuple[str, ...]) -> tuple[list[tuple[float, ...]], bool] | None:
         """Return values of each body such that a contact has those of the body that stays, or of
@@ -162,41 +135,6 @@ class Scene:
 
     def _of_pairs(self, key: str) -> dict[tuple[int, int], float]:
         return {(a.row, b.row): self.of_pair(key, a, b) for a, b in self.pairs()}
-
-    def _values(
-        self,
-        key: str,
-        inverses: list[Callable[[float], float]],
-        rule: Callable[[float, float], float],
-        left_to_fixed: tuple[float, Callable[[float], float]],
-    ) -> list[float]:
-        """Return values of bodies from which a rule makes those of pairs, or raise CannotRun.
-
-        left_to_fixed: what bodies that move have, where those that stay decide, and what these.
-        """
-        required = self._of_pairs(key)
-        tried = [
-            [inverse(getattr(body.surface, key)) for body in self.bodies] for inverse in inverses
-        ]
-        tried += [
-            [inverse(max(required.values(), default=0.0))] * len(self.bodies)
-            for inverse in inverses
-        ]
-        # What moves leaves the choice to what stays, where moving bodies meet nothing else.
-        of_fixed = {b if self.bodies[a].moves else a: value for (a, b), value in required.items()}
-        moving, beside = left_to_fixed
-        most = 2.0 * max([1.0, *required.values()])  # any that is larger than all
-        tried.append(
-            [
-                min(moving, most) if body.moves else beside(of_fixed.get(body.row, 0.0))
-                for body in self.bodies
-            ]
-        )
-        for values in tried:
-            made = ((rule(values[a], values[b]), value) for (a, b), value in required.items())
-            if all(abs(one - value) <= SAME * value for one, value in made):
-                return values
-        raise CannotRun(f"its rule of mixing makes no such {key} of these surfaces")
 
 
 def _unit(orientation: Any) -> tuple[float, ...]:

@@ -67,8 +67,11 @@ PEER: Final = Peer(
     ),
     shapes=frozenset({"plane", "sphere", "box", "capsule", "cylinder", "compound"}),
     surface_keys=frozenset({"friction"}),
+    mixing={"friction": "harmonic_mean"},
     forces=True,
     tells=POINT + IMPULSE + TANGENTIAL,
     momentum=True,
+    iterations="not reported by its Python",
+    capacity="no limit; one point, or one patch, a pair of shapes",
     repeats="the same bits on one machine",
 )

@@ -12,6 +12,7 @@ from lavendersim.cell.surface import PairedSurface
 from lavendersim.engine.effects import BODY_KEYS, SCENE_KEYS, SURFACE_KEYS
 from lavendersim.peers.catalogue import peer_of
 from lavendersim.peers.declaration import Peer
+from lavendersim.peers.mixing import RULES, Unmixable, values_by
 
 Path = tuple[str | int, ...]
 
@@ -32,6 +33,7 @@ def limits_of(config: CellConfig) -> list[Limit]:
         Limit(path, f"{path[-1]}: {peer.title} {sentence}")
         for path, sentence in (
             *_of_bodies(config, peer),
+            *_of_mixing(config, peer),
             *_of_scene(config, peer),
             *_of_run(config),
         )
@@ -63,6 +65,26 @@ def _of_bodies(config: CellConfig, peer: Peer) -> Iterator[tuple[Path, str]]:
             obeys = " and ".join(sorted(peer.surface_keys))
             sentence = f"does not obey it, of surfaces it does {obeys}"
             yield (*place, "surface", own.name), f"{sentence}; expected {own.default:g} ({name})"
+
+
+def _of_mixing(config: CellConfig, peer: Peer) -> Iterator[tuple[Path, str]]:
+    """Yield the coefficients that its own rule does not make of any values of two bodies."""
+    from lavendersim.geometry.bodies import is_movable  # late: it loads numpy
+
+    bodies = config.scene.bodies
+    for key in peer.mixing:
+        surfaces = [(one.surface, is_movable(one)) for one in bodies.values()]
+        found = values_by(peer.mixing, key, surfaces)
+        if not isinstance(found, Unmixable):
+            continue
+        a, b = (list(bodies)[one] for one in found.pair)
+        own = b if is_movable(bodies[b]) else a
+        yield (
+            ("scene", "bodies", own, "surface", key),
+            f"takes {RULES[peer.mixing[key]].words} of two bodies, and no values of bodies were "
+            f"found that give {found.required:g} between {a} and {b} beside all other contacts; "
+            "expected surfaces that differ less",
+        )
 
 
 # Of no use without another key of the same surface, which is refused or kept by itself.

@@ -31,6 +31,7 @@ class States(NamedTuple):
     velocity: NDArray[np.float64]  # (steps, movable, 6)
     contacts: NDArray[np.float64]  # (rows, 3 + reported): step, body A, body B, what is reported
     step_ns: int  # spent in the engine's steps alone
+    iterations: NDArray[np.int64] | None = None  # of each step, where the engine counts them
 
 
 class Ended(NamedTuple):

@@ -103,5 +103,10 @@ PEER: Final = Peer(
     forces=True,
     tells=POINT + IMPULSE + TANGENTIAL + FRICTION,
     momentum=True,
+    counted=True,
+    iterations="of the convex problem's solver, in the island with the most; by RK4 of its last "
+    "stage",
+    capacity="512 MB for contacts and their constraints; what has no room is left out, and MuJoCo "
+    "warns of it",
     repeats="the same bits on one machine, in one thread",
 )

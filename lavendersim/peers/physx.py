@@ -54,7 +54,10 @@ PEER: Final = Peer(
     ),
     shapes=frozenset({"plane", "sphere", "box", "capsule", "hull", "compound"}),
     surface_keys=frozenset({"friction", "restitution"}),
+    mixing={"friction": "mean", "restitution": "mean"},
     forces=True,
     tells=POINT + IMPULSE,
+    iterations="as many as are set, 10 of positions and 1 of velocities by default",
+    capacity="no limit on the processor",
     repeats="the same bits on one machine",
 )

@@ -54,7 +54,10 @@ PEER: Final = Peer(
     ),
     shapes=frozenset({"plane", "sphere", "box"}),
     surface_keys=frozenset({"friction", "restitution"}),
+    mixing={"friction": "product", "restitution": "larger"},
     forces=True,
     tells=POINT + IMPULSE,
+    iterations="as many as are set, 4 small steps by default",
+    capacity="no limit",
     repeats="the same bits on one machine, in one thread",
 )

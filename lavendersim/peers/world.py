@@ -47,3 +47,10 @@ class World(Protocol):
         """Return of each contact of the last step its two bodies (rows of the scene), A and B, then
         what the engine tells, in the order of `Peer.tells`; impulses on B [N s].
         """
+
+
+class CountingWorld(World, Protocol):
+    """That of an engine which counts its iterations: `Peer.counted`."""
+
+    def iterations(self) -> int:
+        """Return the iterations of the last step, 0 before the first."""

@@ -17,14 +17,16 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from lavendersim.durable_files import write_whole
 from lavendersim.errors import ConfigError, UsageError
-from lavendersim.experiment import Experiment
+from lavendersim.experiment import Cell, Experiment
 from lavendersim.experiment.models.cost import FEW, FEWEST_REPEATS, KNOBS
 from lavendersim.experiment.sweeps.cost_grid import Setting, fragment_of, over_the_grid, settings_of
+from lavendersim.experiment.sweeps.perturbed_starts import start_of
 from lavendersim.measures.cost_table import CostRow, CostTable, CostTruth, ErrorSource
 from lavendersim.measures.spread import Spread
+from lavendersim.peers.catalogue import LAVENDER, effort_of
 
 from .cost_engines import able_engines
-from .cost_errors import SettingError, errors_of, law_of, orders_of, runs_of
+from .cost_errors import SettingError, SettingRun, errors_of, law_of, orders_of, runs_of
 from .cost_targets import across_engines, answers, front_of_engine
 from .cost_times import Clocked, Times, times_of
 from .environment import machine
@@ -48,10 +50,12 @@ class Costed(NamedTuple):
 
 
 def check_cost(experiment: Experiment, repeats: int | None = None) -> None:
-    """Raise ConfigError without a section `cost`, UsageError for too few repeats."""
+    """Raise ConfigError without a section `cost`, UsageError for too few repeats, engines swept."""
     if experiment.config.cost is None:
         sentence = "no section cost: it says which measure is compared with which truth"
         raise ConfigError([experiment.cells()[0].defect(("cost",), sentence)])
+    if "engine" in experiment.axes:
+        raise UsageError("engines are chosen by --engine: leave out --sweep engine")
     if repeats is not None and repeats < FEWEST_REPEATS:
         raise UsageError(f"--repeats: expected {FEWEST_REPEATS} or more, found {repeats}; {FEW}")
 
@@ -93,10 +97,7 @@ def take_cost(
         errors = errors_of(experiment, runs)
         each = len(experiment.cells())
         clocked = [
-            Clocked(
-                grid.cells()[place * each : (place + 1) * each],
-                [outcome.steps for outcome in one.outcomes],
-            )
+            _clocked(grid.cells()[place * each : (place + 1) * each], one)
             for place, one in enumerate(runs)
             if one.setting.role != "truth"
         ]
@@ -124,6 +125,7 @@ def take_cost(
             targets=(found := answers(rows, targets or spec.targets)),
             refused=refused,
             sentences=across_engines(rows, found),
+            efforts={} if able == (LAVENDER,) else {name: effort_of(name) for name in able},
         )
         tables.append(table)
         data = table.as_data()
@@ -143,6 +145,12 @@ def take_cost(
         prepared=prepared,
     )
     return Costed(finished, tables[0])
+
+
+def _clocked(cells: Sequence[Cell], run: SettingRun) -> Clocked:
+    """Return what is timed of a setting: the start as written, whose cells stand for the others."""
+    taken = [place for place, cell in enumerate(cells) if not start_of(cell.coordinates)]
+    return Clocked([cells[one] for one in taken], [run.outcomes[one].steps for one in taken])
 
 
 def _rows(
@@ -180,6 +188,8 @@ def _rows(
             fragment=fragment_of(experiment, setting),
             engine=setting.engine,
             settings=dict(setting.own),
+            contacts=error.counts.contacts,
+            iterations=error.counts.iterations,
         )
         rows.append(row)
     families = dict.fromkeys(row.family for row in rows)
@@ -214,7 +224,7 @@ COLUMNS: Final = (
     *("role", "preset", "timestep", "solver", "sweeps", "tolerance", "warm_start", "accuracy"),
     *("error", "worst_at", "order", "worst_residual", "not_converged_steps", "failed", "front"),
     *("median", "lower_quartile", "upper_quartile", "low", "high", "compile_s", "law"),
-    *("engine", "settings", "least_error"),
+    *("engine", "settings", "least_error", "contacts", "iterations"),
 )
 
 

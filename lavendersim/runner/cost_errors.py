@@ -31,6 +31,7 @@ from lavendersim.scene.colliders import colliders
 from .cell_outcome import CellOutcome
 from .cost_targets import ROUND_OFF
 from .run_directory import RunCell
+from .step_counts import StepCounts, counts_of
 
 if TYPE_CHECKING:
     from .experiment_run import Finished
@@ -72,6 +73,7 @@ class SettingError(NamedTuple):
     not_converged: int  # steps above the tolerance asked for
     steps: int  # of all cells
     failed: str  # why the setting is no answer; "" where it is one
+    counts: StepCounts = StepCounts()
 
 
 def runs_of(
@@ -109,6 +111,7 @@ def _error_of(experiment: Experiment, run: SettingRun, truth: SettingRun | None)
         not_converged=sum(outcome.accuracy.not_converged for outcome in run.outcomes),
         steps=sum(outcome.steps for outcome in run.outcomes),
         failed=_failure(experiment, run, errors),
+        counts=counts_of(run.cells),
     )
 
 

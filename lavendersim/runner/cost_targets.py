@@ -11,6 +11,8 @@ from lavendersim.measures.cost_table import CostAnswer, CostRow
 from lavendersim.peers.catalogue import LAVENDER
 from lavendersim.quantities.short_times import short_time
 
+from .step_counts import StepCounts, in_words
+
 ROUND_OFF = 1e-13  # [-] some hundred operations of 2^-52 each; of two such errors none is better
 
 
@@ -70,7 +72,8 @@ def _of_engine(rows: Sequence[CostRow], answer: CostAnswer, titles: dict[str, st
     title = titles[answer.engine]
     if answer.row is not None:
         row = rows[answer.row]
-        return f"{title} {short_time(row.cost / 1e9)} ({name_of(row)})"
+        counts = in_words(StepCounts(row.contacts, row.iterations))
+        return f"{title} {short_time(row.cost / 1e9)} ({name_of(row)}; {counts})"
     front = front_of_engine(rows, answer.engine)
     nearest = f"at best {percent(error_of(rows[front[-1]]))}" if front else "every setting failed"
     return f"{title} not reached ({nearest})"

@@ -23,6 +23,8 @@ from lavendersim.measures.always import PREFIX
 from lavendersim.measures.controls import of_completion
 from lavendersim.measures.specs.always import BEYOND_BOUNDS
 
+from .step_counts import StepCounts
+
 if TYPE_CHECKING:
     from .experiment_run import Finished
 
@@ -61,6 +63,8 @@ class Entry(NamedTuple):
     most: float = math.nan
     claim: str = ""  # which, with its bound; "" where no number decided
     cost: float = math.nan  # physics per simulated second, one processor [s/s]
+    contacts: float = math.nan  # a step, on average; NaN: not reported, or a matrix of solvers
+    iterations: float = math.nan  # a step, likewise
     run: Path | None = None  # its directory
     log: Path | None = None  # of the first cell that failed, or of the first
 
@@ -139,6 +143,12 @@ def _of_unjudged(verdicts: Sequence[Verdict]) -> tuple[Word, str]:
     left = [verdict.node for verdict in verdicts if not verdict.judged]
     word: Word = NOT_JUDGED if len(left) == len(verdicts) else PASSES
     return word, f"not judged, the engine does not tell it: {', '.join(left)}"
+
+
+def with_counts(entry: Entry, counts: StepCounts) -> Entry:
+    """Return an entry with what its steps had: contacts, iterations."""
+    contacts, iterations = (math.nan if one is None else one for one in counts)
+    return entry._replace(contacts=contacts, iterations=iterations)
 
 
 def without_run(case: str, solver: str, word: Word, why: str) -> Entry:

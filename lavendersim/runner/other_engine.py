@@ -54,7 +54,7 @@ def simulate_elsewhere(
     unseen = absent | partly_recorded(described(config.record))
     bodies = list(config.scene.bodies)
     bounds = Bounds(job.always, bodies, config, config.clock, unseen)
-    rows = RowsOfStates(config, reported)
+    rows = RowsOfStates(config, reported, peer.counted)
     status = "complete"
     done = [0]  # steps; read by who shows the progress, at any time
     build_ns = physics_ns = logging_ns = 0
@@ -111,10 +111,12 @@ def metadata_of(
         "settings": ", ".join(f"{name}: {value}" for name, value in engine.settings.items()),
         "law": peer.law,
         "precision": "double" if peer.double else "single",
+        "iterations": peer.iterations,
+        "capacity": peer.capacity,
         "repeats": peer.repeats,
         "seed": seeds,
     }
-    has = {name for name, _ in step_columns(reported)}
+    has = {name for name, _ in step_columns(reported, peer.counted)}
     untold = {f"/step.{one.name}" for one in STEP_COLUMNS if one.name not in has}
     if reported:
         has = {name for name, _ in contact_columns(reported)}

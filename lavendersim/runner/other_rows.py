@@ -31,13 +31,19 @@ STEP: Final = (
     *((f"angular_momentum_{axis}", "f8") for axis in "xyz"),
     *(("state_hash", "u8"), ("time_ns", "i8")),
 )
+ITERATIONS: Final = (("sweeps", "i8"),)  # of an engine's own solver, whatever it iterates
 BODIES: Final = (("step", "i8"), ("body_a", "i8"), ("body_b", "i8"))
 
 
-def step_columns(reported: tuple[str, ...]) -> list[tuple[str, str]]:
-    """Return the columns of /step that a log has; reported: of contacts."""
-    of = {"total_normal_force": "impulse_n", "max_penetration": "separation"}
-    return [(name, kind) for name, kind in STEP if name not in of or of[name] in reported]
+def step_columns(reported: tuple[str, ...], counted: bool) -> list[tuple[str, str]]:
+    """Return the columns of /step that a log has; reported: of contacts, counted: iterations."""
+    of = {
+        "contact_count": "separation",
+        "total_normal_force": "impulse_n",
+        "max_penetration": "separation",
+    }
+    found = [(name, kind) for name, kind in STEP if name not in of or of[name] in reported]
+    return [*found, *ITERATIONS] if counted else found
 
 
 def contact_columns(reported: tuple[str, ...]) -> list[tuple[str, str]]:
@@ -57,8 +63,10 @@ def contact_columns(reported: tuple[str, ...]) -> list[tuple[str, str]]:
 class RowsOfStates:
     """Makes the rows of one run."""
 
-    def __init__(self, config: CellConfig, reported: tuple[str, ...]) -> None:
-        self._config, self._reported = config, reported
+    def __init__(
+        self, config: CellConfig, reported: tuple[str, ...], counted: bool = False
+    ) -> None:
+        self._config, self._reported, self._counted = config, reported, counted
         bodies = list(config.scene.bodies.values())
         self._moving = np.flatnonzero([is_movable(body) for body in bodies])
         self._still = np.array(
@@ -74,12 +82,15 @@ class RowsOfStates:
         pose = np.repeat(self._still[None], count, axis=0)
         pose[:, self._moving, :7], pose[:, self._moving, 7:] = states.pose, states.velocity
         contact = self._contacts(states)
-        step = np.zeros(count, step_columns(self._reported))
+        step = np.zeros(count, step_columns(self._reported, self._counted))
         step["step"] = states.first + np.arange(count)
         step["time_ns"] = self._config.clock.nanoseconds(step["step"])
         self._sum_bodies(step, states)
         rows = np.searchsorted(step["step"], contact["step"])
-        step["contact_count"] = np.bincount(rows, minlength=count)
+        if "contact_count" in (step.dtype.names or ()):
+            step["contact_count"] = np.bincount(rows, minlength=count)
+        if self._counted and states.iterations is not None:
+            step["sweeps"] = states.iterations
         if "total_normal_force" in (step.dtype.names or ()):
             np.add.at(step["total_normal_force"], rows, contact["force_n"])
         if "max_penetration" in (step.dtype.names or ()):

@@ -22,9 +22,10 @@ from lavendersim.peers import catalogue
 from lavendersim.quantities.found import nearest, quoted
 
 from .experiment_run import run
-from .matrix_entry import DIED, REFUSED, Entry, entry_of, without_run
+from .matrix_entry import DIED, REFUSED, Entry, entry_of, with_counts, without_run
 from .run_directory import RUNS
 from .solver_cases import about_something_else
+from .step_counts import counts_of
 from .workers import end_with_parent
 
 ALL = "all"
@@ -85,14 +86,18 @@ def make_entry(pair: CaseAndSolver) -> Entry:
 def make_engine_entry(pair: CaseAndSolver, more: Sequence[str] = ()) -> Entry:
     """Run a case by an engine, whose name stands in the place of a solver's; more: overrides."""
     given = [*catalogue.overrides_of([pair.solver]), *more]
-    return _entry(pair, lambda case: load_experiment(case.path, case.reduced, overrides=given))
+    return _entry(
+        pair, lambda case: load_experiment(case.path, case.reduced, overrides=given), counted=True
+    )
 
 
-def _entry(pair: CaseAndSolver, load: Callable[[Case], Experiment]) -> Entry:
+def _entry(pair: CaseAndSolver, load: Callable[[Case], Experiment], counted: bool = False) -> Entry:
     case, solver = pair.case.name, pair.solver
     try:
         experiment = load(pair.case)
-        return entry_of(case, solver, run(experiment, pair.root, overheads=False))
+        finished = run(experiment, pair.root, overheads=False)
+        entry = entry_of(case, solver, finished)
+        return with_counts(entry, counts_of(finished.run.cells)) if counted else entry
     except ConfigError as error:
         return without_run(case, solver, REFUSED, error.defects[0].message)
     except UsageError:

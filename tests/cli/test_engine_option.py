@@ -8,6 +8,9 @@ from pathlib import Path
 import pytest
 from command_line import lavender
 
+from lavender_cli.solver_matrix import print_matrix
+from lavendersim.runner.matrix_entry import Entry
+from lavendersim.runner.solver_matrix import Case
 from tests.engines import BALL, BOX, needs
 
 CLAIM = """
@@ -100,3 +103,25 @@ def test_the_plan_of_another_engine_says_its_law(tmp_path: Path) -> None:
     assert "engine mujoco-stiff, which plans by itself" in found.stdout
     assert "law        soft contacts in a convex problem" in found.stdout
     assert "midpoint" not in found.stdout
+
+
+def test_the_matrix_of_engines_says_of_every_square_its_number_spread_and_steps(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """Also of what passes; what was not reported has no number, and stands in the engine's line."""
+    claim = "drift: 1e-7, expected at most 1e-06"
+    reported = {"claim": claim, "cost": 0.002, "contacts": 24.0, "iterations": 1.5}
+    made = [
+        Entry("tall/tower", "lavender", "passes", least=1e-8, most=1e-7, **reported),
+        Entry("tall/tower", "drake-hydroelastic", "passes", claim=claim, cost=0.5),
+    ]
+    case = Case("tall/tower", Path("tower.yaml"), False, "")
+    engines = ["lavender", "drake-hydroelastic"]
+    print_matrix([case], engines, made, {}, width=300, of_engines=True)
+    shown = capsys.readouterr().out
+    of_steps = "2 ms per simulated s, 24 contacts a step, 1.5 iterations a step"
+    assert f"{claim} (over its starts 1e-08 to 1e-07); {of_steps}" in shown
+    assert "iterations: not reported by its Python; room for contacts: no limit" in shown
+    assert shown.count(claim) == 2
+    print_matrix([case], engines, made, {}, width=300)  # of solvers what passes is not listed
+    assert claim not in capsys.readouterr().out

@@ -139,3 +139,35 @@ def test_moments_of_impulses_are_the_change_of_spin(engine: str) -> None:
         # points and levers of the step's start or end: they part by the millimetre that a soft
         # contact moves in a step at most, of 50 N for 1/240 s
         np.testing.assert_allclose(step.twisted, step.turning, atol=50.0 * DT * 1e-3)
+
+
+COUNTING = [
+    pytest.param(variant, marks=needs(name))
+    for name, peer in PEERS.items()
+    for variant in peer.variants
+    if peer.counted
+]
+
+
+@pytest.mark.parametrize("engine", COUNTING)
+def test_iterations_are_counted_from_the_first_step_on_and_change_nothing(engine: str) -> None:
+    """Of two worlds, one asked for its iterations and one not, states are the same bits. No step of
+    a stack in contact is solved without an iteration, nor by more than its engine may take.
+    """
+    given = {"along": 0.0, "across": 0.0, "friction": 0.5, "speed": 0.0}
+    config = load_experiment_text(STACK.format(engine=engine, **given), "s.yaml").cells()[0].config
+    assert config.engine is not None
+    made: Any = import_module(f"lavendersim.peers.adapters.{peer_of(engine).name}")
+    settings = dict(config.engine.settings)
+    asked, alone = (made.World(Scene(config), settings) for _ in range(2))
+    assert asked.iterations() == 0
+    counts = []
+    for _ in range(STEPS):
+        asked.step()
+        alone.step()
+        counts.append(asked.iterations())
+    most = int(settings.get("iterations", 100))  # Bullet's own is 50, MuJoCo's 100
+    assert max(counts) <= most
+    assert min(counts[5:]) >= (0 if engine == "mujoco-discrete" else 1)  # that one chatters
+    np.testing.assert_array_equal(asked.poses(), alone.poses())
+    np.testing.assert_array_equal(asked.velocities(), alone.velocities())

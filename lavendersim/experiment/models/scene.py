@@ -95,7 +95,8 @@ class Perturbation(ConfigModel):
     distance: Annotated[float, Quantity("m", above=0)] = Field(
         default=1e-5,
         description="[m] every movable body is moved by up to so much along each axis, evenly "
-        "drawn, but not along gravity nor the normals of planes that bodies stand on",
+        "drawn, but not along gravity nor the normals of planes and of fixed boxes that bodies "
+        "touch",
     )
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
 from lavendersim.errors import UsageError
@@ -10,6 +10,12 @@ from lavendersim.errors import UsageError
 AXIS: Final = "start_seed"
 PATH: Final = "scene.perturbation.seed"
 MOST: Final = 1000
+COMPARED: Final = 3  # starts where engines are compared and nobody says how many
+
+
+def starts_of(asked: int | None, engines: Sequence[str]) -> int | None:
+    """Return how often a case starts: as asked, else several times where engines are compared."""
+    return COMPARED if asked is None and len(engines) > 1 else asked
 
 
 def overrides_of(starts: int | None) -> list[str]:

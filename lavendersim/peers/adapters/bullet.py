@@ -8,9 +8,12 @@ from typing import Any
 import numpy as np
 import pybullet
 
+from lavendersim.peers.bullet import PEER
 from lavendersim.peers.declaration import Value
 from lavendersim.peers.description import PeerBody, Scene
 from lavendersim.peers.world import CannotRun, Floats
+
+FASTEST = 1e30  # [m/s], [rad/s] of a multibody; its own 100 would be cut off without a word
 
 
 class World:
@@ -20,6 +23,7 @@ class World:
         client = pybullet.connect(pybullet.DIRECT)
         self._here: dict[str, Any] = {"physicsClientId": client}
         self._rigid = bool(settings.get("rigid", False))
+        self._reported: Any = None
         pybullet.setGravity(*scene.gravity, **self._here)
         own: dict[str, Any] = {"fixedTimeStep": scene.timestep}
         for name, of_bullet in (
@@ -30,8 +34,8 @@ class World:
                 own[of_bullet] = settings[name]
         pybullet.setPhysicsEngineParameter(**own, **self._here)
         # Bullet multiplies the coefficients of two bodies.
-        self._friction = scene.by_product("friction")
-        self._restitution = scene.by_product("restitution")
+        self._friction = scene.values("friction", PEER)
+        self._restitution = scene.values("restitution", PEER)
         numbers = [self._add(body) for body in scene.bodies]
         self._numbers = [numbers[body.row] for body in scene.movable]
         self._rows, self._dt = {number: row for row, number in enumerate(numbers)}, scene.timestep
@@ -69,6 +73,7 @@ class World:
             "restitution": self._restitution[body.row],
             "linearDamping": 0.0,
             "angularDamping": 0.0,
+            "maxJointVelocity": FASTEST,
         }
         if body.moves:  # inertia alone would take the mass of a plain rigid body away
             changes |= {"mass": body.mass, "localInertiaDiagonal": body.inertia}
@@ -108,7 +113,13 @@ class World:
 
     def step(self) -> None:
         """Advance by one timestep."""
-        pybullet.stepSimulation(**self._here)
+        self._reported = pybullet.stepSimulation(**self._here)
+
+    def iterations(self) -> int:
+        """Return those of the last step; reported from the first call on."""
+        if not self._reported:
+            pybullet.setPhysicsEngineParameter(reportSolverAnalytics=1, **self._here)
+        return max((one["numIterationsUsed"] for one in self._reported or ()), default=0)
 
     def contacts(self) -> list[tuple[float, ...]]:
         """Return the contacts of the last step, at points of their collision detection.

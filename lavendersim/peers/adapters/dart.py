@@ -9,6 +9,7 @@ import dartpy
 import numpy as np
 from dartpy import dynamics
 
+from lavendersim.peers.dart import PEER
 from lavendersim.peers.declaration import Value
 from lavendersim.peers.description import PeerBody, Scene
 from lavendersim.peers.world import Floats
@@ -44,8 +45,8 @@ class World:
             solver.setMatrixFreeContactSolverOptions(options)
         solver.getCollisionOption().maxNumContacts = MOST_CONTACTS
         # Both of its rules are given: the lesser friction, the product of restitutions.
-        self._friction = scene.by_least("friction")
-        self._restitution = scene.by_product("restitution")
+        self._friction = scene.values("friction", PEER)
+        self._restitution = scene.values("restitution", PEER)
         self._all = [self._add(body) for body in scene.bodies]
         self._nodes = [self._all[body.row] for body in scene.movable]
 

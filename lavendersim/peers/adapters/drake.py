@@ -16,7 +16,9 @@ from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import DiagramBuilder
 
 from lavendersim.peers.declaration import Value
-from lavendersim.peers.description import PeerBody, Scene, harmonic_mean
+from lavendersim.peers.description import PeerBody, Scene
+from lavendersim.peers.drake import PEER
+from lavendersim.peers.mixing import harmonic_mean
 from lavendersim.peers.world import Floats
 
 MODULUS, RESOLUTION = 1e7, 0.02  # [Pa], [m] of patches: Drake's defaults
@@ -35,7 +37,7 @@ class World:
         self._plant, graph = AddMultibodyPlant(config, builder)
         self._plant.mutable_gravity_field().set_gravity_vector(np.array(scene.gravity))
         self._of, self._dt, self._steps = settings, scene.timestep, 0
-        self._friction = scene.by_harmonic_mean("friction")  # its rule
+        self._friction = scene.values("friction", PEER)  # its rule
         self._rows: dict[Any, int] = {}  # by geometry
         nodes = [self._add(body) for body in scene.bodies]
         self._bodies = [nodes[body.row] for body in scene.movable]
@@ -45,9 +47,8 @@ class World:
         self._context = self._plant.GetMyMutableContextFromRoot(context)
         self._inspector = graph.model_inspector()
         for body, node in zip(scene.movable, self._bodies, strict=True):
-            self._plant.SetFreeBodyPose(
-                self._context, node, _place(body.position, body.orientation)
-            )
+            place = _place(body.position, body.orientation)
+            self._plant.SetFreeBodyPose(self._context, node, place)
             motion = SpatialVelocity(np.array(body.spin), np.array(body.velocity))
             self._plant.SetFreeBodySpatialVelocity(self._context, node, motion)
         self.push(np.zeros((len(self._bodies), 6)))
@@ -127,9 +128,8 @@ class World:
             pair, impulse = one.point_pair(), one.contact_force() * self._dt
             normal = -pair.nhat_BA_W
             push = float(impulse @ normal)
-            rows = self._rows[pair.id_A], self._rows[pair.id_B]
-            place = (*one.contact_point(), *normal, -pair.depth)
-            found.append((*rows, *place, push, *(impulse - push * normal)))
+            rows = self._rows[pair.id_A], self._rows[pair.id_B], *one.contact_point()
+            found.append((*rows, *normal, -pair.depth, push, *(impulse - push * normal)))
         return found
 
 

@@ -62,9 +62,8 @@ class World:
         return f'<geom name="{name}" {form} {place} {rest}/>'
 
     def _xml(self, scene: Scene) -> str:
-        shared = scene.by_first(KEYS)
+        shared, bodies, pairs = scene.by_first(KEYS), [], []
         meshes: list[str] = []
-        bodies, pairs = [], []
         for body in scene.bodies:
             rest = 'contype="0" conaffinity="0"'
             if shared is not None:
@@ -86,8 +85,7 @@ class World:
         ahead = 'speculative="enable"' if self._of.get("speculative") else ""
         return f"""<mujoco><compiler autolimits="false" boundmass="0" boundinertia="0"/>
   <option timestep="{self._dt:.17g}" gravity="{_text(scene.gravity)}" {options}>
-    <flag autoreset="disable" {ahead}/></option>
-  <size memory="512M"/><asset>{"".join(meshes)}</asset>
+  <flag autoreset="disable" {ahead}/></option><size memory="512M"/><asset>{"".join(meshes)}</asset>
   <worldbody>{"".join(bodies)}</worldbody><contact>{"".join(pairs)}</contact></mujoco>"""
 
     def inertias(self) -> Floats:
@@ -127,17 +125,19 @@ class World:
         """Advance by one timestep."""
         mujoco.mj_step(self.model, self.data)
 
+    def iterations(self) -> int:
+        """Return those of the last step."""
+        return int(np.max(self.data.solver_niter))
+
     def contacts(self) -> list[tuple[float, ...]]:
         """Return the contacts of the last step; RK4 leaves those of its last stage."""
         found, force, rows = [], np.zeros(6), self._rows
-        for k in range(self.data.ncon):
-            one = self.data.contact[k]
+        for k, one in enumerate(self.data.contact):
             mujoco.mj_contactForce(self.model, self.data, k, force)
-            n, t1, t2 = one.frame.reshape(3, 3)
-            pushed = force[:3] * self._dt
-            point = (*one.pos, *n, one.dist)
-            slide = (*(pushed[1] * t1 + pushed[2] * t2), one.friction[0] if one.dim > 1 else 0.0)
-            found.append((rows[one.geom1], rows[one.geom2], *point, pushed[0], *slide))
+            (n, t1, t2), push = one.frame.reshape(3, 3), force[:3] * self._dt
+            slide = (*(push[1] * t1 + push[2] * t2), one.friction[0] if one.dim > 1 else 0.0)
+            place = rows[one.geom1], rows[one.geom2], *one.pos, *n, one.dist
+            found.append((*place, push[0], *slide))
         return found
 
 

@@ -16,10 +16,12 @@ from sapien import physx
 
 from lavendersim.peers.declaration import Value
 from lavendersim.peers.description import PeerBody, Scene
+from lavendersim.peers.physx import PEER
 from lavendersim.peers.world import Floats
 
 OWN = (10, 1)  # sapien's iterations of positions and of velocities
 SINGLE = np.float32
+FASTEST = 1e10  # [rad/s]; its own 100 would be cut off without a word
 
 
 class World:
@@ -38,8 +40,8 @@ class World:
         self._system.timestep = scene.timestep
         self._scene = sapien.Scene([self._system])
         # The rule that sapien leaves as it is: means.
-        self._friction = scene.by_mean("friction")
-        self._restitution = scene.by_mean("restitution")
+        self._friction = scene.values("friction", PEER)
+        self._restitution = scene.values("restitution", PEER)
         self._all = [self._add(body) for body in scene.bodies]
         self._bodies = [self._all[body.row] for body in scene.movable]
         self._rows = {one.entity.name: row for row, one in enumerate(self._all)}
@@ -58,6 +60,7 @@ class World:
             component.inertia = np.array(body.inertia, SINGLE)
             component.cmass_local_pose = sapien.Pose()
             component.linear_damping = component.angular_damping = 0.0
+            component.max_angular_velocity = FASTEST
         entity = sapien.Entity()
         entity.name = f"{body.row}"
         entity.add_component(component)

@@ -15,7 +15,10 @@ from rapier3d import Collider, MassProperties, PhysicsWorld, RigidBody
 
 from lavendersim.peers.declaration import Value
 from lavendersim.peers.description import PeerBody, Scene
+from lavendersim.peers.rapier import PEER
 from lavendersim.peers.world import Floats
+
+FASTEST = 1e30  # [m/s]; its own 400 would be cut off without a word
 
 
 class World:
@@ -27,6 +30,7 @@ class World:
         self._swept = bool(settings.get("swept", False))
         own = self._world.integration_parameters
         own.dt = scene.timestep
+        own.normalized_max_linear_velocity = FASTEST
         for name, of_rapier in (
             ("iterations", "num_solver_iterations"),
             ("internal_iterations", "num_internal_pgs_iterations"),
@@ -39,8 +43,8 @@ class World:
             softness = rapier3d.SpringCoefficients(frequency, 5.0)
             own.contact_softness = own.static_contact_softness = softness
         # Both of its rules are given: roots are multiplied, the larger restitution is taken.
-        self._friction = scene.by_product("friction")
-        self._restitution = scene.by_larger("restitution")
+        self._friction = scene.values("friction", PEER)
+        self._restitution = scene.values("restitution", PEER)
         self._all = handles = [self._add(body) for body in scene.bodies]
         self._rows = {handle.index: row for row, handle in enumerate(handles)}
         self._handles = [handles[body.row] for body in scene.movable]
@@ -73,6 +77,7 @@ class World:
                 .can_sleep(False)
                 .ccd_enabled(self._swept)
                 .gyroscopic_forces(True)
+                .allow_fast_rotation(True)  # else pi/4 a step is the most
             )
         return self._world.add_body(builder, [collider])
 

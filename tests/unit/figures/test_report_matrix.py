@@ -20,7 +20,7 @@ def case(name: str, reduced: bool = False) -> Any:
 
 
 def entry(name: str, solver: str, verdict: str = "passes", margin: float = float("nan")) -> Any:
-    return SimpleNamespace(case=name, solver=solver, verdict=verdict, why="sank", detail=f"{name} sank deep", margin=margin, number=0.25, least=0.2, most=0.3, claim="drift: 0.25, expected at most 0.1", cost=2e-6, log=Path(f"runs/{name}.mcap"))  # noqa: E501  # fmt: skip
+    return SimpleNamespace(case=name, solver=solver, verdict=verdict, why="sank", detail=f"{name} sank deep", margin=margin, number=0.25, least=0.2, most=0.3, claim="drift: 0.25, expected at most 0.1", cost=2e-6, contacts=12.0, iterations=2.5, log=Path(f"runs/{name}.mcap"))  # noqa: E501  # fmt: skip
 
 
 def matrix(*entries: Any, left_out: dict[str, str] | None = None) -> Matrix:
@@ -99,11 +99,14 @@ def test_what_is_no_case_is_named_once_for_each_reason(names: tuple[str, str]) -
 def test_a_square_has_the_number_behind_its_verdict_or_says_that_the_case_was_refused() -> None:
     refused = entry("drop", "jacobi", "refused")
     refused.number, refused.claim, refused.cost = float("nan"), "", float("nan")
-    refused.least = refused.most = float("nan")
+    refused.least = refused.most = refused.contacts = refused.iterations = float("nan")
     text = page(matrix(entry("drop", "adaptive"), refused), Path())
     squares = re.findall(r'<td class="entry.*?</td>', text, re.DOTALL)
     assert ">0.25<" in squares[-2]
     assert ">0.2 to 0.3<" in squares[-2]  # over its starts
     assert "drift: 0.25, expected at most 0.1" in squares[-2]
+    assert ">12 contacts a step<" in squares[-2]
+    assert ">2.5 iterations a step<" in squares[-2]
     assert ">refused<" in squares[-1]
+    assert "a step" not in squares[-1]
     assert "nan" not in text

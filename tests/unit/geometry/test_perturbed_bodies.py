@@ -83,3 +83,21 @@ def test_a_perturbation_without_a_distance_is_refused_at_its_place() -> None:
     text = TOWER.replace("SEED", "1").replace("GRAVITY", "9.81").replace("1e-4}", "0}")
     with pytest.raises(ConfigError, match=r"t\.yaml:9:37: distance: expected"):
         load_experiment_text(text, "t.yaml")
+
+
+def test_a_body_stays_at_a_wall_that_is_a_fixed_box() -> None:
+    """A wall turned by 30 degrees about the vertical, its face 0.1 m from the lower box's centre
+    along (cos 30, sin 30): nothing moves along that, nor up; a wall 1 mm off holds nothing.
+    """
+    normal = np.array([0.75**0.5, 0.5, 0.0])
+    box = "{kind: box, size: [0.2, 2, 0.2]}"
+    turn = "orientation: {axis: [0, 0, 1], degrees: 30}"
+    moved = {}
+    for gap in (0.0, 1e-3):
+        # of a cube of 0.2 m the extent along the normal is 0.1 (cos 30 + sin 30)
+        x, y, _ = normal * (0.1 + gap + 0.1 * (0.75**0.5 + 0.5))
+        wall = f"    wall: {{shape: {box}, fixed: true, position: [{x}, {y}, 0.1], {turn}}}\n"
+        moved[gap] = shifts(1, more=wall)[1:3]
+    assert np.abs(moved[0.0] @ normal).max() < 1e-16
+    assert np.abs(moved[0.0] @ [-0.5, 0.75**0.5, 0.0]).min() > 0.0
+    assert np.abs(moved[1e-3] @ normal).min() > 1e-9

@@ -13,6 +13,7 @@ def test_a_variant_tells_what_its_engine_does_unless_it_says_so() -> None:
 
 def test_every_engine_states_its_law_and_whether_it_repeats() -> None:
     assert all(peer.law and peer.repeats and peer.tried for peer in PEERS.values())
+    assert all(peer.iterations and peer.capacity for peer in PEERS.values())
 
 
 def test_what_is_swept_are_variants_and_settings_that_there_are_defaults_among_them() -> None:

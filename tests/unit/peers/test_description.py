@@ -1,4 +1,4 @@
-"""Values of bodies from which an engine's rule of mixing makes lavender's."""
+"""A cell as adapters read it: surfaces, forces, values of bodies by an engine's rule."""
 
 from __future__ import annotations
 
@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from lavendersim.experiment import load_experiment_text
-from lavendersim.peers.description import Scene, harmonic_mean
+from lavendersim.peers.catalogue import PEERS
+from lavendersim.peers.description import Scene
 from lavendersim.peers.world import CannotRun
 
 TWO = """
@@ -30,25 +31,18 @@ def scene(*values: float) -> Scene:
     return Scene(load_experiment_text(text, "two.yaml").cells()[0].config)
 
 
-def test_a_product_of_roots_is_the_geometric_mean() -> None:
+def test_values_are_by_the_rule_that_an_engine_declares() -> None:
+    """Bullet multiplies: 0.4 of 0.2 and 0.8."""
     found = scene(0.2, 0.0, 0.8, 0.0)
-    mu = found.by_product("friction")
+    mu = found.values("friction", PEERS["bullet"])
     for a, b in found.pairs():
         assert mu[a.row] * mu[b.row] == pytest.approx(found.of_pair("friction", a, b), rel=1e-15)
 
 
-def test_a_product_of_equal_restitutions_is_their_larger() -> None:
-    found = scene(0.0, 0.5, 0.0, 0.5)
-    e = found.by_product("restitution")
-    assert [e[a.row] * e[b.row] for a, b in found.pairs()] == pytest.approx([0.5] * 5, rel=1e-15)
-
-
 def test_what_a_rule_cannot_make_is_refused_and_not_replaced() -> None:
-    """Larger of 0.25 and 0.5 by products: a a = 0.5, a f = 0.5, so f = a: no other f mixes so, and
-    a floor of lower friction than that of two balls is none by the lesser of 0.4 and 0.8.
-    """
+    """A mean of 0.9, that balls have, and a friction above 0 is not their 0.3 on the floor."""
     with pytest.raises(CannotRun, match="no such friction"):
-        scene(0.9, 0.0, 0.4, 0.0).by_least("friction")
+        scene(0.1, 0.0, 0.9, 0.0).values("friction", PEERS["physx"])
 
 
 def test_who_stays_says_what_holds_in_its_contacts() -> None:
@@ -70,26 +64,7 @@ def test_a_force_acts_in_steps_that_start_within_its_time() -> None:
     np.testing.assert_array_equal(found.loads(2), [[0.0] * 6, [1.0, 2.0, 3.0, 0.0, 0.0, 0.0]])
 
 
-def test_means_are_those_that_a_resting_body_completes() -> None:
-    """Two floors that differ: the ball has nothing to say, each floor twice its mixture, or
-    v / (2 - v) beside 1.
-    """
-    text = TWO.format(0.2, 0.0, 0.8, 0.0).replace("surface: ball}}", "surface: ball}")
-    text = "\n".join(line for line in text.splitlines() if "    b:" not in line)
-    text = text.replace("forces: [{body: b", "forces: [{body: a")
-    found = Scene(load_experiment_text(text, "one.yaml").cells()[0].config)
-    floor, wall, ball = (mu for mu in found.by_mean("friction"))
-    assert [0.5 * (one + ball) for one in (floor, wall)] == pytest.approx([0.4, 0.8], rel=1e-15)
-    floor, wall, ball = (mu for mu in found.by_harmonic_mean("friction"))
-    mixed = [harmonic_mean(one, ball) for one in (floor, wall)]
-    assert mixed == pytest.approx([0.4, 0.8], rel=2e-15)
-    assert harmonic_mean(0.0, 0.0) == 0.0
-    asked = found.mixed("friction")
+def test_coefficients_of_every_two_bodies_are_those_of_their_surfaces() -> None:
+    asked = scene(0.2, 0.0, 0.8, 0.0).mixed("friction")
     assert asked[0, 2] == asked[2, 0] == pytest.approx(0.4)
     assert asked[1, 2] == pytest.approx(0.8)
-
-
-def test_a_rule_that_three_surfaces_cannot_follow_is_refused() -> None:
-    """Balls that meet each other leave nothing to the floors."""
-    with pytest.raises(CannotRun, match="no such friction"):
-        scene(0.2, 0.0, 0.8, 0.0).by_mean("friction")

@@ -97,3 +97,50 @@ def test_a_cell_without_another_engine_has_the_data_that_it_had() -> None:
     other = load_experiment_text(CONFIG, "c").cells()[0].config
     assert type(other).from_dict(other.as_dict()) == other
     assert other.record.velocities
+
+
+MIXED = """\
+engine: {engine}
+scene:
+  surfaces: {{ice: {{friction: 0.1, restitution: 0.5}}, rubber: {{friction: 0.9}}}}
+  bodies:
+    floor: {{shape: {{kind: plane}}, surface: ice}}
+    a: {{shape: {{kind: sphere, radius: 1}}, mass: 1, position: [0, 0, 1], surface: rubber}}
+    b: {{shape: {{kind: sphere, radius: 1}}, mass: 1, position: [4, 0, 1], surface: rubber}}
+duration: 1
+"""
+NO_PRODUCT = (
+    "takes the product of two bodies, and no values of bodies were found that give 0.5 between "
+    "floor and a"
+)
+
+
+@pytest.mark.parametrize(
+    ("engine", "said"),
+    [
+        # Balls meet each other at 0.9 and the floor at sqrt(0.1 0.9): a mean asks -0.3 of it.
+        # They give each other nothing back and half on the floor, which no product of a 0 is: that
+        # of the floor's surface is named, as theirs has none.
+        (
+            "physx-pgs",
+            "3:63: friction: PhysX takes the mean of two bodies, and no values of bodies "
+            "were found that give 0.3 between floor and a",
+        ),
+        ("bullet", f"3:35: restitution: Bullet {NO_PRODUCT}"),
+        ("dart", f"3:35: restitution: DART {NO_PRODUCT}"),
+    ],
+)
+def test_surfaces_that_its_rule_cannot_mix_are_refused_where_they_stand(
+    engine: str, said: str
+) -> None:
+    with pytest.raises(ConfigError) as refused:
+        load_experiment_text(MIXED.format(engine=engine), "c.yaml")
+    assert any(str(one).startswith(f"c.yaml:{said}") for one in refused.value.defects), (
+        refused.value
+    )
+
+
+@pytest.mark.parametrize("engine", ["lavender", "mujoco", "rapier-stiff"])
+def test_an_engine_that_mixes_them_has_them(engine: str) -> None:
+    """Rapier multiplies roots of friction and takes the larger restitution; MuJoCo has pairs."""
+    assert load_experiment_text(MIXED.format(engine=engine), "c.yaml").cells()

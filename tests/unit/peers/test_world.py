@@ -9,7 +9,7 @@ import pytest
 
 from lavendersim.peers import adapters
 from lavendersim.peers.catalogue import PEERS
-from lavendersim.peers.world import World
+from lavendersim.peers.world import CountingWorld, World
 
 MOST_LINES = 150
 FOLDER = Path(adapters.__file__).parent
@@ -26,6 +26,8 @@ def test_an_adapter_is_short_and_has_every_method(name: str) -> None:
     )
     has = {node.name for node in world.body if isinstance(node, ast.FunctionDef)}
     assert {name for name in vars(World) if not name.startswith("_")} <= has
+    counts = {name for name in vars(CountingWorld) if not name.startswith("_")}
+    assert (counts <= has) == PEERS[name].counted
 
 
 def test_every_adapter_is_of_an_engine() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from lavender_cli.cost import lines_of
 from lavendersim.errors import ConfigError
 from lavendersim.experiment import load_experiment_text
 from lavendersim.figures.work_precision import compose
@@ -103,3 +104,19 @@ def test_without_a_choice_the_engine_is_the_configs() -> None:
     assert able_engines(load_experiment_text(FLIGHT, "f.yaml"), ()) == (("lavender",), {})
     own = load_experiment_text(f"{FLIGHT}engine: bullet\n", "f.yaml")
     assert able_engines(own, ()) == (("bullet",), {})
+
+
+@needs("mujoco")
+def test_contacts_and_iterations_stand_beside_time_where_an_engine_tells_them(
+    costed: Costed,
+) -> None:
+    """A ball in flight has none; RK4 tells of no contacts; efforts say what these are."""
+    table = costed.table
+    reported = {row.engine: (row.contacts, row.iterations) for row in table.rows}
+    assert reported["mujoco-rk4"] == (None, 0.0)
+    assert reported["mujoco-cg"] == (0.0, 0.0)
+    assert table.efforts.keys() == {row.engine for row in table.rows}
+    assert "512 MB" in table.efforts["mujoco-cg"]
+    (line,) = {one for one in lines_of(table) if one.strip().startswith("mujoco-rk4: iterations")}
+    assert "of its last stage" in line
+    assert "not reported" in next(one for one in lines_of(table) if "mujoco-rk4  " in one)

@@ -8,6 +8,7 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 
 from lavendersim.experiment import load_experiment_text
@@ -43,7 +44,7 @@ def outcome(steps: int, not_converged: int) -> CellOutcome:
 
 class FakeCell(RunCell):
     def trace(self) -> Any:
-        return SimpleNamespace(status="complete")
+        return SimpleNamespace(status="complete", step=np.zeros(2, [("contact_count", "i8")]))
 
 
 CELL = FakeCell(0, "", {}, Path("cell.mcap"), "complete")

@@ -66,9 +66,10 @@ def test_an_accuracy_answers_a_target() -> None:
 
 
 def test_several_engines_answer_a_target_in_one_sentence_each_by_its_own_front() -> None:
+    counts = {"contacts": 12.0, "iterations": 2.25}
     rows = [
-        row(2e5, 1e-4),
-        row(1e7, 2e-3, engine="mujoco-stiff", solver="", settings={"iterations": 3}),
+        row(2e5, 1e-4, contacts=12.0),
+        row(1e7, 2e-3, engine="mujoco-stiff", solver="", settings={"iterations": 3}, **counts),
         row(5e5, 0.02, engine="mujoco", solver=""),
         row(1e5, 1e-9, failed="not met: it stands", engine="bullet", solver=""),
     ]
@@ -79,8 +80,9 @@ def test_several_engines_answer_a_target_in_one_sentence_each_by_its_own_front()
         ("bullet", False),
     ]
     assert across_engines(rows, found) == [
-        "1 % costs per simulated second: lavender 200 us (adaptive, 240 Hz, 8 sweeps, warm), "
-        "MuJoCo 10 ms (mujoco-stiff, 240 Hz, iterations 3), "
+        "1 % costs per simulated second: lavender 200 us (adaptive, 240 Hz, 8 sweeps, warm; "
+        "12 contacts a step), MuJoCo 10 ms (mujoco-stiff, 240 Hz, iterations 3; 12 contacts, "
+        "2.25 iterations a step), "
         "Bullet not reached (every setting failed)"
     ]
     assert front_of_engine(rows, "mujoco") == [2, 1]

@@ -13,7 +13,8 @@ import pytest
 
 from lavendersim.clock import Clock
 from lavendersim.measures import Verdict
-from lavendersim.runner.matrix_entry import Entry, entry_of, passed
+from lavendersim.runner.matrix_entry import Entry, entry_of, passed, with_counts
+from lavendersim.runner.step_counts import StepCounts
 
 BEYOND = "beyond bounds: residual 0.1 m/s, at most 1e-06, ball, in step 3 (t = 0.0125 s)"
 
@@ -157,3 +158,9 @@ def test_over_perturbed_starts_the_number_has_its_spread() -> None:
     found = entry_of("case", "engine", Ran(raw, starts=seeds))
     assert (found.number, found.least, found.most) == (4.0, 0.5, 4.0)
     assert math.isnan(entry_of("case", "engine", Ran(raw)).least)
+
+
+def test_what_an_engine_does_not_tell_of_its_steps_is_no_number() -> None:
+    one = with_counts(entry(verdict("stands a", True)), StepCounts(12.0, None))
+    assert one.contacts == 12.0
+    assert math.isnan(one.iterations)

@@ -66,3 +66,17 @@ def test_an_impulse_along_tangents_is_the_vector_that_was_reported() -> None:
     np.testing.assert_allclose(made, reported, atol=1e-15)
     assert found["penetration"].tolist() == [0.5] * 4
     assert found["force_n"].tolist() == [200.0] * 4  # 2 N s in 1/100 s
+
+
+def test_a_count_that_is_not_reported_has_no_column() -> None:
+    """An engine may tell its iterations and no contacts, or contacts and no iterations."""
+    config = load_experiment_text(BALL, "ball.yaml").cells()[0].config
+    pose, velocity = np.tile([0.0, 0, 0, 1, 0, 0, 0], (2, 1, 1)), np.zeros((2, 1, 6))
+    states = States(0, pose, velocity, np.zeros((0, 3)), 0, np.array([0, 7]))
+    step = RowsOfStates(config, (), counted=True).block(states).step
+    assert step["sweeps"].tolist() == [0, 7]
+    assert "contact_count" not in step.dtype.names
+    rows = np.array([(1, 0, 0, 0, 0, 0, 0, 0, 1, 0.5)] * 3)
+    step = RowsOfStates(config, POINT).block(States(0, pose, velocity, rows, 0)).step
+    assert step["contact_count"].tolist() == [0, 3]
+    assert "sweeps" not in step.dtype.names

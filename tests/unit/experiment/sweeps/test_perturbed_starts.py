@@ -6,7 +6,12 @@ import pytest
 
 from lavendersim.errors import UsageError
 from lavendersim.experiment import load_experiment_text
-from lavendersim.experiment.sweeps.perturbed_starts import overrides_of, spread_of, start_of
+from lavendersim.experiment.sweeps.perturbed_starts import (
+    overrides_of,
+    spread_of,
+    start_of,
+    starts_of,
+)
 from tests.engines import BALL
 
 
@@ -28,6 +33,13 @@ def test_one_start_is_no_axis_and_none_is_refused() -> None:
     for wrong in (0, 1001):
         with pytest.raises(UsageError, match=f"--starts: expected 1 to 1000, found {wrong}"):
             overrides_of(wrong)
+
+
+def test_engines_that_are_compared_start_several_times_unless_somebody_says_otherwise() -> None:
+    two = ("lavender", "mujoco")
+    assert starts_of(None, two) == 3
+    assert [starts_of(asked, two) for asked in (1, 5)] == [1, 5]
+    assert starts_of(None, ("mujoco",)) is starts_of(None, ()) is None
 
 
 def test_a_spread_is_of_several_starts() -> None:

@@ -1,0 +1,247 @@
+"""The tables of other engines in README.md and docs/results.md, with the raw samples behind them.
+
+    python -m tests.benchmarks.engines [--runs DIR]   runs COMMANDS, keeps samples, writes tables
+    python -m tests.benchmarks.engines --tables       writes the tables from what is kept
+
+Every number is of `lavender check` or `lavender cost` with `--engine all`, of one commit on one
+machine. Kept in docs/engines are every entry of the matrix (check.json), every setting with every
+sample of its time (cost.json), and commands, commit, versions and the SHA-256 of every log
+(logs.json). Logs themselves are not kept. The same versions make the same bytes on a machine like
+it, so that the commands make them again, and logs.json says whether they are the same.
+"""
+
+from __future__ import annotations
+
+import argparse
+import hashlib
+import json
+import subprocess
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from lavendersim.measures.cost_table import CostRow, CostTable
+from lavendersim.peers.catalogue import PEERS, installed_version
+from lavendersim.quantities.short_times import short_time
+from lavendersim.runner.cost_targets import error_of, name_of, percent
+from lavendersim.runner.environment import processor, versions
+
+ROOT = Path(__file__).resolve().parents[2]
+KEPT = ROOT / "docs" / "engines"
+PAGES = (ROOT / "README.md", ROOT / "docs" / "results.md")
+SCENES = ("rest", "stack_of_six", "heavy_on_light")
+TRACKERS = ("launched_box", "pressed_against_a_wall")
+COMMANDS = {
+    "check": [
+        *("lavender", "check"),
+        *(f"configs/scenes/{name}.yaml" for name in SCENES),
+        *(f"configs/trackers/{name}.yaml" for name in TRACKERS),
+        *("--engine", "all", "--yes", "--json"),
+    ],
+    "cost": [
+        *("lavender", "cost", "configs/cost/stack_by_engines.yaml"),
+        *("--engine", "all", "--target", "0.1%", "--no-plot", "--yes", "--json"),
+    ],
+}
+# Where somebody's run and kernels lay.
+PLACES = ("run", "log", "figures", "detail", "kernel cache")
+# What an engine has by itself, where its knob is swept.
+OWN = {"rapier": {"iterations": 4}, "bullet": {"iterations": 50}, "physx": {"iterations": 10}}
+
+
+def take(runs: Path) -> None:
+    """Run every command and keep what it says."""
+    KEPT.mkdir(exist_ok=True)
+    for name, words in COMMANDS.items():
+        done = subprocess.run(
+            [*words, "--runs", str(runs)], cwd=ROOT, stdout=subprocess.PIPE, text=True
+        )
+        if done.returncode > 1:  # 1: an engine fails a case, or no engine reaches the target
+            sys.exit(f"{' '.join(words)}: exit code {done.returncode}")
+        _write(f"{name}.json", without_places(json.loads(done.stdout)))
+    engines = {
+        peer.package: installed_version(name)
+        for name, peer in PEERS.items()
+        if installed_version(name)
+    }
+    made = {
+        "commands": {name: " ".join(words) for name, words in COMMANDS.items()},
+        "commit": _git("rev-parse", "HEAD"),
+        "changed": bool(_git("status", "--porcelain", "--untracked-files=no")),
+        "processor": processor(),
+        "versions": versions() | engines,
+        "sha256": digests(runs),
+    }
+    _write("logs.json", made)
+
+
+def _git(*words: str) -> str:
+    return subprocess.run(["git", *words], cwd=ROOT, capture_output=True, text=True).stdout.strip()
+
+
+def _write(name: str, data: Any) -> None:
+    (KEPT / name).write_text(json.dumps(data, indent=1) + "\n")
+
+
+def without_places(data: Any) -> Any:
+    """Return what a command said without the paths of its run."""
+    if isinstance(data, dict):
+        return {key: without_places(one) for key, one in data.items() if key not in PLACES}
+    return [without_places(one) for one in data] if isinstance(data, list) else data
+
+
+def digests(runs: Path) -> dict[str, dict[str, str]]:
+    """Return by experiment the SHA-256 of each log, by the cell that it is of."""
+    found: dict[str, dict[str, str]] = {}
+    for log in sorted(runs.glob("*-*/cells/*.mcap")):  # not those of `latest`, which is one of them
+        # 20261126T055000Z-rest-...: the name begins with its time
+        own = found.setdefault(log.parent.parent.name.partition("-")[2], {})
+        own[log.stem] = hashlib.sha256(log.read_bytes()).hexdigest()
+    return found
+
+
+def tables() -> str:
+    """Return the tables, and what they are of."""
+    check, (cost,), made = (
+        json.loads((KEPT / f"{name}.json").read_text()) for name in ("check", "cost", "logs")
+    )
+    table = CostTable.of({key: one for key, one in cost.items() if key not in PLACES})
+    versions_ = made["versions"]
+    engines = ", ".join(
+        f"{peer.title} ({peer.package} {versions_[peer.package]})"
+        for peer in PEERS.values()
+        if peer.package in versions_
+    )
+    commit = made["commit"][:8] + (" and changes" if made["changed"] else "")
+    return "\n".join(
+        [
+            "```sh",
+            *made["commands"].values(),
+            "```",
+            "",
+            *cost_lines(table),
+            "",
+            *check_lines(check),
+            "",
+            f"Commit {commit}, {made['processor']}; {engines}. Times are medians of "
+            f"{table.repeats} interleaved rounds, other work was on the machine. Errors are ranges "
+            "over three starts, the worst counts. A square has the number of the first claim that "
+            "failed, or of the one nearest its bound, and the range of the worst cell of each "
+            "start; check.json names the claims. Every sample, and the SHA-256 of every log, is "
+            "kept in `docs/engines`; `python -m tests.benchmarks.engines` makes all of it anew.",
+        ]
+    )
+
+
+def cost_lines(table: CostTable) -> list[str]:
+    """Return an engine a row: at its own defaults, and the cheapest setting at the first target."""
+    answers = {one.engine: one for one in table.targets}
+    lines = [
+        "| stack of six, 2 s | own defaults: error | a simulated second | contacts, iterations "
+        f"a step | cheapest at {percent(table.targets[0].target)} | a simulated second |",
+        "|---|---:|---:|---|---|---:|",
+    ]
+    for engine in table.engines:
+        rows = [row for row in table.rows if row.family == engine]
+        own = next(row for row in rows if is_own(row))
+        answer = answers[engine]
+        reached = table.rows[answer.row] if answer.row is not None else None
+        best = min((row for row in rows if row.is_answer), key=error_of, default=None)
+        missed = (
+            "every setting failed" if best is None else f"none; at best {percent(error_of(best))}"
+        )
+        lines.append(
+            f"| {own.title} | {spread_of(own)} | {time_of(own)} | {counts_of(own)} | "
+            f"{missed if reached is None else name_of(reached)} | "
+            f"{'' if reached is None else time_of(reached)} |"
+        )
+    return lines
+
+
+def is_own(row: CostRow) -> bool:
+    """Return whether a setting is its engine's own, of lavender what the config specifies."""
+    if row.is_lavender:
+        return row.role == "specified"
+    return row.engine == row.family and row.settings == OWN.get(row.family, {})
+
+
+def spread_of(row: CostRow) -> str:
+    """Return the errors of a setting over its starts; or that it failed."""
+    if row.failed or row.error is None:
+        return "failed" + ("" if row.error is None else f", {percent(row.error)}")
+    least = "" if row.least_error is None else f"{percent(row.least_error)} to "
+    return f"{least}{percent(row.error)}"
+
+
+def time_of(row: CostRow) -> str:
+    """Return the cost of a setting."""
+    return "" if row.ns_per_second is None else short_time(row.cost / 1e9)
+
+
+def counts_of(row: CostRow) -> str:
+    """Return the contacts and iterations of a step."""
+    return ", ".join(
+        "not reported" if one is None else f"{one:.3g}" for one in (row.contacts, row.iterations)
+    )
+
+
+def check_lines(check: dict[str, Any]) -> list[str]:
+    """Return a case a row and an engine a column: verdict, number, its range over starts."""
+    engines = list(check["solvers"])
+    lines = [f"| case | {' | '.join(engines)} |", "|---|" + "---|" * len(engines)]
+    found = {(one["case"], one["solver"]): one for one in check["entries"]}
+    for case in check["cases"]:
+        cells = [_entry(found[case, engine]) for engine in engines]
+        lines.append(f"| {case.rpartition('/')[2]} | {' | '.join(cells)} |")
+    return lines
+
+
+def _entry(one: dict[str, Any]) -> str:
+    if one["number"] is None:
+        return str(one["verdict"])
+    low, high = one["least"], one["most"]
+    spread = f" ({low:.2g} to {high:.2g})" if low is not None and low != high else ""
+    return f"{one['verdict']} {one['number']:.2g}{spread}"
+
+
+def write_tables() -> None:
+    """Write the tables where pages have room for them."""
+    text = tables()
+    for page in PAGES:
+        part = "\n".join(cost_only(text)) if page.name == "README.md" else text
+        page.write_text(with_part(page.read_text(), part))
+
+
+def with_part(page: str, part: str) -> str:
+    """Return a page with a part between its marks."""
+    before, begin, rest = page.partition("<!-- engines -->\n")
+    _, end, after = rest.partition("<!-- end -->")
+    if not begin or not end:
+        sys.exit("a page has no marks for the tables of engines")
+    return f"{before}{begin}\n{part}\n\n{end}{after}"
+
+
+def cost_only(text: str) -> list[str]:
+    """Return the first table of a text."""
+    lines = [line for line in text.splitlines() if line.startswith("|")]
+    return lines[
+        : next((k for k, line in enumerate(lines) if line.startswith("| case")), len(lines))
+    ]
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Take the samples, unless they are there, and write the tables."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--runs", type=Path, default=ROOT / "runs" / "engines")
+    parser.add_argument("--tables", action="store_true")
+    given = parser.parse_args(arguments)
+    if not given.tables:
+        take(given.runs.resolve())
+    write_tables()
+
+
+if __name__ == "__main__":
+    main()
