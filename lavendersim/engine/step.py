@@ -44,7 +44,7 @@ from .records import (
 )
 from .respond import make_pass_by, make_respond
 from .spec import Spec
-from .step_counts import make_reset_counts
+from .reset_counts import make_reset_counts
 from .step_doubling import (
     GO_ON,
     MISSED,
