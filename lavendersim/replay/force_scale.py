@@ -53,7 +53,9 @@ def force_scale(contact: npt.NDArray[Any], diagonal: float) -> ForceScale:
     force = force[loaded]
     typical = 1.0
     if len(force):
-        keys = np.stack([contact[name][loaded] for name in CONTACT_KEY], axis=1)
+        # Other engines name no features: the contacts of a pair are then taken together.
+        named = [name for name in CONTACT_KEY if name in contact.dtype.names]
+        keys = np.stack([contact[name][loaded] for name in named], axis=1)
         _, group, count = np.unique(keys, axis=0, return_inverse=True, return_counts=True)
         contacts = np.split(force[np.argsort(group.ravel())], np.cumsum(count)[:-1])
         shortest = LASTING_SHARE * count.max()

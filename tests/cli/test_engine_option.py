@@ -56,6 +56,10 @@ def test_both_engines_run_two_scenes_end_to_end(tmp_path: Path) -> None:
         assert found.returncode == 0, found.stdout + found.stderr
     assert [*tmp_path.rglob("ball*.png")]
     assert (tmp_path / "ball.rrd").stat().st_size > 0
+    (box,) = tmp_path.glob("runs/*-box-*")  # which rests on contacts of MuJoCo's
+    found = lavender("replay", str(box), "--cell", "1", "--save", "box.rrd", where=tmp_path)
+    assert found.returncode == 0, found.stdout + found.stderr
+    assert (tmp_path / "box.rrd").stat().st_size > 0
     assert "always: residual: not judged" in lavender("judge", where=tmp_path).stdout
 
 

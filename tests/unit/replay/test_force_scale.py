@@ -63,3 +63,10 @@ def test_cut_arrow_has_the_cuts_length_and_is_marked():
 @pytest.mark.parametrize("forces", [[], [0.0], [np.nan]])
 def test_recording_without_a_loaded_contact_still_has_a_scale(forces):
     assert force_scale(contacts(range(len(forces)), forces), 1.0).newtons_per_metre > 0
+
+
+def test_contacts_without_features_are_taken_by_pairs():
+    """As other engines log them."""
+    rows = contacts(range(1, 101), [9.81] * 100)
+    without = [name for name in rows.dtype.names if name != "feature"]
+    assert force_scale(rows[without], 1.0) == force_scale(rows, 1.0)
