@@ -42,9 +42,9 @@ from .records import (
     RUNNING,
     WOKEN,
 )
+from .reset_counts import make_reset_counts
 from .respond import make_pass_by, make_respond
 from .spec import Spec
-from .reset_counts import make_reset_counts
 from .step_doubling import (
     GO_ON,
     MISSED,

@@ -7,8 +7,8 @@ import pytest
 
 from lavendersim.engine.effects import EFFECTS
 from lavendersim.engine.records import COUNTERS, dtype
-from lavendersim.engine.spec import Spec
 from lavendersim.engine.reset_counts import counts_of, make_reset_counts
+from lavendersim.engine.spec import Spec
 
 NAMES = [name for name, _ in COUNTERS if name.endswith("_not_converged")]
 
