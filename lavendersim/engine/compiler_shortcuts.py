@@ -12,7 +12,7 @@ from contextlib import AbstractContextManager, contextmanager, nullcontext
 from copy import copy
 from typing import Any
 
-from numba.core import errors, ir, types
+from numba.core import errors, event, ir, typeinfer, types
 from numba.core.datamodel.packer import ArgPacker
 from numba.core.errors import WarningsFixer  # type: ignore[attr-defined]
 from numba.core.postproc import PostProcessor
@@ -21,6 +21,10 @@ from numba.core.transforms import canonicalize_cfg
 _postproc: Any = PostProcessor
 _instruction: Any = ir.Inst
 _warnings: Any = WarningsFixer
+_events: Any = event
+_typeinfer: Any = typeinfer
+if not hasattr(_typeinfer, "new_error_context"):
+    raise ImportError("numba finds types in another way")
 if not (hasattr(_instruction, "_rec_list_vars") and hasattr(_warnings, "catch_warnings")):
     raise ImportError("numba lists variables or catches warnings in another way")
 _VARIABLE, _INSTRUCTION, _ROW, _NAMED, _OTHER = range(5)
@@ -62,6 +66,10 @@ def _as_they_come(*_: Any, **__: Any) -> AbstractContextManager[None]:
     return nullcontext()
 
 
+def _nothing(*_: Any, **__: Any) -> None:
+    pass
+
+
 @contextmanager
 def shortened() -> Iterator[None]:
     """Spare kernels what numba does for any function, while they are compiled.
@@ -69,7 +77,8 @@ def shortened() -> Iterator[None]:
     Lifetimes of variables matter to generators and to counts of references. Its messages are no
     one's, where it finds types by trying, and for each in colour it would set up the terminal. For
     each constraint on a type it would set Python's filters of warnings anew, to sort what is warned
-    of by line; a warning is given as it comes instead.
+    of by line, and be ready to say what it was typing; a warning is given as it comes instead, and an
+    error names its line. Nobody listens to its events.
     """
     whole = _postproc.run
     scheme = getattr(errors, "HighlightColorScheme", None)  # only where colorama is installed
@@ -86,6 +95,10 @@ def shortened() -> Iterator[None]:
     _postproc.run = run
     _instruction._rec_list_vars = variables_of
     _warnings.catch_warnings = _as_they_come
+    explained, begun, ended = _typeinfer.new_error_context, _events.start_event, _events.end_event
+    _typeinfer.new_error_context = _as_they_come
+    if not any(_events._registered.values()):
+        _events.start_event = _events.end_event = _nothing
     if scheme:
         scheme._markup = lambda self, message, *_: message
     try:
@@ -94,6 +107,8 @@ def shortened() -> Iterator[None]:
         _postproc.run = whole
         _instruction._rec_list_vars = listed
         _warnings.catch_warnings = caught
+        _typeinfer.new_error_context = explained
+        _events.start_event, _events.end_event = begun, ended
         if scheme:
             scheme._markup = coloured
 

@@ -54,7 +54,7 @@ def force_scale(contact: npt.NDArray[Any], diagonal: float) -> ForceScale:
     typical = 1.0
     if len(force):
         # Other engines name no features: the contacts of a pair are then taken together.
-        named = [name for name in CONTACT_KEY if name in contact.dtype.names]
+        named = [name for name in CONTACT_KEY if name in (contact.dtype.names or ())]
         keys = np.stack([contact[name][loaded] for name in named], axis=1)
         _, group, count = np.unique(keys, axis=0, return_inverse=True, return_counts=True)
         contacts = np.split(force[np.argsort(group.ravel())], np.cumsum(count)[:-1])

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 from numba import float64, int64, njit
+from numba.core.errors import TypingError
 
 from lavendersim.engine.compile import Kernel, inner
 from lavendersim.engine.kernel_parts import STORE
@@ -155,3 +156,16 @@ def test_code_of_one_kernel_may_be_in_a_process_twice() -> None:
     """Loaded and compiled, or compiled for two engines: each has a name of its own."""
     first, second = (make_polynomial(inner(square_plus), 0.1) for _ in range(2))
     assert first(2.0) == second(2.0) == first(2.0)
+
+
+def test_an_error_in_a_part_says_where_it_is() -> None:
+    def adds_a_text(x):
+        return x + "text"
+
+    part = inner(adds_a_text)
+
+    def caller(x):
+        return part(x)
+
+    with pytest.raises(TypingError, match=r"test_part_compiler.py.*\n.*adds_a_text"):
+        inner(caller)(1.0)
