@@ -77,8 +77,8 @@ def shortened() -> Iterator[None]:
     Lifetimes of variables matter to generators and to counts of references. Its messages are no
     one's, where it finds types by trying, and for each in colour it would set up the terminal. For
     each constraint on a type it would set Python's filters of warnings anew, to sort what is warned
-    of by line, and be ready to say what it was typing; a warning is given as it comes instead, and an
-    error names its line. Nobody listens to its events.
+    of by line, and be ready to say what it was typing; a warning is given as it comes instead, and
+    an error names its line. Nobody listens to its events.
     """
     whole = _postproc.run
     scheme = getattr(errors, "HighlightColorScheme", None)  # only where colorama is installed
