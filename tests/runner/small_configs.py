@@ -12,6 +12,8 @@ from typing import Any
 
 import lavendersim
 from tests.drop_config import LOW
+from tests.forked_python import LATE
+from tests.forked_python import python as forked_python
 
 DROPS = (
     """\
@@ -96,6 +98,17 @@ def python(code: str, *arguments: Any, **environment: str) -> str:
 
 
 def run_in_new_process(config: Path, root: Path, **environment: str) -> dict[str, Any]:
-    """Run a config in a new Python process and return what `RUN` prints of it."""
-    found: dict[str, Any] = json.loads(python(RUN, config, root, **environment))
+    """Run a config in a new Python process and return what `RUN` prints of it.
+
+    With another package, or other settings of numba, the process imports all anew.
+    """
+    new = python_forked if environment.keys() <= {*LATE} else python
+    found: dict[str, Any] = json.loads(new(RUN, config, root, **environment))
     return found
+
+
+def python_forked(code: str, *arguments: Any, **environment: str) -> str:
+    """Do as `python` does, in a process that has imported lavender already."""
+    done = forked_python("-c", code, *arguments, **environment)
+    assert done.returncode == 0, done.stderr
+    return done.stdout.strip().splitlines()[-1]
