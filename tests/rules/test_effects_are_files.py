@@ -231,7 +231,7 @@ class Copy:
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
-        without = shutil.ignore_patterns("__pycache__")
+        without = shutil.ignore_patterns("*.pyc.*")  # bytecode that others are writing
         shutil.copytree(ROOT / "lavendersim", folder / "lavendersim", ignore=without)
         shutil.copytree(ROOT / "cli", folder / "lavender_cli", ignore=without)
         self.config = folder / "drop.yaml"

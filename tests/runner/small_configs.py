@@ -73,9 +73,12 @@ def write(folder: Path, text: str = DROPS, name: str = "drops.yaml") -> Path:
 
 
 def copy_package(folder: Path) -> Path:
-    """Copy lavender's sources into a folder, to be edited there; returns the engine's."""
+    """Copy lavender's sources into a folder, to be edited there; returns the engine's.
+
+    With their bytecode, but for what others are writing: an edited file is younger than its own.
+    """
     package = folder / "lavendersim"
-    skipped = shutil.ignore_patterns("__pycache__")
+    skipped = shutil.ignore_patterns("*.pyc.*")
     shutil.copytree(Path(lavendersim.__file__).parent, package, ignore=skipped)
     return package / "engine"
 
