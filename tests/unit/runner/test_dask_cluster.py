@@ -46,8 +46,9 @@ def drops(tmp_path: Path) -> Path:
     return write(tmp_path)
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def cluster() -> Iterator[Any]:
+    """Two workers; one that is killed comes again."""
     distributed = pytest.importorskip("distributed")
     with distributed.LocalCluster(
         n_workers=2, threads_per_worker=1, dashboard_address=None, processes=True
