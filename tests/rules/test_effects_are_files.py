@@ -150,7 +150,7 @@ scene:
   bodies:
     floor: {shape: {kind: plane}}
     ball: {shape: {kind: sphere, radius: 0.1}, mass: 1.0, position: [0, 0, 0.1]}
-numerics: {timestep: 1/240, integrator: semi_implicit_euler, tolerance: null, sweeps: 1000}
+numerics: {preset: chapter, timestep: 1/240, sweeps: 1000}
 duration: 1/240
 sweep:
   solver:
@@ -181,7 +181,7 @@ scene:
       mass: 1.0
       surface: {cushion: 4.0}
       position: [0, 0, 0.1]
-numerics: {timestep: 1/240}
+numerics: chapter
 duration: 0.1
 measure:
   fall: {kind: drift, after: 0.0}
