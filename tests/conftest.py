@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import gc
 import os
 from collections.abc import Iterator
@@ -46,6 +47,8 @@ QUICK = (
     "configs/chapter/normal_impulse.yaml",
     "configs/chapter/impact_telemetry.yaml",
 )
+# Of hundreds of cells each, on one plan: what it takes to optimise it, their steps give back.
+OPTIMISED = [ROOT / f"configs/hard/maps/{name}.yaml" for name in ("mass_ratio", "stack_height")]
 # Files of tests go to whichever process is free, and the last of them decide how long the others
 # wait: those come last that compile nothing or little, of which none takes a minute.
 LIGHT = (
@@ -90,8 +93,15 @@ def drop(tmp_path: Path) -> Path:
     return path
 
 
-@pytest.fixture(scope="module")
-def optimised() -> Iterator[None]:
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_protocol(item: pytest.Item) -> Iterator[None]:
+    """Run configs of many steps on optimised kernels."""
+    with optimising() if item.path in OPTIMISED else contextlib.nullcontext():
+        return (yield)
+
+
+@contextlib.contextmanager
+def optimising() -> Iterator[None]:
     """Compile as users do, here and in processes that are started: what makes millions of steps."""
     from numba import config  # late: most tests here ask for it themselves
 
@@ -101,3 +111,10 @@ def optimised() -> Iterator[None]:
     yield
     os.environ["NUMBA_OPT"] = before
     config.reload_config()
+
+
+@pytest.fixture(scope="module")
+def optimised() -> Iterator[None]:
+    """Compile as users do, for all tests of a file."""
+    with optimising():
+        yield

@@ -108,7 +108,6 @@ class KernelCache:
             kernel = result.library.separate, result._reduce()
             payload = dumps(kernel) + _COMPILED.pack(*took)
             kernel_store.write(self.path(self.used), payload)
-            kernel_store.make_room()
         self._lock.release()
 
     def flush(self) -> None:

@@ -7,9 +7,11 @@ from __future__ import annotations
 
 import contextlib
 import hashlib
+import math
 import os
 import stat
 import time
+from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 from typing import NamedTuple
@@ -19,7 +21,7 @@ from lavendersim.durable_files import write_whole
 from .compile_options import build
 
 DIRECTORY_VARIABLE = "LAVENDER_CACHE_DIR"
-LIMIT = 400_000_000  # [byte] of all that is kept
+LIMIT = 1_000_000_000  # [byte] of all that is kept: some thousand plans
 SUFFIXES = (".kernel", ".part", ".object")
 ANEW = "kernels are compiled anew in every process"
 
@@ -33,6 +35,7 @@ def _is_private(path: Path) -> bool:
     return own and not status.st_mode & 0o022
 
 
+_unseen = math.inf  # [byte] written by this process since it looked whether all fits
 _why_not = ""  # nothing may be kept, whatever the place
 
 
@@ -88,10 +91,16 @@ def write(path: Path, payload: bytes) -> None:
     """Keep something in a file, in one move, so that no reader sees half of it.
 
     It is not flushed, which a new plan with its hundred parts would wait for: what a power loss
-    leaves half, its checksum shows, and it is compiled again.
+    leaves half, its checksum shows, and it is compiled again. To look for room takes a tenth of a
+    second for twenty thousand files: it is done at the first and after each hundredth of `LIMIT`.
     """
+    global _unseen
     with contextlib.suppress(OSError):  # a full or read-only disk costs time, not the run
         write_whole(path, hashlib.sha256(payload).digest() + payload, flush=False, mode=0o600)
+    _unseen += len(payload)
+    if _unseen > LIMIT / 100:
+        _unseen = 0
+        make_room()
 
 
 class Kept(NamedTuple):
@@ -103,29 +112,33 @@ class Kept(NamedTuple):
     current: bool  # whether this numba on this machine, as it is set, would load it
 
 
+def _files(folder: Path) -> Iterator[tuple[os.DirEntry[str], os.stat_result]]:
+    """Yield what is kept in a folder; another process may delete any of it at any time."""
+    with contextlib.suppress(OSError):  # a disk may go away while a process runs
+        for entry in [*os.scandir(folder)] if folder.name else ():
+            if entry.name.endswith(SUFFIXES):
+                with contextlib.suppress(OSError):
+                    yield entry, entry.stat()
+
+
 def kept_kernels() -> list[Kept]:
     """Return the compiled code on disk, what was used last at the end."""
-    folder, own = directory()[0], build()
-    entries: list[os.DirEntry[str]] = []
-    with contextlib.suppress(OSError):  # a disk may go away while a process runs
-        entries = [*os.scandir(folder)] if folder.name else []
-    found = []
-    for entry in entries:
-        if entry.name.endswith(SUFFIXES):
-            with contextlib.suppress(OSError):  # another process may delete it at any time
-                status = entry.stat()
-                current = own in entry.name.split("-")
-                found.append(Kept(Path(entry.path), status.st_size, status.st_atime_ns, current))
+    own = build()
+    found = [
+        Kept(Path(entry.path), status.st_size, status.st_atime_ns, own in entry.name.split("-"))
+        for entry, status in _files(directory()[0])
+    ]
     return sorted(found, key=lambda kept: (kept.used, kept.path))
 
 
 def make_room() -> None:
     """Delete what was not used for longest until the rest fits `LIMIT`."""
-    kept = kept_kernels()
-    total = sum(each.size for each in kept)
-    for each in kept:
-        if total <= LIMIT:
-            return
+    total = sum(status.st_size for _, status in _files(directory()[0]))
+    if total <= LIMIT:
+        return
+    for each in kept_kernels():
         with contextlib.suppress(OSError):
             each.path.unlink()
         total -= each.size
+        if total <= LIMIT:
+            return

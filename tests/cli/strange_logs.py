@@ -176,8 +176,8 @@ KINDS: dict[str, Callable[[Log], None]] = {
     "timestep divided by zero": lambda log: log.describe(timestep="1/0"),
     "timestep below zero": lambda log: log.describe(timestep="-1/240"),
     "timestep of a million digits": lambda log: log.describe(timestep="9" * 1_000_000),
-    "timestep changes a million times": lambda log: log.describe(
-        **{TIMESTEP_CHANGES: json.dumps([[k, f"1/{2 * k + 3}"] for k in range(1_000_000)])}
+    "timestep changes 200,000 times": lambda log: log.describe(
+        **{TIMESTEP_CHANGES: json.dumps([[k, f"1/{2 * k + 3}"] for k in range(200_000)])}
     ),
     "times of huge ratios": lambda log: log.describe(
         **{TIMESTEP_CHANGES: json.dumps([[k, f"1/{10**400 + k}"] for k in range(5000)])}

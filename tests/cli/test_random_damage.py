@@ -7,8 +7,10 @@ from pathlib import Path
 import pytest
 from random_damage import KINDS, counted
 
+from tests.thorough import THOROUGH
+
 # `python -m tests.cli.random_damage` has as many as one has time for.
-FLIPS, CUTS, EXCHANGES = 12, 4, 4
+FLIPS, CUTS, EXCHANGES = (12, 4, 4) if THOROUGH else (6, 2, 2)
 
 
 @pytest.mark.parametrize("kind", KINDS)

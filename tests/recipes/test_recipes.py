@@ -80,7 +80,7 @@ class Copy:
     def __init__(self, folder: Path) -> None:
         self.folder = folder
         for package in ("lavendersim", "cli"):
-            without = shutil.ignore_patterns("__pycache__")
+            without = shutil.ignore_patterns("*.pyc.*")  # bytecode that others are writing
             shutil.copytree(ROOT / package, folder / package, ignore=without)
         (folder / "lavender_cli").symlink_to("cli")
 

@@ -150,7 +150,7 @@ scene:
   bodies:
     floor: {shape: {kind: plane}}
     ball: {shape: {kind: sphere, radius: 0.1}, mass: 1.0, position: [0, 0, 0.1]}
-numerics: {timestep: 1/240, integrator: semi_implicit_euler, tolerance: null, sweeps: 1000}
+numerics: {preset: chapter, timestep: 1/240, sweeps: 1000}
 duration: 1/240
 sweep:
   solver:
@@ -181,7 +181,7 @@ scene:
       mass: 1.0
       surface: {cushion: 4.0}
       position: [0, 0, 0.1]
-numerics: {timestep: 1/240}
+numerics: chapter
 duration: 0.1
 measure:
   fall: {kind: drift, after: 0.0}
@@ -231,7 +231,7 @@ class Copy:
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
-        without = shutil.ignore_patterns("__pycache__")
+        without = shutil.ignore_patterns("*.pyc.*")  # bytecode that others are writing
         shutil.copytree(ROOT / "lavendersim", folder / "lavendersim", ignore=without)
         shutil.copytree(ROOT / "cli", folder / "lavender_cli", ignore=without)
         self.config = folder / "drop.yaml"

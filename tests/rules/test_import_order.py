@@ -28,8 +28,9 @@ LISTED = {
 # Each module in a process forked from one that has loaded the libraries: nothing of ours is loaded.
 FIRST = """
 import json, os, sys
-import numba, numba.core.registry, numba.extending, llvmlite.ir, numpy, pydantic
+import numba, numba.core.registry, numba.extending, llvmlite.ir, numpy
 import matplotlib.pyplot
+import pydantic.functional_validators, pydantic.json_schema  # both load late, half of a fork
 refused = []
 for name in json.loads(sys.argv[1]):
     child = os.fork()

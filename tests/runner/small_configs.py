@@ -12,6 +12,8 @@ from typing import Any
 
 import lavendersim
 from tests.drop_config import LOW
+from tests.forked_python import LATE
+from tests.forked_python import python as forked_python
 
 DROPS = (
     """\
@@ -71,9 +73,12 @@ def write(folder: Path, text: str = DROPS, name: str = "drops.yaml") -> Path:
 
 
 def copy_package(folder: Path) -> Path:
-    """Copy lavender's sources into a folder, to be edited there; returns the engine's."""
+    """Copy lavender's sources into a folder, to be edited there; returns the engine's.
+
+    With their bytecode, but for what others are writing: an edited file is younger than its own.
+    """
     package = folder / "lavendersim"
-    skipped = shutil.ignore_patterns("__pycache__")
+    skipped = shutil.ignore_patterns("*.pyc.*")
     shutil.copytree(Path(lavendersim.__file__).parent, package, ignore=skipped)
     return package / "engine"
 
@@ -96,6 +101,17 @@ def python(code: str, *arguments: Any, **environment: str) -> str:
 
 
 def run_in_new_process(config: Path, root: Path, **environment: str) -> dict[str, Any]:
-    """Run a config in a new Python process and return what `RUN` prints of it."""
-    found: dict[str, Any] = json.loads(python(RUN, config, root, **environment))
+    """Run a config in a new Python process and return what `RUN` prints of it.
+
+    With another package, or other settings of numba, the process imports all anew.
+    """
+    new = python_forked if environment.keys() <= {*LATE} else python
+    found: dict[str, Any] = json.loads(new(RUN, config, root, **environment))
     return found
+
+
+def python_forked(code: str, *arguments: Any, **environment: str) -> str:
+    """Do as `python` does, in a process that has imported lavender already."""
+    done = forked_python("-c", code, *arguments, **environment)
+    assert done.returncode == 0, done.stderr
+    return done.stdout.strip().splitlines()[-1]

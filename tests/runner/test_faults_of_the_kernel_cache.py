@@ -1,6 +1,6 @@
 """Runs end well, to the same bits, whatever happens to compiled kernels and leftovers meanwhile.
 
-eight at once    eight runs of one config in one folder, with a cold cache
+four at once     four runs of one config in one folder, with a cold cache
 cleaned          `lavender doctor --clean` again and again, from a cold cache to the end
 vanished         the cache is taken away while the run compiles, and a file put in its place
 """
@@ -23,8 +23,8 @@ from small_configs import RUN, write
 from lavendersim.runner.run_directory import open_run
 from tests.kept_kernels import of_scenes
 
-EIGHT = 8
-LIMIT = 300.0  # [s] of a run; one compiles in 10 s of a processor that eight share
+RUNS = 4
+LIMIT = 300.0  # [s] of a run; one compiles in 10 s of a processor that four share
 # Machine code that LLVM has not optimised, in a third of the time: speed is not what is asked.
 PLAIN = {"NUMBA_OPT": "0"}
 
@@ -50,30 +50,30 @@ def ended(process: subprocess.Popen[str]) -> dict[str, Any]:
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return tmp_path_factory.mktemp("eight")
+    return tmp_path_factory.mktemp("four")
 
 
 @pytest.fixture(scope="module")
-def eight(folder: Path) -> list[dict[str, Any]]:
-    """Run one config eight times at once, in one folder, with one cold cache."""
+def four(folder: Path) -> list[dict[str, Any]]:
+    """Run one config four times at once, in one folder, with one cold cache."""
     config = write(folder)
-    processes = [started(config, folder / "runs", folder / "kernels") for _ in range(EIGHT)]
+    processes = [started(config, folder / "runs", folder / "kernels") for _ in range(RUNS)]
     return [ended(process) for process in processes]
 
 
-def test_eight_cold_runs_in_one_folder_give_the_same_logs(eight: list[dict[str, Any]]) -> None:
-    assert [found["logs"] for found in eight] == [eight[0]["logs"]] * EIGHT
-    assert len({found["run"] for found in eight}) == EIGHT
+def test_four_cold_runs_in_one_folder_give_the_same_logs(four: list[dict[str, Any]]) -> None:
+    assert [found["logs"] for found in four] == [four[0]["logs"]] * RUNS
+    assert len({found["run"] for found in four}) == RUNS
 
 
-def test_eight_cold_runs_leave_one_kernel_eight_runs_and_nothing_half(
-    eight: list[dict[str, Any]], folder: Path
+def test_four_cold_runs_leave_one_kernel_four_runs_and_nothing_half(
+    four: list[dict[str, Any]], folder: Path
 ) -> None:
     assert len(of_scenes(folder / "kernels")) == 1
     assert not [*folder.rglob("*unfinished*"), *folder.glob("runs/.latest*")]
-    assert all(open_run(found["run"]).finished for found in eight)
+    assert all(open_run(found["run"]).finished for found in four)
     latest = open_run(None, folder / "runs")
-    assert latest.path.name in {Path(found["run"]).name for found in eight}
+    assert latest.path.name in {Path(found["run"]).name for found in four}
 
 
 def meanwhile(process: subprocess.Popen[str], act: Callable[[], None]) -> int:
@@ -87,7 +87,7 @@ def meanwhile(process: subprocess.Popen[str], act: Callable[[], None]) -> int:
 
 
 def test_a_run_under_which_all_is_cleaned_gives_the_same_logs(
-    eight: list[dict[str, Any]], folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    four: list[dict[str, Any]], folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     from lavendersim.engine import kernel_store
     from lavendersim.runner.environment import delete_kernels
@@ -107,27 +107,27 @@ def test_a_run_under_which_all_is_cleaned_gives_the_same_logs(
         clean(tmp_path / "runs")
 
     process = started(folder / "drops.yaml", tmp_path / "runs", kernels)
-    assert meanwhile(process, cleaned) > EIGHT
-    assert ended(process)["logs"] == eight[0]["logs"]
+    assert meanwhile(process, cleaned) > 8
+    assert ended(process)["logs"] == four[0]["logs"]
     assert deleted > 0
     assert open_run(None, tmp_path / "runs").finished
 
 
 def test_a_run_whose_cache_vanishes_gives_the_same_logs(
-    eight: list[dict[str, Any]], folder: Path, tmp_path: Path
+    four: list[dict[str, Any]], folder: Path, tmp_path: Path
 ) -> None:
     kernels = tmp_path / "kernels"
     process = started(folder / "drops.yaml", tmp_path / "runs", kernels)
     gone: list[float] = []
 
     def taken_away() -> None:
-        if not gone and len([*kernels.glob("*.part")]) > EIGHT:
+        if not gone and len([*kernels.glob("*.part")]) > 8:
             kernels.rename(tmp_path / "elsewhere")
             kernels.write_text("no directory")
             gone.append(time.monotonic())
 
     meanwhile(process, taken_away)
-    assert ended(process)["logs"] == eight[0]["logs"]
+    assert ended(process)["logs"] == four[0]["logs"]
     assert gone
     assert kernels.read_text() == "no directory"
     shutil.rmtree(tmp_path / "elsewhere")

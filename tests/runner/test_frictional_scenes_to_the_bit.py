@@ -9,15 +9,13 @@ one with two workers. That an edited engine finds none of them is checked by `te
 from __future__ import annotations
 
 import json
-import os
-import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 
 import pytest
 from small_configs import write
 
+from tests.forked_python import python
 from tests.kept_kernels import of_scenes
 
 # A box that lands on an edge, bounces, slides and tumbles, in the default numerics.
@@ -121,15 +119,8 @@ class Scenes:
         self.calls += 1
         runs = self.folder / f"runs-{self.calls}"
         # A script, not `-c`: workers of a pool import the main module.
-        command = [sys.executable, self.script, runs, workers, times]
-        done = subprocess.run(
-            [str(word) for word in (*command, *self.configs)],
-            env=os.environ | {"LAVENDER_CACHE_DIR": str(self.kernels)},
-            capture_output=True,
-            text=True,
-            timeout=600,  # [s] two kernels compile, on a machine that may be busy
-            check=False,
-        )
+        words = (self.script, runs, workers, times, *self.configs)
+        done = python(*words, LAVENDER_CACHE_DIR=str(self.kernels))
         assert done.returncode == 0, done.stderr
         return json.loads(done.stdout.strip().splitlines()[-1])
 

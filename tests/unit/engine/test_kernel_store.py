@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import json
+import math
 import os
 import subprocess
 import sys
@@ -94,6 +95,18 @@ def test_everything_stays_while_it_fits(store: Path, monkeypatch: pytest.MonkeyP
     monkeypatch.setattr(kernel_store, "LIMIT", total - 1)
     kernel_store.make_room()
     assert len(names_in(store)) == 1
+
+
+def test_room_is_looked_for_at_the_first_and_after_each_hundredth_of_the_limit(
+    store: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    written = []
+    monkeypatch.setattr(kernel_store, "_unseen", math.inf)  # as a process begins
+    monkeypatch.setattr(kernel_store, "LIMIT", 1000)
+    monkeypatch.setattr(kernel_store, "make_room", lambda: written.append(len([*store.iterdir()])))
+    for number, size in enumerate([10, 6, 4, 1, 3]):
+        kernel_store.write(store / f"{number}.part", bytes(size))
+    assert written == [1, 4]  # 6 + 4 is a hundredth, 1 more is above it
 
 
 def test_kernels_of_other_builds_are_distinguished(

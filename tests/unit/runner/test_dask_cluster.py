@@ -46,8 +46,9 @@ def drops(tmp_path: Path) -> Path:
     return write(tmp_path)
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def cluster() -> Iterator[Any]:
+    """Two workers; one that is killed comes again."""
     distributed = pytest.importorskip("distributed")
     with distributed.LocalCluster(
         n_workers=2, threads_per_worker=1, dashboard_address=None, processes=True
@@ -118,7 +119,7 @@ def test_a_scheduler_of_dask_that_is_restarted_loses_no_cell(tmp_path: Path) -> 
     worker = ("distributed.cli.dask_worker", f"tcp://127.0.0.1:{port}", "--nthreads", 1)
     config, runs = write(tmp_path, MANY), tmp_path / "runs"
     whole = contents(run(config, tmp_path / "whole").run)
-    started = [part_of_dask(*scheduler), *(part_of_dask(*worker) for _ in range(2))]
+    started = [part_of_dask(*scheduler), part_of_dask(*worker)]
 
     def restart() -> None:
         while len(list(runs.glob("*/cells/[!.]*"))) < 3:
@@ -126,7 +127,7 @@ def test_a_scheduler_of_dask_that_is_restarted_loses_no_cell(tmp_path: Path) -> 
         started[0].kill()
         started[0].wait()
         started.append(part_of_dask(*scheduler))
-        started.extend(part_of_dask(*worker) for _ in range(2))  # the first ones may have ended
+        started.append(part_of_dask(*worker))  # the first one may have ended
 
     said: list[str] = []
     restarter = Thread(target=restart, daemon=True)

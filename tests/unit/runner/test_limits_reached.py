@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +13,7 @@ from lavendersim.runner import open_run
 from lavendersim.runner.accuracy import Accuracy
 from lavendersim.runner.limits_reached import AT_LIMIT, limits_in_words
 from lavendersim.trace.schema import STEP_COLUMNS
+from tests.forked_python import python
 
 # Stands, or is thrown down, spins, and hangs on a spring: every search has something to do.
 LOG = """\
@@ -81,9 +81,7 @@ print(json.dumps(table))
 
 
 def lavender(program: list[str], *words: str, where: Path) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [sys.executable, *program, *words], cwd=where, capture_output=True, text=True, check=False
-    )
+    return python(*program, *words, where=where)
 
 
 def test_counts_are_columns_of_the_log() -> None:

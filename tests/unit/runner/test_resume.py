@@ -1,6 +1,6 @@
 """A run that was killed goes on where it was, and ends as one that was never interrupted.
 
-`LAVENDER_TEST_KILLS` kills more often than 2 times for each config and number of processes;
+`LAVENDER_TEST_KILLS` kills more often than once for each config and number of processes;
 `python -m tests.property.killed_runs` does as often as is asked for.
 """
 
@@ -21,11 +21,12 @@ from lavendersim.errors import TraceError, UsageError
 from lavendersim.experiment import load_experiment
 from lavendersim.runner import Progress, Run, finished_run, list_runs, run
 from lavendersim.runner.run_lock import run_lock
+from tests.forked_python import python
 from tests.property.killed_runs import CONFIGS, prepared, wrong_when_resumed
 from tests.runner.run_contents import contents
 from tests.runner.small_configs import DROPS, write
 
-KILLS = int(os.environ.get("LAVENDER_TEST_KILLS", "2"))
+KILLS = int(os.environ.get("LAVENDER_TEST_KILLS", "1"))
 
 
 @pytest.mark.skipif(os.name != "posix", reason="kills as POSIX does")
@@ -195,11 +196,9 @@ def test_after_a_full_disk_a_run_goes_on(drops: Path, tmp_path: Path) -> None:
 
 def test_the_command_goes_on_and_says_so(drops: Path, tmp_path: Path) -> None:
     left = unfinished(drops, tmp_path / "runs")
-    command = [sys.executable, "-m", "lavender_cli.main", "run", drops, "--resume"]
+    words = ("-m", "lavender_cli.main", "run", drops, "--resume", "--runs", tmp_path / "runs")
     for sentence in ("goes on with", "finished, nothing to resume: "):
-        done = subprocess.run(
-            [*command, "--runs", tmp_path / "runs"], capture_output=True, text=True, check=False
-        )
+        done = python(*words)
         assert done.returncode == 0, done.stderr
         assert f"drops: {sentence}" in done.stderr
     assert open_run(left.path).finished

@@ -1,6 +1,6 @@
 """A sweep that is run in shards, by workers that come, go and die, is one that one process ran.
 
-`LAVENDER_TEST_KILLS` kills workers in more than 2 rounds.
+`LAVENDER_TEST_KILLS` kills workers in more rounds than one.
 """
 
 from __future__ import annotations
@@ -20,10 +20,11 @@ from lavendersim.errors import UsageError
 from lavendersim.runner import Finished, run
 from lavendersim.runner.merge import Missing, merge
 from lavendersim.runner.shards import part_of
+from tests.forked_python import python
 from tests.runner.run_contents import contents
 from tests.runner.small_configs import DROPS, write
 
-KILLS = int(os.environ.get("LAVENDER_TEST_KILLS", "2"))
+KILLS = int(os.environ.get("LAVENDER_TEST_KILLS", "1"))
 WORKERS = 8
 MANY = DROPS.replace("[0.2, 0.5, 0.8]", str([round(0.1 + i / 100, 2) for i in range(80)]))
 
@@ -110,8 +111,7 @@ def test_workers_that_are_killed_lose_no_cell(tmp_path: Path) -> None:
 
 def test_the_commands_exit_as_scripts_expect(drops: Path, tmp_path: Path) -> None:
     def lavender(*words: object) -> tuple[int, str]:
-        command = [sys.executable, "-m", "lavender_cli.main", *map(str, words)]
-        done = subprocess.run(command, capture_output=True, text=True, check=False, cwd=tmp_path)
+        done = python("-m", "lavender_cli.main", *words, where=tmp_path)
         return done.returncode, done.stdout + done.stderr
 
     into = tmp_path / "shared"
