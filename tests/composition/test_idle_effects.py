@@ -5,8 +5,8 @@ poses, velocities, contacts, impulses, residuals, energies and hashes are compar
 equal: no effect needs a tolerance. What decides is that a coefficient of zero adds a zero, scales
 by one or takes the same branch, and that frictionless contacts keep rows of their own.
 
-Each effect alone is compared in the interpreter, whose sums are as exact as a processor's, and all
-at once in compiled code, too.
+They are compared in the interpreter, whose sums are as exact as a processor's, and all at once in
+compiled code, too.
 
 One difference is known: with `residual_log` a solver makes the sweeps that would change nothing as
 well, so that `sweeps` counts more where a tolerance, or an exact solution, ends solves early.
@@ -34,6 +34,8 @@ NOTHING_TOUCHES = {"flying brick"}
 # Where solves end early without it.
 MORE_SWEEPS = {"residual_log": ("sweeps",)}
 SOME_STEPS = 84  # 0.35 s: what is thrown has landed, and what bounces has been up
+HOW: dict[str, Any] = {"steps": STEPS} if THOROUGH else {"steps": SOME_STEPS, "interpreted": True}
+MANY = 100 if THOROUGH else 50  # rows of contacts
 # Everything at once: no effect is idle for the sake of another one that is absent.
 TOGETHER = list(SCENES) if THOROUGH else ["frictional balls", "flying brick"]
 # Shape pairs that do not occur in a scene.
@@ -83,7 +85,9 @@ def with_shape_pairs(scene: str) -> Engines:
 
 @pytest.fixture(scope="module", autouse=True)
 def compiled(request: pytest.FixtureRequest) -> None:
-    """Compile what the chosen tests of this file ask for on both cores."""
+    """Compile what the chosen tests of this file ask for on both cores, where it is much."""
+    if not THOROUGH:
+        return
     chosen = [
         ENGINES[item.function](**item.callspec.params)
         for item in request.session.items
@@ -104,11 +108,10 @@ def test_an_idle_effect_changes_no_bit(name: str, scene: str) -> None:
     assert may_idle(cell, name, record=name not in UNLOGGED)
     assert not lean.has(name)
     assert full.has(name)
-    how = {"steps": STEPS} if THOROUGH else {"steps": SOME_STEPS, "interpreted": True}
-    one, other = (Run(cell, spec, **how) for spec in (lean, full))
+    one, other = (Run(cell, spec, **HOW) for spec in (lean, full))
     assert differences(one, other, *MORE_SWEEPS.get(name, ())) == []
     if scene in CASES[name] and scene not in NOTHING_TOUCHES and name not in UNLOGGED:
-        assert len(one.tables["contact"]) > (100 if THOROUGH else 50)
+        assert len(one.tables["contact"]) > MANY
 
 
 @pytest.mark.parametrize("scene", TOGETHER)
@@ -118,6 +121,12 @@ def test_all_idle_effects_together_change_no_bit(scene: str) -> None:
     assert idle
     assert set(full.effects) == idle | set(lean.effects)
     assert not idle & set(lean.effects)
+    one, other = (Run(cell, spec, **HOW) for spec in (lean, full))
+    assert differences(one, other, *MORE_SWEEPS["residual_log"]) == []
+
+
+def test_all_idle_effects_together_change_no_bit_of_compiled_code() -> None:
+    cell, lean, full = with_all_effects("frictional balls")
     assert differences(Run(cell, lean), Run(cell, full), *MORE_SWEEPS["residual_log"]) == []
 
 
@@ -125,9 +134,9 @@ def test_all_idle_effects_together_change_no_bit(scene: str) -> None:
 def test_shape_pairs_that_do_not_occur_change_no_bit(scene: str) -> None:
     cell, lean, full = with_shape_pairs(scene)
     assert not set(FOREIGN[scene]) & set(lean.shape_pairs)
-    one, other = Run(cell, lean), Run(cell, full)
+    one, other = (Run(cell, spec, **HOW) for spec in (lean, full))
     assert differences(one, other) == []
-    assert len(one.tables["contact"]) > 100
+    assert len(one.tables["contact"]) > MANY
 
 
 def test_every_shape_pair_is_foreign_to_one_of_the_scenes() -> None:
@@ -135,7 +144,7 @@ def test_every_shape_pair_is_foreign_to_one_of_the_scenes() -> None:
 
 
 ENGINES: dict[Any, Callable[..., Engines]] = {
-    **({test_an_idle_effect_changes_no_bit: with_effect} if THOROUGH else {}),
+    test_an_idle_effect_changes_no_bit: with_effect,
     test_all_idle_effects_together_change_no_bit: with_all_effects,
     test_shape_pairs_that_do_not_occur_change_no_bit: with_shape_pairs,
 }
