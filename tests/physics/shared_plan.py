@@ -1,12 +1,12 @@
 """Plans that scenes of many files share, as the cells of a sweep do.
 
-A kernel of these takes five to ten seconds to compile, and the scenes differ in little. What a
+A kernel of these takes five to fifteen seconds to compile, and the scenes differ in little. What a
 shared plan has beside what a scene requires is idle there and changes no bit (tests/composition:
 each effect alone, and random subsets); so it was for every scene of these files when it was shared.
-Some effects do change something and are never added: with `impact_order` an impact of one pair alone
-has its rows in its own step and none in the next one; with `rotation` places of frictionless balls
-that slide differ in their last bit; and beside springs between bodies contacts of bodies that
-springs join are solved otherwise with `contact_spring`.
+Some effects do change something and are never added. With `impact_order` an impact of one pair
+alone has its rows in its own step and none in the next one; with `rotation` places of frictionless
+balls that slide differ in their last bit; with `contact_spring` what springs between bodies draw
+into rigid contacts is solved otherwise, and not as well.
 """
 
 from __future__ import annotations
