@@ -81,8 +81,6 @@ scene:
     ball: {shape: {kind: sphere, radius: 0.1}, mass: 1, position: [1, 0, 1], surface: one}
 duration: 1
 """
-# The same without an order of their impacts.
-ROUND = f"{BALLS}numerics: {{impacts: at_surface}}\n"
 # Contacts that give way as springs do.
 SPRINGY = """
 scene:
@@ -158,18 +156,17 @@ duration: 1
 """
 NEVER_ADDED = {"impact_order", "rotation"}  # nor what needs the former
 BESIDE_SPRINGS = {"contact_spring"}  # as little
-ROUND_PAIRS = ("sphere_plane", "sphere_sphere")
+BALLS_PAIRS = ("sphere_plane", "sphere_sphere")
 PAIRS = (
     *("box_box", "box_plane", "capsule_box", "capsule_plane", "cylinder_box", "cylinder_cylinder"),
-    *("cylinder_plane", "hull_plane", "sphere_box", "sphere_cylinder", *ROUND_PAIRS),
+    *("cylinder_plane", "hull_plane", "sphere_box", "sphere_cylinder", *BALLS_PAIRS),
 )
-SPRINGY_PAIRS = ("box_plane", "sphere_box", *ROUND_PAIRS)
+SPRINGY_PAIRS = ("box_plane", "sphere_box", *BALLS_PAIRS)
 LINKED_PAIRS = ("box_box", *SPRINGY_PAIRS)
 ACCURATE_PAIRS = ("cylinder_box", "cylinder_plane", "sphere_cylinder", *LINKED_PAIRS)
 SHARED: dict[str, tuple[tuple[str, ...], ...]] = {  # shape pairs, and more effects, by the scene
     TURNING: (PAIRS, ("prescribed_motion",)),
-    ROUND: (ROUND_PAIRS, ()),
-    BALLS: (ROUND_PAIRS, ("broad_phase",)),
+    BALLS: (BALLS_PAIRS, ("broad_phase",)),
     SPRINGY: (SPRINGY_PAIRS, ()),
     LINKED: (LINKED_PAIRS, ()),
     ACCURATE: (ACCURATE_PAIRS, ("sleeping",)),
