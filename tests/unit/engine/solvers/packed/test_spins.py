@@ -1,4 +1,4 @@
-"""Packed sweeps obey the laws of torsional and rolling friction in closed form, 300 bodies at once.
+"""Packed sweeps obey the laws of torsional and rolling friction in closed form, 200 bodies at once.
 
 No warm start: every solve is a long one, most of whose sweeps are packed.
 """
@@ -16,7 +16,7 @@ from lavendersim.engine.solvers.packed.late import FEWEST_CONTACTS, FIRST
 from tests.benchmarks.prepared_contacts import Solve
 
 G, DT, RADIUS = 9.81, 1.0 / 240.0, 0.1
-COUNT = 300
+COUNT = 200
 millions_of_sweeps = pytest.mark.usefixtures("optimised")
 
 
@@ -132,7 +132,7 @@ def test_balls_rest_on_a_slope_below_their_angle_of_rolling_and_roll_above_it() 
     bench = made(bodies, (G * sin(angle), 0.0, -G * cos(angle)), steps)
     pull = np.maximum(G * sin(angle) - lengths / RADIUS * G * cos(angle), 0.0)
     expected = pull / 1.4 * steps * DT
-    assert 100 < np.count_nonzero(expected) < 200
+    assert COUNT // 3 < np.count_nonzero(expected) < 2 * COUNT // 3
     np.testing.assert_allclose(bench.velocity[1:, 0], expected, rtol=0, atol=3e-12)
     np.testing.assert_allclose(bench.spin[1:, 1], expected / RADIUS, rtol=0, atol=3e-11)
     np.testing.assert_allclose(bench.velocity[1:, 1:], 0.0, rtol=0, atol=3e-12)
