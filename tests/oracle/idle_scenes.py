@@ -18,7 +18,7 @@ NOWHERE = (0.0, 0.0, 0.0)
 TILTED = (1.0, 0.4, -0.3, 0.2)
 CUBE = (0.24, 0.24, 0.24)
 BRICK = (0.3, 0.24, 0.16)
-CONJUGATE = {"solver": "nonsmooth_conjugate_gradient", "sweeps": 60}
+CONJUGATE = {"solver": "nonsmooth_conjugate_gradient", "sweeps": 20}
 HULL = ((0.2, 0, -0.12), (-0.1, 0.17, -0.12), (-0.1, -0.17, -0.12), (0.02, 0.03, 0.25))
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
+from interpreted_steps import interpreted_advance
 from shared_plan import shared_spec
 
 from lavendersim.engine.records import DIVERGED, RUNNING
@@ -37,14 +38,19 @@ class Course(NamedTuple):
         return rows[[{a, b} == pair for a, b in zip(rows["body_a"], rows["body_b"], strict=True)]]
 
 
-def run_config(text: str) -> list[Course]:
-    """Run every cell of a config as a run does: one plan for all that can share it."""
+def run_config(text: str, *, interpreted: bool = False) -> list[Course]:
+    """Run every cell of a config as a run does: one plan for all that can share it.
+
+    interpreted: by kernels in the interpreter, which have the same bits, for a few dozen steps.
+    """
     cells = load_experiment_text(text, "test.yaml").cells()
     courses = []
     for cell, plan in zip(cells, shared_plans(cells), strict=True):
-        spec = shared_spec(plan)
+        spec = plan.spec if interpreted else shared_spec(plan)
         scene = build(cell.config, spec)
         engine = scene.engine(spec)
+        if interpreted:
+            engine._entry = interpreted_advance(spec)
         changes = EventQueue(engine, scene, cell.config.events, cell.config.triggered)
         blocks, done, last = [], 0, cell.config.steps
         while True:

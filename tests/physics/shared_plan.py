@@ -1,21 +1,22 @@
 """Plans that scenes of many files share, as the cells of a sweep do.
 
-A kernel of these takes five to ten seconds to compile, and the scenes differ in little. What a
+A kernel of these takes five to fifteen seconds to compile, and the scenes differ in little. What a
 shared plan has beside what a scene requires is idle there and changes no bit (tests/composition:
 each effect alone, and random subsets); so it was for every scene of these files when it was shared.
-Two effects do change something and are never added: with `impact_order` an impact of one pair alone
-has its rows in its own step and none in the next one; with `rotation` places of frictionless balls
-that slide differ in their last bit. Scenes of springs between bodies have plans of their own.
+Some effects do change something and are never added. With `impact_order` an impact of one pair
+alone has its rows in its own step and none in the next one; with `rotation` places of frictionless
+balls that slide differ in their last bit; with `contact_spring` what springs between bodies draw
+into rigid contacts is solved otherwise, and not as well.
 """
 
 from __future__ import annotations
 
 from functools import cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from lavendersim.engine.spec import Spec
 from lavendersim.experiment import load_experiment_text
-from lavendersim.scene.plan import Plan, plan_of_cell
+from lavendersim.scene.plan import CHOICES, Plan, plan_of_cell
 
 # Whatever most of these files require of lavender's own numerics, in one scene.
 TURNING = """
@@ -65,8 +66,8 @@ scene:
     - {body: ball, force: [1, 0, 0], factor: {kind: ramp}}
 duration: 1
 """
-# Balls that nothing turns, and whose impacts have no order.
-ROUND = """
+# Balls that nothing turns.
+BALLS = """
 scene:
   surfaces: {one: {restitution: 0.5}}
   bodies:
@@ -78,7 +79,6 @@ scene:
       velocity: [19, 0, 0]
       surface: one
     ball: {shape: {kind: sphere, radius: 0.1}, mass: 1, position: [1, 0, 1], surface: one}
-numerics: {impacts: at_surface}
 duration: 1
 """
 # Contacts that give way as springs do.
@@ -100,30 +100,95 @@ scene:
     low: {shape: {kind: sphere, radius: 0.1}, mass: 1, position: [2, 0, 1], surface: two}
 duration: 1
 """
+# What ropes and springs tie, some of it over a floor.
+LINKED = """
+scene:
+  surfaces:
+    one: {friction: 0.5, restitution: 0.5}
+    two: {friction: 0}
+  bodies:
+    floor: {shape: {kind: plane}, surface: one}
+    brick:
+      shape: {kind: box, size: [0.2, 0.1, 0.3]}
+      mass: 1
+      position: [0, 0, 1]
+      velocity: [9, 0, 0]
+      angular_velocity: [1, 2, 3]
+      surface: one
+    ball: {shape: {kind: sphere, radius: 0.1}, mass: 1, position: [1, 0, 1], surface: one}
+    low: {shape: {kind: sphere, radius: 0.1}, mass: 1, position: [2, 0, 1], surface: two}
+    high: {shape: {kind: sphere, radius: 0.1}, mass: 1, position: [2, 0, 3], surface: two}
+  connections:
+    rope: {kind: rope, between: [brick, ball]}
+  springs:
+    - {a: brick, b: high, stiffness: 1, rest_length: 1}
+duration: 1
+"""
+# As long as an accuracy allows.
+ACCURATE = """
+scene:
+  surfaces:
+    one: {friction: 0.5, restitution: 0.5, compliance: 1.0e-6}
+    two: {friction: 0}
+  bodies:
+    floor: {shape: {kind: plane}, surface: one}
+    table:
+      shape: {kind: cylinder, radius: 1, length: 0.1}
+      kinematic: true
+      angular_velocity: [0, 0, 1]
+      position: [9, 0, 1]
+      surface: two
+    brick:
+      shape: {kind: box, size: [0.2, 0.1, 0.3]}
+      mass: 1
+      position: [0, 0, 1]
+      velocity: [9, 0, 0]
+      angular_velocity: [1, 2, 3]
+      surface: one
+    ball: {shape: {kind: sphere, radius: 0.1}, mass: 1, position: [1, 0, 1], surface: one}
+    low: {shape: {kind: sphere, radius: 0.1}, mass: 1, position: [2, 0, 1], surface: two}
+  springs:
+    - {a: brick, b: low, stiffness: 1, rest_length: 1}
+  forces:
+    - {body: ball, force: [1, 0, 0], factor: {kind: ramp}}
+numerics: {accuracy: 1.0e-4}
+duration: 1
+"""
 NEVER_ADDED = {"impact_order", "rotation"}  # nor what needs the former
-ROUND_PAIRS = ("sphere_plane", "sphere_sphere")
-SPRINGY_PAIRS = ("box_plane", "sphere_box", *ROUND_PAIRS)
+BESIDE_SPRINGS = {"contact_spring"}  # as little
+BALLS_PAIRS = ("sphere_plane", "sphere_sphere")
 PAIRS = (
     *("box_box", "box_plane", "capsule_box", "capsule_plane", "cylinder_box", "cylinder_cylinder"),
-    *("cylinder_plane", "hull_plane", "sphere_box", "sphere_cylinder", *ROUND_PAIRS),
+    *("cylinder_plane", "hull_plane", "sphere_box", "sphere_cylinder", *BALLS_PAIRS),
 )
-SHARED = {TURNING: PAIRS, ROUND: ROUND_PAIRS, SPRINGY: SPRINGY_PAIRS}  # shape pairs by the scene
+SPRINGY_PAIRS = ("box_plane", "sphere_box", *BALLS_PAIRS)
+LINKED_PAIRS = ("box_box", *SPRINGY_PAIRS)
+ACCURATE_PAIRS = ("cylinder_box", "cylinder_plane", "sphere_cylinder", *LINKED_PAIRS)
+SHARED: dict[str, tuple[tuple[str, ...], ...]] = {  # shape pairs, and more effects, by the scene
+    TURNING: (PAIRS, ("prescribed_motion",)),
+    BALLS: (BALLS_PAIRS, ("broad_phase",)),
+    SPRINGY: (SPRINGY_PAIRS, ()),
+    LINKED: (LINKED_PAIRS, ()),
+    ACCURATE: (ACCURATE_PAIRS, ("sleeping",)),
+}
+BY_EFFECTS = CHOICES.index("sleeping")  # a choice that says no more than that the effect is there
 
 
 class _Shared(NamedTuple):
-    """A plan that scenes share."""
+    """A plan that scenes share: what is compiled, and the laws that it chooses."""
 
-    plan: Plan
-    pairs: tuple[str, ...]
+    spec: Spec
+    choices: tuple[Any, ...]
 
     def serves(self, plan: Plan) -> bool:
         """Whether a plan chooses the same laws, and all else that it has is idle in it."""
-        has, required = set(self.plan.spec.effects), set(plan.spec.effects)
+        has, required = set(self.spec.effects), set(plan.spec.effects)
+        never = NEVER_ADDED | (BESIDE_SPRINGS if "spring" in required else set())
         return (
-            plan.choices == self.plan.choices
-            and set(plan.spec.shape_pairs) <= set(self.pairs)
+            _laws(plan.choices) == _laws(self.choices)
+            and set(plan.spec.shape_pairs) <= set(self.spec.shape_pairs)
             and required <= has
-            and NEVER_ADDED & required == NEVER_ADDED & has
+            and never & required == never & has
         )
 
 
@@ -131,13 +196,19 @@ def shared_spec(plan: Plan) -> Spec:
     """Return what is compiled for a plan: a shared one where that chooses the same laws."""
     for shared in _shared():
         if shared.serves(plan):
-            return shared.plan.spec._replace(shape_pairs=shared.pairs)
+            return shared.spec
     return plan.spec
+
+
+def _laws(choices: tuple[Any, ...]) -> tuple[Any, ...]:
+    return choices[:BY_EFFECTS] + choices[BY_EFFECTS + 1 :]
 
 
 @cache
 def _shared() -> list[_Shared]:
-    return [
-        _Shared(plan_of_cell(load_experiment_text(text, "shared.yaml").cells()[0]), pairs)
-        for text, pairs in SHARED.items()
-    ]
+    found = []
+    for text, (pairs, effects) in SHARED.items():
+        plan = plan_of_cell(load_experiment_text(text, "shared.yaml").cells()[0])
+        spec = plan.spec.including(*effects)._replace(shape_pairs=tuple(sorted(pairs)))
+        found.append(_Shared(spec, plan.choices))
+    return found

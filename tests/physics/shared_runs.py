@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from shared_plan import shared_spec
 
-from lavendersim.engine.records import DIVERGED
+from lavendersim.engine.records import DIVERGED, ROWS_FULL
 from lavendersim.experiment import load_experiment_text
 from lavendersim.runner.plans import shared_plans
 from lavendersim.scene.build import build
@@ -55,14 +55,21 @@ def scenes_in_turn(texts: Mapping[str, str]) -> Iterator[tuple[str, States]]:
         scene = build(cell.config, spec)
         engine = scene.engine(spec)
         count, last = len(scene.names), cell.config.steps
-        states, rows = [], []
+        bodies, velocities, rows = [], [], []
         for number in range(last + 1):
             # Not through the log: its velocities are differences of places.
             while engine.counters["step"][0] < number:  # a call may end with rows to take, no step
-                assert engine.advance(1) != DIVERGED, f"{name} diverged in step {number}"
-                rows.append(engine.take_rows())
-            states.append(_state(engine.bodies[:count], engine.velocities[:count]))
-        place, turn, velocity, spin = (np.array(each) for each in zip(*states, strict=True))
+                status = engine.advance(1)
+                assert status != DIVERGED, f"{name} diverged in step {number}"
+                if status == ROWS_FULL:
+                    rows.append(engine.take_rows())
+            bodies.append(engine.bodies[:count].tobytes())
+            velocities.append(engine.velocities[:count].tobytes())
+        rows.append(engine.take_rows())
+        place, turn, velocity, spin = _states(
+            np.frombuffer(b"".join(bodies), engine.bodies.dtype).reshape(-1, count),
+            np.frombuffer(b"".join(velocities), engine.velocities.dtype).reshape(-1, count),
+        )
         time = np.arange(last + 1) * float(cell.config.numerics.timestep)
         steps, contacts = (
             np.concatenate([getattr(one, kind) for one in rows]) for kind in ("step", "contact")
@@ -71,11 +78,12 @@ def scenes_in_turn(texts: Mapping[str, str]) -> Iterator[tuple[str, States]]:
         yield name, States(names, time, place, turn, velocity, spin, steps, contacts)
 
 
-def _state(bodies: np.ndarray, velocities: np.ndarray) -> tuple[np.ndarray, ...]:
+def _states(bodies: np.ndarray, velocities: np.ndarray) -> tuple[np.ndarray, ...]:
     turn = _columns(bodies, ("qw", "qx", "qy", "qz"))
+    turn[~turn.any(axis=(1, 2)), :, 0] = 1.0  # of a plan without rotation
     return (
         _columns(bodies, ("x", "y", "z")),
-        turn if turn.any() else np.tile([1.0, 0.0, 0.0, 0.0], (len(bodies), 1)),
+        turn,
         _columns(velocities, ("vx", "vy", "vz")),
         _columns(velocities, ("wx", "wy", "wz")),
     )
@@ -84,8 +92,8 @@ def _state(bodies: np.ndarray, velocities: np.ndarray) -> tuple[np.ndarray, ...]
 def _columns(records: np.ndarray, names: Iterable[str]) -> np.ndarray:
     """Return columns side by side; those the engine has no field for are 0."""
     have = records.dtype.names or ()
-    nothing = np.zeros(len(records))
-    return np.column_stack([records[one].copy() if one in have else nothing for one in names])
+    nothing = np.zeros(records.shape)
+    return np.stack([records[one] if one in have else nothing for one in names], axis=-1)
 
 
 def orders(errors: Iterable[float]) -> list[float]:

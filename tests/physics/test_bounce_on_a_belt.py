@@ -41,7 +41,7 @@ LEFT = 1e-9
 def bounced(body: str, belt: float, **values: float) -> Course:
     values = {"along": 0.0, "down": -APPROACH, **values}
     text = SCENE.format(mu=MU, e=E, belt=belt, body=body.format(**values))
-    return run_config(text)[0]
+    return run_config(text, interpreted=body == BALL)[0]
 
 
 @pytest.mark.parametrize("belt", BELTS)

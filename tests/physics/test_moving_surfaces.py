@@ -5,15 +5,19 @@ One scene, its bodies far apart, in the default numerics: one compilation serves
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import numpy as np
 import pytest
 from physics_runs import GRAVITY, Course, run_config
+from shared_plan import shared_spec
 
 import lavendersim
+from lavendersim.experiment import load_experiment_text
 from lavendersim.measures import evaluate
 from lavendersim.measures.specs.optimality import Optimality
+from lavendersim.scene.plan import plan_of_cell
 from lavendersim.trace import open_trace
 
 BLOCK = "{kind: box, size: [0.2, 0.2, 0.2]}"
@@ -88,7 +92,9 @@ def test_logged_slip_is_that_of_the_surfaces(course: Course, body: str) -> None:
 def test_contacts_with_a_belt_keep_the_laws_of_contact(tmp_path: Path) -> None:
     """To the residuals of their steps; a slip that lacked the belt would be off by its speed."""
     config = tmp_path / "belt.yaml"
-    config.write_text(SCENE)
+    spec = shared_spec(plan_of_cell(load_experiment_text(SCENE, "belt.yaml").cells()[0]))
+    switches = dict.fromkeys((*spec.effects, *spec.shape_pairs), "on")  # compiled already
+    config.write_text(f"{SCENE}effects: {json.dumps(switches)}\n")
     (cell,) = lavendersim.run(config, root=tmp_path).run.cells
     found = evaluate(Optimality(kind="optimality"), open_trace(cell.path))
     # Products of numbers below 10 m/s and N s, rounded.

@@ -32,7 +32,7 @@ sweep:
 
 
 def test_a_ball_just_above_the_floor_is_where_it_fell_to() -> None:
-    for course in run_config(TEXT):
+    for course in run_config(TEXT, interpreted=True):
         time = np.arange(len(course.step)) * course.dt
         heights = course.coordinates["height"] - 0.5 * GRAVITY * time**2
         # ten roundings of 2^-53 of a height of up to 0.2 m
@@ -89,7 +89,7 @@ def places(share: float, ahead: str, force: float = 0.0, e: float = 1.0) -> tupl
     share: of the step, after which it is hit; force: on both, per mass [m/s^2].
     """
     first, last = (ahead, "") if "plane" in ahead else ("", ahead)
-    (course,) = run_config(HIT % (force, e, first, -(0.2 + share * WAY), last))
+    (course,) = run_config(HIT % (force, e, first, -(0.2 + share * WAY), last), interpreted=True)
     if last:
         assert course.names.index("hit") < course.names.index("boulder")
     hit, striker = (course.pose[-1, course.names.index(one), 0] for one in ("hit", "striker"))

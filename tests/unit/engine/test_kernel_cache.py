@@ -11,8 +11,9 @@ import pytest
 from numba.core.registry import cpu_target
 
 from lavendersim.cell import CellConfig
-from lavendersim.engine import compile_options
+from lavendersim.engine import compile_options, kernel_store
 from lavendersim.engine.kernel_cache import KernelCache
+from lavendersim.engine.kernel_parts import STORE
 from lavendersim.engine.spec import Spec
 from lavendersim.engine.step import advance_for, make_advance
 from lavendersim.experiment import load_experiment_text
@@ -131,13 +132,17 @@ def rows_of_a_drop(spec: Spec, config: CellConfig, kernel: Any) -> list[bytes]:
 
 
 def test_kernels_without_reference_counting_give_the_same_bits(
-    monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     assert "_nrt" in compile_options.OPTIONS, "this numba was to know the option"
     cell = load_experiment_text(DROPS, "drops.yaml").cells()[2]
     spec = plan_of(cell.config).spec
     without = rows_of_a_drop(spec, cell.config, advance_for(spec))
     monkeypatch.delitem(compile_options.OPTIONS, "_nrt")
+    # Options are of a process, and keys of parts take them as they were: none that is there serves.
+    monkeypatch.setattr(kernel_store, "directory", lambda: (tmp_path, ""))
+    for kept in ("_parts", "_codes"):
+        monkeypatch.setattr(STORE, kept, {})
     counting = make_advance(spec)  # composed here and kept nowhere
     assert counting.targetoptions.get("_nrt", True)
     assert rows_of_a_drop(spec, cell.config, counting) == without

@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from laboratory import Bench, box, plane, resolved, sphere
+from interpreted_steps import interpreted_bench
+from laboratory import box, plane, resolved, sphere
 
 STRETCH, STEPS = 0.02, 20
 DT = 1.0 / 240.0
@@ -28,7 +29,7 @@ def test_body_pressed_by_a_spring_stays_with_the_force_of_its_stretch(
     cell["scene"]["springs"] = [
         {"a": "hook", "b": "body", "stiffness": stiffness, "rest_length": 0.6 - STRETCH}
     ]
-    bench = Bench(cell, None)
+    bench = interpreted_bench(cell)
     rows = bench.run(STEPS)
     force = stiffness * STRETCH
     # A solve ends at 1e-9 m/s, of what forces change in a step by dt F/m.

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from interpreted_steps import interpreted_bench
 from laboratory import Bench, box, resolved, sphere
 
 STEPS = 40
@@ -27,7 +28,7 @@ def tied(fixed: bool, timestep: str = "1/60") -> Bench:
         {"a": "a", "b": "b", "stiffness": 1e7, "rest_length": 0.5}
         | {"point_a": (0.05, 0.08, 0.02), "point_b": (-0.1, 0.06, 0.1)}
     ]
-    return Bench(cell, None)
+    return interpreted_bench(cell)
 
 
 @pytest.mark.parametrize("fixed", [False, True])

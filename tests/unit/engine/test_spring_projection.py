@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from laboratory import Bench, plane, resolved, sphere
+from interpreted_steps import interpreted_bench
+from laboratory import plane, resolved, sphere
 
 
 def test_projection_does_no_work_on_a_spring() -> None:
@@ -16,7 +17,7 @@ def test_projection_does_no_work_on_a_spring() -> None:
     cell = resolved(bodies, (0.0, 0.0, 0.0), timestep="1/240", integrator="midpoint_contact")
     cell["numerics"]["projection"] = 0.2
     cell["scene"]["springs"] = [{"a": "hook", "b": "ball", "stiffness": 1e4, "rest_length": 0.5}]
-    bench = Bench(cell, None)
+    bench = interpreted_bench(cell)
     energy = np.array([bench.run(1).step[-1]["spring_energy"] for _ in range(20)])
     first = 0.5 * 1e4 * 0.095**2
     assert energy.max() <= first * (1.0 + 1e-9)

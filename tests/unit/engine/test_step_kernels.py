@@ -19,7 +19,7 @@ from lavendersim.scene.plan import plan_of_cell
 CONFIGS = Path(__file__).parents[3] / "configs"
 ENGINE = "lavendersim.engine."
 # One without friction that stops at a tolerance, one with it; one without, that records its sweeps.
-NAMES = ("scenes/drop", "scenes/stack_of_six", "chapter/warm_start")
+NAMES = ("scenes/drop", "scenes/incline", "chapter/warm_start")
 
 
 @pytest.mark.parametrize("name", NAMES)

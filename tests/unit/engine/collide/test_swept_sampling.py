@@ -8,6 +8,7 @@ import pytest
 from sweeps import DT, Pair
 
 from lavendersim.engine.records import TOUCHING
+from tests.thorough import THOROUGH
 
 ROUND_OFF = 1e-13  # of lengths of some metres [m]
 ANY = 100.0  # margin [m]: whatever comes however near
@@ -25,7 +26,8 @@ def separation_of(name: str, pair: Pair, half_b, turn_a, turn_b, centre: np.ndar
 
 
 @pytest.mark.parametrize(
-    ("name", "count"), [("sphere_sphere", 300), ("sphere_box", 300), ("box_box", 60)]
+    ("name", "count"),
+    [("sphere_sphere", 300), ("sphere_box", 300), ("box_box", 60 if THOROUGH else 30)],
 )
 def test_meetings_are_those_of_fine_sampling(rng, name, count):
     """Random sizes, turns and ways of up to 3 m. Of 400 samples the first that overlaps lies behind

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from interpreted_steps import interpreted_bench
 from laboratory import Bench, box, plane, planned, resolved, sphere
 
 from lavendersim.experiment.resolve.presets import DEFAULT
@@ -21,15 +22,10 @@ RADIUS, MASS = 0.1, 2.0
 SHARP = {"solver": "adaptive", "sweeps": 400, "tolerance": 1e-13}
 
 
-PAIRS = ("sphere_plane", "sphere_sphere")
-
-
 def balls(bodies: dict[str, Any], gravity: Any = (0.0, 0.0, 0.0), **numerics: Any) -> Bench:
-    """Balls, of which one engine serves all at each integrator: what a scene needs not is idle."""
+    """Balls, for a few hundred steps at most."""
     cell = resolved(bodies, gravity, **numerics)
-    spec = planned(cell).spec
-    more = ("fast_bodies", "projection") if spec.has("midpoint") else ("gravity",)
-    return Bench(cell, spec.including(*more)._replace(shape_pairs=PAIRS))
+    return interpreted_bench(cell, planned(cell).spec)
 
 
 def hanging(force: float, **numerics) -> Bench:
@@ -190,7 +186,7 @@ def test_the_pull_acts_at_the_contact_and_turns_what_it_pulls_off_centre() -> No
             RADIUS, (x, y, 0.5 * high + RADIUS), cohesion=force, velocity=(0.0, 0.0, 1.0)
         ),
     }
-    bench = Bench(resolved(bodies), None)
+    bench = interpreted_bench(resolved(bodies))
     bench.run(1)
     # The same about x and y, so that the turn of this step leaves the spin alone.
     inertia = mass * (wide**2 + high**2) / 12.0
@@ -243,8 +239,7 @@ def test_a_surface_without_cohesion_sticks_to_nothing() -> None:
         "ceiling": plane((0.0, 0.0, -1.0), -1.0),
         "ball": sphere(RADIUS, (0.0, 0.0, 1.0 - RADIUS), cohesion=1e3),
     }
-    plan = Bench(resolved(bodies, (0.0, 0.0, -G)), None).spec
-    assert "cohesion" not in plan.effects
+    assert "cohesion" not in planned(resolved(bodies, (0.0, 0.0, -G))).spec.effects
 
 
 @pytest.mark.parametrize("spin", [0.0, 5.0], ids=["still", "turning"])
@@ -258,7 +253,7 @@ def test_balls_that_part_are_drawn_as_much_where_they_turn(spin: float) -> None:
             RADIUS, (2.0 * RADIUS, 0.0, 0.0), mass=heavy, velocity=(speed, 0.0, 0.0), **common
         ),
     }
-    bench = Bench(resolved(bodies, **DEFAULT.model_dump(mode="json")), None)
+    bench = interpreted_bench(resolved(bodies, **DEFAULT.model_dump(mode="json")))
     rows = bench.run(1)
     np.testing.assert_array_equal(rows.contact["adhesive_impulse"], force * DT)
     gained, lost = force * DT / light, force * DT / heavy

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from interpreted_steps import interpreted_bench
 from laboratory import Bench, box, plane, planned, resolved, sphere
 
 from lavendersim.engine.spec import Spec
@@ -29,12 +30,9 @@ def law(speed: float, e: float = E_0, yields: float = YIELDS) -> float:
 
 
 def rigid(bodies: dict[str, Any], impacts: str) -> Bench:
-    """Balls without gravity; captured, one engine serves those on a floor and those in flight."""
+    """Balls without gravity, for a step or a few."""
     cell = resolved(bodies, impacts=impacts)
-    spec = planned(cell).spec
-    if impacts == "captured":
-        spec = spec._replace(shape_pairs=("sphere_plane", "sphere_sphere"))
-    return Bench(cell, spec)
+    return interpreted_bench(cell, planned(cell).spec)
 
 
 def thrown(speed: float, impacts: str, **surface: float) -> Bench:
@@ -124,7 +122,7 @@ def test_a_pair_takes_the_smaller_speed_above_0_and_the_larger_restitution() -> 
             "floor": plane(**floor),
             "ball": sphere(RADIUS, (0.0, 0.0, RADIUS), velocity=(0.0, 0.0, -8.0), **ball),
         }
-        bench = Bench(resolved(bodies, impacts="in_order"), None)
+        bench = rigid(bodies, "in_order")
         bench.run(1)
         expected = law(8.0, yields=yields) * 8.0
         assert bench.velocity[1, 2] == pytest.approx(expected, rel=ROUND_OFF)
@@ -144,7 +142,7 @@ def tilted(spec: Spec | None = None, **surface: float) -> Bench:
             **surface,
         ),
     }
-    return Bench(resolved(bodies, impacts="in_order", timestep="1/100"), spec)
+    return interpreted_bench(resolved(bodies, impacts="in_order", timestep="1/100"), spec)
 
 
 def test_an_impact_with_friction_is_that_of_a_constant_coefficient_of_its_speed() -> None:

@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from interpreted_steps import interpreted_bench
 from laboratory import Bench, planned, resolved, sphere
 
 DT = 1.0 / 240.0
@@ -30,13 +31,19 @@ def joined(bodies: dict[str, Any], gravity=(0.0, 0.0, 0.0), integrator="midpoint
     return cell
 
 
+def bench_of(cell: dict[str, Any]) -> Bench:
+    """Masses on springs, of which one engine of each integrator serves all."""
+    spec = planned(cell).spec.including("gravity")
+    return Bench(cell, spec._replace(shape_pairs=("sphere_sphere",)))
+
+
 def on_a_hook(**spring) -> Bench:
     """A mass on a spring whose other end stays, stretched along x."""
     bodies = {
         "hook": sphere(0.01, (0.0, 0.0, 0.0), fixed=True),
         "mass": sphere(0.05, (REST + STRETCH, 0.0, 0.0), mass=M),
     }
-    return Bench(joined(bodies, **spring), None)
+    return bench_of(joined(bodies, **spring))
 
 
 def stretches(bench: Bench, steps: int) -> np.ndarray:
@@ -95,7 +102,7 @@ def two(**spring) -> Bench:
         "light": sphere(0.05, (0.0, 0.0, 0.0), mass=1.0),
         "heavy": sphere(0.05, (REST + STRETCH, 0.0, 0.0), mass=3.0),
     }
-    return Bench(joined(bodies, **spring), None)
+    return bench_of(joined(bodies, **spring))
 
 
 def test_two_masses_swing_as_their_reduced_mass_and_keep_their_momentum() -> None:
@@ -130,7 +137,7 @@ def test_the_impulse_from_a_hook_is_logged_along_each_axis(names: tuple[str, str
         "hook": sphere(0.01, (0.0, 0.0, 0.0), fixed=True),
         "mass": sphere(0.05, (0.3, -0.5, 0.4), mass=M, velocity=(0.2, 0.1, -0.3)),
     }
-    rows = Bench(joined({name: bodies[name] for name in names}), None).run(STEPS).step
+    rows = bench_of(joined({name: bodies[name] for name in names})).run(STEPS).step
     for axis in "xyz":
         gained = np.diff(rows[f"momentum_{axis}"])
         assert np.abs(gained).max() > 0.01
@@ -159,7 +166,9 @@ def test_off_centre_the_force_is_that_of_the_velocities_it_leads_to() -> None:
         for i, name in enumerate(("one", "other"))
     }
     ends = {"point_a": tuple(points[0].tolist()), "point_b": tuple(points[1].tolist())}
-    bench = Bench(joined(bodies, integrator="semi_implicit_euler", damping=damping, **ends), None)
+    bench = interpreted_bench(
+        joined(bodies, integrator="semi_implicit_euler", damping=damping, **ends)
+    )
     force = float(bench.run(1).step["spring_force"][-1])
     between = places[1] + points[1] - places[0] - points[0]
     length = float(np.sqrt(between @ between))
@@ -187,7 +196,7 @@ def test_a_hanging_mass_comes_to_rest_where_the_spring_carries_it() -> None:
         "mass": sphere(0.05, (0.0, 0.0, -REST), mass=M),
     }
     # Critically damped: 2 sqrt(k m) = 20 N s/m; after 8 s, 40 decay times, e^-40 is left.
-    bench = Bench(joined(bodies, (0.0, 0.0, -9.81), damping=20.0), None)
+    bench = bench_of(joined(bodies, (0.0, 0.0, -9.81), damping=20.0))
     rows = bench.run(1920).step
     assert rows["spring_stretch"][-1] == pytest.approx(M * 9.81 / K, rel=1e-12)
     assert rows["spring_force"][-1] == pytest.approx(M * 9.81, rel=1e-12)
@@ -202,7 +211,7 @@ def test_off_their_centres_springs_turn_bodies_and_keep_angular_momentum() -> No
     # momenta stay; the midpoint rule trades this for the energy.
     ends = {"point_a": (0.1, 0.15, 0.0), "point_b": (0.0, -0.2, 0.1)}
     cell = joined(bodies, integrator="semi_implicit_euler", damping=0.3, **ends)
-    bench = Bench(cell, None)
+    bench = interpreted_bench(cell)
     rows = bench.run(STEPS).step
     assert np.abs(bench.spin).max() > 0.1
     for axis in "xyz":

@@ -10,7 +10,8 @@ from math import atan, cos, log1p, sin
 
 import numpy as np
 import pytest
-from laboratory import Bench, box, plane, resolved, sphere
+from interpreted_steps import interpreted_bench
+from laboratory import Bench, box, plane, planned, resolved, sphere
 
 G, DT = 9.81, 1.0 / 240.0
 KINETIC, STATIC, STRIBECK = 0.3, 0.6, 0.05
@@ -18,6 +19,12 @@ CURVE = {"friction": KINETIC, "static_friction": STATIC, "stribeck_velocity": ST
 SHARP = {"solver": "adaptive", "sweeps": 400, "tolerance": 1e-13}
 # Sweeps stop at 1e-13 m/s; what they leave may stay in the speed of all later steps.
 LEFT = 1e-13
+
+
+def bench_of(bodies: dict, gravity: tuple, **numerics) -> Bench:
+    """Boxes, of which one engine serves all: drag and belts that a scene has not are idle."""
+    cell = resolved(bodies, gravity, **SHARP, **numerics)
+    return Bench(cell, planned(cell).spec.including("drag", "surface_velocity"))
 
 
 def mu(v: float) -> float:
@@ -43,7 +50,7 @@ def block(tangent: float, speed: float = 0.0, **properties) -> Bench:
         ),
     }
     lean = atan(tangent)
-    return Bench(resolved(bodies, (G * sin(lean), 0.0, -G * cos(lean)), **SHARP), None)
+    return bench_of(bodies, (G * sin(lean), 0.0, -G * cos(lean)))
 
 
 def speeds(bench: Bench, steps: int) -> np.ndarray:
@@ -100,7 +107,7 @@ def test_two_surfaces_mix_as_kinetic_friction_does_and_take_the_larger_speed() -
         "floor": plane(**one),
         "block": box((0.4, 0.4, 0.05), (0.0, 0.0, 0.025), velocity=(speed, 0.0, 0.0), **other),
     }
-    rows = Bench(resolved(bodies, (0.0, 0.0, -G), **SHARP), None).run(1).contact
+    rows = bench_of(bodies, (0.0, 0.0, -G)).run(1).contact
     # A dozen roundings of products and roots.
     np.testing.assert_allclose(rows["friction"], mu(speed), rtol=12 * 1.1e-16)
 
@@ -122,7 +129,7 @@ def test_the_slip_is_that_of_the_two_surfaces_where_they_touch() -> None:
         "box": box((0.4, 0.4, high), (0.0, 0.0, 0.0), **given["box"]),
         "ball": sphere(radius, tuple(place.tolist()), **given["ball"]),
     }
-    rows = Bench(resolved(bodies)).run(1).contact
+    rows = interpreted_bench(resolved(bodies)).run(1).contact
     levers = {"box": place - [0.0, 0.0, radius], "ball": np.array([0.0, 0.0, -radius])}
     at = {
         name: np.array(v) + np.cross(w, levers[name]) + np.array(s)
@@ -149,7 +156,7 @@ def test_where_nothing_is_held_more_at_rest_the_effect_is_absent() -> None:
         "floor": plane(friction=0.5, static_friction=0.4),
         "block": box((0.4, 0.4, 0.05), (0.0, 0.0, 0.025), friction=0.5, static_friction=0.4),
     }
-    assert "static_friction" not in Bench(resolved(bodies, (0.0, 0.0, -G)), None).spec.effects
+    assert "static_friction" not in planned(resolved(bodies, (0.0, 0.0, -G))).spec.effects
 
 
 def way(v: float) -> float:
@@ -175,8 +182,7 @@ def stopping_way(rate: int, speed: float) -> float:
             (0.4, 0.4, 0.05), (0.0, 0.0, 0.025), velocity=(speed, 0.0, 0.0), mass=2.0, **CURVE
         ),
     }
-    sharp = {**SHARP, "timestep": f"1/{rate}"}
-    bench = Bench(resolved(bodies, (0.0, 0.0, -G), **sharp), None)
+    bench = bench_of(bodies, (0.0, 0.0, -G), timestep=f"1/{rate}")
     bench.run(int(2.0 * speed / (G * KINETIC) * rate))
     assert abs(bench.velocity[1, 0]) < 1e-9
     # Poses move by new velocities, v dt / 2 less in all than by the mean of old and new.

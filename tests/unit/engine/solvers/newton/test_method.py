@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from interpreted_steps import interpreted_bench
 from laboratory import Bench, box, plane, planned, resolved
 
 from lavendersim.engine.solvers.newton.response import update_shift
@@ -28,8 +29,8 @@ def tower(count, heavy=1.0, **top):
 
 
 def bench(bodies, gravity=(0.0, 0.0, -G), solver="adaptive", cone="disc"):
-    """A scene on its own plan, with the disc on one that all scenes here share: it is compiled
-    once. What it has beside what a scene requires is idle there (tests/composition).
+    """A scene, with the disc on a plan that all scenes here share: it is compiled once. What it has
+    beside what a scene requires is idle there (tests/composition). Without it it is interpreted.
     """
     cell = resolved(
         bodies,
@@ -42,10 +43,10 @@ def bench(bodies, gravity=(0.0, 0.0, -G), solver="adaptive", cone="disc"):
         friction_cone=cone,
     )
     spec = planned(cell).spec
-    if cone == "disc":
-        shared = spec.including("broad_phase", "fast_bodies", "gyroscopic")
-        spec = shared._replace(shape_pairs=("box_box", "box_plane"))
-    return Bench(cell, spec)
+    if cone != "disc":
+        return interpreted_bench(cell, spec)
+    shared = spec.including("broad_phase", "fast_bodies", "gyroscopic")
+    return Bench(cell, shared._replace(shape_pairs=("box_box", "box_plane")))
 
 
 def on_floor(rows):

@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
+from interpreted_steps import interpreted_bench
 from laboratory import Bench, box, plane, resolved, sphere
 
 from lavendersim.engine.engine import Rows
@@ -36,7 +37,7 @@ def twisted_tower(history: str = "none") -> Bench:
         bodies, (0.0, 0.0, -G), solver="adaptive", sweeps=LAST, tolerance=5.0, warm_start=False
     )
     cell["record"]["residuals"] = history
-    return Bench(cell, spec=None)
+    return interpreted_bench(cell)
 
 
 class Ended(NamedTuple):
@@ -127,7 +128,7 @@ def test_balls_on_each_other_are_held_up_by_torques_alone(heavy: float) -> None:
     for k in range(count):
         bodies[f"ball_{k}"] = sphere(radius, (0, 0, heights[k]), mass=masses[k], **surface)
     numerics = {"solver": "adaptive", "sweeps": 60, "tolerance": tolerance}
-    bench = Bench(resolved(bodies, (G * slope, 0.0, -G), **numerics), spec=None)
+    bench = interpreted_bench(resolved(bodies, (G * slope, 0.0, -G), **numerics))
     rows = bench.run(1)
     assert rows.step["not_converged"][-1] == 0
     assert int(bench.engine.counters["newton_steps"][0]) > 0
