@@ -18,7 +18,9 @@ def test_a_table_is_written_as_it_was_read() -> None:
     written = json.loads(json.dumps(table.as_data()))
     assert CostTable.of(written) == table
     own = {"front": False, "engine": "lavender", "settings": {}, "least_error": None}
-    added = {"rows": [row_data(accuracy=1e-3, **own)], "refused": {}, "sentences": []}
+    own |= {"contacts": None, "iterations": None}
+    added = {"rows": [row_data(accuracy=1e-3, **own)]}
+    added |= {"refused": {}, "sentences": [], "efforts": {}}
     assert written == data | added
     assert list(written["rows"][0])[:5] == ["role", "preset", "timestep", "solver", "sweeps"]
 
