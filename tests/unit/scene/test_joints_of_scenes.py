@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from lavendersim.engine.collide.joint import FIRST_AXIS
+from lavendersim.engine.collide.joint import DIRECTIONS, FIRST_ROW
 from lavendersim.engine.collide.rope import ROPE
 from lavendersim.engine.records import ROPE_END
 from lavendersim.experiment import load_experiment_text
@@ -51,7 +51,7 @@ def test_ends_stand_behind_those_of_ropes_by_the_rows_of_their_bodies() -> None:
 
 def test_pairs_of_joints_stand_before_ropes_and_these_before_shapes() -> None:
     pairs = SCENE.pairs
-    assert pairs["kind"][:7].tolist() == [*(FIRST_AXIS - np.tile(range(3), 2)), ROPE]
+    assert pairs["kind"][:7].tolist() == [*(FIRST_ROW - np.tile(np.arange(3) * (DIRECTIONS + 1), 2)), ROPE]
     assert pairs["a"][:6].tolist() == [5, 5, 5, 7, 7, 7]
     assert np.all(np.diff(pairs["key"]) > 0)
     # Of shapes the box and the post are no pair; the box and the ball are, and ball and post.
