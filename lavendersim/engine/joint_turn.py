@@ -9,7 +9,7 @@ the joint is, so that energy, momentum and angular momentum are kept at once.
 A row of the start has the levers of the start; what it leaves is projected back in the same step:
     r_1 - r_0 - f x r_0 = (f x r_0 + f x (f x r_0)/2)/(1 + |f|^2/4) - f x r_0,    f = dt w
 
-A row along a direction n of A's own frame asks that n . e stays, e from A's centre to B's end:
+A row of ends that slide, its n of A's own frame, asks that n . e stays, e from A's centre to B's:
     n_1 . e_1 - n_0 . e_0 = m . (e_1 - e_0) + (n_1 - n_0) . (e_0 + e_1)/2,    m = (n_0 + n_1)/2
                           = m . (e_1 - e_0 - dt w_A x (e_0 + e_1)/2)
 so that with m for its normal, and with the mean of e for the lever of A, it is kept to the last
@@ -20,7 +20,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from .collide.joint import free_along, turns_with_a
+from .collide.joint import free_along, is_sliding
 from .collide.records import put_arms, put_normal
 from .compile import inner, kernel
 from .integrate import LASTING
@@ -53,7 +53,7 @@ def put_mean_ends(contact, kind, end_a, end_b, bodies, poses):
     a, b = bodies[contact.a], bodies[contact.b]
     arm_a = mean_lever(a, poses[contact.a], minus(position(end_a), position(a)))
     arm_b = mean_lever(b, poses[contact.b], minus(position(end_b), position(b)))
-    if turns_with_a(kind):
+    if is_sliding(kind):
         n = mean_lever(a, poses[contact.a], Vec3(contact.nx, contact.ny, contact.nz))
         put_normal(contact, scaled(1.0 / length(n), n))
         arm_a = minus(plus(position(b), arm_b), position(a))
@@ -139,7 +139,7 @@ def make_turned_apart(spec: Spec) -> Any:
         f = turn_of(vb, mb, dt)
         turned = turned_by(f, arm_b)
         of_b = minus(turned, cross(f, arm_b))
-        if contact.with_a == 1:
+        if contact.sliding == 1:
             way = plus(minus(way_of(vb, mb, dt), way_of(va, ma, dt)), turned)
             return turned_with_a(contact, n, va, ma, way, of_b, dt)
         f = turn_of(va, ma, dt)

@@ -2,10 +2,11 @@
 
     phi = n . (x_B - x_A),   n an axis of the world or of A's end;   x_A, x_B: its ends on each body
 The two rows of the body table that stand for the ends of a point follow the bodies that they are of
-(`effects.compound`), and touch nothing. Along an axis of the world each body gets the impulse at
-its own end: ends that are apart by d, within what projection leaves, are turned by the two together
-by d x p. Along an axis of A's end, which turns with A, both get it at B's end:
-    dphi/dt = n . (v_B + w_B x r_B - v_A - w_A x (r_A + d))
+(`effects.compound`), and touch nothing. Each body gets the impulse at its own end: ends that are
+apart by d, within what projection leaves, are turned by the two together by d x p. So are rows of
+one joint alike about their axis, whatever d: in a linkage of parallel hinges, which has rows too
+many, they never contradict each other. Ends that slide are apart; both get the impulse at B's:
+    dphi/dt = n . (v_B + w_B x r_B - v_A - w_A x (r_A + d)),    n turns with A
 """
 
 from __future__ import annotations
@@ -39,15 +40,15 @@ def direction_of(kind):
 
 
 @inner
-def turns_with_a(kind):
-    """Whether the direction of the row of a pair of this kind is of A's end."""
-    return direction_of(kind) >= WITH_A
+def is_sliding(kind):
+    """Whether the ends of a pair of this kind slide, across the direction of its row."""
+    return direction_of(kind) >= SLIDING
 
 
 @inner
 def free_along(kind, end):
     """Return the unit vector along which the ends of a pair of this kind slide, or 0; end: of A."""
-    if direction_of(kind) >= SLIDING:
+    if is_sliding(kind):
         return Vec3(end.r02, end.r12, end.r22)
     return Vec3(0.0, 0.0, 0.0)
 
@@ -70,9 +71,9 @@ def _direction(kind, end):
 def put_ends(contact, kind, end_a, end_b, a, b):
     """Fill what a row of a joint has of its ends, where these are; a, b: the bodies themselves."""
     at_a, at_b = position(end_a), position(end_b)
-    contact.with_a = 0
-    if turns_with_a(kind):
-        at_a, contact.with_a = at_b, 1
+    contact.sliding = 0
+    if is_sliding(kind):
+        at_a, contact.sliding = at_b, 1
     put_arms(contact, minus(at_a, position(a)), minus(at_b, position(b)))
     free = free_along(kind, end_a)
     contact.free_x, contact.free_y, contact.free_z = free.x, free.y, free.z
@@ -89,7 +90,7 @@ def make_joint(spec: Spec):
         d = minus(position(b), position(a))
         put_manifold_normal(scratch.manifold, n)
         at = plus_scaled(position(a), 0.5, d)
-        if turns_with_a(kind):
+        if is_sliding(kind):
             at = position(b)
         row = (FIRST_ROW - kind) // DIRECTIONS
         place(scratch.manifold.points[0], at, dot(n, d), FIRST_JOINT + ROWS * int(a.hy) + row)

@@ -200,7 +200,7 @@ def contact_fields(spec: Spec) -> list[Field]:
         fields += [
             (f"{name}_{body}{axis}", "f8") for name in arms for body in "ab" for axis in "xyz"
         ]
-        fields.append(("with_a", "i8"))  # 1: its direction is of A's frame, and turns with it
+        fields.append(("sliding", "i8"))  # 1: its ends slide across its direction, which is of A
         fields += [(f"free_{axis}", "f8") for axis in "xyz"]  # unit, where its ends slide; or 0
     return fields
 
