@@ -13,11 +13,11 @@ from ..overlooked_points import make_note_left_out
 from ..records import TOUCHING
 from ..row_terms import row_terms
 from ..spec import Spec
-from ..vectors import Vec3, dot, minus, position
+from ..vectors import Vec3, dot
 from .joint import make_joint, put_ends
 from .manifold.point import LEFT_OUT, WHOLE, manifold_normal
 from .pairs import SHAPE_PAIRS
-from .records import put_arms, put_normal
+from .records import put_normal
 from .rope import ROPE, make_rope
 from .swept import make_is_fast, make_swept_manifold
 

@@ -86,8 +86,7 @@ def pulling(scene: Any) -> Mapping[str, Rope]:
     return {
         name: one
         for name, one in scene.connections.items()
-        if not isinstance(one, Joint)
-        and any(_moves(scene.bodies[body]) for body in one.between)
+        if not isinstance(one, Joint) and any(_moves(scene.bodies[body]) for body in one.between)
     }
 
 
