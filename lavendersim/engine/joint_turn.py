@@ -87,6 +87,13 @@ def turned_by(f, r):
     return scaled(1.0 / (1.0 + 0.25 * dot(f, f)), plus(moved, scaled(0.5, cross(f, moved))))
 
 
+@inner
+def _left_by_direction(n, f, e, way):
+    """Return (n_1 - n) . (e + way) - (f x n) . e: n turns with A, by f; way: of B's end from A."""
+    turned = turned_by(f, n)
+    return dot(minus(turned, cross(f, n)), e) + dot(turned, way)
+
+
 def make_turned_apart(spec: Spec) -> Any:
     """Return `kernel(contact, velocities, motion, dt) -> how far` along a row of the start [m].
 
@@ -112,16 +119,6 @@ def make_turned_apart(spec: Spec) -> Any:
 
     way_of = kernel(way_of, spec)
 
-    def turned_with_a(contact, n, va, ma, way, of_b, dt):
-        # n_1 . e_1 - n . e less what the row has of it; way: of B's end, from A's centre.
-        f = turn_of(va, ma, dt)
-        e = Vec3(contact.arm_ax, contact.arm_ay, contact.arm_az)
-        turned = turned_by(f, n)
-        left = dot(minus(turned, cross(f, n)), e)
-        return left + dot(turned, way) + dot(n, of_b)
-
-    turned_with_a = kernel(turned_with_a, spec)
-
     def turned_apart(contact, velocities, motion, dt):
         if not turns:
             return 0.0
@@ -140,7 +137,7 @@ def make_turned_apart(spec: Spec) -> Any:
         of_b = minus(turned, cross(f, arm_b))
         if contact.sliding == 1:
             way = plus(minus(way_of(vb, mb, dt), way_of(va, ma, dt)), turned)
-            return turned_with_a(contact, n, va, ma, way, of_b, dt)
+            return _left_by_direction(n, turn_of(va, ma, dt), arm_a, way) + dot(n, of_b)
         f = turn_of(va, ma, dt)
         of_a = minus(turned_by(f, arm_a), cross(f, arm_a))
         return dot(n, minus(of_b, of_a))

@@ -110,15 +110,15 @@ def with_joints(
     """Return the table of pairs with those of joints before it; first: row of the first end."""
     if not spec.has("joint"):
         return pairs
-    held, rows = list(holding(scene).values()), []
+    joints_by_number, table_rows = list(holding(scene).values()), []
     while first < len(bodies):
-        one = held[int(bodies["hy"][first])]
+        one = joints_by_number[int(bodies["hy"][first])]
         for k, row in enumerate(one.rows):
             end = first + 2 * row.point
-            rows.append((end, end + 1, FIRST_ROW - (DIRECTIONS * k + row.direction)))
+            table_rows.append((end, end + 1, FIRST_ROW - (DIRECTIONS * k + row.direction)))
         first += 2 * _points(one)
-    joints = allocate_pairs(spec, len(rows))
-    joints["a"], joints["b"], joints["kind"] = np.array(rows).T
+    joints = allocate_pairs(spec, len(table_rows))
+    joints["a"], joints["b"], joints["kind"] = np.array(table_rows).T
     before = min(0, int(pairs["key"].min())) if len(pairs) else 0
     joints["key"] = np.arange(before - len(joints), before)  # all keys ascend
     for record in joints:

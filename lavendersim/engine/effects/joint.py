@@ -56,7 +56,7 @@ SLIDER = (
 
 
 class Joint(ConfigModel):
-    """What all joints are told: whom they join and where."""
+    """What all joints have: two bodies, and a place."""
 
     kind: str
     between: _Names = ModelField(description="names of two bodies, of which at least one moves")
@@ -159,7 +159,7 @@ def holding(scene: Any) -> Mapping[str, Joint]:
 
 
 def turned_by_joints(scene: Any) -> Iterator[str]:
-    """Yield the movable bodies that a joint may turn: held beside their centre, or turned with."""
+    """Yield the movable bodies that a joint may turn: beside their centre, or with the other body."""
     for one in holding(scene).values():
         for name in one.between:
             body = scene.bodies[name]

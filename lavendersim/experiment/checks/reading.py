@@ -15,7 +15,7 @@ from typing import Any, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
-from lavendersim.engine.effects.joint import JOINTS
+from lavendersim.engine.effects import JOINTS
 from lavendersim.experiment.checks.messages import report_errors
 from lavendersim.experiment.models.shapes import SOLIDS
 from lavendersim.experiment.models.tree import BODIES, bodies_of, swept_values
