@@ -63,7 +63,7 @@ def put_mean_ends(contact, kind, end_a, end_b, bodies, poses):
 
 
 def make_joint_velocity(spec: Spec) -> Any:
-    """Return `kernel(contact, va, vb) -> Vec3`: of B's end from A's, but for where it slides [m/s]."""
+    """Return `kernel(contact, va, vb) -> Vec3`: of B's end from A's, less where it slides [m/s]."""
     turns = row_terms(spec).levers
 
     def joint_velocity(contact, va, vb):

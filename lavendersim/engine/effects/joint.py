@@ -159,7 +159,7 @@ def holding(scene: Any) -> Mapping[str, Joint]:
 
 
 def turned_by_joints(scene: Any) -> Iterator[str]:
-    """Yield the movable bodies that a joint may turn: beside their centre, or with the other body."""
+    """Yield the movable bodies that a joint may turn: beside their centre, or with the other."""
     for one in holding(scene).values():
         for name in one.between:
             body = scene.bodies[name]
