@@ -243,3 +243,10 @@ def test_a_block_slides_down_its_slider_as_down_a_smooth_slope(ran: dict[str, St
     assert abs(spin).max() <= 1e-9 / 0.02  # what solves leave, at the body's radius of gyration
     force, _ = load(states, 4)
     assert np.linalg.norm(force) == pytest.approx(3.0 * GRAVITY * math.cos(SLOPE), rel=1e-6)
+
+
+def test_joints_stay_together_where_no_force_acts_at_all() -> None:
+    """A plan of its own: nothing accelerates bodies, and yet joints move them by their mean."""
+    states = run_scenes({"hinge": flight("hinge", 120)})["hinge"]
+    assert abs(states.contact["separation"]).max() <= 1e-10
+    assert np.ptp(states.energy()) <= 1e-8
