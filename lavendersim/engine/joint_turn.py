@@ -8,17 +8,25 @@ project, which would do work. Both bodies then have their impulse at one point, 
 the joint is, so that energy, momentum and angular momentum are kept at once.
 A row of the start has the levers of the start; what it leaves is projected back in the same step:
     r_1 - r_0 - f x r_0 = (f x r_0 + f x (f x r_0)/2)/(1 + |f|^2/4) - f x r_0,    f = dt w
+
+A row of ends that slide, its n of A's own frame, asks that n . e stays, e from A's centre to B's:
+    n_1 . e_1 - n_0 . e_0 = m . (e_1 - e_0) + (n_1 - n_0) . (e_0 + e_1)/2,    m = (n_0 + n_1)/2
+                          = m . (e_1 - e_0 - dt w_A x (e_0 + e_1)/2)
+so that with m for its normal, and with the mean of e for the lever of A, it is kept to the last
+digit as well, wherever along A its ends have slid to.
 """
 
 from __future__ import annotations
 
 from typing import Any
 
+from .collide.joint import free_along, is_sliding
+from .collide.records import put_arms, put_normal
 from .compile import inner, kernel
 from .integrate import LASTING
 from .row_terms import row_terms
 from .spec import Spec
-from .vectors import Vec3, cross, dot, minus, plus, scaled
+from .vectors import Vec3, cross, dot, length, minus, plus, position, scaled
 
 
 @inner
@@ -36,8 +44,26 @@ def mean_lever(body, start, r):
     return plus(scaled(1.0 - 2.0 * dot(v, v), r), scaled(2.0 * dot(v, r), v))
 
 
+@inner
+def put_mean_ends(contact, kind, end_a, end_b, bodies, poses):
+    """Fill levers and direction of a joint's row: their means over the turns of its bodies.
+
+    end_a, end_b: its ends half way, as bodies are; poses: rows of the bodies at the start.
+    """
+    a, b = bodies[contact.a], bodies[contact.b]
+    arm_a = mean_lever(a, poses[contact.a], minus(position(end_a), position(a)))
+    arm_b = mean_lever(b, poses[contact.b], minus(position(end_b), position(b)))
+    if is_sliding(kind):
+        n = mean_lever(a, poses[contact.a], Vec3(contact.nx, contact.ny, contact.nz))
+        put_normal(contact, scaled(1.0 / length(n), n))
+        arm_a = minus(plus(position(b), arm_b), position(a))
+    put_arms(contact, arm_a, arm_b)
+    free = free_along(kind, end_a)
+    contact.free_x, contact.free_y, contact.free_z = free.x, free.y, free.z
+
+
 def make_joint_velocity(spec: Spec) -> Any:
-    """Return `kernel(contact, va, vb) -> Vec3`: of B's point of the joint from A's [m/s]."""
+    """Return `kernel(contact, va, vb) -> Vec3`: of B's end from A's, less where it slides [m/s]."""
     turns = row_terms(spec).levers
 
     def joint_velocity(contact, va, vb):
@@ -47,9 +73,25 @@ def make_joint_velocity(spec: Spec) -> Any:
             arm_b = Vec3(contact.arm_bx, contact.arm_by, contact.arm_bz)
             v = plus(v, cross(Vec3(vb.wx, vb.wy, vb.wz), arm_b))
             v = minus(v, cross(Vec3(va.wx, va.wy, va.wz), arm_a))
+            free = Vec3(contact.free_x, contact.free_y, contact.free_z)
+            v = minus(v, scaled(dot(free, v), free))
         return v
 
     return kernel(joint_velocity, spec)
+
+
+@inner
+def turned_by(f, r):
+    """Return r_1 - r, r turned by the spin f/dt for dt."""
+    moved = cross(f, r)
+    return scaled(1.0 / (1.0 + 0.25 * dot(f, f)), plus(moved, scaled(0.5, cross(f, moved))))
+
+
+@inner
+def _left_by_direction(n, f, e, way):
+    """Return (n_1 - n) . (e + way) - (f x n) . e: n turns with A, by f; way: of B's end from A."""
+    turned = turned_by(f, n)
+    return dot(minus(turned, cross(f, n)), e) + dot(turned, way)
 
 
 def make_turned_apart(spec: Spec) -> Any:
@@ -59,17 +101,23 @@ def make_turned_apart(spec: Spec) -> Any:
     """
     turns, keeps = row_terms(spec).levers, spec.has("contact_midpoint")
 
-    def beyond(r, v, m, dt):
+    def turn_of(v, m, dt):
         w = Vec3(v.wx, v.wy, v.wz)
         if keeps:
             if m.carried == LASTING:
                 w = scaled(0.5, plus(w, Vec3(m.wx, m.wy, m.wz)))
-        f = scaled(dt, w)
-        moved = cross(f, r)
-        turned = scaled(1.0 / (1.0 + 0.25 * dot(f, f)), plus(moved, scaled(0.5, cross(f, moved))))
-        return minus(turned, moved)
+        return scaled(dt, w)
 
-    beyond = kernel(beyond, spec)
+    turn_of = kernel(turn_of, spec)
+
+    def way_of(v, m, dt):
+        u = Vec3(v.vx, v.vy, v.vz)
+        if keeps:
+            if m.carried == LASTING:
+                u = scaled(0.5, plus(u, Vec3(m.vx, m.vy, m.vz)))
+        return scaled(dt, u)
+
+    way_of = kernel(way_of, spec)
 
     def turned_apart(contact, velocities, motion, dt):
         if not turns:
@@ -82,8 +130,16 @@ def make_turned_apart(spec: Spec) -> Any:
                 return 0.0
         arm_a = Vec3(contact.arm_ax, contact.arm_ay, contact.arm_az)
         arm_b = Vec3(contact.arm_bx, contact.arm_by, contact.arm_bz)
-        of_a = beyond(arm_a, velocities[a], motion[a], dt)
-        of_b = beyond(arm_b, velocities[b], motion[b], dt)
-        return dot(Vec3(contact.nx, contact.ny, contact.nz), minus(of_b, of_a))
+        va, vb, ma, mb = velocities[a], velocities[b], motion[a], motion[b]
+        n = Vec3(contact.nx, contact.ny, contact.nz)
+        f = turn_of(vb, mb, dt)
+        turned = turned_by(f, arm_b)
+        of_b = minus(turned, cross(f, arm_b))
+        if contact.sliding == 1:
+            way = plus(minus(way_of(vb, mb, dt), way_of(va, ma, dt)), turned)
+            return _left_by_direction(n, turn_of(va, ma, dt), arm_a, way) + dot(n, of_b)
+        f = turn_of(va, ma, dt)
+        of_a = minus(turned_by(f, arm_a), cross(f, arm_a))
+        return dot(n, minus(of_b, of_a))
 
     return kernel(turned_apart, spec)

@@ -11,17 +11,16 @@ from typing import Any
 
 from .collide.manifold.point import WHOLE, manifold_normal
 from .collide.narrow_phase import make_manifold
-from .collide.records import UNBOUNDED, put_arms, put_normal
+from .collide.records import UNBOUNDED, put_normal
 from .collide.rope import ROPE
 from .compile import inner, kernel
 from .effects import made_once
 from .effects.gyroscopic import make_turn_midway
-from .joint_turn import mean_lever
+from .joint_turn import put_mean_ends
 from .records import BOX, HULL, PLANE, TOUCHING
 from .rotation import half_turn, is_round
 from .row_terms import row_terms
 from .spec import Spec
-from .vectors import minus, position
 
 # Contacts are looked for at the middle up to this share of a body's size apart.
 APART = 0.1
@@ -156,16 +155,11 @@ def make_look(spec: Spec) -> Any:
                     if ropes:
                         if row.kind == ROPE:
                             contact.span = a.hx - point.phi
-                    if arms:
-                        if row.kind < ROPE:
-                            one, other = bodies[contact.a], bodies[contact.b]
-                            arm_a = minus(position(a), position(one))
-                            arm_b = minus(position(b), position(other))
-                            arm_a = mean_lever(one, poses[contact.a], arm_a)
-                            arm_b = mean_lever(other, poses[contact.b], arm_b)
-                            put_arms(contact, arm_a, arm_b)
                     contact.x, contact.y, contact.z = point.x, point.y, point.z
                     put_normal(contact, manifold_normal(scratch.manifold))
+                    if arms:
+                        if row.kind < ROPE:
+                            put_mean_ends(contact, row.kind, a, b, bodies, poses)
                     if swept:
                         contact.tangential_x, contact.tangential_y = 0.0, 0.0
                         contact.tangential_z = 0.0

@@ -19,6 +19,7 @@ from lavendersim.cell import Plane
 from lavendersim.geometry.bodies import is_movable
 from lavendersim.geometry.shapes import bounding_radius
 from lavendersim.replay.force_scale import CONTACT_KEY, ForceScale
+from lavendersim.replay.joint_forces import with_whole_forces
 from lavendersim.replay.layer import ALONE, Layer
 from lavendersim.replay.removal import clear_removed
 from lavendersim.replay.scene import BODIES, GRIDS, WORLD, Extent, entity
@@ -107,8 +108,8 @@ def values_of(trace: Trace, plot: Plot) -> npt.NDArray[np.float64]:
 
 
 def contacts_of(trace: Trace) -> npt.NDArray[Any]:
-    """The trace's contacts; the log of a run without any may not even name their fields."""
-    contact = trace.recorded_contact
+    """The trace's contacts, and one force a joint; a run without any may not name their fields."""
+    contact = with_whole_forces(trace.recorded_contact)
     return contact if len(contact) else np.zeros(0, [(name, "f8") for name in CONTACT_FIELDS])
 
 

@@ -1,4 +1,4 @@
-"""How long the arrows of contact forces are drawn, and the sentence that tells the scale.
+"""How long arrows of forces are drawn, and the sentence that tells the scale.
 
 A resting weight of 10 N and an impact of 2 kN are in the same recording. The arrow of the typical
 lasting contact gets a readable length; longer ones are cut and coloured, never shrunk in secret.
@@ -12,10 +12,13 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from lavendersim.replay.joint_forces import has_joints
+
 CONTACT_KEY = ("body_a", "body_b", "feature")  # equal from step to step while a contact lasts
 LASTING_SHARE = 0.1  # of the longest contact's loaded steps
 
 TYPICAL_LENGTH = 0.25  # of the scene's diagonal: seen beside a body, smaller than the scene
+OF_CONTACTS = "contact forces"
 CUT_LENGTH = 0.5  # of the scene's diagonal: still inside the picture
 
 
@@ -25,11 +28,12 @@ class ForceScale(NamedTuple):
     newtons_per_metre: float
     cut: float
     any_cut: bool
+    whose: str = OF_CONTACTS
 
     @property
     def label(self) -> str:
         """The scale in words, for the title of the view."""
-        ruler = f"contact forces: 1 m = {self.newtons_per_metre:g} N"
+        ruler = f"{self.whose}: 1 m = {self.newtons_per_metre:g} N"
         limit = f", cut and red over {self.cut * self.newtons_per_metre:.3g} N"
         return ruler + (limit if self.any_cut else "")
 
@@ -63,7 +67,14 @@ def force_scale(contact: npt.NDArray[Any], diagonal: float) -> ForceScale:
     newtons_per_metre = _round(typical / (TYPICAL_LENGTH * diagonal))
     cut = CUT_LENGTH * diagonal
     any_cut = bool((force > cut * newtons_per_metre).any())
-    return ForceScale(newtons_per_metre, cut, any_cut)
+    return ForceScale(newtons_per_metre, cut, any_cut, _whose(contact))
+
+
+def _whose(contact: npt.NDArray[Any]) -> str:
+    if not has_joints(contact):
+        return OF_CONTACTS
+    alone = bool((contact["joint"] > 0).all())
+    return "forces of joints" if alone else "forces of contacts and joints"
 
 
 def _round(value: float) -> float:

@@ -13,11 +13,11 @@ from ..overlooked_points import make_note_left_out
 from ..records import TOUCHING
 from ..row_terms import row_terms
 from ..spec import Spec
-from ..vectors import Vec3, dot, minus, position
-from .joint import make_joint
+from ..vectors import Vec3, dot
+from .joint import make_joint, put_ends
 from .manifold.point import LEFT_OUT, WHOLE, manifold_normal
 from .pairs import SHAPE_PAIRS
-from .records import put_arms, put_normal
+from .records import put_normal
 from .rope import ROPE, make_rope
 from .swept import make_is_fast, make_swept_manifold
 
@@ -162,11 +162,8 @@ def make(spec: Spec):
                 if bilateral:
                     contact.bilateral = 1 if pairs[p].kind < ROPE else 0
                     if levers and contact.bilateral == 1:
-                        put_arms(
-                            contact,
-                            minus(position(bodies[i]), position(bodies[owner_i])),
-                            minus(position(bodies[j]), position(bodies[owner_j])),
-                        )
+                        a, b = bodies[owner_i], bodies[owner_j]
+                        put_ends(contact, pairs[p].kind, bodies[i], bodies[j], a, b)
                 if sweeps:
                     # Across n B's surface is touched where B will be at the impact.
                     along = dot(d, n)

@@ -12,7 +12,7 @@ from ..records import Field
 from ..spec import Spec
 from .decision import BodyFacts, Decision, Facts, PairFacts
 from .effect import CHAINED, Choice, Column, Derived, Effect, Hooks, hook_names
-from .joint import holding, turned_by_joints
+from .joint import JOINTS, holding, turned_by_joints
 from .keys import TurnOf
 from .rope import pulling
 from .time_functions import TimeFunction
@@ -151,6 +151,7 @@ __all__ = [
     "CHAINED",
     "EFFECTS",
     "EVENT_KEYS",
+    "JOINTS",
     "MOTION_KEYS",
     "SCENE_KEYS",
     "SURFACE_KEYS",

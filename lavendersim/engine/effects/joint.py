@@ -1,9 +1,14 @@
-"""Joint: a point of one body and a point of another stay together, whatever pulls or pushes.
+"""Joint: two bodies move only as it lets them relative to each other, whatever pulls or pushes.
 
-    r = x_B - x_A = 0,    v_B - v_A = 0        of the two points, in three directions of the world
-Each direction is a row without a cone: its impulse may have either sign, and no law but the
-equation holds for it. The rows stand among those of contacts and are solved, carried to the middle
-of the step and projected with them: one after the other by sweeps, all at once by Newton's method.
+    n . (x_B - x_A) = 0,    n . (v_B - v_A) = 0        of two points, in the direction of each row
+A ball joint has three rows of its point, along the axes of the world. A hinge has two more, of a
+point further along its axis, across that axis; a fixed joint has a sixth, of a point beside it. A
+slider has its rows across its axis alone: two of each of two points along it, one beside it.
+Rows across an axis are along directions that turn with A.
+
+Each row has no cone: its impulse may have either sign, and no law but the equation holds for it.
+The rows stand among those of contacts and are solved, carried to the middle of the step and
+projected with them: one after the other by sweeps, all at once by Newton's method.
 
     w = n . (v_B - v_A) + target = 0,    lambda_n <- lambda_n - w/k_n
 
@@ -15,14 +20,14 @@ the points stay together. What other steps leave is projected back, all of it.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, NamedTuple
 
 from pydantic import Field as ModelField
 from pydantic import Strict
 
 from lavendersim.quantities.model import ConfigModel
 from lavendersim.quantities.names import BodyName
-from lavendersim.quantities.quantity import Quantity, Vector, Vector3
+from lavendersim.quantities.quantity import Direction, Quantity, Vector, Vector3
 
 from ..records import Field
 from ..spec import Spec
@@ -32,13 +37,28 @@ from .effect import Column, Effect, Fields, Hooks, Kernel, RowTerms, kernel
 _Point = Annotated[Vector3, Vector(3, Quantity("m"))]
 # In a cell's JSON they are lists.
 _Names = Annotated[tuple[BodyName, ...], Strict(False), ModelField(min_length=2, max_length=2)]
-AXES = 3  # rows of a ball joint
 
 
-class BallJoint(ConfigModel):
-    """A ball joint: two bodies share a point, about which they turn freely."""
+class RowOfJoint(NamedTuple):
+    """A row: which point of the joint, which direction (`collide.joint`)."""
 
-    kind: Literal["ball"] = ModelField(description="`ball`")
+    point: int  # 0: where the joint is; 1: further along its axis, z; 2: beside it, along x
+    direction: int  # x y z of the world: 0 1 2; of the end on A: 3 4, where ends slide along z: 6 7
+
+
+BALL = (RowOfJoint(0, 0), RowOfJoint(0, 1), RowOfJoint(0, 2))
+HINGE = (*BALL, RowOfJoint(1, 3), RowOfJoint(1, 4))
+FIXED = (*HINGE, RowOfJoint(2, 4))
+SLIDER = (
+    *(RowOfJoint(0, 6), RowOfJoint(0, 7), RowOfJoint(1, 6), RowOfJoint(1, 7)),
+    RowOfJoint(2, 7),
+)
+
+
+class Joint(ConfigModel):
+    """What all joints have: two bodies, and a place."""
+
+    kind: str
     between: _Names = ModelField(description="names of two bodies, of which at least one moves")
     at: _Point = ModelField(description="[m] the point that they share, as the run begins")
     collide: bool = ModelField(
@@ -47,7 +67,7 @@ class BallJoint(ConfigModel):
 
     @classmethod
     def rules(cls, at: Any) -> None:
-        """It joins two bodies."""
+        """Two different bodies."""
         names = [one.text for one in at.get("between").items]
         if len(names) == 2 and names[0] is not None and names[0] == names[1]:
             sentence = f'"{names[0]}" twice; expected two bodies'
@@ -58,23 +78,93 @@ class BallJoint(ConfigModel):
         """Return its bodies, for a sentence."""
         return " and ".join(self.between)
 
+    @property
+    def rows(self) -> tuple[RowOfJoint, ...]:
+        """Return its rows, in their order."""
+        return BALL
 
-def holding(scene: Any) -> Mapping[str, BallJoint]:
+    @property
+    def along(self) -> Vector3:
+        """Return the direction of its axis; of a joint without one any will do."""
+        return (1.0, 0.0, 0.0)
+
+
+class BallJoint(Joint):
+    """A ball joint: two bodies share a point, about which they turn freely."""
+
+    kind: Literal["ball"] = ModelField(description="`ball`")
+
+
+class HingeJoint(Joint):
+    """A hinge: two bodies share an axis, about which they turn freely."""
+
+    kind: Literal["hinge"] = ModelField(description="`hinge`")
+    axis: Direction = ModelField(
+        description="its axis through `at`, world frame, as the run begins; is normalised"
+    )
+
+    @property
+    def rows(self) -> tuple[RowOfJoint, ...]:
+        """Return its rows, in their order."""
+        return HINGE
+
+    @property
+    def along(self) -> Vector3:
+        """Return the direction of its axis."""
+        return self.axis
+
+
+class FixedJoint(Joint):
+    """A fixed joint: two bodies move as one."""
+
+    kind: Literal["fixed"] = ModelField(description="`fixed`")
+
+    @property
+    def rows(self) -> tuple[RowOfJoint, ...]:
+        """Return its rows, in their order."""
+        return FIXED
+
+
+class SliderJoint(Joint):
+    """A slider: two bodies turn as one, and slide freely along an axis."""
+
+    kind: Literal["slider"] = ModelField(description="`slider`")
+    axis: Direction = ModelField(
+        description="its axis through `at`, world frame, as the run begins; is normalised"
+    )
+
+    @property
+    def rows(self) -> tuple[RowOfJoint, ...]:
+        """Return its rows, in their order."""
+        return SLIDER
+
+    @property
+    def along(self) -> Vector3:
+        """Return the direction of its axis."""
+        return self.axis
+
+
+JOINTS = ("ball", "hinge", "fixed", "slider")
+AnyJoint = BallJoint | HingeJoint | FixedJoint | SliderJoint
+
+
+def holding(scene: Any) -> Mapping[str, Joint]:
     """Return the joints of a scene that hold a body that moves, by name; in the file's order."""
     return {
         name: one
         for name, one in scene.connections.items()
-        if isinstance(one, BallJoint)
+        if isinstance(one, Joint)
         if not all(scene.bodies[body].fixed for body in one.between)
     }
 
 
 def turned_by_joints(scene: Any) -> Iterator[str]:
-    """Yield the movable bodies that a joint holds beside their centre of mass."""
+    """Yield the movable bodies that a joint may turn: beside their centre, or with the other."""
     for one in holding(scene).values():
         for name in one.between:
             body = scene.bodies[name]
-            if not body.fixed and tuple(body.position) != tuple(one.at):
+            centred = one.rows == BALL and tuple(body.position) == tuple(one.at)
+            if not body.fixed and not centred:
                 yield name
 
 
@@ -110,6 +200,8 @@ def contact_fields(spec: Spec) -> list[Field]:
         fields += [
             (f"{name}_{body}{axis}", "f8") for name in arms for body in "ab" for axis in "xyz"
         ]
+        fields.append(("sliding", "i8"))  # 1: its ends slide across its direction, which is of A
+        fields += [(f"free_{axis}", "f8") for axis in "xyz"]  # unit, where its ends slide; or 0
     return fields
 
 

@@ -130,6 +130,9 @@ def make(spec):
                 elif centred:
                     if contact.lasts == 1:
                         v_n = 0.5 * (v_n + contact.middle_n)
+            elif bilateral and centred:
+                if contact.bilateral == 1:  # no force acts, and joints move bodies by their mean
+                    v_n = 0.5 * (v_n + contact.middle_n)
             if at_surface:
                 ma, mb = motion[contact.a], motion[contact.b]
                 if ma.tau < params.dt or mb.tau < params.dt:

@@ -21,7 +21,7 @@ from lavendersim.quantities.quantity import Quantity, Vector, Vector3
 from ..spec import Spec
 from .decision import Decision, Facts, named
 from .effect import Column, Effect, Fields, Hooks, Kernel, RowTerms, kernel
-from .joint import BallJoint
+from .joint import AnyJoint, Joint
 from .keys import SceneKey, TurnOf
 
 _CENTRE: Vector3 = (0.0, 0.0, 0.0)
@@ -62,14 +62,14 @@ class Rope(ConfigModel):
         return " and ".join(self.between)
 
 
-Connections = dict[NewName, Annotated[Rope | BallJoint, ModelField(discriminator="kind")]]
+Connections = dict[NewName, Annotated[Rope | AnyJoint, ModelField(discriminator="kind")]]
 
 
 def resolve(connections: Connections, turn: TurnOf) -> Connections:
     """Return them with their points in the frames of principal axes."""
     return {
         name: one
-        if isinstance(one, BallJoint)
+        if isinstance(one, Joint)
         else one.model_copy(
             update={
                 "points": tuple(
@@ -86,8 +86,7 @@ def pulling(scene: Any) -> Mapping[str, Rope]:
     return {
         name: one
         for name, one in scene.connections.items()
-        if not isinstance(one, BallJoint)
-        and any(_moves(scene.bodies[body]) for body in one.between)
+        if not isinstance(one, Joint) and any(_moves(scene.bodies[body]) for body in one.between)
     }
 
 
@@ -131,7 +130,7 @@ EFFECT = Effect(
             name="connections",
             type=Connections,
             default={},
-            doc="name: what connects two bodies, a rope or a ball joint",
+            doc="name: what connects two bodies, a rope or a joint",
             resolve=resolve,
         ),
     ),

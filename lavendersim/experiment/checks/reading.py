@@ -15,6 +15,7 @@ from typing import Any, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
+from lavendersim.engine.effects import JOINTS
 from lavendersim.experiment.checks.messages import report_errors
 from lavendersim.experiment.models.shapes import SOLIDS
 from lavendersim.experiment.models.tree import BODIES, bodies_of, swept_values
@@ -47,15 +48,15 @@ class Reading:
             "body": bodies_of(self.root),
             "plane": self.root.get(*BODIES).entries,
             "measure": self.root.get("measure").entries,
-            "rope": self._connections("rope"),
-            "joint": self._connections("ball"),
+            "rope": self._connections(("rope",)),
+            "joint": self._connections(JOINTS),
             "surface": self.root.get("scene", "surfaces").entries,
             "axis": self._axes,
         }
 
-    def _connections(self, kind: str) -> list[str]:
+    def _connections(self, kinds: Collection[str]) -> list[str]:
         connections = self.root.get("scene", "connections").entries
-        return [name for name, one in connections.items() if one.get("kind").text == kind]
+        return [name for name, one in connections.items() if one.get("kind").text in kinds]
 
     @cached_property
     def _swept(self) -> dict[str, list[Node]]:

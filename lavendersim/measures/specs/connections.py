@@ -33,3 +33,16 @@ class JointForce(Measure):
     statistic: Literal["mean", "largest"] = Field(
         default="mean", description="magnitude of the window's mean force, or its largest of a step"
     )
+
+
+class JointTorque(Measure):
+    """Magnitude of the torque [N m] about its `at` that a joint passes on as the run ends."""
+
+    READS = CONTACTS
+    kind: Literal["joint_torque"]
+    connection: JointName = Field(description="name of the joint")
+    last: Seconds = Field(default=0.25, description="length of the window at the end [s]")
+    statistic: Literal["mean", "largest"] = Field(
+        default="mean",
+        description="magnitude of the window's mean torque, or its largest of a step",
+    )

@@ -32,9 +32,12 @@ def body() -> np.recarray:
     return row(rows)
 
 
+def matrix(one) -> np.ndarray:
+    return np.array([[getattr(one, f"r{i}{j}") for j in range(3)] for i in range(3)])
+
+
 def placed(one) -> np.ndarray:
-    matrix = np.array([[getattr(one, f"r{i}{j}") for j in range(3)] for i in range(3)])
-    return matrix @ ARM
+    return matrix(one) @ ARM
 
 
 def test_mean_lever_is_that_of_both_ends_of_the_turn() -> None:
@@ -49,7 +52,8 @@ def test_mean_lever_is_that_of_both_ends_of_the_turn() -> None:
 def contact(arm_a: np.ndarray, arm_b: np.ndarray, n: np.ndarray) -> SimpleNamespace:
     arms = {f"arm_{name}": x for name, x in zip(NAMES, [*arm_a, *arm_b], strict=True)}
     normal = dict(zip(("nx", "ny", "nz"), n, strict=True))
-    return SimpleNamespace(a=0, b=1, lasts=1, **arms, **normal)
+    free = dict.fromkeys(("free_x", "free_y", "free_z"), 0.0)
+    return SimpleNamespace(a=0, b=1, lasts=1, sliding=0, **arms, **normal, **free)
 
 
 def moving(velocity: np.ndarray, spin: np.ndarray, **more: float) -> SimpleNamespace:
@@ -80,6 +84,35 @@ def test_a_row_of_the_start_leaves_what_the_turn_adds_to_its_rate(side: int) -> 
         one = contact(arms[0], arms[1], np.eye(3)[axis])
         found = interpreted(make_turned_apart(CENTRED))(one, velocities, still, DT)
         assert found == pytest.approx((2 * side - 1) * left[axis], abs=1e-15)
+
+
+def test_velocity_of_a_joint_is_without_that_along_which_its_ends_slide() -> None:
+    one = contact(ARM, ARM, np.eye(3)[0])
+    one.free_x, one.free_z = 0.6, 0.8
+    v = np.array([1.0, 2.0, 3.0])
+    found = interpreted(make_joint_velocity(SPEC))(one, moving(0 * v, 0 * v), moving(v, 0 * v))
+    free = np.array([0.6, 0.0, 0.8])
+    np.testing.assert_allclose(np.array(found), v - (free @ v) * free, atol=1e-15)
+
+
+def test_a_row_across_a_slider_leaves_what_its_turning_direction_adds() -> None:
+    """n_1 . e_1 - n . e, both bodies turning and moving, less dt times the row's velocity."""
+    start, end_a, end_b = body(), body(), body()
+    other = np.array([2.0, 1.0, -4.0])
+    interpreted(turn)(end_a, *(DT * SPIN))
+    interpreted(turn)(end_b, *(DT * other))
+    turns = [matrix(end) @ matrix(start).T for end in (end_a, end_b)]
+    n, r, e = np.array([0.6, 0.0, 0.8]), np.array([0.2, -0.5, 0.1]), np.array([1.0, 0.3, -0.2])
+    va, vb = np.array([1.0, 2.0, 3.0]), np.array([-1.0, 0.5, 2.0])
+    later = e + DT * (vb - va) + turns[1] @ r - r
+    rate = n @ (vb + np.cross(other, r) - va - np.cross(SPIN, e))
+    expected = (turns[0] @ n) @ later - n @ e - DT * rate
+    one = contact(e, r, n)
+    one.sliding = 1
+    still = [SimpleNamespace(tau=DT, midway=0, carried=0) for _ in range(2)]
+    velocities = [moving(va, SPIN), moving(vb, other)]
+    found = interpreted(make_turned_apart(CENTRED))(one, velocities, still, DT)
+    assert found == pytest.approx(expected, abs=1e-14)
 
 
 def test_rows_at_the_middle_and_in_an_impact_leave_nothing_and_lasting_ones_by_their_mean() -> None:

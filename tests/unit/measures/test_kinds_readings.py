@@ -90,7 +90,8 @@ def watched(**body: Any) -> Watched:
     config = ball_and_floor(**body)
     config["scene"] |= {**TILTED, "connections": {"line": LINE, "arm": ARM}}
     ropes = np.zeros(len(log.contact), np.int64)
-    contact = append_fields(log.contact, ["rope", "joint"], [ropes, ropes], usemask=False)
+    names = ["rope", "joint", *({*"xyz"} - {*log.contact.dtype.names})]
+    contact = append_fields(log.contact, names, [ropes] * len(names), usemask=False)
     made = Watched(step=step, contact=contact, pose=log.pose, resolved=config)
     made.velocity = np.zeros((*log.pose.shape[:2], 6))
     made.__dict__["asked"] = set()
@@ -104,7 +105,7 @@ def asked_of(log: Watched) -> frozenset[str]:
 def spec_of(model: type[Measure], *optional: str) -> Measure:
     needed = [name for name, field in model.model_fields.items() if field.is_required()]
     given = {name: VALUES[name] for name in (*needed, *optional) if name != "kind"}
-    if model is KINDS["joint_force"]:
+    if model in (KINDS["joint_force"], KINDS["joint_torque"]):
         given["connection"] = "arm"
     kind = get_args(model.model_fields["kind"].annotation)[0]
     return model.model_validate({"kind": kind, **given})

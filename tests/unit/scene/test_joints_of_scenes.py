@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
-from lavendersim.engine.collide.joint import FIRST_AXIS
+from lavendersim.engine.collide.joint import DIRECTIONS, FIRST_ROW
 from lavendersim.engine.collide.rope import ROPE
 from lavendersim.engine.records import ROPE_END
 from lavendersim.experiment import load_experiment_text
@@ -51,7 +52,8 @@ def test_ends_stand_behind_those_of_ropes_by_the_rows_of_their_bodies() -> None:
 
 def test_pairs_of_joints_stand_before_ropes_and_these_before_shapes() -> None:
     pairs = SCENE.pairs
-    assert pairs["kind"][:7].tolist() == [*(FIRST_AXIS - np.tile(range(3), 2)), ROPE]
+    kinds = FIRST_ROW - np.arange(3) * (DIRECTIONS + 1)
+    assert pairs["kind"][:7].tolist() == [*kinds, *kinds, ROPE]
     assert pairs["a"][:6].tolist() == [5, 5, 5, 7, 7, 7]
     assert np.all(np.diff(pairs["key"]) > 0)
     # Of shapes the box and the post are no pair; the box and the ball are, and ball and post.
@@ -68,3 +70,35 @@ def test_facts_have_joints_as_pairs_and_leave_out_whom_they_join() -> None:
     shapes = [pair for pair in facts.pairs if pair.shape_pair not in ("rope", "joint")]
     assert {(pair.a, pair.b) for pair in shapes} == {("post", "ball"), ("box", "ball")}
     assert facts.pair_count == 2 + 1 + 6
+
+
+OTHERS = TEXT.replace("kind: ball, between: [ball, box]", "kind: fixed, between: [ball, box]")
+OTHERS = OTHERS.replace("at: [1, 0, 1]}", "at: [1, 0, 1], axis: [0, 2, 0]}")
+OTHERS = OTHERS.replace("kind: ball, between: [box, post]", "kind: hinge, between: [box, post]")
+
+
+def test_a_hinge_has_a_second_point_along_its_axis_and_a_fixed_joint_a_third_beside_it() -> None:
+    config = load_experiment_text(OTHERS, "x.yaml").cells()[0].config
+    scene = build(config, plan_of(config).spec)
+    ends = scene.bodies[5:]
+    assert ends["owner"].tolist() == [0, 1] * 2 + [1, 2] * 3
+    places = np.column_stack([ends[axis] for axis in "xyz"])
+    np.testing.assert_allclose(places[::2], places[1::2], atol=1e-15)
+    # Only the box moves: 1/m by the mean of 1/I is the distance squared; 12 I/m of its edges.
+    apart = np.sqrt(3.0 / 12.0 / (1.0 / 0.2 + 1.0 / 0.2 + 1.0 / 0.08))
+    np.testing.assert_allclose(places[2] - places[0], [0, apart, 0], atol=1e-15)
+    along, beside = places[6] - places[4], places[8] - places[4]
+    assert along @ beside == pytest.approx(0.0, abs=1e-15)
+    assert np.linalg.norm(along) == pytest.approx(np.linalg.norm(beside), rel=1e-14)
+    # The axes of both ends are those of one frame, z along the axis, however their bodies stand.
+    frames = np.stack([[ends[f"r{i}{j}"] for j in range(3)] for i in range(3)]).transpose(2, 0, 1)
+    np.testing.assert_allclose(frames[::2], frames[1::2], atol=1e-15)
+    np.testing.assert_allclose(frames[0][:, 2], [0, 1, 0], atol=1e-15)
+    rows = scene.pairs[:11]
+    assert rows["a"].tolist() == [5, 5, 5, 7, 7, 9, 9, 9, 11, 11, 13]
+    directions = [0, 1, 2, 3, 4]
+    assert [(FIRST_ROW - kind) % DIRECTIONS for kind in rows["kind"].tolist()] == [
+        *directions,
+        *directions,
+        4,
+    ]

@@ -1,6 +1,8 @@
-"""Rows of a joint: phi = n . (x_B - x_A) along each axis, half way between its ends."""
+"""Rows of a joint: phi = n . (x_B - x_A) half way between its ends, or at B's."""
 
 from __future__ import annotations
+
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -8,12 +10,14 @@ from interpreted import interpreted, records
 from single_bodies import row, scratch_of
 
 from lavendersim.engine.collide.joint import (
-    FIRST_AXIS,
+    DIRECTIONS,
     FIRST_JOINT,
+    FIRST_ROW,
     ROWS,
-    axis_of,
+    direction_of,
     make_joint,
     number_of,
+    put_ends,
 )
 from lavendersim.engine.collide.narrow_phase import make_manifold
 from lavendersim.engine.collide.rope import ROPE, make_count_connections
@@ -22,20 +26,33 @@ from lavendersim.engine.spec import Spec
 
 SPEC = Spec(("compound", "frictionless_contact", "joint"), ("sphere_sphere",))
 START, APART, NUMBER = np.array([0.1, -0.2, 0.3]), np.array([0.02, -0.03, 0.05]), 5
+# Columns of the end on A: those of a turn about z by 3-4-5, then about x by 5-12-13.
+FRAME = (
+    np.array([[13, 0, 0], [0, 5, -12], [0, 12, 5]])
+    / 13.0
+    @ np.array([[3, -4, 0], [4, 3, 0], [0, 0, 5]])
+    / 5.0
+)
 
 
 def end(place: np.ndarray):
     rows = allocate_bodies(SPEC, 1)
     rows["x"], rows["y"], rows["z"] = place
     rows["hy"] = NUMBER
+    for i, j in np.ndindex(3, 3):
+        rows[f"r{i}{j}"] = FRAME[i, j]
     return row(rows)
+
+
+def kind_of(which: int, direction: int) -> int:
+    return FIRST_ROW - (DIRECTIONS * which + direction)
 
 
 @pytest.mark.parametrize("axis", range(3))
 def test_each_row_has_the_distance_of_the_ends_along_its_axis(axis: int) -> None:
     scratch = scratch_of([])
     joint = interpreted(make_joint(SPEC))
-    assert joint(FIRST_AXIS - axis, end(START), end(START + APART), scratch) == 1
+    assert joint(kind_of(axis, axis), end(START), end(START + APART), scratch) == 1
     point = scratch.manifold.points.array[0]
     assert point["phi"] == pytest.approx(APART[axis], abs=1e-16)
     np.testing.assert_array_equal(scratch.manifold.normal, np.eye(3)[axis])
@@ -43,15 +60,41 @@ def test_each_row_has_the_distance_of_the_ends_along_its_axis(axis: int) -> None
     assert point["feature"] == FIRST_JOINT + ROWS * NUMBER + axis
 
 
+@pytest.mark.parametrize(
+    ("direction", "column", "slides"), [(3, 0, 0), (4, 1, 0), (6, 0, 1), (7, 1, 1)]
+)
+def test_directions_of_its_own_are_those_of_the_end_on_a(
+    direction: int, column: int, slides: int
+) -> None:
+    scratch = scratch_of([])
+    one, other = end(START), end(START + APART)
+    assert interpreted(make_joint(SPEC))(kind_of(5, direction), one, other, scratch) == 1
+    point = scratch.manifold.points.array[0]
+    np.testing.assert_array_equal(scratch.manifold.normal, FRAME[:, column])
+    assert point["phi"] == pytest.approx(FRAME[:, column] @ APART, abs=1e-16)
+    # Where ends slide, both bodies are pushed at B's.
+    at = START + (APART if slides else 0.5 * APART)
+    np.testing.assert_allclose([point[a] for a in "xyz"], at, atol=1e-16)
+    assert point["feature"] == FIRST_JOINT + ROWS * NUMBER + 5
+    contact, still = SimpleNamespace(), end(np.zeros(3))
+    interpreted(put_ends)(contact, kind_of(5, direction), one, other, still, still)
+    assert contact.sliding == slides
+    arm = [contact.arm_ax, contact.arm_ay, contact.arm_az]
+    np.testing.assert_array_equal(arm, START + APART if slides else START)
+    free = [contact.free_x, contact.free_y, contact.free_z]
+    np.testing.assert_array_equal(free, slides * FRAME[:, 2])
+
+
 def test_kind_and_feature_say_which_row_it_is() -> None:
-    assert [interpreted(axis_of)(FIRST_AXIS - axis) for axis in range(3)] == [0, 1, 2]
+    found = [interpreted(direction_of)(kind_of(which, 7 - which)) for which in range(8)]
+    assert found == [7 - which for which in range(8)]
     number = interpreted(number_of)
     assert [number(FIRST_JOINT + ROWS * k + 2) for k in (0, 7)] == [1, 8]
 
 
 def test_manifolds_of_its_pairs_are_made_beyond_any_margin() -> None:
     manifold, scratch = interpreted(make_manifold(SPEC, SPEC.shape_pairs)), scratch_of([])
-    assert manifold(FIRST_AXIS, end(START), end(START + 9.0), 1e-9, scratch) == 1
+    assert manifold(FIRST_ROW, end(START), end(START + 9.0), 1e-9, scratch) == 1
     pairs = allocate_pairs(SPEC, 4)
-    pairs["kind"] = [FIRST_AXIS - 2, ROPE, 0, FIRST_AXIS]
+    pairs["kind"] = [kind_of(2, 2), ROPE, 0, FIRST_ROW]
     assert interpreted(make_count_connections(SPEC))(records(pairs)) == 2

@@ -54,6 +54,17 @@ def test_a_joint_at_the_centre_of_what_moves_turns_nothing() -> None:
     assert not {"contact_torque", "rotation"} & {*plan.spec.effects}
 
 
+@pytest.mark.parametrize(
+    ("kind", "free"), [("ball", 3), ("hinge, axis: [0, 0, 2]", 1), ("fixed", 0)]
+)
+def test_rows_are_six_less_what_the_joint_leaves_free(kind: str, free: int) -> None:
+    text = TEXT.format(joint=f"kind: {kind}, between: [hook, bob], at: [0, 0, 0]")
+    found = load_experiment_text(text, "x.yaml").cells()[0].config.scene
+    assert len(holding(found)["arm"].rows) == 6 - free
+    # At its centre a ball joint turns nothing; any other turns what it holds with the other body.
+    assert list(turned_by_joints(found)) == ([] if free == 3 else ["bob"])
+
+
 def test_names_of_joints_are_those_that_hold_and_are_no_ropes() -> None:
     text = TEXT.format(joint="kind: ball, between: [hook, bob], at: [0, 0, 1]")
     found = load_experiment_text(text, "x.yaml").cells()[0].config.scene
@@ -68,6 +79,10 @@ def test_names_of_joints_are_those_that_hold_and_are_no_ropes() -> None:
         ("kind: ball, between: [hook, bop], at: [0, 0, 1]", 'no body is called "bop"'),
         ("kind: ball, between: [bob, bob], at: [0, 0, 1]", 'between: "bob" twice'),
         ("kind: ball, between: [hook, bob], at: [0, 0]", "at"),
+        ("kind: hinge, between: [hook, bob], at: [0, 0, 1]", 'missing key "axis"'),
+        ("kind: slider, between: [hook, bob], at: [0, 0, 1], axis: [0, 0, 0]", "only zeros"),
+        ("kind: fixed, between: [hook, bob], at: [0, 0, 1], axis: [0, 0, 1]", 'unknown key "axis"'),
+        ("kind: hing, between: [hook, bob], at: [0, 0, 1]", 'did you mean "hinge"?'),
         ("kind: bal, between: [hook, bob], at: [0, 0, 1]", "ball"),
         ("kind: ball, between: [hook, bob], at: [0, 0, 1], colide: true", "collide"),
     ],

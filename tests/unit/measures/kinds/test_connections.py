@@ -10,7 +10,7 @@ import pytest
 
 from lavendersim.engine.effects.joint import BallJoint
 from lavendersim.measures import evaluate
-from lavendersim.measures.specs.connections import JointForce, Tension
+from lavendersim.measures.specs.connections import JointForce, JointTorque, Tension
 
 DT = 0.01
 
@@ -82,3 +82,23 @@ def test_force_of_a_joint_is_the_magnitude_of_its_mean_or_the_largest_of_a_step(
     assert joint_force("arm", statistic="largest") == 13.0
     assert math.isnan(joint_force("idle"))
     assert math.isnan(joint_force("arm", last=1.0))
+
+
+def test_torque_of_a_joint_is_about_its_first_row_of_each_step() -> None:
+    """2 N up at the joint, which moves along x, and 2 N down 3 m beside it: 6 N m, then 12."""
+    names = ("step", "joint", "x", "y", "z", "nx", "ny", "nz", "force_n")
+    contact = np.zeros(20, [(n, "i8" if n in names[:2] else "f8") for n in names])
+    contact["step"], contact["joint"], contact["nz"] = np.repeat(np.arange(1, 11), 2), 1, 1.0
+    contact["x"] = 0.5 * contact["step"]
+    contact["y"][1::2], contact["force_n"] = 3.0, np.tile([2.0, -2.0], 10)
+    contact["force_n"][-2:] *= 2.0
+    made = log()
+    arm = BallJoint.model_construct(kind="ball", between=("w", "b"))
+    made.contact, made.config.scene.connections = contact, {"arm": arm}
+
+    def torque(**more: str) -> float:
+        spec = JointTorque(kind="joint_torque", connection="arm", last=0.02, **more)
+        return evaluate(spec, made)
+
+    assert torque() == pytest.approx(9.0, rel=1e-15)
+    assert torque(statistic="largest") == pytest.approx(12.0, rel=1e-15)
