@@ -53,7 +53,8 @@ def judged(monkeypatch: pytest.MonkeyPatch) -> Any:
 
 
 def run(results: RunResults | None) -> Any:
-    return SimpleNamespace(path=Path("run"), finished=results is not None, results=lambda: results)
+    known: dict[str, Any] = {"path": Path("run"), "not_understood": ""}
+    return SimpleNamespace(finished=results is not None, results=lambda: results, **known)
 
 
 def results(cells: list[CellResult], *checks: Verdict, passed: bool = True) -> RunResults:
