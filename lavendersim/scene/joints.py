@@ -108,7 +108,7 @@ def with_joints(
     spec: Spec, pairs: np.ndarray, bodies: np.ndarray, first: int, scene: CellScene
 ) -> np.ndarray:
     """Return the table of pairs with those of joints before it; first: row of the first end."""
-    if not spec.has("joint"):
+    if not spec.has("joint") or first == len(bodies):
         return pairs
     joints_by_number, table_rows = list(holding(scene).values()), []
     while first < len(bodies):

@@ -32,7 +32,8 @@ numerics: {timestep: 1/100}
 duration: 0.1
 """
 CONFIG = load_experiment_text(TEXT, "x.yaml").cells()[0].config
-SCENE = build(CONFIG, plan_of(CONFIG).spec)
+SPEC = plan_of(CONFIG).spec
+SCENE = build(CONFIG, SPEC)
 
 
 def test_ends_stand_behind_those_of_ropes_by_the_rows_of_their_bodies() -> None:
@@ -102,3 +103,10 @@ def test_a_hinge_has_a_second_point_along_its_axis_and_a_fixed_joint_a_third_bes
         *directions,
         4,
     ]
+
+
+def test_a_scene_without_joints_has_no_rows_of_theirs_where_the_effect_is_on() -> None:
+    config = load_experiment_text(TEXT.partition("  connections:")[0] + "duration: 0.1\n", "x.yaml")
+    scene = build(config.cells()[0].config, SPEC)
+    assert len(scene.bodies) == 3
+    assert (scene.pairs["kind"] > FIRST_ROW).all()
