@@ -10,17 +10,12 @@ from typing import Any
 import pytest
 from numba.core.registry import cpu_target
 
-from lavendersim.cell import CellConfig
-from lavendersim.engine import compile_options, kernel_store
+from lavendersim.engine import compile_options
 from lavendersim.engine.kernel_cache import KernelCache
-from lavendersim.engine.kernel_parts import STORE
 from lavendersim.engine.spec import Spec
-from lavendersim.engine.step import advance_for, make_advance
-from lavendersim.experiment import load_experiment_text
-from lavendersim.scene.build import build
-from lavendersim.scene.plan import plan_of
+from lavendersim.engine.step import make_advance
 from tests.kept_kernels import of_scenes
-from tests.runner.small_configs import DROPS, RUN, copy_package, python, run_in_new_process, write
+from tests.runner.small_configs import RUN, copy_package, python, run_in_new_process, write
 
 
 @pytest.fixture(scope="module")
@@ -123,30 +118,26 @@ def test_without_any_cache_directory_a_run_compiles_and_says_so(
     assert alone["logs"] == first["logs"]
 
 
-def rows_of_a_drop(spec: Spec, config: CellConfig, kernel: Any) -> list[bytes]:
-    """Return the recorded rows of 120 steps of a drop under a kernel."""
-    engine = build(config, spec).engine(spec)
-    engine._kernel, engine._entry = kernel, None
-    engine.advance(120)
-    return [rows.tobytes() for rows in engine.take_rows()]
+# Another numba may not know the option: all its kernels count references, and hand on memory array
+# by array. Kernels of both kinds do not go together.
+COUNTING = """
+from lavendersim.engine import compile_options
+del compile_options.OPTIONS["_nrt"]
+from lavendersim.engine.kernel_expressions import ShortExpressions
+def refuse(*_):
+    raise AssertionError("a kernel without counts")
+ShortExpressions.lower_expr = refuse
+"""
 
 
-def test_kernels_without_reference_counting_give_the_same_bits(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+def test_kernels_with_reference_counting_give_the_same_bits(
+    kept: tuple[Path, Path, dict[str, Any]], tmp_path: Path
 ) -> None:
     assert "_nrt" in compile_options.OPTIONS, "this numba was to know the option"
-    cell = load_experiment_text(DROPS, "drops.yaml").cells()[2]
-    spec = plan_of(cell.config).spec
-    without = rows_of_a_drop(spec, cell.config, advance_for(spec))
-    monkeypatch.delitem(compile_options.OPTIONS, "_nrt")
-    # Options are of a process, and keys of parts take them as they were: none that is there serves.
-    monkeypatch.setattr(kernel_store, "directory", lambda: (tmp_path, ""))
-    for kept in ("_parts", "_codes"):
-        monkeypatch.setattr(STORE, kept, {})
-    counting = make_advance(spec)  # composed here and kept nowhere
-    assert counting.targetoptions.get("_nrt", True)
-    assert rows_of_a_drop(spec, cell.config, counting) == without
-    assert len(without[0]) > 120 * 100
+    config, _, first = kept
+    kernels = str(tmp_path / "kernels")
+    said = python(COUNTING + RUN, config, tmp_path / "runs", LAVENDER_CACHE_DIR=kernels)
+    assert json.loads(said.splitlines()[-1])["logs"] == first["logs"]
 
 
 # A numba that lacks what `part_compiler` leans on: importing it fails, and `njit` takes its place.
