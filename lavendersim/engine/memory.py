@@ -10,6 +10,7 @@ of no rows, or (): it takes part in no kernel.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import cache
 from typing import Any, NamedTuple
 
@@ -130,6 +131,15 @@ class Log(NamedTuple):
     residual: np.ndarray  # (rows,) of sweeps
     pose_bits: np.ndarray  # `pose` as uint64, for the hash of the state
     velocity_bits: np.ndarray  # (n, words) State.velocities as uint64
+
+
+def arrays_of(memory: Any) -> Iterator[np.ndarray]:
+    """Yield every array in nested tuples, in their order."""
+    if isinstance(memory, np.ndarray):
+        yield memory
+    elif isinstance(memory, tuple):
+        for part in memory:
+            yield from arrays_of(part)
 
 
 def allocate_state(

@@ -12,7 +12,7 @@ were given gets arrays of its own, and goes on by itself from then on.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache, partial
 from itertools import pairwise
@@ -24,7 +24,7 @@ import numpy as np
 from .compile import Kernel, compiling, kernel, uncollected
 from .engine import Engine
 from .kernel_cache import cached
-from .memory import Log, State, Workspace
+from .memory import Log, State, Workspace, arrays_of
 from .memory_references import memory_at, words_of
 from .records import CONTACTS_FULL, PAIRS_FULL, ROWS_FULL, WOKEN
 from .spec import Spec
@@ -60,8 +60,9 @@ class Worlds:
             raise ValueError("no worlds")
         self.engines = tuple(engines)
         memories = [_memory_of(engine) for engine in engines]
-        forms = [(engine.spec, _form(_memory_of(engine))) for engine in engines]
-        if any(form != forms[0] for form in forms):
+        forms = [_form(memory) for memory in memories]
+        first = engines[0].spec
+        if any(engine.spec != first for engine in engines) or any(one != forms[0] for one in forms):
             raise ValueError("worlds in one call have one plan, and arrays of equal shapes")
         self._memory = _stacked(memories)
         self._views = []
@@ -71,7 +72,7 @@ class Worlds:
             engine.note_memory()
             self._views.append(_WorldMemory(engine.state, engine.workspace, engine.log))
         self._places = np.array([words_of(view) for view in self._views])
-        self._kernel = _kernel_for(engines[0].spec)
+        self._kernel = _kernel_for(first)
         self._status = np.zeros(len(engines), np.int64)
 
     def advance(self, steps: int, threads: int = 1) -> list[int]:
@@ -132,15 +133,6 @@ def _mapped(memory: Any, change: Callable[[np.ndarray], np.ndarray]) -> Any:
     return memory
 
 
-def _arrays(memory: Any) -> Iterator[np.ndarray]:
-    """Yield the arrays of an engine's memory, in the order of `_mapped`."""
-    if isinstance(memory, np.ndarray):
-        yield memory
-    elif isinstance(memory, tuple):
-        for part in memory:
-            yield from _arrays(part)
-
-
 def _form(memory: Any) -> Any:
     """Return what is equal of worlds that may be stacked: types and shapes, and plain numbers."""
     if isinstance(memory, np.ndarray):
@@ -160,7 +152,7 @@ def _rows_of(arrays: Sequence[np.ndarray]) -> np.ndarray:
 
 def _stacked(memories: Sequence[Any]) -> Any:
     """Return the memory of all worlds: each array has the world in front."""
-    columns = zip(*(_arrays(memory) for memory in memories), strict=True)
+    columns = zip(*(arrays_of(memory) for memory in memories), strict=True)
     state, workspace, log, parameters, counters = _mapped(
         memories[0], lambda array: _rows_of(next(columns))
     )

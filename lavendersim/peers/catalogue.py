@@ -74,12 +74,11 @@ def overrides_of(engines: Sequence[str]) -> list[str]:
 
 def effort_of(engine: str) -> str:
     """Return what the iterations of an engine are, and for how many contacts it has room."""
-    iterations, capacity = OURS if engine == LAVENDER else _effort(peer_of(engine))
+    iterations, capacity = OURS
+    if engine != LAVENDER:
+        peer = peer_of(engine)
+        iterations, capacity = peer.iterations, peer.capacity
     return f"iterations: {iterations}; room for contacts: {capacity}"
-
-
-def _effort(peer: Peer) -> tuple[str, str]:
-    return peer.iterations, peer.capacity
 
 
 def untried(engines: Iterable[str]) -> list[str]:

@@ -8,16 +8,14 @@ what other programs take meanwhile is not in it.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from functools import cached_property
 from math import ceil
 from statistics import median
-from typing import Any
-
-import numpy as np
 
 from lavendersim.cell import CellConfig
 from lavendersim.engine.engine import BLOCK_STEPS
+from lavendersim.engine.memory import arrays_of
 from lavendersim.engine.records import DIVERGED, RUNNING
 from lavendersim.engine.spec import Spec
 from lavendersim.scene.build import build
@@ -65,7 +63,7 @@ class Timed:
             (array, array.copy())
             for name, value in self._begin_state.items()
             if name not in _ROWS
-            for array in _arrays(value)
+            for array in arrays_of(value)
         ]
         self.starts = max(1, ceil(shortest / max(1, self._once())))
 
@@ -116,12 +114,3 @@ class Timed:
         ends += [self.engine.velocities[axis] for axis in ("vx", "vy", "vz")]
         # Adding 0.0 makes -0.0 the 0.0 that it equals.
         return contacts / self.steps, b"".join((column + 0.0).tobytes() for column in ends)
-
-
-def _arrays(value: Any) -> Iterator[np.ndarray]:
-    """Yield every array in nested tuples."""
-    if isinstance(value, np.ndarray):
-        yield value
-    elif isinstance(value, tuple):
-        for item in value:
-            yield from _arrays(item)

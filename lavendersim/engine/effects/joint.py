@@ -95,23 +95,28 @@ class BallJoint(Joint):
     kind: Literal["ball"] = ModelField(description="`ball`")
 
 
-class HingeJoint(Joint):
-    """A hinge: two bodies share an axis, about which they turn freely."""
+class JointWithAxis(Joint):
+    """What joints about, or along, an axis have."""
 
-    kind: Literal["hinge"] = ModelField(description="`hinge`")
     axis: Direction = ModelField(
         description="its axis through `at`, world frame, as the run begins; is normalised"
     )
 
     @property
-    def rows(self) -> tuple[RowOfJoint, ...]:
-        """Return its rows, in their order."""
-        return HINGE
-
-    @property
     def along(self) -> Vector3:
         """Return the direction of its axis."""
         return self.axis
+
+
+class HingeJoint(JointWithAxis):
+    """A hinge: two bodies share an axis, about which they turn freely."""
+
+    kind: Literal["hinge"] = ModelField(description="`hinge`")
+
+    @property
+    def rows(self) -> tuple[RowOfJoint, ...]:
+        """Return its rows, in their order."""
+        return HINGE
 
 
 class FixedJoint(Joint):
@@ -125,23 +130,15 @@ class FixedJoint(Joint):
         return FIXED
 
 
-class SliderJoint(Joint):
+class SliderJoint(JointWithAxis):
     """A slider: two bodies turn as one, and slide freely along an axis."""
 
     kind: Literal["slider"] = ModelField(description="`slider`")
-    axis: Direction = ModelField(
-        description="its axis through `at`, world frame, as the run begins; is normalised"
-    )
 
     @property
     def rows(self) -> tuple[RowOfJoint, ...]:
         """Return its rows, in their order."""
         return SLIDER
-
-    @property
-    def along(self) -> Vector3:
-        """Return the direction of its axis."""
-        return self.axis
 
 
 JOINTS = ("ball", "hinge", "fixed", "slider")
