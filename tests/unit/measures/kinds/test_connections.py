@@ -85,12 +85,15 @@ def test_force_of_a_joint_is_the_magnitude_of_its_mean_or_the_largest_of_a_step(
 
 
 def test_torque_of_a_joint_is_about_its_first_row_of_each_step() -> None:
-    """2 N up at the joint, which moves along x, and 2 N down 3 m beside it: 6 N m, then 12."""
+    """5 N up at the joint, which moves along x, and 2 N down 3 m beside it: 6 N m, then 12.
+
+    What acts at the joint itself has no torque about it, wherever it is.
+    """
     names = ("step", "joint", "x", "y", "z", "nx", "ny", "nz", "force_n")
     contact = np.zeros(20, [(n, "i8" if n in names[:2] else "f8") for n in names])
     contact["step"], contact["joint"], contact["nz"] = np.repeat(np.arange(1, 11), 2), 1, 1.0
     contact["x"] = 0.5 * contact["step"]
-    contact["y"][1::2], contact["force_n"] = 3.0, np.tile([2.0, -2.0], 10)
+    contact["y"][1::2], contact["force_n"] = 3.0, np.tile([5.0, -2.0], 10)
     contact["force_n"][-2:] *= 2.0
     made = log()
     arm = BallJoint.model_construct(kind="ball", between=("w", "b"))
