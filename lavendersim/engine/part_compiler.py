@@ -40,6 +40,7 @@ if llvm_version_info < (17, 0, 0):
     raise ImportError("pointers have types: a part serves one layout of records only")
 
 _objects = itertools.count()
+_kinds: set[bool] = set()  # of kernels compiled in this process: whether they are direct
 
 
 class _Linking(JITCodeLibrary):
@@ -119,6 +120,21 @@ class KernelObject(_Linking):
         optimise(self._final_module, self._symbols, self._codegen)
 
 
+def _refuse_another(function: Any, direct: bool) -> None:
+    """Refuse a kernel that hands the engine's memory on in another form than those before it.
+
+    A caller that counts references hands it on array by array, one that does not by its address:
+    linked with each other, either would read what the other does not give.
+    """
+    if _kinds - {direct}:
+        does, do = ("does not", "do") if direct else ("does", "do not")
+        raise RuntimeError(
+            f"kernel {function.__qualname__} {does} count references or explain itself to a "
+            f"debugger, and those compiled before {do}: a process has one kind of kernels"
+        )
+    _kinds.add(direct)
+
+
 def _prepare(state: Any, function: Any, symbol: str) -> None:
     """Let numba call the code of `function` by `symbol`, and parts by theirs."""
     own = f"{function.__module__}.{function.__qualname__}"
@@ -145,7 +161,9 @@ def _prepare(state: Any, function: Any, symbol: str) -> None:
     entry = mangle(symbol, ())
     context = state.targetctx  # made for this compilation alone
     context.mangler, context.declare_function = mangler, declare_function
-    if is_direct(context, state.flags):
+    direct = is_direct(context, state.flags)
+    _refuse_another(function, direct)
+    if direct:
         context.data_model_manager = REFERENCES
     context.get_arg_packer = packer_of(context.data_model_manager)
     state.typingctx = quick(state.typingctx)

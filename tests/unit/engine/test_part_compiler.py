@@ -11,6 +11,7 @@ from numba.core.errors import TypingError
 
 from lavendersim.engine.compile import Kernel, inner
 from lavendersim.engine.kernel_parts import STORE
+from tests.forked_python import python as forked_python
 
 pytestmark = pytest.mark.skipif(Kernel is None, reason="this numba compiles kernels whole")
 
@@ -169,3 +170,43 @@ def test_an_error_in_a_part_says_where_it_is() -> None:
 
     with pytest.raises(TypingError, match=r"test_part_compiler.py.*\n.*adds_a_text"):
         inner(caller)(1.0)
+
+
+# Calls a kernel, then composes another that counts references where the first one did not.
+BOTH_KINDS = """
+import numpy as np
+from lavendersim.engine import compile_options
+from lavendersim.engine.compile import inner
+def total(rows):
+    found = 0.0
+    for i in range(rows.shape[0]):
+        found += rows[i]
+    return found
+part = inner(total)
+def caller(rows):
+    return part(rows)
+options = compile_options.OPTIONS
+if COUNTING_FIRST:
+    without = options.pop("_nrt")
+    part = inner(total)
+print(inner(caller)(np.ones(3)))
+options["_nrt"] = not options.get("_nrt", True)
+try:
+    inner(caller)(np.ones(3))
+except RuntimeError as error:
+    print(error)
+else:
+    print("not refused")
+"""
+
+
+@pytest.mark.parametrize(("first", "does", "do"), [(0, "does", "do not"), (1, "does not", "do")])
+def test_kernels_that_count_references_do_not_meet_others(first: int, does: str, do: str) -> None:
+    """They hand arrays to each other in other forms: a process that has both would crash."""
+    done = forked_python("-c", BOTH_KINDS.replace("COUNTING_FIRST", str(first)))
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.splitlines() == [
+        "3.0",
+        f"kernel caller {does} count references or explain itself to a debugger, and those "
+        f"compiled before {do}: a process has one kind of kernels",
+    ]
