@@ -10,6 +10,7 @@ import json
 from pathlib import Path
 from typing import Any
 
+import pytest
 from llvmlite.binding import Linkage
 from small_configs import python_forked, write
 
@@ -68,6 +69,41 @@ def test_two_plans_compiled_apart_and_loaded_together_give_what_each_gives_alone
     together = hashes(*configs)
     assert together == alone
     assert len(set(alone)) == 2
+
+
+# Kernels of one name that scale by the numbers in argv, each optimised by itself. Prints what each
+# makes of 1, and whether its part was there.
+SCALE_ALL = """
+import json, sys
+from lavendersim.engine.compile import inner, separate
+from lavendersim.engine.kernel_parts import STORE
+from lavendersim.engine.spec import Spec
+def make(factor):
+    def scaled(x):
+        return factor * x
+    part = separate(inner(scaled), Spec(shape_pairs=("box_box",)))
+    def caller(x):
+        return part(x)
+    return inner(caller)
+found = []
+for factor in sys.argv[1:]:
+    STORE.begin(anew=False)
+    found.append((make(float(factor))(1.0), not STORE.alone))
+print(json.dumps(found))
+"""
+
+
+@pytest.mark.skipif(Kernel is None, reason="this numba keeps no parts of kernels")
+def test_objects_of_one_name_compiled_apart_are_each_their_own_where_both_are_loaded(
+    tmp_path: Path,
+) -> None:
+    """Of two symbols alike the process would call the first one for both."""
+
+    def scaled(*factors: float) -> Any:
+        return json.loads(python_forked(SCALE_ALL, *factors, LAVENDER_CACHE_DIR=str(tmp_path)))
+
+    assert [scaled(2.0), scaled(3.0)] == [[[2.0, False]], [[3.0, False]]]
+    assert scaled(2.0, 3.0) == [[2.0, True], [3.0, True]]
 
 
 def test_no_part_of_a_kernel_is_a_symbol_of_its_object() -> None:
