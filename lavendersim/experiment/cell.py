@@ -9,8 +9,7 @@ from typing import Any, Final
 
 from lavendersim.cell.config import CellConfig
 from lavendersim.errors import ConfigError, Defect
-from lavendersim.experiment.checks.engine_limits import refuse_limits
-from lavendersim.experiment.checks.joint_limits import refuse_beside_joints
+from lavendersim.experiment.checks.cell_limits import refuse_limits
 from lavendersim.experiment.checks.messages import locate
 from lavendersim.experiment.checks.reading import Reading
 from lavendersim.experiment.models.always import AlwaysSection
@@ -51,7 +50,6 @@ def build_cell(root: Node, point: SweepPoint, report: Report) -> CellConfig | No
         report.close_round()
         return None
     refuse_limits(config, tree, report)
-    refuse_beside_joints(config, tree, report)
     return config if report.close_round() else None
 
 

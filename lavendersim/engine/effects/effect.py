@@ -208,6 +208,8 @@ class Effect:
     surface_keys: tuple[SurfaceKey, ...] = ()  # of a config: properties of surfaces
     scene_keys: tuple[SceneKey, ...] = ()
     body_keys: tuple[BodyKey, ...] = ()
+    # Of a cell: paths of the keys that it cannot be with, and why; nothing where it is off.
+    excludes: Callable[[Any], Iterable[tuple[tuple[str | int, ...], str]]] | None = None
     acts_on: Callable[[Any], Iterable[tuple[str, bool]]] | None = None  # bodies, whether it turns
     links: Callable[[Any, dict[str, int]], list[dict[str, Any]]] | None = None  # of a scene
     drives: Callable[[Any, dict[str, int]], list[Drive]] | None = None  # of a scene

@@ -173,6 +173,48 @@ def decide(facts: Facts) -> Decision:
     return Decision(False, "no joint holds a body that moves")
 
 
+# Solvers whose sweeps take rows without a cone.
+SOLVERS = ("adaptive", "projected_gauss_seidel")
+IMPACTS = ("in_order", "captured")
+MOVES = ("teleport", "orientation")  # of an event: at once, whatever joints there are
+
+
+def excludes(config: Any) -> Iterator[tuple[tuple[str | int, ...], str]]:
+    """Yield what of a cell its joints cannot be with yet."""
+    joints = holding(config.scene)
+    if not joints:
+        return
+    numerics, has = config.numerics, "the scene has joints"
+    if numerics.solver not in SOLVERS:
+        expected = " or ".join(SOLVERS)
+        sentence = f"{has}, which {numerics.solver} does not solve; expected {expected}"
+        yield ("numerics", "solver"), sentence
+    if numerics.impacts not in IMPACTS:
+        sentence = f"{has}, which {numerics.impacts} may tear; expected {' or '.join(IMPACTS)}"
+        yield ("numerics", "impacts"), sentence
+    if numerics.impacts == "in_order" and numerics.simultaneous_impacts != "together":
+        sentence = f"{has}, which pass impacts on at once; expected together"
+        yield ("numerics", "simultaneous_impacts"), sentence
+    if numerics.accuracy is not None:
+        yield ("numerics", "accuracy"), f"{has}, and substeps have none; leave it out"
+    if numerics.sleeping:
+        yield ("numerics", "sleeping"), f"{has}, and what they hold does not sleep; leave it out"
+    if config.scene.springs:
+        sentence = f"{has}, and a step has one of the two; leave one of them out"
+        yield ("scene", "springs"), sentence
+    if config.study.mistake != "none":
+        yield ("study", "mistake"), f"{has}, which have none; leave it out"
+    if config.record.problems != "none":
+        sentence = f"{has}, and a contact problem has cones alone; leave it out"
+        yield ("record", "problems"), sentence
+    joined = {name for one in joints.values() for name in one.between}
+    for k, event in enumerate(config.planned_events):
+        for key in MOVES:
+            if getattr(event, "body", None) in joined and getattr(event, key) is not None:
+                sentence = f"{event.body} has a joint, which this would tear; leave it out"
+                yield ("events", k, key), sentence
+
+
 def make_contact_row(spec: Spec) -> Kernel:
     """Return `kernel(out, contact, va, vb)` that fills its column of a contact."""
     from ..collide.joint import number_of
@@ -207,6 +249,7 @@ EFFECT = Effect(
     decide=decide,
     per="contact",
     needs=("compound", "frictionless_contact"),
+    excludes=excludes,
     row=RowTerms(frictionless=True, bilateral=True),
     fields=Fields(
         contact=[("bilateral", "i8")],  # 1: of a joint, a row without a cone

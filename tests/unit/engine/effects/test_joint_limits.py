@@ -78,6 +78,22 @@ def test_an_event_that_would_tear_a_joint_is_refused_at_its_place(change: str) -
     assert load_experiment_text(pushed, "x.yaml").cells()[0].config
 
 
+def test_an_event_is_found_among_those_that_a_state_makes_happen() -> None:
+    """A cell has these last; the file has them in any order."""
+    turned = "body: bob, orientation: [0, 1, 0, 0]"
+    events = [
+        f"  - {{when: {{body: bob, faster_than: 1}}, {turned}}}",
+        "  - {at: 0.02, body: bob, velocity: [1, 0, 0]}",
+        f"  - {{when: null, at: 0.05, {turned}}}",
+    ]
+    text = TEXT + "\n".join(["events:", *events, ""])
+    with pytest.raises(ConfigError) as refused:
+        load_experiment_text(text, "x.yaml").cells()
+    assert [(one.line, one.column) for one in refused.value.defects] == [
+        (line, text.splitlines()[line - 1].index("orientation") + 1) for line in (9 + 1, 9 + 3)
+    ]
+
+
 def test_numerics_that_joints_can_have_are_taken() -> None:
     for numerics in ("chapter", "{timestep: 1/100}", "{solver: projected_gauss_seidel}"):
         text = TEXT.replace("numerics: {timestep: 1/100}", f"numerics: {numerics}")
