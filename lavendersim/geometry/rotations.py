@@ -31,15 +31,21 @@ def unit_quaternion(quaternion: npt.ArrayLike) -> Floats:
     return np.asarray(numbers / np.linalg.norm(numbers))
 
 
+def products(one: Floats, other: Floats) -> Floats:
+    """Return the quaternions (n, 4) of rotations by `other`, then by `one` about the world's axes."""
+    a, u = one[:, :1], one[:, 1:]
+    b, v = other[:, :1], other[:, 1:]
+    scalar = a * b - (u * v).sum(axis=1, keepdims=True)
+    return np.hstack([scalar, a * v + b * u + np.cross(u, v)])
+
+
 def turns_between(before: Floats, after: Floats) -> tuple[Floats, Floats]:
     """Return scalar (n,) and vector (n, 3) of after before^-1, world frame, the shorter way round.
 
     Cosine of half the angle, and sine of half the angle along the axis. Of unit quaternions (n, 4).
     """
-    w0, u0 = before[:, 0], before[:, 1:]
-    w1, u1 = after[:, 0], after[:, 1:]
-    w = w0 * w1 + (u0 * u1).sum(axis=1)
-    vector = w0[:, None] * u1 - w1[:, None] * u0 - np.cross(u1, u0)
+    turns = products(after, before * (1.0, -1.0, -1.0, -1.0))
+    w, vector = turns[:, 0], turns[:, 1:]
     sign = np.where(w < 0.0, -1.0, 1.0)
     return sign * w, sign[:, None] * vector
 

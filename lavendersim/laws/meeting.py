@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from lavendersim.geometry.rotations import products
+
 from .momentum import BodyStates, StepMomentum
 from .motion import Floats
 from .points import PointsOfPose
@@ -40,8 +42,5 @@ def turned(quaternions: Floats, turns: Floats) -> Floats:
     """Return quaternions (n, 4) after turns (n, 3) [rad] about axes of the world."""
     angle = np.linalg.norm(turns, axis=1)
     share = np.where(angle > 0.0, np.sin(0.5 * angle) / np.where(angle > 0.0, angle, 1.0), 0.5)
-    w, u = np.cos(0.5 * angle), share[:, None] * turns
-    real, imaginary = quaternions[:, 0], quaternions[:, 1:]
-    scalar = w * real - (u * imaginary).sum(axis=1)
-    vector = w[:, None] * imaginary + real[:, None] * u + np.cross(u, imaginary)
-    return np.column_stack([scalar, vector])
+    half_turns = np.column_stack([np.cos(0.5 * angle), share[:, None] * turns])
+    return products(half_turns, quaternions)

@@ -8,6 +8,7 @@ import pytest
 from lavendersim.geometry import quaternions
 from lavendersim.geometry.rotations import (
     frame_along,
+    products,
     rotated,
     rotation_matrices,
     rotation_matrix,
@@ -48,6 +49,13 @@ def test_a_quarter_turn_about_z_takes_x_to_y() -> None:
 def test_a_third_of_a_turn_about_the_diagonal_permutes_the_axes() -> None:
     turned = rotated(np.full(4, 0.5), np.eye(3))
     np.testing.assert_allclose(turned, np.eye(3)[[1, 2, 0]], atol=1e-16)
+
+
+def test_a_product_turns_as_its_factors_one_after_the_other() -> None:
+    one, other = RANDOM[:10], RANDOM[10:]
+    both = rotation_matrices(one) @ rotation_matrices(other)
+    # some forty roundings of numbers below 1, beside those of bringing to unit length
+    np.testing.assert_allclose(rotation_matrices(products(one, other)), both, atol=1e-14)
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
