@@ -250,7 +250,7 @@ def make_limit(spec: Spec, place: Any) -> LimitKernels:
 
     aim = kernel(aim, spec)
 
-    def account(links, bodies, velocities, motion, group):
+    def balance_momentum(links, bodies, velocities, motion, group):
         # What the group's momentum has gained came by its springs to bodies that do not move.
         gained, outer = Vec3(0.0, 0.0, 0.0), -1
         for i in range(bodies.shape[0]):
@@ -277,7 +277,7 @@ def make_limit(spec: Spec, place: Any) -> LimitKernels:
             link.py += sign * gained.y
             link.pz += sign * gained.z
 
-    account = kernel(account, spec)
+    balance_momentum = kernel(balance_momentum, spec)
 
     def limit_group(links, bodies, velocities, motion, group, dt):
         anchored, found, zero = False, True, Vec3(0.0, 0.0, 0.0)
@@ -353,7 +353,7 @@ def make_limit(spec: Spec, place: Any) -> LimitKernels:
         for i in range(bodies.shape[0]):
             if bodies[i].group == group:
                 bodies[i].sprung = PLACED
-        account(links, bodies, velocities, motion, group)
+        balance_momentum(links, bodies, velocities, motion, group)
 
     limit_group = kernel(limit_group, spec)
 

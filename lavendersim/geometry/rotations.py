@@ -32,7 +32,7 @@ def unit_quaternion(quaternion: npt.ArrayLike) -> Floats:
 
 
 def products(one: Floats, other: Floats) -> Floats:
-    """Return the quaternions (n, 4) of rotations by `other`, then by `one` about the world's axes."""
+    """Return quaternions (n, 4) of rotations by `other`, then by `one`, about axes of the world."""
     a, u = one[:, :1], one[:, 1:]
     b, v = other[:, :1], other[:, 1:]
     scalar = a * b - (u * v).sum(axis=1, keepdims=True)
