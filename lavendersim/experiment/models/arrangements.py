@@ -115,9 +115,7 @@ class Row(_Arranged):
     @classmethod
     def rules(cls, at: Place) -> None:
         """A gap or a spacing; a list of spacings has one for each two neighbours."""
-        gap, spacing = at.written("gap"), at.written("spacing")
-        if gap and spacing:
-            at.refuse(max(gap, spacing), f"{at} specifies both gap and spacing; keep one")
+        at.refuse_both(("gap", "spacing"))
         listed, count = at.get("spacing").items, at.get("count").number
         if listed and count is not None and len(listed) != count - 1:
             expected = f"expected {count - 1:g} numbers, one for each two neighbours"

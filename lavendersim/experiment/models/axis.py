@@ -96,10 +96,7 @@ class Axis(ConfigModel):
     @classmethod
     def rules(cls, at: Place) -> None:
         """There are paths, said in one way, and values, said in one way."""
-        path, paths = at.written("path"), at.written("paths")
-        if path and paths:
-            at.refuse(max(path, paths), f"{at} specifies both path and paths; keep one")
-        elif not path and not paths:
+        if not at.refuse_both(("path", "paths")):
             at.lacks("path", "such as scene.bodies.ball.mass or numerics.timestep")
         own = bool(at.get("paths").entries)
         given = [key for key in _SOURCES if at.written(key)]

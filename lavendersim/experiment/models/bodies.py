@@ -28,7 +28,7 @@ from lavendersim.quantities.quantity import (
 _CONSTRAIN = ("fixed", *PRESCRIBE_MOTION)
 _OF_MOVING = ("velocity", "angular_velocity")
 _OF_MOVABLE = ("mass", "density", "inertia", *(key.name for key in BODY_KEYS if key.of_movable))
-_OF_PRESCRIBED = tuple(key.name for key in BODY_KEYS if key.of_prescribed)
+OF_PRESCRIBED = tuple(key.name for key in BODY_KEYS if key.of_prescribed)
 _OF_PLACES = ("position", "release", "orientation")
 STATIC_HINT = "a body that never moves has fixed: true"
 
@@ -90,9 +90,7 @@ class _Matter(declared("Matter", _MatterOwn, BODY_KEYS), _MatterOwn):  # type: i
                 _exactly_one(at, ("position", "release"), "[m], or a release above a plane")
             constrained = [key for key in _CONSTRAIN if at.get(key).is_true]
             if len(constrained) > 1:
-                one, other = constrained[:2]
-                later = max(at.key(one), at.key(other))
-                at.refuse(later, f"{at} specifies both {one} and {other}; keep one")
+                at.refuse_both(constrained[:2])
             elif constrained:
                 _immovable_rules(at, constrained[0])
             else:
@@ -125,20 +123,18 @@ class ArrangedBody(_Matter):
 
 def _unprescribed_rules(at: Place) -> None:
     """Refuse what only a body has whose motion is prescribed."""
-    for key in _OF_PRESCRIBED:
-        if mark := at.written(key):
-            words = " or ".join(f"{word}: true" for word in PRESCRIBE_MOTION)
-            at.refuse(mark, f"{key}: forces and contacts move {at}; expected {words} beside it")
+    words = " or ".join(f"{word}: true" for word in PRESCRIBE_MOTION)
+    for key, mark in at.given(OF_PRESCRIBED):
+        at.refuse(mark, f"{key}: forces and contacts move {at}; expected {words} beside it")
 
 
 def _prescribed_rules(at: Place) -> None:
     """Refuse velocities of a body whose motion is a function of time, and a second turn."""
-    for key in _OF_PRESCRIBED:
+    for key in OF_PRESCRIBED:
         if not at.get(key).items:
             continue
-        for other in _OF_MOVING:
-            if mark := at.written(other):
-                at.refuse(mark, f"{other}: {key} says how {at} moves; leave one of them out")
+        for other, mark in at.given(_OF_MOVING):
+            at.refuse(mark, f"{other}: {key} says how {at} moves; leave one of them out")
         turns = [turn for one in at.get(key).items if (turn := one.get("turn"))]
         for turn in turns[1:]:
             at.refuse(turn.mark, f"turn: {at} has one already; a body turns about one axis")
@@ -148,20 +144,13 @@ def _immovable_rules(at: Place, word: str) -> None:
     if word in PRESCRIBE_MOTION:
         _prescribed_rules(at)
     else:
-        _unmoved_rules(at, word)
-    for key in (*_OF_MOVABLE, *(_OF_MOVING if word == "fixed" else ())):
-        if mark := at.written(key):
-            has = f"a {word} body has no {key.replace('_', ' ')}"
-            at.refuse(mark, f"{key}: {at} is {word}; {has}")
-    if mark := at.written("release"):
-        goes = "stays" if word == "fixed" else "its motion is prescribed"
-        at.refuse(mark, f"release: {at} is {word} and {goes}; specify its position")
-
-
-def _unmoved_rules(at: Place, word: str) -> None:
-    for key in _OF_PRESCRIBED:
-        if mark := at.written(key):
+        for key, mark in at.given(OF_PRESCRIBED):
             at.refuse(mark, f"{key}: {at} is {word}; a {word} body has no {key}")
+    for key, mark in at.given((*_OF_MOVABLE, *(_OF_MOVING if word == "fixed" else ()))):
+        at.refuse(mark, f"{key}: {at} is {word}; a {word} body has no {key.replace('_', ' ')}")
+    if released := at.written("release"):
+        goes = "stays" if word == "fixed" else "its motion is prescribed"
+        at.refuse(released, f"release: {at} is {word} and {goes}; specify its position")
 
 
 def _inertia_rules(at: Place, kind: str) -> None:
@@ -188,18 +177,14 @@ def _plane_rules(at: Place) -> None:
     for key in PRESCRIBE_MOTION:
         if at.get(key).is_true:
             at.refuse(at.key(key), f"{key}: {always}")
-    for key in (*_OF_MOVABLE, *_OF_MOVING, *_OF_PRESCRIBED, *_OF_PLACES):
-        if mark := at.written(key):
-            instead = "; its normal and offset say where it is" if key in _OF_PLACES else ""
-            has = f"a plane has no {key.replace('_', ' ')}{instead}"
-            at.refuse(mark, f"{key}: {at} is a plane; {has}")
+    for key, mark in at.given((*_OF_MOVABLE, *_OF_MOVING, *OF_PRESCRIBED, *_OF_PLACES)):
+        instead = "; its normal and offset say where it is" if key in _OF_PLACES else ""
+        has = f"a plane has no {key.replace('_', ' ')}{instead}"
+        at.refuse(mark, f"{key}: {at} is a plane; {has}")
 
 
 def _exactly_one(at: Place, keys: tuple[str, str], meaning: str) -> None:
-    first, second = at.written(keys[0]), at.written(keys[1])
-    if first and second:
-        at.refuse(max(first, second), f"{at} specifies both {keys[0]} and {keys[1]}; keep one")
-    elif not first and not second:
+    if not at.refuse_both(keys):
         unknown = [key for key in at.node.entries if key not in Body.model_fields]
         if at.node.incomplete or any(near(key, Body.model_fields) in keys for key in unknown):
             at.doubt()  # a refused key may have been one of them

@@ -9,7 +9,7 @@ from pydantic import Field
 from lavendersim.cell.numerics import Timestep
 from lavendersim.cell.triggers import MOST_TRIGGERS
 from lavendersim.engine.effects import EVENT_KEYS
-from lavendersim.experiment.models.bodies import SurfaceOf
+from lavendersim.experiment.models.bodies import OF_PRESCRIBED, SurfaceOf
 from lavendersim.experiment.models.gravity import Gravity
 from lavendersim.experiment.models.shapes import Orientation
 from lavendersim.experiment.models.tree import (
@@ -31,7 +31,8 @@ from lavendersim.quantities.quantity import AngularVelocity, Position, Quantity,
 # What an event may change of the whole run; each is an event of its own.
 _OF_RUN: Final = ("timestep", "gravity")
 # What it may do to a body: only to one that moves, or to any; `remove` stands alone.
-_OF_MOVING: Final = ("scale_mass", "teleport", "orientation", "velocity", "angular_velocity")
+_OF_MOTION: Final = ("teleport", "orientation", "velocity", "angular_velocity")
+_OF_MOVING: Final = ("scale_mass", *_OF_MOTION)
 _OF_ANY: Final = ("surface", *(key.name for key in EVENT_KEYS))
 _CHANGES: Final = (*_OF_MOVING, *_OF_ANY, "contact_cache")
 _EVERY_CHANGE: Final = (*_CHANGES, "remove")
@@ -144,11 +145,11 @@ def _change_rules(at: Place, body: Node) -> None:
     elif (key := prescribes_motion(target)) and at.get("scale_mass"):
         sentence = f'scale_mass: "{body.text}" is {key}; a {key} body has no mass'
         at.refuse(at.key("scale_mass"), sentence)
-    for motion in ("motion",) if target.get("motion").items else ():
-        for changed in ("teleport", "orientation", "velocity", "angular_velocity"):
-            if mark := at.written(changed):
-                sentence = f'{changed}: {motion} says at all times where "{body.text}" is'
-                at.refuse(mark, f"{sentence}; an event cannot change it")
+    motion = next((key for key in OF_PRESCRIBED if target.get(key).items), None)
+    if motion is not None:
+        for changed, mark in at.given(_OF_MOTION):
+            sentence = f'{changed}: {motion} says at all times where "{body.text}" is'
+            at.refuse(mark, f"{sentence}; an event cannot change it")
     if not any(at.get(key) for key in _CHANGES):
         changes = f"{', '.join(_CHANGES)} or remove"
         at.refuse(at.node.mark, f"{at} changes nothing; expected {changes}")

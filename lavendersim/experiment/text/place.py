@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
 from lavendersim.experiment.text.node import Mark, Node, Path, key_mark
@@ -61,6 +61,18 @@ class Place:
     def written(self, key: str) -> Mark | None:
         """Return where a key stands that is written; null writes nothing."""
         return None if self.get(key).content is None else self.key(key)
+
+    def given(self, keys: Iterable[str]) -> Iterator[tuple[str, Mark]]:
+        """Yield those of some keys that are written, and where."""
+        yield from ((key, mark) for key in keys if (mark := self.written(key)))
+
+    def refuse_both(self, keys: Iterable[str]) -> int:
+        """Refuse the later of two keys that exclude each other; how many of them are written."""
+        found = dict(self.given(keys))
+        if len(found) > 1:
+            sentence = f"{self} specifies both {' and '.join(found)}; keep one"
+            self.refuse(max(found.values()), sentence)
+        return len(found)
 
     def refuse_pair(self, one: Node, other: Node, sentence: str) -> None:
         """Refuse values that exclude each other at the later: what is swept stands below."""

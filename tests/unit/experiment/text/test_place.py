@@ -65,3 +65,13 @@ def test_a_mapping_is_refused_for_a_key_that_it_lacks() -> None:
     found = Refusals()
     found.at.lacks("at", "[s] when")
     assert found.said == [(Mark(1, 1), 'missing key "at" in events[3]: [s] when')]
+
+
+def test_of_two_keys_that_exclude_each_other_the_later_is_refused_where_both_are_written() -> None:
+    found = Refusals()
+    assert [found.at.refuse_both(keys) for keys in (("c", "b"), ("a", "b"))] == [0, 1]
+    assert found.said == []
+    found.at.node.entries["b"].content = 1.0
+    assert dict(found.at.given("cba")) == {"b": Mark(3, 1), "a": Mark(2, 1)}
+    assert found.at.refuse_both(("b", "a")) == 2
+    assert found.said == [(Mark(3, 1), "events[3] specifies both b and a; keep one")]
