@@ -73,19 +73,18 @@ def accuracy_rules(at: Place) -> None:
     accuracy = numerics.get("accuracy")
     if accuracy.content is None:
         return
+    needs: list[tuple[Node, str]] = []
     for key, needed in _LAWS:
         value = numerics.get(key)
         if value and value.text != needed:
-            sentence = f"accuracy: needs {key}: {needed}, found {value.text}"
-            at.refuse_pair(accuracy, value, sentence)
-    gain = numerics.get("stabilisation_gain")
+            needs.append((value, f"{key}: {needed}, found {value.text}"))
+    gain, tolerance = numerics.get("stabilisation_gain"), numerics.get("tolerance")
     if gain.number is not None and gain.number > 0.0:
-        sentence = f"accuracy: needs stabilisation_gain: 0, found {gain.number:g}"
-        at.refuse_pair(accuracy, gain, sentence)
-    tolerance = numerics.get("tolerance")
+        needs.append((gain, f"stabilisation_gain: 0, found {gain.number:g}"))
     if tolerance and tolerance.content is None:
-        sentence = "accuracy: needs a tolerance, by which steps are solved; found null"
-        at.refuse_pair(accuracy, tolerance, sentence)
+        needs.append((tolerance, "a tolerance, by which steps are solved; found null"))
+    for value, sentence in needs:
+        at.refuse_pair(accuracy, value, f"accuracy: needs {sentence}")
     smallest = numerics.get("smallest_timestep")
     longest = numerics.get("timestep").number or math.inf
     if smallest.number is not None and smallest.number > longest:

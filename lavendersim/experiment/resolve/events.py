@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import Any
+from typing import Any, Final
 
 from lavendersim.cell.events import AnyEvent, CellEvent, CellGravity, CellTimestep
 from lavendersim.cell.shared_parts import shared
@@ -22,6 +22,8 @@ from lavendersim.experiment.resolve.gravity import gravity_vector
 from lavendersim.experiment.resolve.shape import quaternion_of
 from lavendersim.experiment.resolve.surface_pairs import surface_of
 from lavendersim.geometry.vectors import unit
+
+_AS_WRITTEN: Final = ("body", "scale_mass", "teleport", "velocity", "angular_velocity")
 
 
 def resolve_triggered(event: Event, scene: Scene, frames: Frames) -> CellTriggeredEvent:
@@ -53,12 +55,8 @@ def resolve_event(event: Event, scene: Scene, frames: Frames) -> AnyEvent:
     assert event.body is not None
     moves = event.teleport is not None or event.orientation is not None
     settled: dict[str, Any] = {
+        **{key: getattr(event, key) for key in _AS_WRITTEN},
         "at": at,
-        "body": event.body,
-        "scale_mass": event.scale_mass,
-        "teleport": event.teleport,
-        "velocity": event.velocity,
-        "angular_velocity": event.angular_velocity,
         "contact_cache": event.contact_cache or ("clear" if moves else "keep"),
         "remove": bool(event.remove),
         "orientation": None,
