@@ -15,7 +15,7 @@ from lavendersim.errors import UsageError
 from lavendersim.experiment.inheritance.merge import merged
 from lavendersim.experiment.text.file import read_file
 from lavendersim.experiment.text.former import with_new_spellings
-from lavendersim.experiment.text.node import Mark, Node, key_mark
+from lavendersim.experiment.text.node import Mark, Node
 from lavendersim.experiment.text.parse import parse
 from lavendersim.experiment.text.report import Report
 from lavendersim.experiment.text.yaml_text import as_yaml
@@ -40,8 +40,7 @@ def with_parents(root: Node, path: Path, name: str, report: Report) -> tuple[Nod
     chain, names, trees = [path.resolve()], [name], [root]
     project = project_of(chain[0])
     while (here := trees[-1].get(EXTENDS)) and here.content is not None:
-        mark = key_mark(trees[-1], EXTENDS)
-        parent = _parent(here, mark, (chain, names, project), report)
+        parent = _parent(here, (chain, names, project), report)
         if parent is None:
             return root, ""
         trees.append(parent)
@@ -63,9 +62,7 @@ def project_of(path: Path) -> Path:
     return path.parent.parent
 
 
-def _parent(
-    said: Node, key: Mark, known: tuple[list[Path], list[str], Path], report: Report
-) -> Node | None:
+def _parent(said: Node, known: tuple[list[Path], list[str], Path], report: Report) -> Node | None:
     """Return the tree of the file that is named; notes why it is none. known: grows by it."""
     chain, names, project = known
 
