@@ -68,7 +68,8 @@ def make_foresee(spec: Spec) -> Any:
     relative_speed, is_impact = make_relative_speed(spec), make_is_impact(spec)
     turns, bend = spec.has("rotation"), make_bend(spec)
     restitution, compliance = spec.has("restitution"), spec.has("compliance")
-    springs, cohesive = spec.has("contact_spring"), spec.has("cohesion")
+    springs = spec.has("contact_spring")
+    draws, is_drawn = made_once(spec, "is_drawn")
     overlooks, ropes = spec.has("overlooked_points"), spec.has("rope")
     bend_of_rope: Any = make_bend_of_rope(spec) if ropes else None
     falls, restitution_at = made_once(spec, "restitution_at")
@@ -103,8 +104,8 @@ def make_foresee(spec: Spec) -> Any:
         if meets:
             return is_impact(speed, least, dv, 0.0 if met else most, e, params)
         drawn = False  # as long as it is closed, however fast it opens
-        if cohesive:
-            drawn = pair.cohesion > 0.0 and contact.phi <= max(params.slop, TOUCHING)
+        if draws:
+            drawn = is_drawn(contact, pair, params)
         # What leaves a gap, whatever holds its bodies, is no contact of this part. Bodies that turn
         # may be pressed to a surface by another contact alone, as a ladder to a wall; what would
         # rebound has to meet again as an impact.

@@ -59,7 +59,6 @@ ELSEWHERE = {
         "engine/midpoint_rows.py": SPRING,
         "engine/spring_contacts.py": "gives energy back",
     },
-    "cohesion": {"engine/foreseen_impacts.py": "what opens is drawn as long as it is closed"},
     "restitution": {
         "engine/effects/capture_in_sweeps.py": "makes a mistake with it",
         "engine/effects/falling_restitution.py": "lowers its coefficient",
@@ -150,7 +149,6 @@ ASKED = {
             *("midpoint_rows", "spring_contacts"),
         ),
         "compliance": ("foreseen_impacts", "spring_contacts"),
-        "cohesion": ("foreseen_impacts",),
         "restitution": (
             *("effects/impact_order", "foreseen_impacts", "overlooked_points", "spring_contacts"),
         ),

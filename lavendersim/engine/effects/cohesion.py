@@ -30,12 +30,22 @@ def decide(facts: Facts) -> Decision:
     return Decision(False, "every pair that may touch has cohesion 0")
 
 
+def make_is_drawn(spec: Spec) -> Kernel:
+    """Return `kernel(contact, pair, params) -> whether` it is closed, and draws together."""
+
+    def is_drawn(contact, pair, params):
+        return pair.cohesion > 0.0 and contact.phi <= max(params.slop, TOUCHING)
+
+    return kernel(is_drawn, spec)
+
+
 def make_capture(spec: Spec) -> Kernel:
     """Return `kernel(contact, pair, params)`: the impulse of this step, 0 where it is open."""
+    is_drawn = make_is_drawn(spec)
 
     def capture_cohesion(contact, pair, params):
         contact.adhesion, contact.loaded = 0.0, 0
-        if contact.phi <= max(params.slop, TOUCHING):
+        if is_drawn(contact, pair, params):
             contact.adhesion = pair.cohesion * params.dt
 
     return kernel(capture_cohesion, spec)
@@ -106,5 +116,10 @@ EFFECT = Effect(
         ),
     ),
     balance=Balance(pull="adhesive_impulse"),
-    hooks=Hooks(capture=make_capture, preload=make_preload, contact_row=make_contact_row),
+    hooks=Hooks(
+        capture=make_capture,
+        preload=make_preload,
+        contact_row=make_contact_row,
+        is_drawn=make_is_drawn,
+    ),
 )

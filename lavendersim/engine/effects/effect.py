@@ -110,6 +110,7 @@ class Hooks:
     solve_rolling: Maker | None = None  # (contact, w1, w2) -> changes of psi_1, psi_2
     torsion_residual: Maker | None = None  # (contact, spin) -> r [rad/s]
     rolling_residual: Maker | None = None  # (contact, w1, w2) -> r [rad/s]
+    is_drawn: Maker | None = None  # (contact, pair, params) -> whether its bodies draw together
     restitution_at: Maker | None = None  # (e, row, speed) -> e at an approach speed
     note_slip: Maker | None = None  # (contact, va, vb): the slip before the solve
     mark_impact: Maker | None = None  # (contacts, count, pairs, bodies, motion, slop) -> rows of it
