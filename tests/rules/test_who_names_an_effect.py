@@ -35,10 +35,8 @@ ELSEWHERE = {
         "scene/expected_contacts.py": "how soon bodies have landed",
     },
     "external_force": {
-        "engine/effects/sleeping.py": "who is pushed does not sleep",
         "scene/events.py": "forces begin and end during the run",
     },
-    "varying_force": {"engine/effects/sleeping.py": "who is pushed does not sleep"},
     "compliance": {
         "engine/effects/pairwise_impacts.py": TIME,
         "engine/effects/fast_bodies.py": "springs give energy back",
@@ -180,8 +178,7 @@ ASKED = {
         "contact_log": ("effects/triggers", "respond"),
         "triggers": ("scene/events", "scene/trigger_table"),
         "problem_log": ("memory",),
-        "external_force": ("effects/sleeping", "scene/events"),
-        "varying_force": ("effects/sleeping",),
+        "external_force": ("scene/events",),
     },
     "a part of one solver": {
         "newton": ("effects/least_norm", "solvers/adaptive"),

@@ -71,7 +71,7 @@ class Fields:
 # Hooks that several effects may have.
 CHAINED: Final = (
     *("drive", "end_part", "start_step", "accelerate", "prepare", "capture", "preload"),
-    *("contact_row", "step_row"),
+    *("contact_row", "step_row", "pushes"),
 )
 
 
@@ -94,6 +94,7 @@ class Hooks:
     preload: Maker | None = None  # (contact, velocities, motion): before the solve; 1 in `loaded`
     contact_row: Maker | None = None  # (out, contact, va, vb): fills the columns of a contact
     step_row: Maker | None = None  # (row, bodies, counters): fills the columns of a step
+    pushes: Maker | None = None  # (body) -> whether it does, so that the body may not sleep
 
     prescribe: Maker | None = None  # (body, velocity): a kinematic body's, when forces act
     measure_speeds: Maker | None = None  # (bodies, velocities), before forces act

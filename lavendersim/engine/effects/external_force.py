@@ -34,6 +34,16 @@ def make(spec):
     return kernel(external_force, spec)
 
 
+def make_pushes(spec):
+    """Return `kernel(body) -> whether` a force or a torque acts on it now."""
+
+    def external_force_acts(body):
+        force = body.fx != 0.0 or body.fy != 0.0 or body.fz != 0.0
+        return force or body.tx != 0.0 or body.ty != 0.0 or body.tz != 0.0
+
+    return kernel(external_force_acts, spec)
+
+
 EFFECT = Effect(
     name="external_force",
     decide=decide,
@@ -44,5 +54,5 @@ EFFECT = Effect(
             *[(f"t{axis}", "f8") for axis in "xyz"],  # [N m]
         ],
     ),
-    hooks=Hooks(accelerate=make),
+    hooks=Hooks(accelerate=make, pushes=make_pushes),
 )

@@ -64,23 +64,25 @@ def make_measure_speeds(spec: Spec) -> Any:
 
 def make_is_pushed(spec: Spec) -> Any:
     """Return `kernel(body) -> whether a force of the config acts on it, or a spring joins it`."""
-    from . import effects_of
+    from . import effects_of, made_by
 
-    force, varying = spec.has("external_force"), spec.has("varying_force")
     joins = any(effect.links for effect in effects_of(spec))
 
-    def is_pushed(body):
-        pushed = False
-        if force:
-            pushed = body.fx != 0.0 or body.fy != 0.0 or body.fz != 0.0
-            pushed = pushed or body.tx != 0.0 or body.ty != 0.0 or body.tz != 0.0
-        if varying:
-            pushed = pushed or body.force_x != 0.0 or body.force_y != 0.0 or body.force_z != 0.0
-            pushed = pushed or body.torque_x != 0.0 or body.torque_y != 0.0
-            pushed = pushed or body.torque_z != 0.0
+    def is_joined(body):
+        joined = False
         if joins:
-            pushed = pushed or body.joined == 1
-        return pushed
+            joined = body.joined == 1
+        return joined
+
+    pushed = kernel(is_joined, spec)
+    for pushes in made_by(spec, "pushes"):
+        pushed = _either(pushes, pushed, spec)
+    return pushed
+
+
+def _either(one: Any, other: Any, spec: Spec) -> Any:
+    def is_pushed(body):
+        return one(body) or other(body)
 
     return kernel(is_pushed, spec)
 

@@ -125,6 +125,16 @@ def make(spec):
     return kernel(varying_force, spec)
 
 
+def make_pushes(spec):
+    """Return `kernel(body) -> whether` a force or a torque acts on it in this part."""
+
+    def varying_force_acts(body):
+        force = body.force_x != 0.0 or body.force_y != 0.0 or body.force_z != 0.0
+        return force or body.torque_x != 0.0 or body.torque_y != 0.0 or body.torque_z != 0.0
+
+    return kernel(varying_force_acts, spec)
+
+
 def make_end_part(spec):
     """Return `kernel(bodies, params)`: impulse and work of a part."""
     turns = spec.has("rotation")
@@ -206,5 +216,11 @@ EFFECT = Effect(
         work="force_work",
         outer=("force_impulse_x", "force_impulse_y", "force_impulse_z"),
     ),
-    hooks=Hooks(drive=make_drive, accelerate=make, end_part=make_end_part, step_row=make_step_row),
+    hooks=Hooks(
+        drive=make_drive,
+        accelerate=make,
+        end_part=make_end_part,
+        pushes=make_pushes,
+        step_row=make_step_row,
+    ),
 )

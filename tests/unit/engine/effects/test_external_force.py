@@ -10,7 +10,7 @@ import pytest
 from interpreted import interpreted
 from plain_facts import body_facts, facts, matrix_fields, one_row, vector_fields
 
-from lavendersim.engine.effects.external_force import EFFECT, make
+from lavendersim.engine.effects.external_force import EFFECT, make, make_pushes
 from lavendersim.engine.spec import Spec
 
 INERTIA, MASS, DT = np.array([0.2, 0.5, 0.4]), 4.0, 0.01
@@ -31,6 +31,13 @@ def test_force_and_torque_give_their_impulses(turns: bool, rng) -> None:
     if turns:
         spin = spin + np.linalg.solve(matrix @ np.diag(INERTIA) @ matrix.T, torque) * DT
     np.testing.assert_allclose(found, [[1.0, 2.0, 3.0] + force / MASS * DT, spin], atol=1e-14)
+
+
+@pytest.mark.parametrize("own", ["", "fx", "fy", "fz", "tx", "ty", "tz"])
+def test_a_body_is_pushed_where_any_part_of_force_or_torque_is_not_zero(own: str) -> None:
+    fields = dict.fromkeys(("fx", "fy", "fz", "tx", "ty", "tz"), 0.0)
+    body = one_row(**fields | ({own: -1e-300} if own else {}))
+    assert bool(interpreted(make_pushes(Spec()))(body)) == bool(own)
 
 
 def test_it_is_on_where_a_movable_body_is_pushed_at_its_centre_by_what_is_constant() -> None:

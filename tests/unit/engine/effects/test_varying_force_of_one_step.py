@@ -5,9 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from convex import matrix_of
+from interpreted import interpreted
 from interpreted_steps import Steps
 from laboratory import body, resolved
+from plain_facts import one_row
 
+from lavendersim.engine.effects.varying_force import make_pushes
 from lavendersim.engine.spec import Spec
 
 SPEC = Spec(effects=("midpoint", "pose_log", "rotation", "step_log", "varying_force"))
@@ -37,3 +40,12 @@ def test_a_force_at_a_point_pushes_and_turns_in_its_frame(frame: str) -> None:
     # Its frame and its lever turn by w dt/2 on the way: 0.04 rad/s for 0.01 s.
     expected = torque + np.cross(matrix @ POINT, force)
     np.testing.assert_allclose(moment, expected, atol=1e-3 * np.linalg.norm(expected))
+
+
+NAMES = [f"{name}_{axis}" for name in ("force", "torque") for axis in "xyz"]
+
+
+@pytest.mark.parametrize("own", ["", *NAMES])
+def test_a_body_is_pushed_where_any_part_of_force_or_torque_is_not_zero(own: str) -> None:
+    fields = dict.fromkeys(NAMES, 0.0) | ({own: -1e-300} if own else {})
+    assert bool(interpreted(make_pushes(SPEC))(one_row(**fields))) == bool(own)
