@@ -22,7 +22,7 @@ from typing import Any
 
 from .anderson import NO_ROUND, make_bring_on
 from .compile import kernel
-from .effects import made_once
+from .effects import has_hook, made_once
 from .integrate import make_classify, make_finish
 from .midpoint_passes import make_stand_up
 from .parts import make_forget_history
@@ -60,7 +60,7 @@ def make_act_beside_contacts(spec: Spec, place: Any, solve: Any) -> Any:
     carries_inertia, refresh_inertia = made_once(spec, "refresh_inertia")
     warms, store_contacts = made_once(spec, "store")
     # What surfaces that move or give way do is no loss.
-    moving_surfaces = spec.has("surface_velocity")
+    moving_surfaces = has_hook(spec, "surface_velocity")
     rebounds = spec.has("restitution") and spec.has("impact_order")
     elastic, regularised = spec.has("contact_spring"), spec.has("compliance")
 

@@ -151,8 +151,6 @@ ASKED = {
             *("effects/impact_order", "foreseen_impacts", "overlooked_points", "spring_contacts"),
         ),
         "projection": ("integrate", "memory"),
-        "surface_velocity": ("effects/static_friction", "spring_contacts"),
-        "capture_in_sweeps": ("effects/restitution",),
     },
     "rows that collision detection does not make: of what connects two ends": {
         "rope": (

@@ -25,7 +25,7 @@ def decide(facts: Facts) -> Decision:
 
 def make(spec):
     """Return `kernel(contact, pair, params)`."""
-    from . import made_once
+    from . import has_hook, made_once
 
     falls, restitution_at = made_once(spec, "restitution_at")
 
@@ -40,7 +40,7 @@ def make(spec):
     def noted(contact, pair, params):
         contact.e = pair.restitution
 
-    elsewhere = spec.has("impact_time") or spec.has("capture_in_sweeps")
+    elsewhere = spec.has("impact_time") or has_hook(spec, "recapture")
     return kernel(noted if elsewhere else captured, spec)
 
 

@@ -54,7 +54,9 @@ def make_start_step(spec: Spec) -> Kernel:
 
 def make_prepare(spec: Spec) -> Kernel:
     """Return `kernel(contact, va, vb, pair, params)`: mu at the slip that the step begins with."""
-    moving_surface = spec.has("surface_velocity")
+    from . import has_hook
+
+    moving_surface = has_hook(spec, "surface_velocity")
 
     def set_friction(contact, va, vb, pair, params):
         if pair.static_friction > pair.friction and pair.friction > 0.0:
