@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 from typing import Annotated
 
@@ -65,6 +66,7 @@ def check(
     from lavendersim.experiment.sweeps import perturbed_starts
     from lavendersim.figures import check_page_path, write_report
     from lavendersim.runner import load_all, run
+    from lavendersim.runner.environment import about
     from lavendersim.runner.prediction import planned_before
 
     overrides = overrides_of(values, axes)
@@ -137,7 +139,7 @@ def check(
             time_errors.print_table(found)
     damaged: list[str] = []
     if report is not None:
-        damaged = write_report(results, report)
+        damaged = write_report(results, report, about(sys.argv[1:]))
         typer.echo(f"report {report}", err=True)
         printing.report_damage(damaged)
     if as_json:

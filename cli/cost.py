@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from lavender_cli import printing, progress
+from lavender_cli.going_on import command_of, interruptible
 from lavender_cli.prediction import Yes, confirm
 from lavender_cli.run import Configs, Engines, Jobs, Runs, Set, Starts, Strict, Sweep, overrides_of
 
@@ -34,6 +35,13 @@ def cost(
     ] = None,
     engine: Engines = None,
     starts: Starts = None,
+    quick: Annotated[
+        bool,
+        typer.Option("--quick", help="Every other setting of the grid, in the fewest rounds."),
+    ] = False,
+    resume: Annotated[
+        bool, typer.Option("--resume", help="Go on with the newest run where it did not finish.")
+    ] = False,
     plot: Annotated[bool, typer.Option("--plot/--no-plot", help="Draw the figure.")] = True,
     jobs: Jobs = 1,
     strict: Strict = False,
@@ -47,7 +55,8 @@ def cost(
 
     With --engine: of other engines, too, each over the timesteps and what its declaration varies.
 
-    Exits 1 when no engine reaches a target that was given.
+    Ctrl-C keeps what was run, and what was timed by then. Exits 1 when no engine reaches a target
+    that was given.
     """
     from lavendersim.errors import UsageError
     from lavendersim.experiment.sweeps import perturbed_starts
@@ -59,7 +68,7 @@ def cost(
 
     sought = [percentage(target) for target in targets or ()]
     engines = catalogue.chosen(engine) if engine else ()
-    starts = perturbed_starts.starts_of(starts, engines)
+    asked, starts = starts, perturbed_starts.starts_of(starts, engines)
     given = [*overrides_of(values, axes), *perturbed_starts.overrides_of(starts)]
     # In a folder those with a section `cost` are meant; a file that is named must have one.
     experiments = [
@@ -67,22 +76,32 @@ def cost(
         for one in load_all(configs, overrides=given, strict=strict)
         if one.config.cost is not None or one.path in configs
     ]
+    if quick:
+        from lavendersim.experiment.sweeps.quick import quick as in_few_rounds
+
+        experiments = [in_few_rounds(one) for one in experiments]
     if not experiments:
         raise UsageError(f"{configs[0]}: no config in this folder has a section cost")
     for experiment in experiments:
         check_cost(experiment, repeats)
     printing.warn_of_untried(experiments, engines)
     grids = [grid_of(one, engines) for one in experiments]
-    planned = [planned_before(grid, jobs) for grid in grids]
-    confirm(([grid] for grid in grids), runs, jobs, yes, [one for one in planned if one])
-    tables, missed = [], False
+    planned = [None if resume else planned_before(grid, jobs) for grid in grids]
+    if not resume:  # it was asked before
+        confirm(([grid] for grid in grids), runs, jobs, yes, [one for one in planned if one])
+    tables, missed, interrupted = [], False, ""
+    options = {"--target": targets, "--repeats": repeats, "--engine": engine, "--starts": asked}
+    options |= {"--runs": runs, "--quick": quick}
+    go_on = command_of("cost", configs, overrides_of(values, axes), *_given(options), "--resume")
     for experiment, prepared in zip(experiments, planned, strict=True):
-        with progress.reporting(experiment.name) as shown:
+        with interruptible(go_on), progress.reporting(experiment.name) as shown:
             costed = take_cost(
                 experiment,
                 *(runs, jobs, shown, sought, repeats),
                 engines=engines,
-                is_predicted=True,
+                is_quick=quick,
+                resume=resume,
+                is_predicted=not resume,
                 prepared=prepared,
             )
         run = costed.finished.run
@@ -94,20 +113,37 @@ def cost(
 
             figures = draw(run, run.path / "figures")
         tables.append({**costed.table.as_data(), "run": run.path, "figures": figures})
-        if as_json:
-            continue
-        # With targets given, stdout is what is to be pasted, and nothing else.
-        print_table(costed.table, aside=bool(sought))
-        for figure in figures:
-            typer.echo(f"  figure {figure}", err=bool(sought))
-        typer.echo(f"  run    {run.path}", err=bool(sought))
-        if sought:
-            several = len(experiments) * len(costed.table.targets) > 1
-            _print_fragments(costed.table, several)
+        interrupted = costed.table.interrupted
+        if not as_json:
+            # With targets given, stdout is what is to be pasted, and nothing else.
+            print_table(costed.table, aside=bool(sought))
+            for figure in figures:
+                typer.echo(f"  figure {figure}", err=bool(sought))
+            typer.echo(f"  run    {run.path}", err=bool(sought))
+            if sought:
+                several = len(experiments) * len(costed.table.targets) > 1
+                _print_fragments(costed.table, several)
+        if interrupted:
+            break
     if as_json:
         printing.as_json(tables)
+    if interrupted:
+        typer.echo(interrupted, err=True)
+        raise KeyboardInterrupt
     if sought and missed:
         raise typer.Exit(1)
+
+
+def _given(options: dict[str, Any]) -> list[str]:
+    """Return options as they stand on a command line; those without a value are left out."""
+    words: list[str] = []
+    for option, value in options.items():
+        if value is True:
+            words.append(option)
+        elif value:
+            each = value if isinstance(value, list) else [value]
+            words += [word for one in each for word in (option, str(one))]
+    return words
 
 
 def _print_fragments(table: CostTable, several: bool) -> None:
@@ -140,8 +176,9 @@ def lines_of(table: CostTable) -> list[str]:
     widths = {column: max(len(row[column]) for row in cells) for column in shown}
     lines = [
         f"{typer.style(table.experiment, bold=True)}: error of {table.error.measure}, "
-        f"{_truth(table)}; physics per simulated second, medians of {table.repeats} interleaved "
-        f"repeats with quartiles; {table.machine['processor']}"
+        f"{_truth(table)}{', a quick grid' if table.quick else ''}; physics per simulated second, "
+        f"medians of {table.repeats} interleaved repeats with quartiles; "
+        f"{table.machine['processor']}"
     ]
     for text, row in zip(cells, [None, *rows], strict=True):
         columns = [

@@ -17,12 +17,18 @@ def print_table(run: Any) -> None:
     overheads = run.overheads()
     if overheads is None:
         return
+    only = " of the effects that the scene requires" if overheads.only_required else ""
     typer.echo(
-        f"  overheads in ns per body (/b) or contact (/c) and step: {overheads.bodies} movable "
-        f"{'body' if overheads.bodies == 1 else 'bodies'}, {overheads.contacts_per_step:.3g} "
-        f"contacts a step, {overheads.steps} steps; medians of {overheads.repeats} repeats, "
-        f"interval: where the median lies in 19 of 20 cases; {overheads.processor}"
+        f"  overheads{only} in ns per body (/b) or contact (/c) and step: {overheads.bodies} "
+        f"movable {'body' if overheads.bodies == 1 else 'bodies'}, "
+        f"{overheads.contacts_per_step:.3g} contacts a step, {overheads.steps} steps; "
+        f"medians of {overheads.repeats} repeats, interval: where the median lies in 19 of 20 "
+        f"cases; {overheads.processor}"
     )
+    if overheads.interrupted:
+        typer.echo(f"  {overheads.interrupted}")
+    if not overheads.rows:
+        return
     rows = [HEADER, *(_cells(row) for row in overheads.rows)]
     widths = [max(len(row[column]) for row in rows if len(row) > 3) for column in range(7)]
     for row in rows:
@@ -31,6 +37,13 @@ def print_table(run: Any) -> None:
             continue
         numbers = "  ".join(f"{row[column]:>{widths[column]}}" for column in range(2, 7))
         typer.echo(f"  {row[0]:{widths[0]}}  {row[1]:{widths[1]}}  {numbers}  {row[7]}".rstrip())
+
+
+def raise_interrupted(run: Any) -> None:
+    """Raise KeyboardInterrupt where a signal ended the rounds of a run's overheads."""
+    overheads = run.overheads()
+    if overheads is not None and overheads.interrupted:
+        raise KeyboardInterrupt(overheads.interrupted)
 
 
 def _cells(row: OverheadRow) -> tuple[str, ...]:

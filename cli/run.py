@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import errno
 import shlex
-from collections.abc import Callable, Iterator
-from contextlib import ExitStack, contextmanager
+from collections.abc import Callable
+from contextlib import ExitStack
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
@@ -15,6 +14,7 @@ import typer
 from lavender_cli import claims, overheads, printing, progress, time_errors
 from lavender_cli.completion import run_names
 from lavender_cli.drawing import Drawing
+from lavender_cli.going_on import command_of, interruptible, on_full_disk
 from lavender_cli.prediction import Yes, confirm, with_refined
 from lavender_cli.watch import again
 
@@ -22,9 +22,6 @@ if TYPE_CHECKING:
     from concurrent.futures import Executor
 
     from lavendersim.runner.cell_jobs import Prepared
-
-# A disk or a quota is full, a file as large as may be, or the disk fails.
-DISK = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)
 
 DASK = "dask"
 
@@ -133,6 +130,12 @@ def run(
         str | None,
         typer.Option("--dask", metavar="ADDRESS", help="Of Dask's scheduler: tcp://host:8786."),
     ] = None,
+    quick: Annotated[
+        bool,
+        typer.Option(
+            "--quick", help="Overheads of the effects that a scene requires alone, in few rounds."
+        ),
+    ] = False,
     yes: Yes = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print the results as JSON.")] = False,
     into: Annotated[
@@ -157,6 +160,7 @@ def run(
     if into is not None or shard is not None:
         asked = {"--plot": plot, "--refine": refine, "--resume": resume, "--json": as_json}
         asked |= {
+            "--quick": quick,
             "--tag": bool(tags),
             "--executor": executor is not None,
             "--dask": dask is not None,
@@ -170,13 +174,18 @@ def run(
     # Every file is read before the first run, so a defect anywhere leaves nothing half done.
     overrides = overrides_of(values, axes, engine)
     where = [] if runs == Path("runs") else ["--runs", str(runs)]
-    command = _command(configs, overrides, "--resume", *where)
-    with _interruptible(command):
+    where += ["--quick"] if quick else []
+    command = command_of("run", configs, overrides, "--resume", *where)
+    with interruptible(command):
         from lavendersim.runner import finished_run, load_all
         from lavendersim.runner import run as run_experiment
         from lavendersim.runner.prediction import planned_before
 
         experiments = load_all(configs, overrides=overrides, strict=strict)
+        if quick:
+            from lavendersim.experiment.sweeps.quick import quick as in_few_rounds
+
+            experiments = [in_few_rounds(one) for one in experiments]
         printing.warn_of_untried(experiments)
         good, tables, with_overheads = True, [], []
         planned: list[Prepared | None] = [None] * len(experiments)
@@ -184,7 +193,7 @@ def run(
             planned = [planned_before(one, 1 if executor or dask else jobs) for one in experiments]
             each = (with_refined(one) if refine else [one] for one in experiments)
             confirm(each, runs, jobs, yes, [one for one in planned if one])
-    with _interruptible(command), Drawing(experiments if plot else ()) as drawing:
+    with interruptible(command), Drawing(experiments if plot else ()) as drawing:
         for number, experiment in enumerate(experiments):
             whole = finished_run(experiment, runs) if resume else None
             if whole is not None:
@@ -196,7 +205,7 @@ def run(
                     tables.append({**results.as_json, "run": whole.path, "figures": []})
                 continue
             printing.warn_of_mistakes(experiment)
-            with _on_full_disk(command), ExitStack() as open_now:
+            with on_full_disk(command), ExitStack() as open_now:
                 shown = open_now.enter_context(progress.reporting(experiment.name))
                 workers: Executor | None = None
                 if executor is not None or dask is not None:
@@ -235,6 +244,7 @@ def run(
                 drawing.say(partial(print_finished, finished, refined if refine else None))
             if drawn:
                 drawing.take(take)
+            overheads.raise_interrupted(finished.run)
     if plot and len(with_overheads) > 1:
         from lavendersim.figures import draw_overheads
 
@@ -263,32 +273,6 @@ def _print_figures(figures: list[Path]) -> None:
         typer.echo(f"  figure {figure}")
 
 
-@contextmanager
-def _interruptible(command: str) -> Iterator[None]:
-    """Print the command that goes on with what is run where a signal ends that."""
-    from lavendersim.runner.interruption import handled
-
-    try:
-        with handled():  # what a library makes of a signal is that signal
-            yield
-    except KeyboardInterrupt as end:  # it says by what, and where what was simulated is
-        if str(end):
-            typer.echo(str(end), err=True)
-        typer.echo(f"go on with: {command}", err=True)
-        raise
-
-
-@contextmanager
-def _on_full_disk(command: str) -> Iterator[None]:
-    """Print the command that goes on with what is run where the disk ends that."""
-    try:
-        yield
-    except OSError as error:
-        if error.errno in DISK:
-            typer.echo(f"go on with: {command}", err=True)
-        raise
-
-
 class _Place(NamedTuple):
     """The folder that workers share, and which part of the cells is this one's: K/N; None: any."""
 
@@ -313,8 +297,8 @@ def _run_shard(
     if refused := [option for option, given in asked.items() if given]:
         raise UsageError(f"{refused[0]} with --into: cells are not judged before `lavender merge`")
     given = ["--into", str(into), *(["--shard", shard] if shard is not None else [])]
-    command = _command(configs, overrides, *given)
-    with _interruptible(command), _on_full_disk(command):
+    command = command_of("run", configs, overrides, *given)
+    with interruptible(command), on_full_disk(command):
         from lavendersim.runner import load_all
         from lavendersim.runner.shards import part_of, run_shard
 
@@ -349,9 +333,3 @@ def overrides_of(
     from lavendersim.peers import catalogue
 
     return given + catalogue.overrides_of(catalogue.chosen(engines))
-
-
-def _command(configs: list[Path], overrides: list[str], *options: str) -> str:
-    """Return the command that runs the same with options of its own, as a shell takes it."""
-    changed = [part for one in overrides for part in f"--{one}".split(" ", 1)]
-    return shlex.join(["lavender", "run", *map(str, configs), *changed, *options])

@@ -77,14 +77,15 @@ def check_page_path(page: Path) -> None:
     check(page)
 
 
-def write_report(results: Sequence[Any], path: Path) -> list[str]:
+def write_report(results: Sequence[Any], path: Path, about: Mapping[str, str]) -> list[str]:
     """Write one self-contained HTML page of finished runs (`runner.Finished`): a row per case.
 
-    Returns a sentence of each log that is damaged; they stand in the page as well.
+    about: how they were made, in words, by what it says. Returns a sentence of each log that is
+    damaged; they stand in the page as well.
     """
     from lavendersim.figures.report import write_report as write_page
 
-    return write_page(results, path)
+    return write_page(results, path, about)
 
 
 def write_matrix(

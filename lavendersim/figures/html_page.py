@@ -1,15 +1,18 @@
-"""Self-contained HTML pages from Jinja templates: no script, no network, no other file.
+"""Self-contained HTML pages from Jinja templates: no network, no other file, at most one script.
 
 Pictures are data and styles stand in the page. The only links are those to the logs, relative to
-the page, so that page and runs can be moved together. Every text is escaped by the templates.
+the page, so that page and runs can be moved together. Every text is escaped by the templates, and
+a page's policy lets the player's script run and nothing else.
 """
 
 from __future__ import annotations
 
 import base64
+import hashlib
 import math
 import os
 from collections.abc import Sequence, Sized
+from importlib.resources import files
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 from urllib.parse import quote
@@ -17,9 +20,11 @@ from urllib.parse import quote
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from lavendersim.errors import LavenderError, UsageError
+from lavendersim.figures.motion import motion
 from lavendersim.figures.thumbnail import thumbnail
 from lavendersim.quantities.short_times import ON_PAGES, short_time
 
+PLAYER: Final = files("lavendersim.figures") / "templates" / "player.js"
 WIDTH, HEIGHT = 160, 110  # dots of a picture, as `thumbnail` draws it
 
 
@@ -30,11 +35,15 @@ class Picture(NamedTuple):
     data: str = ""  # a PNG, base64
     width: int = 0
     height: int = 0
+    motion: str = ""  # JSON, as `motion` makes it, for the player
 
 
-def render(template: str, **values: Any) -> str:
+def render(template: str, *, has_player: bool = False, **values: Any) -> str:
     """Return a page of `templates/`; a value that the template names must be there."""
-    return _environment().get_template(template).render(**values)
+    script = PLAYER.read_text("utf-8") if has_player else ""
+    digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
+    page = {"script": script, "script_digest": digest}
+    return _environment().get_template(template).render(**page, **values)
 
 
 def _environment() -> Environment:
@@ -65,16 +74,21 @@ def check_page_path(path: Path) -> None:
         raise UsageError(f"{path}: nothing may be written into its folder")
 
 
-def picture(cell: Any, scale: float = 1.0) -> Picture:
-    """Return the image of where the bodies of a cell ended, at a share of its size."""
+def picture(cell: Any, scale: float = 1.0, *, moving: bool = False) -> Picture:
+    """Return the image of where the bodies of a cell ended, at a share of its size.
+
+    moving: with what the player plays.
+    """
     try:
-        data = base64.b64encode(thumbnail(cell.trace())).decode()
+        trace = cell.trace()
+        data = base64.b64encode(thumbnail(trace)).decode()
+        played = motion(trace) if moving else ""
     except LavenderError as error:  # a log that is damaged has no picture, but still a row
         return Picture(str(error))
     finally:
         cell.release()
     text = f"final poses {cell.label}".strip()
-    return Picture(text, data, round(scale * WIDTH), round(scale * HEIGHT))
+    return Picture(text, data, round(scale * WIDTH), round(scale * HEIGHT), played)
 
 
 def address(path: Path, folder: Path) -> str:

@@ -33,8 +33,9 @@ CAPTION: Final = (
     "it idle through the same motion. Orange: the scene requires it. Vermilion: the motion "
     "without it is another. The axis is linear within ±1 ns and logarithmic outside. Right: what "
     "the engine with the effect takes to compile, once; lines, the engine of the plan alone. "
-    "{processor}."
+    "{processor}.{short}"
 )
+ONLY_REQUIRED: Final = " Quick: of {scenes} only effects that the scene requires are timed."
 
 
 def draw_overheads(runs: Sequence[Any], directory: Path) -> list[Path]:
@@ -56,8 +57,15 @@ def compose(tables: Sequence[tuple[str, OverheadTable]]) -> Figure:
     width = NAMES_WIDTH + SCENE_WIDTH * len(tables) + COMPILE_WIDTH
     repeats = sorted({table.repeats for _, table in tables})
     processors = sorted({table.processor for _, table in tables})
+    only = ", ".join(name for name, table in tables if table.only_required)
+    short = ONLY_REQUIRED.format(scenes=only) if only else ""
+    short += "".join(
+        f" {name}: {table.interrupted}." for name, table in tables if table.interrupted
+    )
     caption = CAPTION.format(
-        repeats=" or ".join(map(str, repeats)), processor="Processor: " + ", ".join(processors)
+        repeats=" or ".join(map(str, repeats)),
+        processor="Processor: " + ", ".join(processors),
+        short=short,
     )
     height = ROW * (len(effects) + 1) + 1.1
     figure = blank(Page(caption, width, height, gaps=GAPS))

@@ -2,30 +2,42 @@
 
 from __future__ import annotations
 
+import base64
 import math
-from collections.abc import Sequence
+import shlex
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from types import MappingProxyType
+from typing import Any, Final
 
 from lavendersim.durable_files import write_whole
-from lavendersim.figures.html_page import address, picture, render
+from lavendersim.errors import LavenderError
+from lavendersim.figures import draw
+from lavendersim.figures.html_page import Picture, address, picture, render
+
+NOTHING: Final[Mapping[str, str]] = MappingProxyType({})
 
 
-def write_report(results: Sequence[Any], path: Path) -> list[str]:
+def write_report(
+    results: Sequence[Any], path: Path, about: Mapping[str, str] = NOTHING
+) -> list[str]:
     """Write the page of finished runs (`.run`, `.outcomes`, `.verdicts`, `.good`), whole or not.
 
-    Returns a sentence of each log that is damaged; they stand in the page as well.
+    about: when, with which versions, on what and by which command they were made. Returns a
+    sentence of each log that is damaged; they stand in the page as well.
     """
-    write_whole(path, report(results, path.parent))
+    write_whole(path, report(results, path.parent, about))
     return [sentence for result in results for sentence in _damaged(result)]
 
 
-def report(results: Sequence[Any], folder: Path) -> str:
+def report(results: Sequence[Any], folder: Path, about: Mapping[str, str] = NOTHING) -> str:
     """Return the page; links are relative to `folder`."""
     good = sum(result.good for result in results)
     claims = [verdict for result in results for verdict in result.verdicts]
     return render(
         "report.html",
+        has_player=True,
+        about=about,
         title=f"{good} of {len(results)} cases pass",
         good=good == len(results),
         met=sum(verdict.passed for verdict in claims),
@@ -41,11 +53,15 @@ def _case(result: Any, folder: Path) -> dict[str, Any]:
     shown = _shown(result)
     margin, least_claim = _margin(verdicts)
     ended = [f"{cell.label or 'the cell'}: {cell.status}" for cell in result.ended_early]
+    again = [*result.ended_early, *_failed_cells(result)]
     return {
         "name": run.name,
         "reduced": run.experiment.options.reduced,
         "question": run.experiment.config.question,
-        "picture": picture(shown),
+        "picture": picture(shown, moving=True),
+        "shown": shown.label,
+        "figures": _figures(run),
+        "config": str(run.experiment.path),
         "log": address(shown.path, folder),
         "good": result.good,
         "met": sum(verdict.passed for verdict in verdicts),
@@ -59,7 +75,34 @@ def _case(result: Any, folder: Path) -> dict[str, Any]:
         "failures": _damaged(result)
         + ended
         + [verdict.message for verdict in verdicts if verdict.fails],
+        "replays": list(dict.fromkeys(_replay(cell) for cell in again)),
     }
+
+
+def _failed_cells(result: Any) -> list[Any]:
+    failed = {verdict.path for verdict in result.verdicts if verdict.fails}
+    return [cell for cell in result.run.cells if str(cell.path) in failed]
+
+
+def _replay(cell: Any) -> str:
+    """Return the command that shows a cell, whose log lies in `cells/` of its run."""
+    run = str(cell.path.parent.parent)
+    return shlex.join(["lavender", "replay", run, "--cell", f"{cell.index}"])
+
+
+def _figures(run: Any) -> list[Picture]:
+    """Return the figures that the config asks for, as pictures; none where a log is damaged."""
+    if not run.experiment.is_drawn:
+        return []
+    try:
+        drawn = draw(run, run.path / "figures")
+    except LavenderError:  # it stands among the failures
+        return []
+    return [
+        Picture(path.stem.replace("_", " "), base64.b64encode(path.read_bytes()).decode())
+        for path in drawn
+        if path.suffix == ".png"
+    ]
 
 
 def _damaged(result: Any) -> list[str]:
@@ -95,9 +138,8 @@ def _declared(experiment: Any) -> list[str]:
 
 def _shown(result: Any) -> Any:
     """Return the cell that stands for the case: the first that failed something, or the first."""
-    failed = {verdict.path for verdict in result.verdicts if verdict.fails}
-    failed |= {str(cell.path) for cell in result.ended_early}
-    return next((c for c in result.run.cells if str(c.path) in failed), result.run.cells[0])
+    failed = {cell.index for cell in [*_failed_cells(result), *result.ended_early]}
+    return next((cell for cell in result.run.cells if cell.index in failed), result.run.cells[0])
 
 
 def _margin(verdicts: Sequence[Any]) -> tuple[float, str]:

@@ -32,7 +32,7 @@ def thumbnail(trace: Any) -> bytes:
     from matplotlib.collections import PolyCollection
     from matplotlib.figure import Figure
 
-    view = _view(trace)
+    view = view_of(trace)
     outlines, colours, seen = _outlines(trace, *view)
     figure = Figure(figsize=(WIDTH, HEIGHT), dpi=DPI)
     FigureCanvasAgg(figure)  # without pyplot, nothing else gives the figure one
@@ -43,7 +43,7 @@ def thumbnail(trace: Any) -> bytes:
     middle, half = (low + high) / 2, size * (0.5 + MARGIN)
     axes.set_xlim(middle[0] - half, middle[0] + half)
     axes.set_ylim(middle[1] - half * HEIGHT / WIDTH, middle[1] + half * HEIGHT / WIDTH)
-    for start, along in _grounds(trace, *view):
+    for start, along in grounds_of(trace, *view):
         ends = (
             start + np.outer((-3 * half, 3 * half), along) + np.dot(middle - start, along) * along
         )
@@ -56,7 +56,7 @@ def thumbnail(trace: Any) -> bytes:
     return file.getvalue()
 
 
-def _view(trace: Any) -> tuple[np.ndarray, np.ndarray]:
+def view_of(trace: Any) -> tuple[np.ndarray, np.ndarray]:
     """Return the directions of the picture's right and of its up."""
     bodies = trace.config.scene.bodies
     movable = [i for i, name in enumerate(trace.bodies) if not bodies[name].fixed]
@@ -99,7 +99,7 @@ def _outlines(
         turns = rotation_matrices(pose[:, 3:])
         for i in sorted(solid, key=lambda i: -float(pose[i, :3] @ far)):
             if (i in movable or is_end) and not (is_end and i in gone):
-                corners = pose[i, :3] + _corners(bodies[i].shape) @ turns[i].T
+                corners = pose[i, :3] + corners_of(bodies[i].shape) @ turns[i].T
                 outlines.append(_hull(np.column_stack([corners @ right, corners @ up])))
                 own = LOOKS[i % len(LOOKS)].colour if is_end else BEFORE
                 colours.append(own if i in movable else FIXED)
@@ -111,7 +111,9 @@ def _seen(outlines: list[np.ndarray], colours: list[str]) -> list[np.ndarray]:
     return [one for one, colour in zip(outlines, colours, strict=True) if colour != FIXED]
 
 
-def _grounds(trace: Any, right: np.ndarray, up: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
+def grounds_of(
+    trace: Any, right: np.ndarray, up: np.ndarray
+) -> list[tuple[np.ndarray, np.ndarray]]:
     """Return a point and a direction of every plane that is seen edge on."""
     found = []
     for name in trace.bodies:
@@ -126,7 +128,7 @@ def _grounds(trace: Any, right: np.ndarray, up: np.ndarray) -> list[tuple[np.nda
 
 
 @lru_cache(maxsize=256)
-def _corners(shape: CellShape) -> np.ndarray:
+def corners_of(shape: CellShape) -> np.ndarray:
     """Return points (n, 3) in the body's frame [m] whose convex hull is the shape, or nearly."""
     placed = [
         piece.position + np.asarray(piece.shape.corners()) @ rotation_matrix(piece.orientation).T

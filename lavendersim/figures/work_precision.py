@@ -97,6 +97,13 @@ def _caption(table: CostTable) -> str:
     said = [*(table.sentences or [target.sentence for target in table.targets])]
     said += [f"{engine}: {effort}" for engine, effort in table.efforts.items()]
     said += [f"{engine} refused: {why}" for engine, why in table.refused.items()]
+    if table.quick:
+        said = [
+            "Quick: the grid has every other value of the config's lists, and their last",
+            *said,
+        ]
+    if table.interrupted:
+        said = [table.interrupted[0].upper() + table.interrupted[1:], *said]
     if any(row.least_error is not None for row in table.rows):
         said = [f"Upright lines end at the least error over {PERTURBED}", *said]
     return (OF_ENGINES if table.compares_engines else CAPTION).format(

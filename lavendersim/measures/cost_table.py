@@ -128,7 +128,9 @@ class CostTable:
     cells_per_setting: int
     clock: str  # what times were taken with
     machine: dict[str, Any]
-    repeats: int
+    repeats: int  # rounds that were taken
+    interrupted: str = ""  # what ended them before their time
+    quick: bool = False  # whether its grid is coarser than the config's
     begin: float  # [s] simulated time at which timing begins; `from` in the file
     duration: float  # [s] simulated
     truth: CostTruth | None  # None: no run of its own

@@ -55,6 +55,8 @@ class OverheadTable:
     bodies: int  # movable
     contacts_per_step: float
     rows: list[OverheadRow]
+    interrupted: str = ""  # what ended the repeats before their time
+    only_required: bool = False  # effects that the scene does not require are left out
 
     @classmethod
     def of(cls, data: dict[str, Any]) -> OverheadTable:

@@ -34,6 +34,11 @@ class Spread:
         middle, lower, upper = np.quantile(ordered, [0.5, 0.25, 0.75]).tolist()
         return cls(middle, lower, upper, float(ordered[beyond]), float(ordered[-1 - beyond]))
 
+    @property
+    def width(self) -> float:
+        """How long the interval is."""
+        return self.high - self.low
+
     def per(self, units: float) -> Spread:
         """Return the spread of one unit."""
         return Spread(**{name: value / units for name, value in asdict(self).items()})

@@ -75,6 +75,8 @@ def take_cost(
     repeats: int | None = None,
     *,
     engines: Sequence[str] = (),
+    is_quick: bool = False,
+    resume: bool = False,
     is_predicted: bool = False,
     prepared: Prepared | None = None,
 ) -> Costed:
@@ -83,7 +85,9 @@ def take_cost(
     jobs: processes that run and compile; lavender is timed in this one. targets, repeats: in place
     of those of the config. engines: whose settings are in it; none: the config's. The run is
     finished, and `latest`, when all of it is. is_predicted: see `run`. prepared: the grid, where it
-    was planned before.
+    was planned before. resume: go on with the grid's newest run where it did not finish. is_quick:
+    the experiment's grid is that of `quick`, which is said beside its numbers. Interrupted while
+    settings are timed, the table has the rounds that were whole.
     """
     check_cost(experiment, repeats)
     assert experiment.config.cost is not None
@@ -104,7 +108,7 @@ def take_cost(
         spec = experiment.config.cost
         assert spec is not None
         rounds = repeats or spec.repeats
-        times = times_of(clocked, spec.begin, rounds, jobs, progress.timing)
+        times, taken = times_of(clocked, spec.begin, rounds, jobs, progress.timing)
         laws = [law_of(one.cells[0].config) for one in clocked]
         rows = _rows(experiment, settings, errors, times, laws)
         table = CostTable(
@@ -117,7 +121,9 @@ def take_cost(
             cells_per_setting=each,
             clock=clock()[0],
             machine=machine(),
-            repeats=rounds,
+            repeats=taken.rounds,
+            interrupted=taken.interrupted,
+            quick=is_quick,
             begin=spec.begin,
             duration=experiment.cells()[0].config.duration,
             truth=_truth(settings, errors),
@@ -140,6 +146,7 @@ def take_cost(
         progress,
         overheads=False,
         closing=closing,
+        resume=resume,
         in_text=overrides,
         is_predicted=is_predicted,
         prepared=prepared,

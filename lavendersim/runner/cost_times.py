@@ -10,21 +10,22 @@ rounds, each in a process that times it.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from math import ceil
 from typing import NamedTuple
 
 from lavendersim.engine.spec import Spec
 from lavendersim.experiment.cell import Cell
+from lavendersim.measures.spread import Spread
 from lavendersim.quantities.scalars import exact
 from lavendersim.scene.plan import plan_of_cell, union
 
 from .compile_times import compile_times
+from .rounds import Report, Taken, take_rounds
 from .timed_elsewhere import Servers, TimedElsewhere, timing_servers
 from .timed_engine import SAMPLE_NS, Diverged, Timed
 
-Report = Callable[[str, int, int], None]
 Engines = list[tuple[Timed | TimedElsewhere, Fraction]]  # with their timesteps [s]
 
 
@@ -45,8 +46,11 @@ class Times(NamedTuple):
 
 def times_of(
     settings: Sequence[Clocked], begin: float, repeats: int, workers: int, report: Report
-) -> list[Times]:
-    """Return the times of every setting; begin: the simulated time [s] at which timing begins."""
+) -> tuple[list[Times], Taken]:
+    """Return the times of every setting, and the rounds that were taken, `repeats` at most.
+
+    begin: the simulated time [s] at which timing begins.
+    """
     specs = [_spec_of(each) for each in settings]
     own = [(each, spec) for each, spec in zip(settings, specs, strict=True) if spec is not None]
     seconds = {}
@@ -64,19 +68,26 @@ def times_of(
             engines.append(_engines(each, spec, begin, servers))
         samples: list[list[float]] = [[] for _ in settings]
         order = [place for place, timed in enumerate(engines) if timed]
-        for repeat in range(repeats):
-            report("rounds of all settings", repeat, repeats)
+
+        def one(repeat: int) -> None:
             for place in order if repeat % 2 == 0 else reversed(order):
                 samples[place].append(_sample(engines[place]))
-        report("rounds of all settings", repeats, repeats)
-    return [
+
+        def widths() -> Iterator[float]:
+            for place in order:
+                spread = Spread.of(samples[place])
+                yield spread.width / spread.median
+
+        taken = take_rounds("rounds of all settings", repeats, one, widths, report)
+    times = [
         Times(
-            [] if any(math.isnan(one) for one in taken) else taken,
+            [] if any(math.isnan(one) for one in each) else each[: taken.rounds],
             0.0 if spec is None else seconds[spec],
             sum(float(engine.steps * step) for engine, step in timed),
         )
-        for taken, spec, timed in zip(samples, specs, engines, strict=True)
+        for each, spec, timed in zip(samples, specs, engines, strict=True)
     ]
+    return times, taken
 
 
 def _spec_of(each: Clocked) -> Spec | None:

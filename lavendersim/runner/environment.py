@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import os
 import platform
-from collections.abc import Iterable
+import shlex
+from collections.abc import Iterable, Sequence
 from datetime import UTC, datetime
 from functools import cache
 from importlib.metadata import version
@@ -115,6 +116,19 @@ def delete_kernels(current: bool) -> Deleted:
         else:
             deleted.append(each)
     return Deleted(Kernels.of(deleted), Kernels.of(left), why)
+
+
+def about(arguments: Sequence[str]) -> dict[str, str]:
+    """Return when, with what, where and by which arguments something was made, in words."""
+    known = machine()
+    names = ("lavender", "numba", "numpy")
+    return {
+        "made": datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC"),
+        "versions": ", ".join(f"{name} {known[name]}" for name in names)
+        + f", Python {known['python']}",
+        "machine": f"{known['processor']}, {known['cores']} cores, {known['system']}",
+        "command": shlex.join(["lavender", *arguments]),
+    }
 
 
 def environment(*specs: Spec) -> dict[str, Any]:

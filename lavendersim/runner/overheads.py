@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Callable, Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from math import ceil
 from pathlib import Path
 from typing import Final
@@ -19,6 +20,7 @@ from lavendersim.engine.spec import Spec
 from lavendersim.errors import ConfigError
 from lavendersim.experiment import Experiment
 from lavendersim.experiment.cell import Cell
+from lavendersim.experiment.models.overhead import REQUIRED
 from lavendersim.geometry.bodies import is_movable
 from lavendersim.measures.overhead_table import OverheadRow, OverheadTable, OverheadTiming
 from lavendersim.measures.spread import Spread
@@ -28,9 +30,8 @@ from lavendersim.quantities.scalars import exact
 from .compile_times import compile_times
 from .environment import processor
 from .overhead_pairs import EnginePair, names_of_effects, pairs_of
+from .rounds import Report, Taken, take_rounds
 from .timed_engine import Diverged, Timed, clock
-
-Report = Callable[[str, int, int], None]
 
 
 def check_overheads(experiment: Experiment) -> None:
@@ -50,7 +51,7 @@ def check_overheads(experiment: Experiment) -> None:
 
 def _named(experiment: Experiment) -> tuple[str, ...]:
     spec = experiment.config.overhead
-    return () if spec is None or spec.effects == "all" else tuple(spec.effects)
+    return spec.effects if spec is not None and isinstance(spec.effects, tuple) else ()
 
 
 def take_overheads(
@@ -64,6 +65,8 @@ def take_overheads(
     assert spec is not None
     (cell,) = experiment.cells()
     pairs = pairs_of(cell.config, _named(experiment))
+    if spec.effects == REQUIRED:
+        pairs = [pair for pair in pairs if pair.required]
     specs = list(
         dict.fromkeys(each for pair in pairs for each in (pair.off, pair.on) if each is not None)
     )
@@ -77,8 +80,9 @@ def take_overheads(
     steps = cell.config.steps - first
     timed, diverged = _timed(cell, specs, first, steps)
     pairs = [_without_diverged(pair, diverged) for pair in pairs]
-    samples = _rounds(pairs, timed, spec.repeats, report)
-    return _table(cell, pairs, timed, samples, seconds, (first, steps, spec.repeats))
+    samples, taken = _rounds(pairs, timed, spec.repeats, report)
+    table = _table(cell, pairs, timed, samples, seconds, (first, steps, taken.rounds))
+    return replace(table, interrupted=taken.interrupted, only_required=spec.effects == REQUIRED)
 
 
 def _timed(
@@ -103,11 +107,11 @@ def _without_diverged(pair: EnginePair, diverged: set[Spec]) -> EnginePair:
 
 def _rounds(
     pairs: Sequence[EnginePair], timed: dict[Spec, Timed], repeats: int, report: Report
-) -> dict[str, list[tuple[float, float]]]:
-    """Return (off, on) of every repeat, by effect [ns/step]."""
+) -> tuple[dict[str, list[tuple[float, float]]], Taken]:
+    """Return (off, on) of every repeat, by effect [ns/step], and how many repeats there are."""
     samples: dict[str, list[tuple[float, float]]] = {pair.effect: [] for pair in pairs}
-    for repeat in range(repeats):
-        report("rounds of overheads", repeat, repeats)
+
+    def one(repeat: int) -> None:
         for pair in pairs:
             if pair.off is None or pair.on is None:
                 continue
@@ -118,8 +122,14 @@ def _rounds(
             else:
                 earlier = off.sample()
                 samples[pair.effect].append((earlier, on.sample()))
-    report("rounds of overheads", repeats, repeats)
-    return samples
+
+    def widths() -> Iterator[float]:
+        for pairs_taken in filter(None, samples.values()):
+            difference = Spread.of([on - off for off, on in pairs_taken])
+            yield difference.width / Spread.of([on for _, on in pairs_taken]).median
+
+    taken = take_rounds("rounds of overheads", repeats, one, widths, report)
+    return {name: each[: taken.rounds] for name, each in samples.items()}, taken
 
 
 def _table(

@@ -39,7 +39,8 @@ MOST_AHEAD: Final = 12  # where they are so short that results are taken
 EVERY: Final = 0.02  # [s] together
 TRIES: Final = 2  # of a task
 STILLBORN: Final = 3  # processes one after the other that may die before they are ready
-PATIENCE: Final = 2.0  # [s] for a process to end when it is asked to
+PATIENCE: Final = 2.0  # [s] for a process to end that has nothing to do
+CLOSING: Final = 20.0  # [s] for one to write what it simulated, and close its log
 PR_SET_PDEATHSIG: Final = 1  # of Linux's prctl
 
 
@@ -249,7 +250,7 @@ class _Crew(Generic[Task, Result]):
         for worker in self._workers:
             worker.process.terminate()
         for worker in self._workers:
-            worker.process.join(PATIENCE)
+            worker.process.join(CLOSING)
             worker.process.kill()
             worker.process.join()
             worker.pipe.close()

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-VOID = {"meta", "img", "br", "wbr"}
+VOID = {"meta", "img", "br", "wbr", "input"}
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome")
 
 
@@ -41,8 +41,12 @@ class Page(HTMLParser):
         return [at for name, at in self.seen if name == tag and at.get("class", "") == kind]
 
     def needs_nothing_else(self) -> None:
-        """Hold it to what a page that stands alone may name."""
-        assert {"script", "link", "iframe", "object"}.isdisjoint(tag for tag, _ in self.seen)
+        """Hold it to what a page that stands alone may name; of scripts to its own and to data."""
+        assert {"link", "iframe", "object"}.isdisjoint(tag for tag, _ in self.seen)
+        scripts = [at for tag, at in self.seen if tag == "script"]
+        assert all(at in ({}, {"type": "application/json"}) for at in scripts)
+        (policy,) = (at["content"] for _, at in self.seen if "http-equiv" in at)
+        assert policy.startswith("default-src 'none'; img-src data:; style-src 'unsafe-inline'")
         named = [at[key] for _, at in self.seen for key in at if key in ("href", "src", "action")]
         assert not [name for name in named if name.startswith(("http", "/", "file"))]
 

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import base64
+import hashlib
+import json
+import re
 from pathlib import Path
 from urllib.parse import unquote
 
@@ -80,8 +83,17 @@ def test_every_link_leads_to_a_log(report: Path) -> None:
 
 def test_words_of_a_config_are_words(report: Path) -> None:
     text = report.read_text(encoding="utf-8")
-    assert "<script" not in text
+    assert "<script src" not in text
     assert HOSTILE in Page(text).text
+
+
+def test_the_player_alone_may_run(report: Path) -> None:
+    text = report.read_text(encoding="utf-8")
+    (script,) = re.findall(r"<script>(.*?)</script>", text, re.DOTALL)
+    digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
+    assert f"; script-src 'sha256-{digest}'\"" in text
+    played = re.findall(r'<script type="application/json">(.*?)</script>', text, re.DOTALL)
+    assert [len(json.loads(one)["bodies"]) for one in played] == [1, 1, 1]
 
 
 def test_a_page_of_another_name_is_refused(report: Path) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Final, Literal
 
 from pydantic import Field, Tag
 
@@ -11,16 +11,23 @@ from lavendersim.experiment.text.place import Place
 from lavendersim.quantities.model import ConfigModel
 from lavendersim.quantities.quantity import Quantity, either
 
+REQUIRED: Final = "required"
+
 
 def all_or_named(value: Any) -> str | None:
     """Return the form of `all`, or of a list of names."""
     return "all" if value == "all" else "named" if isinstance(value, list | tuple) else None
 
 
+def _which_effects(value: Any) -> str | None:
+    return REQUIRED if value == REQUIRED else all_or_named(value)
+
+
 EffectNames = Annotated[
     Annotated[Literal["all"], Tag("all")]
+    | Annotated[Literal["required"], Tag(REQUIRED)]
     | Annotated[tuple[str, ...], Field(min_length=1), Tag("named")],
-    either("all, or a list of effects", all_or_named),
+    either("all, required, or a list of effects", _which_effects),
 ]
 
 
@@ -38,7 +45,9 @@ class OverheadSpec(ConfigModel):
     """What each effect costs in this scene: taken by `lavender run`, after the cells."""
 
     effects: EffectNames = Field(
-        default="all", description="or a list of names, as `lavender plan` shows them"
+        default="all",
+        description="`required`: what the plan of the scene has; or a list of names, as `lavender "
+        "plan` shows them",
     )
     repeats: Annotated[int, Quantity(whole=True, minimum=1, maximum=1000)] = Field(
         default=9, description="rounds; every round visits every effect, on and off, in turn"

@@ -36,7 +36,7 @@ def result(folder: Path, verdicts: list[Verdict], name: str = "drop", **more: An
     ]  # fmt: skip
     config = SimpleNamespace(question="How <high>?")
     controls = more.pop("controls", ())
-    experiment = SimpleNamespace(config=config, controls=controls, options=SimpleNamespace(reduced=False))  # noqa: E501  # fmt: skip
+    experiment = SimpleNamespace(config=config, controls=controls, options=SimpleNamespace(reduced=False), is_drawn=False, path="drop.yaml")  # noqa: E501  # fmt: skip
     run = SimpleNamespace(name=name, cells=cells, experiment=experiment, cut=lambda: more.get("cut", []))  # noqa: E501  # fmt: skip
     good = all(one.passed for one in verdicts)
     ended = more.pop("ended", [])
@@ -106,6 +106,19 @@ def test_a_cell_without_steps_costs_no_division(tmp_path: Path, steps: int) -> N
         outcome.steps, outcome.physics_ns = steps, 3000.0
     assert ">3</td>" in report([one], tmp_path).replace("\n", "")
     assert not math.isnan(one.outcomes[0].physics_ns)
+
+
+def test_what_failed_has_the_command_that_shows_it(tmp_path: Path) -> None:
+    log = str(tmp_path / "cells/1.mcap")
+    failed = [verdict("a", passed=False, path=log), verdict("b", passed=False, path=log)]
+    text = text_of(report([result(tmp_path, failed)], tmp_path))
+    assert text.count(f"lavender replay {tmp_path} --cell 1") == 1
+    assert "lavender replay" not in text_of(report([result(tmp_path, [verdict("a")])], tmp_path))
+
+
+def test_when_and_with_what_it_was_made(tmp_path: Path) -> None:
+    page = report([result(tmp_path, [])], tmp_path, {"made": "today", "command": "lavender <x>"})
+    assert "made today command lavender &lt;x&gt;" in text_of(page)
 
 
 def test_words_of_a_config_are_words(tmp_path: Path) -> None:

@@ -12,11 +12,11 @@ from synthetic import log_of, scene_of
 from lavendersim.figures.thumbnail import (
     BEFORE,
     FIXED,
-    _grounds,
     _hull,
     _outlines,
-    _view,
+    grounds_of,
     thumbnail,
+    view_of,
 )
 from lavendersim.trace.reader import RecordedPoses
 
@@ -63,20 +63,20 @@ def test_points_in_one_place_and_in_a_line_have_an_outline() -> None:
 def test_up_is_against_gravity_and_sideways_is_where_bodies_spread() -> None:
     bodies = {"a": BALL, "b": BALL}
     along_x, along_y = ([[0, 0, 0], end] for end in ([4, 0, 0], [0, 4, 0]))
-    right, up = _view(log(bodies, along_x))
+    right, up = view_of(log(bodies, along_x))
     assert (right.tolist(), up.tolist()) == ([1.0, 0.0, 0.0], [0.0, 0.0, 1.0])
-    right, _ = _view(log(bodies, along_y))
+    right, _ = view_of(log(bodies, along_y))
     assert abs(right[1]) == pytest.approx(1.0)
-    _, up = _view(log(bodies, along_x, gravity=[0.0, -3.0, -4.0]))
+    _, up = view_of(log(bodies, along_x, gravity=[0.0, -3.0, -4.0]))
     assert up == pytest.approx([0.0, 0.6, 0.8])
-    right, up = _view(log(bodies, along_x, gravity=[9.0, 0.0, 0.0]))
+    right, up = view_of(log(bodies, along_x, gravity=[9.0, 0.0, 0.0]))
     assert up.tolist() == [-1.0, 0.0, 0.0]
     assert abs(right @ up) < 1e-15
 
 
 def test_a_box_is_a_square_where_it_began_and_where_it_ended() -> None:
     one = log({"it": BOX}, [[0, 0, 1]], [[3, 0, 1]])
-    outlines, colours, seen = _outlines(one, *_view(one))
+    outlines, colours, seen = _outlines(one, *view_of(one))
     assert colours[0] == BEFORE
     squares = [sorted(map(tuple, outline.tolist())) for outline in outlines]
     corners = list(itertools.product((-1.0, 1.0), (0.0, 2.0)))
@@ -90,20 +90,22 @@ def test_a_box_is_a_square_where_it_began_and_where_it_ended() -> None:
 def test_the_last_finite_state_is_shown_and_what_is_fixed_once() -> None:
     bodies = {"it": BALL, "post": {"shape": BOX["shape"]}}
     one = log(bodies, [[0, 0, 1], [9, 0, 0]], [[1, 0, 1], [9, 0, 0]], [[np.nan, 0, 1], [9, 0, 0]])
-    _, colours, seen = _outlines(one, *_view(one))
+    _, colours, seen = _outlines(one, *view_of(one))
     assert colours.count(FIXED) == 1
     assert seen.max(axis=0)[0] == pytest.approx(1.1, abs=0.01)  # not the post's 10, nor NaN
     none = log(bodies, [[np.nan, 0, 1], [9, 0, 0]])
-    assert _outlines(none, *_view(log(bodies, [[0, 0, 1], [9, 0, 0]])))[0] == []
+    assert _outlines(none, *view_of(log(bodies, [[0, 0, 1], [9, 0, 0]])))[0] == []
 
 
 def test_a_plane_is_a_line_where_it_is_seen_edge_on() -> None:
     one = log({"floor": FLOOR, "it": BALL}, [[0, 0, 0], [0, 0, 1]])
-    ((start, along),) = _grounds(one, *_view(one))
+    ((start, along),) = grounds_of(one, *view_of(one))
     assert start.tolist() == [0.0, 0.5]
     assert abs(along[0]) == pytest.approx(1.0)
     facing = {"shape": {"kind": "plane", "normal": [0.0, 1.0, 0.0], "offset": 0.0}}
-    assert _grounds(log({"wall": facing, "it": BALL}, [[0, 0, 0], [0, 0, 1]]), *_view(one)) == []
+    assert (
+        grounds_of(log({"wall": facing, "it": BALL}, [[0, 0, 0], [0, 0, 1]]), *view_of(one)) == []
+    )
 
 
 def test_equal_logs_give_equal_pictures() -> None:

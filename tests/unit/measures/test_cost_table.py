@@ -20,7 +20,7 @@ def test_a_table_is_written_as_it_was_read() -> None:
     own = {"front": False, "engine": "lavender", "settings": {}, "least_error": None}
     own |= {"contacts": None, "iterations": None}
     added = {"rows": [row_data(accuracy=1e-3, **own)]}
-    added |= {"refused": {}, "sentences": [], "efforts": {}}
+    added |= {"interrupted": "", "quick": False, "refused": {}, "sentences": [], "efforts": {}}
     assert written == data | added
     assert list(written["rows"][0])[:5] == ["role", "preset", "timestep", "solver", "sweeps"]
 

@@ -94,7 +94,7 @@ def test_a_simulated_second_costs_its_steps_and_nothing_of_the_compilation(
     world = World(ns_per_step)
     use(world, monkeypatch)
     monkeypatch.setattr(timed_engine, "clock", lambda: ("fake", lambda: world.now))
-    (times,) = times_of([clocked()], 0.0, 7, 1, silent)
+    (times,), _ = times_of([clocked()], 0.0, 7, 1, silent)
     assert times.samples == pytest.approx([ns_per_step * RATE] * 7, rel=1e-12)
     assert times.compile_s == COMPILING / 1e9  # it has a number of its own
     assert times.seconds == 0.5
@@ -106,7 +106,7 @@ def test_the_real_clock_sees_what_a_slow_kernel_burns(monkeypatch: pytest.Monkey
     found = []
     for ns_per_step in (slow, fast):
         use(RealWorld(ns_per_step), monkeypatch)
-        (times,) = times_of([clocked()], 0.0, 7, 1, silent)
+        (times,), _ = times_of([clocked()], 0.0, 7, 1, silent)
         found.append(sorted(times.samples)[3] / RATE)
     # The loop ends when the clock says so: never early, and late by a look at the clock or what the
     # machine adds in a median of seven: less than half. One compilation in it would be ten times.
@@ -118,7 +118,7 @@ def test_timing_begins_at_its_step_and_ends_with_the_run(monkeypatch: pytest.Mon
     world = World(1000)
     use(world, monkeypatch)
     monkeypatch.setattr(timed_engine, "clock", lambda: ("fake", lambda: world.now))
-    (times,) = times_of([clocked()], 0.3, 7, 1, silent)
+    (times,), _ = times_of([clocked()], 0.3, 7, 1, silent)
     assert times.seconds == pytest.approx(0.2)
     assert times.samples == pytest.approx([1000 * RATE] * 7, rel=1e-12)
 
@@ -141,7 +141,7 @@ def test_every_round_visits_every_setting_in_turn_forwards_and_back(
 
     use(World(1), monkeypatch)
     monkeypatch.setattr(cost_times, "Timed", Visited)
-    times = times_of([clocked()] * 3, 0.0, 4, 1, silent)
+    times, _ = times_of([clocked()] * 3, 0.0, 4, 1, silent)
     assert visits == [0, 1, 2, 2, 1, 0] * 2
     assert [one.samples for one in times] == [[(1.0 + place) * RATE] * 4 for place in range(3)]
 
@@ -159,5 +159,5 @@ def test_several_cells_of_a_setting_cost_their_mean(monkeypatch: pytest.MonkeyPa
     monkeypatch.setattr(timed_engine, "build", build)
     monkeypatch.setattr(timed_engine, "clock", lambda: ("fake", lambda: clock.now))
     (cell,) = clocked().cells
-    (times,) = times_of([Clocked([cell, cell], [STEPS, STEPS])], 0.0, 7, 1, silent)
+    (times,), _ = times_of([Clocked([cell, cell], [STEPS, STEPS])], 0.0, 7, 1, silent)
     assert times.samples == pytest.approx([2000 * RATE] * 7, rel=1e-12)

@@ -11,6 +11,7 @@ import pytest
 from lavendersim.runner.environment import (
     PACKAGES,
     Kernels,
+    about,
     machine,
     processor,
     versions,
@@ -25,6 +26,13 @@ def test_versions_are_those_that_are_installed() -> None:
 def test_the_processor_has_a_name_and_the_machine_its_versions() -> None:
     assert processor()
     assert machine().items() >= versions().items()
+
+
+def test_what_made_a_page_stands_in_it_as_a_shell_takes_it() -> None:
+    made = about(["check", "a b.yaml"])
+    assert made["command"] == "lavender check 'a b.yaml'"
+    assert version("numba") in made["versions"]
+    assert made["machine"].startswith(processor())
 
 
 @pytest.mark.parametrize(

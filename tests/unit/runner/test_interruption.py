@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from lavender_cli.run import _interruptible
+from lavender_cli.going_on import interruptible
 from lavendersim import open_run, open_trace
 from lavendersim.errors import TraceError
 from lavendersim.runner.interruption import (
@@ -130,7 +130,7 @@ def test_other_processes_close_their_logs(tmp_path: Path) -> None:
     directory, _ = interrupted(runs, "SIGTERM", command, logs=2)
     short, *long = (cell.status for cell in open_run(directory).cells)
     assert short == "complete"
-    assert all(status.startswith("interrupted by SIGTERM after step ") for status in long)
+    assert all(status.startswith("interrupted by SIGTERM after step ") for status in long), long
     logs = [open_trace(log, allow_incomplete=True) for log in directory.glob("cells/*.mcap")]
     assert sorted(trace.status for trace in logs) == sorted([short, *long])
 
@@ -248,7 +248,7 @@ def test_a_signal_before_the_first_cell_prints_the_command(
                 raise ValueError(f"no JSON: {end}") from None
             raise
 
-    with pytest.raises(KeyboardInterrupt), _interruptible("lavender run a.yaml --resume"):
+    with pytest.raises(KeyboardInterrupt), interruptible("lavender run a.yaml --resume"):
         planned()
     said = f"interrupted by {name}\ngo on with: lavender run a.yaml --resume\n"
     assert capsys.readouterr().err == said
