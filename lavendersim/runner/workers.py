@@ -38,7 +38,7 @@ Result = TypeVar("Result")
 
 AHEAD: Final = 2  # groups of tasks that a process is given: the one it does, and the next,
 PLENTY: Final = 4  # while more of them wait than so many for each process
-EVERY: Final = 0.02  # [s] that a group of short tasks takes,
+EVERY: Final = 0.1  # [s] that a group of short tasks takes,
 MOST: Final = 64  # tasks at most
 TRIES: Final = 2  # of a task
 STILLBORN: Final = 3  # processes one after the other that may die before they are ready
