@@ -29,14 +29,10 @@ where all of them are too short for it (`executor.WORTH_PROCESSES`) none is star
 from __future__ import annotations
 
 import argparse
-import atexit
 import json
 import resource
-import shutil
 import sys
-import tempfile
 from collections.abc import Iterator, Sequence
-from functools import cache
 from pathlib import Path
 from time import perf_counter
 from typing import Any, NamedTuple
@@ -50,6 +46,7 @@ from lavendersim.runner.workers import work
 from lavendersim.scene.build import build
 from lavendersim.scene.plan import plan_of_cell
 
+from .folders import new_folder
 from .line_cases import RESTITUTIONS, drops
 
 PROCESSES = 2
@@ -119,20 +116,8 @@ def processor(who: int) -> float:
     return used.ru_utime + used.ru_stime
 
 
-@cache
-def folders() -> str:
-    """Return the folder of all runs; it is deleted when this process ends.
-
-    Not one after the other: ext4 leaves the places of files that were just deleted alone for
-    seconds, and looks through them for each new file, 0.6 ms with the lock of the folder held.
-    """
-    folder = tempfile.mkdtemp()
-    atexit.register(shutil.rmtree, folder)
-    return folder
-
-
 def taken(text: str, processes: int) -> Taken:
-    """Run a config in a folder of FOLDERS."""
+    """Run a config in a new folder."""
     experiment = load_experiment_text(text, "worlds.yaml")
     times: list[float] = []  # of this process, as the first cell begins and as the last has ended
 
@@ -140,7 +125,7 @@ def taken(text: str, processes: int) -> Taken:
         if len(of_cells) != 2 or of_cells[0] == of_cells[1]:
             times.append(processor(resource.RUSAGE_SELF))
 
-    folder = tempfile.mkdtemp(dir=folders())
+    folder = new_folder()
     before = processor(resource.RUSAGE_SELF), processor(resource.RUSAGE_CHILDREN)
     begin = perf_counter()
     finished = run(experiment, folder, processes, Progress(running=note, cell_done=note))
