@@ -23,7 +23,7 @@ from lavendersim.experiment.cell import Cell
 from lavendersim.scene.build import build
 from lavendersim.scene.plan import plan_of_cell, union
 
-KEPT: Final = 256  # steps whose rows an engine has room for, unless told otherwise
+KEPT: Final = 256  # steps whose rows an engine has room for by default
 
 
 def worlds_of(

@@ -1,7 +1,7 @@
 """Folders that benchmarks run in, all deleted when the process ends.
 
 Not one after the other: ext4 leaves the places of files that were just deleted alone for seconds,
-and looks through them for each new file: up to 0.6 ms of it, with the lock of the folder held.
+and looks through them for each new file: up to 0.6 ms of it, behind the lock of the folder.
 """
 
 from __future__ import annotations
