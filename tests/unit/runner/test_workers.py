@@ -56,7 +56,7 @@ def test_a_task_whose_process_dies_is_done_once_more(tmp_path: Path) -> None:
     assert len(list(tmp_path.iterdir())) == len(tasks) + 1
 
 
-def test_of_a_group_that_task_is_told_that_its_process_died_of(
+def test_of_a_group_the_task_is_named_that_its_process_died_of(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Tasks of no time are given many at once; those before the deadly one have lost results."""

@@ -9,23 +9,13 @@ from lavendersim import Simulator
 from lavendersim.errors import UsageError
 from lavendersim.experiment import load_experiment_text
 from lavendersim.simulator.worlds import worlds_of
-from tests.drop_config import SCENE
+from tests.drop_config import SCENE, SIX
 
-# As in tests/unit/engine/test_worlds.py: the kernels are compiled once for both.
-CONFIG = (
-    SCENE
-    + """\
-duration: 1.0
-sweep:
-  mass: {path: scene.bodies.ball.mass, values: [0.5, 1, 3]}
-  e: {path: scene.bodies.ball.surface.restitution, values: [0.3, 0.8]}
-"""
-)
 STEPS = 90
 
 
 def test_worlds_of_a_config_have_the_bits_of_its_cells() -> None:
-    experiment = load_experiment_text(CONFIG, "drops.yaml")
+    experiment = load_experiment_text(SIX, "drops.yaml")
     worlds = worlds_of(experiment)
     worlds.advance(STEPS, threads=2)
     assert len(worlds.engines) == 6
