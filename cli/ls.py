@@ -23,7 +23,7 @@ Name = Annotated[
 ]
 VerdictOption = Annotated[
     str | None,
-    typer.Option("--verdict", metavar="WORD", help="pass, fail, unfinished or damaged."),
+    typer.Option("--verdict", metavar="WORD", help="pass, fail, unclaimed, unfinished or damaged."),
 ]
 Tag = Annotated[str | None, typer.Option("--tag", metavar="TAG", help="That have this tag.")]
 Older = Annotated[

@@ -15,6 +15,13 @@ scene:
 numerics: chapter
 """
 LOW = SCENE.replace("clearance: 0.1", "clearance: 0.05")
+# Six cells of one plan: worlds.
+SIX = f"""\
+{SCENE}duration: 1.0
+sweep:
+  mass: {{path: scene.bodies.ball.mass, values: [0.5, 1, 3]}}
+  e: {{path: scene.bodies.ball.surface.restitution, values: [0.3, 0.8]}}
+"""
 DROP = f"""\
 question: How high?
 expected: e^2 h.

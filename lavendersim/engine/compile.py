@@ -6,7 +6,6 @@ before it types them, so a pruned kernel is as small as one that never had the e
 
 from __future__ import annotations
 
-import gc
 import threading
 import warnings
 from collections.abc import Callable, Iterator, Sequence
@@ -16,6 +15,8 @@ from typing import Any
 
 import numba
 from numba.core.errors import NumbaExperimentalFeatureWarning
+
+from lavendersim.garbage import uncollected
 
 from . import kernel_store
 from .compile_options import OPTIONS
@@ -42,21 +43,6 @@ def inner(function: Callable[..., Any]) -> Any:
         return numba.njit(**OPTIONS)(function)
     options = {"nopython": True, "boundscheck": None, **OPTIONS}
     return Kernel(with_signature(function), targetoptions=options)
-
-
-@contextmanager
-def uncollected() -> Iterator[None]:
-    """Look for no garbage inside: next to nothing is that a compiler makes.
-
-    To look for it takes a tenth of the time to compile, and half of that to compose.
-    """
-    collected = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if collected:
-            gc.enable()
 
 
 @contextmanager

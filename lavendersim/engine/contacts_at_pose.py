@@ -11,10 +11,12 @@ from typing import Any
 
 import numpy as np
 
+from lavendersim.garbage import uncollected
+
 from . import memory
 from .collide import narrow_phase
 from .collide.broad.broad_phase import allocate_broad_phase
-from .compile import compiling, kernel, uncollected
+from .compile import compiling, kernel
 from .effects import made_once
 from .engine import Engine
 from .kernel_cache import cached

@@ -16,10 +16,12 @@ from __future__ import annotations
 from functools import cache
 from typing import Any
 
+from lavendersim.garbage import uncollected
+
 from .approach import NEVER, make_note_acceleration
 from .collide import narrow_phase
 from .collide.iteration_limits import forget_limits, has_limits, make_count_limits
-from .compile import chain, kernel, naming, uncollected
+from .compile import chain, kernel, naming
 from .effects import BY_NAME, has_hook, made_by, made_once
 from .integrate import (
     keeps_motion,

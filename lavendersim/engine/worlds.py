@@ -21,7 +21,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .compile import Kernel, compiling, kernel, uncollected
+from lavendersim.garbage import uncollected
+
+from .compile import Kernel, compiling, kernel
 from .engine import Engine
 from .kernel_cache import cached
 from .memory import Log, State, Workspace, arrays_of

@@ -33,6 +33,7 @@ from lavendersim.experiment.text.former import with_new_spellings
 from lavendersim.experiment.text.node import Node, key_mark
 from lavendersim.experiment.text.parse import decode, parse
 from lavendersim.experiment.text.report import Report
+from lavendersim.garbage import uncollected
 from lavendersim.quantities.found import found
 
 # Checking a cell takes 0.3 ms. Of larger sweeps every axis is checked value by value up to as many
@@ -140,7 +141,8 @@ def _load(
         report.add(key_mark(root, "sweep"), sentence)
         raise ConfigError(report.defects)
     sweep.check_distinct(axes, report)
-    made = _check_others(root, axes, cells, report, name)
+    with uncollected():  # cells stay
+        made = _check_others(root, axes, cells, report, name)
     if report.defects or config is None:
         raise ConfigError(report.defects)
     values = {

@@ -14,9 +14,10 @@ from collections.abc import Iterator
 from concurrent.futures import Executor
 from contextlib import contextmanager
 from importlib.util import find_spec
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 from lavendersim.errors import UsageError
+from lavendersim.quantities.found import found, nearest, quoted
 
 QUEUES: Final = {
     "slurm": "SLURMCluster",
@@ -56,20 +57,46 @@ def dask_workers(address: str | None, jobs: int) -> Iterator[Executor]:
 
 def _cluster(jobs: int) -> Any:
     """Return the workers that Dask's configuration asks for."""
-    import dask
-
-    queue = dask.config.get("lavender.queue", None)
-    if queue is None:
+    asked = asked_of_queue()
+    if asked is None:
         from distributed import LocalCluster
 
         return LocalCluster(n_workers=jobs, threads_per_worker=1, dashboard_address=None)
-    if queue not in QUEUES:
-        expected = ", ".join(QUEUES)
-        raise UsageError(f"lavender.queue: {queue!r} in Dask's configuration, expected {expected}")
     if find_spec("dask_jobqueue") is None:
-        raise UsageError(f"queue {queue}: needs dask-jobqueue: pip install lavendersim[dask]")
+        raise UsageError(f"queue {asked.queue}: needs dask-jobqueue: pip install lavendersim[dask]")
     import dask_jobqueue
 
-    cluster = getattr(dask_jobqueue, QUEUES[queue])()
-    cluster.scale(jobs=dask.config.get("lavender.jobs", 1))
+    cluster = getattr(dask_jobqueue, QUEUES[asked.queue])()
+    cluster.scale(jobs=asked.jobs)
     return cluster
+
+
+class Queue(NamedTuple):
+    """What is asked of a cluster."""
+
+    queue: str  # one of QUEUES
+    jobs: int = 1
+
+
+def asked_of_queue() -> Queue | None:
+    """Return what section `lavender` of Dask's configuration asks for; None where it has none.
+
+    UsageError for a key or a value that cannot be.
+    """
+    import dask
+
+    section = dask.config.get("lavender", None)
+    if section is None:
+        return None
+    where = "section lavender of Dask's configuration"
+    if not isinstance(section, dict):
+        raise UsageError(f"{where}: expected queue and jobs, found {found(section)}")
+    for key in section.keys() - {*Queue._fields}:
+        raise UsageError(f"{where}: unknown key {quoted(key)}{nearest(key, Queue._fields)}")
+    name, jobs = section.get("queue"), section.get("jobs", 1)
+    if name not in [*QUEUES]:
+        known = ", ".join(QUEUES)
+        raise UsageError(f"{where}: queue: expected one of {known}, found {found(name)}")
+    if isinstance(jobs, bool) or not isinstance(jobs, int) or jobs < 1:
+        raise UsageError(f"{where}: jobs: expected a whole number from 1 on, found {found(jobs)}")
+    return Queue(name, jobs)

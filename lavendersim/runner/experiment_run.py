@@ -19,6 +19,7 @@ from lavendersim.durable_files import flush_tree, write_whole, written_aside
 from lavendersim.errors import UsageError
 from lavendersim.experiment import Experiment, load_experiment
 from lavendersim.experiment.cell import Cell
+from lavendersim.garbage import uncollected
 from lavendersim.measures import Values, Verdict, judge, meant_to_end_early
 
 from .cells_index import CellsIndex, IndexRow, write_index
@@ -166,7 +167,8 @@ def run(
     if executor is not None and experiment.config.record.problems != NONE:
         raise UsageError(f"{experiment.name}: record.problems is written by processes alone")
     if prepared is None or prepared.experiment is not experiment:
-        prepared = prepare(experiment, jobs if executor is None else 1)
+        with uncollected():  # plans stay
+            prepared = prepare(experiment, jobs if executor is None else 1)
     root = Path(root)
     check_latest(root)
     remove_leftovers(root)
@@ -216,8 +218,9 @@ def complete(
     experiment, cells = prepared.experiment, prepared.cells
     (directory / "cells").mkdir(exist_ok=True)
     write_whole(directory / CONFIG, experiment.text, flush=False)
-    configs = _write_resolved(directory / RESOLVED, cells)
-    pending = prepared.jobs(directory)
+    with uncollected():  # jobs stay, and so do results
+        configs = _write_resolved(directory / RESOLVED, cells)
+        pending = prepared.jobs(directory)
     ended, taken, index = _run_cells(
         experiment, pending, configs, done, (executor or jobs, progress)
     )
@@ -226,13 +229,15 @@ def complete(
     lost = {outcome.cell for outcome in outcomes if not outcome.log}
     drawn = {index: one.values for index, one in taken.items() if index not in lost}
     run = Run(directory, experiment, drawn, written=index)
-    result = _judged(run, outcomes, taken)
+    with uncollected():
+        result = _judged(run, outcomes, taken)
     table = None
     if overheads and experiment.config.overhead is not None:
         table = take_overheads(experiment, jobs, progress.timing)
         write_overheads(directory / OVERHEADS, table)
     measured = [taken[cell.index].values for cell in result.run.cells]
-    write_results(result, measured, table)
+    with uncollected():
+        write_results(result, measured, table)
     known = environment(*(plan.spec for plan in distinct(prepared.plans)))
     write_whole(directory / ENVIRONMENT, text_of(known), flush=False)
     closing(result, measured)

@@ -22,7 +22,7 @@ IMPACTS: Final = 0.25
 # More than logs take, by far: twenty contacts of 250 B a body. It is known at once.
 MOST_PER_STEP: Final = 1_000  # [B]
 MOST_PER_BODY: Final = 5_000  # [B] and step
-TELLING: Final = 1_000  # cells; one takes 0.2 ms
+TELLING: Final = 200  # cells; one takes 0.2 ms
 
 
 class LogSpace(NamedTuple):

@@ -3,14 +3,17 @@
 A task whose process dies is done once more; where that one dies too, its death is its result, and
 the other tasks go on. Each process has a pipe and a task ahead, so that it does not wait for this
 one between two short tasks. A forked one has all tasks in memory, and is sent their indices; to one
-that is spawned the tasks themselves are sent. Of tasks of milliseconds each has more ahead, and
-this process wakes for several results at once: it shares the cores with those that work.
+that is spawned the tasks themselves are sent. Tasks of milliseconds are given in groups, and their
+results come back together: to wake for each takes this process a tenth of a millisecond, and it
+shares the cores with those that work. Which task of a group a process died of, it has counted in
+memory that both see; those before it are done again, for their results are lost.
 """
 
 from __future__ import annotations
 
 import ctypes
 import gc
+import mmap
 import os
 import pickle
 import signal
@@ -24,7 +27,7 @@ from multiprocessing import get_context, parent_process
 from multiprocessing.connection import Connection, wait
 from queue import SimpleQueue
 from threading import Thread
-from time import monotonic, sleep
+from time import monotonic
 from typing import Any, Final, Generic, NamedTuple, TypeVar
 
 from .forking import may_fork
@@ -33,10 +36,10 @@ from .interruption import deferred, forked_to_end, handled, raise_noted
 Task = TypeVar("Task")
 Result = TypeVar("Result")
 
-AHEAD: Final = 2  # tasks that a process is given: the one it does, and the next,
-PLENTY: Final = 4  # while more of them wait than so many for each process;
-MOST_AHEAD: Final = 12  # where they are so short that results are taken
-EVERY: Final = 0.02  # [s] together
+AHEAD: Final = 2  # groups of tasks that a process is given: the one it does, and the next,
+PLENTY: Final = 4  # while more of them wait than so many for each process
+EVERY: Final = 0.1  # [s] that a group of short tasks takes,
+MOST: Final = 64  # tasks at most
 TRIES: Final = 2  # of a task
 STILLBORN: Final = 3  # processes one after the other that may die before they are ready
 PATIENCE: Final = 2.0  # [s] for a process to end that has nothing to do
@@ -111,11 +114,13 @@ class _Worker:
         self._forked = may_fork()
         context: Any = get_context("fork" if self._forked else "spawn")
         self.pipe, other = context.Pipe()
+        self._done: Any = None  # tasks, as the other process counts
         if self._forked:
+            self._done = memoryview(mmap.mmap(-1, 8)).cast("Q")
             target: Any = _serve_forked
-            arguments: Any = (other, function, tasks, [self.pipe, *others])
+            arguments: Any = (other, function, tasks, self._done, [self.pipe, *others])
         else:
-            target, arguments = serve, (other, function)
+            target, arguments = serve, (other, _Together(function))
         self.process = context.Process(target=target, args=arguments, daemon=True)
         with warnings.catch_warnings():
             # Python 3.12 warns of threads in a forked process: see `forking`.
@@ -124,14 +129,30 @@ class _Worker:
             with handled(), deferred():
                 self.process.start()
         other.close()  # so that the pipe ends with the process
-        self.given: deque[int] = deque()
+        self.given: deque[list[int]] = deque()  # groups of tasks
+        self.answered = 0  # tasks whose results came
         self.ready = False
 
-    def give(self, indices: Sequence[int]) -> None:
-        """Hand over tasks."""
-        self.given.extend(indices)
+    @property
+    def most(self) -> int:
+        """How many tasks a group may have; a spawned one does not tell which it died of."""
+        return MOST if self._forked else 1
+
+    def give(self, groups: Sequence[list[int]]) -> None:
+        """Hand over groups of tasks."""
+        self.given.extend(groups)
+        tasks = [group if self._forked else [self._tasks[one] for one in group] for group in groups]
         with suppress(OSError):  # it died: its pipe says so where results are read
-            self.pipe.send(indices if self._forked else [self._tasks[one] for one in indices])
+            self.pipe.send(tasks)
+
+    def left(self) -> tuple[list[int], list[int]]:
+        """Return what a process that died was given: of its group what it had done, and the rest.
+
+        It died of the first of the rest.
+        """
+        tasks = [one for group in self.given for one in group]
+        done = self._done[0] - self.answered if self._done is not None else 0
+        return tasks[:done], tasks[done:]
 
     def death(self) -> Death:
         self.process.join()
@@ -161,10 +182,7 @@ class _Crew(Generic[Task, Result]):
         for _ in range(workers):
             self._start()
         while self._waiting or any(worker.given for worker in self._workers):
-            ahead = self._ahead()
-            self._give(ahead)
-            if ahead > AHEAD and all(len(worker.given) > AHEAD for worker in self._workers):
-                sleep(EVERY / 2)
+            self._give()
             ready = wait([worker.pipe for worker in self._workers])
             for worker in [one for one in self._workers if one.pipe in ready]:
                 yield from self._results_of(worker)
@@ -183,33 +201,36 @@ class _Crew(Generic[Task, Result]):
                 worker.ready, self._stillborn = True, 0
                 continue
             good, result = message
-            index = worker.given.popleft()
+            group = worker.given.popleft()
             if not good:
                 raise result
-            self._done += 1
-            yield self._tasks[index], result
+            self._done += len(group)
+            worker.answered += len(group)
+            yield from zip([self._tasks[index] for index in group], result, strict=True)
 
-    def _ahead(self) -> int:
-        """Return how many tasks a process is given, by what tasks took so far."""
+    def _together(self) -> int:
+        """Return how many tasks make a group, by what tasks took so far and how many are left."""
         each = (monotonic() - self._begun) * len(self._workers) / max(self._done, 1)  # [s]
-        if self._done < AHEAD * len(self._workers) or each >= EVERY:
-            return AHEAD
-        return max(AHEAD, min(MOST_AHEAD, int(EVERY / each) + AHEAD))
+        if self._done < AHEAD * len(self._workers):
+            return 1
+        left = len(self._waiting) // (AHEAD * PLENTY * len(self._workers))
+        return max(1, min(int(EVERY / each), left))
 
-    def _give(self, ahead: int) -> None:
-        """Give each process as many tasks as it may have, in turns, while there are some.
+    def _give(self) -> None:
+        """Give each process as many groups as it may have, in turns, while there are tasks.
 
         Towards the end none stands behind another that may be long while a process has nothing.
         """
-        taken: list[list[int]] = [[] for _ in self._workers]
-        for most in range(1, ahead + 1):
-            least = most * PLENTY // AHEAD * len(self._workers) if most > 1 else 0
-            for worker, indices in zip(self._workers, taken, strict=True):
-                if len(self._waiting) > least and len(worker.given) + len(indices) < most:
-                    indices.append(self._waiting.popleft())
-        for worker, indices in zip(self._workers, taken, strict=True):
-            if indices:
-                worker.give(indices)
+        together, each = self._together(), len(self._workers)
+        taken: list[list[list[int]]] = [[] for _ in self._workers]
+        for most, least in zip(range(1, AHEAD + 1), (0, PLENTY * each), strict=True):
+            for worker, groups in zip(self._workers, taken, strict=True):
+                if len(self._waiting) > least and len(worker.given) + len(groups) < most:
+                    size = min(together, worker.most, len(self._waiting))
+                    groups.append([self._waiting.popleft() for _ in range(size)])
+        for worker, groups in zip(self._workers, taken, strict=True):
+            if groups:
+                worker.give(groups)
 
     def _start(self) -> None:
         others = [worker.pipe for worker in self._workers]
@@ -219,20 +240,20 @@ class _Crew(Generic[Task, Result]):
     def _replace(self, worker: _Worker) -> Iterator[tuple[Task, Death]]:
         """Start another process in the place of a dead one; yield a task that it dies of again."""
         death = worker.death()
-        given = worker.given
+        lost, given = worker.left()
         worker.pipe.close()
         self._workers.remove(worker)
         if worker.ready and given:
-            index = given.popleft()
+            index, *others = given
             self._tries[index] += 1
             if self._tries[index] < TRIES:
-                self._waiting.extendleft(reversed([index, *given]))
+                self._waiting.extendleft(reversed([*lost, index, *others]))
                 self._retried(Retried(self._tasks[index], death))
             else:
-                self._waiting.extendleft(reversed(given))
+                self._waiting.extendleft(reversed([*lost, *others]))
                 yield self._tasks[index], death
         else:  # of no task
-            self._waiting.extendleft(reversed(given))
+            self._waiting.extendleft(reversed([*lost, *given]))
             self._stillborn += not worker.ready
             if self._stillborn >= STILLBORN:
                 raise RuntimeError(f"no process can be started: the last one {death.how}")
@@ -256,17 +277,36 @@ class _Crew(Generic[Task, Result]):
             worker.pipe.close()
 
 
+class _Together:
+    """Does a group of tasks, and returns the results."""
+
+    def __init__(self, function: Callable[[Any], Any], done: Any = None) -> None:
+        """done: memory in which all tasks that are done are counted."""
+        self._function, self._done = function, [0] if done is None else done
+
+    def __call__(self, group: Sequence[Any]) -> list[Any]:
+        results = []
+        for one in group:
+            results.append(self._function(one))
+            self._done[0] += 1
+        return results
+
+
 def _serve_forked(
     pipe: Connection,
     function: Callable[[Any], Any],
     tasks: Sequence[Any],
+    done: Any,
     parents: Sequence[Connection],
 ) -> None:
-    """Do the tasks whose indices come through the pipe, several in a message."""
+    """Do the tasks whose indices come through the pipe, in groups.
+
+    done: memory in which tasks that are done are counted.
+    """
     for one in parents:  # else another process's pipe would not end with the parent
         one.close()
     gc.freeze()  # a collection would write to, and so copy, every page of what is shared
-    serve(pipe, lambda index: function(tasks[index]))
+    serve(pipe, _Together(lambda index: function(tasks[index]), done))
 
 
 def serve(pipe: Connection, function: Callable[[Any], Any]) -> None:

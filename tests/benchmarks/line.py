@@ -26,6 +26,7 @@ from typing import Any
 import lavender_cli.main  # noqa: F401  (before numpy: it says how that asks for memory)
 from lavendersim.runner.environment import environment
 
+from .folders import new_folder
 from .line_bars import compared, ratio
 from .line_cases import PILE_DURATION, STEPS, LineCase, cases
 from .line_commands import COMMANDS, RUN, Cost, cost
@@ -58,15 +59,13 @@ def command_data(samples: list[Cost]) -> dict[str, Any]:
 
 
 def case_sample(case: LineCase, warm: bool = False) -> Sample:
-    """Run a case in a folder that is deleted afterwards."""
-    with tempfile.TemporaryDirectory() as folder:
-        return sample(case.warm if warm else case.load, Path(folder))
+    """Run a case in a new folder."""
+    return sample(case.warm if warm else case.load, new_folder())
 
 
 def command_sample(command: str, listed: Path) -> Cost:
-    """Run a command; what it runs is deleted afterwards."""
-    with tempfile.TemporaryDirectory() as folder:
-        return cost(command, Path(folder), listed)
+    """Run a command in a new folder."""
+    return cost(command, new_folder(), listed)
 
 
 def measure(

@@ -32,7 +32,6 @@ import argparse
 import json
 import resource
 import sys
-import tempfile
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from time import perf_counter
@@ -47,6 +46,7 @@ from lavendersim.runner.workers import work
 from lavendersim.scene.build import build
 from lavendersim.scene.plan import plan_of_cell
 
+from .folders import new_folder
 from .line_cases import RESTITUTIONS, drops
 
 PROCESSES = 2
@@ -117,7 +117,7 @@ def processor(who: int) -> float:
 
 
 def taken(text: str, processes: int) -> Taken:
-    """Run a config in a folder that is deleted afterwards."""
+    """Run a config in a new folder."""
     experiment = load_experiment_text(text, "worlds.yaml")
     times: list[float] = []  # of this process, as the first cell begins and as the last has ended
 
@@ -125,14 +125,14 @@ def taken(text: str, processes: int) -> Taken:
         if len(of_cells) != 2 or of_cells[0] == of_cells[1]:
             times.append(processor(resource.RUSAGE_SELF))
 
-    with tempfile.TemporaryDirectory() as folder:
-        before = processor(resource.RUSAGE_SELF), processor(resource.RUSAGE_CHILDREN)
-        begin = perf_counter()
-        finished = run(experiment, folder, processes, Progress(running=note, cell_done=note))
-        wall = perf_counter() - begin
-        after = processor(resource.RUSAGE_SELF)
-        own = after - before[0]
-        others = processor(resource.RUSAGE_CHILDREN) - before[1]
+    folder = new_folder()
+    before = processor(resource.RUSAGE_SELF), processor(resource.RUSAGE_CHILDREN)
+    begin = perf_counter()
+    finished = run(experiment, folder, processes, Progress(running=note, cell_done=note))
+    wall = perf_counter() - begin
+    after = processor(resource.RUSAGE_SELF)
+    own = after - before[0]
+    others = processor(resource.RUSAGE_CHILDREN) - before[1]
     if not finished.good:
         raise SystemExit(f"{experiment.name}: {processes} processes: a claim is not met")
     steps = sum(outcome.steps for outcome in finished.outcomes)

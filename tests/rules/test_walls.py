@@ -17,17 +17,18 @@ ROOMS = {
     "config_options": set(),
     "record_tables": set(),
     "durable_files": set(),
+    "garbage": set(),
     "arrow": {"errors", "durable_files"},
     "geometry": {"quantities", "cell"},
     "quantities": {"errors", "clock"},
     "cell": {"errors", "clock", "quantities", "engine"},  # of the engine: DECLARATIONS
     "experiment": {
         *("errors", "clock", "geometry", "quantities", "cell", "engine", "measures", "figures"),
-        *("config_options", "peers"),
+        *("config_options", "garbage", "peers"),
     },
     # of the engine: DECLARATIONS; of declarations alone experiment, measures and cli know
     "peers": {"errors", "geometry", "quantities", "cell", "engine"},
-    "engine": {"quantities", "record_tables", "durable_files"},
+    "engine": {"quantities", "record_tables", "durable_files", "garbage"},
     "scene": {"errors", "clock", "geometry", "quantities", "cell", "experiment", "engine"},
     "trace": {
         *("errors", "clock", "record_tables", "durable_files", "geometry", "quantities", "cell"),
@@ -53,7 +54,7 @@ ROOMS = {
         "lint",
         *("errors", "clock", "quantities", "cell", "experiment", "scene", "engine", "problems"),
         *("trace", "measures", "geometry", "record_tables", "durable_files", "arrow"),
-        *("figures", "config_options", "peers"),  # figures: a run in a notebook
+        *("figures", "config_options", "garbage", "peers"),  # figures: a run in a notebook
     },
     "comparison": {"errors", "geometry", "trace", "measures", "runner"},
     "pytest_plugin": {"errors", "experiment", "lint", "trace", "measures", "runner"},

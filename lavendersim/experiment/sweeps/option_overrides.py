@@ -2,6 +2,7 @@
 
     set numerics.timestep=1/480          one value, at a path that a sweep may vary
     sweep e=scene.bodies.ball.surface.restitution:[0.2, 0.5]      an axis, new or instead of one
+    sweep e=scene.bodies.ball.surface.restitution:0.2,0.5         the same, for who types it
 
 Values are YAML. What is wrong with one is reported at its place in the option.
 """
@@ -36,6 +37,8 @@ def with_overrides(root: Node, overrides: Sequence[str], report: Report) -> Node
             report.add(Mark(1, 1, option), f"expected {FORMS[kind]}")
             continue
         begin = 2 + len(override) - len(values)  # behind the dashes
+        if kind == SWEEP and not values.lstrip().startswith("["):
+            values, begin = f"[{values}]", begin - 1
         node = _parsed(values, Mark(1, begin, option), report)
         if node is None:
             continue

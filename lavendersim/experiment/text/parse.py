@@ -8,7 +8,6 @@ tags, anchors or aliases in a config, so nothing is constructed and nothing can 
 from __future__ import annotations
 
 import codecs
-import gc
 import re
 from collections.abc import Iterator
 from itertools import islice
@@ -19,6 +18,7 @@ import yaml
 from lavendersim.experiment.text.node import BROKEN, Mark, Node
 from lavendersim.experiment.text.report import Report
 from lavendersim.experiment.text.syntax import describe
+from lavendersim.garbage import uncollected
 from lavendersim.quantities.found import quoted
 from lavendersim.quantities.scalars import ScalarError, resolve
 
@@ -58,18 +58,13 @@ def parse(raw: bytes, report: Report, size: int | None = None, file: str = "") -
     it is not the one that the report is about.
     """
     composer = _Composer(report, file)
-    # The tree has no circles, and at most MOST_VALUES nodes: looking for some while it grows takes
-    # as long as reading it.
-    collects = gc.isenabled()
-    gc.disable()
     try:
-        return composer.compose(composer.decode(raw, size or len(raw)))
+        with uncollected():  # the tree has no circles, and at most MOST_VALUES nodes
+            return composer.compose(composer.decode(raw, size or len(raw)))
     except _Stop:
         return None
     finally:
         report.close_round()
-        if collects:
-            gc.enable()
 
 
 def decode(raw: bytes) -> str:

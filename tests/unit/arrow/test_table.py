@@ -90,6 +90,24 @@ def test_duckdb_reads_it_by_the_arrow_interface_alone() -> None:
     assert found == [("ball", 3), ("floor", 2**63 - 1), (None, 2**53 + 1)]
 
 
+def test_polars_reads_it_by_the_arrow_interface() -> None:
+    polars = pytest.importorskip("polars")
+    frame = polars.DataFrame(TABLE)
+    assert frame["depth"].to_numpy()[: len(NUMBERS)].tobytes() == NUMBERS.tobytes()
+    assert frame["hash"].to_list()[: len(HASHES)] == HASHES.tolist()
+    assert frame["body"].to_list() == ["floor", "ball"] * 3 + [None, "floor", "ball"]
+    assert frame["missing"].null_count() == 7
+
+
+def test_pandas_reads_it_by_the_arrow_interface() -> None:
+    pandas = pytest.importorskip("pandas", minversion="3.0")
+    frame = pandas.DataFrame.from_arrow(TABLE)
+    assert frame["depth"].to_numpy()[: len(NUMBERS)].tobytes() == NUMBERS.tobytes()
+    assert frame["count"].to_list()[: len(COUNTS)] == COUNTS.tolist()
+    assert frame["body"].to_list()[:2] == ["floor", "ball"]
+    assert frame["missing"].isna().sum() == 7
+
+
 def test_without_pyarrow_a_sentence_names_the_extra(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "pyarrow", None)
     with pytest.raises(UsageError, match=r"pip install 'lavendersim\[arrow\]'"):

@@ -13,23 +13,14 @@ from lavendersim.engine.worlds import Worlds
 from lavendersim.experiment import load_experiment_text
 from lavendersim.scene.build import build
 from lavendersim.scene.plan import plan_of_cell
-from tests.drop_config import SCENE
+from tests.drop_config import SIX
 
 STEPS, BLOCK = 100, 64  # a block of rows is full before the steps are done
-CONFIG = (
-    SCENE
-    + """\
-duration: 1.0
-sweep:
-  mass: {path: scene.bodies.ball.mass, values: [0.5, 1, 3]}
-  e: {path: scene.bodies.ball.surface.restitution, values: [0.3, 0.8]}
-"""
-)
 
 
 def engines() -> list[Engine]:
     """Return engines of one plan at their starts; the ball has met the floor before the end."""
-    cells = load_experiment_text(CONFIG, "worlds.yaml").cells()
+    cells = load_experiment_text(SIX, "worlds.yaml").cells()
     plans = [plan_of_cell(cell) for cell in cells]
     spec = plans[0].spec
     assert all(plan.spec == spec for plan in plans)

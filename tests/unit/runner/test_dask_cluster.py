@@ -14,6 +14,7 @@ from threading import Thread
 from typing import Any
 
 import pytest
+import yaml
 
 from lavendersim.errors import UsageError
 from lavendersim.experiment import load_experiment
@@ -170,12 +171,73 @@ def test_a_scheduler_that_is_not_there_is_said(drops: Path, tmp_path: Path) -> N
             pass
 
 
-def test_the_queue_of_dasks_configuration_has_to_be_known() -> None:
+@pytest.mark.parametrize(
+    ("section", "said"),
+    [
+        ({"queue": "slrum"}, 'queue: expected one of slurm, pbs, lsf, sge, found the text "slrum"'),
+        ({"queue": ["slurm"]}, "queue: expected one of slurm, pbs, lsf, sge, found a list of 1"),
+        ({"jobs": 3}, "queue: expected one of slurm, pbs, lsf, sge, found nothing"),
+        ({"queue": "slurm", "job": 3}, 'unknown key "job"; did you mean "jobs"?'),
+        ({"queue": "slurm", "jobs": 0}, "jobs: expected a whole number from 1 on, found 0"),
+        ({"queue": "slurm", "jobs": "50"}, 'from 1 on, found the text "50"'),
+        ({"queue": "slurm", "jobs": True}, "from 1 on, found true"),
+        ("slurm", 'expected queue and jobs, found the text "slurm"'),
+    ],
+)
+def test_what_is_asked_of_a_queue_has_to_be_understood(section: Any, said: str) -> None:
     dask = pytest.importorskip("dask")
     from lavendersim.runner.dask_cluster import dask_workers
 
-    refused = pytest.raises(UsageError, match=r"lavender\.queue: 'slrum'.*expected slurm, pbs")
-    with dask.config.set({"lavender.queue": "slrum"}), refused, dask_workers(None, 1):
+    refused = pytest.raises(UsageError)
+    with dask.config.set({"lavender": section}), refused as raised, dask_workers(None, 1):
+        pass
+    assert str(raised.value).startswith("section lavender of Dask's configuration: ")
+    assert str(raised.value).endswith(said)
+
+
+def test_the_jobs_of_slurm_are_what_the_page_on_clusters_says(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """No queue is needed to write a job; none is submitted."""
+    dask, jobqueue = pytest.importorskip("dask"), pytest.importorskip("dask_jobqueue")
+    from lavendersim.runner import dask_cluster
+
+    page = (Path(__file__).parents[3] / "docs" / "clusters.md").read_text()
+    text = page.partition("```yaml\nlavender:")[2].partition("```")[0]
+    asked = yaml.safe_load("lavender:" + text)
+    scaled: list[int] = []
+
+    def scale(self: Any, workers: int = 0, *, jobs: int = 0) -> None:
+        scaled.append(jobs)
+
+    monkeypatch.setattr(jobqueue.SLURMCluster, "scale", scale)
+    # As from a file: dask-jobqueue's own defaults are under it.
+    with dask.config.set(dask.config.merge({"jobqueue": dask.config.get("jobqueue")}, asked)):
+        assert dask_cluster.asked_of_queue() == ("slurm", 50)
+        cluster = dask_cluster._cluster(1)
+        try:
+            script = cluster.job_script()
+        finally:
+            cluster.close()
+    assert 50 in scaled  # of jobs; dask itself scales to none at the end
+    lines = script.splitlines()
+    assert lines[0] == "#!/usr/bin/env bash"
+    # One core and 2 GB a job, two hours at most: dask-jobqueue writes memory in whole units.
+    assert {"#SBATCH --cpus-per-task=1", "#SBATCH -t 02:00:00"} <= {*lines}
+    assert any(line.startswith("#SBATCH --mem=") for line in lines)
+    (worker,) = [line for line in lines if "distributed.cli.dask_worker" in line]
+    assert sys.executable in worker
+    assert "--nthreads 1" in worker
+    assert "tcp://" in worker
+
+
+def test_a_queue_without_its_limits_is_refused_in_a_sentence() -> None:
+    dask = pytest.importorskip("dask")
+    pytest.importorskip("dask_jobqueue")
+    from lavendersim.runner.dask_cluster import dask_workers
+
+    refused = pytest.raises(UsageError, match=r"cores and memory|specify how many cores")
+    with dask.config.set({"lavender": {"queue": "slurm"}}), refused, dask_workers(None, 1):
         pass
 
 

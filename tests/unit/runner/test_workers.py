@@ -56,6 +56,36 @@ def test_a_task_whose_process_dies_is_done_once_more(tmp_path: Path) -> None:
     assert len(list(tmp_path.iterdir())) == len(tasks) + 1
 
 
+def test_of_a_group_the_task_is_named_that_its_process_died_of(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Tasks of no time are given many at once; those before the deadly one have lost results."""
+    given: list[int] = []
+    real = workers._Worker.give
+
+    def give(self: Any, groups: list[list[int]]) -> None:
+        given.extend(map(len, groups))
+        real(self, groups)
+
+    monkeypatch.setattr(workers, "EVERY", 60.0)  # then groups are as large as what is left allows
+    monkeypatch.setattr(workers._Worker, "give", give)
+    again: list[Retried[Task]] = []
+    deadly = {40: 1, 41: 2, 90: 1}
+    tasks = [Task(number, tmp_path, deaths=deadly.get(number, 0)) for number in range(120)]
+    found = list(work(squared, tasks, 2, again.append))
+    assert sorted(task.number for task, _ in found) == [*range(120)]  # each is answered once
+    died = Death("was killed by SIGKILL")
+    assert {task.number: one for task, one in found if one == died} == {41: died}
+    assert all(one == task.number**2 for task, one in found if task.number != 41)
+    assert sorted(one.task.number for one in again) == [*deadly]
+    forked = workers.may_fork()
+    assert (max(given) > 4) == forked  # a spawned process is given one at a time
+    notes = [path.name.split("-")[0] for path in tmp_path.iterdir()]
+    if not forked:
+        assert len(notes) == len(tasks) + len(again)
+    assert max(map(notes.count, notes)) <= 1 + sum(deadly.values())  # deaths that it shared
+
+
 def test_a_second_death_is_the_result_and_the_others_go_on(tmp_path: Path) -> None:
     tasks = [Task(number, tmp_path, deaths=2 * (number in (0, 3))) for number in range(6)]
     found = dict(work(squared, tasks, 2))

@@ -55,6 +55,10 @@ def test_the_last_of_two_values_counts() -> None:
 def test_an_axis_is_added_or_stands_in_the_place_of_one() -> None:
     added = loaded("sweep e=scene.bodies.ball.surface.restitution:[0.2, 0.5]")
     assert [cell.label for cell in added.cells()] == ["e=0.2", "e=0.5"]
+    typed = loaded("sweep e=scene.bodies.ball.surface.restitution:0.2,1/2")
+    assert [cell.label for cell in typed.cells()] == ["e=0.2", "e=1/2"]
+    (one,) = loaded("sweep mass=scene.bodies.ball.mass:3").cells()
+    assert one.config.scene.bodies["ball"].mass == 3.0
     more = loaded("sweep h=numerics.timestep:[1/60, 1/120]", text=SWEPT)
     assert len(more.cells()) == 4
     other = loaded("sweep mass=scene.bodies.ball.mass:[3]", text=SWEPT)
@@ -75,7 +79,8 @@ def test_an_axis_is_added_or_stands_in_the_place_of_one() -> None:
         (TEXT, "set scene.bodies.ball.position=[0, 0, x]", "x]", "expected a number"),
         (TEXT, "set duration=[1", "[1", 'a "[" that is not closed'),
         (TEXT, "sweep m=scene.bodies.ball.mas:[1]", "scene", 'did you mean "mass"?'),
-        (TEXT, "sweep m=scene.bodies.ball.mass:3", "3", "expected a list"),
+        (TEXT, "sweep m=scene.bodies.ball.mass:3,heavy", "heavy", "expected a number above 0 [kg]"),
+        (TEXT, "sweep m=scene.bodies.ball.mass:{a: 1}", "{a", "expected a number"),
         (SWEPT, "set scene.bodies.ball.mass=3", "3", "is varied by axis mass; expected --sweep"),
         (
             PRODUCTS,
