@@ -52,7 +52,7 @@ def put_mean_ends(contact, kind, end_a, end_b, bodies, poses):
     """
     a, b = bodies[contact.a], bodies[contact.b]
     if is_couple(kind):
-        put_arms(contact, couple_of(end_a, end_b), couple_of(end_a, end_b))
+        put_arms(contact, couple_of(end_a), couple_of(end_a))
         return
     arm_a = mean_lever(a, poses[contact.a], minus(position(end_a), position(a)))
     arm_b = mean_lever(b, poses[contact.b], minus(position(end_b), position(b)))

@@ -213,7 +213,9 @@ def with_joints(
         for k, row in enumerate(_all_rows(spec, one)):
             end = first + 2 * points.index(row.point)
             if row in one.motor_row:
-                driven[len(table_rows)] = _motor(one, bodies[end : end + 2], config)
+                driven[len(table_rows)] = _motor(
+                    one, bodies["owner"][end : end + 2].tolist(), config
+                )
             table_rows.append((end, end + 1, FIRST_ROW - (DIRECTIONS * k + row.direction)))
         first += 2 * len(points)
     joints = allocate_pairs(spec, len(table_rows))
@@ -227,13 +229,9 @@ def with_joints(
     return np.concatenate([joints, pairs])
 
 
-def _motor(joint: Joint, ends: np.ndarray, config: CellConfig) -> tuple[float, float]:
-    """Return speed [m/s] and most [N] of a motor's row, by the distance that its couple is of."""
+def _motor(joint: Joint, owners: list[int], config: CellConfig) -> tuple[float, float]:
+    """Return speed and most of a motor's row; a couple is of forces at 1 m."""
     assert isinstance(joint, HingeJoint | SliderJoint)
     assert joint.motor is not None
-    (speed,) = _as_in_rows(joint, ends["owner"].tolist(), config, (joint.motor.speed,))
-    if not _is_about(joint):
-        return speed, joint.motor.most
-    apart = np.array([ends[axis][1] - ends[axis][0] for axis in "xyz"])
-    size = float(np.linalg.norm(apart))
-    return speed * size, joint.motor.most / size
+    (speed,) = _as_in_rows(joint, owners, config, (joint.motor.speed,))
+    return speed, joint.motor.most

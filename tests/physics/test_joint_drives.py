@@ -153,7 +153,7 @@ def test_a_motor_brings_a_wheel_to_its_speed_by_its_torque_and_holds_it(
     states = ran["wheel"]
     spin = states.of("wheel")[2]
     expected = np.minimum(TORQUE / WHEEL * states.time, SPIN)
-    np.testing.assert_allclose(spin[:, 1], expected, atol=LEFT / 0.3)
+    np.testing.assert_allclose(spin[:, 1], expected, atol=LEFT)
     np.testing.assert_allclose(spin[:, [0, 2]], 0.0, atol=1e-12)
     # All that it gave is motion: (s_0 + s_1)/2 is how it turned.
     assert states.step["motor_work"].sum() == pytest.approx(0.5 * WHEEL * SPIN**2, abs=1e-9)
@@ -194,15 +194,19 @@ def test_a_crank_slider_that_a_motor_drives_has_its_closed_form(ran: dict[str, S
     q = turns_of(states, "crank")
     angle = np.unwrap(2.0 * np.arctan2(-q[:, 2], q[:, 0]), period=2.0 * math.pi)
     x = CRANK * np.cos(angle) + np.sqrt(COUPLER**2 - (CRANK * np.sin(angle)) ** 2)
-    # Points of joints are together to what projection leaves, through the dead centres too.
-    np.testing.assert_allclose(states.of("piston")[0][:, 0], x, atol=1e-9)
+    # Points of joints are together to what projection leaves, through the dead centres too. First
+    # steps tear them by r (w dt)^2/2, and that is brought back to its square in each.
+    off = x - states.of("piston")[0][:, 0]
+    torn = 0.5 * (DRIVE / RATE) ** 2
+    assert abs(off).max() <= COUPLER * torn * (DRIVE / RATE)
+    assert abs(off[6:]).max() <= 1e-9
     np.testing.assert_allclose(states.of("piston")[0][:, 1:], 0.0, atol=1e-10)
     turned = angle[-1] - angle[1]
     # 2 atan(w dt/2) a step: Cayley's map.
     each = 2.0 * math.atan(0.5 * DRIVE / RATE)
     assert turned == pytest.approx((len(angle) - 2) * each, abs=1e-7)
     # What the motor gives is kinetic energy: nothing else works.
-    assert np.ptp(gained(states)[1:]) <= 1e-7
+    assert np.ptp(gained(states)[6:]) <= 1e-8
 
 
 @pytest.mark.parametrize("name", ["turned", "thrown"])

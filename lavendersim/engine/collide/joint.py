@@ -8,7 +8,7 @@ one joint alike about their axis, whatever d: in a linkage of parallel hinges, w
 many, they never contradict each other. Ends that slide are apart; both get the impulse at B's:
     dphi/dt = n . (v_B + w_B x r_B - v_A - w_A x (r_A + d)),    n turns with A
 So do those of stops (`effects.joint_stop`), which are there only near their limit, and of motors.
-A motor that turns has no n, and the axis times the distance of its ends for both levers.
+A motor that turns has no n, and the axis times 1 m for both levers.
 """
 
 from __future__ import annotations
@@ -80,11 +80,9 @@ def _axis(end):
 
 
 @inner
-def couple_of(end_a, end_b):
-    """Return the lever of a motor that turns: its axis, as long as its ends are apart [m]."""
-    d = minus(position(end_b), position(end_a))
-    along = dot(d, _axis(end_a))
-    return scaled(sqrt(max(dot(d, d) - along * along, 0.0)), _axis(end_a))
+def couple_of(end):
+    """Return the lever of a motor that turns: its axis, 1 m long; end: of A."""
+    return _axis(end)
 
 
 @inner
@@ -121,7 +119,7 @@ def put_ends(contact, kind, end_a, end_b, a, b):
     if is_sliding(kind):
         at_a, contact.sliding = at_b, 1
     if is_couple(kind):
-        put_arms(contact, couple_of(end_a, end_b), couple_of(end_a, end_b))
+        put_arms(contact, couple_of(end_a), couple_of(end_a))
     else:
         put_arms(contact, minus(at_a, position(a)), minus(at_b, position(b)))
     free = free_along(kind, end_a)

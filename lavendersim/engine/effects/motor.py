@@ -3,8 +3,8 @@
     w = s_AB - speed = 0   where |lambda| < most dt;   w and lambda of opposite signs at its most
 s_AB: spin of B against A about the axis, or speed along it. A row of the joint whose impulse has a
 bound of either sign: clamped by sweeps, a projection for Newton's method. That of a hinge is a
-couple, without a force: its n is 0, and both levers are r times the axis, r the distance of the
-points of the joint, so that w is a speed [m/s] and lambda an impulse [N s] as those of all rows.
+couple, without a force: its n is 0, and both levers are the axis, 1 m long, so that w is a speed
+[m/s] and lambda an impulse [N s] as those of all rows.
 Speed 0 is friction of a joint: it holds up to its most, and beyond takes what it can.
 
 Its work in a step, lambda (s_0 + s_1)/2 at the pose of the solve, is what enters the balance of
@@ -61,8 +61,8 @@ EFFECT = Effect(
     balance=Balance(work="motor_work"),
     fields=Fields(
         pair=[
-            ("motor_speed", "f8"),  # of B's end from A's, as that of the row [m/s]
-            ("motor_most", "f8"),  # by which it pushes at most, as the row does [N]; others: 0
+            ("motor_speed", "f8"),  # of B's end from A's, of a spin at 1 m [m/s]
+            ("motor_most", "f8"),  # by which it pushes at most, of a torque at 1 m [N]; others: 0
         ],
         contact=[
             ("motor", "i8"),  # 1: a motor's row

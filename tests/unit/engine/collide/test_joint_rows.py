@@ -161,9 +161,9 @@ def test_a_motor_that_turns_has_a_couple_for_levers_and_no_normal() -> None:
         interpreted(put_ends)(contact, kind_of(5, direction), one, other, still, still)
         arms = [[contact.__dict__[f"arm_{b}{axis}"] for axis in "xyz"] for b in "ab"]
         found[direction] = np.array(scratch.manifold.normal), np.array(arms)
-    # As long as the ends are apart across the axis.
+    # 1 m long, wherever its ends are.
     np.testing.assert_array_equal(found[ABOUT][0], 0.0)
-    np.testing.assert_allclose(found[ABOUT][1], [SIZE * FRAME[:, 2]] * 2, atol=1e-16)
+    np.testing.assert_allclose(found[ABOUT][1], [FRAME[:, 2]] * 2, atol=1e-16)
     np.testing.assert_array_equal(found[ALONG][0], FRAME[:, 2])
     np.testing.assert_array_equal(found[ALONG][1], [[other.x, other.y, other.z]] * 2)
 

@@ -31,11 +31,10 @@ def test_a_motor_requires_it_and_nothing_that_meets() -> None:
 
 
 @pytest.mark.parametrize(("text", "sign"), [(DRIVEN, 1.0), (SWAPPED, -1.0)])
-def test_its_row_has_speed_and_most_at_the_distance_of_its_ends(text: str, sign: float) -> None:
+def test_its_row_has_speed_and_most_as_the_later_body_has_them(text: str, sign: float) -> None:
     """Both are of the second body of `between` against the first; B is the later row."""
     config = load_experiment_text(text, "x.yaml").cells()[0].config
     pairs = build(config, planned(text).spec).pairs
-    # The bob's centre is 1 m from the hinge.
     assert pairs["motor_speed"].tolist() == pytest.approx([0.0] * 5 + [sign * 3.0], abs=1e-15)
     assert pairs["motor_most"].tolist() == pytest.approx([0.0] * 5 + [5.0], abs=1e-15)
 
