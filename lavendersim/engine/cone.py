@@ -28,6 +28,16 @@ def project_cone(n, one, two, mu):
 
 
 @inner
+def within(x, most):
+    """Return x, brought to -most or most where it is beyond; a NaN stays."""
+    if x > most:
+        return most
+    if x < -most:
+        return -most
+    return x
+
+
+@inner
 def project_disc(one, two, limit):
     """Return the nearest point of the disc of radius `limit` to (one, two)."""
     squared = one * one + two * two

@@ -12,6 +12,7 @@ from __future__ import annotations
 from typing import Any
 
 from .block import make_apply_vector, make_complete_block, make_relative_velocity
+from .collide.records import UNBOUNDED
 from .compile import chain, inner, kernel
 from .effects import made_by
 from .integrate import keeps_motion
@@ -68,6 +69,20 @@ def add_arms(contact, body_a, body_b):
     contact.lever_bx, contact.lever_by, contact.lever_bz = lever.x, lever.y, lever.z
     contact.turn_bx, contact.turn_by, contact.turn_bz = x, y, z
     return k + lever.x * x + lever.y * y + lever.z * z
+
+
+@inner
+def add_couple(contact, body_a, body_b):
+    """Fill the angular parts of a motor's row, which turns about its arms; returns k_n."""
+    x, y, z = contact.arm_ax, contact.arm_ay, contact.arm_az
+    contact.lever_ax, contact.lever_ay, contact.lever_az = x, y, z
+    contact.lever_bx, contact.lever_by, contact.lever_bz = x, y, z
+    tx, ty, tz = inverse_inertia_times(body_a, x, y, z)
+    contact.turn_ax, contact.turn_ay, contact.turn_az = tx, ty, tz
+    k = x * tx + y * ty + z * tz
+    tx, ty, tz = inverse_inertia_times(body_b, x, y, z)
+    contact.turn_bx, contact.turn_by, contact.turn_bz = tx, ty, tz
+    return k + x * tx + y * ty + z * tz
 
 
 def make_normal_velocity(spec: Spec):
@@ -202,6 +217,7 @@ def make_complete_row(spec: Spec):
     """Return `kernel(contact, body_a, body_b) -> k_n` of a row without friction: its levers."""
     torque, swept = row_terms(spec).levers, spec.has("fast_bodies")
     ropes, bilateral = spec.has("rope"), row_terms(spec).bilateral
+    bounded, stopped = row_terms(spec).bounded, row_terms(spec).stopped
 
     def complete_row(contact, body_a, body_b):
         k_n = body_a.inv_m + body_b.inv_m
@@ -217,6 +233,12 @@ def make_complete_row(spec: Spec):
             if ropes:
                 if contact.span > 0.0:
                     round_a, round_b = False, False
+            if stopped:
+                if contact.stop == 1:
+                    round_a, round_b = False, False
+            if bounded:
+                if contact.couple == 1:
+                    return add_couple(contact, body_a, body_b)
             if bilateral:
                 if contact.bilateral == 1:
                     return k_n + add_arms(contact, body_a, body_b)
@@ -268,7 +290,7 @@ def make_append_contact(spec: Spec, capture):
     preparing = made_by(spec, "prepare")
     prepares = bool(preparing)
     prepare: Any = chain(preparing, spec) if prepares else None
-    ropes, bilateral = spec.has("rope"), terms.bilateral
+    ropes, bilateral, bounded = spec.has("rope"), terms.bilateral, terms.bounded
     stirred: Any = make_stirred(spec) if ropes else None
 
     def append_contact(contact, bodies, velocities, motion, pair, params):
@@ -315,6 +337,17 @@ def make_append_contact(spec: Spec, capture):
                 contact.target = 0.0
                 if friction:
                     contact.mu, contact.lambda_1, contact.lambda_2 = 0.0, 0.0, 0.0
+                if bounded:
+                    contact.most = UNBOUNDED
+                    if contact.motor == 1:
+                        contact.target, contact.most = (
+                            -pair.motor_speed,
+                            pair.motor_most * params.dt,
+                        )
+                        contact.driven = contact.v_n_pre
+                        if forced:
+                            ma, mb = motion[contact.a], motion[contact.b]
+                            contact.driven = normal_velocity(contact, ma, mb)
         softened = k_n
         if compliant:
             softened += contact.gamma

@@ -20,7 +20,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from .collide.joint import free_along, is_sliding
+from .collide.joint import couple_of, free_along, is_couple, is_sliding
 from .collide.records import put_arms, put_normal
 from .compile import inner, kernel
 from .integrate import LASTING
@@ -51,6 +51,9 @@ def put_mean_ends(contact, kind, end_a, end_b, bodies, poses):
     end_a, end_b: its ends half way, as bodies are; poses: rows of the bodies at the start.
     """
     a, b = bodies[contact.a], bodies[contact.b]
+    if is_couple(kind):
+        put_arms(contact, couple_of(end_a), couple_of(end_a))
+        return
     arm_a = mean_lever(a, poses[contact.a], minus(position(end_a), position(a)))
     arm_b = mean_lever(b, poses[contact.b], minus(position(end_b), position(b)))
     if is_sliding(kind):

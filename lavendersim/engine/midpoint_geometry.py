@@ -158,7 +158,7 @@ def make_look(spec: Spec) -> Any:
                     contact.x, contact.y, contact.z = point.x, point.y, point.z
                     put_normal(contact, manifold_normal(scratch.manifold))
                     if arms:
-                        if row.kind < ROPE:
+                        if contact.bilateral == 1:
                             put_mean_ends(contact, row.kind, a, b, bodies, poses)
                     if swept:
                         contact.tangential_x, contact.tangential_y = 0.0, 0.0

@@ -19,7 +19,7 @@ from .joint_turn import make_joint_velocity
 from .records import PLANE
 from .row_terms import row_terms
 from .spec import Spec
-from .vectors import length
+from .vectors import Vec3, dot, length
 
 # Change of a surface's velocity in half a step that a row may miss [m/s]: what solves leave.
 SAME = 1e-9
@@ -112,7 +112,7 @@ def make_lasting(spec: Spec) -> Any:
                 contact.lasts = 1
         if bilateral:
             if contact.bilateral == 1:
-                contact.lasts = 1
+                contact.lasts, contact.torn = 1, -1
         if friction:
             contact.slides = 0
 
@@ -165,7 +165,7 @@ def make_shift(spec: Spec) -> Any:
     friction, frictionless = terms.frictional, terms.frictionless
     springs, spring_row = made_once(spec, "spring_row")
     swept, ropes = spec.has("fast_bodies"), spec.has("rope")
-    bilateral = terms.bilateral
+    bilateral, bounded = terms.bilateral, terms.bounded
     joint_velocity: Any = make_joint_velocity(spec) if bilateral else None
     normal_velocity = make_normal_velocity(spec)
     relative_velocity = make_relative_velocity(spec)
@@ -176,10 +176,22 @@ def make_shift(spec: Spec) -> Any:
         if bilateral:
             if contact.bilateral == 1:
                 contact.lasts = 1
+                if bounded:
+                    if contact.motor == 1:
+                        contact.driven = contact.middle_n
+                        if contact.couple == 0:  # what turns begins with what turns it, too
+                            contact.target += contact.middle_n - contact.begin_n
+                        return
                 contact.target = contact.middle_n
                 # Of a joint that an impact or its first velocities tear, nothing is thrown back.
-                if contact.begin_torn > TORN * length(joint_velocity(contact, la, lb)):
-                    contact.target -= contact.begin_n
+                # The first middle says so: a row that changed its mind would have no fixed point.
+                # All rows of a point leave it the same velocity, or they would contradict.
+                parting = Vec3(contact.parting_x, contact.parting_y, contact.parting_z)
+                if contact.torn < 0:
+                    ahead = length(joint_velocity(contact, la, lb))
+                    contact.torn = 1 if length(parting) > TORN * ahead else 0
+                if contact.torn == 1:
+                    contact.target -= dot(Vec3(contact.nx, contact.ny, contact.nz), parting)
                 return
         kept = min(contact.begin_n, 0.0)
         if ropes:

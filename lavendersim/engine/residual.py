@@ -3,7 +3,8 @@
 Natural map of the complementarity 0 <= lambda_n, 0 <= w with w = v_n + target + gamma lambda_n:
     r = | min((k_n + gamma) lambda_n, w) |
 zero exactly at a solution, continuous, and in velocity units because lambda is scaled by the row's
-own inverse mass; of what is bilateral r = |w|. Of friction, with the disc (or the pyramid's
+own inverse mass; of what is bilateral r = |w|, where it is bounded no more than what takes its
+impulse to the bound. Of friction, with the disc (or the pyramid's
 square) of radius mu lambda_n:
     r_t = | k_t lambda_t - proj(k_t lambda_t - v_t) |
 Of the convex relaxation (`row_update`), with w = (w_n, v_t), k >= |K| and P_K onto the cone itself:
@@ -18,7 +19,7 @@ from math import sqrt
 
 from .block import largest_response, make_slip_velocity
 from .compile import kernel
-from .cone import make_project_section, project_cone
+from .cone import make_project_section, project_cone, within
 from .contact import make_frictionless_velocity
 from .row_terms import by_friction, row_terms
 from .scaled_residual import make_scaled_residual
@@ -34,6 +35,7 @@ def make_row_residual(spec: Spec):
 def make_normal_residual(spec: Spec):
     """Return `kernel(contact, v_n) -> r` [m/s]: Signorini's law, of the normal alone."""
     compliant, bilateral = row_terms(spec).compliant, row_terms(spec).bilateral
+    bounded = row_terms(spec).bounded
 
     def normal_residual(contact, v_n):
         w = v_n + contact.target
@@ -41,6 +43,10 @@ def make_normal_residual(spec: Spec):
             w += contact.gamma * contact.lambda_n
         if bilateral:
             if contact.bilateral == 1:
+                if bounded:
+                    n = contact.lambda_n
+                    if abs(n - w * contact.inv_k) > contact.most:
+                        return abs(within(n - w * contact.inv_k, contact.most) - n) / contact.inv_k
                 return abs(w)
         # A NaN in the first place of min stays, in the second it is dropped.
         return abs(min(w, contact.lambda_n / contact.inv_k))

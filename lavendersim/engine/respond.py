@@ -26,7 +26,6 @@ from .row_terms import make_acts, row_terms
 from .solvers.catalogue import SOLVERS
 from .solvers.solver import ContactSystem
 from .spec import Spec
-from .vectors import length
 
 
 def make_solve(spec: Spec) -> Any:
@@ -121,7 +120,9 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
                     contact = contacts[c]
                     if contact.bilateral == 1:
                         ma, mb = motion[contact.a], motion[contact.b]
-                        contact.begin_torn = length(joint_velocity(contact, ma, mb))
+                        parting = joint_velocity(contact, ma, mb)
+                        contact.parting_x, contact.parting_y = parting.x, parting.y
+                        contact.parting_z = parting.z
             moving = lasts and stirs(bodies, motion)
             if moving:
                 for i in range(velocities.shape[0]):

@@ -170,7 +170,7 @@ def build(config: CellConfig, spec: Spec) -> Scene:
         names=list(config.scene.bodies),
         bodies=bodies,
         velocities=velocities,
-        pairs=with_joints(spec, pairs, bodies, first_joint, config.scene),
+        pairs=with_joints(spec, pairs, bodies, first_joint, config),
         parameters=_parameters(config, clock),
         poses=poses,
         clock=clock,

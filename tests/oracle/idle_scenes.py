@@ -169,6 +169,8 @@ CASES: dict[str, tuple[str, ...]] = {
     "compound": ("frictional balls",),
     "rope": ("balls",),
     "joint": ("balls",),
+    "joint_stop": ("balls",),
+    "motor": ("balls",),
     "broad_phase": ("balls",),
     "gravity": ("drifting balls",),
     "external_force": ("frictional balls",),

@@ -27,7 +27,7 @@ OTHER_LAWS = {
     *("broad_phase", "capture_in_sweeps", "fast_bodies", "impact_energy", "impact_time"),
     *("contact_midpoint", "contact_spring", "error_control", "impact_order", "midpoint", "newton"),
     *("least_norm", "overlooked_points", "pairwise_impacts", "sleeping", "sliding_stops"),
-    "joint",  # rows without a cone, beside which none are packed
+    *("joint", "joint_stop", "motor"),  # rows without a cone, beside which none are packed
     "speculative",
     "triggers",  # that end a call of the engine
     "velocity_log",  # rows of poses that go on with velocities

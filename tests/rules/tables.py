@@ -28,6 +28,7 @@ SECTIONS = {
     "collide": ("compound", "broad_phase", "speculative", "fast_bodies"),
     "rows": (
         *("contact_torque", "friction", "frictionless_contact", "rope", "joint"),
+        *("joint_stop", "motor"),
         *("stabilisation", "compliance", "restitution", "surface_velocity", "capture_in_sweeps"),
         *("cohesion", "contact_spring", "static_friction", "falling_restitution"),
     ),

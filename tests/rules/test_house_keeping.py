@@ -62,6 +62,7 @@ def test_every_module_of_effects_is_listed_once() -> None:
         "decision",
         "effect",
         "keys",
+        "joint_models",
         "time_functions",
     }
     names = [effect.name for effect in EFFECTS]

@@ -23,6 +23,7 @@ AT_WORK = {
     "effects/falling_restitution.yaml": ("falling_restitution",),
     "effects/pile.yaml": ("broad_phase", "fast_bodies", "packed_sweeps"),
     "effects/joint.yaml": ("joint",),
+    "effects/motor.yaml": ("joint_stop", "motor"),
     "effects/rope.yaml": ("rope",),
     "effects/sphere.yaml": ("frictionless_contact", "restitution"),
     "effects/prescribed_motion.yaml": ("prescribed_motion",),

@@ -19,7 +19,7 @@ DECLARATIONS = {
     *("lavendersim.engine.records", "lavendersim.engine.spec", "lavendersim.engine.effects"),
     *(
         f"lavendersim.engine.effects.{part}"
-        for part in ("decision", "effect", "keys", "time_functions")
+        for part in ("decision", "effect", "joint_models", "keys", "time_functions")
     ),
     *(f"lavendersim.engine.effects.{name}" for name in NAMES),
 }

@@ -112,7 +112,7 @@ ASKED = {
         ),
         "contact_midpoint": (
             *("contact", "effects/contact_spring", "effects/friction", "effects/projection"),
-            *("effects/joint", "effects/prescribed_motion"),
+            *("effects/joint", "effects/motor", "effects/prescribed_motion"),
             *("integrate", "joint_turn", "memory", "respond"),
         ),
         "impact_time": (
@@ -160,8 +160,10 @@ ASKED = {
         ),
         "joint": (
             *("collide/broad/broad_phase", "collide/narrow_phase", "effects/triggers"),
-            *("effects/rope", "flush_contacts", "spec", "scene/joints", "effects/__init__"),
+            *("flush_contacts", "spec", "scene/joints"),
         ),
+        "joint_stop": ("scene/joints",),
+        "motor": ("scene/joints",),
     },
     "arrays that an engine has only with it, and who is awake": {
         "sleeping": (
@@ -179,7 +181,7 @@ ASKED = {
         "external_force": ("scene/events",),
     },
     "a part of one solver": {
-        "newton": ("effects/least_norm", "solvers/adaptive"),
+        "newton": ("effects/least_norm", "joint_projection", "solvers/adaptive"),
         "least_norm": ("solvers/adaptive", "scene/plan"),
         "packed_sweeps": ("solvers/packed/late",),
     },

@@ -14,7 +14,7 @@ from ..records import TOUCHING
 from ..row_terms import row_terms
 from ..spec import Spec
 from ..vectors import Vec3, dot
-from .joint import make_joint, put_ends
+from .joint import is_couple, is_motor, is_stop, make_joint, put_ends
 from .manifold.point import LEFT_OUT, WHOLE, manifold_normal
 from .pairs import SHAPE_PAIRS
 from .records import put_normal
@@ -41,7 +41,7 @@ def make_manifold(spec: Spec, names: tuple[str, ...]):
 
     def manifold_or_joint(kind, a, b, margin, scratch):
         if kind < ROPE:
-            return joint(kind, a, b, scratch)
+            return joint(kind, a, b, margin, scratch)
         return others(kind, a, b, margin, scratch)
 
     return kernel(manifold_or_joint, spec)
@@ -103,6 +103,7 @@ def make(spec: Spec):
     share = 0.5 if spec.has("midpoint") else 1.0
     compound, ropes = spec.has("compound"), spec.has("rope")
     bilateral, levers = row_terms(spec).bilateral, row_terms(spec).levers
+    bounded, stopped = row_terms(spec).bounded, row_terms(spec).stopped
     sleeps, still = made_once(spec, "is_still")
     overlooks = spec.has("overlooked_points")
     note_left_out: Any = make_note_left_out(spec) if overlooks else None
@@ -160,7 +161,14 @@ def make(spec: Spec):
                 if ropes:
                     contact.span = bodies[i].hx - point.phi if pairs[p].kind == ROPE else 0.0
                 if bilateral:
-                    contact.bilateral = 1 if pairs[p].kind < ROPE else 0
+                    joined = pairs[p].kind < ROPE
+                    if stopped:
+                        contact.stop = 1 if joined and is_stop(pairs[p].kind) else 0
+                        joined = joined and contact.stop == 0
+                    contact.bilateral = 1 if joined else 0
+                    if bounded:
+                        contact.motor = 1 if joined and is_motor(pairs[p].kind) else 0
+                        contact.couple = 1 if joined and is_couple(pairs[p].kind) else 0
                     if levers and contact.bilateral == 1:
                         a, b = bodies[owner_i], bodies[owner_j]
                         put_ends(contact, pairs[p].kind, bodies[i], bodies[j], a, b)

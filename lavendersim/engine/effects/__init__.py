@@ -12,7 +12,7 @@ from ..records import Field
 from ..spec import Spec
 from .decision import BodyFacts, Decision, Facts, PairFacts
 from .effect import CHAINED, Choice, Column, Derived, Effect, Hooks, hook_names
-from .joint import JOINTS, holding, turned_by_joints
+from .joint_models import JOINTS, holding, turned_by_joints
 from .keys import TurnOf
 from .rope import pulling
 from .time_functions import TimeFunction
@@ -22,6 +22,8 @@ NAMES: Final = (
     "compound",
     "rope",
     "joint",
+    "joint_stop",
+    "motor",
     "broad_phase",
     "gravity",
     "external_force",

@@ -35,6 +35,7 @@ def make(spec: Spec, loggers):
     speculative = spec.has("speculative")
     loads = any(effect.hooks.preload for effect in effects_of(spec))
     friction, bilateral = row_terms(spec).frictional, row_terms(spec).bilateral
+    bounded = row_terms(spec).bounded
     row_residual, forget = make_row_residual(spec), make_forget(spec)
     watch_signorini, watch_coulomb = make_watch_signorini(spec), make_watch_coulomb(spec)
     log_more = chain(loggers, spec)
@@ -52,6 +53,8 @@ def make(spec: Spec, loggers):
         if first:
             counters.residual_row = -1
             forget(counters)
+            if bounded:
+                row.motor_work = 0.0
         else:
             force, deepest = row.total_normal_force, row.max_penetration
             written, most = row.contact_count, row.residual
@@ -92,6 +95,8 @@ def make(spec: Spec, loggers):
             out.target = contact.target
             out.residual = residual
             log_more(out, contact, va, vb)
+            if bounded:
+                row.motor_work += out.motor_work
             cone = True
             if bilateral:
                 cone = contact.bilateral == 0

@@ -186,6 +186,8 @@ class RowTerms:
     rolling: bool = False  # psi_1, psi_2 in the tangent plane [N m s]
     levers: bool = False  # of rows of a normal: impulses turn bodies
     bilateral: bool = False  # some of a normal have no cone: `bilateral` is 1, either sign [N s]
+    bounded: bool = False  # some of those, motors, have a largest impulse, `most`: see `motor`
+    stopped: bool = False  # some of a normal are stops of joints: `stop` is 1
     shifted: bool = False  # surface_1, surface_2 add to the slip [m/s]
 
 

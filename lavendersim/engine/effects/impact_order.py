@@ -108,7 +108,7 @@ def make_order(spec: Spec) -> Any:
     edged = drop_flush is not None
     turns = spec.has("rotation")
     springs, ropes = spec.has("contact_spring"), spec.has("rope")
-    bilateral = row_terms(spec).bilateral
+    bilateral, stopped = row_terms(spec).bilateral, row_terms(spec).stopped
     work = REBOUND if spec.has("restitution") else WORK
     stops, first_stop = made_once(spec, "first_stop")
 
@@ -179,6 +179,8 @@ def make_order(spec: Spec) -> Any:
                     deep = deep and state.pairs[contact.pair].compliance == 0.0
                 if ropes:  # too long by what its turn left: nothing is inside of anything
                     deep = deep and contact.span == 0.0
+                if stopped:
+                    deep = deep and contact.stop == 0
                 if deep:
                     counters.unordered = 1
                     return count, left

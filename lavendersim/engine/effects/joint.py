@@ -19,150 +19,11 @@ the points stay together. What other steps leave is projected back, all of it.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from typing import Annotated, Any, Literal, NamedTuple
-
-from pydantic import Field as ModelField
-from pydantic import Strict
-
-from lavendersim.quantities.model import ConfigModel
-from lavendersim.quantities.names import BodyName
-from lavendersim.quantities.quantity import Direction, Quantity, Vector, Vector3
-
 from ..records import Field
 from ..spec import Spec
 from .decision import Decision, Facts, named
 from .effect import Column, Effect, Fields, Hooks, Kernel, RowTerms, kernel
-
-_Point = Annotated[Vector3, Vector(3, Quantity("m"))]
-# In a cell's JSON they are lists.
-_Names = Annotated[tuple[BodyName, ...], Strict(False), ModelField(min_length=2, max_length=2)]
-
-
-class RowOfJoint(NamedTuple):
-    """A row: which point of the joint, which direction (`collide.joint`)."""
-
-    point: int  # 0: where the joint is; 1: further along its axis, z; 2: beside it, along x
-    direction: int  # x y z of the world: 0 1 2; of the end on A: 3 4, where ends slide along z: 6 7
-
-
-BALL = (RowOfJoint(0, 0), RowOfJoint(0, 1), RowOfJoint(0, 2))
-HINGE = (*BALL, RowOfJoint(1, 3), RowOfJoint(1, 4))
-FIXED = (*HINGE, RowOfJoint(2, 4))
-SLIDER = (
-    *(RowOfJoint(0, 6), RowOfJoint(0, 7), RowOfJoint(1, 6), RowOfJoint(1, 7)),
-    RowOfJoint(2, 7),
-)
-
-
-class Joint(ConfigModel):
-    """What all joints have: two bodies, and a place."""
-
-    kind: str
-    between: _Names = ModelField(description="names of two bodies, of which at least one moves")
-    at: _Point = ModelField(description="[m] the point that they share, as the run begins")
-    collide: bool = ModelField(
-        default=False, description="whether the two bodies also touch each other"
-    )
-
-    @classmethod
-    def rules(cls, at: Any) -> None:
-        """Two different bodies."""
-        names = [one.text for one in at.get("between").items]
-        if len(names) == 2 and names[0] is not None and names[0] == names[1]:
-            sentence = f'"{names[0]}" twice; expected two bodies'
-            at.refuse(at.get("between").mark, f"between: {sentence}")
-
-    @property
-    def name_of_pair(self) -> str:
-        """Return its bodies, for a sentence."""
-        return " and ".join(self.between)
-
-    @property
-    def rows(self) -> tuple[RowOfJoint, ...]:
-        """Return its rows, in their order."""
-        return BALL
-
-    @property
-    def along(self) -> Vector3:
-        """Return the direction of its axis; of a joint without one any will do."""
-        return (1.0, 0.0, 0.0)
-
-
-class BallJoint(Joint):
-    """A ball joint: two bodies share a point, about which they turn freely."""
-
-    kind: Literal["ball"] = ModelField(description="`ball`")
-
-
-class JointWithAxis(Joint):
-    """What joints about, or along, an axis have."""
-
-    axis: Direction = ModelField(
-        description="its axis through `at`, world frame, as the run begins; is normalised"
-    )
-
-    @property
-    def along(self) -> Vector3:
-        """Return the direction of its axis."""
-        return self.axis
-
-
-class HingeJoint(JointWithAxis):
-    """A hinge: two bodies share an axis, about which they turn freely."""
-
-    kind: Literal["hinge"] = ModelField(description="`hinge`")
-
-    @property
-    def rows(self) -> tuple[RowOfJoint, ...]:
-        """Return its rows, in their order."""
-        return HINGE
-
-
-class FixedJoint(Joint):
-    """A fixed joint: two bodies move as one."""
-
-    kind: Literal["fixed"] = ModelField(description="`fixed`")
-
-    @property
-    def rows(self) -> tuple[RowOfJoint, ...]:
-        """Return its rows, in their order."""
-        return FIXED
-
-
-class SliderJoint(JointWithAxis):
-    """A slider: two bodies turn as one, and slide freely along an axis."""
-
-    kind: Literal["slider"] = ModelField(description="`slider`")
-
-    @property
-    def rows(self) -> tuple[RowOfJoint, ...]:
-        """Return its rows, in their order."""
-        return SLIDER
-
-
-JOINTS = ("ball", "hinge", "fixed", "slider")
-AnyJoint = BallJoint | HingeJoint | FixedJoint | SliderJoint
-
-
-def holding(scene: Any) -> Mapping[str, Joint]:
-    """Return the joints of a scene that hold a body that moves, by name; in the file's order."""
-    return {
-        name: one
-        for name, one in scene.connections.items()
-        if isinstance(one, Joint)
-        if not all(scene.bodies[body].fixed for body in one.between)
-    }
-
-
-def turned_by_joints(scene: Any) -> Iterator[str]:
-    """Yield the movable bodies that a joint may turn: beside their centre, or with the other."""
-    for one in holding(scene).values():
-        for name in one.between:
-            body = scene.bodies[name]
-            centred = one.rows == BALL and tuple(body.position) == tuple(one.at)
-            if not body.fixed and not centred:
-                yield name
+from .joint_models import holding
 
 
 def decide(facts: Facts) -> Decision:
@@ -217,10 +78,10 @@ def excludes(config: Any) -> Iterator[tuple[tuple[str | int, ...], str]]:
 
 def make_contact_row(spec: Spec) -> Kernel:
     """Return `kernel(out, contact, va, vb)` that fills its column of a contact."""
-    from ..collide.joint import number_of
+    from ..collide.joint import FIRST_JOINT, number_of
 
     def log_joint(out, contact, va, vb):
-        out.joint = number_of(contact.feature) if contact.bilateral == 1 else 0
+        out.joint = number_of(contact.feature) if contact.feature >= FIRST_JOINT else 0
 
     return kernel(log_joint, spec)
 
@@ -232,13 +93,16 @@ def contact_fields(spec: Spec) -> list[Field]:
     centred = spec.has("contact_midpoint")
     fields = []
     if centred:
-        fields.append(("begin_torn", "f8"))  # how fast its ends part as the step begins [m/s]
+        # How fast its ends part as the step begins [m/s].
+        fields += [(f"parting_{axis}", "f8") for axis in "xyz"]
+        fields.append(("torn", "i8"))  # 1: they are torn (`midpoint_rows`); -1: not known yet
     if row_terms(spec).levers:
         # From the centre of each body to where the joint is on it [m]; at the middle: `joint_turn`.
         arms = ("arm", "at_arm") if centred else ("arm",)
         fields += [
             (f"{name}_{body}{axis}", "f8") for name in arms for body in "ab" for axis in "xyz"
         ]
+        fields += [(f"apart_{axis}", "f8") for axis in "xyz"]  # B's end from A's, at the start [m]
         fields.append(("sliding", "i8"))  # 1: its ends slide across its direction, which is of A
         fields += [(f"free_{axis}", "f8") for axis in "xyz"]  # unit, where its ends slide; or 0
     return fields

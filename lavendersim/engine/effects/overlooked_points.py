@@ -20,7 +20,7 @@ def decide(facts: Facts) -> Decision:
         return Decision(False, f"steps have one part: {parts.reason}")
     of_parts = {body.name for body in facts.bodies if body.parts > 1}
     for pair in facts.pairs:
-        if pair.shape_pair in ("rope", "joint"):
+        if pair.shape_pair in ("rope", "joint", "joint_stop"):
             continue  # of one point
         if "sphere" not in pair.shape_pair or of_parts & {pair.a, pair.b}:
             return Decision(True, f"{pair.a} and {pair.b} may touch at several points")

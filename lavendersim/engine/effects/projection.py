@@ -15,6 +15,8 @@ With every target at zero the solution is u = 0, and the pass ends before it beg
 
 from typing import Any
 
+from ..records import Field
+from ..spec import Spec
 from .decision import Decision, Facts
 from .effect import Effect, Fields, Hooks, kernel
 
@@ -91,19 +93,22 @@ def make_mean_velocity(spec):
 def make(spec):
     """Return `kernel(system, motion, pseudo, workspace, params) -> sweeps made`."""
     from ..contact import make_normal_velocity
+    from ..joint_projection import make_project_joints, projects_joints
     from ..joint_turn import make_turned_apart
     from ..row_terms import row_terms
     from ..solvers.packed.apart import make_push_apart
     from ..solvers.packed.late import FEWEST_CONTACTS, packs_late
+    from ..solvers.solver import ContactSystem
     from ..spring_turn import PLACED
 
     normal_velocity = make_normal_velocity(spec)
     packs = packs_late(spec)
     push_apart = _make_push_apart(spec)
     push_apart_packed: Any = make_push_apart(spec) if packs else None
-    torque = row_terms(spec).levers
+    torque, by_newton = row_terms(spec).levers, projects_joints(spec)
+    project_joints: Any = make_project_joints(spec) if by_newton else None
     friction, midpoint = row_terms(spec).frictional, spec.has("midpoint")
-    bilateral = row_terms(spec).bilateral
+    bilateral, bounded = row_terms(spec).bilateral, row_terms(spec).bounded
     turned_apart: Any = make_turned_apart(spec) if bilateral else None
     centred, springs = spec.has("contact_midpoint"), spec.has("contact_spring")
     at_surface = spec.has("impact_time")
@@ -115,7 +120,7 @@ def make(spec):
     def project_positions(system, motion, pseudo, workspace, params):
         contacts, count, velocities = system.contacts, system.count, system.velocities
         bodies = system.bodies
-        share, asked = params.projection, False
+        share, asked, joined_rows = params.projection, False, False
         if controlled:
             share *= params.dt / params.timestep
         for c in range(count):
@@ -155,10 +160,21 @@ def make(spec):
             contact.correction = share * max(excess, 0.0)
             if bilateral:
                 if contact.bilateral == 1:
+                    joined_rows = True
                     left = turned_apart(contact, velocities, motion, params.dt)
-                    contact.correction = -(contact.phi + v_n * params.dt + left)
+                    phi = contact.phi
+                    if torque:
+                        if (
+                            contact.sliding == 0
+                        ):  # in the direction of now, as all rows of the point
+                            x, y = contact.apart_x, contact.apart_y
+                            phi = contact.nx * x + contact.ny * y + contact.nz * contact.apart_z
+                    contact.correction = -(phi + v_n * params.dt + left)
             contact.push = 0.0
             contact.inv_k_n = 1.0 / contact.k_n
+            if bounded:
+                if contact.motor == 1:  # it holds no place
+                    contact.correction, contact.inv_k_n = 0.0, 0.0
             if contact.correction > 0.0:
                 asked = True
             if bilateral:
@@ -179,13 +195,18 @@ def make(spec):
             if count >= FEWEST_CONTACTS:
                 packed = workspace.packed
                 return push_apart_packed(system, packed, pseudo, params.projection_sweeps)
-        return push_apart(system, pseudo, params.projection_sweeps)
+        made, left = push_apart(system, pseudo, params.projection_sweeps)
+        if by_newton:
+            if left and joined_rows:
+                projected = ContactSystem(contacts, system.order, count, bodies, pseudo)
+                project_joints(projected, workspace, TOGETHER)
+        return made
 
     return kernel(project_positions, spec)
 
 
 def _make_push_apart(spec):
-    """Return `kernel(system, pseudo, sweeps) -> sweeps made`, over the records of contacts."""
+    """Return `kernel(system, pseudo, sweeps) -> (sweeps made, whether pushes still change)`."""
     from ..contact import make_apply_impulse, make_normal_velocity
     from ..row_terms import row_terms
 
@@ -194,7 +215,7 @@ def _make_push_apart(spec):
 
     def push_apart(system, pseudo, sweeps):
         contacts, order = system.contacts, system.order
-        made = 0
+        made, changed = 0, False
         for _ in range(sweeps):
             changed = False
             for c in range(system.count):
@@ -215,9 +236,26 @@ def _make_push_apart(spec):
             made += 1
             if not changed:  # nor would anything in the sweeps that are left
                 break
-        return made
+        return made, changed
 
     return kernel(push_apart, spec)
+
+
+def contact_fields(spec: Spec) -> list[Field]:
+    """Return what keeps the rest of a row while Newton's method has it (`joint_projection`)."""
+    from ..joint_projection import projects_joints
+    from ..row_terms import row_terms
+
+    if not projects_joints(spec):
+        return []
+    terms, names = row_terms(spec), list[str]()
+    if terms.frictional:
+        names += ["own_mu", "own_1", "own_2"]
+    if terms.compliant:
+        names.append("own_gamma")
+    if terms.bounded:
+        names.append("own_most")
+    return [(name, "f8") for name in names]
 
 
 EFFECT = Effect(
@@ -230,6 +268,7 @@ EFFECT = Effect(
             ("push", "f8"),  # accumulated pseudo-impulse [kg m]
             ("inv_k_n", "f8"),  # 1/k_n, without compliance [kg]
         ],
+        contact_with=contact_fields,
     ),
     hooks=Hooks(project=make),
 )

@@ -21,7 +21,7 @@ from lavendersim.quantities.quantity import Quantity, Vector, Vector3
 from ..spec import Spec
 from .decision import Decision, Facts, named
 from .effect import Column, Effect, Fields, Hooks, Kernel, RowTerms, kernel
-from .joint import AnyJoint, Joint
+from .joint_models import AnyJoint, Joint
 from .keys import SceneKey, TurnOf
 
 _CENTRE: Vector3 = (0.0, 0.0, 0.0)

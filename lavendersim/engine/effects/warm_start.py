@@ -30,6 +30,7 @@ def make(spec):
     friction = row_terms(spec).frictional
     terms = row_terms(spec)
     torsional, rolling, bilateral = terms.torsional, terms.rolling, terms.bilateral
+    bounded = terms.bounded
 
     def match_contacts(contacts, count, bodies, cache, counters, params):
         if counters.cached == 0:
@@ -63,6 +64,9 @@ def make(spec):
                         if bilateral:
                             if contact.bilateral == 1:  # wherever its bodies have turned
                                 distance = 0.0
+                        if bounded:
+                            if contact.couple == 1:  # it has no normal
+                                cosine = 1.0
                         if cosine >= params.cache_normal_cosine and distance <= best:
                             best, chosen = distance, k
                     k += 1

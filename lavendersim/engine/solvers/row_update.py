@@ -2,7 +2,8 @@
 
 Normal, compliant:
     lambda_n <- max(0, lambda_n - (v_n + b + b_rest + gamma lambda_n) / (k_n + gamma))
-without the bound by 0 where the row is `bilateral`.
+without the bound by 0 where the row is `bilateral`; a motor's (`effects.motor`) has one
+of either sign.
 Friction, with v_t after the normal's change:
     lambda_t <- lambda_t - K_tt^-1 v_t                              where that is in the disc: stick
                 proj(lambda_t - v_t / k_t),  |lambda_t| <= mu lambda_n          otherwise: slide
@@ -24,7 +25,7 @@ from __future__ import annotations
 
 from ..block import largest_response
 from ..compile import kernel
-from ..cone import project_cone, project_disc, project_square
+from ..cone import project_cone, project_disc, project_square, within
 from ..contact import make_frictionless_impulse, make_frictionless_velocity
 from ..coupling import make_add_frictional, make_frictional_velocity
 from ..effects import made_once
@@ -49,7 +50,7 @@ def _make_normal(spec: Spec):
     recaptures, capture_again = made_once(spec, "recapture")
     normal_velocity = make_frictionless_velocity(spec)
     apply_impulse = make_frictionless_impulse(spec)
-    bilateral = row_terms(spec).bilateral
+    bilateral, bounded = row_terms(spec).bilateral, row_terms(spec).bounded
 
     def solve_contact_velocity(contact, contacts, velocities, params):
         va, vb = velocities[contact.a], velocities[contact.b]
@@ -66,6 +67,8 @@ def _make_normal(spec: Spec):
         if bilateral:
             if contact.bilateral == 1:
                 lambda_new = lambda_old - w * contact.inv_k
+                if bounded:
+                    lambda_new = within(lambda_new, contact.most)
         contact.lambda_n = lambda_new
         change = lambda_new - lambda_old
         apply_impulse(contact, va, vb, change)

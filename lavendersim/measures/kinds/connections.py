@@ -73,7 +73,18 @@ def _forces(rows: Any) -> Vectors:
 
 
 def _torques(rows: Any) -> Vectors:
-    """Return the torque of each row about the first of its step, which is where the joint is."""
+    """Return the torque of each row about the first of its step, which is where the joint is.
+
+    That of a motor that turns is a couple.
+    """
     _, first, own = np.unique(rows["step"], return_index=True, return_inverse=True)
     places = np.column_stack([rows[axis] for axis in "xyz"])
-    return np.cross(places - places[first][own], _forces(rows))
+    torques: Vectors = np.cross(places - places[first][own], _forces(rows))
+    if "twist_x" not in (rows.dtype.names or ()):
+        return torques
+    # Impulses and forces of a row have one ratio, the timestep.
+    twists = np.column_stack([rows[f"twist_{axis}"] for axis in "xyz"])
+    pushed = rows["impulse_n"] != 0.0
+    rates = np.divide(rows["force_n"], rows["impulse_n"], out=np.zeros(len(rows)), where=pushed)
+    couples: Vectors = rates[:, None] * twists
+    return torques + couples

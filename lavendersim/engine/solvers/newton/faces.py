@@ -4,6 +4,7 @@ They are a face of Coulomb's cone, by what the contact does at the velocities v*
     open     it parts:                     no impulse
     sticks   closed, without slip:         the cone |lambda_t| <= mu lambda_n
     slides   closed, with slip w_t:        lambda_n >= 0, and friction mu lambda_n against the slip
+    spent    a motor that drives by its most: that impulse
 Open and stuck ones respond as in `response`, by the point of the face nearest to x = lambda^k - e w
 in the metric 1/e. What slides responds along its normal alone, its friction is given for a round:
 compliance gives way to pressure, whatever slips. w are changes from v*, but for the slip.
@@ -27,7 +28,7 @@ from .response import (
     make_projected_normal,
 )
 
-OPEN, STICKS, SLIDES = 0, 1, 2
+OPEN, STICKS, SLIDES, SPENT = 0, 1, 2, 3
 
 
 def make_find_face(spec: Spec) -> Any:
@@ -41,6 +42,7 @@ def make_find_face(spec: Spec) -> Any:
 def _make_find_normal(spec: Spec) -> Any:
     normal_velocity, compliant = make_frictionless_velocity(spec), row_terms(spec).compliant
     tangents, bilateral = row_terms(spec).frictional, row_terms(spec).bilateral
+    bounded = row_terms(spec).bounded
 
     def find_normal(contact, va, vb, still):
         parting = normal_velocity(contact, va, vb) + contact.target
@@ -50,6 +52,9 @@ def _make_find_normal(spec: Spec) -> Any:
         if bilateral:
             if contact.bilateral == 1:
                 contact.face = STICKS
+        if bounded:
+            if contact.motor == 1 and abs(parting) > still:
+                contact.face = SPENT
         contact.start_n = contact.lambda_n
         if tangents:
             contact.start_1, contact.start_2 = 0.0, 0.0
@@ -85,9 +90,12 @@ def make_face_impulse(spec: Spec) -> Any:
 
 
 def _make_normal_impulse(spec: Spec) -> Any:
-    projected_normal = make_projected_normal(spec)
+    projected_normal, bounded = make_projected_normal(spec), row_terms(spec).bounded
 
     def normal_impulse(contact, length):
+        if bounded:
+            if contact.face == SPENT:
+                return contact.start_n, 0.0, 0.0
         if contact.face == OPEN:
             return 0.0, 0.0, 0.0
         return projected_normal(contact, length)
@@ -142,7 +150,7 @@ def _make_normal_stiffness(spec: Spec) -> Any:
     frictionless_stiffness = make_frictionless_stiffness(spec)
 
     def normal_stiffness(contact):
-        if contact.face == OPEN:
+        if contact.face == OPEN or contact.face == SPENT:
             return Stiffness(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
         return frictionless_stiffness(contact)
 

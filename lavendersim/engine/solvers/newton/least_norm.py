@@ -27,6 +27,7 @@ from .envelope import DOF, OF_A, OF_B, T1, T2, factorise, lay_out, solve_factori
 from .faces import (
     OPEN,
     SLIDES,
+    SPENT,
     make_face_impulse,
     make_face_stiffness,
     make_find_face,
@@ -98,6 +99,7 @@ def make_begin(spec: Spec, stiffness: Any) -> Any:
             loaded = contact.face != OPEN and contact.start_n > 0.0
             if bilateral:
                 loaded = loaded or contact.bilateral == 1
+            loaded = loaded and contact.face != SPENT
             if loaded:
                 fill_rows(contact, rows)
                 for own in (OF_A, OF_B):

@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 from ...block import make_relative_velocity
 from ...compile import inner, kernel
+from ...cone import within
 from ...contact import make_frictionless_velocity
 from ...row_terms import by_friction, row_terms
 from ...spec import Spec
@@ -121,13 +122,15 @@ def make_projected_impulse(spec: Spec):
 
 def make_projected_normal(spec: Spec):
     """Return the same kernel for contacts without friction."""
-    bilateral = row_terms(spec).bilateral
+    bilateral, bounded = row_terms(spec).bilateral, row_terms(spec).bounded
 
     def frictionless_impulse(contact, length):
         n = contact.scale * contact.start_n
         n -= contact.stiff_n * (contact.velocity_n + length * contact.step_n)
         if bilateral:
             if contact.bilateral == 1:
+                if bounded:
+                    n = within(n, contact.most)
                 return n, 0.0, 0.0
         return max(n, 0.0), 0.0, 0.0
 
@@ -174,9 +177,14 @@ def make_stiffness(spec: Spec):
 
 def make_frictionless_stiffness(spec: Spec):
     """Return the same kernel for contacts without friction."""
-    bilateral = row_terms(spec).bilateral
+    bilateral, bounded = row_terms(spec).bilateral, row_terms(spec).bounded
 
     def frictionless_stiffness(contact):
+        if bounded:
+            if contact.motor == 1:
+                n = contact.scale * contact.start_n - contact.stiff_n * contact.velocity_n
+                if abs(n) > contact.most:
+                    return Stiffness(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
         if bilateral:
             if contact.bilateral == 1:
                 return Stiffness(contact.stiff_n, 0.0, 0.0, 0.0, 0.0, 0.0)

@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from lavendersim.engine.effects.joint import BallJoint
+from lavendersim.engine.effects.joint_models import BallJoint
 from lavendersim.measures import evaluate
 from lavendersim.measures.specs.connections import JointForce, JointTorque, Tension
 
