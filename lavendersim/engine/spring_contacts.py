@@ -13,7 +13,8 @@ V_c: the centre's, 0 of what touches or is tied to what does not move. Forces ac
 for what they change of V_c: else they would drive what does not move on. The first pair (s, t) is
 taken for which the energy is enough, first with the rebounds of impacts without order, which may
 themselves give energy, then without; at s = t = 0 it is, and what stays in place there slows down.
-Where surfaces move or give way energy tells nothing: s = t = 1 is taken of what is not found.
+Of unions whose surfaces move or give way (`spring_surfaces`) energy tells nothing: s = t = 1 is taken
+where they are not found.
 """
 
 from __future__ import annotations
@@ -29,6 +30,7 @@ from .parts import make_forget_history
 from .spec import Spec
 from .spring_limit import make_limit
 from .spring_midpoint import make_find
+from .spring_surfaces import make_note_working
 from .spring_turn import TWISTED
 from .spring_unions import make_unions
 from .vectors import Vec3, cross, length
@@ -59,10 +61,8 @@ def make_act_beside_contacts(spec: Spec, place: Any, solve: Any) -> Any:
     forget_history = make_forget_history(spec)
     carries_inertia, refresh_inertia = made_once(spec, "refresh_inertia")
     warms, store_contacts = made_once(spec, "store")
-    # What surfaces that move or give way do is no loss.
-    moving_surfaces = spec.has("surface_velocity")
     rebounds = spec.has("restitution") and spec.has("impact_order")
-    elastic, regularised = spec.has("contact_spring"), spec.has("compliance")
+    note_working = make_note_working(spec)
 
     def read(links, x):
         for k in range(links.shape[0]):
@@ -266,17 +266,10 @@ def make_act_beside_contacts(spec: Spec, place: Any, solve: Any) -> Any:
         rows = poses if midway else bodies
         join(links, rows, contacts, count, False)
         classify(contacts, count, motion, params)
-        gives = False
-        if moving_surfaces:
-            gives = True
-        if elastic:
-            gives = True
-        if regularised:
-            gives = True
-        if gives and done:
-            return midway
-        if not gives and not gains(links, rows, velocities, motion, beside, dt):
-            return midway
+        working = note_working(state, rows, count)
+        if done or not working:
+            if not gains(links, rows, velocities, motion, beside, dt):
+                return midway
         counters.spring_not_converged += 1
         if midway:
             stand_up(bodies, poses)
@@ -304,6 +297,7 @@ def make_act_beside_contacts(spec: Spec, place: Any, solve: Any) -> Any:
             solve(state, count, workspace, params, counters, log)
             counters.sweeps += sweeps
             join(links, bodies, contacts, count, False)
+            note_working(state, bodies, count)
             pull(links, contacts, bodies, count)  # of what has joined
             classify(contacts, count, motion, params)
             share = 1.0
@@ -311,7 +305,7 @@ def make_act_beside_contacts(spec: Spec, place: Any, solve: Any) -> Any:
                 if number == SIZES - 1 and last == SHARES - 1:
                     share = 0.0
                 put(state, bodies, count, share, dt)
-                if gives or not gains(links, bodies, velocities, motion, beside, dt):
+                if not gains(links, bodies, velocities, motion, beside, dt):
                     return False
                 share *= 0.5
             size *= 0.25

@@ -35,7 +35,7 @@ def make_unions(spec: Spec, place: Any) -> Unions:
     """Return the kernels; place: kernel of `effects.spring`. rows: bodies where the step begins."""
     from .rotation import inertia_times
 
-    turns, kinematic = spec.has("rotation"), spec.has("kinematic")
+    turns = spec.has("rotation")
     displace = make_displace(spec)
 
     def unite(a, b):
@@ -105,19 +105,14 @@ def make_unions(spec: Spec, place: Any) -> Unions:
     stored = kernel(stored, spec)
 
     def gains(links, rows, velocities, motion, beside, dt):
-        # Whether unions have more energy where the step leads to, or it leads nowhere. rows: where
-        # it begins.
+        # Whether unions that nothing works on (`spring_surfaces`) have more energy where the step
+        # leads to, or it leads nowhere. rows: where it begins.
         moved, moving = beside.bodies, beside.velocities
         won, had = 0.0, 0.0
         for i in range(rows.shape[0]):
             moved[i] = rows[i]
             row, m = rows[i], motion[i]
-            if kinematic:
-                if row.again == 0 and row.kinematic == 1:
-                    for k in range(links.shape[0]):
-                        if links[k].again == 1 and (links[k].a == i or links[k].b == i):
-                            return False
-            if row.again == 0:
+            if row.again == 0 or rows[row.group - 1].worked == 1:
                 continue
             moving[i] = velocities[i]
             if not displace(moved[i], moving[i], m, dt):
@@ -137,7 +132,8 @@ def make_unions(spec: Spec, place: Any) -> Unions:
                     work += 0.5 * (fx * (v.wx + m.wx) + fy * (v.wy + m.wy) + fz * (v.wz + m.wz))
             won, had = won + (after - before - work), had + before + after
         for k in range(links.shape[0]):
-            if links[k].again == 1:
+            group = max(rows[links[k].a].group, rows[links[k].b].group)
+            if links[k].again == 1 and rows[group - 1].worked == 0:
                 before, after = stored(links[k], rows), stored(links[k], moved)
                 won, had = won + (after - before), had + before + after
         beside.lost[0] = max(-won, 0.0)

@@ -45,7 +45,7 @@ ELSEWHERE = {
         "engine/effects/impact_order.py": TIME,
         "engine/foreseen_impacts.py": TIME,
         "engine/impact_rows.py": TIME,
-        "engine/spring_contacts.py": "gives energy back",
+        "engine/spring_surfaces.py": "gives energy back",
         "engine/effects/contact_spring.py": "is another law of it",
     },
     "contact_spring": {
@@ -57,7 +57,6 @@ ELSEWHERE = {
         "engine/effects/impact_time.py": SPRING,
         "engine/effects/projection.py": SPRING,
         "engine/midpoint_rows.py": SPRING,
-        "engine/spring_contacts.py": "gives energy back",
     },
     "cohesion": {"engine/foreseen_impacts.py": "what opens is drawn as long as it is closed"},
     "restitution": {
@@ -99,10 +98,10 @@ ASKED = {
             "overlooked_points",
             *("solvers/newton/minimise", "spring_midpoint", "step_doubling", "scene/events"),
             *("effects/projection", "spring_contacts", "spring_group", "spring_limit"),
-            *("spring_projection", "spring_unions"),
+            *("spring_projection", "spring_surfaces", "spring_unions"),
         ),
         "gyroscopic": ("integrate", "midpoint_geometry", "spring_midpoint", "spring_turn"),
-        "kinematic": ("effects/sleeping", "integrate", "midpoint_geometry", "spring_unions"),
+        "kinematic": ("effects/sleeping", "integrate", "midpoint_geometry", "spring_surfaces"),
         "compound": (
             *("collide/broad/broad_phase", "collide/broad/fat_bounds", "collide/narrow_phase"),
             "impact_location",
@@ -147,15 +146,15 @@ ASKED = {
         "contact_spring": (
             *("effects/impact_order", "effects/impact_time", "effects/pairwise_impacts"),
             *("effects/projection", "foreseen_impacts", "impact_rows", "midpoint_jumps"),
-            *("midpoint_rows", "spring_contacts"),
+            "midpoint_rows",
         ),
-        "compliance": ("foreseen_impacts", "spring_contacts"),
+        "compliance": ("foreseen_impacts", "spring_surfaces"),
         "cohesion": ("foreseen_impacts",),
         "restitution": (
             *("effects/impact_order", "foreseen_impacts", "overlooked_points", "spring_contacts"),
         ),
         "projection": ("integrate", "memory"),
-        "surface_velocity": ("effects/static_friction", "spring_contacts"),
+        "surface_velocity": ("effects/static_friction", "spring_surfaces"),
         "capture_in_sweeps": ("effects/restitution",),
     },
     "rows that collision detection does not make: of what connects two ends": {
