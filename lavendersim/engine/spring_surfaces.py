@@ -1,7 +1,8 @@
 """Unions whose surfaces do work on them or store energy: what they have then tells nothing.
 
-A union (`spring_unions`) is such where what pushes or ties it is kinematic, a surface that pushes it
-moves along itself, or its contact gives way. What surfaces elsewhere do changes nothing of it.
+A union (`spring_unions`) is such where what pushes or ties it is kinematic and moves, a surface
+that pushes it moves along itself, or its contact gives way by the regularised law. What surfaces
+elsewhere do changes nothing of it. What a `contact_spring` stores is known.
 """
 
 from __future__ import annotations
@@ -9,6 +10,7 @@ from __future__ import annotations
 from typing import Any
 
 from .compile import kernel
+from .contact import make_normal_velocity
 from .spec import Spec
 
 
@@ -17,7 +19,8 @@ def make_note_working(spec: Spec) -> Any:
 
     rows: bodies where the step begins, joined.
     """
-    kinematic, gives_way = spec.has("kinematic"), spec.has("compliance")
+    kinematic = spec.has("kinematic")
+    gives_way = spec.has("compliance") and not spec.has("contact_spring")
     moving, turns = spec.has("surface_velocity"), spec.has("rotation")
 
     def moves(body, v):
@@ -63,3 +66,29 @@ def make_note_working(spec: Spec) -> Any:
         return any_works
 
     return kernel(note_working, spec)
+
+
+def make_stored_in_contacts(spec: Spec) -> Any:
+    """Return `kernel(contacts, count, rows, shifts) -> (won, had)`: by contact springs [J].
+
+    Of unions that nothing works on. shifts: displacements [m, rad]. A spring acts through all of a
+    step in which it pushes, so its stretch counts there as its compression does.
+    """
+    normal_shift = make_normal_velocity(spec)
+
+    def stored_in_contacts(contacts, count, rows, shifts):
+        won, had = 0.0, 0.0
+        for c in range(count):
+            contact = contacts[c]
+            group = max(rows[contact.a].group, rows[contact.b].group)
+            if group == 0 or contact.spring_compliance == 0.0 or contact.lambda_n <= 0.0:
+                continue
+            if rows[group - 1].again == 1 and rows[group - 1].worked == 0:
+                before = contact.phi
+                after = before + normal_shift(contact, shifts[contact.a], shifts[contact.b])
+                before = 0.5 * before * before / contact.spring_compliance
+                after = 0.5 * after * after / contact.spring_compliance
+                won, had = won + (after - before), had + min(before, after)
+        return won, had
+
+    return kernel(stored_in_contacts, spec)

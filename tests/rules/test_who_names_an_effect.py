@@ -57,6 +57,8 @@ ELSEWHERE = {
         "engine/effects/impact_time.py": SPRING,
         "engine/effects/projection.py": SPRING,
         "engine/midpoint_rows.py": SPRING,
+        "engine/spring_surfaces.py": "what it stores is known",
+        "engine/spring_unions.py": "stores energy",
     },
     "cohesion": {"engine/foreseen_impacts.py": "what opens is drawn as long as it is closed"},
     "restitution": {
@@ -146,7 +148,7 @@ ASKED = {
         "contact_spring": (
             *("effects/impact_order", "effects/impact_time", "effects/pairwise_impacts"),
             *("effects/projection", "foreseen_impacts", "impact_rows", "midpoint_jumps"),
-            "midpoint_rows",
+            *("midpoint_rows", "spring_surfaces", "spring_unions"),
         ),
         "compliance": ("foreseen_impacts", "spring_surfaces"),
         "cohesion": ("foreseen_impacts",),

@@ -11,7 +11,7 @@ from interpreted import Rows, interpreted
 
 from lavendersim.engine.effects.spring import make_place
 from lavendersim.engine.spec import Spec
-from lavendersim.engine.spring_surfaces import make_note_working
+from lavendersim.engine.spring_surfaces import make_note_working, make_stored_in_contacts
 from lavendersim.engine.spring_unions import make_unions
 
 SPEC = Spec(effects=("spring", "contact_midpoint", "kinematic", "compliance", "surface_velocity"))
@@ -83,3 +83,21 @@ def test_a_kinematic_body_works_on_what_a_spring_ties_to_it() -> None:
 
 def test_a_belt_works_on_what_stands_on_it_alone() -> None:
     assert noted([(LIFT, ONE, 0, 1.0), (FLOOR, TWO, 0, 1.0)], belt=LIFT) == (True, [ONE])
+
+
+@pytest.mark.parametrize("worked", [0, 1])
+def test_a_contact_spring_stores_half_its_stretch_squared_by_its_compliance(worked: int) -> None:
+    """2 mm deep, 1 mm deeper, c = 1e-4 m/N; of a union that a belt works on nothing counts."""
+    spec = Spec(effects=("spring", "contact_midpoint", "compliance", "contact_spring"))
+    stored = interpreted(make_stored_in_contacts(spec))
+    rows = np.zeros(2, [("group", "i8"), ("again", "i8"), ("worked", "i8")])
+    rows[1] = 2, 1, worked
+    row = [("a", "i8"), ("b", "i8"), *((f"n{axis}", "f8") for axis in "xyz"), ("phi", "f8")]
+    contacts = np.zeros(1, [*row, ("spring_compliance", "f8"), ("lambda_n", "f8")])
+    contacts[0] = 0, 1, 0.0, 0.0, 1.0, -2e-3, 1e-4, 1.0
+    shifts = np.zeros(2, VELOCITY)
+    shifts["vz"][1] = -1e-3
+    before, after = 0.5 * (2e-3) ** 2 / 1e-4, 0.5 * (3e-3) ** 2 / 1e-4
+    won, had = stored(Rows(contacts), 1, Rows(rows), Rows(shifts))
+    expected = (0.0, 0.0) if worked else (after - before, before)
+    assert (won, had) == pytest.approx(expected, rel=1e-12)
