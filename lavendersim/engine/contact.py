@@ -13,7 +13,7 @@ from typing import Any
 
 from .block import make_apply_vector, make_complete_block, make_relative_velocity
 from .compile import chain, inner, kernel
-from .effects import made_by
+from .effects import made_by, made_once
 from .integrate import keeps_motion
 from .records import SPHERE
 from .rotation import inverse_inertia_times
@@ -268,6 +268,9 @@ def make_append_contact(spec: Spec, capture):
     preparing = made_by(spec, "prepare")
     prepares = bool(preparing)
     prepare: Any = chain(preparing, spec) if prepares else None
+    slows, slowed_n = False, None
+    if at_surface:
+        slows, slowed_n = made_once(spec, "slowed_n")
     ropes, bilateral = spec.has("rope"), terms.bilateral
     stirred: Any = make_stirred(spec) if ropes else None
 
@@ -299,6 +302,8 @@ def make_append_contact(spec: Spec, capture):
                 + contact.ny * (mb.dvy - ma.dvy)
                 + contact.nz * (mb.dvz - ma.dvz)
             )
+        if slows:
+            contact.slowed_n = slowed_n(contact, body_a, body_b)
         if ropes:
             contact.stirred = 0.0
             if contact.span > 0.0:

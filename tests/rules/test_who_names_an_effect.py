@@ -120,8 +120,8 @@ ASKED = {
             *("integrate", "joint_turn", "memory", "respond"),
         ),
         "impact_time": (
-            *("contact", "effects/cohesion", "effects/restitution", "effects/speculative"),
-            *("effects/projection", "integrate", "midpoint_passes"),
+            *("contact", "effects/cohesion", "effects/drag", "effects/restitution"),
+            *("effects/projection", "effects/speculative", "integrate", "midpoint_passes"),
         ),
         "impact_order": (
             *("effects/impact_time", "effects/overlooked_points", "effects/sliding_stops"),

@@ -7,8 +7,8 @@ leave with -e v_meet, and end the step with v_n = -e v_meet + a (dt - tau): this
 requires. The bodies move on their old velocity until tau and on the new one from there; their
 other contacts require that the gap left at tau does not close in the rest of the step. What forces
 do in that rest counts as in `integrate.displace`: what flies on moves by its mean velocity there,
-v_n - a (dt - tau)/2; what is carried by v_n. A flight so short that it would end within the step is
-no flight: the contact is then a plastic one.
+v_n - a (dt - tau)/2; what is carried by v_n. Of a, drag that resists the approach ends at tau. A
+flight so short that it would end within the step is no flight: the contact is then a plastic one.
 """
 
 from math import sqrt
@@ -34,11 +34,12 @@ def decide(facts: Facts) -> Decision:
 def make_foresee(spec):
     """Return `kernel(contact, params)`: when the surfaces meet in free flight, and how fast."""
     from ..row_terms import row_terms
-    from . import made_once
+    from . import has_hook, made_once
 
     ordered, springs = spec.has("impact_order"), spec.has("contact_spring")
     bilateral = row_terms(spec).bilateral
     falls, restitution_at = made_once(spec, "restitution_at")
+    slows = has_hook(spec, "slowed_n")
 
     def foresee(contact, params):
         dt = params.dt
@@ -65,6 +66,9 @@ def make_foresee(spec):
         if falls:
             e = restitution_at(e, contact, approach_speed)
         separation_speed = e * approach_speed
+        if slows:
+            # What resists the approach ends with it, and resists what flies off.
+            a -= (1.0 + e) * max(contact.slowed_n, 0.0) / dt
         # A flight that outlasts the step, or a plastic impact worth the name.
         flies_on = 2.0 * separation_speed > -a * rest
         change = contact.dv_n
