@@ -13,7 +13,7 @@ from typing import Any
 
 from .block import make_apply_vector, make_complete_block, make_relative_velocity
 from .compile import chain, inner, kernel
-from .effects import made_by, made_once
+from .effects import has_hook, made_by, made_once
 from .integrate import keeps_motion
 from .records import SPHERE
 from .rotation import inverse_inertia_times
@@ -268,9 +268,8 @@ def make_append_contact(spec: Spec, capture):
     preparing = made_by(spec, "prepare")
     prepares = bool(preparing)
     prepare: Any = chain(preparing, spec) if prepares else None
-    slows, slowed_n = False, None
-    if at_surface:
-        slows, slowed_n = made_once(spec, "slowed_n")
+    slows = at_surface and has_hook(spec, "slowed_n")
+    slowed_n: Any = made_once(spec, "slowed_n")[1] if slows else None
     ropes, bilateral = spec.has("rope"), terms.bilateral
     stirred: Any = make_stirred(spec) if ropes else None
 

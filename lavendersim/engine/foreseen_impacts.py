@@ -129,6 +129,8 @@ def make_foresee(spec: Spec) -> Any:
                 ahead = gap > 0.0 or due >= FLIGHT * params.timestep
                 if ahead and due < left:
                     contact.waits, contact.due = 1, due
+                elif ahead and v > 0.0 and e > 0.0 and contact.phi <= params.slop:
+                    contact.waits = 1  # it leaves, and what would rebound meets again later
         if turns:
             if (ahead or contact.waits == 1) and contact.due == NEVER and gap > 0.0:
                 # Surfaces that turn may come nearer by as much as this: their shapes decide.

@@ -43,7 +43,7 @@ def rows_of(*rows: dict[str, float], spec: Spec = SPEC) -> np.ndarray:
 
 def foreseen(spec: Spec = SPEC, **row: float) -> Any:
     contact = records(rows_of(row, spec=spec))[0]
-    interpreted(make_foresee(spec))(contact, one_row(**PARAMETERS))
+    interpreted(make_foresee(spec))(contact, one_row(**PARAMETERS), False)
     return contact
 
 
@@ -172,6 +172,6 @@ def test_what_resists_the_approach_ends_with_it_and_resists_what_flies_off(e: fl
     contacts = rows_of({"gap": 0.0, "v": -3.0, "acceleration": 2.5 / DT, "e": e}, spec=spec)
     contacts["slowed_n"] = 2.0
     contact = records(contacts)[0]
-    interpreted(make_foresee(spec))(contact, one_row(**PARAMETERS))
+    interpreted(make_foresee(spec))(contact, one_row(**PARAMETERS), False)
     assert contact.separation_speed == pytest.approx(e * 3.0)
     assert contact.after == pytest.approx(0.5 - e * 2.0)
