@@ -33,6 +33,8 @@ SLOW = 1.0
 # Where the path of a contact bends by more than this share of what forces change, it is the motion
 # that brings surfaces together: they meet at a slower speed, in the same measure.
 BENDS, GLANCING = 0.05, 1.0 / 64.0
+# So it is where more than this closes [m]: what solves that do not converge leave open is less.
+FALL = 1e-5
 # A contact that lasts has a gap of this share of what going round moves its surfaces by, at most.
 CLOSED = 1.0 / 64.0
 LAST = 1.0 - 1e-9  # first guess, in what is left of the step, where only shapes tell
@@ -120,7 +122,7 @@ def make_foresee(spec: Spec) -> Any:
             contact.waits = 1
         ahead, slow = False, most
         if gap > params.slop:
-            if bend(contact, bodies, motion) * left > BENDS * most:
+            if bend(contact, bodies, motion) * left > BENDS * most or gap > FALL:
                 slow = GLANCING * most
         if squared > 0.0 and (v < 0.0 or a < 0.0):
             if is_impact(speed, least, dv, slow, e, params):
