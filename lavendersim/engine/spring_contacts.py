@@ -42,7 +42,7 @@ FOUND = 0.01
 ROUND_OFF = 1e-13
 # Sizes of the springs' impulses, each a quarter of the last, and of what bodies move by, a half.
 SIZES, SHARES = 8, 12
-# How often what is held is made slower, by a half, where contacts give way.
+# How often what does not move is made slower, by a half, where contacts give way.
 SLOWER = 30
 
 
@@ -311,7 +311,7 @@ def make_act_beside_contacts(spec: Spec, place: Any, solve: Any) -> Any:
                     return False
                 share *= 0.5
             size *= 0.25
-        # What contact springs give where nothing moves is taken from what is held.
+        # What contact springs give where nothing moves is taken from what stands.
         for _ in range(SLOWER):
             put(state, bodies, count, 0.0, dt)
             if not gains(state, bodies, count, beside, dt):

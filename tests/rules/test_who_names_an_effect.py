@@ -20,6 +20,7 @@ CHAINED = [effect for effect in EFFECTS if effect.hooks.accelerate or effect.hoo
 FACT = "a property of the scene, which predicates may ask for, has the same name"
 TIME = "what gives way takes time: no impact of an instant"
 SPRING = "it has a penetration of its own, and no impact"
+BOUNCES = "with it bounces are no powers of e"
 LAW = "a row ahead of touching must be looked for, and its body's flight be kept"
 # Where else a name stands, as an identifier or a string, and why it must. A soft row is a term of
 # rows (`RowTerms`), which solvers ask for.
@@ -45,6 +46,7 @@ ELSEWHERE = {
         "engine/effects/impact_order.py": TIME,
         "engine/foreseen_impacts.py": TIME,
         "engine/impact_rows.py": TIME,
+        "engine/repeated_bounces.py": BOUNCES,
         "engine/spring_surfaces.py": "gives energy back",
         "engine/effects/contact_spring.py": "is another law of it",
     },
@@ -60,7 +62,11 @@ ELSEWHERE = {
         "engine/spring_surfaces.py": "what it stores is known",
         "engine/spring_unions.py": "stores energy",
     },
-    "cohesion": {"engine/foreseen_impacts.py": "what opens is drawn as long as it is closed"},
+    "cohesion": {
+        "engine/foreseen_impacts.py": "what opens is drawn as long as it is closed",
+        "engine/repeated_bounces.py": BOUNCES,
+    },
+    "drag": {"engine/repeated_bounces.py": BOUNCES},
     "restitution": {
         "engine/effects/capture_in_sweeps.py": "makes a mistake with it",
         "engine/effects/falling_restitution.py": "lowers its coefficient",
@@ -122,6 +128,7 @@ ASKED = {
         "impact_time": (
             *("contact", "effects/cohesion", "effects/drag", "effects/restitution"),
             *("effects/projection", "effects/speculative", "integrate", "midpoint_passes"),
+            "repeated_bounces",
         ),
         "impact_order": (
             *("effects/impact_time", "effects/overlooked_points", "effects/sliding_stops"),
