@@ -37,6 +37,8 @@ BENDS, GLANCING = 0.05, 1.0 / 64.0
 FALL = 1e-5
 # A contact that lasts has a gap of this share of what going round moves its surfaces by, at most.
 CLOSED = 1.0 / 64.0
+# CONTACT.waits of what leaves by a rebound, until it is known whether its pair does (`order`).
+REBOUNDS = 2
 LAST = 1.0 - 1e-9  # first guess, in what is left of the step, where only shapes tell
 
 
@@ -132,7 +134,7 @@ def make_foresee(spec: Spec) -> Any:
                 if ahead and due < left:
                     contact.waits, contact.due = 1, due
                 elif ahead and v > 0.0 and e > 0.0 and contact.phi <= params.slop:
-                    contact.waits = 1  # it leaves, and what would rebound meets again later
+                    contact.waits = REBOUNDS  # it leaves, and meets again later
         if turns:
             if (ahead or contact.waits == 1) and contact.due == NEVER and gap > 0.0:
                 # Surfaces that turn may come nearer by as much as this: their shapes decide.
