@@ -14,7 +14,7 @@ from typing import Any
 from .block import make_apply_vector, make_complete_block, make_relative_velocity
 from .collide.records import UNBOUNDED
 from .compile import chain, inner, kernel
-from .effects import made_by
+from .effects import has_hook, made_by, made_once
 from .integrate import keeps_motion
 from .records import SPHERE
 from .rotation import inverse_inertia_times
@@ -290,6 +290,8 @@ def make_append_contact(spec: Spec, capture):
     preparing = made_by(spec, "prepare")
     prepares = bool(preparing)
     prepare: Any = chain(preparing, spec) if prepares else None
+    slows = at_surface and has_hook(spec, "slowed_n")
+    slowed_n: Any = made_once(spec, "slowed_n")[1] if slows else None
     ropes, bilateral, bounded = spec.has("rope"), terms.bilateral, terms.bounded
     stirred: Any = make_stirred(spec) if ropes else None
 
@@ -321,6 +323,8 @@ def make_append_contact(spec: Spec, capture):
                 + contact.ny * (mb.dvy - ma.dvy)
                 + contact.nz * (mb.dvz - ma.dvz)
             )
+        if slows:
+            contact.slowed_n = slowed_n(contact, body_a, body_b)
         if ropes:
             contact.stirred = 0.0
             if contact.span > 0.0:

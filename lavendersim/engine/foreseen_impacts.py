@@ -33,8 +33,12 @@ SLOW = 1.0
 # Where the path of a contact bends by more than this share of what forces change, it is the motion
 # that brings surfaces together: they meet at a slower speed, in the same measure.
 BENDS, GLANCING = 0.05, 1.0 / 64.0
+# So it is where more than this closes [m]: what solves that do not converge leave open is less.
+FALL = 1e-5
 # A contact that lasts has a gap of this share of what going round moves its surfaces by, at most.
 CLOSED = 1.0 / 64.0
+# CONTACT.waits of what leaves by a rebound, until it is known whether its pair does (`order`).
+REBOUNDS = 2
 LAST = 1.0 - 1e-9  # first guess, in what is left of the step, where only shapes tell
 
 
@@ -121,7 +125,7 @@ def make_foresee(spec: Spec) -> Any:
             contact.waits = 1
         ahead, slow = False, most
         if gap > params.slop:
-            if bend(contact, bodies, motion) * left > BENDS * most:
+            if bend(contact, bodies, motion) * left > BENDS * most or gap > FALL:
                 slow = GLANCING * most
         if squared > 0.0 and (v < 0.0 or a < 0.0):
             if is_impact(speed, least, dv, slow, e, params):
@@ -130,6 +134,8 @@ def make_foresee(spec: Spec) -> Any:
                 ahead = gap > 0.0 or due >= FLIGHT * params.timestep
                 if ahead and due < left:
                     contact.waits, contact.due = 1, due
+                elif ahead and v > 0.0 and e > 0.0 and contact.phi <= params.slop:
+                    contact.waits = REBOUNDS  # it leaves, and meets again later
         if turns:
             if (ahead or contact.waits == 1) and contact.due == NEVER and gap > 0.0:
                 # Surfaces that turn may come nearer by as much as this: their shapes decide.

@@ -13,7 +13,8 @@ V_c: the centre's, 0 of what touches or is tied to what does not move. Forces ac
 for what they change of V_c: else they would drive what does not move on. The first pair (s, t) is
 taken for which the energy is enough, first with the rebounds of impacts without order, which may
 themselves give energy, then without; at s = t = 0 it is, and what stays in place there slows down.
-Where surfaces move or give way energy tells nothing: s = t = 1 is taken of what is not found.
+Of unions whose surfaces work on them (`spring_surfaces`) energy tells nothing: s = t = 1 is taken
+where they are not found.
 """
 
 from __future__ import annotations
@@ -22,13 +23,14 @@ from typing import Any
 
 from .anderson import NO_ROUND, make_bring_on
 from .compile import kernel
-from .effects import has_hook, made_once
+from .effects import made_once
 from .integrate import make_classify, make_finish
 from .midpoint_passes import make_stand_up
 from .parts import make_forget_history
 from .spec import Spec
 from .spring_limit import make_limit
 from .spring_midpoint import make_find
+from .spring_surfaces import make_note_working
 from .spring_turn import TWISTED
 from .spring_unions import make_unions
 from .vectors import Vec3, cross, length
@@ -40,6 +42,8 @@ FOUND = 0.01
 ROUND_OFF = 1e-13
 # Sizes of the springs' impulses, each a quarter of the last, and of what bodies move by, a half.
 SIZES, SHARES = 8, 12
+# How often what does not move is made slower, by a half, where contacts give way.
+SLOWER = 30
 
 
 def make_act_beside_contacts(spec: Spec, place: Any, solve: Any) -> Any:
@@ -59,10 +63,8 @@ def make_act_beside_contacts(spec: Spec, place: Any, solve: Any) -> Any:
     forget_history = make_forget_history(spec)
     carries_inertia, refresh_inertia = made_once(spec, "refresh_inertia")
     warms, store_contacts = made_once(spec, "store")
-    # What surfaces that move or give way do is no loss.
-    moving_surfaces = has_hook(spec, "surface_velocity")
     rebounds = spec.has("restitution") and spec.has("impact_order")
-    elastic, regularised = spec.has("contact_spring"), spec.has("compliance")
+    note_working = make_note_working(spec)
 
     def read(links, x):
         for k in range(links.shape[0]):
@@ -266,17 +268,10 @@ def make_act_beside_contacts(spec: Spec, place: Any, solve: Any) -> Any:
         rows = poses if midway else bodies
         join(links, rows, contacts, count, False)
         classify(contacts, count, motion, params)
-        gives = False
-        if moving_surfaces:
-            gives = True
-        if elastic:
-            gives = True
-        if regularised:
-            gives = True
-        if gives and done:
-            return midway
-        if not gives and not gains(links, rows, velocities, motion, beside, dt):
-            return midway
+        working = note_working(state, rows, count)
+        if done or not working:
+            if not gains(state, rows, count, beside, dt):
+                return midway
         counters.spring_not_converged += 1
         if midway:
             stand_up(bodies, poses)
@@ -304,6 +299,7 @@ def make_act_beside_contacts(spec: Spec, place: Any, solve: Any) -> Any:
             solve(state, count, workspace, params, counters, log)
             counters.sweeps += sweeps
             join(links, bodies, contacts, count, False)
+            note_working(state, bodies, count)
             pull(links, contacts, bodies, count)  # of what has joined
             classify(contacts, count, motion, params)
             share = 1.0
@@ -311,10 +307,15 @@ def make_act_beside_contacts(spec: Spec, place: Any, solve: Any) -> Any:
                 if number == SIZES - 1 and last == SHARES - 1:
                     share = 0.0
                 put(state, bodies, count, share, dt)
-                if gives or not gains(links, bodies, velocities, motion, beside, dt):
+                if not gains(state, bodies, count, beside, dt):
                     return False
                 share *= 0.5
             size *= 0.25
+        # What contact springs give where nothing moves is taken from what stands.
+        for _ in range(SLOWER):
+            put(state, bodies, count, 0.0, dt)
+            if not gains(state, bodies, count, beside, dt):
+                return False
         return False
 
     return kernel(act_beside, spec)

@@ -11,11 +11,14 @@ from typing import Any, NamedTuple
 from .compile import kernel
 from .integrate import make_displace
 from .spec import Spec
+from .spring_surfaces import make_stored_in_contacts
 from .spring_turn import BOTH
 from .vectors import Vec3, minus, plus_scaled, scaled
 
 # Energy won in a step, of what there is, that solves and round-off leave [-].
 GAINED = 1e-10
+# The same of unions with a contact spring, whose lever changes as it turns [-].
+YIELDED = 1e-6
 # Share of its velocities that what is not moved at all keeps: else it would stand for ever [-].
 SLOWED = 0.5
 # BODY.again while unions are looked for: a contact pushes it.
@@ -26,7 +29,7 @@ class Unions(NamedTuple):
     """Kernels of the unions of a part of a step."""
 
     join: Any  # (links, rows, contacts, count, first) -> how many springs unions have
-    gains: Any  # (links, rows, velocities, motion, beside, dt) -> whether they win energy
+    gains: Any  # (state, rows, count, beside, dt) -> whether they win energy
     pull: Any  # (links, contacts, bodies, count): notes what forces change of their centres
     put: Any  # (state, rows, count, t, dt): where they are moved to
 
@@ -35,8 +38,10 @@ def make_unions(spec: Spec, place: Any) -> Unions:
     """Return the kernels; place: kernel of `effects.spring`. rows: bodies where the step begins."""
     from .rotation import inertia_times
 
-    turns, kinematic = spec.has("rotation"), spec.has("kinematic")
+    turns = spec.has("rotation")
     displace = make_displace(spec)
+    yields = spec.has("contact_spring")
+    stored_in_contacts: Any = make_stored_in_contacts(spec) if yields else None
 
     def unite(a, b):
         if a.group > 0 and b.group > 0 and a.group != b.group:
@@ -104,20 +109,29 @@ def make_unions(spec: Spec, place: Any) -> Unions:
 
     stored = kernel(stored, spec)
 
-    def gains(links, rows, velocities, motion, beside, dt):
-        # Whether unions have more energy where the step leads to, or it leads nowhere. rows: where
-        # it begins.
+    def note_shift(shift, before, after):
+        # How far a body gets, and how far it turns [rad], as `turn` takes it.
+        shift.vx, shift.vy, shift.vz = after.x - before.x, after.y - before.y, after.z - before.z
+        if turns:
+            w, x, y, z = before.qw, -before.qx, -before.qy, -before.qz
+            real = after.qw * w - after.qx * x - after.qy * y - after.qz * z
+            share = 2.0 / real if real != 0.0 else 0.0
+            shift.wx = share * (after.qw * x + after.qx * w + after.qy * z - after.qz * y)
+            shift.wy = share * (after.qw * y - after.qx * z + after.qy * w + after.qz * x)
+            shift.wz = share * (after.qw * z + after.qx * y - after.qy * x + after.qz * w)
+
+    note_shift = kernel(note_shift, spec)
+
+    def gains(state, rows, count, beside, dt):
+        # Whether unions that nothing works on (`spring_surfaces`) have more energy where the step
+        # leads to, or it leads nowhere. rows: where it begins.
         moved, moving = beside.bodies, beside.velocities
+        links, velocities, motion = state.links, state.velocities, state.motion
         won, had = 0.0, 0.0
         for i in range(rows.shape[0]):
             moved[i] = rows[i]
             row, m = rows[i], motion[i]
-            if kinematic:
-                if row.again == 0 and row.kinematic == 1:
-                    for k in range(links.shape[0]):
-                        if links[k].again == 1 and (links[k].a == i or links[k].b == i):
-                            return False
-            if row.again == 0:
+            if row.again == 0 or rows[row.group - 1].worked == 1:
                 continue
             moving[i] = velocities[i]
             if not displace(moved[i], moving[i], m, dt):
@@ -137,9 +151,22 @@ def make_unions(spec: Spec, place: Any) -> Unions:
                     work += 0.5 * (fx * (v.wx + m.wx) + fy * (v.wy + m.wy) + fz * (v.wz + m.wz))
             won, had = won + (after - before - work), had + before + after
         for k in range(links.shape[0]):
-            if links[k].again == 1:
+            group = max(rows[links[k].a].group, rows[links[k].b].group)
+            if links[k].again == 1 and rows[group - 1].worked == 0:
                 before, after = stored(links[k], rows), stored(links[k], moved)
                 won, had = won + (after - before), had + before + after
+        if yields:
+            for i in range(rows.shape[0]):
+                shift = moving[i]
+                shift.vx, shift.vy, shift.vz = 0.0, 0.0, 0.0
+                if turns:
+                    shift.wx, shift.wy, shift.wz = 0.0, 0.0, 0.0
+                if rows[i].again == 1 and rows[rows[i].group - 1].worked == 0:
+                    note_shift(shift, rows[i], moved[i])
+            stored_more, stored_had = stored_in_contacts(state.contacts, count, rows, moving)
+            if stored_had > 0.0:
+                beside.lost[0] = max(-won - stored_more, 0.0)
+                return not won + stored_more <= YIELDED * (had + stored_had)
         beside.lost[0] = max(-won, 0.0)
         return not won <= GAINED * had
 

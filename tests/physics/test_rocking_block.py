@@ -48,14 +48,7 @@ def first_return(states: States) -> float:
     return float(at - (after - before) ** 2 / (8.0 * (after - 2.0 * at + before)))
 
 
-SLOW = pytest.mark.xfail(
-    strict=True, reason="it lands slower than g dt, which is contact and no impact: 2 % off"
-)
-CASES = [
-    pytest.param(*block, rate, marks=SLOW if (block, rate) == ((0.05, 0.5), 240) else ())
-    for block in BLOCKS
-    for rate in RATES
-]
+CASES = [(*block, rate) for block in BLOCKS for rate in RATES]
 
 
 @pytest.mark.parametrize(("width", "height", "rate"), CASES)

@@ -20,6 +20,7 @@ CHAINED = [effect for effect in EFFECTS if effect.hooks.accelerate or effect.hoo
 FACT = "a property of the scene, which predicates may ask for, has the same name"
 TIME = "what gives way takes time: no impact of an instant"
 SPRING = "it has a penetration of its own, and no impact"
+BOUNCES = "with it bounces are no powers of e"
 LAW = "a row ahead of touching must be looked for, and its body's flight be kept"
 # Where else a name stands, as an identifier or a string, and why it must. A soft row is a term of
 # rows (`RowTerms`), which solvers ask for.
@@ -43,7 +44,8 @@ ELSEWHERE = {
         "engine/effects/impact_order.py": TIME,
         "engine/foreseen_impacts.py": TIME,
         "engine/impact_rows.py": TIME,
-        "engine/spring_contacts.py": "gives energy back",
+        "engine/repeated_bounces.py": BOUNCES,
+        "engine/spring_surfaces.py": "gives energy back",
         "engine/effects/contact_spring.py": "is another law of it",
     },
     "contact_spring": {
@@ -55,8 +57,11 @@ ELSEWHERE = {
         "engine/effects/impact_time.py": SPRING,
         "engine/effects/projection.py": SPRING,
         "engine/midpoint_rows.py": SPRING,
-        "engine/spring_contacts.py": "gives energy back",
+        "engine/spring_surfaces.py": "what it stores is known",
+        "engine/spring_unions.py": "stores energy",
     },
+    "cohesion": {"engine/repeated_bounces.py": BOUNCES},
+    "drag": {"engine/repeated_bounces.py": BOUNCES},
     "restitution": {
         "engine/effects/capture_in_sweeps.py": "makes a mistake with it",
         "engine/effects/falling_restitution.py": "lowers its coefficient",
@@ -96,10 +101,10 @@ ASKED = {
             "overlooked_points",
             *("solvers/newton/minimise", "spring_midpoint", "step_doubling", "scene/events"),
             *("effects/projection", "spring_contacts", "spring_group", "spring_limit"),
-            *("spring_projection", "spring_unions"),
+            *("spring_projection", "spring_surfaces", "spring_unions"),
         ),
         "gyroscopic": ("integrate", "midpoint_geometry", "spring_midpoint", "spring_turn"),
-        "kinematic": ("effects/sleeping", "integrate", "midpoint_geometry", "spring_unions"),
+        "kinematic": ("effects/sleeping", "integrate", "midpoint_geometry", "spring_surfaces"),
         "compound": (
             *("collide/broad/broad_phase", "collide/broad/fat_bounds", "collide/narrow_phase"),
             "impact_location",
@@ -116,8 +121,9 @@ ASKED = {
             *("integrate", "joint_turn", "memory", "respond"),
         ),
         "impact_time": (
-            *("contact", "effects/cohesion", "effects/restitution", "effects/speculative"),
-            *("effects/projection", "integrate", "midpoint_passes"),
+            *("contact", "effects/cohesion", "effects/drag", "effects/restitution"),
+            *("effects/projection", "effects/speculative", "integrate", "midpoint_passes"),
+            "repeated_bounces",
         ),
         "impact_order": (
             *("effects/impact_time", "effects/overlooked_points", "effects/sliding_stops"),
@@ -144,9 +150,9 @@ ASKED = {
         "contact_spring": (
             *("effects/impact_order", "effects/impact_time", "effects/pairwise_impacts"),
             *("effects/projection", "foreseen_impacts", "impact_rows", "midpoint_jumps"),
-            *("midpoint_rows", "spring_contacts"),
+            *("midpoint_rows", "spring_surfaces", "spring_unions"),
         ),
-        "compliance": ("foreseen_impacts", "spring_contacts"),
+        "compliance": ("foreseen_impacts", "spring_surfaces"),
         "restitution": (
             *("effects/impact_order", "foreseen_impacts", "overlooked_points", "spring_contacts"),
         ),

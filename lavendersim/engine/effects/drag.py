@@ -7,6 +7,8 @@ With `semi_implicit_euler`, of order 1; v has the other forces of the step:
 With `midpoint` of order 2: the rate is that of the middle, and exp(-x) is Pade's (0, 2),
     x = h (c1 + c2 |S_h/2((v_0 + v)/2)|),   v_0 as the step begins
     v' = (v_0 + (1 + x/2) (v - v_0)) / (1 + x + x^2/2),   and so omega'
+What it changes of the velocity along a contact is known to impacts at their time: after one it is
+that of the new velocity.
 Explicit steps overshoot rest where x exceeds 1; these come to rest for any dt. In both a fall ends
 at the very speed at which drag carries the weight.
 """
@@ -71,7 +73,51 @@ def make_start_step(spec):
 
 def make(spec):
     """Return `kernel(body, velocity, params)`."""
-    return _make_second_order(spec) if spec.has("midpoint") else _make_first_order(spec)
+    drag = _make_second_order(spec) if spec.has("midpoint") else _make_first_order(spec)
+    if not spec.has("impact_time"):
+        return drag
+    turns = spec.has("rotation")
+
+    def noted_drag(body, velocity, params):
+        x, y, z = velocity.vx, velocity.vy, velocity.vz
+        wx, wy, wz = 0.0, 0.0, 0.0
+        if turns:
+            wx, wy, wz = velocity.wx, velocity.wy, velocity.wz
+        drag(body, velocity, params)
+        body.slowed_vx, body.slowed_vy = velocity.vx - x, velocity.vy - y
+        body.slowed_vz = velocity.vz - z
+        if turns:
+            body.slowed_wx, body.slowed_wy = velocity.wx - wx, velocity.wy - wy
+            body.slowed_wz = velocity.wz - wz
+
+    return kernel(noted_drag, spec)
+
+
+def make_slowed_n(spec):
+    """Return `kernel(contact, body_a, body_b) -> v_n` that drag adds in the step [m/s]."""
+    from ..vectors import Vec3, cross, dot, minus, plus, position
+
+    turns = spec.has("rotation")
+
+    def slowed(body, x):
+        v = Vec3(body.slowed_vx, body.slowed_vy, body.slowed_vz)
+        if turns:
+            w = Vec3(body.slowed_wx, body.slowed_wy, body.slowed_wz)
+            v = plus(v, cross(w, minus(x, position(body))))
+        return v
+
+    slowed = kernel(slowed, spec)
+
+    def slowed_n(contact, body_a, body_b):
+        x, total = position(contact), 0.0
+        n = Vec3(contact.nx, contact.ny, contact.nz)
+        if body_a.inv_m > 0.0:
+            total -= dot(n, slowed(body_a, x))
+        if body_b.inv_m > 0.0:
+            total += dot(n, slowed(body_b, x))
+        return total
+
+    return kernel(slowed_n, spec)
 
 
 def _make_second_order(spec):
@@ -141,6 +187,11 @@ def _make_first_order(spec):
     return kernel(drag, spec)
 
 
+def contact_fields(spec):
+    """Return what contacts have where impacts have a time."""
+    return [("slowed_n", "f8")] if spec.has("impact_time") else []  # v_n by drag in the step [m/s]
+
+
 EFFECT = Effect(
     name="drag",
     decide=decide,
@@ -162,8 +213,11 @@ EFFECT = Effect(
             ("drag_angular", "f8"),  # c [N m s]
             # velocities that the step begins with [m/s], [rad/s]
             *[(f"drag_{k}{axis}", "f8") for k in "vw" for axis in "xyz"],
+            # what drag changes of them in the step, where impacts have a time
+            *[(f"slowed_{k}{axis}", "f8") for k in "vw" for axis in "xyz"],
         ],
+        contact_with=contact_fields,
     ),
     body_values=body_values,
-    hooks=Hooks(start_step=make_start_step, accelerate=make),
+    hooks=Hooks(start_step=make_start_step, accelerate=make, slowed_n=make_slowed_n),
 )

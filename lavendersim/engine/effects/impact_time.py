@@ -7,8 +7,9 @@ leave with -e v_meet, and end the step with v_n = -e v_meet + a (dt - tau): this
 requires. The bodies move on their old velocity until tau and on the new one from there; their
 other contacts require that the gap left at tau does not close in the rest of the step. What forces
 do in that rest counts as in `integrate.displace`: what flies on moves by its mean velocity there,
-v_n - a (dt - tau)/2; what is carried by v_n. A flight so short that it would end within the step is
-no flight: the contact is then a plastic one.
+v_n - a (dt - tau)/2; what is carried by v_n. Of a, drag that resists the approach ends at tau. A
+flight so short that it would end within the step is no flight: the contact is then a plastic one,
+but where it is the only one (`repeated_bounces`).
 """
 
 from math import sqrt
@@ -32,15 +33,21 @@ def decide(facts: Facts) -> Decision:
 
 
 def make_foresee(spec):
-    """Return `kernel(contact, params)`: when the surfaces meet in free flight, and how fast."""
+    """Return `kernel(contact, params, alone)`: when surfaces meet in free flight, and how fast.
+
+    alone: its bodies have no other contact.
+    """
+    from ..repeated_bounces import bounces_repeat, make_bounce_on
     from ..row_terms import row_terms
-    from . import made_once
+    from . import has_hook, made_once
 
     ordered, springs = spec.has("impact_order"), spec.has("contact_spring")
     bilateral = row_terms(spec).bilateral
     falls, restitution_at = made_once(spec, "restitution_at")
+    slows, repeats = has_hook(spec, "slowed_n"), bounces_repeat(spec)
+    bounce_on: Any = make_bounce_on(spec) if repeats else None
 
-    def foresee(contact, params):
+    def foresee(contact, params, alone):
         dt = params.dt
         contact.tau, contact.is_impact = dt, 0
         if springs:
@@ -53,20 +60,33 @@ def make_foresee(spec):
         # Surfaces that touch or overlap meet at once.
         gap = contact.phi if contact.phi > TOUCHING else 0.0
         squared = v * v - 2.0 * a * gap
-        if squared <= 0.0 or (v >= 0.0 and (a >= 0.0 or gap == 0.0)):
+        flown = gap == 0.0 and v > 0.0 and a < 0.0 and contact.e > 0.0  # by a rebound before
+        if squared <= 0.0 or (v >= 0.0 and (a >= 0.0 or gap == 0.0) and not flown):
             return
         approach_speed = sqrt(squared)
         # The smaller root, in the form that does not cancel.
         tau = 2.0 * gap / (approach_speed - v) if gap > 0.0 else 0.0
+        if flown:
+            tau = 2.0 * v / -a
         rest = dt - tau
         if rest <= 0.0:
+            if flown and contact.phi >= -params.slop:  # and beyond the step
+                contact.target = -contact.v_n_pre
             return
         e = contact.e
         if falls:
             e = restitution_at(e, contact, approach_speed)
         separation_speed = e * approach_speed
+        if slows:
+            # What resists the approach ends with it, and resists what flies off.
+            a -= (1.0 + e) * max(contact.slowed_n, 0.0) / dt
         # A flight that outlasts the step, or a plastic impact worth the name.
         flies_on = 2.0 * separation_speed > -a * rest
+        if repeats:
+            if alone and a < 0.0 and not flies_on:
+                bounce_on(contact, tau, approach_speed, e, params)
+                if contact.tau < dt:
+                    return
         change = contact.dv_n
         if ordered:  # of a whole step, whatever its part
             change *= params.timestep / dt
@@ -152,7 +172,7 @@ def make_predict_impacts(spec):
             motion[i].tau = dt
         for c in range(count):
             contact = contacts[c]
-            foresee(contact, params)
+            foresee(contact, params, count == 1)
             if contact.tau < dt:
                 meets = True
                 if contact.inv_m_a > 0.0:

@@ -19,6 +19,9 @@ the points stay together. What other steps leave is projected back, all of it.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from typing import Any
+
 from ..records import Field
 from ..spec import Spec
 from .decision import Decision, Facts, named

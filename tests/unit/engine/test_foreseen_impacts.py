@@ -18,6 +18,7 @@ from lavendersim.engine.approach import CREEP, ELSEWHERE, GUESSED, NEVER
 from lavendersim.engine.foreseen_impacts import (
     BENDS,
     CLOSED,
+    FALL,
     FLIGHT,
     GLANCING,
     LAST,
@@ -31,7 +32,7 @@ from lavendersim.engine.spec import Spec
 
 SPEC = Spec(effects=("impact_order", "restitution"))
 TURNS = SPEC.including("rotation")
-SLOP, STEP, RADIUS = 1e-5, 0.01, 0.1
+SLOP, STEP, RADIUS = 1e-6, 0.01, 0.1
 HAIR = 1e-9  # to either side of a limit, relative
 FORESEE = {spec: interpreted(make_foresee(spec)) for spec in (SPEC, TURNS)}
 
@@ -65,7 +66,7 @@ class Row:
         contacts, pairs, bodies, motion = (records(array) for array in arrays)
         kernel = FORESEE[self.spec]
         now = kernel(contacts[0], pairs[0], bodies, motion, params, self.met)
-        return bool(now), self.contact["waits"] == 1, float(self.contact["due"])
+        return bool(now), self.contact["waits"] > 0, float(self.contact["due"])
 
 
 @pytest.mark.parametrize("restitution", [0.0, 0.4])
@@ -75,7 +76,7 @@ def test_a_gap_closes_at_its_first_root(restitution: float, rng) -> None:
     for _ in range(300):
         row = Row(restitution=restitution)
         row.left = rng.uniform(0.2, 1.0) * STEP
-        phi = 10.0 ** rng.uniform(-5.0, -2.0)
+        phi = 10.0 ** rng.uniform(-5.7, -2.0)
         v, a = rng.normal() * 3.0, rng.normal() * 300.0
         roots = np.roots([0.5 * a, v, phi])
         times = sorted(t.real for t in roots if t.imag == 0.0 and t.real > 0.0)
@@ -85,9 +86,9 @@ def test_a_gap_closes_at_its_first_root(restitution: float, rng) -> None:
             assert due == NEVER
             seen.add("misses")
             continue
-        # Faster than the limit: e > 0 or what forces change in a timestep.
+        # Faster than the limit: e > 0 or what forces change in a timestep, less of it after a fall.
         speed = sqrt(v * v - 2.0 * a * phi)
-        fast = speed > abs(a) * STEP
+        fast = speed > abs(a) * STEP * (GLANCING if phi > FALL else 1.0)
         if restitution:
             fast = fast or 2.0 * restitution * speed > FLIGHT * -a * STEP
         if fast:
@@ -99,7 +100,7 @@ def test_a_gap_closes_at_its_first_root(restitution: float, rng) -> None:
         else:
             assert due == NEVER
             seen.add("slow")
-    assert seen == {"misses", "meets", "turns" if restitution else "slow"}
+    assert seen == {"misses", "meets", "turns", *(() if restitution else ("slow",))}
 
 
 IS_IMPACT = interpreted(make_is_impact(SPEC))
@@ -148,10 +149,11 @@ def test_one_that_leaves_waits_and_one_that_forces_bring_back_does_not() -> None
     for share in (1.0 - HAIR, 1.0 + HAIR):
         v = 1.0
         left = share * SLOP / (v - 0.5 * change)
-        row = Row(restitution=0.9)
-        row.left = left
-        row.moves(0.0, v, -change / left)
-        assert row.foresee()[1] == (share > 1.0)
+        for restitution, waits in ((0.0, share > 1.0), (0.9, True)):  # what rebounds meets again
+            row = Row(restitution=restitution)
+            row.left = left
+            row.moves(0.0, v, -(0.05 if restitution else 1.0) * change / left)
+            assert row.foresee()[1] == waits
 
 
 def test_a_ball_that_falls_back_is_due_when_its_flight_ends() -> None:
@@ -169,9 +171,16 @@ def test_a_ball_that_falls_back_is_due_when_its_flight_ends() -> None:
 
 
 def test_a_glance_is_an_impact_at_a_slower_speed() -> None:
-    """Past a ball the path of the contact bends: by v^2/r of two balls, and SLOW is GLANCING."""
+    """Past a ball the path of the contact bends: by v^2/r of two balls, and SLOW is GLANCING.
+
+    So it is of what falls through more than FALL.
+    """
     change = 0.1
-    for other, gap, due in ((SPHERE, 2, True), (PLANE, 2, False), (SPHERE, 1, False)):
+    fall = 1.01 * FALL / SLOP
+    for other, gap, due in (
+        *((SPHERE, 2, True), (PLANE, 2, False), (SPHERE, 1, False)),
+        *((PLANE, fall, True), (PLANE, 0.99 * FALL / SLOP, False)),
+    ):
         row = Row()
         row.bodies["shape"][0], row.bodies["bound"][0] = other, RADIUS
         row.moves(gap * SLOP, -0.02, 0.0)  # slower than forces change, faster than GLANCING of it

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 
 import numpy as np
 import pytest
-from laboratory import Bench, body, resolved
+from interpreted_steps import interpreted_bench
+from laboratory import Bench, body, plane, resolved, sphere
 
 from lavendersim.engine.spec import Spec
 
@@ -128,3 +130,36 @@ def test_a_fall_by_the_midpoint_rule_ends_at_the_same_speed(linear, quadratic) -
     one = fallen(20 * 30, {"linear": linear, "quadratic": quadratic}, 20)
     speed = -one.velocity[0, 2]
     assert (linear + quadratic * speed) * speed == pytest.approx(G, rel=1e-13)
+
+
+@pytest.mark.parametrize("impacts", ["at_surface", "in_order"])
+@pytest.mark.parametrize("turned", [False, True])
+@pytest.mark.parametrize("e", [0.0, 0.5])
+def test_drag_that_slows_an_approach_throws_nothing_back(
+    impacts: str, turned: bool, e: float
+) -> None:
+    """A ball, or the end of a rod that spins, runs into a wall at 20 m/s; c dt/m = 2.
+
+    A medium at rest takes energy, and so does an impact: after it there is at most e of the
+    approach. They begin 1 mm inside, where impacts have no order. Of a rod of which the wall stops
+    the end that moves (k_n = 4/m, impulse m u/4) a plastic impact leaves a quarter.
+    """
+    wall = plane(restitution=e)
+    c = 2.0 / DT
+    if turned:
+        bar = {"kind": "box", "size": [1.0, 0.02, 0.02]}
+        moving = {"velocity": (0.0, 0.0, -10.0), "angular_velocity": (0.0, 20.0, 0.0)}
+        drag = {"linear": c, "angular": c / 12.0}
+        one = body(bar, (0.0, 0.0, 0.009), restitution=e, drag=drag, **moving)
+    else:
+        one = sphere(0.1, (0, 0, 0.099), restitution=e, velocity=(0, 0, -20), drag={"linear": c})
+    cell = resolved({"wall": wall, "one": one}, (0.0, 0.0, 0.0), timestep="1/240", impacts=impacts,
+                    integrator="midpoint_contact", solver="adaptive", tolerance=1e-9)  # fmt: skip
+    bench = interpreted_bench(cell)
+    energy = [bench.run(1).step["kinetic_energy"][-1] for _ in range(4)]
+    before = 0.5 * (10.0**2 + 20.0**2 / 12.0) if turned else 200.0
+    least = 0.25 if turned else 0.0
+    assert energy[0] <= (least + (1.0 - least) * e * e) * before + 1e-9
+    assert all(later <= sooner + 1e-12 for sooner, later in itertools.pairwise(energy))
+    if not turned:
+        assert -1e-9 <= bench.velocity[1, 2] <= e * 20.0

@@ -43,7 +43,7 @@ def rows_of(*rows: dict[str, float], spec: Spec = SPEC) -> np.ndarray:
 
 def foreseen(spec: Spec = SPEC, **row: float) -> Any:
     contact = records(rows_of(row, spec=spec))[0]
-    interpreted(make_foresee(spec))(contact, one_row(**PARAMETERS))
+    interpreted(make_foresee(spec))(contact, one_row(**PARAMETERS), False)
     return contact
 
 
@@ -163,3 +163,15 @@ def test_it_is_on_where_impacts_are_not_captured_and_something_can_touch() -> No
     assert EFFECT.decide(facts(pairs=pairs, impacts="at_surface")).on
     assert not EFFECT.decide(facts(pairs=pairs)).on
     assert not EFFECT.decide(facts(impacts="at_surface")).on
+
+
+@pytest.mark.parametrize("e", [0.0, 0.5])
+def test_what_resists_the_approach_ends_with_it_and_resists_what_flies_off(e: float) -> None:
+    """Of 3 m/s at the surface, slowed by 2 m/s in a step by drag while 0.5 m/s push away."""
+    spec = SPEC.including("drag")
+    contacts = rows_of({"gap": 0.0, "v": -3.0, "acceleration": 2.5 / DT, "e": e}, spec=spec)
+    contacts["slowed_n"] = 2.0
+    contact = records(contacts)[0]
+    interpreted(make_foresee(spec))(contact, one_row(**PARAMETERS), False)
+    assert contact.separation_speed == pytest.approx(e * 3.0)
+    assert contact.after == pytest.approx(0.5 - e * 2.0)
